@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "common/bus/message_types.hpp"
+#include "common/bus/qos.hpp"
+
+namespace rtd::bus {
+
+/// The bus cannot do what was asked; what() names the cause and the fix.
+class BusError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What a vendor implements. Messages cross as pointers to the plain structs of common/msg, typed by MessageId.
+class WriterBackend {
+ public:
+  virtual ~WriterBackend() = default;
+  virtual bool write(const void* message) = 0;
+  virtual void* loan() = 0;                    ///< plain types only
+  virtual bool write_loaned(void* slot) = 0;   ///< takes the slot back in any case
+  virtual void discard_loan(void* slot) = 0;
+  virtual int matched() const = 0;
+  virtual bool wait_acknowledged(int timeout_ms) = 0;
+};
+
+class ReaderBackend {
+ public:
+  virtual ~ReaderBackend() = default;
+  virtual int matched() const = 0;
+};
+
+using ErasedCallback = std::function<void(std::shared_ptr<const void>)>;
+
+class BusBackend {
+ public:
+  virtual ~BusBackend() = default;
+  virtual const std::string& vendor() const = 0;
+  virtual std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
+                                                       StatusCallbacks callbacks) = 0;
+  virtual std::unique_ptr<ReaderBackend> create_reader(MessageId id, const std::string& topic, QosProfile profile,
+                                                       ErasedCallback on_message, StatusCallbacks callbacks) = 0;
+};
+
+}  // namespace rtd::bus

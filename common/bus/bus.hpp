@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "common/bus/backend.hpp"
+#include "common/bus/message_types.hpp"
+#include "common/bus/qos.hpp"
+#include "common/bus/topics.hpp"
+
+namespace rtd::bus {
+
+/// A message slot borrowed from the writer. Fill it through `->`, then give it to Writer::write(Loan&&).
+/// Not written: returned to the writer on destruction. Move only; not thread-safe.
+template <class T>
+class Loan {
+ public:
+  Loan(WriterBackend* writer, void* slot) : writer_(writer), slot_(static_cast<T*>(slot)) {}
+  Loan(Loan&& other) noexcept : writer_(other.writer_), slot_(std::exchange(other.slot_, nullptr)) {}
+  Loan& operator=(Loan&&) = delete;
+  ~Loan() {
+    if (slot_ != nullptr) writer_->discard_loan(slot_);
+  }
+  T* operator->() { return slot_; }
+  T& operator*() { return *slot_; }
+
+ private:
+  template <class U>
+  friend class Writer;
+  T* release() { return std::exchange(slot_, nullptr); }
+  WriterBackend* writer_;
+  T* slot_;
+};
+
+/// Publishes T on one topic. write() is thread-safe; loan() + write(Loan) belong to one thread.
+template <class T>
+class Writer {
+ public:
+  Writer() = default;
+  explicit Writer(std::unique_ptr<WriterBackend> backend) : backend_(std::move(backend)) {}
+  explicit operator bool() const { return backend_ != nullptr; }
+
+  /// Hands the message to the bus. False when the bus could not take it (history full past the blocking time, shut down).
+  bool write(const T& message) { return backend_->write(&message); }
+  /// A slot to build a fixed-size message in place. Its content is undefined until filled: fill every field.
+  Loan<T> loan() requires MessageTraits<T>::kPlain { return Loan<T>(backend_.get(), backend_->loan()); }
+  bool write(Loan<T>&& loan) { return backend_->write_loaned(loan.release()); }
+  /// Number of readers matched now.
+  int matched() const { return backend_->matched(); }
+  /// Blocks until every reliable reader has acknowledged what was written, at most timeout_ms. True when all did.
+  bool wait_acknowledged(int timeout_ms) { return backend_->wait_acknowledged(timeout_ms); }
+
+ private:
+  std::unique_ptr<WriterBackend> backend_;
+};
+
+/// Receives T from one topic until destroyed. The callback runs on a bus thread, one call at a time per reader: push to a
+/// queue and return. Messages are immutable and may be kept. Frames are copied out of shared memory and checked for
+/// having been overwritten meanwhile before the callback sees them, so no torn frame is ever delivered.
+/// After the destructor returns, no callback runs.
+template <class T>
+class Reader {
+ public:
+  Reader() = default;
+  explicit Reader(std::unique_ptr<ReaderBackend> backend) : backend_(std::move(backend)) {}
+  explicit operator bool() const { return backend_ != nullptr; }
+  int matched() const { return backend_->matched(); }
+
+ private:
+  std::unique_ptr<ReaderBackend> backend_;
+};
+
+/// One connection of a process to the topics of a domain. Writers and readers must not outlive it.
+/// Throws BusError with cause and fix when the backend cannot start. Thread-safe.
+class Bus {
+ public:
+  explicit Bus(std::shared_ptr<BusBackend> backend) : backend_(std::move(backend)) {}
+
+  template <class T>
+  Writer<T> writer(const Topic<T>& topic, StatusCallbacks callbacks = {}) {
+    return Writer<T>(backend_->create_writer(MessageTraits<T>::kId, topic.name, topic.profile, std::move(callbacks)));
+  }
+
+  template <class T>
+  Reader<T> reader(const Topic<T>& topic, std::function<void(std::shared_ptr<const T>)> on_message,
+                   StatusCallbacks callbacks = {}) {
+    auto erased = [on_message = std::move(on_message)](std::shared_ptr<const void> message) {
+      on_message(std::static_pointer_cast<const T>(std::move(message)));
+    };
+    return Reader<T>(backend_->create_reader(MessageTraits<T>::kId, topic.name, topic.profile, std::move(erased),
+                                             std::move(callbacks)));
+  }
+
+  const std::string& vendor() const { return backend_->vendor(); }
+
+ private:
+  std::shared_ptr<BusBackend> backend_;
+};
+
+}  // namespace rtd::bus

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/bus/message_types.hpp"
+#include "common/bus/qos.hpp"
+
+namespace rtd::bus {
+
+/// A topic: its DDS name, its type and its QoS profile, written down once for all services.
+template <class T>
+struct Topic {
+  const char* name;
+  QosProfile profile;
+};
+
+namespace topics {
+inline constexpr Topic<msg::RgbdFrame> kFrame{"rtd/frame", QosProfile::kRawFrame};
+inline constexpr Topic<msg::FeatureFrame> kFeatures{"rtd/features", QosProfile::kFeatures};
+inline constexpr Topic<msg::KeyframeEvent> kKeyframes{"rtd/keyframes", QosProfile::kKeyframes};
+inline constexpr Topic<msg::TrackingResult> kTracking{"rtd/tracking", QosProfile::kTracking};
+inline constexpr Topic<msg::ServiceStatus> kStatus{"rtd/status", QosProfile::kHeartbeat};
+inline constexpr Topic<msg::CompressedImage> kColorJpeg{"rt/camera/color/image_raw/compressed", QosProfile::kNetworkFrame};
+inline constexpr Topic<msg::CameraInfo> kCameraInfo{"rt/camera/color/camera_info", QosProfile::kLatched};
+inline constexpr Topic<msg::Detection2DArray> kDetections{"rt/detector/detections", QosProfile::kDetections};
+inline constexpr Topic<msg::Odometry> kOdometry{"rt/slam/odometry", QosProfile::kPose};
+inline constexpr Topic<msg::PoseStamped> kPose{"rt/slam/pose", QosProfile::kPose};
+inline constexpr Topic<msg::TFMessage> kTf{"rt/tf", QosProfile::kPose};
+inline constexpr Topic<msg::Path> kPath{"rt/slam/path", QosProfile::kPose};
+inline constexpr Topic<msg::PointCloud2> kMapPoints{"rt/slam/map_points", QosProfile::kLatched};
+inline constexpr Topic<msg::DiagnosticArray> kDiagnostics{"rt/diagnostics", QosProfile::kPose};
+}  // namespace topics
+
+}  // namespace rtd::bus

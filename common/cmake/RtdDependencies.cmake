@@ -1,0 +1,19 @@
+# SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Every third-party package, found once. docs/dependencies.md says why each is here.
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs dnn)
+find_package(Ceres 2.1 REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+if(RTD_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+endif()
+if(RTD_BUILD_BENCH)
+  find_package(benchmark REQUIRED)
+endif()

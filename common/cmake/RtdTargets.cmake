@@ -1,0 +1,85 @@
+# SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# One place for how our targets are compiled and how tests are declared.
+#   rtd_library(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...])  static library, includes from the repository root
+#   rtd_executable(NAME SOURCES... PRIVATE libs...)
+#   rtd_test(NAME LABEL unit|component|interop|dataset SOURCES... LIBS... [TIMEOUT seconds] [SERIAL])
+#   rtd_bench(NAME SOURCES... LIBS...)
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+add_library(rtd_compile_options INTERFACE)
+target_include_directories(rtd_compile_options INTERFACE "${PROJECT_SOURCE_DIR}")
+# -ffp-contract=off: the same source gives the same bits whether or not a loop is vectorised (lockstep runs are compared byte by byte).
+target_compile_options(rtd_compile_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                       $<$<BOOL:${RTD_WERROR}>:-Werror> -ffp-contract=off)
+
+if(RTD_SANITIZE)
+  target_compile_options(rtd_compile_options INTERFACE -fsanitize=${RTD_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(rtd_compile_options INTERFACE -fsanitize=${RTD_SANITIZE})
+endif()
+
+function(rtd_common_target name)
+  target_link_libraries(${name} PRIVATE rtd_compile_options)
+  if(RTD_CLANG_TIDY)
+    set_target_properties(${name} PROPERTIES CXX_CLANG_TIDY "clang-tidy;--quiet")
+  endif()
+endfunction()
+
+function(rtd_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}")
+  target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  rtd_common_target(${name})
+endfunction()
+
+function(rtd_executable name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PRIVATE" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_PRIVATE})
+  rtd_common_target(${name})
+  install(TARGETS ${name} RUNTIME DESTINATION bin)
+endfunction()
+
+function(rtd_test name)
+  if(NOT RTD_BUILD_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "SERIAL" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBS} GTest::gmock GTest::gtest_main)
+  rtd_common_target(${name})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
+  add_test(NAME ${ARG_LABEL}.${name} COMMAND ${name})
+  set_tests_properties(${ARG_LABEL}.${name} PROPERTIES LABELS ${ARG_LABEL}
+    SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\] [1-9][0-9]* test.*\n.*\\[  PASSED  \\] 0 tests")
+  if(ARG_TIMEOUT)
+    set_tests_properties(${ARG_LABEL}.${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT})
+  else()
+    set_tests_properties(${ARG_LABEL}.${name} PROPERTIES TIMEOUT 120)
+  endif()
+  if(ARG_SERIAL)
+    set_tests_properties(${ARG_LABEL}.${name} PROPERTIES RUN_SERIAL ON)
+  endif()
+endfunction()
+
+function(rtd_bench name)
+  if(NOT RTD_BUILD_BENCH)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBS} benchmark::benchmark)
+  rtd_common_target(${name})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bench")
+endfunction()
