@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+
+namespace rtd::geometry {
+
+/// Pinhole camera with Brown-Conrady distortion. Camera frame: optical (x right, y down, z forward).
+/// Source: docs/theory/camera.md, Eq. (1)-(3). Immutable value, thread-safe.
+class CameraModel {
+ public:
+  struct Parameters {
+    double fx = 0, fy = 0, cx = 0, cy = 0;   ///< px
+    std::array<double, 5> distortion{};      ///< k1 k2 p1 p2 k3
+    int width = 0, height = 0;               ///< px
+  };
+
+  CameraModel() = default;
+  explicit CameraModel(const Parameters& parameters);
+
+  const Parameters& parameters() const { return parameters_; }
+  bool distorted() const { return distorted_; }
+
+  /// p_camera (m) -> undistorted pixel. The caller has checked z > 0.
+  Eigen::Vector2d project(const Eigen::Vector3d& p_camera) const {
+    return {parameters_.fx * p_camera.x() / p_camera.z() + parameters_.cx,
+            parameters_.fy * p_camera.y() / p_camera.z() + parameters_.cy};
+  }
+  /// Undistorted pixel and depth along z (m) -> p_camera (m).
+  Eigen::Vector3d unproject(const Eigen::Vector2d& pixel, double depth_m) const {
+    return {(pixel.x() - parameters_.cx) / parameters_.fx * depth_m,
+            (pixel.y() - parameters_.cy) / parameters_.fy * depth_m, depth_m};
+  }
+  /// Pixel of the camera's own image -> pixel of the ideal pinhole image (Newton on Eq. (2)).
+  Eigen::Vector2d undistort(const Eigen::Vector2d& raw_pixel) const;
+  /// Pixel of the ideal pinhole image -> pixel of the camera's own image, Eq. (2).
+  Eigen::Vector2d distort(const Eigen::Vector2d& pixel) const;
+  /// Inside the image, `margin_px` away from its border.
+  bool contains(const Eigen::Vector2d& pixel, double margin_px = 0.0) const {
+    return pixel.x() >= margin_px && pixel.y() >= margin_px && pixel.x() < parameters_.width - margin_px &&
+           pixel.y() < parameters_.height - margin_px;
+  }
+
+ private:
+  Eigen::Vector2d distort_normalized(const Eigen::Vector2d& n) const;
+  Parameters parameters_;
+  bool distorted_ = false;
+};
+
+}  // namespace rtd::geometry

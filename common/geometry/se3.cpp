@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/geometry/se3.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rtd::geometry {
+namespace {
+
+/// Left Jacobian of SO(3): V in exp([rho; phi]) = (exp(phi), V rho).
+Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi) {
+  const double angle2 = phi.squaredNorm();
+  const Eigen::Matrix3d phi_x = skew(phi);
+  if (angle2 < 1e-12) return Eigen::Matrix3d::Identity() + 0.5 * phi_x + phi_x * phi_x / 6.0;
+  const double angle = std::sqrt(angle2);
+  return Eigen::Matrix3d::Identity() + (1 - std::cos(angle)) / angle2 * phi_x +
+         (angle - std::sin(angle)) / (angle2 * angle) * phi_x * phi_x;
+}
+
+}  // namespace
+
+Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  if (angle < 1e-10) {
+    const Eigen::Matrix3d w = skew(rotation_vector);
+    return Eigen::Matrix3d::Identity() + w + 0.5 * w * w;
+  }
+  return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
+}
+
+Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation) {
+  const Eigen::AngleAxisd angle_axis{Eigen::Quaterniond(rotation).normalized()};
+  return angle_axis.angle() * angle_axis.axis();
+}
+
+Eigen::Isometry3d se3_exp(const Vector6d& twist) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = so3_exp(twist.tail<3>());
+  T.translation() = left_jacobian(twist.tail<3>()) * twist.head<3>();
+  return T;
+}
+
+Vector6d se3_log(const Eigen::Isometry3d& T) {
+  Vector6d twist;
+  twist.tail<3>() = so3_log(T.linear());
+  const Eigen::Vector3d phi = twist.tail<3>();
+  twist.head<3>() = left_jacobian(phi).partialPivLu().solve(T.translation());
+  return twist;
+}
+
+double rotation_angle_rad(const Eigen::Isometry3d& T) { return so3_log(T.linear()).norm(); }
+
+Eigen::Isometry3d normalized(const Eigen::Isometry3d& T) {
+  Eigen::Isometry3d result = T;
+  result.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
+  return result;
+}
+
+}  // namespace rtd::geometry

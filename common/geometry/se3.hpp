@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace rtd::geometry {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// [v]x, so that skew(v) * w = v x w.
+Eigen::Matrix3d skew(const Eigen::Vector3d& v);
+
+/// Rotation vector (rad) -> rotation matrix; Rodrigues, exact near zero.
+Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_vector);
+/// Rotation matrix -> rotation vector (rad), angle in [0, pi].
+Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation);
+
+/// Twist [translation part rho; rotation vector phi] (m, rad) -> rigid transform, docs/theory/se3.md Eq. (2).
+Eigen::Isometry3d se3_exp(const Vector6d& twist);
+/// Inverse of se3_exp.
+Vector6d se3_log(const Eigen::Isometry3d& T);
+
+/// Angle of the rotation part (rad), in [0, pi].
+double rotation_angle_rad(const Eigen::Isometry3d& T);
+/// T with its rotation made orthonormal again (drift of long products).
+Eigen::Isometry3d normalized(const Eigen::Isometry3d& T);
+
+}  // namespace rtd::geometry

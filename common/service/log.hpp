@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace rtd::service {
+
+/// Sends spdlog to stderr as `LEVEL service event=... key=value`, one event a line. Adapters only, cores return facts.
+void init_logging(const std::string& service, const std::string& level);
+
+/// Lets one message through per period and counts the rest, for events that can come with every frame. Thread-safe enough
+/// for one caller per instance.
+class RateLimit {
+ public:
+  explicit RateLimit(std::chrono::milliseconds period) : period_(period) {}
+  /// True when the caller may log now; suppressed() then tells how many were swallowed since the last time.
+  bool pass();
+  std::uint64_t suppressed() const { return last_suppressed_; }
+
+ private:
+  std::chrono::milliseconds period_;
+  std::chrono::steady_clock::time_point last_{};
+  std::uint64_t suppressed_ = 0, last_suppressed_ = 0;
+};
+
+}  // namespace rtd::service

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "common/bus/bus.hpp"
+#include "common/service/pace.hpp"
+#include "common/service/stop_token.hpp"
+
+namespace rtd::service {
+
+/// Publishes the heartbeat of one service (topic rtd/status, 5 Hz and at changes) and knows those of the others.
+/// Thread-safe.
+class Heartbeat {
+ public:
+  Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop);
+  ~Heartbeat();
+
+  void set_state(msg::ServiceState state, const std::string& message = {});
+  /// A number shown in the heartbeat; the same name overwrites.
+  void set_metric(const std::string& name, double value);
+  /// Newest status of another service; a service not heard for 0.5 s counts as gone.
+  bool alive(const std::string& service) const;
+  bool ready(const std::string& service) const;  ///< alive and in state kReady, kRunning or kDegraded
+  /// Called on a bus thread for every heartbeat of another service.
+  void on_status(std::function<void(const msg::ServiceStatus&)> callback);
+  /// Message when an older instance of the same service runs in this domain; empty otherwise.
+  std::string duplicate() const;
+
+ private:
+  struct Peer {
+    msg::ServiceStatus status;
+    std::int64_t heard_ns = 0;
+  };
+  void publish();
+  void receive(const msg::ServiceStatus& status);
+  void loop();
+
+  StopToken& stop_;
+  mutable std::mutex mutex_;
+  msg::ServiceStatus own_;
+  std::map<std::string, Peer> peers_;
+  std::function<void(const msg::ServiceStatus&)> callback_;
+  std::string duplicate_;
+  std::mutex publish_mutex_;
+  bus::Writer<msg::ServiceStatus> writer_;
+  bus::Reader<msg::ServiceStatus> reader_;
+  StopToken ended_;
+  std::thread thread_;
+};
+
+/// What a service adapter gets from the process around it.
+struct Runtime {
+  bus::Bus& bus;
+  Heartbeat& heartbeat;
+  StopToken& stop;
+  Pace pace;
+};
+
+}  // namespace rtd::service
