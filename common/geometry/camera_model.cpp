@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/geometry/camera_model.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 
 namespace rtd::geometry {
 
 CameraModel::CameraModel(const Parameters& parameters)
     : parameters_(parameters),
-      distorted_(std::any_of(parameters.distortion.begin(), parameters.distortion.end(), [](double k) { return k != 0; })) {
-}
+      distorted_(
+          std::any_of(parameters.distortion.begin(), parameters.distortion.end(), [](double k) { return k != 0; })) {}
 
 Eigen::Vector2d CameraModel::distort_normalized(const Eigen::Vector2d& n) const {
   const auto& [k1, k2, p1, p2, k3] = parameters_.distortion;
@@ -36,8 +37,12 @@ Eigen::Vector2d CameraModel::undistort(const Eigen::Vector2d& raw_pixel) const {
     const Eigen::Vector2d residual = distort_normalized(n) - target;
     if (residual.squaredNorm() < 1e-20) break;
     Eigen::Matrix2d jacobian;
-    jacobian.col(0) = (distort_normalized(n + Eigen::Vector2d(kStep, 0)) - distort_normalized(n - Eigen::Vector2d(kStep, 0))) / (2 * kStep);
-    jacobian.col(1) = (distort_normalized(n + Eigen::Vector2d(0, kStep)) - distort_normalized(n - Eigen::Vector2d(0, kStep))) / (2 * kStep);
+    jacobian.col(0) =
+        (distort_normalized(n + Eigen::Vector2d(kStep, 0)) - distort_normalized(n - Eigen::Vector2d(kStep, 0))) /
+        (2 * kStep);
+    jacobian.col(1) =
+        (distort_normalized(n + Eigen::Vector2d(0, kStep)) - distort_normalized(n - Eigen::Vector2d(0, kStep))) /
+        (2 * kStep);
     n -= jacobian.inverse() * residual;
   }
   return {p.fx * n.x() + p.cx, p.fy * n.y() + p.cy};

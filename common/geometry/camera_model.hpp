@@ -13,9 +13,9 @@ namespace rtd::geometry {
 class CameraModel {
  public:
   struct Parameters {
-    double fx = 0, fy = 0, cx = 0, cy = 0;   ///< px
-    std::array<double, 5> distortion{};      ///< k1 k2 p1 p2 k3
-    int width = 0, height = 0;               ///< px
+    double fx = 0, fy = 0, cx = 0, cy = 0;  ///< px
+    std::array<double, 5> distortion{};     ///< k1 k2 p1 p2 k3
+    int width = 0, height = 0;              ///< px
   };
 
   CameraModel() = default;

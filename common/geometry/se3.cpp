@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/geometry/se3.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -55,7 +56,9 @@ Vector6d se3_log(const Eigen::Isometry3d& T) {
   return twist;
 }
 
-double rotation_angle_rad(const Eigen::Isometry3d& T) { return so3_log(T.linear()).norm(); }
+double rotation_angle_rad(const Eigen::Isometry3d& T) {
+  return so3_log(T.linear()).norm();
+}
 
 Eigen::Isometry3d normalized(const Eigen::Isometry3d& T) {
   Eigen::Isometry3d result = T;

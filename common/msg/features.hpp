@@ -14,10 +14,10 @@ using Descriptor = std::array<std::uint8_t, 32>;  ///< rotated BRIEF, 256 bits
 
 /// Bits of Feature::flags.
 enum FeatureFlag : std::uint8_t {
-  kFeatureRemoved = 1U << 0,       ///< judged dynamic: SLAM must not use it; sent so that viewers can draw it
-  kFeatureInHighMask = 1U << 1,    ///< inside the mask of a high-motion object (person, animal)
-  kFeatureInMediumMask = 1U << 2,  ///< inside the mask of a medium-motion object (chair, book)
-  kFeatureInLowMask = 1U << 3,     ///< inside the mask of a low-motion object (tv, refrigerator)
+  kFeatureRemoved = 1U << 0,         ///< judged dynamic: SLAM must not use it; sent so that viewers can draw it
+  kFeatureInHighMask = 1U << 1,      ///< inside the mask of a high-motion object (person, animal)
+  kFeatureInMediumMask = 1U << 2,    ///< inside the mask of a medium-motion object (chair, book)
+  kFeatureInLowMask = 1U << 3,       ///< inside the mask of a low-motion object (tv, refrigerator)
   kFeatureGeometryMoving = 1U << 4,  ///< the multi-view depth check found motion here
   kFeatureGeometryStatic = 1U << 5,  ///< the multi-view depth check found this point where it should be
 };
@@ -38,7 +38,13 @@ static_assert(sizeof(Feature) == 64 && std::is_trivially_copyable_v<Feature>);
 
 /// Stages of the filter whose time travels in FeatureFrame::stage_ms.
 enum FilterStage : std::uint32_t {
-  kStageWaitDetections, kStageExtract, kStageMasks, kStageEgoMotion, kStageDepthCheck, kStageFuse, kStageFilterTotal,
+  kStageWaitDetections,
+  kStageExtract,
+  kStageMasks,
+  kStageEgoMotion,
+  kStageDepthCheck,
+  kStageFuse,
+  kStageFilterTotal,
   kFilterStages = 8
 };
 
@@ -47,14 +53,14 @@ enum class DetectionUse : std::uint32_t { kNone = 0, kExact = 1, kCarried = 2, k
 
 /// The features of one frame: topic `rtd/features`. Plain and of fixed size; entries behind `count` are zero.
 struct FeatureFrame {
-  std::uint64_t seq;              ///< seq of the RgbdFrame
-  std::int64_t stamp_ns;          ///< stamp of the RgbdFrame
-  std::int64_t published_ns;      ///< copied from the RgbdFrame: the start of the camera -> pose latency
+  std::uint64_t seq;                 ///< seq of the RgbdFrame
+  std::int64_t stamp_ns;             ///< stamp of the RgbdFrame
+  std::int64_t published_ns;         ///< copied from the RgbdFrame: the start of the camera -> pose latency
   std::array<double, 4> intrinsics;  ///< fx fy cx cy of the undistorted image
-  std::uint32_t width, height;    ///< px
-  std::uint32_t count;            ///< used entries of `features`
-  std::uint32_t removed;          ///< how many of them carry kFeatureRemoved
-  std::uint32_t objects;          ///< objects seen in this frame
+  std::uint32_t width, height;       ///< px
+  std::uint32_t count;               ///< used entries of `features`
+  std::uint32_t removed;             ///< how many of them carry kFeatureRemoved
+  std::uint32_t objects;             ///< objects seen in this frame
   DetectionUse detection_use;
   std::array<float, kFilterStages> stage_ms;  ///< by FilterStage
   std::array<Feature, kMaxFeatures> features;

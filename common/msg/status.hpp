@@ -8,7 +8,14 @@
 
 namespace rtd::msg {
 
-enum class ServiceState : std::uint32_t { kStarting = 0, kReady = 1, kRunning = 2, kDegraded = 3, kFinished = 4, kFailed = 5 };
+enum class ServiceState : std::uint32_t {
+  kStarting = 0,
+  kReady = 1,
+  kRunning = 2,
+  kDegraded = 3,
+  kFinished = 4,
+  kFailed = 5
+};
 
 /// A named number of a service: a counter, a queue length, a mean time.
 struct Metric {
@@ -18,12 +25,12 @@ struct Metric {
 
 /// Heartbeat of a service: topic `rtd/status`, 5 Hz and at every change of state.
 struct ServiceStatus {
-  std::string service;        ///< "camera", "detector", "filter", "slam", ...
+  std::string service;  ///< "camera", "detector", "filter", "slam", ...
   std::int64_t pid = 0;
   std::int64_t started_ns = 0;  ///< CLOCK_REALTIME of the process start: the older of two equal services stays
   std::int64_t stamp_ns = 0;    ///< CLOCK_REALTIME
   ServiceState state = ServiceState::kStarting;
-  std::string message;        ///< one line for people: why degraded or failed
+  std::string message;  ///< one line for people: why degraded or failed
   std::vector<Metric> metrics;
 };
 

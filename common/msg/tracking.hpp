@@ -18,7 +18,8 @@ enum class KeyframeEventKind : std::uint32_t { kCreated = 0, kCorrected = 1, kRe
 
 /// "Frame 812 is keyframe 57": topic `rtd/keyframes`, from slam to the filter.
 struct KeyframeEvent {
-  std::uint64_t event_index;  ///< counts the events of one slam process from 0; TrackingResult::event_count tells how many exist
+  std::uint64_t
+      event_index;  ///< counts the events of one slam process from 0; TrackingResult::event_count tells how many exist
   std::uint64_t frame_seq;
   std::int64_t stamp_ns;
   Transform T_world_camera;
@@ -26,28 +27,40 @@ struct KeyframeEvent {
   KeyframeEventKind kind;
 };
 
-enum class TrackingState : std::uint32_t { kInitializing = 0, kOk = 1, kRecentlyLost = 2, kLost = 3, kRelocalizing = 4 };
+enum class TrackingState : std::uint32_t {
+  kInitializing = 0,
+  kOk = 1,
+  kRecentlyLost = 2,
+  kLost = 3,
+  kRelocalizing = 4
+};
 
 /// Stages of slam whose time travels in TrackingResult::stage_ms.
 enum SlamStage : std::uint32_t {
-  kStageMatch, kStageLocalMap, kStagePose, kStageKeyframe, kStageMapping, kStageSlamTotal, kSlamStages = 8
+  kStageMatch,
+  kStageLocalMap,
+  kStagePose,
+  kStageKeyframe,
+  kStageMapping,
+  kStageSlamTotal,
+  kSlamStages = 8
 };
 
 /// The outcome of tracking one frame: topic `rtd/tracking`, every frame, also when tracking failed.
 struct TrackingResult {
   std::uint64_t seq;
   std::int64_t stamp_ns;
-  std::int64_t published_ns;    ///< copied from the RgbdFrame
-  std::int64_t finished_ns;     ///< CLOCK_MONOTONIC when the pose was ready; latency = finished_ns - published_ns
-  Transform T_world_camera;     ///< valid in state kOk only; camera frame is optical
+  std::int64_t published_ns;          ///< copied from the RgbdFrame
+  std::int64_t finished_ns;           ///< CLOCK_MONOTONIC when the pose was ready; latency = finished_ns - published_ns
+  Transform T_world_camera;           ///< valid in state kOk only; camera frame is optical
   std::array<double, 36> covariance;  ///< 6x6 row-major, order x y z rx ry rz, m and rad, in the world frame
-  std::uint64_t event_count;    ///< keyframe events published up to and including this frame
+  std::uint64_t event_count;          ///< keyframe events published up to and including this frame
   TrackingState state;
-  std::uint32_t inliers;        ///< landmarks matched and kept by the pose optimisation
+  std::uint32_t inliers;          ///< landmarks matched and kept by the pose optimisation
   std::uint32_t features_static;  ///< features offered to tracking
   std::uint32_t features_removed;
-  std::uint32_t keyframes;      ///< keyframes in the map
-  std::uint32_t landmarks;      ///< landmarks in the map
+  std::uint32_t keyframes;                  ///< keyframes in the map
+  std::uint32_t landmarks;                  ///< landmarks in the map
   std::array<float, kSlamStages> stage_ms;  ///< by SlamStage
 };
 static_assert(std::is_trivially_copyable_v<KeyframeEvent> && std::is_trivially_copyable_v<TrackingResult>);

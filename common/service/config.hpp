@@ -24,7 +24,8 @@ struct Range {
 };
 
 /// Ties the fields of plain config structs to dotted keys. A config struct keeps its defaults in itself and offers
-///   void bind(rtd::service::ConfigBinder& binder) { binder.field("max_depth_m", max_depth_m, {0.3, 20.0}, "what it is"); }
+///   void bind(rtd::service::ConfigBinder& binder) { binder.field("max_depth_m", max_depth_m, {0.3, 20.0}, "what it
+///   is"); }
 /// The binder then loads YAML, applies key=value overrides, checks ranges and prints what is in force.
 /// Bound fields must outlive the binder. Not thread-safe.
 class ConfigBinder {
@@ -50,7 +51,8 @@ class ConfigBinder {
   /// Loads a YAML file. Top-level sections named in `foreign_sections` belong to other services and are skipped;
   /// any other unknown key, a wrong type or a value out of range throws ConfigError.
   void load_file(const std::string& path, const std::vector<std::string>& foreign_sections);
-  /// Applies one "key=value" override (value parsed as YAML). With `foreign_sections`, a key of another service is skipped.
+  /// Applies one "key=value" override (value parsed as YAML). With `foreign_sections`, a key of another service is
+  /// skipped.
   void set(const std::string& assignment, const std::vector<std::string>& foreign_sections = {});
   /// Applies already parsed `key` and YAML text `value`.
   void set(const std::string& key, const std::string& yaml_value, const std::string& origin);

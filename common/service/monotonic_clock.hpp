@@ -9,7 +9,8 @@ namespace rtd::service {
 
 /// CLOCK_MONOTONIC in ns: comparable between the processes of one host. Adapters only, cores are given times.
 inline std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 }  // namespace rtd::service

@@ -30,8 +30,7 @@ int run_service(const ServiceDefinition& definition, int argc, char** argv);
 template <class Service>
 int run_service(int argc, char** argv) {
   typename Service::Config config;
-  return run_service({Service::kName, Service::kDescription,
-                      [&](CLI::App& app) { Service::add_options(app, config); },
+  return run_service({Service::kName, Service::kDescription, [&](CLI::App& app) { Service::add_options(app, config); },
                       [&](ConfigBinder& binder) { binder.section(Service::kName, config); },
                       [&](Runtime& runtime) { return Service(config, runtime).run(); }},
                      argc, argv);

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/service/monotonic_clock.hpp"
+#include "common/service/runtime.hpp"
+
+namespace rtd::service {
+namespace {
+
+constexpr std::chrono::milliseconds kPeriod{200};
+constexpr std::int64_t kGoneAfterNs = 700'000'000;  // three heartbeats missed, with a margin for a busy host
+
+std::int64_t realtime_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop) : stop_(stop) {
+  own_.service = std::move(service_name);
+  own_.pid = getpid();
+  own_.started_ns = realtime_ns();
+  writer_ = bus.writer(bus::topics::kStatus);
+  reader_ = bus.reader<msg::ServiceStatus>(
+      bus::topics::kStatus, [this](const std::shared_ptr<const msg::ServiceStatus>& status) { receive(*status); });
+  thread_ = std::thread([this] { loop(); });
+}
+
+Heartbeat::~Heartbeat() {
+  ended_.request_stop();
+  thread_.join();
+}
+
+void Heartbeat::loop() {
+  while (!ended_.wait_for(kPeriod)) publish();
+}
+
+void Heartbeat::publish() {
+  const std::lock_guard publish_lock(publish_mutex_);
+  msg::ServiceStatus status;
+  {
+    const std::lock_guard lock(mutex_);
+    own_.stamp_ns = realtime_ns();
+    status = own_;
+  }
+  writer_.write(status);
+}
+
+void Heartbeat::set_state(msg::ServiceState state, const std::string& message) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (own_.state == state && own_.message == message) return;
+    own_.state = state;
+    own_.message = message;
+  }
+  publish();
+}
+
+void Heartbeat::set_metric(const std::string& name, double value) {
+  const std::lock_guard lock(mutex_);
+  const auto found =
+      std::find_if(own_.metrics.begin(), own_.metrics.end(), [&](const auto& metric) { return metric.name == name; });
+  if (found == own_.metrics.end()) {
+    own_.metrics.push_back({name, value});
+  } else {
+    found->value = value;
+  }
+}
+
+void Heartbeat::receive(const msg::ServiceStatus& status) {
+  std::function<void(const msg::ServiceStatus&)> callback;
+  bool refused = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (status.service == own_.service) {
+      const bool self = status.pid == own_.pid && status.started_ns == own_.started_ns;
+      // Heartbeats are volatile: whoever is heard is alive. The older instance stays, the younger one ends.
+      if (!self && status.state != msg::ServiceState::kFinished && status.started_ns < own_.started_ns) {
+        duplicate_ = fmt::format(
+            "another {} (pid {}) already runs in this DDS domain: stop it first or choose another domain with --domain",
+            status.service, status.pid);
+        refused = true;
+      }
+    } else {
+      Peer& peer = peers_[status.service];
+      peer.status = status;
+      peer.heard_ns = monotonic_ns();
+      callback = callback_;
+    }
+  }
+  if (refused) stop_.request_stop();
+  if (callback) callback(status);
+}
+
+bool Heartbeat::alive(const std::string& service) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = peers_.find(service);
+  return found != peers_.end() && found->second.status.state != msg::ServiceState::kFinished &&
+         monotonic_ns() - found->second.heard_ns < kGoneAfterNs;
+}
+
+bool Heartbeat::ready(const std::string& service) const {
+  if (!alive(service)) return false;
+  const std::lock_guard lock(mutex_);
+  const msg::ServiceState state = peers_.at(service).status.state;
+  return state == msg::ServiceState::kReady || state == msg::ServiceState::kRunning ||
+         state == msg::ServiceState::kDegraded;
+}
+
+void Heartbeat::on_status(std::function<void(const msg::ServiceStatus&)> callback) {
+  const std::lock_guard lock(mutex_);
+  callback_ = std::move(callback);
+}
+
+std::string Heartbeat::duplicate() const {
+  const std::lock_guard lock(mutex_);
+  return duplicate_;
+}
+
+}  // namespace rtd::service

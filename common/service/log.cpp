@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/service/log.hpp"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+
+namespace rtd::service {
+
+void init_logging(const std::string& service, const std::string& level) {
+  auto logger = std::make_shared<spdlog::logger>(service, std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+  logger->set_pattern("%H:%M:%S.%e %^%l%$ %n %v");
+  logger->set_level(spdlog::level::from_str(level));
+  logger->flush_on(spdlog::level::info);
+  spdlog::set_default_logger(std::move(logger));
+}
+
+bool RateLimit::pass() {
+  const auto now = std::chrono::steady_clock::now();
+  if (last_ != std::chrono::steady_clock::time_point{} && now - last_ < period_) {
+    ++suppressed_;
+    return false;
+  }
+  last_ = now;
+  last_suppressed_ = suppressed_;
+  suppressed_ = 0;
+  return true;
+}
+
+}  // namespace rtd::service

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/service/run_service.hpp"
+
+#include <pthread.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <thread>
+
+#include "common/bus/bus_factory.hpp"
+#include "common/service/log.hpp"
+
+namespace rtd::service {
+namespace {
+
+const std::vector<std::string> kSections = {"bus", "camera", "detector", "filter", "slam", "launcher"};
+
+struct CommonOptions {
+  std::string config_file, pace = "realtime", log_level = "info";
+  std::vector<std::string> overrides;
+  std::string vendor;
+  int domain = -1;
+  bool print_config = false;
+};
+
+/// Settings of the bus as config keys; defaults come from BusOptions and the environment.
+struct BusConfig {
+  std::string vendor = bus::BusOptions{}.vendor;
+  int domain = 0;
+  int shm_segment_mib = static_cast<int>(bus::BusOptions{}.shm_segment_mib);
+  int socket_buffer_kib = static_cast<int>(bus::BusOptions{}.socket_buffer_kib);
+  bool loopback_only = bus::BusOptions{}.loopback_only;
+
+  void bind(ConfigBinder& binder) {
+    binder.field("vendor", vendor, "DDS implementation (--dds, RTD_DDS)");
+    binder.field("domain", domain, {0, 232}, "DDS domain (--domain, ROS_DOMAIN_ID)");
+    binder.field("shm_segment_mib", shm_segment_mib, {8, 1024}, "shared-memory segment of each process");
+    binder.field("socket_buffer_kib", socket_buffer_kib, {64, 65536}, "wanted UDP buffers, capped by the kernel");
+    binder.field("loopback_only", loopback_only, "false: also use the host's network interfaces");
+  }
+};
+
+void add_common_options(CLI::App& app, CommonOptions& common) {
+  app.add_option("--config", common.config_file, "YAML file with a section per service");
+  app.add_option("--set", common.overrides, "Override one key, e.g. --set filter.mode=rtd (repeatable)");
+  app.add_option("--pace", common.pace, "realtime, asap or lockstep")->capture_default_str();
+  app.add_option("--dds", common.vendor, "DDS implementation: fastdds (RTD_DDS)");
+  app.add_option("--domain", common.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
+  app.add_option("--log-level", common.log_level, "trace, debug, info, warning, error")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error"}))
+      ->capture_default_str();
+  app.add_flag("--print-config", common.print_config, "Print all keys with the values in force and end");
+}
+
+void apply_environment(ConfigBinder& binder) {
+  if (const char* vendor = std::getenv("RTD_DDS")) binder.set("bus.vendor", vendor, "environment RTD_DDS");
+  if (const char* domain = std::getenv("ROS_DOMAIN_ID")) binder.set("bus.domain", domain, "environment ROS_DOMAIN_ID");
+}
+
+/// Values in rising priority: defaults, environment, file, --set, own options.
+void load_config(ConfigBinder& binder, const CommonOptions& common) {
+  apply_environment(binder);
+  if (!common.config_file.empty()) binder.load_file(common.config_file, kSections);
+  for (const std::string& assignment : common.overrides) binder.set(assignment, kSections);
+  if (!common.vendor.empty()) binder.set("bus.vendor", common.vendor, "--dds");
+  if (common.domain >= 0) binder.set("bus.domain", std::to_string(common.domain), "--domain");
+}
+
+bus::BusOptions to_bus_options(const BusConfig& config, const std::string& service) {
+  bus::BusOptions options;
+  options.vendor = config.vendor;
+  options.domain = static_cast<std::uint32_t>(config.domain);
+  options.participant_name = "rtd-" + service;
+  options.shm_segment_mib = static_cast<std::uint32_t>(config.shm_segment_mib);
+  options.socket_buffer_kib = static_cast<std::uint32_t>(config.socket_buffer_kib);
+  options.loopback_only = config.loopback_only;
+  return options;
+}
+
+/// Turns SIGINT and SIGTERM into a stop request. All other threads inherit the blocked mask.
+class SignalWatcher {
+ public:
+  explicit SignalWatcher(StopToken& stop) {
+    sigemptyset(&signals_);
+    for (const int number : {SIGINT, SIGTERM, SIGUSR2}) sigaddset(&signals_, number);
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+    thread_ = std::thread([this, &stop] {
+      int number = 0;
+      sigwait(&signals_, &number);
+      if (number != SIGUSR2) stop.request_stop();
+    });
+  }
+  ~SignalWatcher() {
+    pthread_kill(thread_.native_handle(), SIGUSR2);
+    thread_.join();
+  }
+  SignalWatcher(const SignalWatcher&) = delete;
+  SignalWatcher& operator=(const SignalWatcher&) = delete;
+
+ private:
+  sigset_t signals_{};
+  std::thread thread_;
+};
+
+ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_config, Pace pace) {
+  StopToken stop;
+  const SignalWatcher signals(stop);
+  const std::shared_ptr<bus::Bus> bus = bus::connect(to_bus_options(bus_config, definition.name));
+  ExitCode code = kOk;
+  std::string duplicate;
+  {
+    Heartbeat heartbeat(*bus, definition.name, stop);
+    Runtime runtime{*bus, heartbeat, stop, pace};
+    SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}", bus->vendor(), bus_config.domain, to_string(pace),
+                getpid());
+    code = definition.run(runtime);
+    duplicate = heartbeat.duplicate();
+  }
+  if (!duplicate.empty()) throw ConfigError(duplicate);
+  SPDLOG_INFO("event=ended exit={}", static_cast<int>(code));
+  return code;
+}
+
+}  // namespace
+
+int run_service(const ServiceDefinition& definition, int argc, char** argv) {
+  CommonOptions common;
+  BusConfig bus_config;
+  ConfigBinder binder;
+  binder.section("bus", bus_config);
+  definition.bind(binder);
+
+  try {
+    // Options write straight into the config, so they are parsed twice: once to find --config, once to win over it.
+    CLI::App app{definition.description, "rtd-" + definition.name};
+    add_common_options(app, common);
+    definition.add_options(app);
+    try {
+      app.parse(argc, argv);
+      load_config(binder, common);
+      common.overrides.clear();
+      app.clear();
+      app.parse(argc, argv);
+    } catch (const CLI::CallForHelp& help) {
+      return app.exit(help);
+    } catch (const CLI::ParseError& error) {
+      app.exit(error);
+      return kUsageOrConfig;
+    }
+    if (common.print_config) {
+      std::cout << binder.print();
+      return kOk;
+    }
+    init_logging(definition.name, common.log_level);
+    return run_on_bus(definition, bus_config, parse_pace(common.pace));
+  } catch (const ConfigError& error) {
+    std::cerr << "rtd-" << definition.name << ": " << error.what() << '\n';
+    return kUsageOrConfig;
+  } catch (const bus::BusError& error) {
+    std::cerr << "rtd-" << definition.name << ": " << error.what() << '\n';
+    return kUsageOrConfig;
+  } catch (const std::exception& error) {
+    std::cerr << "rtd-" << definition.name << ": " << error.what() << '\n';
+    return kRunFailed;
+  }
+}
+
+}  // namespace rtd::service

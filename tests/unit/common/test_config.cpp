@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "common/service/config.hpp"
+
+namespace rtd::service {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+struct Nested {
+  double depth_m = 4.0;
+  void bind(ConfigBinder& binder) { binder.field("depth_m", depth_m, {0.3, 20.0}, "reach"); }
+};
+
+struct Sample {
+  bool enabled = true;
+  int count = 1000;
+  std::string mode = "rtd";
+  std::vector<std::string> names{"a"};
+  std::map<std::string, std::string> levels{{"person", "high"}};
+  Nested nested;
+  void bind(ConfigBinder& binder) {
+    binder.field("enabled", enabled, "switch");
+    binder.field("count", count, {1, 2048}, "how many");
+    binder.choice("mode", mode, {"off", "rtd"}, "mode");
+    binder.field("names", names, "list");
+    binder.field("levels", levels, "map");
+    binder.section("nested", nested);
+  }
+};
+
+class ConfigTest : public ::testing::Test {
+ protected:
+  ConfigTest() { binder_.section("filter", sample_); }
+  std::string write(const std::string& text) {
+    const std::string path = ::testing::TempDir() + "/rtd_config_test.yaml";
+    std::ofstream(path) << text;
+    return path;
+  }
+  std::string error_of(const std::string& text) {
+    try {
+      binder_.load_file(write(text), {"slam"});
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  Sample sample_;
+  ConfigBinder binder_;
+};
+
+TEST_F(ConfigTest, loads_every_kind_of_value) {
+  binder_.load_file(
+      write("filter: {enabled: false, count: 7, mode: off, names: [x, y], levels: {cat: low}, nested: {depth_m: 2.5}}"),
+      {});
+  EXPECT_FALSE(sample_.enabled);
+  EXPECT_EQ(sample_.count, 7);
+  EXPECT_EQ(sample_.mode, "off");
+  EXPECT_THAT(sample_.names, ::testing::ElementsAre("x", "y"));
+  EXPECT_EQ(sample_.levels.at("cat"), "low");
+  EXPECT_DOUBLE_EQ(sample_.nested.depth_m, 2.5);
+}
+
+TEST_F(ConfigTest, skips_the_sections_of_other_services) {
+  EXPECT_EQ(error_of("slam: {anything: 1}"), "no error");
+}
+
+TEST_F(ConfigTest, unknown_key_names_the_nearest_one) {
+  EXPECT_THAT(error_of("filter: {cuont: 7}"),
+              AllOf(HasSubstr("filter.cuont"), HasSubstr("did you mean 'filter.count'")));
+}
+
+TEST_F(ConfigTest, unknown_section_is_an_error) {
+  EXPECT_THAT(error_of("fliter: {count: 7}"), HasSubstr("filter.count"));
+}
+
+TEST_F(ConfigTest, value_out_of_range_names_key_value_and_range) {
+  EXPECT_THAT(error_of("filter: {count: 5000}"),
+              AllOf(HasSubstr("filter.count"), HasSubstr("5000"), HasSubstr("1 to 2048")));
+}
+
+TEST_F(ConfigTest, wrong_type_is_an_error) {
+  EXPECT_THAT(error_of("filter: {count: many}"), HasSubstr("whole number"));
+}
+
+TEST_F(ConfigTest, not_a_number_is_out_of_range) {
+  EXPECT_THAT(error_of("filter: {nested: {depth_m: .nan}}"), HasSubstr("depth_m"));
+}
+
+TEST_F(ConfigTest, choice_lists_what_is_allowed) {
+  EXPECT_THAT(error_of("filter: {mode: fast}"), HasSubstr("one of off, rtd"));
+}
+
+TEST_F(ConfigTest, broken_yaml_names_the_line) {
+  EXPECT_THAT(error_of("filter:\n  count: [1,\n"), HasSubstr("not valid YAML"));
+}
+
+TEST_F(ConfigTest, missing_file_is_named) {
+  EXPECT_THROW(binder_.load_file("/nonexistent/rtd.yaml", {}), ConfigError);
+}
+
+TEST_F(ConfigTest, set_overrides_one_key) {
+  binder_.set("filter.nested.depth_m=1.5");
+  EXPECT_DOUBLE_EQ(sample_.nested.depth_m, 1.5);
+  EXPECT_THROW(binder_.set("filter.nested.depth_m"), ConfigError);
+  EXPECT_NO_THROW(binder_.set("slam.x=1", {"slam"}));
+  EXPECT_THROW(binder_.set("slam.x=1"), ConfigError);
+}
+
+TEST_F(ConfigTest, printed_config_loads_to_the_same_values) {
+  binder_.set("filter.count=77");
+  const std::string path = write(binder_.print());
+  sample_.count = 1;
+  binder_.load_file(path, {});
+  EXPECT_EQ(sample_.count, 77);
+}
+
+TEST(NearestWord, far_words_are_not_suggested) {
+  EXPECT_EQ(nearest_word("zebra", {"filter.mode"}), "");
+}
+
+}  // namespace
+}  // namespace rtd::service
