@@ -7,19 +7,6 @@
 #include <cmath>
 
 namespace rtd::geometry {
-namespace {
-
-/// Left Jacobian of SO(3): V in exp([rho; phi]) = (exp(phi), V rho).
-Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& phi) {
-  const double angle2 = phi.squaredNorm();
-  const Eigen::Matrix3d phi_x = skew(phi);
-  if (angle2 < 1e-12) return Eigen::Matrix3d::Identity() + 0.5 * phi_x + phi_x * phi_x / 6.0;
-  const double angle = std::sqrt(angle2);
-  return Eigen::Matrix3d::Identity() + (1 - std::cos(angle)) / angle2 * phi_x +
-         (angle - std::sin(angle)) / (angle2 * angle) * phi_x * phi_x;
-}
-
-}  // namespace
 
 Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
@@ -41,10 +28,19 @@ Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation) {
   return angle_axis.angle() * angle_axis.axis();
 }
 
+Eigen::Matrix3d so3_left_jacobian(const Eigen::Vector3d& phi) {
+  const double angle2 = phi.squaredNorm();
+  const Eigen::Matrix3d phi_x = skew(phi);
+  if (angle2 < 1e-12) return Eigen::Matrix3d::Identity() + 0.5 * phi_x + phi_x * phi_x / 6.0;
+  const double angle = std::sqrt(angle2);
+  return Eigen::Matrix3d::Identity() + (1 - std::cos(angle)) / angle2 * phi_x +
+         (angle - std::sin(angle)) / (angle2 * angle) * phi_x * phi_x;
+}
+
 Eigen::Isometry3d se3_exp(const Vector6d& twist) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = so3_exp(twist.tail<3>());
-  T.translation() = left_jacobian(twist.tail<3>()) * twist.head<3>();
+  T.translation() = so3_left_jacobian(twist.tail<3>()) * twist.head<3>();
   return T;
 }
 
@@ -52,7 +48,7 @@ Vector6d se3_log(const Eigen::Isometry3d& T) {
   Vector6d twist;
   twist.tail<3>() = so3_log(T.linear());
   const Eigen::Vector3d phi = twist.tail<3>();
-  twist.head<3>() = left_jacobian(phi).partialPivLu().solve(T.translation());
+  twist.head<3>() = so3_left_jacobian(phi).partialPivLu().solve(T.translation());
   return twist;
 }
 

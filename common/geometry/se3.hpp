@@ -17,6 +17,10 @@ Eigen::Matrix3d so3_exp(const Eigen::Vector3d& rotation_vector);
 /// Rotation matrix -> rotation vector (rad), angle in [0, pi].
 Eigen::Vector3d so3_log(const Eigen::Matrix3d& rotation);
 
+/// Left Jacobian of SO(3), V in se3_exp([rho; phi]) = (so3_exp(phi), V rho): d(so3_exp(phi) v) = -[so3_exp(phi) v]x V
+/// dphi.
+Eigen::Matrix3d so3_left_jacobian(const Eigen::Vector3d& phi);
+
 /// Twist [translation part rho; rotation vector phi] (m, rad) -> rigid transform, docs/theory/se3.md Eq. (2).
 Eigen::Isometry3d se3_exp(const Vector6d& twist);
 /// Inverse of se3_exp.

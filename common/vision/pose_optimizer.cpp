@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/vision/pose_optimizer.hpp"
+
+#include <ceres/tiny_solver.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace rtd::vision {
+namespace {
+
+using geometry::Matrix6d;
+using geometry::Vector6d;
+using Matrix36d = Eigen::Matrix<double, 3, 6>;
+
+/// Squared residual of a point that a trial step pushed behind the camera: bad enough to refuse the step.
+constexpr double kBehindCameraChi2 = 1e6;
+
+double chi2_limit(const PoseOptimizerOptions& options, const PoseObservation& observation) {
+  return observation.measured.has_depth() ? options.max_chi2_rgbd : options.max_chi2_pixel;
+}
+
+/// The cost function that TinySolver sees: 6 parameters [rho; phi] around T_camera_world, three residuals per active
+/// observation.
+class PoseCost {
+ public:
+  using Scalar = double;
+  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 6 };
+
+  PoseCost(const RgbdProjection& camera, const Eigen::Isometry3d& T_camera_world, const PoseOptimizerOptions& options,
+           bool robust)
+      : camera_(camera), T_camera_world_(T_camera_world), options_(options), robust_(robust) {}
+
+  void add(const PoseObservation& observation) { active_.push_back(&observation); }
+  std::size_t size() const { return active_.size(); }
+  int NumResiduals() const { return static_cast<int>(3 * active_.size()); }
+
+  bool operator()(const double* parameters, double* residuals, double* jacobian) const {
+    const Eigen::Map<const Vector6d> x(parameters);
+    const Eigen::Vector3d phi = x.tail<3>();
+    const Eigen::Matrix3d R = geometry::so3_exp(phi) * T_camera_world_.linear();
+    const Eigen::Vector3d t = T_camera_world_.translation() + x.head<3>();
+    Eigen::Map<Eigen::VectorXd> r(residuals, NumResiduals());
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 6>> J(jacobian, jacobian != nullptr ? NumResiduals() : 0, 6);
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(3 * i);
+      const PoseObservation& observation = *active_[i];
+      const Eigen::Vector3d p_rotated = R * observation.p_world, p_camera = p_rotated + t;
+      if (p_camera.z() < kMinProjectionDepth_m) {
+        r.segment<3>(row) = Eigen::Vector3d(std::sqrt(observation.weight * kBehindCameraChi2), 0, 0);
+        if (jacobian != nullptr) J.middleRows<3>(row).setZero();
+        continue;
+      }
+      const Eigen::Vector3d whitened = rgbd_residual(camera_, p_camera, observation.measured) / observation.sigma_px;
+      const Scaling scaling = robust_scaling(observation, whitened.squaredNorm());
+      r.segment<3>(row) = scaling.residual * whitened;
+      if (jacobian != nullptr) {
+        J.middleRows<3>(row) = scaling.jacobian / observation.sigma_px *
+                               pose_jacobian(camera_, p_rotated, p_camera, phi, observation.measured);
+      }
+    }
+    return true;
+  }
+
+ private:
+  struct Scaling {
+    double residual, jacobian;
+  };
+
+  /// Factors that make |r|^2 the weighted Huber loss w*rho(s) and J^T r its exact gradient, docs/theory/tracking.md
+  /// Eq. (3): r = sqrt(w rho/s) e, J = sqrt(w) rho' / sqrt(rho/s) de/dx.
+  Scaling robust_scaling(const PoseObservation& observation, double s) const {
+    const double root_weight = std::sqrt(observation.weight), limit = chi2_limit(options_, observation);
+    if (!robust_ || s <= limit) return {root_weight, root_weight};
+    const double root_s = std::sqrt(s), delta = std::sqrt(limit);
+    const double root_ratio = std::sqrt((2 * delta * root_s - limit) / s);
+    return {root_weight * root_ratio, root_weight * (delta / root_s) / root_ratio};
+  }
+
+  RgbdProjection camera_;
+  Eigen::Isometry3d T_camera_world_;
+  PoseOptimizerOptions options_;
+  bool robust_;
+  std::vector<const PoseObservation*> active_;
+};
+
+/// chi2 of an observation, infinite behind the camera.
+double chi2(const RgbdProjection& camera, const Eigen::Isometry3d& T_camera_world, const PoseObservation& observation) {
+  const Eigen::Vector3d p_camera = T_camera_world * observation.p_world;
+  if (p_camera.z() < kMinProjectionDepth_m) return std::numeric_limits<double>::infinity();
+  return (rgbd_residual(camera, p_camera, observation.measured) / observation.sigma_px).squaredNorm();
+}
+
+void classify(const RgbdProjection& camera, const std::vector<PoseObservation>& observations,
+              const Eigen::Isometry3d& T_camera_world, const PoseOptimizerOptions& options,
+              PoseOptimizerResult& result) {
+  result.inliers = 0;
+  double sum_chi2 = 0;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const double value = chi2(camera, T_camera_world, observations[i]);
+    result.inlier[i] = value <= chi2_limit(options, observations[i]) ? 1 : 0;
+    if (result.inlier[i] == 0) continue;
+    ++result.inliers;
+    sum_chi2 += value;
+  }
+  result.rmse_px = result.inliers > 0 ? std::sqrt(sum_chi2 / result.inliers) : 0.0;
+}
+
+/// Gauss-Newton Hessian of the inliers in [rho; phi] at T_camera_world.
+Matrix6d hessian(const RgbdProjection& camera, const std::vector<PoseObservation>& observations,
+                 const std::vector<char>& inlier, const Eigen::Isometry3d& T_camera_world) {
+  Matrix6d H = Matrix6d::Zero();
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    if (inlier[i] == 0) continue;
+    const PoseObservation& observation = observations[i];
+    const Eigen::Vector3d p_rotated = T_camera_world.linear() * observation.p_world;
+    const Matrix36d J = pose_jacobian(camera, p_rotated, p_rotated + T_camera_world.translation(),
+                                      Eigen::Vector3d::Zero(), observation.measured);
+    H += observation.weight / (observation.sigma_px * observation.sigma_px) * J.transpose() * J;
+  }
+  return H;
+}
+
+/// Inverts the Hessian and turns it from [rho; phi] in the camera frame to (x y z rx ry rz) in the world frame,
+/// docs/theory/tracking.md Eq. (4). False when some direction of the pose is not determined.
+bool world_covariance(const Matrix6d& H, const Eigen::Isometry3d& T_camera_world, Matrix6d& covariance) {
+  // Metres and radians are of like size here; a direction known ten million times worse than the best is not known.
+  constexpr double kMinConditionInverse = 1e-14;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(H);
+  const Vector6d values = eigen.eigenvalues();
+  if (!(values.maxCoeff() > 0) || values.minCoeff() < kMinConditionInverse * values.maxCoeff()) return false;
+  const Matrix6d inverse = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+  const Eigen::Matrix3d R_world_camera = T_camera_world.linear().transpose();
+  Matrix6d A = Matrix6d::Zero();
+  A.topLeftCorner<3, 3>() = -R_world_camera;
+  A.topRightCorner<3, 3>() = -R_world_camera * geometry::skew(T_camera_world.translation());
+  A.bottomRightCorner<3, 3>() = -R_world_camera;
+  covariance = A * inverse * A.transpose();
+  return true;
+}
+
+}  // namespace
+
+Matrix36d pose_jacobian(const RgbdProjection& camera, const Eigen::Vector3d& p_rotated, const Eigen::Vector3d& p_camera,
+                        const Eigen::Vector3d& phi, const RgbdMeasurement& measured) {
+  const Eigen::Matrix3d d_residual = rgbd_jacobian(camera, p_camera, measured);
+  Matrix36d J;
+  J.leftCols<3>() = d_residual;
+  J.rightCols<3>() = -d_residual * geometry::skew(p_rotated) * geometry::so3_left_jacobian(phi);
+  return J;
+}
+
+PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vector<PoseObservation>& observations,
+                                  const Eigen::Isometry3d& T_world_camera_initial,
+                                  const PoseOptimizerOptions& options) {
+  PoseOptimizerResult result;
+  result.T_world_camera = T_world_camera_initial;
+  result.inlier.assign(observations.size(), 1);
+  result.inliers = static_cast<int>(observations.size());
+  Eigen::Isometry3d T_camera_world = T_world_camera_initial.inverse();
+
+  for (int round = 0; round < options.rounds; ++round) {
+    PoseCost cost(camera, T_camera_world, options, round < options.robust_rounds);
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      if (result.inlier[i] != 0) cost.add(observations[i]);
+    }
+    if (static_cast<int>(cost.size()) < options.min_inliers) break;
+    ceres::TinySolver<PoseCost> solver;
+    solver.options.max_num_iterations = options.max_iterations;
+    Vector6d x = Vector6d::Zero();
+    solver.Solve(cost, &x);
+    if (!x.allFinite()) break;
+    T_camera_world.linear() = geometry::so3_exp(x.tail<3>()) * T_camera_world.linear();
+    T_camera_world.translation() += x.head<3>();
+    classify(camera, observations, T_camera_world, options, result);
+  }
+
+  T_camera_world = geometry::normalized(T_camera_world);
+  result.T_world_camera = T_camera_world.inverse();
+  result.success =
+      result.inliers >= options.min_inliers &&
+      world_covariance(hessian(camera, observations, result.inlier, T_camera_world), T_camera_world, result.covariance);
+  return result;
+}
+
+}  // namespace rtd::vision

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/vision/pose_optimizer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace rtd::vision {
+namespace {
+
+const RgbdProjection kCamera{520.0, 521.0, 319.5, 239.5, 40.0};
+
+struct Scene {
+  Eigen::Isometry3d T_world_camera;
+  std::vector<PoseObservation> observations;
+};
+
+Eigen::Isometry3d make_pose(const geometry::Vector6d& twist) {
+  return geometry::se3_exp(twist);
+}
+
+/// Points in front of a known camera, measured with Gaussian noise; every second one with depth.
+Scene make_scene(std::size_t points, double noise_px, std::uint64_t seed = 7) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> u(20, 620), v(20, 460), depth(0.8, 5.0);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  Scene scene{make_pose((geometry::Vector6d() << 0.4, -0.2, 1.0, 0.3, -0.5, 0.2).finished()), {}};
+  for (std::size_t i = 0; i < points; ++i) {
+    const double z = depth(random);
+    const Eigen::Vector2d pixel(u(random), v(random));
+    const Eigen::Vector3d p_camera((pixel.x() - kCamera.cx) / kCamera.fx * z, (pixel.y() - kCamera.cy) / kCamera.fy * z,
+                                   z);
+    PoseObservation observation;
+    observation.p_world = scene.T_world_camera * p_camera;
+    observation.measured.pixel = pixel + noise_px * Eigen::Vector2d(noise(random), noise(random));
+    const double disparity = kCamera.disparity_px_m / z + noise_px * noise(random);
+    observation.measured.depth_m = i % 2 == 0 ? kCamera.disparity_px_m / disparity : 0.0;
+    scene.observations.push_back(observation);
+  }
+  return scene;
+}
+
+Eigen::Isometry3d disturbed(const Eigen::Isometry3d& T_world_camera) {
+  return T_world_camera * make_pose((geometry::Vector6d() << 0.05, -0.04, 0.06, 0.03, -0.04, 0.05).finished());
+}
+
+TEST(PoseOptimizer, recovers_exact_pose_from_perfect_points) {
+  const Scene scene = make_scene(100, 0.0);
+  const auto result = optimize_pose(kCamera, scene.observations, disturbed(scene.T_world_camera));
+  ASSERT_TRUE(result.success);
+  EXPECT_EQ(result.inliers, 100);
+  EXPECT_LT((result.T_world_camera.inverse() * scene.T_world_camera).translation().norm(), 1e-6);         // m
+  EXPECT_LT(geometry::rotation_angle_rad(result.T_world_camera.inverse() * scene.T_world_camera), 1e-6);  // rad
+}
+
+TEST(PoseOptimizer, ignores_gross_outliers) {
+  Scene scene = make_scene(200, 0.3);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> shift(15, 80);
+  for (std::size_t i = 0; i < 80; ++i) scene.observations[i].measured.pixel.x() += shift(random);  // 40 %, one-sided
+  const auto result = optimize_pose(kCamera, scene.observations, disturbed(scene.T_world_camera));
+  ASSERT_TRUE(result.success);
+  EXPECT_LT((result.T_world_camera.inverse() * scene.T_world_camera).translation().norm(), 2e-3);  // m
+  for (std::size_t i = 0; i < 80; ++i) EXPECT_FALSE(result.inlier[i]) << i;
+  EXPECT_GE(result.inliers, 118);
+}
+
+TEST(PoseOptimizer, zero_weight_takes_an_observation_out) {
+  Scene scene = make_scene(60, 0.0);
+  for (std::size_t i = 0; i < 20; ++i) {
+    scene.observations[i].measured.pixel.y() += 1.5;  // small enough to pass for inliers
+    scene.observations[i].weight = 0.0;
+  }
+  const auto result = optimize_pose(kCamera, scene.observations, disturbed(scene.T_world_camera));
+  ASSERT_TRUE(result.success);
+  EXPECT_LT((result.T_world_camera.inverse() * scene.T_world_camera).translation().norm(), 1e-6);
+}
+
+TEST(PoseOptimizer, covariance_predicts_the_spread_of_the_pose) {
+  geometry::Matrix6d sum = geometry::Matrix6d::Zero(), predicted = geometry::Matrix6d::Zero();
+  constexpr int kTrials = 300;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Scene scene = make_scene(80, 1.0, 100 + trial);
+    const auto result = optimize_pose(kCamera, scene.observations, scene.T_world_camera);
+    ASSERT_TRUE(result.success);
+    geometry::Vector6d error;
+    error.head<3>() = result.T_world_camera.translation() - scene.T_world_camera.translation();
+    error.tail<3>() = geometry::so3_log(result.T_world_camera.linear() * scene.T_world_camera.linear().transpose());
+    sum += error * error.transpose() / kTrials;
+    predicted += result.covariance / kTrials;
+  }
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(std::sqrt(sum(i, i) / predicted(i, i)), 1.0, 0.2) << "axis " << i;
+  // The off-diagonal terms carry the frame: a covariance left in the camera frame fails here.
+  EXPECT_NEAR(sum(0, 4) / std::sqrt(sum(0, 0) * sum(4, 4)),
+              predicted(0, 4) / std::sqrt(predicted(0, 0) * predicted(4, 4)), 0.15);
+}
+
+TEST(PoseOptimizer, fails_without_enough_points) {
+  const Scene scene = make_scene(5, 0.0);
+  EXPECT_FALSE(optimize_pose(kCamera, scene.observations, scene.T_world_camera).success);
+  EXPECT_FALSE(optimize_pose(kCamera, {}, scene.T_world_camera).success);
+}
+
+TEST(PoseOptimizer, fails_when_all_points_are_the_same) {
+  Scene scene = make_scene(1, 0.0);
+  scene.observations.resize(30, scene.observations.front());
+  EXPECT_FALSE(optimize_pose(kCamera, scene.observations, scene.T_world_camera).success);
+}
+
+TEST(PoseOptimizer, points_behind_the_camera_are_outliers) {
+  Scene scene = make_scene(60, 0.1);
+  for (std::size_t i = 0; i < 15; ++i) {
+    const Eigen::Vector3d p_camera = scene.T_world_camera.inverse() * scene.observations[i].p_world;
+    scene.observations[i].p_world = scene.T_world_camera * Eigen::Vector3d(-p_camera);
+  }
+  const auto result = optimize_pose(kCamera, scene.observations, disturbed(scene.T_world_camera));
+  ASSERT_TRUE(result.success);
+  for (std::size_t i = 0; i < 15; ++i) EXPECT_FALSE(result.inlier[i]);
+  EXPECT_LT((result.T_world_camera.inverse() * scene.T_world_camera).translation().norm(), 2e-3);
+}
+
+TEST(PoseJacobian, agrees_with_central_differences) {
+  const Eigen::Vector3d p_world(0.3, -0.4, 2.0), t(0.1, 0.2, 0.3);
+  const RgbdMeasurement measured{{300, 200}, 2.2};
+  const geometry::Vector6d x0 = (geometry::Vector6d() << 0.02, -0.03, 0.05, 0.3, -0.2, 0.4).finished();
+  const auto residual = [&](const geometry::Vector6d& x) -> Eigen::Vector3d {
+    const Eigen::Vector3d p_camera = geometry::so3_exp(x.tail<3>()) * p_world + t + x.head<3>();
+    return rgbd_residual(kCamera, p_camera, measured);
+  };
+  const Eigen::Vector3d p_rotated = geometry::so3_exp(x0.tail<3>()) * p_world;
+  const auto analytic = pose_jacobian(kCamera, p_rotated, p_rotated + t + x0.head<3>(), x0.tail<3>(), measured);
+  constexpr double kStep = 1e-6;
+  for (int i = 0; i < 6; ++i) {
+    const geometry::Vector6d step = kStep * geometry::Vector6d::Unit(i);
+    const Eigen::Vector3d numeric = (residual(x0 + step) - residual(x0 - step)) / (2 * kStep);
+    EXPECT_LT((analytic.col(i) - numeric).norm(), 1e-4 * std::max(1.0, numeric.norm())) << "column " << i;
+  }
+}
+
+}  // namespace
+}  // namespace rtd::vision
