@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "common/bus/backend.hpp"
@@ -44,7 +45,8 @@ class Writer {
   explicit Writer(std::unique_ptr<WriterBackend> backend) : backend_(std::move(backend)) {}
   explicit operator bool() const { return backend_ != nullptr; }
 
-  /// Hands the message to the bus. False when the bus could not take it (history full past the blocking time, shut down).
+  /// Hands the message to the bus. False when the bus could not take it (history full past the blocking time, shut
+  /// down).
   bool write(const T& message) { return backend_->write(&message); }
   /// A slot to build a fixed-size message in place. Its content is undefined until filled: fill every field.
   Loan<T> loan() requires MessageTraits<T>::kPlain { return Loan<T>(backend_.get(), backend_->loan()); }
@@ -58,8 +60,8 @@ class Writer {
   std::unique_ptr<WriterBackend> backend_;
 };
 
-/// Receives T from one topic until destroyed. The callback runs on a bus thread, one call at a time per reader: push to a
-/// queue and return. Messages are immutable and may be kept. Frames are copied out of shared memory and checked for
+/// Receives T from one topic until destroyed. The callback runs on a bus thread, one call at a time per reader: push to
+/// a queue and return. Messages are immutable and may be kept. Frames are copied out of shared memory and checked for
 /// having been overwritten meanwhile before the callback sees them, so no torn frame is ever delivered.
 /// After the destructor returns, no callback runs.
 template <class T>
@@ -86,7 +88,8 @@ class Bus {
   }
 
   template <class T>
-  Reader<T> reader(const Topic<T>& topic, std::function<void(std::shared_ptr<const T>)> on_message,
+  Reader<T> reader(const Topic<T>& topic,
+                   std::type_identity_t<std::function<void(std::shared_ptr<const T>)>> on_message,
                    StatusCallbacks callbacks = {}) {
     auto erased = [on_message = std::move(on_message)](std::shared_ptr<const void> message) {
       on_message(std::static_pointer_cast<const T>(std::move(message)));

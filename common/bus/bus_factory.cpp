@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/bus_factory.hpp"
+
+#include "common/bus/inprocess/inprocess_backend.hpp"
+#ifdef RTD_HAVE_FASTDDS
+#include "common/bus/fastdds/fastdds_backend.hpp"
+#endif
+
+namespace rtd::bus {
+namespace {
+
+constexpr std::uint32_t kMaxDomain = 232;  // above it the RTPS port numbers leave 16 bits
+
+struct Vendor {
+  const char* name;
+  std::shared_ptr<BusBackend> (*create)(const BusOptions&);
+};
+
+/// A new vendor is a folder beside this file and one entry here.
+const Vendor kVendors[] = {
+#ifdef RTD_HAVE_FASTDDS
+    {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); }},
+#endif
+    {"inprocess", [](const BusOptions& options) { return inprocess::create_backend(options.domain); }},
+};
+
+std::string join_names(const std::vector<std::string>& names) {
+  std::string joined;
+  for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
+  return joined;
+}
+
+}  // namespace
+
+std::vector<std::string> available_vendors() {
+  std::vector<std::string> names;
+  for (const Vendor& vendor : kVendors) names.emplace_back(vendor.name);
+  return names;
+}
+
+std::shared_ptr<Bus> connect(const BusOptions& options) {
+  if (options.domain > kMaxDomain) {
+    throw BusError("domain " + std::to_string(options.domain) + " is out of range, allowed: 0.." +
+                   std::to_string(kMaxDomain) + " (--domain, ROS_DOMAIN_ID)");
+  }
+  for (const Vendor& vendor : kVendors) {
+    if (options.vendor == vendor.name) return std::make_shared<Bus>(vendor.create(options));
+  }
+  throw BusError("unknown bus '" + options.vendor + "', this build has: " + join_names(available_vendors()) +
+                 " (--dds, RTD_DDS)");
+}
+
+}  // namespace rtd::bus

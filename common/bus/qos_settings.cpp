@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/qos_settings.hpp"
+
+#include "common/bus/backend.hpp"
+
+namespace rtd::bus {
+
+QosSettings qos_settings(QosProfile profile) {
+  switch (profile) {
+    //                                       depth  transient  data sharing  lease
+    case QosProfile::kRawFrame:
+      return {4, false, true, 0};
+    case QosProfile::kNetworkFrame:
+      return {8, false, false, 0};
+    case QosProfile::kLatched:
+      return {1, true, false, 0};
+    case QosProfile::kDetections:
+      return {8, false, false, 0};
+    case QosProfile::kFeatures:
+      return {8, false, false, 0};
+    case QosProfile::kKeyframes:
+      return {64, true, false, 0};
+    case QosProfile::kPose:
+      return {10, false, false, 0};
+    case QosProfile::kTracking:
+      return {64, false, false, 0};
+    case QosProfile::kHeartbeat:
+      return {8, false, false, 1000};
+  }
+  throw BusError("QoS profile " + std::to_string(static_cast<int>(profile)) + " is not one of common/bus/qos.hpp");
+}
+
+std::string incompatible_policy(const QosSettings& offered, const QosSettings& requested) {
+  if (requested.transient_local && !offered.transient_local) return "DURABILITY";
+  const bool offers_lease = offered.liveliness_lease_ms > 0, asks_lease = requested.liveliness_lease_ms > 0;
+  if (asks_lease && (!offers_lease || offered.liveliness_lease_ms > requested.liveliness_lease_ms)) return "LIVELINESS";
+  return {};
+}
+
+}  // namespace rtd::bus
