@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "common/vision/detection.hpp"
+#include "services/detector/core/detector_config.hpp"
+#include "services/detector/core/model_error.hpp"
+#include "services/detector/core/onnx_input_shape.hpp"
+
+namespace rtd::detector {
+
+/// YOLOv5 / YOLOv5-Lite on the CPU through OpenCV's DNN module. Not thread-safe; one instance per thread.
+class Detector {
+ public:
+  /// Loads the network and runs it once, so that the first detect() is as fast as the others.
+  /// Throws ModelError when the file is missing, broken, or no network of the configured shape.
+  explicit Detector(DetectorConfig config);
+  ~Detector();
+  Detector(Detector&&) noexcept;
+  Detector& operator=(Detector&&) noexcept;
+
+  /// Objects of one image, best score first; boxes in pixels of the image, clipped to it. 8-bit BGR, BGRA or grey of
+  /// any size; an empty image has no objects. Throws std::invalid_argument for another pixel type.
+  std::vector<vision::Detection> detect(const cv::Mat& color_bgr);
+
+  InputSize input_size() const;
+  const DetectorConfig& config() const;
+
+ private:
+  class Network;
+  DetectorConfig config_;
+  std::unique_ptr<Network> network_;
+};
+
+}  // namespace rtd::detector

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "services/detector/core/coco_classes.hpp"
+
+namespace rtd::detector {
+
+/// Size of one anchor in pixels of the network's input.
+struct Anchor {
+  float width_px = 0, height_px = 0;
+};
+
+/// One output of the network: cells of stride_px, three anchors a cell.
+struct HeadLayout {
+  int stride_px = 0;
+  std::array<Anchor, 3> anchors{};
+};
+
+/// When a cell of the network's output becomes a detection.
+struct DecodeConfig {
+  float confidence_threshold = 0.25F;  ///< objectness x class score, [0, 1]
+  float objectness_threshold = 0.1F;   ///< cells below are not decoded at all, [0, 1]
+  float nms_iou = 0.45F;               ///< a box of the same class that overlaps a better one by more is dropped
+  int max_detections = 100;            ///< the best ones are kept
+};
+
+/// Everything the detector needs; defaults fit the YOLOv5 family (anchors and strides of YOLOv5 and YOLOv5-Lite).
+struct DetectorConfig {
+  std::string model_path;  ///< ONNX file with one raw output per head (services/detector/README.md)
+  int input_width_px = 640, input_height_px = 480;  ///< used only when the file does not fix its input size
+  DecodeConfig decode;
+  int threads = 1;  ///< OpenCV threads; process-wide (cv::setNumThreads)
+  std::vector<std::string> class_names = coco_class_names();
+  std::vector<HeadLayout> heads = {{8, {{{10, 13}, {16, 30}, {33, 23}}}},
+                                   {16, {{{30, 61}, {62, 45}, {59, 119}}}},
+                                   {32, {{{116, 90}, {156, 198}, {373, 326}}}}};
+};
+
+}  // namespace rtd::detector
