@@ -46,7 +46,10 @@ class QuietOpenCv {
 
 std::string shape_text(const cv::Mat& blob) {
   std::string text;
-  for (int i = 0; i < blob.dims; ++i) text += (i > 0 ? "x" : "") + std::to_string(blob.size[i]);
+  for (int i = 0; i < blob.dims; ++i) {
+    if (i > 0) text += 'x';
+    text += std::to_string(blob.size[i]);
+  }
   return text;
 }
 
@@ -129,7 +132,8 @@ class Detector::Network {
           output.size[3] == cols && output.type() == CV_32F && output.isContinuous()) {
         return {output.ptr<float>(), rows, cols, layout};
       }
-      shapes += " " + shape_text(output);
+      shapes += ' ';
+      shapes += shape_text(output);
     }
     fail(config_.model_path, "has outputs of shape" + shapes + ", none is 1x" + std::to_string(planes) + "x" +
                                  std::to_string(rows) + "x" + std::to_string(cols) + " (stride " +
