@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/calibration.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <vector>
+
+#include "common/msg/rgbd_frame.hpp"
+#include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/text_fields.hpp"
+#include "services/camera/core/tum_cameras.hpp"
+
+namespace rtd::camera {
+namespace {
+
+constexpr const char* kAllowedKeys = "width height fx fy cx cy (needed), k1 k2 p1 p2 k3 depth_factor fps (optional)";
+
+struct KeyRule {
+  double min, max;
+  bool needed;
+};
+
+const std::map<std::string, KeyRule>& key_rules() {
+  static const std::map<std::string, KeyRule> rules = {
+      {"width", {16, 1e5, true}},       {"height", {16, 1e5, true}}, {"fx", {1, 1e5, true}},
+      {"fy", {1, 1e5, true}},           {"cx", {-1e5, 1e5, true}},   {"cy", {-1e5, 1e5, true}},
+      {"k1", {-100, 100, false}},       {"k2", {-100, 100, false}},  {"p1", {-10, 10, false}},
+      {"p2", {-10, 10, false}},         {"k3", {-100, 100, false}},  {"fps", {0.1, 1000, false}},
+      {"depth_factor", {1, 1e6, false}}};
+  return rules;
+}
+
+std::pair<std::string, double> parse_entry(const TextLine& line, const std::string& origin) {
+  const std::string where = origin + ":" + std::to_string(line.number);
+  std::string joined;
+  for (const std::string& field : line.fields) joined += field;
+  const std::size_t colon = joined.find(':');
+  if (colon == std::string::npos) throw SourceError(where + ": expected 'key: value' with the keys " + kAllowedKeys);
+  const std::string key = joined.substr(0, colon), value_text = joined.substr(colon + 1);
+  const auto rule = key_rules().find(key);
+  if (rule == key_rules().end()) throw SourceError(where + ": unknown key '" + key + "'; allowed: " + kAllowedKeys);
+  const std::optional<double> value = parse_number(value_text);
+  if (!value || !std::isfinite(*value) || *value < rule->second.min || *value > rule->second.max) {
+    std::ostringstream message;
+    message << where << ": " << key << " is '" << value_text << "', allowed is a number in [" << rule->second.min
+            << ", " << rule->second.max << "]";
+    throw SourceError(message.str());
+  }
+  return {key, *value};
+}
+
+void check_frame_type(double width, double height, const std::string& origin) {
+  if (width <= msg::kMaxFrameWidth && height <= msg::kMaxFrameHeight) return;
+  std::ostringstream message;
+  message << origin << ": " << width << " x " << height << " px, but a frame carries at most " << msg::kMaxFrameWidth
+          << " x " << msg::kMaxFrameHeight << " px; scale the images down and fx fy cx cy with them";
+  throw SourceError(message.str());
+}
+
+Calibration from_values(std::map<std::string, double>& values, const std::string& origin) {
+  for (const auto& [key, rule] : key_rules()) {
+    if (rule.needed && values.count(key) == 0) {
+      throw SourceError(origin + ": key '" + key + "' is missing; keys: " + kAllowedKeys);
+    }
+  }
+  check_frame_type(values["width"], values["height"], origin);
+  geometry::CameraModel::Parameters parameters;
+  parameters.fx = values["fx"], parameters.fy = values["fy"], parameters.cx = values["cx"],
+  parameters.cy = values["cy"];
+  parameters.distortion = {values["k1"], values["k2"], values["p1"], values["p2"], values["k3"]};
+  parameters.width = static_cast<int>(values["width"]), parameters.height = static_cast<int>(values["height"]);
+  Calibration calibration;
+  calibration.camera = geometry::CameraModel(parameters);
+  if (values.count("depth_factor") != 0) calibration.depth_scale_m = 1.0 / values["depth_factor"];
+  if (values.count("fps") != 0) calibration.fps = values["fps"];
+  return calibration;
+}
+
+}  // namespace
+
+Calibration parse_calibration(const std::string& text, const std::string& origin) {
+  std::map<std::string, double> values;
+  for (const TextLine& line : split_lines(text)) {
+    if (line.fields.front() == "---" || line.fields.front().front() == '%') continue;  // YAML document start, directive
+    if (const auto entry = parse_entry(line, origin); !values.insert(entry).second) {
+      throw SourceError(origin + ":" + std::to_string(line.number) + ": key '" + entry.first + "' stands twice");
+    }
+  }
+  return from_values(values, origin);
+}
+
+std::optional<int> tum_family(const std::filesystem::path& folder) {
+  static const std::regex pattern("(?:freiburg|(?:^|[^a-z])fr)([123])(?![0-9])");
+  const std::vector<std::filesystem::path> parts(folder.begin(), folder.end());
+  for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
+    std::string name = part->string();
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (std::smatch match; std::regex_search(name, match, pattern)) return match[1].str()[0] - '0';
+  }
+  return std::nullopt;
+}
+
+Calibration load_calibration(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "calibration.yaml";
+  if (std::ifstream stream(file); stream) {
+    return parse_calibration(std::string(std::istreambuf_iterator<char>(stream), {}), file.string());
+  }
+  if (const std::optional<int> family = tum_family(std::filesystem::absolute(folder))) {
+    return parse_calibration(tum_camera_yaml(*family), "config/cameras/tum_fr" + std::to_string(*family) + ".yaml");
+  }
+  throw SourceError("no calibration for " + folder.string() + ": write " + file.string() +
+                    " with one 'key: value' a line, keys " + kAllowedKeys +
+                    "; or name the folder after its TUM camera (freiburg1, freiburg2, freiburg3)");
+}
+
+std::string to_yaml(const Calibration& calibration) {
+  const auto& p = calibration.camera.parameters();
+  const auto& d = p.distortion;
+  std::array<char, 640> text{};
+  std::snprintf(text.data(), text.size(),
+                "width: %d\nheight: %d\nfx: %.9g\nfy: %.9g\ncx: %.9g\ncy: %.9g\n"
+                "k1: %.9g\nk2: %.9g\np1: %.9g\np2: %.9g\nk3: %.9g\ndepth_factor: %.9g\nfps: %.9g\n",
+                p.width, p.height, p.fx, p.fy, p.cx, p.cy, d[0], d[1], d[2], d[3], d[4],
+                1.0 / calibration.depth_scale_m, calibration.fps);
+  return text.data();
+}
+
+}  // namespace rtd::camera

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "common/geometry/camera_model.hpp"
+
+namespace rtd::camera {
+
+/// What calibration.yaml says about an RGB-D camera.
+struct Calibration {
+  geometry::CameraModel camera;
+  double depth_scale_m = 1.0 / 5000.0;  ///< metres of one depth unit; the file gives its inverse, depth_factor
+  double fps = 30.0;                    ///< Hz
+};
+
+/// Reads "key: value" lines with the keys width height fx fy cx cy (needed) k1 k2 p1 p2 k3 depth_factor fps.
+/// Throws SourceError naming `origin`, line and fix: unknown or doubled key, no finite number, out of range, size above
+/// the frame type's.
+Calibration parse_calibration(const std::string& text, const std::string& origin);
+
+/// Calibration of a TUM-layout folder: its calibration.yaml, else the TUM family in its path (freiburg1 or fr1, ...;
+/// the values of config/cameras/, compiled in). Throws SourceError that says what to write.
+Calibration load_calibration(const std::filesystem::path& folder);
+
+/// 1, 2 or 3 when the path names a TUM camera family, the innermost folder first.
+std::optional<int> tum_family(const std::filesystem::path& folder);
+
+/// The calibration as a file that parse_calibration() reads back.
+std::string to_yaml(const Calibration& calibration);
+
+}  // namespace rtd::camera

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "common/vision/rgbd_image.hpp"
+
+namespace rtd::camera {
+
+/// A source cannot be used at all; what() names file, line or parameter, the value and the fix.
+class SourceError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Why a piece of the input was left out. The source goes on with the next one.
+enum class SkipReason {
+  kMalformedLine,    ///< a list line that does not read as "stamp file"
+  kNoDepthPartner,   ///< no depth image within the pairing tolerance
+  kStampBackwards,   ///< older than the frame before
+  kStampDoubled,     ///< same stamp as the frame before
+  kColorUnreadable,  ///< missing, truncated or not an image
+  kDepthUnreadable,  ///< missing, truncated or not an image
+  kDepthNot16Bit,    ///< 8-bit, float or several channels
+  kSizeMismatch,     ///< colour, depth and calibration do not have one size
+};
+inline constexpr std::size_t kSkipReasons = 8;
+
+/// "color_unreadable": for counters and logs.
+const char* to_string(SkipReason reason);
+
+/// One piece of input that was left out, with a line for people that names file and cause.
+struct SkippedInput {
+  SkipReason reason;
+  std::string detail;
+};
+
+/// What a source has done so far.
+struct SourceCounters {
+  std::uint64_t frames = 0;                           ///< handed out
+  std::array<std::uint64_t, kSkipReasons> skipped{};  ///< by SkipReason
+  std::uint64_t frames_without_depth = 0;             ///< handed out although no pixel has a measurement
+  std::uint64_t skipped_total() const;
+  std::uint64_t of(SkipReason reason) const { return skipped[static_cast<std::size_t>(reason)]; }
+};
+
+/// One frame of a source.
+struct SourceFrame {
+  vision::RgbdImage image;                          ///< seq counts from 0 without gaps; depth 0 = no measurement
+  cv::Mat dynamic_mask;                             ///< CV_8UC1, 255 = moving object; empty when the source has none
+  std::optional<Eigen::Isometry3d> T_world_camera;  ///< exact pose, synthetic sources only
+  bool has_depth = true;                            ///< some pixel has a measurement
+};
+
+/// A pose of the ground truth. The world frame is the source's own.
+struct StampedPose {
+  std::int64_t stamp_ns = 0;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+};
+
+/// What is known about a source before its first frame.
+struct SourceInfo {
+  std::string uri;
+  geometry::CameraModel camera;
+  double depth_scale_m = 0;  ///< metres of one depth unit
+  double fps = 30;           ///< nominal rate, Hz
+  std::uint64_t frames = 0;  ///< frames expected (an upper bound: broken ones are skipped); 0 = endless
+};
+
+/// A sequence of RGB-D frames. Errors at opening throw SourceError; single bad frames are skipped and counted.
+/// Not thread-safe.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  /// The next good frame; empty at the end.
+  virtual std::optional<SourceFrame> next() = 0;
+  virtual const SourceInfo& info() const = 0;
+  virtual const SourceCounters& counters() const = 0;
+  /// Ground truth of the span covered, oldest first; empty when there is none. Endless sources give what was played so
+  /// far.
+  virtual std::vector<StampedPose> groundtruth() const = 0;
+  /// What was skipped since the last call, for the log.
+  virtual std::vector<SkippedInput> take_skipped() = 0;
+};
+
+}  // namespace rtd::camera

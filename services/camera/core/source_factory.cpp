@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/source_factory.hpp"
+
+#include "services/camera/core/source_uri.hpp"
+#include "services/camera/core/tum_source.hpp"
+
+namespace rtd::camera {
+namespace {
+
+std::unique_ptr<FrameSource> make_tum_source(const SourceUri& uri) {
+  TumSource::Options options;
+  for (const auto& [key, value] : uri.parameters) {
+    if (key != "masks")
+      throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; tum: knows masks");
+    if (value != "0" && value != "1")
+      throw SourceError("source '" + uri.text + "': masks is 0 or 1, not '" + value + "'");
+    options.masks = value == "1";
+  }
+  if (uri.path.empty()) throw SourceError("source 'tum:' needs a folder: tum:FOLDER");
+  return std::make_unique<TumSource>(uri.text, uri.path, options);
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> make_source(const std::string& text) {
+  const SourceUri uri = parse_source_uri(text);
+  if (uri.scheme == "tum") return make_tum_source(uri);
+  throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme + "'; known: tum, synthetic");
+}
+
+}  // namespace rtd::camera

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "services/camera/core/frame_source.hpp"
+
+namespace rtd::camera {
+
+/// Opens a source by its URI:
+///   tum:FOLDER[?masks=1]
+/// Throws SourceError for an unknown scheme or parameter (with those known) and for what the source itself refuses.
+std::unique_ptr<FrameSource> make_source(const std::string& uri);
+
+}  // namespace rtd::camera

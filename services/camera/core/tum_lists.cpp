@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/tum_lists.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <tuple>
+
+#include "services/camera/core/text_fields.hpp"
+
+namespace rtd::camera {
+namespace {
+
+namespace fs = std::filesystem;
+
+void check_folder(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) throw SourceError("folder " + folder.string() + " does not exist");
+  if (!fs::is_directory(folder, error)) throw SourceError(folder.string() + " is no folder");
+  const bool listed = fs::exists(folder / "rgb.txt", error) && fs::exists(folder / "depth.txt", error);
+  if (!listed && !fs::exists(folder / "associations.txt", error)) {
+    throw SourceError("folder " + folder.string() +
+                      " is no TUM sequence: it needs rgb.txt and depth.txt, or associations.txt");
+  }
+}
+
+SkippedInput malformed(const fs::path& file, const TextLine& line, const std::string& expected) {
+  return {SkipReason::kMalformedLine, at_line(file, line.number) + ": expected '" + expected + "'"};
+}
+
+std::vector<StampedFile> read_list(const fs::path& file, std::vector<SkippedInput>& skipped) {
+  std::vector<StampedFile> entries;
+  for (const TextLine& line : read_lines(file)) {
+    const auto stamp_ns = parse_stamp_ns(line.fields[0], at_line(file, line.number));
+    if (stamp_ns && line.fields.size() == 2) {
+      entries.push_back({*stamp_ns, line.fields[1]});
+    } else {
+      skipped.push_back(malformed(file, line, "stamp file"));
+    }
+  }
+  return entries;
+}
+
+/// TUM's tool writes the lists in the order they were given to it: both "rgb depth" and "depth rgb" are about.
+FilePair colour_first(FilePair pair) {
+  const auto is_depth = [](const StampedFile& entry) { return entry.file.rfind("depth", 0) == 0; };
+  if (is_depth(pair.color) && !is_depth(pair.depth)) std::swap(pair.color, pair.depth);
+  return pair;
+}
+
+std::vector<FilePair> read_associations(const fs::path& file, std::vector<SkippedInput>& skipped) {
+  std::vector<FilePair> pairs;
+  for (const TextLine& line : read_lines(file)) {
+    const std::string where = at_line(file, line.number);
+    const auto first_ns = parse_stamp_ns(line.fields[0], where);
+    const auto second_ns = line.fields.size() == 4 ? parse_stamp_ns(line.fields[2], where) : std::nullopt;
+    if (first_ns && second_ns) {
+      pairs.push_back(colour_first({{*first_ns, line.fields[1]}, {*second_ns, line.fields[3]}}));
+    } else {
+      skipped.push_back(malformed(file, line, "stamp rgb_file stamp depth_file"));
+    }
+  }
+  return pairs;
+}
+
+const StampedFile& color_of(const StampedFile& entry) {
+  return entry;
+}
+const StampedFile& color_of(const FilePair& pair) {
+  return pair.color;
+}
+
+/// Keeps the entries whose colour stamp is newer than all before.
+template <class Entry>
+std::vector<Entry> increasing(const std::vector<Entry>& entries, std::vector<SkippedInput>& skipped) {
+  std::vector<Entry> kept;
+  for (const Entry& entry : entries) {
+    const StampedFile& color = color_of(entry);
+    if (kept.empty() || color.stamp_ns > color_of(kept.back()).stamp_ns) {
+      kept.push_back(entry);
+    } else if (color.stamp_ns == color_of(kept.back()).stamp_ns) {
+      skipped.push_back({SkipReason::kStampDoubled, color.file + " has the stamp of the frame before"});
+    } else {
+      skipped.push_back({SkipReason::kStampBackwards, color.file + " is older than the frame before"});
+    }
+  }
+  return kept;
+}
+
+/// Depth images are looked up by stamp: sorted, each stamp once.
+void sort_unique(std::vector<StampedFile>& entries) {
+  const auto older = [](const StampedFile& a, const StampedFile& b) { return a.stamp_ns < b.stamp_ns; };
+  const auto same = [](const StampedFile& a, const StampedFile& b) { return a.stamp_ns == b.stamp_ns; };
+  std::stable_sort(entries.begin(), entries.end(), older);
+  entries.erase(std::unique(entries.begin(), entries.end(), same), entries.end());
+}
+
+}  // namespace
+
+std::vector<int> associate(const std::vector<StampedFile>& color, const std::vector<StampedFile>& depth,
+                           std::int64_t tolerance_ns) {
+  std::vector<std::tuple<std::int64_t, int, int>> candidates;  // |difference|, colour, depth
+  std::size_t first = 0;
+  for (std::size_t c = 0; c < color.size(); ++c) {
+    while (first < depth.size() && depth[first].stamp_ns <= color[c].stamp_ns - tolerance_ns) ++first;
+    for (std::size_t d = first; d < depth.size() && depth[d].stamp_ns < color[c].stamp_ns + tolerance_ns; ++d) {
+      const std::int64_t difference_ns = std::abs(depth[d].stamp_ns - color[c].stamp_ns);
+      candidates.emplace_back(difference_ns, static_cast<int>(c), static_cast<int>(d));
+    }
+  }
+  std::sort(candidates.begin(), candidates.end());
+  std::vector<int> depth_of_color(color.size(), -1);
+  std::vector<bool> depth_used(depth.size(), false);
+  for (const auto& [difference_ns, c, d] : candidates) {
+    if (depth_of_color[static_cast<std::size_t>(c)] >= 0 || depth_used[static_cast<std::size_t>(d)]) continue;
+    depth_of_color[static_cast<std::size_t>(c)] = d;
+    depth_used[static_cast<std::size_t>(d)] = true;
+  }
+  return depth_of_color;
+}
+
+PairList read_pairs(const fs::path& folder) {
+  check_folder(folder);
+  PairList list;
+  if (const fs::path file = folder / "associations.txt"; fs::exists(file)) {
+    list.pairs = increasing(read_associations(file, list.skipped), list.skipped);
+    return list;
+  }
+  const std::vector<StampedFile> color = increasing(read_list(folder / "rgb.txt", list.skipped), list.skipped);
+  std::vector<StampedFile> depth = read_list(folder / "depth.txt", list.skipped);
+  sort_unique(depth);
+  const std::vector<int> depth_of_color = associate(color, depth);
+  for (std::size_t i = 0; i < color.size(); ++i) {
+    if (depth_of_color[i] >= 0) {
+      list.pairs.push_back({color[i], depth[static_cast<std::size_t>(depth_of_color[i])]});
+    } else {
+      list.skipped.push_back({SkipReason::kNoDepthPartner, color[i].file + " has no depth image within 0.02 s"});
+    }
+  }
+  return list;
+}
+
+}  // namespace rtd::camera
