@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <csignal>
+#include <fstream>
+#include <thread>
+#include <vector>
+
+#include "common/bus/bus_factory.hpp"
+#include "common/service/run_service.hpp"
+
+namespace rtd::service {
+namespace {
+
+using ::testing::HasSubstr;
+using namespace std::chrono_literals;
+
+/// Waits until the condition holds, at most five seconds.
+template <class Condition>
+bool eventually(Condition condition) {
+  for (int i = 0; i < 1000; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(5ms);
+  }
+  return false;
+}
+
+bus::BusOptions domain(std::uint32_t number) {
+  bus::BusOptions options;
+  options.vendor = "inprocess";
+  options.domain = number;
+  return options;
+}
+
+TEST(Heartbeat, peers_see_each_other_and_notice_the_end) {
+  const auto bus = bus::connect(domain(1));
+  StopToken stop;
+  Heartbeat filter(*bus, "filter", stop);
+  {
+    Heartbeat slam(*bus, "slam", stop);
+    slam.set_state(msg::ServiceState::kReady);
+    EXPECT_TRUE(eventually([&] { return filter.ready("slam"); }));
+    EXPECT_FALSE(filter.ready("camera"));
+  }
+  EXPECT_TRUE(eventually([&] { return !filter.alive("slam"); }));
+}
+
+TEST(Heartbeat, the_younger_of_two_equal_services_ends) {
+  const auto bus = bus::connect(domain(2));
+  StopToken stop_first, stop_second;
+  Heartbeat first(*bus, "camera", stop_first);
+  Heartbeat second(*bus, "camera", stop_second);
+  EXPECT_TRUE(eventually([&] { return stop_second.stop_requested(); }));
+  EXPECT_THAT(second.duplicate(), HasSubstr("--domain"));
+  EXPECT_FALSE(stop_first.stop_requested());
+}
+
+TEST(Heartbeat, metrics_travel) {
+  const auto bus = bus::connect(domain(3));
+  StopToken stop;
+  Heartbeat slam(*bus, "slam", stop);
+  std::atomic<double> seen{0};
+  slam.on_status([&](const msg::ServiceStatus& status) {
+    for (const auto& metric : status.metrics) {
+      if (metric.name == "frames_dropped") seen = metric.value;
+    }
+  });
+  Heartbeat filter(*bus, "filter", stop);
+  filter.set_metric("frames_dropped", 1);
+  filter.set_metric("frames_dropped", 7);
+  EXPECT_TRUE(eventually([&] { return seen == 7; }));
+}
+
+/// Runs a service definition with command-line words.
+class RunServiceTest : public ::testing::Test {
+ protected:
+  struct Config {
+    int count = 3;
+    void bind(ConfigBinder& binder) { binder.field("count", count, {1, 10}, "how many"); }
+  };
+
+  int run(std::vector<std::string> words) {
+    words.insert(words.begin(), "rtd-filter");
+    std::vector<char*> argv;
+    argv.reserve(words.size());
+    for (std::string& word : words) argv.push_back(word.data());
+    return run_service({"filter", "A service for tests",
+                        [this](CLI::App& app) { app.add_option("--count", config_.count, "how many"); },
+                        [this](ConfigBinder& binder) { binder.section("filter", config_); },
+                        [this](Runtime& runtime) { return body_(runtime); }},
+                       static_cast<int>(argv.size()), argv.data());
+  }
+
+  Config config_;
+  std::function<ExitCode(Runtime&)> body_ = [](Runtime&) { return kOk; };
+};
+
+TEST_F(RunServiceTest, runs_and_returns_the_code_of_the_service) {
+  body_ = [](Runtime&) { return kRunFailed; };
+  EXPECT_EQ(run({"--dds", "inprocess"}), kRunFailed);
+}
+
+TEST_F(RunServiceTest, own_option_wins_over_set_and_set_over_file) {
+  const std::string path = ::testing::TempDir() + "/rtd_service_test.yaml";
+  std::ofstream(path) << "filter: {count: 4}\nslam: {whatever: 1}\n";
+  EXPECT_EQ(run({"--dds", "inprocess", "--config", path}), kOk);
+  EXPECT_EQ(config_.count, 4);
+  EXPECT_EQ(run({"--dds", "inprocess", "--config", path, "--set", "filter.count=5"}), kOk);
+  EXPECT_EQ(config_.count, 5);
+  EXPECT_EQ(run({"--dds", "inprocess", "--config", path, "--set", "filter.count=5", "--count", "6"}), kOk);
+  EXPECT_EQ(config_.count, 6);
+}
+
+TEST_F(RunServiceTest, wrong_use_ends_with_two) {
+  EXPECT_EQ(run({"--nonsense"}), kUsageOrConfig);
+  EXPECT_EQ(run({"--dds", "zeromq"}), kUsageOrConfig);
+  EXPECT_EQ(run({"--dds", "inprocess", "--pace", "slow"}), kUsageOrConfig);
+  EXPECT_EQ(run({"--dds", "inprocess", "--domain", "300"}), kUsageOrConfig);
+  EXPECT_EQ(run({"--dds", "inprocess", "--set", "filter.count=11"}), kUsageOrConfig);
+  EXPECT_EQ(run({"--dds", "inprocess", "--config", "/nonexistent.yaml"}), kUsageOrConfig);
+}
+
+TEST_F(RunServiceTest, an_exception_is_a_failed_run) {
+  body_ = [](Runtime&) -> ExitCode { throw std::runtime_error("the sky fell"); };
+  EXPECT_EQ(run({"--dds", "inprocess"}), kRunFailed);
+}
+
+TEST_F(RunServiceTest, sigterm_asks_the_service_to_stop) {
+  body_ = [](Runtime& runtime) {
+    kill(getpid(), SIGTERM);
+    return runtime.stop.wait_for(5s) ? kOk : kRunFailed;
+  };
+  EXPECT_EQ(run({"--dds", "inprocess"}), kOk);
+}
+
+TEST_F(RunServiceTest, print_config_does_not_run_the_service) {
+  body_ = [](Runtime&) -> ExitCode { throw std::runtime_error("must not run"); };
+  EXPECT_EQ(run({"--print-config"}), kOk);
+}
+
+}  // namespace
+}  // namespace rtd::service
