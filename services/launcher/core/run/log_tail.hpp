@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rtd::launcher {
+
+/// Cuts a byte stream into lines. A line longer than 4096 bytes is handed out in pieces.
+class LineSplitter {
+ public:
+  /// Calls `on_line` for every line that `bytes` completes (without its newline).
+  void feed(std::string_view bytes, const std::function<void(const std::string&)>& on_line);
+  /// Hands out what is left without a newline.
+  void finish(const std::function<void(const std::string&)>& on_line);
+
+ private:
+  std::string rest_;
+};
+
+/// The last lines of a log.
+class LogTail {
+ public:
+  explicit LogTail(std::size_t max_lines = 12) : max_lines_(max_lines) {}
+  void add(const std::string& line);
+  std::vector<std::string> lines() const { return {lines_.begin(), lines_.end()}; }
+
+ private:
+  std::size_t max_lines_;
+  std::deque<std::string> lines_;
+};
+
+enum class LogLevel { kInfo, kWarning, kError };
+
+/// The level of a service's log line, judged by its first word; lines without one are kInfo.
+LogLevel level_of(std::string_view line);
+
+/// The lines that say why a service refused to start: its last error line, else its last lines.
+std::vector<std::string> reason_lines(const std::vector<std::string>& tail);
+
+}  // namespace rtd::launcher

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace rtd::launcher {
+
+/// A process could not be started; what() names the executable and the reason.
+class ProcessError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+using ProcessId = std::int64_t;
+
+/// How a process ended and what it used.
+struct ProcessExit {
+  int code = 0;    ///< exit code, meaningful when signal == 0
+  int signal = 0;  ///< the signal that ended it, 0 = it exited by itself
+  double cpu_s = 0;
+  double peak_rss_mb = 0;
+
+  bool clean() const { return code == 0 && signal == 0; }
+};
+
+/// "exit code 1" or "killed by signal 9 (KILL)".
+std::string describe(const ProcessExit& exit);
+
+/// Starts and ends processes. Injected, so that the supervisor is tested without an operating system.
+class ProcessHost {
+ public:
+  virtual ~ProcessHost() = default;
+  /// Throws ProcessError when the executable cannot be run.
+  virtual ProcessId start(const std::string& name, const std::vector<std::string>& command) = 0;
+  /// How the process ended; empty while it runs. Told once, then the id is gone.
+  virtual std::optional<ProcessExit> poll_exit(ProcessId process) = 0;
+  virtual void terminate(ProcessId process) = 0;  ///< asks (SIGTERM)
+  virtual void kill(ProcessId process) = 0;       ///< forces (SIGKILL)
+};
+
+}  // namespace rtd::launcher

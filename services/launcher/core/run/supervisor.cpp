@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/core/run/supervisor.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace rtd::launcher {
+namespace {
+
+constexpr int kExitUsageOrConfig = 2;
+
+Supervisor::Clock backoff(const SupervisorOptions& options, int deaths_in_row) {
+  Supervisor::Clock pause = options.first_backoff;
+  for (int i = 1; i < deaths_in_row && pause < options.max_backoff; ++i) pause *= 2;
+  return std::min(pause, options.max_backoff);
+}
+
+}  // namespace
+
+Supervisor::Supervisor(ProcessHost& host, SupervisorOptions options,
+                       std::function<void(const SupervisorEvent&)> on_event)
+    : host_(host), options_(options), on_event_(std::move(on_event)) {}
+
+void Supervisor::start(const ServicePlan& plan, Clock now) {
+  Child child;
+  child.plan = plan;
+  launch(child, now);
+  report(SupervisorEvent::Kind::kStarted, child, plan.name + " started");
+  children_.push_back(std::move(child));
+}
+
+void Supervisor::update(Clock now) {
+  for (Child& child : children_) {
+    if (child.state == State::kRunning) {
+      if (const auto exit = host_.poll_exit(child.process)) on_exit(child, *exit, now);
+    } else if (child.state == State::kWaiting && now >= child.restart_at) {
+      relaunch(child, now);
+    }
+    if (stopping_ && child.state == State::kRunning && now >= kill_at_ && !child.killed) {
+      child.killed = true;
+      host_.kill(child.process);
+    }
+  }
+}
+
+void Supervisor::stop(Clock now, Clock grace, RunOutcome why) {
+  decide(why);
+  kill_at_ = stopping_ ? std::min(kill_at_, now + grace) : now + grace;
+  stopping_ = true;
+  for (Child& child : children_) {
+    if (child.state == State::kRunning) host_.terminate(child.process);
+    if (child.state == State::kWaiting) child.state = State::kEnded;
+  }
+}
+
+bool Supervisor::all_ended() const {
+  return std::all_of(children_.begin(), children_.end(), [](const Child& c) { return c.state == State::kEnded; });
+}
+
+int Supervisor::restarts(const std::string& service) const {
+  for (const Child& child : children_) {
+    if (child.plan.name == service) return child.restarts;
+  }
+  return 0;
+}
+
+std::vector<std::pair<std::string, ProcessId>> Supervisor::running() const {
+  std::vector<std::pair<std::string, ProcessId>> result;
+  for (const Child& child : children_) {
+    if (child.state == State::kRunning) result.emplace_back(child.plan.name, child.process);
+  }
+  return result;
+}
+
+void Supervisor::launch(Child& child, Clock now) {
+  child.process = host_.start(child.plan.name, child.plan.command);
+  child.state = State::kRunning;
+  child.started = now;
+  child.killed = false;
+}
+
+void Supervisor::relaunch(Child& child, Clock now) {
+  ++child.restarts;
+  try {
+    launch(child, now);
+  } catch (const ProcessError& error) {
+    child.state = State::kEnded;
+    report(SupervisorEvent::Kind::kGivenUp, child, child.plan.name + " could not be restarted: " + error.what());
+    if (child.plan.role == ServiceRole::kEssential) decide(RunOutcome::kFailed);
+    return;
+  }
+  report(SupervisorEvent::Kind::kRestarted, child,
+         child.plan.name + " restarted (" + std::to_string(child.restarts) + ". time)");
+}
+
+void Supervisor::on_exit(Child& child, const ProcessExit& exit, Clock now) {
+  child.state = State::kEnded;
+  if (stopping_) {
+    const bool forced = child.killed;
+    report(forced ? SupervisorEvent::Kind::kKilled : SupervisorEvent::Kind::kEnded, child,
+           child.plan.name + (forced ? " did not end when asked and was killed" : " ended: " + describe(exit)), exit);
+    return;
+  }
+  if (child.plan.role == ServiceRole::kSource && exit.clean()) {
+    report(SupervisorEvent::Kind::kEnded, child, child.plan.name + " reached the end of its source", exit);
+    return decide(RunOutcome::kComplete);
+  }
+  if (exit.signal == 0 && exit.code == kExitUsageOrConfig && child.restarts == 0) {
+    report(SupervisorEvent::Kind::kRefused, child, child.plan.name + " refused to start", exit);
+    return decide(RunOutcome::kConfigError);
+  }
+  on_death(child, exit, now);
+}
+
+void Supervisor::on_death(Child& child, const ProcessExit& exit, Clock now) {
+  const std::string what = child.plan.name + " died: " + describe(exit);
+  if (child.plan.role == ServiceRole::kSource) {
+    report(SupervisorEvent::Kind::kGivenUp, child, what, exit);
+    return decide(RunOutcome::kFailed);
+  }
+  child.deaths_in_row = now - child.started >= options_.healthy_after ? 1 : child.deaths_in_row + 1;
+  if (child.deaths_in_row > options_.max_restarts_in_row) {
+    const bool optional = child.plan.role == ServiceRole::kOptional;
+    report(SupervisorEvent::Kind::kGivenUp, child,
+           what + ", " + std::to_string(child.deaths_in_row) + " times in a row: given up" +
+               (optional ? ", the run goes on without it" : ""),
+           exit);
+    if (!optional) decide(RunOutcome::kFailed);
+    return;
+  }
+  const Clock pause = backoff(options_, child.deaths_in_row);
+  child.state = State::kWaiting;
+  child.restart_at = now + pause;
+  report(SupervisorEvent::Kind::kDied, child, what + ", restart in " + std::to_string(pause.count()) + " ms", exit);
+}
+
+void Supervisor::decide(RunOutcome outcome) {
+  if (outcome_ == RunOutcome::kRunning) outcome_ = outcome;
+}
+
+void Supervisor::report(SupervisorEvent::Kind kind, const Child& child, const std::string& text,
+                        const ProcessExit& exit) {
+  if (on_event_) on_event_({kind, child.plan.name, text, child.process, exit});
+}
+
+}  // namespace rtd::launcher

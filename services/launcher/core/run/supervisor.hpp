@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "services/launcher/core/run/process_host.hpp"
+
+namespace rtd::launcher {
+
+/// What the death of a service means for the run.
+enum class ServiceRole {
+  kSource,     ///< the camera: its end is the end of the run
+  kEssential,  ///< restarted; when it keeps dying the run fails
+  kOptional,   ///< restarted; when it keeps dying the run goes on without it (detector)
+};
+
+/// One service of a run.
+struct ServicePlan {
+  std::string name;
+  std::vector<std::string> command;  ///< executable and arguments
+  ServiceRole role = ServiceRole::kEssential;
+};
+
+struct SupervisorOptions {
+  int max_restarts_in_row = 5;                    ///< deaths in a row before a service is given up
+  std::chrono::milliseconds first_backoff{200};   ///< pause before the first restart, doubled for each further one
+  std::chrono::milliseconds max_backoff{2000};
+  std::chrono::milliseconds healthy_after{5000};  ///< a service that lived this long starts a new row
+};
+
+enum class RunOutcome {
+  kRunning,      ///< not decided yet
+  kComplete,     ///< the source ended by itself
+  kFailed,       ///< the source or an essential service failed for good
+  kConfigError,  ///< a service refused its arguments or configuration (exit code 2 at its first start)
+  kInterrupted,  ///< stopped from outside
+};
+
+/// Something to tell people about.
+struct SupervisorEvent {
+  enum class Kind { kStarted, kDied, kRestarted, kGivenUp, kRefused, kEnded, kKilled };
+  Kind kind;
+  std::string service;
+  std::string text;      ///< one line, names service and reason
+  ProcessId process = 0;
+  ProcessExit exit{};    ///< kDied, kGivenUp, kRefused, kEnded, kKilled
+};
+
+/// Keeps the services of one run alive: restarts what dies, decides when the run is over, ends everything in bounded time.
+/// Time comes in as an argument (any monotonic clock). Not thread-safe.
+class Supervisor {
+ public:
+  using Clock = std::chrono::milliseconds;
+
+  Supervisor(ProcessHost& host, SupervisorOptions options, std::function<void(const SupervisorEvent&)> on_event);
+
+  /// Starts a service. Throws ProcessError when its executable cannot be run.
+  void start(const ServicePlan& plan, Clock now);
+  /// Looks for deaths, restarts what is due, kills what did not end within the grace of stop(). Call it often.
+  void update(Clock now);
+  /// Asks every service to end; those still there after `grace` are killed by update(). The first outcome stays.
+  void stop(Clock now, Clock grace, RunOutcome why);
+
+  RunOutcome outcome() const { return outcome_; }
+  bool stopping() const { return stopping_; }
+  /// No process is left.
+  bool all_ended() const;
+  int restarts(const std::string& service) const;
+  /// Name and id of every process that runs now.
+  std::vector<std::pair<std::string, ProcessId>> running() const;
+
+ private:
+  enum class State { kRunning, kWaiting, kEnded };
+  struct Child {
+    ServicePlan plan;
+    ProcessId process = 0;
+    State state = State::kEnded;
+    int deaths_in_row = 0, restarts = 0;
+    Clock started{}, restart_at{};
+    bool killed = false;
+  };
+
+  void launch(Child& child, Clock now);
+  void relaunch(Child& child, Clock now);
+  void on_exit(Child& child, const ProcessExit& exit, Clock now);
+  void on_death(Child& child, const ProcessExit& exit, Clock now);
+  void decide(RunOutcome outcome);
+  void report(SupervisorEvent::Kind kind, const Child& child, const std::string& text, const ProcessExit& exit = {});
+
+  ProcessHost& host_;
+  SupervisorOptions options_;
+  std::function<void(const SupervisorEvent&)> on_event_;
+  std::vector<Child> children_;
+  RunOutcome outcome_ = RunOutcome::kRunning;
+  bool stopping_ = false;
+  Clock kill_at_{};
+};
+
+}  // namespace rtd::launcher
