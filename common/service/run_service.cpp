@@ -8,17 +8,15 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/service/bus_config.hpp"
 #include "common/service/log.hpp"
 
 namespace rtd::service {
 namespace {
-
-const std::vector<std::string> kSections = {"bus", "camera", "detector", "filter", "slam", "launcher"};
 
 struct CommonOptions {
   std::string config_file, pace = "realtime", log_level = "info";
@@ -26,23 +24,6 @@ struct CommonOptions {
   std::string vendor;
   int domain = -1;
   bool print_config = false;
-};
-
-/// Settings of the bus as config keys; defaults come from BusOptions and the environment.
-struct BusConfig {
-  std::string vendor = bus::BusOptions{}.vendor;
-  int domain = 0;
-  int shm_segment_mib = static_cast<int>(bus::BusOptions{}.shm_segment_mib);
-  int socket_buffer_kib = static_cast<int>(bus::BusOptions{}.socket_buffer_kib);
-  bool loopback_only = bus::BusOptions{}.loopback_only;
-
-  void bind(ConfigBinder& binder) {
-    binder.field("vendor", vendor, "DDS implementation (--dds, RTD_DDS)");
-    binder.field("domain", domain, {0, 232}, "DDS domain (--domain, ROS_DOMAIN_ID)");
-    binder.field("shm_segment_mib", shm_segment_mib, {8, 1024}, "shared-memory segment of each process");
-    binder.field("socket_buffer_kib", socket_buffer_kib, {64, 65536}, "wanted UDP buffers, capped by the kernel");
-    binder.field("loopback_only", loopback_only, "false: also use the host's network interfaces");
-  }
 };
 
 void add_common_options(CLI::App& app, CommonOptions& common) {
@@ -57,29 +38,13 @@ void add_common_options(CLI::App& app, CommonOptions& common) {
   app.add_flag("--print-config", common.print_config, "Print all keys with the values in force and end");
 }
 
-void apply_environment(ConfigBinder& binder) {
-  if (const char* vendor = std::getenv("RTD_DDS")) binder.set("bus.vendor", vendor, "environment RTD_DDS");
-  if (const char* domain = std::getenv("ROS_DOMAIN_ID")) binder.set("bus.domain", domain, "environment ROS_DOMAIN_ID");
-}
-
 /// Values in rising priority: defaults, environment, file, --set, own options.
 void load_config(ConfigBinder& binder, const CommonOptions& common) {
-  apply_environment(binder);
-  if (!common.config_file.empty()) binder.load_file(common.config_file, kSections);
-  for (const std::string& assignment : common.overrides) binder.set(assignment, kSections);
+  apply_bus_environment(binder);
+  if (!common.config_file.empty()) binder.load_file(common.config_file, config_sections());
+  for (const std::string& assignment : common.overrides) binder.set(assignment, config_sections());
   if (!common.vendor.empty()) binder.set("bus.vendor", common.vendor, "--dds");
   if (common.domain >= 0) binder.set("bus.domain", std::to_string(common.domain), "--domain");
-}
-
-bus::BusOptions to_bus_options(const BusConfig& config, const std::string& service) {
-  bus::BusOptions options;
-  options.vendor = config.vendor;
-  options.domain = static_cast<std::uint32_t>(config.domain);
-  options.participant_name = "rtd-" + service;
-  options.shm_segment_mib = static_cast<std::uint32_t>(config.shm_segment_mib);
-  options.socket_buffer_kib = static_cast<std::uint32_t>(config.socket_buffer_kib);
-  options.loopback_only = config.loopback_only;
-  return options;
 }
 
 /// Turns SIGINT and SIGTERM into a stop request. All other threads inherit the blocked mask.
@@ -110,7 +75,7 @@ class SignalWatcher {
 ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_config, Pace pace) {
   StopToken stop;
   const SignalWatcher signals(stop);
-  const std::shared_ptr<bus::Bus> bus = bus::connect(to_bus_options(bus_config, definition.name));
+  const std::shared_ptr<bus::Bus> bus = bus::connect(to_bus_options(bus_config, "rtd-" + definition.name));
   ExitCode code = kOk;
   std::string duplicate;
   {
