@@ -3,16 +3,23 @@
 #include "services/launcher/core/run/log_tail.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 
 namespace rtd::launcher {
 namespace {
 
 constexpr std::size_t kMaxLineBytes = 4096;
 
-bool one_of(const std::string& word, std::initializer_list<const char*> words) {
-  return std::any_of(words.begin(), words.end(), [&](const char* w) { return word == w; });
+std::string_view second_word(std::string_view line) {
+  const std::size_t space = line.find(' ');
+  if (space == std::string_view::npos) return {};
+  const std::string_view rest = line.substr(space + 1);
+  return rest.substr(0, rest.find(' '));
+}
+
+/// The word without ANSI colour sequences around it.
+std::string_view strip_color(std::string_view word) {
+  while (!word.empty() && word.front() == '\033') word.remove_prefix(std::min(word.find('m'), word.size() - 1) + 1);
+  return word.substr(0, word.find('\033'));
 }
 
 }  // namespace
@@ -38,18 +45,10 @@ void LogTail::add(const std::string& line) {
 }
 
 LogLevel level_of(std::string_view line) {
-  std::string word;
-  for (const char c : line) {
-    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
-      word.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
-    } else if (!word.empty()) {
-      break;
-    } else if (c != '[' && c != ' ') {
-      return LogLevel::kInfo;
-    }
-  }
-  if (one_of(word, {"warning", "warn", "w"})) return LogLevel::kWarning;
-  if (one_of(word, {"error", "err", "critical", "fatal", "e"})) return LogLevel::kError;
+  if (line.rfind("rtd-", 0) == 0 || line.rfind("terminate called", 0) == 0) return LogLevel::kError;
+  const std::string_view word = strip_color(second_word(line));
+  if (word == "warning") return LogLevel::kWarning;
+  if (word == "error" || word == "critical") return LogLevel::kError;
   return LogLevel::kInfo;
 }
 

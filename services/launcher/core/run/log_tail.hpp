@@ -37,7 +37,7 @@ class LogTail {
 
 enum class LogLevel { kInfo, kWarning, kError };
 
-/// The level of a service's log line, judged by its first word; lines without one are kInfo.
+/// The level of a service's log line: "12:34:56.789 warning slam event=..." or "rtd-slam: why it cannot run".
 LogLevel level_of(std::string_view line);
 
 /// The lines that say why a service refused to start: its last error line, else its last lines.

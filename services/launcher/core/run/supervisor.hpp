@@ -26,8 +26,8 @@ struct ServicePlan {
 };
 
 struct SupervisorOptions {
-  int max_restarts_in_row = 5;                    ///< deaths in a row before a service is given up
-  std::chrono::milliseconds first_backoff{200};   ///< pause before the first restart, doubled for each further one
+  int max_restarts_in_row = 5;                   ///< deaths in a row before a service is given up
+  std::chrono::milliseconds first_backoff{200};  ///< pause before the first restart, doubled for each further one
   std::chrono::milliseconds max_backoff{2000};
   std::chrono::milliseconds healthy_after{5000};  ///< a service that lived this long starts a new row
 };
@@ -45,13 +45,13 @@ struct SupervisorEvent {
   enum class Kind { kStarted, kDied, kRestarted, kGivenUp, kRefused, kEnded, kKilled };
   Kind kind;
   std::string service;
-  std::string text;      ///< one line, names service and reason
+  std::string text;  ///< one line, names service and reason
   ProcessId process = 0;
-  ProcessExit exit{};    ///< kDied, kGivenUp, kRefused, kEnded, kKilled
+  ProcessExit exit{};  ///< kDied, kGivenUp, kRefused, kEnded, kKilled
 };
 
-/// Keeps the services of one run alive: restarts what dies, decides when the run is over, ends everything in bounded time.
-/// Time comes in as an argument (any monotonic clock). Not thread-safe.
+/// Keeps the services of one run alive: restarts what dies, decides when the run is over, ends everything in bounded
+/// time. Time comes in as an argument (any monotonic clock). Not thread-safe.
 class Supervisor {
  public:
   using Clock = std::chrono::milliseconds;
