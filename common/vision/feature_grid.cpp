@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/vision/feature_grid.hpp"
+
+#include <numeric>
+
+namespace rtd::vision {
+
+FeatureGrid::FeatureGrid(std::span<const msg::Feature> features, int width_px, int height_px, int cell_px)
+    : features_(features),
+      inverse_cell_px_(1.0F / static_cast<float>(cell_px)),
+      columns_(std::max(1, (width_px + cell_px - 1) / cell_px)),
+      rows_(std::max(1, (height_px + cell_px - 1) / cell_px)),
+      starts_(static_cast<std::size_t>(columns_) * rows_ + 1, 0),
+      indices_(features.size()) {
+  const auto cell_of = [this](const msg::Feature& feature) {
+    return static_cast<std::size_t>(row_of(feature.v_px) * columns_ + column_of(feature.u_px));
+  };
+  for (const msg::Feature& feature : features) ++starts_[cell_of(feature) + 1];
+  std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+  std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
+  for (std::uint32_t i = 0; i < features.size(); ++i) indices_[next[cell_of(features[i])]++] = i;
+}
+
+std::vector<std::uint32_t> FeatureGrid::find(const SearchWindow& window) const {
+  std::vector<std::uint32_t> found;
+  for_each(window, [&](std::uint32_t index) { found.push_back(index); });
+  return found;
+}
+
+}  // namespace rtd::vision

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <opencv2/core.hpp>
+
+#include "common/msg/features.hpp"
+
+namespace rtd::filter {
+
+/// The 256 point pairs that rotated BRIEF compares, as offsets (px) from the corner, before rotation.
+///
+/// Our own table, made from a fixed seed: Gaussian pairs, taken greedily so that no two comparisons are expected to say
+/// the same under a natural image's autocorrelation; docs/theory/orb.md Eq. (3)-(4).
+struct BriefPattern {
+  static constexpr std::size_t kBits = 256;
+  std::array<float, 2 * kBits> x{}, y{};  ///< points 2k and 2k+1 are compared for bit k
+};
+const BriefPattern& brief_pattern();
+
+/// Descriptor of the patch around `centre` in a smoothed image, the pattern rotated by `angle_rad`.
+msg::Descriptor rotated_brief(const cv::Mat& smoothed, cv::Point centre, float angle_rad);
+
+}  // namespace rtd::filter

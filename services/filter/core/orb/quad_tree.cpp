@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/orb/quad_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+namespace rtd::filter {
+namespace {
+
+/// A cell of the tree: a rectangle and the corners in it, a range of one shared array.
+struct Cell {
+  float left, top, right, bottom;
+  std::size_t begin, end;
+  int depth;
+  std::size_t size() const { return end - begin; }
+};
+
+/// The next to be split comes out first: coarse before fine, then full before sparse, then by position in the array.
+struct SplitsLater {
+  bool operator()(const Cell& a, const Cell& b) const {
+    if (a.depth != b.depth) return a.depth > b.depth;
+    if (a.size() != b.size()) return a.size() < b.size();
+    return a.begin > b.begin;
+  }
+};
+
+/// Reorders the corners of a cell by quadrant and returns the quadrants that have any.
+std::vector<Cell> split(const Cell& cell, std::vector<Corner>& corners) {
+  const float middle_x = 0.5F * (cell.left + cell.right), middle_y = 0.5F * (cell.top + cell.bottom);
+  const auto at = [&](std::size_t i) { return corners.begin() + static_cast<std::ptrdiff_t>(i); };
+  const auto position = [&](auto it) { return static_cast<std::size_t>(it - corners.begin()); };
+  const auto is_upper = [&](const Corner& c) { return c.y < middle_y; };
+  const auto is_left = [&](const Corner& c) { return c.x < middle_x; };
+  const std::size_t lower = position(std::partition(at(cell.begin), at(cell.end), is_upper));
+  const std::size_t upper_right = position(std::partition(at(cell.begin), at(lower), is_left));
+  const std::size_t lower_right = position(std::partition(at(lower), at(cell.end), is_left));
+  const int depth = cell.depth + 1;
+  std::vector<Cell> quarters{{cell.left, cell.top, middle_x, middle_y, cell.begin, upper_right, depth},
+                             {middle_x, cell.top, cell.right, middle_y, upper_right, lower, depth},
+                             {cell.left, middle_y, middle_x, cell.bottom, lower, lower_right, depth},
+                             {middle_x, middle_y, cell.right, cell.bottom, lower_right, cell.end, depth}};
+  std::erase_if(quarters, [](const Cell& quarter) { return quarter.size() == 0; });
+  return quarters;
+}
+
+/// Starts with cells that are about square, so that quarters are too.
+std::vector<Cell> root_cells(std::vector<Corner>& corners, const cv::Rect& area) {
+  const int columns =
+      std::max(1, static_cast<int>(std::lround(static_cast<double>(area.width) / std::max(1, area.height))));
+  const float width = static_cast<float>(area.width) / static_cast<float>(columns);
+  const auto left = static_cast<float>(area.x), top = static_cast<float>(area.y);
+  std::vector<Cell> roots;
+  std::size_t begin = 0;
+  for (int column = 0; column < columns; ++column) {
+    const float cell_left = left + width * static_cast<float>(column), cell_right = cell_left + width;
+    const auto first = corners.begin() + static_cast<std::ptrdiff_t>(begin);
+    const bool last = column + 1 == columns;
+    const auto last_inside =
+        std::partition(first, corners.end(), [&](const Corner& c) { return last || c.x < cell_right; });
+    const auto end = static_cast<std::size_t>(last_inside - corners.begin());
+    if (end > begin)
+      roots.push_back({cell_left, top, cell_right, top + static_cast<float>(area.height), begin, end, 0});
+    begin = end;
+  }
+  return roots;
+}
+
+Corner strongest(const std::vector<Corner>& corners, const Cell& cell) {
+  const auto first = corners.begin() + static_cast<std::ptrdiff_t>(cell.begin);
+  const auto last = corners.begin() + static_cast<std::ptrdiff_t>(cell.end);
+  return *std::max_element(first, last, [](const Corner& a, const Corner& b) { return a.response < b.response; });
+}
+
+}  // namespace
+
+std::vector<Corner> spread_corners(std::vector<Corner> corners, const cv::Rect& area, int wanted) {
+  if (wanted <= 0) return {};
+  constexpr int kMaxDepth = 16;  // corners on one spot cannot be told apart: do not split for ever
+  std::priority_queue<Cell, std::vector<Cell>, SplitsLater> open;
+  std::vector<Cell> done;
+  const auto place = [&](const Cell& cell) {
+    if (cell.size() == 1 || cell.depth >= kMaxDepth) {
+      done.push_back(cell);
+    } else {
+      open.push(cell);
+    }
+  };
+  for (const Cell& root : root_cells(corners, area)) place(root);
+  while (!open.empty() && static_cast<int>(open.size() + done.size()) < wanted) {
+    const Cell cell = open.top();
+    open.pop();
+    for (const Cell& quarter : split(cell, corners)) place(quarter);
+  }
+  for (; !open.empty(); open.pop()) done.push_back(open.top());
+
+  std::vector<Corner> spread;
+  spread.reserve(done.size());
+  for (const Cell& cell : done) spread.push_back(strongest(corners, cell));
+  return spread;
+}
+
+}  // namespace rtd::filter

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/msg/features.hpp"
+#include "common/vision/rgbd_image.hpp"
+#include "services/filter/core/orb/image_pyramid.hpp"
+#include "services/filter/core/orb/orb_config.hpp"
+#include "services/filter/core/orb/undistortion_table.hpp"
+
+namespace rtd::filter {
+
+/// ORB features of an RGB-D image: multi-scale FAST corners, spread over the image, with orientation, descriptor,
+/// undistorted position and depth. docs/theory/orb.md. The same image gives the same features, in the same order (by
+/// octave). Keeps buffers: one instance per thread.
+class OrbExtractor {
+ public:
+  explicit OrbExtractor(const OrbConfig& config);
+
+  /// About config.feature_count features (never more than msg::kMaxFeatures), each with static_probability 1, no flags,
+  /// no object.
+  std::vector<msg::Feature> extract(const vision::RgbdImage& image) { return extract(image, config_.feature_count); }
+  /// The same with another number of wanted features.
+  std::vector<msg::Feature> extract(const vision::RgbdImage& image, int feature_count);
+
+  const OrbConfig& config() const { return config_; }
+
+ private:
+  void append_level(const vision::RgbdImage& image, int level, int wanted, std::vector<msg::Feature>& features);
+
+  OrbConfig config_;
+  ImagePyramid pyramid_;
+  UndistortionTable undistortion_;
+  cv::Mat smoothed_;
+};
+
+/// Depth (m) at a pixel of the camera's own image: the nearest pixel; 0 when not measured or outside the range of the
+/// config.
+float depth_at(const vision::RgbdImage& image, float u_raw_px, float v_raw_px, const OrbConfig& config);
+
+}  // namespace rtd::filter
