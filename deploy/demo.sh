@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Installs what is missing, builds, and runs the main job: the same scene without and with removal of dynamic points.
+# Arguments go to `rtd demo`, e.g. deploy/demo.sh --frames 100
+set -euo pipefail
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+# shellcheck source=deploy/environment.sh
+. "$root/deploy/environment.sh"
+
+"$root/deploy/setup.sh"
+echo "demo: building into build/release (first time: a few minutes on two cores)"
+tests=OFF
+grep -qs '^RTD_BUILD_TESTS:BOOL=ON' "$root/build/release/CMakeCache.txt" && tests=ON
+build_release "$tests" --target rtd_services
+exec "$root/build/release/bin/rtd" demo "$@"

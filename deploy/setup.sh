@@ -1,0 +1,115 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Installs what RTD-SLAM needs to build and run on Debian 12. Idempotent: installs only what is missing.
+set -euo pipefail
+
+usage() {
+  cat <<'TEXT'
+Usage: deploy/setup.sh [--check | --list | --models | --no-models]
+  (none)       install missing Debian packages, then fetch the detector weights when they are not there yet
+  --check      only say what is missing; exit 1 when something is
+  --list       print the Debian packages, one a line
+  --models     only fetch and convert the detector weights
+  --no-models  only install the packages
+TEXT
+}
+
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+# shellcheck source=deploy/environment.sh
+. "$root/deploy/environment.sh"
+
+# Why each one is needed: docs/dependencies.md
+packages=(
+  build-essential cmake ninja-build
+  libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
+  libopencv-dev libeigen3-dev libceres-dev
+  libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
+  libgtest-dev libgmock-dev libbenchmark-dev
+  python3 python3-numpy python3-onnx python3-opencv
+  curl ca-certificates
+)
+
+missing_packages() {
+  local package
+  for package in "${packages[@]}"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' || printf '%s\n' "$package"
+  done
+}
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    echo "setup: packages are missing, and this is neither root nor a system with sudo. As root, run:" >&2
+    echo "  $*" >&2
+    exit 1
+  fi
+}
+
+install_packages() {
+  local missing
+  mapfile -t missing < <(missing_packages)
+  if [ "${#missing[@]}" -eq 0 ]; then
+    echo "setup: all ${#packages[@]} Debian packages are installed"
+    return
+  fi
+  echo "setup: installing ${#missing[@]} Debian packages: ${missing[*]}"
+  as_root apt-get update -qq
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+model_path() {
+  local candidate
+  for candidate in "${RTD_MODEL_DIR:-}" "${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/rtd-slam"; do
+    if [ -n "$candidate" ] && [ -f "$candidate/v5lite-s-raw-480x640.onnx" ]; then
+      printf '%s\n' "$candidate/v5lite-s-raw-480x640.onnx"
+      return
+    fi
+  done
+}
+
+fetch_models() {
+  local model
+  model="$(model_path)"
+  if [ -n "$model" ]; then
+    echo "setup: detector weights: $model"
+  elif ! "$root/deploy/fetch_model.sh"; then
+    echo "setup: no detector weights: RTD-SLAM runs all the same, on geometry only." >&2
+    echo "setup: later: deploy/setup.sh --models, or point RTD_MODEL_DIR at a folder that has v5lite-s-raw-480x640.onnx" >&2
+  fi
+}
+
+check() {
+  local missing model status=0
+  mapfile -t missing < <(missing_packages)
+  if [ "${#missing[@]}" -gt 0 ]; then
+    echo "missing packages: ${missing[*]}"
+    status=1
+  else
+    echo "packages: all ${#packages[@]} installed"
+  fi
+  model="$(model_path)"
+  echo "detector weights: ${model:-none (geometry only; get them with deploy/setup.sh --models)}"
+  exit "$status"
+}
+
+case "${1:-}" in
+  '')
+    install_packages
+    fetch_models
+    ;;
+  --check) check ;;
+  --list) printf '%s\n' "${packages[@]}" ;;
+  --models) fetch_models ;;
+  --no-models) install_packages ;;
+  --help | -h) usage ;;
+  *)
+    echo "setup: unknown option '$1'" >&2
+    usage >&2
+    exit 2
+    ;;
+esac

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Installs what is missing, builds everything and runs all tests. Arguments go to ctest, e.g. deploy/test.sh -L unit
+set -euo pipefail
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+# shellcheck source=deploy/environment.sh
+. "$root/deploy/environment.sh"
+
+if [ "${1:-}" = "--help" ]; then
+  echo "Usage: deploy/test.sh [ctest arguments]   e.g. -L unit, -L 'unit|component', -R camera"
+  exit 0
+fi
+
+started=$SECONDS
+"$root/deploy/setup.sh" --no-models
+echo "test: building into build/release (first time: about ten minutes on two cores)"
+build_release ON
+built=$SECONDS
+echo "test: built in $((built - started)) s"
+
+status=0
+ctest --test-dir "$root/build/release" --output-on-failure --no-tests=error "$@" || status=$?
+echo "test: tests took $((SECONDS - built)) s, everything $((SECONDS - started)) s"
+if [ "$status" -eq 0 ]; then
+  echo "test: next: ./deploy/demo.sh"
+else
+  echo "test: details: build/release/Testing/Temporary/LastTest.log" >&2
+fi
+exit "$status"
