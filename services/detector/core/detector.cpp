@@ -3,6 +3,7 @@
 #include "services/detector/core/detector.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <opencv2/core/utils/logger.hpp>
@@ -25,10 +26,12 @@ constexpr const char* kFix = "run `deploy/setup.sh --models`, or name another fi
 }
 
 std::vector<std::uint8_t> read_bytes(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) fail(path, "there is no such file");
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(path, "cannot be opened");
   std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (bytes.empty()) fail(path, "is empty or no file");
+  if (bytes.empty()) fail(path, "is empty");
   return bytes;
 }
 

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace rtd::test {
+
+/// Which bytes tiny_network_onnx() writes.
+struct TinyNetwork {
+  int width_px = 64, height_px = 64;
+  int class_count = 2;
+  bool fixed_size = true;  ///< false: height and width are free dimensions
+  std::vector<int> strides = {8, 16, 32};
+};
+
+/// An ONNX network with YOLOv5 heads that needs no training: per stride one convolution over whole cells. Anchor 0 of a
+/// cell has objectness logit 40 * mean brightness - 20 (white: 20, black: -20) and class 0; box offsets are 0, so the
+/// box is the anchor centred on the cell. All other anchors have objectness -20.
+std::string tiny_network_onnx(const TinyNetwork& network);
+
+}  // namespace rtd::test
