@@ -74,9 +74,9 @@ Eigen::Isometry3d relative(const Eigen::Isometry3d& T_world_a, const Eigen::Isom
   return T_world_a.inverse() * T_world_b;
 }
 
-/// Angle of a rotation matrix from its trace, in [0, pi].
+/// Angle of a rotation in [0, pi], by way of atan2: an arc cosine of the trace turns rounding into 1e-8 rad near zero.
 double angle_rad(const Eigen::Matrix3d& R) {
-  return std::acos(std::clamp((R.trace() - 1) / 2, -1.0, 1.0));
+  return Eigen::AngleAxisd(R).angle();
 }
 
 }  // namespace
