@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/core/run/record_builder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace rtd::launcher {
+namespace {
+
+constexpr std::size_t kRecentFrames = 30;
+constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
+constexpr std::array<const char*, 4> kLossWords = {"dropped", "late", "skipped", "lost"};
+
+bool counts_losses(const std::string& metric) {
+  return std::any_of(kLossWords.begin(), kLossWords.end(),
+                     [&](const char* word) { return metric.find(word) != std::string::npos; });
+}
+
+/// "frames_late" of camera -> "camera.late".
+std::string place_of(const std::string& service, const std::string& metric) {
+  const std::string prefix = "frames_";
+  return service + "." + (metric.rfind(prefix, 0) == 0 ? metric.substr(prefix.size()) : metric);
+}
+
+double median_latency_ms(const std::deque<msg::TrackingResult>& results) {
+  std::vector<double> latencies_ms;
+  for (const msg::TrackingResult& r : results) {
+    latencies_ms.push_back(static_cast<double>(r.finished_ns - r.published_ns) / kNsPerMs);
+  }
+  const auto middle = latencies_ms.begin() + static_cast<std::ptrdiff_t>(latencies_ms.size() / 2);
+  std::nth_element(latencies_ms.begin(), middle, latencies_ms.end());
+  return *middle;
+}
+
+double frames_per_second(const std::deque<msg::TrackingResult>& results) {
+  const double span_s = static_cast<double>(results.back().finished_ns - results.front().finished_ns) / kNsPerS;
+  return span_s > 0 ? static_cast<double>(results.size() - 1) / span_s : 0.0;
+}
+
+}  // namespace
+
+void RecordBuilder::add(const msg::FeatureFrame& features) {
+  end_of_seen_ = std::max(end_of_seen_, features.seq + 1);
+  Frame& frame = frames_[features.seq];
+  if (frame.has_features) return;
+  frame.has_features = true;
+  frame.record.filter_stage_ms = features.stage_ms;
+  frame.record.detection_use = features.detection_use;
+  frame.record.objects = features.objects;
+}
+
+void RecordBuilder::add(const msg::TrackingResult& result) {
+  end_of_seen_ = std::max(end_of_seen_, result.seq + 1);
+  Frame& frame = frames_[result.seq];
+  if (frame.has_result) return;
+  frame.has_result = true;
+  frame.record.tracking = result;
+  tracked_any_ = tracked_any_ || result.state == msg::TrackingState::kOk;
+  recent_.push_back(result);
+  if (recent_.size() > kRecentFrames) recent_.pop_front();
+}
+
+void RecordBuilder::add(const msg::ServiceStatus& status) {
+  Service& service = services_[status.service];
+  if (service.pid != status.pid) {
+    service.pid = status.pid;
+    for (auto& [name, counter] : service.counters) counter = {0, counter.total()};
+  }
+  for (const msg::Metric& metric : status.metrics) service.counters[metric.name].current = metric.value;
+
+  const bool bad = status.state == msg::ServiceState::kDegraded || status.state == msg::ServiceState::kFailed;
+  const bool news = service.state != status.state || service.message != status.message;
+  if (bad && news && !status.message.empty()) notices_.push_back(status.service + ": " + status.message);
+  service.state = status.state;
+  service.message = status.message;
+}
+
+std::uint64_t RecordBuilder::frames_in() const {
+  return std::max(static_cast<std::uint64_t>(camera_counter("frames_in")), end_of_seen_);
+}
+
+bool RecordBuilder::tracked_any() const {
+  return tracked_any_;
+}
+
+LiveStatus RecordBuilder::live() const {
+  LiveStatus status;
+  status.frames = end_of_seen_;
+  status.total = static_cast<std::uint64_t>(camera_counter("frames_total"));
+  for (const auto& [place, count] : drops()) status.dropped += static_cast<std::uint64_t>(count);
+  if (recent_.empty()) return status;
+  const msg::TrackingResult& newest = recent_.back();
+  status.tracking = true;
+  status.state = newest.state;
+  status.inliers = newest.inliers;
+  status.dynamic_points = newest.features_removed;
+  status.frames_per_s = frames_per_second(recent_);
+  status.latency_ms = median_latency_ms(recent_);
+  return status;
+}
+
+std::optional<std::string> RecordBuilder::take_notice() {
+  if (notices_.empty()) return std::nullopt;
+  std::string notice = notices_.front();
+  notices_.pop_front();
+  return notice;
+}
+
+void RecordBuilder::fill(RunRecord& record) const {
+  record.frames.clear();
+  for (const auto& [seq, frame] : frames_) {
+    if (frame.has_result) record.frames.push_back(frame.record);
+  }
+  record.frames_in = frames_in();
+  record.frames_dropped = record.frames_in - record.frames.size();
+  record.drops = drops();
+}
+
+std::map<std::string, double> RecordBuilder::drops() const {
+  std::map<std::string, double> result;
+  for (const auto& [name, service] : services_) {
+    for (const auto& [metric, counter] : service.counters) {
+      if (counts_losses(metric)) result[place_of(name, metric)] = counter.total();
+    }
+  }
+  return result;
+}
+
+double RecordBuilder::camera_counter(const std::string& name) const {
+  const auto camera = services_.find("camera");
+  if (camera == services_.end()) return 0;
+  const auto counter = camera->second.counters.find(name);
+  return counter == camera->second.counters.end() ? 0 : counter->second.current;
+}
+
+}  // namespace rtd::launcher

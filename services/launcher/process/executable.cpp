@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/process/executable.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <set>
+#include <sstream>
+
+namespace rtd::launcher {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr char kPrefix[] = "rtd-";
+
+std::vector<fs::path> search_directories() {
+  std::vector<fs::path> directories = {own_directory()};
+  const char* path = std::getenv("PATH");
+  std::stringstream entries(path == nullptr ? "" : path);
+  for (std::string entry; std::getline(entries, entry, ':');) {
+    if (!entry.empty()) directories.emplace_back(entry);
+  }
+  return directories;
+}
+
+bool is_executable(const fs::path& file) {
+  std::error_code error;
+  return fs::is_regular_file(file, error) && access(file.c_str(), X_OK) == 0;
+}
+
+}  // namespace
+
+std::string own_directory() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error).parent_path().string();
+}
+
+std::string find_executable(const std::string& name) {
+  for (const fs::path& directory : search_directories()) {
+    const fs::path candidate = directory / name;
+    if (is_executable(candidate)) return candidate.string();
+  }
+  return {};
+}
+
+std::vector<std::string> installed_services() {
+  std::set<std::string> names;
+  for (const fs::path& directory : search_directories()) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(directory, error)) {
+      const std::string name = entry.path().filename().string();
+      if (name.rfind(kPrefix, 0) == 0 && name.find('.') == std::string::npos && is_executable(entry.path())) {
+        names.insert(name.substr(sizeof(kPrefix) - 1));
+      }
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
+std::string replace_process(const std::string& executable, const std::vector<std::string>& arguments) {
+  std::vector<char*> argv = {const_cast<char*>(executable.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  execv(executable.c_str(), argv.data());
+  return "cannot run " + executable + ": " + std::strerror(errno);
+}
+
+}  // namespace rtd::launcher

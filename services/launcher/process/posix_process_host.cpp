@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/process/posix_process_host.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <utility>
+
+// linux/close_range.h is missing on older kernels' headers; the value is part of the kernel's interface.
+#ifndef CLOSE_RANGE_CLOEXEC
+#define CLOSE_RANGE_CLOEXEC (1U << 2)
+#endif
+
+namespace rtd::launcher {
+namespace {
+
+struct Pipe {
+  int read_end = -1, write_end = -1;
+};
+
+Pipe open_pipe() {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw ProcessError(std::string("no pipe: ") + std::strerror(errno));
+  return {ends[0], ends[1]};
+}
+
+/// Runs in the new process between fork and exec: async-signal-safe calls only, the launcher has other threads.
+[[noreturn]] void become(char* const* argv, int output_fd, int error_fd, pid_t parent) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) _exit(1);  // it died before the line above
+
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGHUP}) ::signal(number, SIG_DFL);
+
+  const int null_fd = open("/dev/null", O_RDONLY);
+  dup2(null_fd, STDIN_FILENO);
+  dup2(output_fd, STDOUT_FILENO);
+  dup2(output_fd, STDERR_FILENO);
+  close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);  // the bus's sockets of the launcher are not the child's
+  execv(argv[0], argv);
+  const int reason = errno;
+  [[maybe_unused]] const ssize_t written = write(error_fd, &reason, sizeof(reason));
+  _exit(127);
+}
+
+/// The errno of a failed exec; 0 once exec has succeeded (the pipe was closed by it).
+int exec_error(int fd) {
+  int reason = 0;
+  ssize_t got = 0;
+  do {
+    got = read(fd, &reason, sizeof(reason));
+  } while (got < 0 && errno == EINTR);
+  return got == static_cast<ssize_t>(sizeof(reason)) ? reason : 0;
+}
+
+double seconds(const timeval& t) {
+  return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
+}
+
+}  // namespace
+
+PosixProcessHost::PosixProcessHost(OnLine on_line) : on_line_(std::move(on_line)) {}
+
+PosixProcessHost::~PosixProcessHost() {
+  for (auto& [process, child] : children_) {
+    ::kill(static_cast<pid_t>(process), SIGKILL);
+    waitpid(static_cast<pid_t>(process), nullptr, 0);
+    close_output(child);
+  }
+}
+
+ProcessId PosixProcessHost::start(const std::string& name, const std::vector<std::string>& command) {
+  std::vector<char*> argv;
+  argv.reserve(command.size() + 1);
+  for (const std::string& argument : command) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+
+  const Pipe output = open_pipe(), failure = open_pipe();
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid == 0) become(argv.data(), output.write_end, failure.write_end, parent);
+  close(output.write_end);
+  close(failure.write_end);
+  const int reason = pid < 0 ? errno : exec_error(failure.read_end);
+  close(failure.read_end);
+  if (reason != 0) {
+    close(output.read_end);
+    if (pid > 0) waitpid(pid, nullptr, 0);
+    throw ProcessError("cannot run " + command.front() + ": " + std::strerror(reason));
+  }
+  fcntl(output.read_end, F_SETFL, O_NONBLOCK);
+  Child& child = children_[pid];
+  child.name = name;
+  child.output_fd = output.read_end;
+  return pid;
+}
+
+std::optional<ProcessExit> PosixProcessHost::poll_exit(ProcessId process) {
+  const auto found = children_.find(process);
+  if (found == children_.end()) return std::nullopt;
+  int status = 0;
+  rusage usage{};
+  if (wait4(static_cast<pid_t>(process), &status, WNOHANG, &usage) != process) return std::nullopt;
+  read_output(found->second);
+  close_output(found->second);
+  children_.erase(found);
+
+  ProcessExit exit;
+  if (WIFSIGNALED(status)) exit.signal = WTERMSIG(status);
+  if (WIFEXITED(status)) exit.code = WEXITSTATUS(status);
+  exit.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  exit.peak_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;
+  return exit;
+}
+
+void PosixProcessHost::terminate(ProcessId process) {
+  if (children_.count(process) != 0) ::kill(static_cast<pid_t>(process), SIGTERM);
+}
+
+void PosixProcessHost::kill(ProcessId process) {
+  if (children_.count(process) != 0) ::kill(static_cast<pid_t>(process), SIGKILL);
+}
+
+void PosixProcessHost::wait(std::chrono::milliseconds timeout, int wake_fd) {
+  std::vector<pollfd> fds;
+  for (const auto& [process, child] : children_) {
+    if (child.output_fd >= 0) fds.push_back({child.output_fd, POLLIN, 0});
+  }
+  if (wake_fd >= 0) fds.push_back({wake_fd, POLLIN, 0});
+  if (poll(fds.data(), fds.size(), static_cast<int>(timeout.count())) <= 0) return;
+  for (auto& [process, child] : children_) read_output(child);
+}
+
+void PosixProcessHost::read_output(Child& child) {
+  std::array<char, 8192> buffer{};
+  while (child.output_fd >= 0) {
+    const ssize_t got = read(child.output_fd, buffer.data(), buffer.size());
+    if (got < 0) return;  // nothing now
+    if (got == 0) return close_output(child);
+    child.lines.feed({buffer.data(), static_cast<std::size_t>(got)},
+                     [&](const std::string& line) { on_line_(child.name, line); });
+  }
+}
+
+void PosixProcessHost::close_output(Child& child) {
+  if (child.output_fd < 0) return;
+  child.lines.finish([&](const std::string& line) { on_line_(child.name, line); });
+  close(child.output_fd);
+  child.output_fd = -1;
+}
+
+}  // namespace rtd::launcher
