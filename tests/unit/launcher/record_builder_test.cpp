@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/core/run/record_builder.hpp"
+
+#include <gmock/gmock.h>
+
+#include <memory>
+
+#include "services/launcher/core/run/sample_keeper.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+using testing::Field;
+using testing::Pair;
+using testing::UnorderedElementsAre;
+
+constexpr std::int64_t kMs = 1'000'000;
+
+msg::TrackingResult result_of(std::uint64_t seq, msg::TrackingState state = msg::TrackingState::kOk) {
+  msg::TrackingResult result{};
+  result.seq = seq;
+  result.stamp_ns = static_cast<std::int64_t>(seq) * 33 * kMs;
+  result.published_ns = result.stamp_ns;
+  result.finished_ns = result.published_ns + 20 * kMs;
+  result.state = state;
+  result.inliers = static_cast<std::uint32_t>(100 + seq);
+  return result;
+}
+
+std::unique_ptr<msg::FeatureFrame> features_of(std::uint64_t seq, std::uint32_t count = 3) {
+  auto features = std::make_unique<msg::FeatureFrame>();
+  features->seq = seq;
+  features->count = count;
+  features->objects = static_cast<std::uint32_t>(seq) + 1;
+  features->stage_ms[msg::kStageExtract] = 7.0F;
+  return features;
+}
+
+msg::ServiceStatus status_of(const std::string& service, std::int64_t pid, std::vector<msg::Metric> metrics) {
+  msg::ServiceStatus status;
+  status.service = service;
+  status.pid = pid;
+  status.metrics = std::move(metrics);
+  return status;
+}
+
+std::vector<std::uint64_t> seqs(const RunRecord& record) {
+  std::vector<std::uint64_t> result;
+  for (const FrameRecord& frame : record.frames) result.push_back(frame.tracking.seq);
+  return result;
+}
+
+TEST(record_builder, joins_both_streams_by_seq_in_any_order) {
+  RecordBuilder builder;
+  builder.add(result_of(1));
+  builder.add(*features_of(1));
+  builder.add(*features_of(0));
+  builder.add(result_of(0));
+  RunRecord record;
+  builder.fill(record);
+  ASSERT_THAT(seqs(record), ElementsAre(0, 1));
+  EXPECT_EQ(record.frames[1].objects, 2U);
+  EXPECT_EQ(record.frames[1].tracking.inliers, 101U);
+  EXPECT_FLOAT_EQ(record.frames[0].filter_stage_ms[msg::kStageExtract], 7.0F);
+  EXPECT_EQ(record.frames_in, 2U);
+  EXPECT_EQ(record.frames_dropped, 0U);
+}
+
+TEST(record_builder, counts_frames_without_result_as_dropped) {
+  RecordBuilder builder;
+  builder.add(result_of(0));
+  builder.add(*features_of(1));
+  builder.add(result_of(4));
+  RunRecord record;
+  builder.fill(record);
+  EXPECT_THAT(seqs(record), ElementsAre(0, 4));
+  EXPECT_EQ(record.frames_in, 5U);
+  EXPECT_EQ(record.frames_dropped, 3U);
+}
+
+TEST(record_builder, the_cameras_own_count_wins_when_it_saw_more) {
+  RecordBuilder builder;
+  builder.add(result_of(0));
+  builder.add(status_of("camera", 7, {{"frames_in", 10}}));
+  RunRecord record;
+  builder.fill(record);
+  EXPECT_EQ(record.frames_in, 10U);
+  EXPECT_EQ(record.frames_dropped, 9U);
+}
+
+TEST(record_builder, the_first_answer_counts_when_a_frame_was_sent_again) {
+  RecordBuilder builder;
+  builder.add(result_of(0));
+  msg::TrackingResult again = result_of(0);
+  again.finished_ns += 2000 * kMs;
+  builder.add(again);
+  RunRecord record;
+  builder.fill(record);
+  ASSERT_EQ(record.frames.size(), 1U);
+  EXPECT_EQ(record.frames[0].tracking.finished_ns, 20 * kMs);
+}
+
+TEST(record_builder, drops_are_named_by_place_and_survive_a_restart) {
+  RecordBuilder builder;
+  builder.add(status_of("filter", 7, {{"queue_dropped", 4}, {"frames_processed", 90}}));
+  builder.add(status_of("filter", 8, {{"queue_dropped", 1}}));
+  builder.add(status_of("filter", 8, {{"queue_dropped", 2}}));
+  builder.add(status_of("camera", 9, {{"frames_late", 3}, {"frames_skipped", 0}}));
+  RunRecord record;
+  builder.fill(record);
+  EXPECT_THAT(record.drops,
+              UnorderedElementsAre(Pair("filter.queue_dropped", 6), Pair("camera.late", 3), Pair("camera.skipped", 0)));
+  EXPECT_EQ(builder.live().dropped, 9U);
+}
+
+TEST(record_builder, knows_whether_anything_was_tracked) {
+  RecordBuilder builder;
+  EXPECT_FALSE(builder.live().tracking);
+  builder.add(result_of(0, msg::TrackingState::kLost));
+  EXPECT_FALSE(builder.tracked_any());
+  EXPECT_TRUE(builder.live().tracking);
+  builder.add(result_of(1));
+  EXPECT_TRUE(builder.tracked_any());
+}
+
+TEST(record_builder, live_status_follows_the_newest_frame) {
+  RecordBuilder builder;
+  for (std::uint64_t seq = 0; seq < 60; ++seq) builder.add(result_of(seq));
+  builder.add(status_of("camera", 7, {{"frames_total", 210}}));
+  const LiveStatus status = builder.live();
+  EXPECT_EQ(status.frames, 60U);
+  EXPECT_EQ(status.total, 210U);
+  EXPECT_EQ(status.inliers, 159U);
+  EXPECT_NEAR(status.frames_per_s, 1000.0 / 33.0, 1e-9);
+  EXPECT_DOUBLE_EQ(status.latency_ms, 20.0);
+}
+
+TEST(record_builder, tells_a_degraded_service_once) {
+  RecordBuilder builder;
+  msg::ServiceStatus status = status_of("filter", 7, {});
+  status.state = msg::ServiceState::kDegraded;
+  status.message = "detector gone, geometry only";
+  builder.add(status);
+  builder.add(status);
+  EXPECT_EQ(builder.take_notice(), "filter: detector gone, geometry only");
+  EXPECT_EQ(builder.take_notice(), std::nullopt);
+}
+
+std::vector<SampleFrame> run_samples(SampleKeeper& keeper, std::uint64_t frames) {
+  for (std::uint64_t seq = 0; seq < frames; ++seq) {
+    if (keeper.wants(seq)) keeper.add_picture(seq, {1, 2, 3});
+    keeper.add_features(*features_of(seq));
+  }
+  return keeper.samples();
+}
+
+TEST(sample_keeper, spreads_the_wanted_number_over_a_known_length) {
+  SampleKeeper keeper(12, 210);
+  const auto samples = run_samples(keeper, 210);
+  ASSERT_EQ(samples.size(), 12U);
+  EXPECT_EQ(samples[0].seq, 0U);
+  EXPECT_EQ(samples[11].seq, 198U);
+  EXPECT_EQ(samples[3].features.size(), 3U);
+}
+
+TEST(sample_keeper, stays_even_and_bounded_over_an_unknown_length) {
+  SampleKeeper keeper(12);
+  const auto samples = run_samples(keeper, 5000);
+  ASSERT_GE(samples.size(), 10U);
+  ASSERT_LE(samples.size(), 12U);
+  EXPECT_GT(samples.back().seq, 4000U);
+  for (std::size_t i = 1; i < samples.size(); ++i) EXPECT_LT(samples[i].seq - samples[i - 1].seq, 1100U);
+}
+
+TEST(sample_keeper, needs_picture_and_features) {
+  SampleKeeper keeper(12, 24);
+  keeper.add_picture(0, {1});
+  keeper.add_features(*features_of(2));
+  keeper.add_picture(4, {1});
+  keeper.add_features(*features_of(4));
+  EXPECT_THAT(keeper.samples(), ElementsAre(Field(&SampleFrame::seq, 4)));
+}
+
+TEST(sample_keeper, believes_no_count_beyond_the_message) {
+  SampleKeeper keeper;
+  keeper.add_picture(0, {1});
+  keeper.add_features(*features_of(0, 4'000'000'000U));
+  EXPECT_EQ(keeper.samples().at(0).features.size(), msg::kMaxFeatures);
+}
+
+}  // namespace
+}  // namespace rtd::launcher

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "services/launcher/core/run/live_status.hpp"
+#include "services/launcher/core/run/log_tail.hpp"
+#include "services/launcher/core/run/process_usage.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using testing::ElementsAre;
+
+std::vector<std::string> split(const std::vector<std::string>& chunks) {
+  std::vector<std::string> lines;
+  const auto keep = [&](const std::string& line) { lines.push_back(line); };
+  LineSplitter splitter;
+  for (const std::string& chunk : chunks) splitter.feed(chunk, keep);
+  splitter.finish(keep);
+  return lines;
+}
+
+TEST(line_splitter, joins_a_line_that_came_in_pieces) {
+  EXPECT_THAT(split({"one\ntw", "o\r\nth", "ree"}), ElementsAre("one", "two", "three"));
+}
+
+TEST(line_splitter, bounds_a_line_without_end) {
+  const auto lines = split({std::string(10000, 'x')});
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0].size() + lines[1].size() + lines[2].size(), 10000U);
+}
+
+TEST(log_tail, keeps_the_last_lines) {
+  LogTail tail(2);
+  for (const char* line : {"a", "b", "c"}) tail.add(line);
+  EXPECT_THAT(tail.lines(), ElementsAre("b", "c"));
+}
+
+TEST(log_level, reads_the_format_of_our_services) {
+  EXPECT_EQ(level_of("12:00:01.250 info slam event=started"), LogLevel::kInfo);
+  EXPECT_EQ(level_of("12:00:01.250 warning slam event=tracking_lost frame=3"), LogLevel::kWarning);
+  EXPECT_EQ(level_of("12:00:01.250 \033[31m\033[1merror\033[m slam event=x"), LogLevel::kError);
+  EXPECT_EQ(level_of("12:00:01.250 critical slam event=x"), LogLevel::kError);
+  EXPECT_EQ(level_of("rtd-slam: no such file"), LogLevel::kError);
+  EXPECT_EQ(level_of("error"), LogLevel::kInfo) << "not our format";
+  EXPECT_EQ(level_of(""), LogLevel::kInfo);
+}
+
+TEST(log_level, the_reason_is_the_last_error_line_else_the_tail) {
+  EXPECT_THAT(reason_lines({"x", "rtd-slam: why", "y"}), ElementsAre("rtd-slam: why"));
+  EXPECT_THAT(reason_lines({"--foo: unknown", "Run with --help"}), ElementsAre("--foo: unknown", "Run with --help"));
+}
+
+TEST(process_usage, reads_ticks_behind_any_name) {
+  const std::string rest = " S 1 2 3 4 5 6 7 8 9 10 250 30 0 0 20 0 4 0";
+  EXPECT_EQ(cpu_ticks("42 (rtd-slam)" + rest), 280);
+  EXPECT_EQ(cpu_ticks("42 (a) b (c)" + rest), 280);
+  EXPECT_EQ(cpu_ticks("42 (rtd-slam) S 1"), -1);
+  EXPECT_EQ(cpu_ticks(""), -1);
+}
+
+TEST(process_usage, reads_peak_memory) {
+  EXPECT_DOUBLE_EQ(peak_rss_mb("VmPeak:\t  999 kB\nVmHWM:\t    2048 kB\nVmRSS:\t 12 kB\n"), 2.0);
+  EXPECT_DOUBLE_EQ(peak_rss_mb("Name:\trtd-slam\nState:\tZ (zombie)\n"), -1.0);
+}
+
+TEST(live_status, shows_everything_in_one_short_line) {
+  LiveStatus status;
+  status.frames = 123;
+  status.total = 210;
+  EXPECT_EQ(format_live_status(status), "frame 123/210  waiting for the first pose");
+  status.tracking = true;
+  status.state = msg::TrackingState::kOk;
+  status.frames_per_s = 29.84;
+  status.inliers = 213;
+  status.dynamic_points = 87;
+  status.dropped = 2;
+  status.latency_ms = 31.4;
+  EXPECT_EQ(format_live_status(status),
+            "frame 123/210  29.8 fps  ok  inliers 213  dynamic 87  dropped 2  latency 31 ms");
+  status.total = 0;
+  status.state = msg::TrackingState::kRecentlyLost;
+  EXPECT_EQ(format_live_status(status),
+            "frame 123  29.8 fps  recently lost  inliers 213  dynamic 87  dropped 2  latency 31 ms");
+}
+
+}  // namespace
+}  // namespace rtd::launcher

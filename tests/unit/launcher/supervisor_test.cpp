@@ -1,0 +1,220 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/core/run/supervisor.hpp"
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <set>
+
+namespace rtd::launcher {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Processes that end when the test says so.
+class FakeHost : public ProcessHost {
+ public:
+  ProcessId start(const std::string& name, const std::vector<std::string>&) override {
+    if (missing.count(name) != 0) throw ProcessError("cannot run " + name + ": No such file or directory");
+    started.push_back(name);
+    names[++last_id] = name;
+    return last_id;
+  }
+  std::optional<ProcessExit> poll_exit(ProcessId process) override {
+    const auto found = exits.find(process);
+    if (found == exits.end()) return std::nullopt;
+    const ProcessExit exit = found->second;
+    exits.erase(found);
+    return exit;
+  }
+  void terminate(ProcessId process) override {
+    terminated.push_back(names[process]);
+    if (deaf.count(names[process]) == 0) exits[process] = {};
+  }
+  void kill(ProcessId process) override {
+    killed.push_back(names[process]);
+    exits[process] = {0, 9};
+  }
+  void end(const std::string& name, ProcessExit exit) {
+    for (const auto& [process, process_name] : names) {
+      if (process_name == name) newest = process;
+    }
+    exits[newest] = exit;
+  }
+
+  std::set<std::string> missing, deaf;
+  std::vector<std::string> started, terminated, killed;
+  std::map<ProcessId, std::string> names;
+  std::map<ProcessId, ProcessExit> exits;
+  ProcessId last_id = 0, newest = 0;
+};
+
+class SupervisorTest : public testing::Test {
+ protected:
+  void start_all() {
+    supervisor.start({"slam", {"rtd-slam"}, ServiceRole::kEssential}, now);
+    supervisor.start({"detector", {"rtd-detector"}, ServiceRole::kOptional}, now);
+    supervisor.start({"camera", {"rtd-camera"}, ServiceRole::kSource}, now);
+  }
+  void advance(milliseconds by) {
+    now += by;
+    supervisor.update(now);
+  }
+  void die_and_wait(const std::string& name, int times) {
+    for (int i = 0; i < times; ++i) {
+      host.end(name, {1, 0});
+      advance(milliseconds(10));
+      advance(milliseconds(2000));
+    }
+  }
+
+  FakeHost host;
+  std::vector<std::string> told;
+  milliseconds now{1000};
+  Supervisor supervisor{host, SupervisorOptions{}, [this](const SupervisorEvent& e) { told.push_back(e.text); }};
+};
+
+TEST_F(SupervisorTest, is_complete_when_the_source_ends_by_itself) {
+  start_all();
+  host.end("camera", {0, 0});
+  advance(milliseconds(10));
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kComplete);
+}
+
+TEST_F(SupervisorTest, fails_when_the_source_fails) {
+  start_all();
+  host.end("camera", {1, 0});
+  advance(milliseconds(10));
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kFailed);
+}
+
+TEST_F(SupervisorTest, exit_code_2_at_start_is_a_config_error) {
+  start_all();
+  host.end("slam", {2, 0});
+  advance(milliseconds(10));
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kConfigError);
+  EXPECT_EQ(host.started.size(), 3U) << "a refused configuration is not tried again";
+}
+
+TEST_F(SupervisorTest, names_service_and_signal_of_a_death_and_restarts_after_the_backoff) {
+  start_all();
+  host.end("slam", {0, 11});
+  advance(milliseconds(10));
+  EXPECT_THAT(told.back(), HasSubstr("slam died: killed by signal 11 (SIGSEGV), restart in 200 ms"));
+  advance(milliseconds(199));
+  EXPECT_EQ(host.started.size(), 3U);
+  advance(milliseconds(1));
+  EXPECT_EQ(host.started.back(), "slam");
+  EXPECT_EQ(supervisor.restarts("slam"), 1);
+  EXPECT_EQ(supervisor.restarts("camera"), 0);
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kRunning);
+}
+
+TEST_F(SupervisorTest, a_worker_that_ends_with_0_by_itself_is_restarted_too) {
+  start_all();
+  host.end("slam", {0, 0});
+  advance(milliseconds(10));
+  advance(milliseconds(200));
+  EXPECT_EQ(supervisor.restarts("slam"), 1);
+}
+
+TEST_F(SupervisorTest, exit_code_2_of_a_restarted_service_counts_as_a_death) {
+  start_all();
+  die_and_wait("slam", 1);
+  host.end("slam", {2, 0});
+  advance(milliseconds(10));
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kRunning);
+}
+
+TEST_F(SupervisorTest, backoff_doubles_and_is_bounded) {
+  start_all();
+  for (const char* pause : {"200 ms", "400 ms", "800 ms", "1600 ms", "2000 ms"}) {
+    host.end("slam", {1, 0});
+    advance(milliseconds(10));
+    EXPECT_THAT(told.back(), HasSubstr(pause));
+    advance(milliseconds(2000));
+  }
+}
+
+TEST_F(SupervisorTest, gives_an_essential_service_up_after_five_restarts_in_a_row) {
+  start_all();
+  die_and_wait("slam", 5);
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kRunning);
+  die_and_wait("slam", 1);
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kFailed);
+  EXPECT_EQ(supervisor.restarts("slam"), 5);
+  EXPECT_THAT(told.back(), HasSubstr("6 times in a row: given up"));
+}
+
+TEST_F(SupervisorTest, goes_on_without_an_optional_service) {
+  start_all();
+  die_and_wait("detector", 6);
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kRunning);
+  EXPECT_THAT(told.back(), HasSubstr("the run goes on without it"));
+}
+
+TEST_F(SupervisorTest, a_healthy_life_starts_a_new_row) {
+  start_all();
+  for (int i = 0; i < 12; ++i) {
+    advance(milliseconds(6000));
+    host.end("slam", {1, 0});
+    advance(milliseconds(10));
+    advance(milliseconds(200));
+  }
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kRunning);
+  EXPECT_EQ(supervisor.restarts("slam"), 12);
+}
+
+TEST_F(SupervisorTest, kills_only_those_that_did_not_end_within_the_grace) {
+  host.deaf.insert("slam");
+  start_all();
+  supervisor.stop(now, milliseconds(1200), RunOutcome::kInterrupted);
+  advance(milliseconds(1199));
+  EXPECT_THAT(host.terminated, ElementsAre("slam", "detector", "camera"));
+  EXPECT_TRUE(host.killed.empty());
+  EXPECT_FALSE(supervisor.all_ended());
+  advance(milliseconds(1));
+  EXPECT_THAT(host.killed, ElementsAre("slam"));
+  advance(milliseconds(1));
+  EXPECT_TRUE(supervisor.all_ended());
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kInterrupted);
+}
+
+TEST_F(SupervisorTest, a_stop_cancels_a_due_restart) {
+  start_all();
+  host.end("slam", {1, 0});
+  advance(milliseconds(10));
+  supervisor.stop(now, milliseconds(1200), RunOutcome::kInterrupted);
+  advance(milliseconds(2000));
+  EXPECT_EQ(host.started.size(), 3U);
+  EXPECT_TRUE(supervisor.all_ended());
+}
+
+TEST_F(SupervisorTest, a_second_stop_keeps_the_first_outcome_and_the_shorter_grace) {
+  host.deaf.insert("slam");
+  start_all();
+  supervisor.stop(now, milliseconds(5000), RunOutcome::kComplete);
+  supervisor.stop(now, milliseconds(100), RunOutcome::kInterrupted);
+  advance(milliseconds(100));
+  EXPECT_THAT(host.killed, ElementsAre("slam"));
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kComplete);
+}
+
+TEST_F(SupervisorTest, a_missing_executable_is_told_to_the_caller) {
+  host.missing.insert("slam");
+  EXPECT_THROW(start_all(), ProcessError);
+}
+
+TEST_F(SupervisorTest, an_executable_that_vanished_before_its_restart_fails_the_run) {
+  start_all();
+  host.missing.insert("slam");
+  die_and_wait("slam", 1);
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kFailed);
+  EXPECT_THAT(told.back(), HasSubstr("could not be restarted"));
+}
+
+}  // namespace
+}  // namespace rtd::launcher
