@@ -23,9 +23,9 @@ struct HeadLayout {
 
 /// When a cell of the network's output becomes a detection.
 struct DecodeConfig {
-  float confidence_threshold = 0.25F;  ///< objectness x class score, [0, 1]
-  float objectness_threshold = 0.1F;   ///< cells below are not decoded at all, [0, 1]
-  float nms_iou = 0.45F;               ///< a box of the same class that overlaps a better one by more is dropped
+  double confidence_threshold = 0.25;  ///< objectness x class score, [0, 1]
+  double objectness_threshold = 0.1;   ///< cells below are not decoded at all, [0, 1]
+  double nms_iou = 0.45;               ///< a box of the same class that overlaps a better one by more is dropped
   int max_detections = 100;            ///< the best ones are kept
 };
 

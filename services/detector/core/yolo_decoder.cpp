@@ -16,10 +16,10 @@ float sigmoid(float logit) {
 }
 
 /// sigmoid(logit) >= probability as a threshold on the logit itself.
-float logit_of(float probability) {
-  if (probability <= 0.0F) return -std::numeric_limits<float>::infinity();
-  if (probability >= 1.0F) return std::numeric_limits<float>::infinity();
-  return std::log(probability / (1.0F - probability));
+float logit_of(double probability) {
+  if (probability <= 0.0) return -std::numeric_limits<float>::infinity();
+  if (probability >= 1.0) return std::numeric_limits<float>::infinity();
+  return static_cast<float>(std::log(probability / (1.0 - probability)));
 }
 
 struct BestClass {

@@ -98,8 +98,8 @@ TEST(YoloDecoder, equals_decoding_every_cell_on_random_logits) {
   std::mt19937_64 random(7);
   Head head(kRows, kCols, kClasses);
   head.randomise(random);
-  for (const float threshold : {0.05F, 0.25F, 0.6F}) {
-    const DecodeConfig config{threshold, 0.3F, 0.45F, 100};
+  for (const double threshold : {0.05, 0.25, 0.6}) {
+    const DecodeConfig config{threshold, 0.3, 0.45, 100};
 
     const std::vector<Candidate> found = decode_heads({head.view()}, kClasses, config);
 
@@ -164,8 +164,8 @@ TEST(Suppression, keeps_overlapping_boxes_of_different_classes) {
 
 TEST(Suppression, keeps_boxes_at_the_threshold_and_drops_those_above) {
   const Candidate first{0, 0.9F, 0, 0, 10, 10}, half{0, 0.8F, 0, 0, 10, 5};  // IoU 0.5
-  EXPECT_THAT(suppress_non_maxima({first, half}, {0.25F, 0.1F, 0.5F, 100}), SizeIs(2));
-  EXPECT_THAT(suppress_non_maxima({first, half}, {0.25F, 0.1F, 0.49F, 100}), SizeIs(1));
+  EXPECT_THAT(suppress_non_maxima({first, half}, {0.25, 0.1, 0.5, 100}), SizeIs(2));
+  EXPECT_THAT(suppress_non_maxima({first, half}, {0.25, 0.1, 0.49, 100}), SizeIs(1));
 }
 
 TEST(Suppression, keeps_the_best_when_there_are_too_many) {
@@ -174,7 +174,7 @@ TEST(Suppression, keeps_the_best_when_there_are_too_many) {
     const auto left_px = static_cast<float>(20 * i);
     many.push_back({0, 0.01F * static_cast<float>(i + 1), left_px, 0, left_px + 10, 10});
   }
-  const std::vector<Candidate> kept = suppress_non_maxima(many, {0.25F, 0.1F, 0.45F, 3});
+  const std::vector<Candidate> kept = suppress_non_maxima(many, {0.25, 0.1, 0.45, 3});
   ASSERT_THAT(kept, SizeIs(3));
   EXPECT_FLOAT_EQ(kept[0].score, 0.50F);
   EXPECT_FLOAT_EQ(kept[2].score, 0.48F);

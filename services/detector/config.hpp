@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/service/config.hpp"
+#include "services/detector/core/detector_config.hpp"
+
+namespace rtd::detector {
+
+/// Section `detector` of the configuration. Defaults come from the core's DetectorConfig.
+struct ServiceConfig {
+  std::string model;            ///< file name or path, see model_locator.hpp
+  std::string input = "frame";  ///< "frame": rtd/frame, "jpeg": the compressed topic
+  int input_width_px = DetectorConfig{}.input_width_px;
+  int input_height_px = DetectorConfig{}.input_height_px;
+  double confidence_threshold = DecodeConfig{}.confidence_threshold;
+  double objectness_threshold = DecodeConfig{}.objectness_threshold;
+  double nms_iou = DecodeConfig{}.nms_iou;
+  int max_detections = DecodeConfig{}.max_detections;
+  int threads = DetectorConfig{}.threads;
+  double max_rate_hz = 0;  ///< realtime pace only; 0 = as fast as it goes
+  std::vector<std::string> class_names = coco_class_names();
+
+  void bind(service::ConfigBinder& binder);
+};
+
+/// The core's configuration for the network at `model_path`.
+DetectorConfig to_core(const ServiceConfig& config, const std::string& model_path);
+
+}  // namespace rtd::detector

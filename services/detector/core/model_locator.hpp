@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace rtd::detector {
+
+/// File name of the network that deploy/setup.sh fetches and that is used when nothing else is configured.
+inline constexpr const char* kDefaultModelFile = "v5lite-s-raw-480x640.onnx";
+
+/// Value of an environment variable, empty when it is not set.
+using EnvironmentReader = std::function<std::optional<std::string>(const std::string& name)>;
+
+/// Where the network is, or what to do to get it.
+struct ModelSearch {
+  std::string path;     ///< of an existing file; empty when none was found
+  std::string message;  ///< when none was found: where was looked and the command that helps
+  explicit operator bool() const { return !path.empty(); }
+};
+
+/// Looks for the network. `configured` (config key detector.model) may be empty (the default file name), a bare file
+/// name or a path. A path is taken as it is; a file name is looked for in RTD_MODEL_DIR, then in the user's cache
+/// ($XDG_CACHE_HOME or $HOME/.cache)/rtd-slam.
+ModelSearch find_model(const std::string& configured, const EnvironmentReader& environment);
+
+/// The environment of this process.
+EnvironmentReader process_environment();
+
+}  // namespace rtd::detector

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/detector/detector_service.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <opencv2/imgcodecs.hpp>
+#include <utility>
+
+#include "common/service/monotonic_clock.hpp"
+#include "services/detector/core/model_locator.hpp"
+#include "services/detector/detections_message.hpp"
+
+namespace rtd::detector {
+namespace {
+
+constexpr std::size_t kEveryFrameQueue = 8;  // deeper than the camera's window of frames in flight
+constexpr std::chrono::milliseconds kStatePeriod{50};
+constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
+
+Detector load_detector(const ServiceConfig& config) {
+  const ModelSearch model = find_model(config.model, process_environment());
+  if (!model) throw service::ConfigError(model.message);
+  try {
+    return Detector(to_core(config, model.path));
+  } catch (const ModelError& error) {
+    throw service::ConfigError(error.what());
+  }
+}
+
+}  // namespace
+
+void DetectorService::add_options(CLI::App& app, Config& config) {
+  app.add_option("--model", config.model, "ONNX file (detector.model)");
+  app.add_option("--input", config.input, "frame or jpeg (detector.input)")->check(CLI::IsMember({"frame", "jpeg"}));
+  app.add_option("--max-rate", config.max_rate_hz, "Realtime pace: at most this many detections a second, 0 = no limit")
+      ->check(CLI::Range(0.0, 1000.0));
+}
+
+DetectorService::DetectorService(const Config& config, service::Runtime& runtime)
+    : config_(config),
+      runtime_(runtime),
+      detector_(load_detector(config)),
+      arrivals_(runtime.pace == service::Pace::kRealtime
+                    ? std::make_shared<Arrivals>(1, concurrency::Overflow::kDropOldest)
+                    : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
+      detections_(runtime.bus.writer(bus::topics::kDetections)) {
+  runtime.stop.on_stop([arrivals = arrivals_] { arrivals->close(); });
+  if (config_.input == "jpeg") {
+    jpegs_ = runtime.bus.reader<msg::CompressedImage>(bus::topics::kColorJpeg,
+                                                      [this](std::shared_ptr<const msg::CompressedImage> jpeg) {
+                                                        const std::int64_t stamp_ns = msg::to_ns(jpeg->header.stamp);
+                                                        arrivals_->push({stamp_ns, nullptr, std::move(jpeg)});
+                                                      });
+  } else {
+    frames_ =
+        runtime.bus.reader<msg::RgbdFrame>(bus::topics::kFrame, [this](std::shared_ptr<const msg::RgbdFrame> frame) {
+          const std::int64_t stamp_ns = frame->stamp_ns;
+          arrivals_->push({stamp_ns, std::move(frame), nullptr});
+        });
+  }
+  SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={}", detector_.config().model_path,
+              detector_.input_size().width_px, detector_.input_size().height_px, config_.threads);
+}
+
+/// A reader waits for its running callback, which may be blocked on the full queue.
+DetectorService::~DetectorService() {
+  arrivals_->close();
+}
+
+service::ExitCode DetectorService::run() {
+  while (!runtime_.stop.stop_requested()) {
+    report_state();
+    const std::optional<Arrival> arrival = arrivals_->pop_for(kStatePeriod);
+    if (!arrival) continue;
+    const std::int64_t started_ns = service::monotonic_ns();
+    answer(*arrival);
+    keep_rate(started_ns);
+  }
+  SPDLOG_INFO("event=summary frames={} dropped={} broken={} detect_ms={:.1f} detect_ms_max={:.1f}", answered_,
+              arrivals_->dropped(), broken_,
+              total_detect_ms_ / static_cast<double>(std::max<std::uint64_t>(answered_, 1)), max_detect_ms_);
+  return service::kOk;
+}
+
+/// The pixels of an arrival; empty when they are broken. A frame's pixels stay in the message.
+std::optional<cv::Mat> DetectorService::image_of(const Arrival& arrival) {
+  if (arrival.jpeg) {
+    cv::Mat image = cv::imdecode(arrival.jpeg->data, cv::IMREAD_COLOR);
+    return image.empty() ? std::nullopt : std::optional<cv::Mat>(std::move(image));
+  }
+  const msg::RgbdFrame& frame = *arrival.frame;
+  if (frame.width == 0 || frame.height == 0 || frame.width > msg::kMaxFrameWidth ||
+      frame.height > msg::kMaxFrameHeight) {
+    return std::nullopt;
+  }
+  return cv::Mat(static_cast<int>(frame.height), static_cast<int>(frame.width), CV_8UC3,
+                 const_cast<std::uint8_t*>(frame.color_bgr.data()));  // read only: cv::Mat has no const view
+}
+
+void DetectorService::answer(const Arrival& arrival) {
+  const std::int64_t started_ns = service::monotonic_ns();
+  try {
+    const std::optional<cv::Mat> image = image_of(arrival);
+    if (!image) return skip(arrival, "no image of a size that can be read");
+    detections_.write(to_message(detector_.detect(*image), arrival.stamp_ns));
+  } catch (const std::exception& error) {  // data from outside never ends the process
+    return skip(arrival, error.what());
+  }
+  count(static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs);
+}
+
+void DetectorService::skip(const Arrival& arrival, const std::string& cause) {
+  runtime_.heartbeat.set_metric("frames_broken", static_cast<double>(++broken_));
+  if (broken_log_.pass()) {
+    SPDLOG_WARN("event=image_skipped stamp_ns={} total={} cause=\"{}\"", arrival.stamp_ns, broken_, cause);
+  }
+}
+
+void DetectorService::count(double detect_ms) {
+  ++answered_;
+  total_detect_ms_ += detect_ms;
+  max_detect_ms_ = std::max(max_detect_ms_, detect_ms);
+  runtime_.heartbeat.set_metric("frames", static_cast<double>(answered_));
+  runtime_.heartbeat.set_metric("frames_dropped", static_cast<double>(arrivals_->dropped()));
+  runtime_.heartbeat.set_metric("detect_ms", total_detect_ms_ / static_cast<double>(answered_));
+  runtime_.heartbeat.set_metric("detect_ms_max", max_detect_ms_);
+}
+
+bool DetectorService::peers_matched() const {
+  const int sources = config_.input == "jpeg" ? jpegs_.matched() : frames_.matched();
+  return sources > 0 && detections_.matched() > 0;
+}
+
+void DetectorService::report_state() {
+  if (!peers_matched()) {
+    runtime_.heartbeat.set_state(msg::ServiceState::kStarting, "waits for a camera and a filter");
+  } else {
+    runtime_.heartbeat.set_state(answered_ > 0 ? msg::ServiceState::kRunning : msg::ServiceState::kReady);
+  }
+}
+
+/// Realtime pace with a rate limit: sleeps until the next detection is due; newer images replace the queued one
+/// meanwhile.
+void DetectorService::keep_rate(std::int64_t started_ns) const {
+  if (runtime_.pace != service::Pace::kRealtime || config_.max_rate_hz <= 0) return;
+  const auto period_ns = static_cast<std::int64_t>(kNsPerS / config_.max_rate_hz);
+  const std::int64_t left_ns = started_ns + period_ns - service::monotonic_ns();
+  if (left_ns > 0) runtime_.stop.wait_for(std::chrono::nanoseconds(left_ns));
+}
+
+}  // namespace rtd::detector

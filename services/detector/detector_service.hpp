@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "common/concurrency/bounded_queue.hpp"
+#include "common/service/exit_code.hpp"
+#include "common/service/log.hpp"
+#include "common/service/runtime.hpp"
+#include "services/detector/config.hpp"
+#include "services/detector/core/detector.hpp"
+
+namespace rtd::detector {
+
+/// Images in, boxes out. Realtime pace: the newest image wins, what came meanwhile is dropped and counted. Asap and
+/// lockstep: every image is answered in order, with an empty array where nothing was found.
+class DetectorService {
+ public:
+  static constexpr const char* kName = "detector";
+  static constexpr const char* kDescription = "Finds people and things in camera images (YOLOv5-Lite)";
+  using Config = ServiceConfig;
+  static void add_options(CLI::App& app, Config& config);
+
+  /// Loads the network. Throws ConfigError when there is none or it is broken.
+  DetectorService(const Config& config, service::Runtime& runtime);
+  ~DetectorService();
+  DetectorService(const DetectorService&) = delete;
+  DetectorService& operator=(const DetectorService&) = delete;
+  service::ExitCode run();
+
+ private:
+  /// An image as it came; the pixels are decoded by the worker.
+  struct Arrival {
+    std::int64_t stamp_ns = 0;
+    std::shared_ptr<const msg::RgbdFrame> frame;       ///< input "frame"
+    std::shared_ptr<const msg::CompressedImage> jpeg;  ///< input "jpeg"
+  };
+  using Arrivals = concurrency::BoundedQueue<Arrival>;
+
+  static std::optional<cv::Mat> image_of(const Arrival& arrival);
+  void answer(const Arrival& arrival);
+  void skip(const Arrival& arrival, const std::string& cause);
+  void count(double detect_ms);
+  bool peers_matched() const;
+  void report_state();
+  void keep_rate(std::int64_t started_ns) const;
+
+  const Config config_;
+  service::Runtime& runtime_;
+  Detector detector_;
+  std::shared_ptr<Arrivals> arrivals_;
+  bus::Writer<msg::Detection2DArray> detections_;
+  bus::Reader<msg::RgbdFrame> frames_;
+  bus::Reader<msg::CompressedImage> jpegs_;
+  std::uint64_t answered_ = 0, broken_ = 0;
+  double total_detect_ms_ = 0, max_detect_ms_ = 0;
+  service::RateLimit broken_log_{std::chrono::seconds(1)};
+};
+
+}  // namespace rtd::detector

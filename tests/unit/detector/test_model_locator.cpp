@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/detector/core/model_locator.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+namespace rtd::detector {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class ModelLocator : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() / (std::string("rtd_locator_") + info->name());
+    std::filesystem::remove_all(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string make(const std::string& relative) const {
+    const std::filesystem::path path = folder_ / relative;
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path) << "weights";
+    return path.string();
+  }
+  std::string in_folder(const std::string& relative) const { return (folder_ / relative).string(); }
+  static EnvironmentReader environment(std::map<std::string, std::string> values) {
+    return [values = std::move(values)](const std::string& name) -> std::optional<std::string> {
+      const auto found = values.find(name);
+      return found == values.end() ? std::nullopt : std::optional<std::string>(found->second);
+    };
+  }
+  EnvironmentReader all() const {
+    return environment(
+        {{"RTD_MODEL_DIR", in_folder("models")}, {"XDG_CACHE_HOME", in_folder("xdg")}, {"HOME", in_folder("home")}});
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(ModelLocator, prefers_the_model_folder_to_the_cache) {
+  make(std::string("xdg/rtd-slam/") + kDefaultModelFile);
+  const std::string expected = make(std::string("models/") + kDefaultModelFile);
+  EXPECT_EQ(find_model("", all()).path, expected);
+}
+
+TEST_F(ModelLocator, looks_in_the_cache_next) {
+  const std::string expected = make(std::string("xdg/rtd-slam/") + kDefaultModelFile);
+  make(std::string("home/.cache/rtd-slam/") + kDefaultModelFile);
+  EXPECT_EQ(find_model("", all()).path, expected);
+}
+
+TEST_F(ModelLocator, uses_the_home_folder_when_no_cache_is_set) {
+  const std::string expected = make(std::string("home/.cache/rtd-slam/") + kDefaultModelFile);
+  EXPECT_EQ(find_model("", environment({{"HOME", in_folder("home")}, {"XDG_CACHE_HOME", ""}})).path, expected);
+}
+
+TEST_F(ModelLocator, finds_another_file_name_in_the_same_folders) {
+  const std::string expected = make("models/mine.onnx");
+  EXPECT_EQ(find_model("mine.onnx", all()).path, expected);
+}
+
+TEST_F(ModelLocator, takes_a_path_as_it_is) {
+  make(std::string("models/") + kDefaultModelFile);
+  const std::string expected = make("elsewhere/mine.onnx");
+  EXPECT_EQ(find_model(expected, all()).path, expected);
+}
+
+TEST_F(ModelLocator, does_not_fall_back_when_the_configured_path_is_missing) {
+  make(std::string("models/") + kDefaultModelFile);
+  const ModelSearch search = find_model(in_folder("missing.onnx"), all());
+  EXPECT_FALSE(search);
+  EXPECT_THAT(search.message, AllOf(HasSubstr("missing.onnx"), HasSubstr("deploy/setup.sh --models")));
+}
+
+TEST_F(ModelLocator, says_where_it_looked_and_what_to_run) {
+  const ModelSearch search = find_model("", all());
+  EXPECT_FALSE(search);
+  EXPECT_THAT(search.message, AllOf(HasSubstr(in_folder("models")), HasSubstr(in_folder("xdg")),
+                                    HasSubstr("deploy/setup.sh --models"), HasSubstr("RTD_MODEL_DIR")));
+}
+
+TEST_F(ModelLocator, does_not_take_a_folder_for_a_file) {
+  std::filesystem::create_directories(folder_ / "models" / kDefaultModelFile);
+  EXPECT_FALSE(find_model("", all()));
+}
+
+TEST_F(ModelLocator, works_without_any_environment) {
+  EXPECT_THAT(find_model("", environment({})).message, HasSubstr("deploy/setup.sh --models"));
+}
+
+}  // namespace
+}  // namespace rtd::detector
