@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iosfwd>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace rtd::launcher {
+
+/// What `rtd eval` was asked.
+struct EvalOptions {
+  std::string estimate, groundtruth;  ///< trajectories in TUM format
+  std::string frames;  ///< frame list (rgb.txt, associations.txt) for the coverage; empty = ground truth's span
+  std::string plot;    ///< write this SVG; empty = none
+  double max_difference_s = 0.02;
+  double offset_s = 0;
+  bool scale = false;  ///< Sim(3) instead of SE(3)
+  bool json = false;
+};
+
+/// Adds the subcommand `eval` with its arguments to `parent`; parsing fills `options`, which must outlive `parent`.
+CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options);
+
+/// Evaluates, writes the table or the JSON to `out`, what went wrong and the fix to `err`.
+/// Returns the exit code: 0; 1 when no poses associate; 2 when a file is missing, malformed or cannot be written.
+int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err);
+
+}  // namespace rtd::launcher
