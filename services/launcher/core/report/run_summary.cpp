@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/msg/transform.hpp"
+#include "common/msg/transform_eigen.hpp"
 
 namespace rtd::launcher {
 namespace {
