@@ -86,6 +86,7 @@ service::ExitCode DetectorService::run() {
 /// The pixels of an arrival; empty when they are broken. A frame's pixels stay in the message.
 std::optional<cv::Mat> DetectorService::image_of(const Arrival& arrival) {
   if (arrival.jpeg) {
+    if (arrival.jpeg->data.empty()) return std::nullopt;
     cv::Mat image = cv::imdecode(arrival.jpeg->data, cv::IMREAD_COLOR);
     return image.empty() ? std::nullopt : std::optional<cv::Mat>(std::move(image));
   }

@@ -1,0 +1,289 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/detector/detector_service.hpp"
+
+#include <gmock/gmock.h>
+
+#include <condition_variable>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <opencv2/imgcodecs.hpp>
+
+#include "common/bus/bus_factory.hpp"
+#include "common/service/monotonic_clock.hpp"
+#include "services/detector/core/model_locator.hpp"
+#include "tests/support/detector/tiny_network.hpp"
+
+namespace rtd::detector {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
+
+constexpr std::chrono::seconds kPatience{10};
+constexpr std::uint32_t kFirstDomain = 150;  // in-process domains of this binary, one per test
+
+/// Keeps what a reader was given; tests wait for it.
+template <class T>
+class Inbox {
+ public:
+  void take(std::shared_ptr<const T> message) {
+    {
+      const std::lock_guard lock(mutex_);
+      messages_.push_back(std::move(message));
+    }
+    arrived_.notify_all();
+  }
+  /// True once `ready(messages)` holds.
+  template <class Predicate>
+  bool wait(Predicate ready) {
+    std::unique_lock lock(mutex_);
+    return arrived_.wait_for(lock, kPatience, [&] { return ready(messages_); });
+  }
+  bool wait_count(std::size_t count) {
+    return wait([count](const auto& messages) { return messages.size() >= count; });
+  }
+  std::vector<std::shared_ptr<const T>> all() const {
+    const std::lock_guard lock(mutex_);
+    return messages_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::vector<std::shared_ptr<const T>> messages_;
+};
+
+double metric(const msg::ServiceStatus& status, const std::string& name) {
+  for (const msg::Metric& metric : status.metrics)
+    if (metric.name == name) return metric.value;
+  return -1;
+}
+
+/// A camera and a filter around one detector service that runs in a thread.
+class DetectorServiceTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    static std::uint32_t domain = kFirstDomain;
+    bus::BusOptions options;
+    options.vendor = "inprocess";
+    options.domain = domain++;
+    bus_ = bus::connect(options);
+    frames_ = bus_->writer(bus::topics::kFrame);
+    jpegs_ = bus_->writer(bus::topics::kColorJpeg);
+    answers_ = bus_->reader<msg::Detection2DArray>(bus::topics::kDetections,
+                                                   [this](auto message) { answer_box_.take(std::move(message)); });
+    statuses_ = bus_->reader<msg::ServiceStatus>(bus::topics::kStatus,
+                                                 [this](auto message) { status_box_.take(std::move(message)); });
+    const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() / (std::string("rtd_detector_service_") + info->name());
+    std::filesystem::create_directories(folder_);
+    config_.model = (folder_ / "tiny.onnx").string();
+    config_.class_names = {"person", "box"};
+    std::ofstream(config_.model, std::ios::binary) << test::tiny_network_onnx({});
+  }
+  void TearDown() override {
+    stop_.request_stop();
+    if (running_.valid()) {
+      EXPECT_EQ(running_.get(), service::kOk);
+    }
+    std::filesystem::remove_all(folder_);
+  }
+
+  void start(service::Pace pace) {
+    running_ = std::async(std::launch::async, [this, pace] {
+      service::Heartbeat heartbeat(*bus_, "detector", stop_);
+      service::Runtime runtime{*bus_, heartbeat, stop_, pace};
+      return DetectorService(config_, runtime).run();
+    });
+    ASSERT_TRUE(wait_state(msg::ServiceState::kReady)) << "the detector did not become ready";
+  }
+  bool wait_state(msg::ServiceState state) {
+    return status_box_.wait([state](const auto& all) { return !all.empty() && all.back()->state == state; });
+  }
+  bool wait_metric(const std::string& name, double value) {
+    return status_box_.wait([&](const auto& all) { return !all.empty() && metric(*all.back(), name) == value; });
+  }
+  /// A 64x64 frame, white in one cell or black.
+  void send_frame(std::int64_t stamp_ns, bool white_cell = false) {
+    auto frame = std::make_unique<msg::RgbdFrame>();
+    *frame = {};
+    frame->stamp_ns = stamp_ns;
+    frame->width = frame->height = 64;
+    if (white_cell) white_cell_of({64, 64, CV_8UC3, frame->color_bgr.data()});
+    frames_.write(*frame);
+  }
+  static void white_cell_of(cv::Mat image) { image(cv::Rect(40, 24, 8, 8)).setTo(cv::Scalar::all(255)); }
+  void send_jpeg(std::int64_t stamp_ns, std::vector<std::uint8_t> data) {
+    jpegs_.write({{msg::to_time(stamp_ns), "camera_color_optical_frame"}, "jpeg", std::move(data)});
+  }
+  std::vector<std::int64_t> answered_stamps() const {
+    std::vector<std::int64_t> stamps;
+    for (const auto& answer : answer_box_.all()) stamps.push_back(msg::to_ns(answer->header.stamp));
+    return stamps;
+  }
+
+  ServiceConfig config_;
+  std::filesystem::path folder_;
+  service::StopToken stop_;
+  std::shared_ptr<bus::Bus> bus_;
+  Inbox<msg::Detection2DArray> answer_box_;
+  Inbox<msg::ServiceStatus> status_box_;
+  bus::Writer<msg::RgbdFrame> frames_;
+  bus::Writer<msg::CompressedImage> jpegs_;
+  bus::Reader<msg::Detection2DArray> answers_;
+  bus::Reader<msg::ServiceStatus> statuses_;
+  std::future<service::ExitCode> running_;
+};
+
+TEST_F(DetectorServiceTest, answers_every_frame_in_lockstep) {
+  start(service::Pace::kLockstep);
+  for (std::int64_t stamp_ns = 0; stamp_ns < 20; ++stamp_ns) {
+    send_frame(stamp_ns);
+    ASSERT_TRUE(answer_box_.wait_count(static_cast<std::size_t>(stamp_ns) + 1)) << "frame " << stamp_ns;
+    EXPECT_EQ(answered_stamps().back(), stamp_ns);
+  }
+}
+
+TEST_F(DetectorServiceTest, answers_every_frame_of_the_window_in_order_at_full_speed) {
+  start(service::Pace::kAsap);
+  std::vector<std::int64_t> sent;
+  for (std::int64_t stamp_ns = 0; stamp_ns < 60; ++stamp_ns) {
+    send_frame(stamp_ns);
+    sent.push_back(stamp_ns);
+    if (stamp_ns < 2) continue;
+    ASSERT_TRUE(answer_box_.wait_count(static_cast<std::size_t>(stamp_ns) - 1));
+  }
+  ASSERT_TRUE(answer_box_.wait_count(sent.size()));
+  EXPECT_EQ(answered_stamps(), sent);
+}
+
+TEST_F(DetectorServiceTest, sends_boxes_and_empty_arrays) {
+  start(service::Pace::kLockstep);
+  send_frame(1, true);
+  ASSERT_TRUE(answer_box_.wait_count(1));
+  send_frame(2, false);
+  ASSERT_TRUE(answer_box_.wait_count(2));
+  const auto answers = answer_box_.all();
+  ASSERT_THAT(answers[0]->detections, SizeIs(1));
+  EXPECT_EQ(answers[0]->detections[0].results[0].hypothesis.class_id, "person");
+  EXPECT_NEAR(answers[0]->detections[0].bbox.center.position.x, 44.0, 0.01);
+  EXPECT_NEAR(answers[0]->detections[0].bbox.center.position.y, 28.0, 0.01);
+  EXPECT_EQ(answers[0]->header.frame_id, "camera_color_optical_frame");
+  EXPECT_THAT(answers[1]->detections, SizeIs(0));
+}
+
+TEST_F(DetectorServiceTest, takes_the_newest_frame_in_realtime_and_counts_the_others) {
+  config_.max_rate_hz = 1.0;  // after the first answer it rests for a second, in which all others arrive
+  start(service::Pace::kRealtime);
+  send_frame(0);
+  ASSERT_TRUE(answer_box_.wait_count(1));
+  for (std::int64_t stamp_ns = 1; stamp_ns <= 10; ++stamp_ns) {
+    send_frame(stamp_ns);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));  // the bus itself keeps only the last 4
+  }
+  ASSERT_TRUE(answer_box_.wait_count(2));
+  EXPECT_THAT(answered_stamps(), ElementsAre(0, 10));
+  EXPECT_TRUE(wait_metric("frames_dropped", 9));
+}
+
+TEST_F(DetectorServiceTest, keeps_to_the_rate_limit_in_realtime) {
+  config_.max_rate_hz = 20.0;
+  start(service::Pace::kRealtime);
+  const std::int64_t started_ns = service::monotonic_ns();
+  for (std::size_t i = 0; i < 5; ++i) {
+    send_frame(static_cast<std::int64_t>(i));
+    ASSERT_TRUE(answer_box_.wait_count(i + 1));
+  }
+  EXPECT_GE(service::monotonic_ns() - started_ns, 4 * 50'000'000);
+}
+
+TEST_F(DetectorServiceTest, skips_and_counts_a_broken_jpeg) {
+  config_.input = "jpeg";
+  start(service::Pace::kLockstep);
+  cv::Mat image = cv::Mat::zeros(64, 64, CV_8UC3);
+  white_cell_of(image);
+  std::vector<std::uint8_t> good;
+  cv::imencode(".jpg", image, good);
+  send_jpeg(1, {});
+  send_jpeg(2, {0xFF, 0xD8, 0xFF, 0xE0, 1, 2, 3});
+  send_jpeg(3, std::vector<std::uint8_t>(3000, 0x41));
+  send_jpeg(4, good);
+  ASSERT_TRUE(answer_box_.wait_count(1));
+  EXPECT_THAT(answered_stamps(), ElementsAre(4));
+  EXPECT_THAT(answer_box_.all()[0]->detections, SizeIs(1));
+  EXPECT_TRUE(wait_metric("frames_broken", 3));
+}
+
+TEST_F(DetectorServiceTest, skips_and_counts_a_frame_of_impossible_size) {
+  start(service::Pace::kLockstep);
+  auto frame = std::make_unique<msg::RgbdFrame>();
+  *frame = {};
+  frame->width = 100'000;
+  frame->height = 2;
+  frames_.write(*frame);
+  send_frame(5);
+  ASSERT_TRUE(answer_box_.wait_count(1));
+  EXPECT_THAT(answered_stamps(), ElementsAre(5));
+  EXPECT_TRUE(wait_metric("frames_broken", 1));
+}
+
+TEST_F(DetectorServiceTest, reports_how_long_it_took) {
+  start(service::Pace::kLockstep);
+  send_frame(1);
+  ASSERT_TRUE(wait_metric("frames", 1));
+  EXPECT_GT(metric(*status_box_.all().back(), "detect_ms"), 0.0);
+  EXPECT_TRUE(wait_state(msg::ServiceState::kRunning));
+}
+
+TEST_F(DetectorServiceTest, is_not_ready_without_a_filter) {
+  answers_ = {};
+  running_ = std::async(std::launch::async, [this] {
+    service::Heartbeat heartbeat(*bus_, "detector", stop_);
+    service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kLockstep};
+    return DetectorService(config_, runtime).run();
+  });
+  ASSERT_TRUE(status_box_.wait([](const auto& all) { return !all.empty() && !all.back()->message.empty(); }));
+  for (const auto& status : status_box_.all()) EXPECT_EQ(status->state, msg::ServiceState::kStarting);
+}
+
+TEST_F(DetectorServiceTest, ends_within_a_second_while_frames_wait) {
+  start(service::Pace::kAsap);
+  for (std::int64_t stamp_ns = 0; stamp_ns < 30; ++stamp_ns) send_frame(stamp_ns);
+  const std::int64_t asked_ns = service::monotonic_ns();
+  stop_.request_stop();
+  EXPECT_EQ(running_.get(), service::kOk);
+  EXPECT_LT(service::monotonic_ns() - asked_ns, 1'000'000'000);
+}
+
+TEST_F(DetectorServiceTest, refuses_to_start_without_weights_or_with_broken_ones) {
+  service::Heartbeat heartbeat(*bus_, "detector", stop_);
+  service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kLockstep};
+  config_.model = "/nowhere/model.onnx";
+  EXPECT_THAT([&] { const DetectorService service(config_, runtime); },
+              ThrowsMessage<service::ConfigError>(HasSubstr("deploy/setup.sh --models")));
+  config_.model = (folder_ / "broken.onnx").string();
+  std::ofstream(config_.model) << "<html>404</html>";
+  EXPECT_THAT([&] { const DetectorService service(config_, runtime); },
+              ThrowsMessage<service::ConfigError>(HasSubstr("broken.onnx")));
+}
+
+TEST_F(DetectorServiceTest, answers_with_the_real_network) {
+  const ModelSearch model = find_model("", process_environment());
+  if (!model) GTEST_SKIP() << model.message;
+  config_ = {};
+  config_.model = model.path;
+  start(service::Pace::kLockstep);
+  for (std::size_t i = 0; i < 4; ++i) {
+    send_frame(static_cast<std::int64_t>(i));
+    ASSERT_TRUE(answer_box_.wait_count(i + 1));
+  }
+  EXPECT_THAT(answered_stamps(), ElementsAre(0, 1, 2, 3));
+}
+
+}  // namespace
+}  // namespace rtd::detector
