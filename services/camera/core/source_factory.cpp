@@ -3,6 +3,7 @@
 #include "services/camera/core/source_factory.hpp"
 
 #include "services/camera/core/source_uri.hpp"
+#include "services/camera/core/synthetic/synthetic_source.hpp"
 #include "services/camera/core/tum_source.hpp"
 
 namespace rtd::camera {
@@ -26,6 +27,7 @@ std::unique_ptr<FrameSource> make_tum_source(const SourceUri& uri) {
 std::unique_ptr<FrameSource> make_source(const std::string& text) {
   const SourceUri uri = parse_source_uri(text);
   if (uri.scheme == "tum") return make_tum_source(uri);
+  if (uri.scheme == "synthetic") return std::make_unique<SyntheticSource>(uri.text, parse_synthetic_options(uri));
   throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme + "'; known: tum, synthetic");
 }
 

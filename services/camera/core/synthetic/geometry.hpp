@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <vector>
+
+#include "services/camera/core/synthetic/texture.hpp"
+
+namespace rtd::camera::synthetic {
+
+/// A textured rectangle, seen from the side its normal axis_s x axis_t points to. World frame: z up.
+struct Face {
+  Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< corner with texture coordinate (0, 0)
+  Eigen::Vector3f axis_s = Eigen::Vector3f::UnitX(), axis_t = Eigen::Vector3f::UnitY();  ///< unit, orthogonal
+  float width_m = 0, height_m = 0;                                                       ///< along axis_s, axis_t
+  int texture = 0;                                                                       ///< index
+  bool moving = false;
+};
+
+/// A textured ellipsoid. Body frame: centre and main axes.
+struct Ellipsoid {
+  Eigen::Isometry3f T_world_body = Eigen::Isometry3f::Identity();
+  Eigen::Vector3f semi_axes_m = Eigen::Vector3f::Ones();
+  int texture = 0;  ///< index
+  bool moving = false;
+};
+
+/// Everything there is to see at one moment.
+struct Geometry {
+  std::vector<Face> faces;
+  std::vector<Ellipsoid> ellipsoids;
+};
+
+/// A box with one texture for all sides. Frame: origin in the middle of its lower side, z up.
+struct Cuboid {
+  Eigen::Isometry3f T_world_cuboid = Eigen::Isometry3f::Identity();
+  Eigen::Vector3f size_m = Eigen::Vector3f::Ones();
+  int texture = 0;
+  bool moving = false;
+};
+
+/// The six outer sides of a cuboid.
+std::array<Face, 6> outer_faces(const Cuboid& cuboid);
+
+}  // namespace rtd::camera::synthetic

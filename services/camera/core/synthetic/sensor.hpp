@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace rtd::camera::synthetic {
+
+/// A structured-light RGB-D sensor of the Kinect's kind.
+struct SensorModel {
+  bool noise = true;  ///< false: ideal sensor, only the quantisation of the depth unit remains
+  float depth_units_per_m = 5000;
+  float min_depth_m = 0.45F, max_depth_m = 6.0F;
+  float baseline_px_m = 43.5F;  ///< projector baseline 7.5 cm x focal length 580 px: disparity = this / z
+  float disparity_step_px = 0.125F;
+  float disparity_noise_steps = 0.4F;  ///< standard deviation; with the rounding sigma_z is about 0.0014 z^2 m
+  float max_relative_slope = 0.025F;   ///< of 1/z over two pixels: steeper is grazing incidence or a depth edge
+  float color_noise_levels = 2.0F;     ///< standard deviation, grey levels
+};
+
+/// Turns ideal images into measured ones. The same seed and frame index give the same noise. Not thread-safe.
+class Sensor {
+ public:
+  Sensor(const SensorModel& model, std::uint64_t seed);
+
+  /// 16-bit depth, 0 = no measurement: out of range, grazing, beside a depth edge, or hidden from the projector.
+  cv::Mat measure_depth(const cv::Mat& inverse_depth, std::uint64_t frame_index) const;
+  /// The image with noise, in a buffer of its own.
+  cv::Mat measure_color(const cv::Mat& ideal_bgr, std::uint64_t frame_index) const;
+
+ private:
+  void measure_depth_row(const cv::Mat& inverse_depth, int row, std::uint64_t frame_index, std::uint16_t* depth) const;
+  std::uint16_t to_units(float depth_m) const;
+
+  SensorModel model_;
+  std::uint64_t seed_;
+  std::vector<std::int8_t> color_noise_;           ///< grey levels
+  std::vector<float> depth_noise_;                 ///< disparity steps
+  std::vector<std::uint16_t> units_of_disparity_;  ///< index: disparity in steps
+};
+
+}  // namespace rtd::camera::synthetic

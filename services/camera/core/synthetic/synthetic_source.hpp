@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/source_uri.hpp"
+#include "services/camera/core/synthetic/renderer.hpp"
+#include "services/camera/core/synthetic/scene.hpp"
+#include "services/camera/core/synthetic/sensor.hpp"
+
+namespace rtd::camera {
+
+/// What `synthetic:NAME?key=value` asks for.
+struct SyntheticOptions {
+  synthetic::SceneSpec scene;
+  std::uint64_t seed = 1;
+  std::uint64_t frames = 300;  ///< 0 = endless
+  double fps = 30;
+  bool noise = true;
+  int width = 640, height = 480;
+};
+
+/// Reads scene and parameters; throws SourceError naming the parameter, its value, the range or the names known.
+SyntheticOptions parse_synthetic_options(const SourceUri& uri);
+
+/// Renders a scene: exact ground truth and masks of what moves. The same options give the same bits.
+class SyntheticSource final : public FrameSource {
+ public:
+  SyntheticSource(std::string uri, const SyntheticOptions& options);
+
+  std::optional<SourceFrame> next() override;
+  const SourceInfo& info() const override { return info_; }
+  const SourceCounters& counters() const override { return counters_; }
+  std::vector<StampedPose> groundtruth() const override;  ///< of all frames, endless: of those played
+  std::vector<SkippedInput> take_skipped() override { return {}; }
+
+ private:
+  std::int64_t stamp_ns(std::uint64_t frame) const;
+  double time_s(std::uint64_t frame) const;
+
+  SyntheticOptions options_;
+  SourceInfo info_;
+  SourceCounters counters_;
+  synthetic::Scene scene_;
+  synthetic::Renderer renderer_;
+  synthetic::Sensor sensor_;
+};
+
+}  // namespace rtd::camera
