@@ -49,7 +49,7 @@ const std::vector<Furniture>& furniture() {
 
 TextureStyle random_style(SeededRandom& random, float patches_per_m2) {
   const float brightness = random.between(90, 190);
-  const auto channel = [&] { return brightness + random.between(-35, 35); };
+  const auto channel = [&] { return brightness + random.between(-16, 16); };
   const float b = channel(), g = channel();
   return {{b, g, channel()}, random.between(8, 14), patches_per_m2, 0.04F, 0.45F, random.between(0.5F, 0.95F)};
 }
