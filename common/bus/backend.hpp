@@ -23,8 +23,8 @@ class WriterBackend {
  public:
   virtual ~WriterBackend() = default;
   virtual bool write(const void* message) = 0;
-  virtual void* loan() = 0;                    ///< plain types only
-  virtual bool write_loaned(void* slot) = 0;   ///< takes the slot back in any case
+  virtual void* loan() = 0;                   ///< plain types only
+  virtual bool write_loaned(void* slot) = 0;  ///< takes the slot back in any case
   virtual void discard_loan(void* slot) = 0;
   virtual int matched() const = 0;
   virtual bool wait_acknowledged(int timeout_ms) = 0;

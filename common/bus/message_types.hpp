@@ -14,8 +14,19 @@ namespace rtd::bus {
 
 /// Every message type that the bus carries.
 enum class MessageId : std::uint8_t {
-  kRgbdFrame, kFeatureFrame, kKeyframeEvent, kTrackingResult, kServiceStatus,
-  kCompressedImage, kCameraInfo, kDetection2DArray, kOdometry, kPoseStamped, kTFMessage, kPath, kPointCloud2,
+  kRgbdFrame,
+  kFeatureFrame,
+  kKeyframeEvent,
+  kTrackingResult,
+  kServiceStatus,
+  kCompressedImage,
+  kCameraInfo,
+  kDetection2DArray,
+  kOdometry,
+  kPoseStamped,
+  kTFMessage,
+  kPath,
+  kPointCloud2,
   kDiagnosticArray
 };
 
@@ -29,19 +40,33 @@ struct MessageTraitsBase {
   static constexpr bool kPlain = Plain;
 };
 
-template <> struct MessageTraits<msg::RgbdFrame> : MessageTraitsBase<MessageId::kRgbdFrame, true> {};
-template <> struct MessageTraits<msg::FeatureFrame> : MessageTraitsBase<MessageId::kFeatureFrame, true> {};
-template <> struct MessageTraits<msg::KeyframeEvent> : MessageTraitsBase<MessageId::kKeyframeEvent, true> {};
-template <> struct MessageTraits<msg::TrackingResult> : MessageTraitsBase<MessageId::kTrackingResult, true> {};
-template <> struct MessageTraits<msg::ServiceStatus> : MessageTraitsBase<MessageId::kServiceStatus, false> {};
-template <> struct MessageTraits<msg::CompressedImage> : MessageTraitsBase<MessageId::kCompressedImage, false> {};
-template <> struct MessageTraits<msg::CameraInfo> : MessageTraitsBase<MessageId::kCameraInfo, false> {};
-template <> struct MessageTraits<msg::Detection2DArray> : MessageTraitsBase<MessageId::kDetection2DArray, false> {};
-template <> struct MessageTraits<msg::Odometry> : MessageTraitsBase<MessageId::kOdometry, false> {};
-template <> struct MessageTraits<msg::PoseStamped> : MessageTraitsBase<MessageId::kPoseStamped, false> {};
-template <> struct MessageTraits<msg::TFMessage> : MessageTraitsBase<MessageId::kTFMessage, false> {};
-template <> struct MessageTraits<msg::Path> : MessageTraitsBase<MessageId::kPath, false> {};
-template <> struct MessageTraits<msg::PointCloud2> : MessageTraitsBase<MessageId::kPointCloud2, false> {};
-template <> struct MessageTraits<msg::DiagnosticArray> : MessageTraitsBase<MessageId::kDiagnosticArray, false> {};
+template <>
+struct MessageTraits<msg::RgbdFrame> : MessageTraitsBase<MessageId::kRgbdFrame, true> {};
+template <>
+struct MessageTraits<msg::FeatureFrame> : MessageTraitsBase<MessageId::kFeatureFrame, true> {};
+template <>
+struct MessageTraits<msg::KeyframeEvent> : MessageTraitsBase<MessageId::kKeyframeEvent, true> {};
+template <>
+struct MessageTraits<msg::TrackingResult> : MessageTraitsBase<MessageId::kTrackingResult, true> {};
+template <>
+struct MessageTraits<msg::ServiceStatus> : MessageTraitsBase<MessageId::kServiceStatus, false> {};
+template <>
+struct MessageTraits<msg::CompressedImage> : MessageTraitsBase<MessageId::kCompressedImage, false> {};
+template <>
+struct MessageTraits<msg::CameraInfo> : MessageTraitsBase<MessageId::kCameraInfo, false> {};
+template <>
+struct MessageTraits<msg::Detection2DArray> : MessageTraitsBase<MessageId::kDetection2DArray, false> {};
+template <>
+struct MessageTraits<msg::Odometry> : MessageTraitsBase<MessageId::kOdometry, false> {};
+template <>
+struct MessageTraits<msg::PoseStamped> : MessageTraitsBase<MessageId::kPoseStamped, false> {};
+template <>
+struct MessageTraits<msg::TFMessage> : MessageTraitsBase<MessageId::kTFMessage, false> {};
+template <>
+struct MessageTraits<msg::Path> : MessageTraitsBase<MessageId::kPath, false> {};
+template <>
+struct MessageTraits<msg::PointCloud2> : MessageTraitsBase<MessageId::kPointCloud2, false> {};
+template <>
+struct MessageTraits<msg::DiagnosticArray> : MessageTraitsBase<MessageId::kDiagnosticArray, false> {};
 
 }  // namespace rtd::bus

@@ -23,11 +23,11 @@ enum class QosProfile : std::uint8_t {
 
 /// What can happen to an endpoint. Callbacks run on a bus thread: be brief, do not call the bus.
 struct StatusCallbacks {
-  std::function<void(int peers)> on_matched;                       ///< current number of matched peers
+  std::function<void(int peers)> on_matched;                           ///< current number of matched peers
   std::function<void(const std::string& policy)> on_incompatible_qos;  ///< a peer was refused, the policy by name
-  std::function<void(int alive)> on_liveliness;                    ///< readers: current number of alive writers
+  std::function<void(int alive)> on_liveliness;                        ///< readers: current number of alive writers
   std::function<void()> on_deadline_missed;
-  std::function<void(int total)> on_samples_lost;                  ///< readers: samples lost so far
+  std::function<void(int total)> on_samples_lost;  ///< readers: samples lost so far
 };
 
 }  // namespace rtd::bus

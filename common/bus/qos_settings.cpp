@@ -7,27 +7,19 @@
 namespace rtd::bus {
 
 QosSettings qos_settings(QosProfile profile) {
-  switch (profile) {
-    //                                       depth  transient  data sharing  lease
-    case QosProfile::kRawFrame:
-      return {4, false, true, 0};
-    case QosProfile::kNetworkFrame:
-      return {8, false, false, 0};
-    case QosProfile::kLatched:
-      return {1, true, false, 0};
-    case QosProfile::kDetections:
-      return {8, false, false, 0};
-    case QosProfile::kFeatures:
-      return {8, false, false, 0};
-    case QosProfile::kKeyframes:
-      return {64, true, false, 0};
-    case QosProfile::kPose:
-      return {10, false, false, 0};
-    case QosProfile::kTracking:
-      return {64, false, false, 0};
-    case QosProfile::kHeartbeat:
-      return {8, false, false, 1000};
+  // clang-format off
+  switch (profile) {  //                      depth  transient  sharing  lease  deadline
+    case QosProfile::kRawFrame:       return {4,     false,     true,    0,     0};
+    case QosProfile::kNetworkFrame:   return {8,     false,     false,   0,     0};
+    case QosProfile::kLatched:        return {1,     true,      false,   0,     0};
+    case QosProfile::kDetections:     return {8,     false,     false,   0,     0};
+    case QosProfile::kFeatures:       return {8,     false,     false,   0,     0};
+    case QosProfile::kKeyframes:      return {64,    true,      false,   0,     0};
+    case QosProfile::kPose:           return {10,    false,     false,   0,     0};
+    case QosProfile::kTracking:       return {64,    false,     false,   0,     0};
+    case QosProfile::kHeartbeat:      return {8,     false,     false,   1000,  1000};
   }
+  // clang-format on
   throw BusError("QoS profile " + std::to_string(static_cast<int>(profile)) + " is not one of common/bus/qos.hpp");
 }
 
@@ -35,6 +27,8 @@ std::string incompatible_policy(const QosSettings& offered, const QosSettings& r
   if (requested.transient_local && !offered.transient_local) return "DURABILITY";
   const bool offers_lease = offered.liveliness_lease_ms > 0, asks_lease = requested.liveliness_lease_ms > 0;
   if (asks_lease && (!offers_lease || offered.liveliness_lease_ms > requested.liveliness_lease_ms)) return "LIVELINESS";
+  const bool offers_deadline = offered.deadline_ms > 0, asks_deadline = requested.deadline_ms > 0;
+  if (asks_deadline && (!offers_deadline || offered.deadline_ms > requested.deadline_ms)) return "DEADLINE";
   return {};
 }
 

@@ -12,6 +12,7 @@ struct QosSettings {
   bool transient_local;     ///< late readers get the last `depth` samples of living writers
   bool data_sharing;        ///< samples stay in the writer's shared memory; this host only, plain types only
   int liveliness_lease_ms;  ///< automatic liveliness; 0 = infinite
+  int deadline_ms;          ///< a writer promises a sample at least this often; 0 = no promise
 };
 
 /// The one table of QoS profiles; every backend maps QosSettings to its vendor.

@@ -20,7 +20,8 @@ inline constexpr Topic<msg::FeatureFrame> kFeatures{"rtd/features", QosProfile::
 inline constexpr Topic<msg::KeyframeEvent> kKeyframes{"rtd/keyframes", QosProfile::kKeyframes};
 inline constexpr Topic<msg::TrackingResult> kTracking{"rtd/tracking", QosProfile::kTracking};
 inline constexpr Topic<msg::ServiceStatus> kStatus{"rtd/status", QosProfile::kHeartbeat};
-inline constexpr Topic<msg::CompressedImage> kColorJpeg{"rt/camera/color/image_raw/compressed", QosProfile::kNetworkFrame};
+inline constexpr Topic<msg::CompressedImage> kColorJpeg{"rt/camera/color/image_raw/compressed",
+                                                        QosProfile::kNetworkFrame};
 inline constexpr Topic<msg::CameraInfo> kCameraInfo{"rt/camera/color/camera_info", QosProfile::kLatched};
 inline constexpr Topic<msg::Detection2DArray> kDetections{"rt/detector/detections", QosProfile::kDetections};
 inline constexpr Topic<msg::Odometry> kOdometry{"rt/slam/odometry", QosProfile::kPose};

@@ -17,19 +17,19 @@ bool connected(const WriterEndpoint& writer, const ReaderEndpoint& reader) {
 
 void report_incompatible(Endpoint& endpoint, const std::string& policy) {
   if (!endpoint.callbacks.on_incompatible_qos) return;
-  endpoint.dispatcher->notify([&callback = endpoint.callbacks.on_incompatible_qos, policy] { callback(policy); });
+  endpoint.thread->post([&callback = endpoint.callbacks.on_incompatible_qos, policy] { callback(policy); });
 }
 
 void change_matched(Endpoint& endpoint, int change) {
   const int peers = endpoint.matched += change;
   if (!endpoint.callbacks.on_matched) return;
-  endpoint.dispatcher->notify([&callback = endpoint.callbacks.on_matched, peers] { callback(peers); });
+  endpoint.thread->post([&callback = endpoint.callbacks.on_matched, peers] { callback(peers); });
 }
 
 void change_alive(ReaderEndpoint& reader) {
   if (!reader.callbacks.on_liveliness) return;
   const int alive = reader.matched;
-  reader.dispatcher->notify([&callback = reader.callbacks.on_liveliness, alive] { callback(alive); });
+  reader.thread->post([&callback = reader.callbacks.on_liveliness, alive] { callback(alive); });
 }
 
 /// Matches or refuses the pair; true when matched.
@@ -103,10 +103,10 @@ void Domain::publish(WriterEndpoint& writer, const Message& message) {
 }
 
 void Domain::deliver(ReaderEndpoint& reader, const Message& message) {
-  if (reader.dispatcher->deliver(message)) return;
+  if (reader.mailbox->deliver(message)) return;
   const int lost = ++reader.lost;
   if (!reader.callbacks.on_samples_lost) return;
-  reader.dispatcher->notify([&callback = reader.callbacks.on_samples_lost, lost] { callback(lost); });
+  reader.thread->post([&callback = reader.callbacks.on_samples_lost, lost] { callback(lost); });
 }
 
 }  // namespace rtd::bus::inprocess

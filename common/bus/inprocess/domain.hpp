@@ -8,12 +8,12 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/bus/backend.hpp"
-#include "common/bus/inprocess/dispatcher.hpp"
+#include "common/bus/callback_thread.hpp"
+#include "common/bus/inprocess/mailbox.hpp"
 #include "common/bus/qos_settings.hpp"
 
 namespace rtd::bus::inprocess {
@@ -25,7 +25,7 @@ struct Endpoint {
   QosSettings qos;
   StatusCallbacks callbacks;
   std::atomic<int> matched{0};
-  std::optional<Dispatcher> dispatcher;  ///< always for readers; for writers only when they have callbacks
+  CallbackThread* thread = nullptr;  ///< runs the callbacks; null when there are none
 };
 
 struct WriterEndpoint : Endpoint {
@@ -33,7 +33,8 @@ struct WriterEndpoint : Endpoint {
 };
 
 struct ReaderEndpoint : Endpoint {
-  int lost = 0;  ///< messages pushed out of the full queue, guarded by the domain
+  Mailbox* mailbox = nullptr;
+  int lost = 0;  ///< messages pushed out of the full mailbox, guarded by the domain
 };
 
 /// All endpoints of one domain number in this process. Thread-safe; never runs a callback under its lock.

@@ -3,6 +3,7 @@
 #include "common/bus/inprocess/inprocess_backend.hpp"
 
 #include <map>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -35,8 +36,8 @@ class InprocessWriter : public WriterBackend {
  public:
   InprocessWriter(std::shared_ptr<Domain> domain, MessageId id, const std::string& topic, QosProfile profile,
                   StatusCallbacks callbacks)
-      : domain_(std::move(domain)), endpoint_{{id, topic, qos_settings(profile), std::move(callbacks), {}, {}}, {}} {
-    if (wants_events(endpoint_.callbacks)) endpoint_.dispatcher.emplace(1, [](const Message&) {});
+      : domain_(std::move(domain)), endpoint_{{id, topic, qos_settings(profile), std::move(callbacks)}} {
+    if (wants_events(endpoint_.callbacks)) endpoint_.thread = &thread_.emplace();
     domain_->add(endpoint_);
   }
   ~InprocessWriter() override { domain_->remove(endpoint_); }
@@ -62,6 +63,7 @@ class InprocessWriter : public WriterBackend {
  private:
   std::shared_ptr<Domain> domain_;
   WriterEndpoint endpoint_;
+  std::optional<CallbackThread> thread_;
   std::map<void*, std::shared_ptr<void>> loans_;
 };
 
@@ -69,8 +71,11 @@ class InprocessReader : public ReaderBackend {
  public:
   InprocessReader(std::shared_ptr<Domain> domain, MessageId id, const std::string& topic, QosProfile profile,
                   ErasedCallback on_message, StatusCallbacks callbacks)
-      : domain_(std::move(domain)), endpoint_{{id, topic, qos_settings(profile), std::move(callbacks), {}, {}}, 0} {
-    endpoint_.dispatcher.emplace(static_cast<std::size_t>(endpoint_.qos.depth), std::move(on_message));
+      : domain_(std::move(domain)),
+        endpoint_{{id, topic, qos_settings(profile), std::move(callbacks)}},
+        mailbox_(static_cast<std::size_t>(endpoint_.qos.depth), std::move(on_message)) {
+    endpoint_.thread = &mailbox_.thread();
+    endpoint_.mailbox = &mailbox_;
     domain_->add(endpoint_);
   }
   ~InprocessReader() override { domain_->remove(endpoint_); }
@@ -79,6 +84,7 @@ class InprocessReader : public ReaderBackend {
  private:
   std::shared_ptr<Domain> domain_;
   ReaderEndpoint endpoint_;
+  Mailbox mailbox_;  // after endpoint_: its thread uses the endpoint's callbacks and ends first
 };
 
 class InprocessBackend : public BusBackend {

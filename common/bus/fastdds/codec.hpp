@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+#include <memory>
+
+#include "common/bus/message_types.hpp"
+
+namespace rtd::bus::fastdds {
+
+/// What one attempt to take a sample brought.
+struct TakenSample {
+  enum class Kind { kNothing, kMessage, kNoData, kTorn };
+  Kind kind = Kind::kNothing;  ///< kNoData: a dispose or the like; kTorn: overwritten by the writer while it was copied
+  std::shared_ptr<const void> message;  ///< plain struct of common/msg, for kMessage
+};
+
+/// The way of one message type between its plain struct and Fast DDS. One instance per endpoint.
+class Codec {
+ public:
+  virtual ~Codec() = default;
+  virtual bool plain() const = 0;
+  virtual eprosima::fastdds::dds::TypeSupport create_type() const = 0;
+  /// Thread-safe.
+  virtual bool write(eprosima::fastdds::dds::DataWriter& writer, const void* message) const = 0;
+  /// For one thread.
+  virtual TakenSample take(eprosima::fastdds::dds::DataReader& reader) = 0;
+  /// A message on the heap, for when the vendor has no slot to loan. Plain types only.
+  virtual std::shared_ptr<void> allocate() const = 0;
+};
+
+std::unique_ptr<Codec> create_codec(MessageId id);
+
+}  // namespace rtd::bus::fastdds

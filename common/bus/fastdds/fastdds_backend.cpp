@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/fastdds/fastdds_backend.hpp"
+
+#include <utility>
+
+#include "common/bus/fastdds/fastdds_reader.hpp"
+#include "common/bus/fastdds/fastdds_writer.hpp"
+#include "common/bus/fastdds/participant.hpp"
+#include "common/bus/host_checks.hpp"
+
+namespace rtd::bus::fastdds {
+namespace {
+
+class FastddsBackend : public BusBackend {
+ public:
+  explicit FastddsBackend(std::shared_ptr<Participant> participant) : participant_(std::move(participant)) {}
+
+  const std::string& vendor() const override { return vendor_; }
+  std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
+                                               StatusCallbacks callbacks) override {
+    return std::make_unique<FastddsWriter>(participant_, id, topic, qos_settings(profile), std::move(callbacks));
+  }
+  std::unique_ptr<ReaderBackend> create_reader(MessageId id, const std::string& topic, QosProfile profile,
+                                               ErasedCallback on_message, StatusCallbacks callbacks) override {
+    return std::make_unique<FastddsReader>(participant_, id, topic, qos_settings(profile), std::move(on_message),
+                                           std::move(callbacks));
+  }
+
+ private:
+  const std::string vendor_ = "fastdds";
+  std::shared_ptr<Participant> participant_;
+};
+
+}  // namespace
+
+std::shared_ptr<BusBackend> create_backend(const BusOptions& options) {
+  const HostLimits limits = read_host_limits();
+  require_shared_memory(options, limits);
+  return std::make_shared<FastddsBackend>(std::make_shared<Participant>(options, limits));
+}
+
+}  // namespace rtd::bus::fastdds

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/fastdds/fastdds_reader.hpp"
+
+#include <utility>
+
+#include "common/bus/fastdds/qos_mapping.hpp"
+
+namespace rtd::bus::fastdds {
+
+FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic,
+                             const QosSettings& settings, ErasedCallback on_message, StatusCallbacks callbacks)
+    : participant_(std::move(participant)),
+      codec_(create_codec(id)),
+      on_message_(std::move(on_message)),
+      callbacks_(std::move(callbacks)),
+      thread_([this] { return handle_one(); }) {
+  reader_ = participant_->subscriber().create_datareader(participant_->topic(topic, *codec_),
+                                                         reader_qos(settings, codec_->plain()), this);
+  if (reader_ == nullptr) throw BusError("Fast DDS refused a reader on topic " + topic);
+  thread_.wake();  // a sample may have come before reader_ was known
+}
+
+FastddsReader::~FastddsReader() {
+  dds::DataReader* const reader = reader_;
+  reader->set_listener(nullptr);
+  thread_.stop();  // waits for a running callback; only now nobody takes from the reader
+  participant_->subscriber().delete_datareader(reader);
+}
+
+bool FastddsReader::handle_one() {
+  dds::DataReader* const reader = reader_;
+  if (reader == nullptr) return false;
+  TakenSample taken = codec_->take(*reader);
+  switch (taken.kind) {
+    case TakenSample::Kind::kNothing:
+      return false;
+    case TakenSample::Kind::kNoData:
+      break;
+    case TakenSample::Kind::kTorn:
+      ++torn_;
+      report_lost();
+      break;
+    case TakenSample::Kind::kMessage:
+      on_message_(std::move(taken.message));
+      break;
+  }
+  return true;
+}
+
+void FastddsReader::report_lost() {
+  if (!callbacks_.on_samples_lost) return;
+  thread_.post([this, total = lost_in_transit_ + torn_] { callbacks_.on_samples_lost(total); });
+}
+
+void FastddsReader::on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) {
+  matched_ = status.current_count;
+  if (!callbacks_.on_matched) return;
+  thread_.post([this, peers = status.current_count] { callbacks_.on_matched(peers); });
+}
+
+void FastddsReader::on_requested_deadline_missed(dds::DataReader*, const dds::RequestedDeadlineMissedStatus&) {
+  if (callbacks_.on_deadline_missed) thread_.post([this] { callbacks_.on_deadline_missed(); });
+}
+
+void FastddsReader::on_liveliness_changed(dds::DataReader*, const dds::LivelinessChangedStatus& status) {
+  if (!callbacks_.on_liveliness) return;
+  thread_.post([this, alive = status.alive_count] { callbacks_.on_liveliness(alive); });
+}
+
+void FastddsReader::on_requested_incompatible_qos(dds::DataReader*, const dds::RequestedIncompatibleQosStatus& status) {
+  if (!callbacks_.on_incompatible_qos) return;
+  thread_.post([this, policy = policy_name(status.last_policy_id)] { callbacks_.on_incompatible_qos(policy); });
+}
+
+void FastddsReader::on_sample_lost(dds::DataReader*, const dds::SampleLostStatus& status) {
+  lost_in_transit_ = status.total_count;
+  report_lost();
+}
+
+}  // namespace rtd::bus::fastdds

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+
+#include "common/bus/backend.hpp"
+#include "common/bus/callback_thread.hpp"
+#include "common/bus/fastdds/participant.hpp"
+#include "common/bus/qos_settings.hpp"
+
+namespace rtd::bus::fastdds {
+
+/// One DataReader with a thread of its own: Fast DDS's threads only wake it, so a slow callback holds up neither
+/// discovery nor other readers; what it cannot take in time, the keep-last history drops.
+class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
+ public:
+  FastddsReader(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic,
+                const QosSettings& settings, ErasedCallback on_message, StatusCallbacks callbacks);
+  ~FastddsReader() override;
+  int matched() const override { return matched_; }
+
+ private:
+  bool handle_one();
+  void report_lost();
+
+  void on_data_available(dds::DataReader*) override { thread_.wake(); }
+  void on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) override;
+  void on_requested_deadline_missed(dds::DataReader*, const dds::RequestedDeadlineMissedStatus&) override;
+  void on_liveliness_changed(dds::DataReader*, const dds::LivelinessChangedStatus& status) override;
+  void on_requested_incompatible_qos(dds::DataReader*, const dds::RequestedIncompatibleQosStatus& status) override;
+  void on_sample_lost(dds::DataReader*, const dds::SampleLostStatus& status) override;
+
+  std::shared_ptr<Participant> participant_;
+  std::unique_ptr<Codec> codec_;
+  const ErasedCallback on_message_;
+  const StatusCallbacks callbacks_;
+  std::atomic<int> matched_{0};
+  std::atomic<int> lost_in_transit_{0}, torn_{0};
+  std::atomic<dds::DataReader*> reader_{nullptr};
+  CallbackThread thread_;
+};
+
+}  // namespace rtd::bus::fastdds

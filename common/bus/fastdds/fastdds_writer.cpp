@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/fastdds/fastdds_writer.hpp"
+
+#include <utility>
+
+#include "common/bus/fastdds/qos_mapping.hpp"
+
+namespace rtd::bus::fastdds {
+
+using eprosima::fastrtps::types::ReturnCode_t;
+
+FastddsWriter::FastddsWriter(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic,
+                             const QosSettings& settings, StatusCallbacks callbacks)
+    : participant_(std::move(participant)), codec_(create_codec(id)), callbacks_(std::move(callbacks)) {
+  if (callbacks_.on_matched || callbacks_.on_incompatible_qos || callbacks_.on_deadline_missed) thread_.emplace();
+  writer_ = participant_->publisher().create_datawriter(participant_->topic(topic, *codec_),
+                                                        writer_qos(settings, codec_->plain()), this);
+  if (writer_ == nullptr) throw BusError("Fast DDS refused a writer on topic " + topic);
+}
+
+FastddsWriter::~FastddsWriter() {
+  writer_->set_listener(nullptr);
+  participant_->publisher().delete_datawriter(writer_);
+}
+
+bool FastddsWriter::write(const void* message) {
+  return codec_->write(*writer_, message);
+}
+
+void* FastddsWriter::loan() {
+  void* slot = nullptr;
+  const auto kind = dds::DataWriter::LoanInitializationKind::NO_LOAN_INITIALIZATION;
+  if (writer_->loan_sample(slot, kind) == ReturnCode_t::RETCODE_OK) return slot;
+  const std::shared_ptr<void> message = codec_->allocate();
+  return heap_loans_.emplace(message.get(), message).first->first;
+}
+
+bool FastddsWriter::write_loaned(void* slot) {
+  if (slot == nullptr) return false;
+  if (const auto node = heap_loans_.extract(slot); !node.empty()) return codec_->write(*writer_, slot);
+  if (codec_->write(*writer_, slot)) return true;
+  writer_->discard_loan(slot);  // a failed write leaves the loan with us, and Fast DDS aborts later if it is kept
+  return false;
+}
+
+void FastddsWriter::discard_loan(void* slot) {
+  if (heap_loans_.erase(slot) == 0) writer_->discard_loan(slot);
+}
+
+bool FastddsWriter::wait_acknowledged(int timeout_ms) {
+  const auto nanoseconds = static_cast<std::uint32_t>(timeout_ms % 1000) * 1'000'000U;
+  return writer_->wait_for_acknowledgments({timeout_ms / 1000, nanoseconds}) == ReturnCode_t::RETCODE_OK;
+}
+
+void FastddsWriter::on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus& status) {
+  matched_ = status.current_count;
+  if (!callbacks_.on_matched) return;
+  thread_->post([this, peers = status.current_count] { callbacks_.on_matched(peers); });
+}
+
+void FastddsWriter::on_offered_deadline_missed(dds::DataWriter*, const dds::OfferedDeadlineMissedStatus&) {
+  if (callbacks_.on_deadline_missed) thread_->post([this] { callbacks_.on_deadline_missed(); });
+}
+
+void FastddsWriter::on_offered_incompatible_qos(dds::DataWriter*, const dds::OfferedIncompatibleQosStatus& status) {
+  if (!callbacks_.on_incompatible_qos) return;
+  thread_->post([this, policy = policy_name(status.last_policy_id)] { callbacks_.on_incompatible_qos(policy); });
+}
+
+}  // namespace rtd::bus::fastdds

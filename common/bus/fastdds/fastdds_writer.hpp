@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+
+#include "common/bus/backend.hpp"
+#include "common/bus/callback_thread.hpp"
+#include "common/bus/fastdds/participant.hpp"
+#include "common/bus/qos_settings.hpp"
+
+namespace rtd::bus::fastdds {
+
+/// One DataWriter. Loans come from the writer's shared memory; when it has none to give, from the heap.
+class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
+ public:
+  FastddsWriter(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic,
+                const QosSettings& settings, StatusCallbacks callbacks);
+  ~FastddsWriter() override;
+
+  bool write(const void* message) override;
+  void* loan() override;
+  bool write_loaned(void* slot) override;
+  void discard_loan(void* slot) override;
+  int matched() const override { return matched_; }
+  bool wait_acknowledged(int timeout_ms) override;
+
+ private:
+  void on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus& status) override;
+  void on_offered_deadline_missed(dds::DataWriter*, const dds::OfferedDeadlineMissedStatus&) override;
+  void on_offered_incompatible_qos(dds::DataWriter*, const dds::OfferedIncompatibleQosStatus& status) override;
+
+  std::shared_ptr<Participant> participant_;
+  std::unique_ptr<Codec> codec_;
+  const StatusCallbacks callbacks_;
+  std::atomic<int> matched_{0};
+  std::optional<CallbackThread> thread_;  ///< only when there are callbacks
+  std::map<void*, std::shared_ptr<void>> heap_loans_;
+  dds::DataWriter* writer_ = nullptr;
+};
+
+}  // namespace rtd::bus::fastdds

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "common/bus/fastdds/codec.hpp"
+#include "common/bus/host_checks.hpp"
+
+namespace rtd::bus::fastdds {
+
+namespace dds = eprosima::fastdds::dds;
+
+/// Our presence in a domain: transports, publisher, subscriber and topics. Thread-safe.
+class Participant {
+ public:
+  /// Throws BusError when Fast DDS refuses.
+  Participant(const BusOptions& options, const HostLimits& limits);
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  dds::Publisher& publisher() { return *publisher_; }
+  dds::Subscriber& subscriber() { return *subscriber_; }
+  /// The topic of that name, created when new; lives as long as the participant.
+  /// Throws BusError when it exists with another type.
+  dds::Topic* topic(const std::string& name, const Codec& codec);
+
+ private:
+  std::shared_ptr<dds::DomainParticipantFactory> factory_;  // keeps the vendor's singleton alive
+  dds::DomainParticipant* participant_ = nullptr;
+  dds::Publisher* publisher_ = nullptr;
+  dds::Subscriber* subscriber_ = nullptr;
+  std::mutex topics_mutex_;
+};
+
+}  // namespace rtd::bus::fastdds

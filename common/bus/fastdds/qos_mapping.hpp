@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
+#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
+#include <string>
+
+#include "common/bus/qos_settings.hpp"
+
+namespace rtd::bus::fastdds {
+
+/// Every policy is set explicitly: the defaults of the vendors differ from each other and from DDS.
+/// `plain`: the type has a fixed size.
+eprosima::fastdds::dds::DataWriterQos writer_qos(const QosSettings& settings, bool plain);
+eprosima::fastdds::dds::DataReaderQos reader_qos(const QosSettings& settings, bool plain);
+
+/// DDS name of a policy, e.g. "RELIABILITY".
+std::string policy_name(eprosima::fastdds::dds::QosPolicyId_t id);
+
+}  // namespace rtd::bus::fastdds

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/host_checks.hpp"
+
+#include <sys/statvfs.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "common/bus/qos_settings.hpp"
+
+namespace rtd::bus {
+namespace {
+
+constexpr std::uint64_t kKib = 1024, kMib = 1024 * kKib;
+constexpr std::uint64_t kProcesses = 4;  // camera, detector, filter, slam
+
+/// Shared memory of one frame writer: its history and the slot on loan, plus one for the pool's own bookkeeping.
+std::uint64_t frame_pool_bytes() {
+  const auto depth = static_cast<std::uint64_t>(qos_settings(QosProfile::kRawFrame).depth);
+  return (depth + 2) * sizeof(msg::RgbdFrame);
+}
+
+std::uint64_t round_up_mib(std::uint64_t bytes) {
+  return (bytes + kMib - 1) / kMib;
+}
+
+std::uint64_t read_number(const std::string& path) {
+  std::ifstream file(path);
+  std::uint64_t number = 0;
+  return file >> number ? number : 0;
+}
+
+void warn_socket_buffer(const char* key, std::uint64_t limit, std::uint64_t wanted,
+                        std::vector<std::string>& warnings) {
+  if (limit == 0 || limit >= wanted) return;
+  warnings.push_back("net.core." + std::string(key) + " is " + std::to_string(limit) + " bytes, wanted " +
+                     std::to_string(wanted) + ": images over UDP may be lost; sudo sysctl -w net.core." + key + "=" +
+                     std::to_string(wanted));
+}
+
+}  // namespace
+
+HostLimits read_host_limits(const std::string& shm_dir, const std::string& sysctl_dir) {
+  HostLimits limits;
+  struct statvfs shm {};
+  if (statvfs(shm_dir.c_str(), &shm) == 0) {
+    limits.shm_total = std::uint64_t{shm.f_blocks} * shm.f_frsize;
+    limits.shm_free = std::uint64_t{shm.f_bavail} * shm.f_frsize;
+  }
+  limits.rmem_max = read_number(sysctl_dir + "/rmem_max");
+  limits.wmem_max = read_number(sysctl_dir + "/wmem_max");
+  return limits;
+}
+
+void require_shared_memory(const BusOptions& options, const HostLimits& limits) {
+  if (limits.shm_total == 0) return;
+  const std::uint64_t needed = options.shm_segment_mib * kMib + frame_pool_bytes();
+  if (limits.shm_free >= needed) return;
+  const std::uint64_t sufficient_mib =
+      round_up_mib(kProcesses * options.shm_segment_mib * kMib + 2 * frame_pool_bytes());
+  const std::string size = std::to_string(std::max<std::uint64_t>(sufficient_mib, 256)) + "m";
+  throw BusError("/dev/shm is too small: " + std::to_string(limits.shm_free / kMib) + " MiB free of " +
+                 std::to_string(limits.shm_total / kMib) + " MiB, this process needs " +
+                 std::to_string(round_up_mib(needed)) + " MiB; sudo mount -o remount,size=" + size +
+                 " /dev/shm, or start the container with --shm-size=" + size);
+}
+
+std::vector<std::string> host_warnings(const BusOptions& options, const HostLimits& limits) {
+  std::vector<std::string> warnings;
+  if (options.vendor == "inprocess") return warnings;
+  const std::uint64_t wanted_shm = kProcesses * options.shm_segment_mib * kMib + frame_pool_bytes();
+  if (limits.shm_total != 0 && limits.shm_total < wanted_shm) {
+    warnings.push_back("/dev/shm holds " + std::to_string(limits.shm_total / kMib) +
+                       " MiB, all processes together may need " + std::to_string(round_up_mib(wanted_shm)) +
+                       " MiB; sudo mount -o remount,size=256m /dev/shm, or " +
+                       "start the container with --shm-size=256m");
+  }
+  const std::uint64_t wanted_buffer = options.socket_buffer_kib * kKib;
+  warn_socket_buffer("rmem_max", limits.rmem_max, wanted_buffer, warnings);
+  warn_socket_buffer("wmem_max", limits.wmem_max, wanted_buffer, warnings);
+  return warnings;
+}
+
+std::vector<std::string> host_warnings(const BusOptions& options) {
+  return host_warnings(options, read_host_limits());
+}
+
+std::uint32_t socket_buffer_bytes(std::uint32_t wished_kib, std::uint64_t limit) {
+  const std::uint64_t wished = std::min<std::uint64_t>(wished_kib * kKib, UINT32_MAX);
+  return static_cast<std::uint32_t>(limit == 0 ? wished : std::min(wished, limit));
+}
+
+}  // namespace rtd::bus

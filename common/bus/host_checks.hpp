@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus_factory.hpp"
+
+namespace rtd::bus {
+
+/// What the host gives to shared memory and sockets, in bytes. 0 = could not be read: nothing is concluded from it.
+struct HostLimits {
+  std::uint64_t shm_total = 0;
+  std::uint64_t shm_free = 0;
+  std::uint64_t rmem_max = 0;  ///< net.core.rmem_max
+  std::uint64_t wmem_max = 0;  ///< net.core.wmem_max
+};
+
+/// Reads the limits of this host. The paths are for tests.
+HostLimits read_host_limits(const std::string& shm_dir = "/dev/shm",
+                            const std::string& sysctl_dir = "/proc/sys/net/core");
+
+/// Throws BusError, naming size and fix, when the free shared memory cannot hold this process's segment and the frames
+/// of one writer. Without this check Fast DDS dies later with SIGBUS, because segments are over-committed.
+void require_shared_memory(const BusOptions& options, const HostLimits& limits);
+
+/// What may cost frames on this host, one line each with the command that cures it; empty when all is well.
+std::vector<std::string> host_warnings(const BusOptions& options, const HostLimits& limits);
+/// The same for this host as it is.
+std::vector<std::string> host_warnings(const BusOptions& options);
+
+/// The buffer to ask of a socket: as wished, but not above what the kernel grants (`limit` 0 = unknown).
+std::uint32_t socket_buffer_bytes(std::uint32_t wished_kib, std::uint64_t limit);
+
+}  // namespace rtd::bus

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The other process of the bus tests and benchmarks: bus_peer ROLE DOMAIN [COUNT]. Roles below; stays until killed.
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <string>
+#include <thread>
+
+#include "common/bus/bus_factory.hpp"
+#include "tests/component/bus/patterns.hpp"
+
+namespace rtd::bus {
+namespace {
+
+using namespace std::chrono_literals;
+
+template <class T>
+void wait_for_reader(const Writer<T>& writer) {
+  while (writer.matched() == 0) std::this_thread::sleep_for(1ms);
+}
+
+[[noreturn]] void stay() {
+  while (true) pause();
+}
+
+/// COUNT frames as loans, the next when the last is acknowledged.
+void send_frames(Bus& bus, int count) {
+  auto writer = bus.writer(topics::kFrame);
+  wait_for_reader(writer);
+  for (int seq = 0; seq < count; ++seq) {
+    auto frame = writer.loan();
+    fill_frame(*frame, static_cast<std::uint64_t>(seq));
+    writer.write(std::move(frame));
+    writer.wait_acknowledged(1000);
+    std::this_thread::sleep_for(5ms);
+  }
+  stay();
+}
+
+/// Frames without end as fast as possible: a reader cannot keep up.
+void flood_frames(Bus& bus, int) {
+  auto writer = bus.writer(topics::kFrame);
+  for (std::uint64_t seq = 0;; ++seq) {
+    auto frame = writer.loan();
+    fill_frame(*frame, seq);
+    writer.write(std::move(frame));
+  }
+}
+
+/// Answers each FeatureFrame with a TrackingResult of its seq; inliers tells whether every byte was right.
+void answer_features(Bus& bus, int) {
+  auto results = bus.writer(topics::kTracking);
+  const auto reader = bus.reader(topics::kFeatures, [&](std::shared_ptr<const msg::FeatureFrame> features) {
+    msg::TrackingResult result{};
+    result.seq = features->seq;
+    result.inliers = equals_pattern(*features) ? 1 : 0;
+    results.write(result);
+  });
+  stay();
+}
+
+/// Answers each frame with a TrackingResult of its seq, at once.
+void answer_frames(Bus& bus, int) {
+  auto results = bus.writer(topics::kTracking);
+  const auto reader = bus.reader(topics::kFrame, [&](std::shared_ptr<const msg::RgbdFrame> frame) {
+    msg::TrackingResult result{};
+    result.seq = frame->seq;
+    results.write(result);
+  });
+  stay();
+}
+
+/// COUNT keyframe events and one camera info for readers yet to come.
+void leave_history(Bus& bus, int count) {
+  auto keyframes = bus.writer(topics::kKeyframes);
+  auto info = bus.writer(topics::kCameraInfo);
+  for (int i = 0; i < count; ++i) keyframes.write(msg::KeyframeEvent{.event_index = static_cast<std::uint64_t>(i)});
+  info.write(msg::CameraInfo{.header = {{12, 34}, "camera"}, .height = 480, .width = 640});
+  stay();
+}
+
+/// A heartbeat every 50 ms.
+void send_heartbeats(Bus& bus, int) {
+  auto writer = bus.writer(topics::kStatus);
+  while (true) {
+    writer.write(msg::ServiceStatus{.service = "peer", .pid = getpid()});
+    std::this_thread::sleep_for(50ms);
+  }
+}
+
+int run(const std::string& role, std::uint32_t domain, int count) {
+  static const std::map<std::string, std::function<void(Bus&, int)>> kRoles = {
+      {"send_frames", send_frames},     {"flood_frames", flood_frames},   {"answer_features", answer_features},
+      {"answer_frames", answer_frames}, {"leave_history", leave_history}, {"send_heartbeats", send_heartbeats}};
+  const auto entry = kRoles.find(role);
+  if (entry == kRoles.end()) return 2;
+  BusOptions options;
+  options.domain = domain;
+  options.participant_name = "bus-peer";
+  entry->second(*connect(options), count);
+  return 0;
+}
+
+}  // namespace
+}  // namespace rtd::bus
+
+int main(int argc, char** argv) try {
+  if (argc < 3) return 2;
+  return rtd::bus::run(argv[1], static_cast<std::uint32_t>(std::atoi(argv[2])), argc > 3 ? std::atoi(argv[3]) : 0);
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "bus_peer: %s\n", error.what());
+  return 2;
+}

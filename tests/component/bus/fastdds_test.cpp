@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Two connections within one process.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "common/bus/bus_factory.hpp"
+#include "tests/component/bus/collector.hpp"
+#include "tests/component/bus/patterns.hpp"
+#include "tests/component/bus/peer_process.hpp"
+
+namespace rtd::bus {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::shared_ptr<Bus> connect_fastdds() {
+  BusOptions options;
+  options.vendor = "fastdds";
+  options.domain = test_domain();
+  options.participant_name = "bus-test";
+  return connect(options);
+}
+
+template <class T>
+void wait_for_reader(const Writer<T>& writer) {
+  for (int i = 0; writer.matched() == 0; ++i) {
+    ASSERT_LT(i, 5000) << "no reader matched";
+    std::this_thread::sleep_for(1ms);
+  }
+}
+
+class FastddsBus : public testing::Test {
+ protected:
+  std::shared_ptr<Bus> here = connect_fastdds(), there = connect_fastdds();
+};
+
+TEST_F(FastddsBus, delivers_every_kind_of_message) {
+  Collector<msg::FeatureFrame> features;
+  Collector<msg::Odometry> odometry;
+  Collector<msg::ServiceStatus> status;
+  const auto features_reader = there->reader(topics::kFeatures, features.callback());
+  const auto odometry_reader = there->reader(topics::kOdometry, odometry.callback());
+  const auto status_reader = there->reader(topics::kStatus, status.callback());
+  auto features_writer = here->writer(topics::kFeatures);
+  auto odometry_writer = here->writer(topics::kOdometry);
+  auto status_writer = here->writer(topics::kStatus);
+  wait_for_reader(features_writer);
+  wait_for_reader(odometry_writer);
+  wait_for_reader(status_writer);
+
+  auto sent = features_writer.loan();
+  fill_features(*sent, 5);
+  EXPECT_TRUE(features_writer.write(std::move(sent)));
+  msg::Odometry pose;
+  pose.child_frame_id = "camera";
+  EXPECT_TRUE(odometry_writer.write(pose));
+  msg::ServiceStatus heartbeat;
+  heartbeat.metrics = {{"frames_in", 3.0}};
+  EXPECT_TRUE(status_writer.write(heartbeat));
+
+  EXPECT_TRUE(equals_pattern(*features.next()));
+  EXPECT_EQ(odometry.next()->child_frame_id, "camera");
+  EXPECT_EQ(status.next()->metrics.at(0).value, 3.0);
+}
+
+TEST_F(FastddsBus, takes_an_unwritten_loan_back) {
+  auto writer = here->writer(topics::kFrame);
+  for (int i = 0; i < 20; ++i) const auto loan = writer.loan();
+}
+
+TEST_F(FastddsBus, tells_both_sides_when_they_match_and_part) {
+  Collector<int> writer_peers, reader_peers;
+  StatusCallbacks of_writer, of_reader;
+  of_writer.on_matched = [&](int peers) { writer_peers.push(std::make_shared<int>(peers)); };
+  of_reader.on_matched = [&](int peers) { reader_peers.push(std::make_shared<int>(peers)); };
+  auto writer = std::make_unique<Writer<msg::Odometry>>(here->writer(topics::kOdometry, of_writer));
+  const auto reader = there->reader<msg::Odometry>(
+      topics::kOdometry, [](auto) {}, of_reader);
+  EXPECT_EQ(*writer_peers.next(), 1);
+  EXPECT_EQ(*reader_peers.next(), 1);
+  EXPECT_EQ(reader.matched(), 1);
+
+  writer.reset();
+  EXPECT_EQ(*reader_peers.next(), 0);
+}
+
+TEST_F(FastddsBus, names_the_policy_that_keeps_a_pair_apart) {
+  Collector<std::string> by_writer, by_reader;
+  StatusCallbacks of_writer, of_reader;
+  of_writer.on_incompatible_qos = [&](const auto& policy) { by_writer.push(std::make_shared<std::string>(policy)); };
+  of_reader.on_incompatible_qos = [&](const auto& policy) { by_reader.push(std::make_shared<std::string>(policy)); };
+  const Topic<msg::CameraInfo> volatile_info{topics::kCameraInfo.name, QosProfile::kPose};
+  auto writer = here->writer(volatile_info, of_writer);
+  const auto reader = there->reader<msg::CameraInfo>(
+      topics::kCameraInfo, [](auto) {}, of_reader);
+
+  EXPECT_EQ(*by_reader.next(), "DURABILITY");
+  EXPECT_EQ(*by_writer.next(), "DURABILITY");
+  EXPECT_EQ(writer.matched(), 0);
+}
+
+TEST_F(FastddsBus, tells_when_a_promised_heartbeat_stays_away) {
+  Collector<int> missed;
+  StatusCallbacks callbacks;
+  callbacks.on_deadline_missed = [&] { missed.push(std::make_shared<int>(1)); };
+  Collector<msg::ServiceStatus> status;
+  const auto reader = there->reader(topics::kStatus, status.callback(), callbacks);
+  auto writer = here->writer(topics::kStatus);
+  wait_for_reader(writer);
+  writer.write(msg::ServiceStatus{});
+  status.next();
+  EXPECT_EQ(*missed.next(3s), 1);
+}
+
+TEST_F(FastddsBus, no_callback_runs_after_the_reader_is_gone) {
+  auto writer = here->writer(topics::kTracking);
+  std::atomic<bool> stop{false};
+  std::thread sender([&] {
+    while (!stop) {
+      writer.write(msg::TrackingResult{});
+      std::this_thread::sleep_for(100us);
+    }
+  });
+  for (int round = 0; round < 10; ++round) {
+    auto received = std::make_unique<std::atomic<int>>(0);  // a late callback would be a use after free
+    auto reader = there->reader(topics::kTracking, [&counter = *received](auto) { ++counter; });
+    for (int i = 0; i < 5000 && *received < 3; ++i) std::this_thread::sleep_for(1ms);
+    EXPECT_GE(*received, 3);
+    reader = {};
+    received.reset();
+  }
+  stop = true;
+  sender.join();
+}
+
+TEST_F(FastddsBus, refuses_one_topic_with_two_types) {
+  const auto reader = here->reader<msg::Odometry>(topics::kOdometry, [](auto) {});
+  const Topic<msg::PoseStamped> same_name{topics::kOdometry.name, QosProfile::kPose};
+  EXPECT_THROW(here->writer(same_name), BusError);
+}
+
+TEST(FastddsOptions, refuse_a_segment_that_no_image_fits_in) {
+  BusOptions options;
+  options.domain = test_domain();
+  options.shm_segment_mib = 1;
+  EXPECT_THROW(connect(options), BusError);
+}
+
+}  // namespace
+}  // namespace rtd::bus

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+extern char** environ;
+
+namespace rtd::bus {
+
+/// A bus_peer that is killed with this object.
+class PeerProcess {
+ public:
+  PeerProcess(std::string role, std::uint32_t domain, int count = 0) {
+    std::string path = BUS_PEER_PATH, domain_text = std::to_string(domain), count_text = std::to_string(count);
+    char* argv[] = {path.data(), role.data(), domain_text.data(), count_text.data(), nullptr};
+    if (posix_spawn(&pid_, path.c_str(), nullptr, nullptr, argv, environ) != 0) {
+      throw std::runtime_error("cannot start " + path);
+    }
+  }
+  ~PeerProcess() { kill_now(); }
+  PeerProcess(const PeerProcess&) = delete;
+  PeerProcess& operator=(const PeerProcess&) = delete;
+
+  void kill_now() {
+    if (pid_ <= 0) return;
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+    pid_ = 0;
+  }
+
+ private:
+  pid_t pid_ = 0;
+};
+
+/// A domain of this process's own, so that tests can run side by side.
+inline std::uint32_t test_domain() {
+  return 100 + static_cast<std::uint32_t>(getpid()) % 100;
+}
+
+}  // namespace rtd::bus
