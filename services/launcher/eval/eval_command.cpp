@@ -3,12 +3,17 @@
 #include "services/launcher/eval/eval_command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
+#include <stdexcept>
 
 #include "common/service/exit_code.hpp"
 #include "services/launcher/core/evaluation/evaluation_json.hpp"
+#include "services/launcher/core/report/trajectory_plot.hpp"
 #include "services/launcher/eval/eval_table.hpp"
 
 namespace rtd::launcher {
@@ -30,6 +35,26 @@ eval::EvaluationOptions evaluation_options(const EvalOptions& options) {
   result.association = {options.max_difference_s, options.offset_s};
   result.alignment = options.scale ? eval::AlignmentKind::kSimilarity : eval::AlignmentKind::kRigid;
   return result;
+}
+
+/// The plot cannot be written; what() names the file and the fix.
+class PlotError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+void write_plot(const eval::Evaluation& evaluation, const Inputs& inputs, const EvalOptions& options) {
+  const std::filesystem::path path = options.plot;
+  if (path.extension() != ".svg") {
+    throw PlotError("--plot " + options.plot + ": only SVG is written; give the file the ending .svg");
+  }
+  eval::Trajectory groundtruth = inputs.groundtruth;  // on the estimate's clock, which is the plot's
+  const std::int64_t offset_ns = std::llround(options.offset_s * 1e9);
+  for (eval::StampedPose& pose : groundtruth) pose.stamp_ns -= offset_ns;
+  std::ofstream output(path);
+  output << evaluation_svg(evaluation.ate, groundtruth, std::filesystem::path(options.estimate).filename().string());
+  output.flush();
+  if (!output) throw PlotError("--plot " + options.plot + ": cannot be written; check that its folder exists");
 }
 
 }  // namespace
@@ -58,6 +83,7 @@ int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
       err << explain_no_pairs(inputs.estimate, inputs.groundtruth, options);
       return service::kRunFailed;
     }
+    if (!options.plot.empty()) write_plot(evaluation, inputs, options);
     if (options.json) {
       out << eval::to_json(evaluation).dump(2) << "\n";
     } else {
@@ -65,6 +91,9 @@ int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
     }
     return service::kOk;
   } catch (const eval::TrajectoryError& error) {
+    err << "rtd eval: " << error.what() << "\n";
+    return service::kUsageOrConfig;
+  } catch (const PlotError& error) {
     err << "rtd eval: " << error.what() << "\n";
     return service::kUsageOrConfig;
   }
