@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/msg/features.hpp"
+#include "common/vision/feature_grid.hpp"
+#include "common/vision/reprojection.hpp"
+#include "services/slam/core/slam_config.hpp"
+
+namespace rtd::slam {
+
+/// One frame as SLAM sees it: the features that may be used, nothing of the image. Immutable once made and shared
+/// between tracker and mapper; not copyable because the grid refers to the features.
+struct Frame {
+  Frame() = default;
+  Frame(const Frame&) = delete;
+  Frame& operator=(const Frame&) = delete;
+
+  std::uint64_t seq = 0;
+  std::int64_t stamp_ns = 0;
+  vision::RgbdProjection camera;
+  int width_px = 0, height_px = 0;
+  std::vector<msg::Feature> features;  ///< usable ones only; depth_m is 0 where not measured or beyond max_depth_m
+  vision::FeatureGrid grid;
+
+  bool contains(const Eigen::Vector2d& pixel) const {
+    return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < width_px && pixel.y() < height_px;
+  }
+  vision::RgbdMeasurement measurement(std::size_t feature) const {
+    return {{features[feature].u_px, features[feature].v_px}, features[feature].depth_m};
+  }
+  /// p_camera (m) of a feature with depth.
+  Eigen::Vector3d unproject(std::size_t feature) const;
+};
+using FramePtr = std::shared_ptr<const Frame>;
+
+/// What make_frame() did with the message.
+struct FrameInput {
+  FramePtr frame;             ///< null when the message as a whole is unusable
+  std::string error;          ///< then: why
+  std::uint32_t removed = 0;  ///< features left out because the filter judged them dynamic
+  std::uint32_t invalid = 0;  ///< features left out because a value is not finite or out of range
+};
+
+/// Takes the usable features out of a message. Data from outside: never throws for its content.
+FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config);
+
+}  // namespace rtd::slam

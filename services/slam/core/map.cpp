@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/map.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "common/vision/hamming.hpp"
+#include "services/slam/core/scale_pyramid.hpp"
+
+namespace rtd::slam {
+namespace {
+
+/// Descriptors compared when the most typical one is chosen; the newest of a long track say enough.
+constexpr std::size_t kMaxComparedDescriptors = 16;
+
+auto find_observation(std::vector<Observation>& observations, KeyframeId keyframe) {
+  return std::lower_bound(observations.begin(), observations.end(), keyframe,
+                          [](const Observation& o, KeyframeId id) { return o.keyframe < id; });
+}
+
+}  // namespace
+
+KeyframeId Map::add_keyframe(FramePtr frame, const Eigen::Isometry3d& T_world_camera, KeyframeId parent) {
+  const KeyframeId id = next_keyframe_++;
+  Keyframe keyframe;
+  keyframe.id = id;
+  keyframe.landmarks.assign(frame->features.size(), kNoLandmark);
+  keyframe.frame = std::move(frame);
+  keyframe.T_world_camera = T_world_camera;
+  keyframe.parent = parent;
+  keyframes_.emplace(id, std::move(keyframe));
+  return id;
+}
+
+LandmarkId Map::add_landmark(const Eigen::Vector3d& p_world, Observation observation) {
+  const LandmarkId id = next_landmark_++;
+  Landmark landmark;
+  landmark.id = id;
+  landmark.position = p_world;
+  landmark.reference = landmark.first_keyframe = observation.keyframe;
+  landmarks_.emplace(id, std::move(landmark));
+  add_observation(id, observation);
+  return id;
+}
+
+bool Map::add_observation(LandmarkId id, Observation observation) {
+  Landmark& landmark = landmarks_.at(id);
+  Keyframe& keyframe = keyframes_.at(observation.keyframe);
+  if (keyframe.landmarks[observation.feature] != kNoLandmark) return false;
+  const auto position = find_observation(landmark.observations, observation.keyframe);
+  if (position != landmark.observations.end() && position->keyframe == observation.keyframe) return false;
+  change_covisibility(landmark, observation.keyframe, +1);
+  landmark.observations.insert(position, observation);
+  keyframe.landmarks[observation.feature] = id;
+  return true;
+}
+
+void Map::remove_observation(LandmarkId id, KeyframeId keyframe) {
+  Landmark& landmark = landmarks_.at(id);
+  const auto position = find_observation(landmark.observations, keyframe);
+  if (position == landmark.observations.end() || position->keyframe != keyframe) return;
+  keyframes_.at(keyframe).landmarks[position->feature] = kNoLandmark;
+  landmark.observations.erase(position);
+  change_covisibility(landmark, keyframe, -1);
+  if (landmark.observations.empty()) {
+    landmarks_.erase(id);
+  } else if (landmark.reference == keyframe) {
+    landmark.reference = landmark.observations.front().keyframe;
+  }
+}
+
+void Map::remove_landmark(LandmarkId id) {
+  while (const Landmark* landmark = find_landmark(id)) remove_observation(id, landmark->observations.back().keyframe);
+}
+
+void Map::replace_landmark(LandmarkId lost_id, LandmarkId kept_id) {
+  if (lost_id == kept_id) return;
+  const Landmark lost = landmarks_.at(lost_id);
+  remove_landmark(lost_id);
+  for (const Observation& observation : lost.observations) add_observation(kept_id, observation);
+  Landmark& kept = landmarks_.at(kept_id);
+  kept.visible += lost.visible;
+  kept.found += lost.found;
+  refresh_landmark(kept_id);
+}
+
+void Map::remove_keyframe(KeyframeId id) {
+  Keyframe& keyframe = keyframes_.at(id);
+  for (const LandmarkId landmark : std::vector<LandmarkId>(keyframe.landmarks)) {
+    if (landmark != kNoLandmark) remove_observation(landmark, id);
+  }
+  const Keyframe& parent = keyframes_.at(keyframe.parent);
+  removed_[id] = {keyframe.parent, parent.T_world_camera.inverse() * keyframe.T_world_camera};
+  for (auto& [other_id, other] : keyframes_) {
+    if (other.parent == id) other.parent = keyframe.parent;
+  }
+  keyframes_.erase(id);
+}
+
+void Map::change_covisibility(const Landmark& landmark, KeyframeId keyframe, int change) {
+  auto& own = keyframes_.at(keyframe).covisible;
+  for (const Observation& observation : landmark.observations) {
+    if (observation.keyframe == keyframe) continue;
+    auto& others = keyframes_.at(observation.keyframe).covisible;
+    const int shared = own[observation.keyframe] += change;
+    others[keyframe] = shared;
+    if (shared > 0) continue;
+    own.erase(observation.keyframe);
+    others.erase(keyframe);
+  }
+}
+
+void Map::refresh_landmark(LandmarkId id) {
+  refresh_geometry(id);
+  refresh_appearance(landmarks_.at(id));
+}
+
+void Map::refresh_geometry(LandmarkId id) {
+  Landmark& landmark = landmarks_.at(id);
+  Eigen::Vector3d direction_sum = Eigen::Vector3d::Zero();
+  for (const Observation& observation : landmark.observations) {
+    const Keyframe& keyframe = keyframes_.at(observation.keyframe);
+    direction_sum += (landmark.position - keyframe.T_world_camera.translation()).normalized();
+    if (observation.keyframe != landmark.reference) continue;
+    const double distance_m = (landmark.position - keyframe.T_world_camera.translation()).norm();
+    landmark.max_distance_m = distance_m * kOctaveScale[keyframe.frame->features[observation.feature].octave];
+    landmark.min_distance_m = landmark.max_distance_m / kOctaveScale.back();
+  }
+  landmark.normal = direction_sum.normalized();
+}
+
+void Map::refresh_appearance(Landmark& landmark) {
+  std::array<const msg::Descriptor*, kMaxComparedDescriptors> descriptors{};
+  std::size_t count = 0;
+  double probability_sum = 0;
+  for (auto it = landmark.observations.rbegin(); it != landmark.observations.rend(); ++it) {
+    const msg::Feature& feature = keyframes_.at(it->keyframe).frame->features[it->feature];
+    probability_sum += feature.static_probability;
+    if (count < descriptors.size()) descriptors[count++] = &feature.descriptor;
+  }
+  landmark.static_probability = probability_sum / static_cast<double>(landmark.observations.size());
+  int best_median = std::numeric_limits<int>::max();
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<int, kMaxComparedDescriptors> distances{};
+    for (std::size_t j = 0; j < count; ++j) distances[j] = vision::hamming_distance(*descriptors[i], *descriptors[j]);
+    const auto median = distances.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
+    std::nth_element(distances.begin(), median, distances.begin() + static_cast<std::ptrdiff_t>(count));
+    if (*median < best_median) {
+      best_median = *median;
+      landmark.descriptor = *descriptors[i];
+    }
+  }
+}
+
+const Landmark* Map::find_landmark(LandmarkId id) const {
+  const auto it = landmarks_.find(id);
+  return it == landmarks_.end() ? nullptr : &it->second;
+}
+
+Landmark* Map::find_landmark(LandmarkId id) {
+  const auto it = landmarks_.find(id);
+  return it == landmarks_.end() ? nullptr : &it->second;
+}
+
+const Keyframe* Map::find_keyframe(KeyframeId id) const {
+  const auto it = keyframes_.find(id);
+  return it == keyframes_.end() ? nullptr : &it->second;
+}
+
+Keyframe* Map::find_keyframe(KeyframeId id) {
+  const auto it = keyframes_.find(id);
+  return it == keyframes_.end() ? nullptr : &it->second;
+}
+
+Eigen::Isometry3d Map::T_world_keyframe(KeyframeId id) const {
+  Eigen::Isometry3d T_ancestor_camera = Eigen::Isometry3d::Identity();
+  for (auto it = removed_.find(id); it != removed_.end(); it = removed_.find(id)) {
+    T_ancestor_camera = it->second.T_parent_camera * T_ancestor_camera;
+    id = it->second.parent;
+  }
+  return keyframes_.at(id).T_world_camera * T_ancestor_camera;
+}
+
+std::vector<KeyframeId> Map::best_covisible(KeyframeId id, std::size_t count, int min_shared) const {
+  std::vector<std::pair<int, KeyframeId>> ranked;
+  for (const auto& [other, shared] : keyframes_.at(id).covisible) {
+    if (shared >= min_shared) ranked.emplace_back(-shared, other);
+  }
+  std::sort(ranked.begin(), ranked.end());
+  if (ranked.size() > count) ranked.resize(count);
+  std::vector<KeyframeId> best;
+  best.reserve(ranked.size());
+  for (const auto& [shared, other] : ranked) best.push_back(other);
+  return best;
+}
+
+int Map::observation_weight(const Landmark& landmark) const {
+  int weight = 0;
+  for (const Observation& o : landmark.observations) {
+    weight += keyframes_.at(o.keyframe).frame->features[o.feature].depth_m > 0 ? 2 : 1;
+  }
+  return weight;
+}
+
+std::vector<LandmarkId> Map::landmark_ids() const {
+  std::vector<LandmarkId> ids;
+  ids.reserve(landmarks_.size());
+  for (const auto& [id, landmark] : landmarks_) ids.push_back(id);
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+}  // namespace rtd::slam

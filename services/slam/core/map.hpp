@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "common/msg/features.hpp"
+#include "services/slam/core/frame.hpp"
+
+namespace rtd::slam {
+
+using KeyframeId = std::uint32_t;
+using LandmarkId = std::uint64_t;
+inline constexpr KeyframeId kNoKeyframe = std::numeric_limits<KeyframeId>::max();
+inline constexpr LandmarkId kNoLandmark = std::numeric_limits<LandmarkId>::max();
+
+/// Landmark `landmark` is feature `feature` of keyframe `keyframe`.
+struct Observation {
+  KeyframeId keyframe = kNoKeyframe;
+  std::uint32_t feature = 0;
+};
+
+struct Landmark {
+  LandmarkId id = kNoLandmark;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< p_world, m
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< mean viewing direction, camera -> landmark, world frame
+  double min_distance_m = 0, max_distance_m = 0;       ///< from where the pyramid can show it
+  double static_probability = 1.0;                     ///< mean over its observations
+  msg::Descriptor descriptor{};                        ///< the observation that is nearest to all others
+  KeyframeId reference = kNoKeyframe;                  ///< keyframe that scale is measured from
+  KeyframeId first_keyframe = kNoKeyframe;             ///< keyframe that made it
+  std::uint32_t visible = 1, found = 1;                ///< frames that should have seen it / did
+  std::vector<Observation> observations;               ///< ordered by keyframe, one per keyframe
+};
+
+struct Keyframe {
+  KeyframeId id = kNoKeyframe;
+  FramePtr frame;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  std::vector<LandmarkId> landmarks;    ///< per feature, kNoLandmark where none
+  std::map<KeyframeId, int> covisible;  ///< keyframe -> landmarks in common
+  KeyframeId parent = kNoKeyframe;      ///< older keyframe it was tracked from; none for the first
+};
+
+/// Where a removed keyframe hangs now.
+struct RemovedKeyframe {
+  KeyframeId parent = kNoKeyframe;
+  Eigen::Isometry3d T_parent_camera = Eigen::Isometry3d::Identity();
+};
+
+/// Keyframes, landmarks and who sees what. One writer (the mapper), no locks: readers get LocalMap snapshots.
+///
+/// Invariants, checked by check_invariants(): an observation is known to both its keyframe and its landmark; every
+/// landmark has at least one; `covisible` counts exactly the landmarks in common and is symmetric; parents are older.
+class Map {
+ public:
+  /// Ids count up from 0 and are never reused. `parent` may be kNoKeyframe for the first.
+  KeyframeId add_keyframe(FramePtr frame, const Eigen::Isometry3d& T_world_camera, KeyframeId parent);
+  /// A landmark first seen as `observation`.
+  LandmarkId add_landmark(const Eigen::Vector3d& p_world, Observation observation);
+  /// False when the keyframe sees this landmark already or its feature belongs to another one.
+  bool add_observation(LandmarkId landmark, Observation observation);
+  /// Takes the observation of one keyframe away; the last one takes the landmark with it.
+  void remove_observation(LandmarkId landmark, KeyframeId keyframe);
+  void remove_landmark(LandmarkId landmark);
+  /// `kept` takes over what `lost` has been; where a keyframe sees both, `kept` keeps its own observation.
+  void replace_landmark(LandmarkId lost, LandmarkId kept);
+  /// Removes a keyframe other than the first; its children go to its parent, its pose stays known relative to it.
+  void remove_keyframe(KeyframeId keyframe);
+
+  /// Recomputes normal, distance range, descriptor and static probability from the observations.
+  void refresh_landmark(LandmarkId landmark);
+  void refresh_geometry(LandmarkId landmark);
+
+  /// Null when unknown (removed meanwhile).
+  const Landmark* find_landmark(LandmarkId id) const;
+  Landmark* find_landmark(LandmarkId id);
+  const Keyframe* find_keyframe(KeyframeId id) const;
+  Keyframe* find_keyframe(KeyframeId id);
+
+  /// Current pose of a keyframe that exists or existed.
+  Eigen::Isometry3d T_world_keyframe(KeyframeId id) const;
+  /// What a removed keyframe hangs on (possibly removed itself).
+  KeyframeId parent_of_removed(KeyframeId id) const { return removed_.at(id).parent; }
+  /// Up to `count` keyframes with at least `min_shared` landmarks in common, most first.
+  std::vector<KeyframeId> best_covisible(KeyframeId id, std::size_t count, int min_shared = 15) const;
+  /// Observations counted as ORB-SLAM2 does: one with depth counts two.
+  int observation_weight(const Landmark& landmark) const;
+
+  const std::map<KeyframeId, Keyframe>& keyframes() const { return keyframes_; }
+  std::vector<LandmarkId> landmark_ids() const;  ///< ascending
+  std::size_t landmark_count() const { return landmarks_.size(); }
+  bool empty() const { return keyframes_.empty(); }
+  /// Empty when all invariants hold, else the first that does not. For tests.
+  std::string check_invariants() const;
+
+ private:
+  void change_covisibility(const Landmark& landmark, KeyframeId keyframe, int change);
+  void refresh_appearance(Landmark& landmark);
+
+  std::map<KeyframeId, Keyframe> keyframes_;
+  std::unordered_map<LandmarkId, Landmark> landmarks_;
+  std::map<KeyframeId, RemovedKeyframe> removed_;
+  KeyframeId next_keyframe_ = 0;
+  LandmarkId next_landmark_ = 0;
+};
+
+}  // namespace rtd::slam

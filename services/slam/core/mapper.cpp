@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/mapper.hpp"
+
+#include "common/geometry/se3.hpp"
+#include "services/slam/core/landmark_creation.hpp"
+#include "services/slam/core/landmark_fusion.hpp"
+#include "services/slam/core/local_bundle_adjustment.hpp"
+
+namespace rtd::slam {
+
+KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<bool()>& interrupted) {
+  const auto busy = [&] { return interrupted && interrupted(); };
+  count_statistics(proposal.statistics);
+  const KeyframeId keyframe = add_keyframe(proposal);
+  recent_.cull(map_, keyframe, config_.mapper.min_found_ratio);
+  create_landmarks(keyframe);
+  if (!busy()) fuse_landmarks(map_, keyframe, config_.mapper.neighbours);
+  if (!busy() && map_.keyframes().size() > 2) adjust_local_map(map_, keyframe, config_.mapper, interrupted);
+  cull_keyframes(keyframe);
+  const Keyframe& created = *map_.find_keyframe(keyframe);
+  announced_[keyframe] = created.T_world_camera;
+  changes_.push_back(
+      {KeyframeChange::Kind::kCreated, keyframe, created.frame->seq, created.frame->stamp_ns, created.T_world_camera});
+  note_moved_keyframes();
+  return keyframe;
+}
+
+KeyframeId Mapper::add_keyframe(const KeyframeProposal& proposal) {
+  const bool first = proposal.reference == kNoKeyframe;
+  const Eigen::Isometry3d T_world_camera =
+      first ? proposal.T_reference_camera : map_.T_world_keyframe(proposal.reference) * proposal.T_reference_camera;
+  KeyframeId parent = proposal.reference;
+  while (!first && map_.find_keyframe(parent) == nullptr) parent = map_.parent_of_removed(parent);
+  const KeyframeId id = map_.add_keyframe(proposal.frame, geometry::normalized(T_world_camera), parent);
+  for (std::uint32_t feature = 0; feature < proposal.landmarks.size(); ++feature) {
+    const LandmarkId landmark = proposal.landmarks[feature];
+    if (landmark == kNoLandmark || map_.find_landmark(landmark) == nullptr) continue;
+    if (map_.add_observation(landmark, {id, feature})) map_.refresh_landmark(landmark);
+  }
+  return id;
+}
+
+void Mapper::count_statistics(const std::vector<LandmarkStatistics>& statistics) {
+  for (const LandmarkStatistics& entry : statistics) {
+    Landmark* landmark = map_.find_landmark(entry.landmark);
+    if (landmark == nullptr) continue;
+    landmark->visible += entry.visible;
+    landmark->found += entry.found;
+  }
+}
+
+void Mapper::create_landmarks(KeyframeId keyframe) {
+  recent_.add(create_from_depth(map_, keyframe, config_.sensor.close_depth_m));
+  recent_.add(create_by_triangulation(map_, keyframe, config_.mapper.neighbours));
+}
+
+void Mapper::cull_keyframes(KeyframeId newest) {
+  for (const KeyframeId id : map_.best_covisible(newest, kMaxRedundancyCandidates)) {
+    if (!is_redundant_keyframe(map_, id, config_.mapper.redundant_ratio, config_.sensor.close_depth_m)) continue;
+    const Keyframe& keyframe = *map_.find_keyframe(id);
+    changes_.push_back(
+        {KeyframeChange::Kind::kRemoved, id, keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera});
+    announced_.erase(id);
+    map_.remove_keyframe(id);
+  }
+}
+
+void Mapper::note_moved_keyframes() {
+  for (auto& [id, T_world_announced] : announced_) {
+    const Keyframe& keyframe = *map_.find_keyframe(id);
+    const Eigen::Isometry3d T_announced_now = T_world_announced.inverse() * keyframe.T_world_camera;
+    if (T_announced_now.translation().norm() < config_.mapper.correction_m &&
+        geometry::rotation_angle_rad(T_announced_now) < config_.mapper.correction_rad) {
+      continue;
+    }
+    T_world_announced = keyframe.T_world_camera;
+    changes_.push_back(
+        {KeyframeChange::Kind::kCorrected, id, keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera});
+  }
+}
+
+LocalMapPtr Mapper::local_map(KeyframeId centre) {
+  while (map_.find_keyframe(centre) == nullptr) centre = map_.parent_of_removed(centre);
+  return make_local_map(map_, centre, ++snapshots_);
+}
+
+std::vector<KeyframeChange> Mapper::take_changes() {
+  return std::exchange(changes_, {});
+}
+
+}  // namespace rtd::slam

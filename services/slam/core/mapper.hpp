@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "services/slam/core/culling.hpp"
+#include "services/slam/core/local_map.hpp"
+#include "services/slam/core/map.hpp"
+
+namespace rtd::slam {
+
+/// How often tracking expected and found a landmark since the last keyframe.
+struct LandmarkStatistics {
+  LandmarkId landmark = kNoLandmark;
+  std::uint32_t visible = 0, found = 0;
+};
+
+/// A frame that is to become a keyframe. Its pose hangs on its reference keyframe, because the map may have moved
+/// since it was tracked.
+struct KeyframeProposal {
+  FramePtr frame;
+  KeyframeId reference = kNoKeyframe;  ///< kNoKeyframe: the first keyframe, T_reference_camera is its world pose
+  Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
+  std::vector<LandmarkId> landmarks;  ///< per feature
+  std::vector<LandmarkStatistics> statistics;
+};
+
+/// What became of a keyframe since it was last told.
+struct KeyframeChange {
+  enum class Kind : std::uint8_t { kCreated, kCorrected, kRemoved };
+  Kind kind = Kind::kCreated;
+  KeyframeId id = kNoKeyframe;
+  std::uint64_t frame_seq = 0;
+  std::int64_t stamp_ns = 0;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+};
+
+/// Local mapping, docs/theory/mapping.md: grows the map by keyframes, makes and culls landmarks, adjusts the
+/// neighbourhood. The only writer of the map; one thread at a time.
+class Mapper {
+ public:
+  explicit Mapper(const SlamConfig& config) : config_(config) {}
+
+  /// Takes a keyframe into the map. `interrupted` (another keyframe waits) shortens the work.
+  KeyframeId insert(const KeyframeProposal& proposal, const std::function<bool()>& interrupted = {});
+  /// A snapshot around `centre`, or around what `centre` hung on when it was removed meanwhile.
+  LocalMapPtr local_map(KeyframeId centre);
+  /// Created, corrected and removed keyframes since the last call, in order.
+  std::vector<KeyframeChange> take_changes();
+  const Map& map() const { return map_; }
+
+ private:
+  KeyframeId add_keyframe(const KeyframeProposal& proposal);
+  void count_statistics(const std::vector<LandmarkStatistics>& statistics);
+  void create_landmarks(KeyframeId keyframe);
+  void cull_keyframes(KeyframeId newest);
+  void note_moved_keyframes();
+
+  SlamConfig config_;
+  Map map_;
+  RecentLandmarks recent_;
+  std::map<KeyframeId, Eigen::Isometry3d> announced_;  ///< T_world_camera as last told
+  std::vector<KeyframeChange> changes_;
+  std::uint64_t snapshots_ = 0;
+};
+
+}  // namespace rtd::slam

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace rtd::slam {
+
+/// Every number of the SLAM core with its default; bound to keys `slam.*` in services/slam/config.cpp.
+
+/// The camera and its features, as SLAM weighs them.
+struct SensorConfig {
+  double disparity_px_m = 40.0;  ///< weight of depth against pixels, vision::RgbdProjection::disparity_px_m
+  double close_depth_m = 3.0;    ///< nearer depths make landmarks at once, farther ones wait for a second view
+  double max_depth_m = 8.0;      ///< depth beyond is not used at all
+};
+
+struct TrackerConfig {
+  int min_initial_points = 100;    ///< features with depth that the first keyframe needs
+  double motion_radius_px = 15.0;  ///< search radius of the motion model at the finest octave
+  double local_radius_px = 3.0;    ///< factor on 2.5 / 4 px when the local map is searched
+  int min_motion_inliers = 20;     ///< fewer: track against the reference keyframe instead
+  int min_inliers = 30;            ///< landmarks that a pose needs to count as tracked
+  int recently_lost_frames = 30;   ///< failed frames before "recently lost" becomes "lost"
+  int recovery_keyframes = 3;      ///< keyframes tried in each frame while lost
+};
+
+/// When a frame becomes a keyframe: docs/theory/tracking.md, "Keyframes".
+struct KeyframeConfig {
+  int max_gap_frames = 30;        ///< a keyframe at least so often
+  int min_gap_frames = 0;         ///< and not more often
+  double reference_ratio = 0.75;  ///< tracked / reference landmarks below which the view is new
+  double weak_ratio = 0.25;       ///< below: insert although the mapper is busy
+  int min_close_tracked = 100;    ///< fewer close landmarks tracked ...
+  int min_close_untracked = 70;   ///< ... and more close features that could become landmarks: insert
+  int min_inliers = 15;           ///< fewer: a keyframe would rather harm
+};
+
+struct MapperConfig {
+  int neighbours = 10;            ///< covisible keyframes for triangulation and fusion
+  double min_found_ratio = 0.25;  ///< landmarks found less often than they should be seen are removed
+  double redundant_ratio = 0.9;   ///< keyframes whose landmarks are seen by three others are removed
+  int ba_keyframes = 12;          ///< optimised keyframes of a local bundle adjustment
+  int ba_fixed_keyframes = 20;    ///< keyframes that hold the gauge
+  int ba_iterations_robust = 5;   ///< with Huber, before outliers are taken out
+  int ba_iterations = 5;          ///< after
+  double correction_m = 0.002;    ///< a keyframe that moved more is announced again
+  double correction_rad = 0.001;
+};
+
+struct SlamConfig {
+  SensorConfig sensor;
+  TrackerConfig tracker;
+  KeyframeConfig keyframe;
+  MapperConfig mapper;
+};
+
+}  // namespace rtd::slam

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/slam_system.hpp"
+
+#include <algorithm>
+
+#include "common/msg/transform_eigen.hpp"
+
+namespace rtd::slam {
+namespace {
+
+msg::KeyframeEventKind to_message(KeyframeChange::Kind kind) {
+  switch (kind) {
+    case KeyframeChange::Kind::kCreated:
+      return msg::KeyframeEventKind::kCreated;
+    case KeyframeChange::Kind::kCorrected:
+      return msg::KeyframeEventKind::kCorrected;
+    case KeyframeChange::Kind::kRemoved:
+      break;
+  }
+  return msg::KeyframeEventKind::kRemoved;
+}
+
+float to_ms(std::int64_t duration_ns) {
+  return static_cast<float>(static_cast<double>(duration_ns) * 1e-6);
+}
+
+}  // namespace
+
+SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns)
+    : config_(config), now_ns_(now_ns), mapping_(config, mode), tracker_(config, std::move(now_ns)) {}
+
+SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
+  const std::int64_t start_ns = now_ns_();
+  SlamOutput output;
+  watch_source(message);
+  const FrameInput input = make_frame(message, config_.sensor);
+  output.invalid_features = input.invalid;
+  const TrackOutcome outcome = mapping_.snapshot() == nullptr ? initialize(input, output) : track(input, output);
+  collect_events(output);
+  fill_result(message, input, outcome, output);
+  output.result.stage_ms[msg::kStageSlamTotal] = to_ms(now_ns_() - start_ns);
+  return output;
+}
+
+/// A source that starts again, or another camera, shows in seq, stamp or intrinsics.
+void SlamSystem::watch_source(const msg::FeatureFrame& message) {
+  if (last_seq_ &&
+      (message.seq <= *last_seq_ || message.stamp_ns <= last_stamp_ns_ || message.intrinsics != last_intrinsics_)) {
+    ++source_restarts_;
+    tracker_.forget_motion();
+  }
+  last_seq_ = message.seq;
+  last_stamp_ns_ = message.stamp_ns;
+  last_intrinsics_ = message.intrinsics;
+}
+
+TrackOutcome SlamSystem::initialize(const FrameInput& input, SlamOutput& output) {
+  if (input.frame == nullptr) {
+    output.problem = input.error;
+    return {};
+  }
+  if (!tracker_.can_initialize(*input.frame)) {
+    output.problem =
+        "initialising: fewer than " + std::to_string(config_.tracker.min_initial_points) + " features with depth";
+    return {};
+  }
+  const std::int64_t start_ns = now_ns_();
+  KeyframeProposal first;
+  first.frame = input.frame;
+  first.landmarks.assign(input.frame->features.size(), kNoLandmark);
+  mapping_.insert(std::move(first));
+  const LocalMapPtr map = mapping_.snapshot();
+  requested_centre_ = map->keyframes.front().id;
+  TrackOutcome outcome = tracker_.initialize(input.frame, requested_centre_);
+  outcome.inliers = static_cast<int>(map->landmarks.size());
+  outcome.stage_ms[msg::kStageMapping] = to_ms(now_ns_() - start_ns);
+  frames_.push_back(
+      {input.frame->seq, input.frame->stamp_ns, outcome.tracked.reference, outcome.tracked.T_reference_camera});
+  return outcome;
+}
+
+TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
+  if (input.frame == nullptr) {
+    output.problem = input.error;
+    TrackOutcome outcome;
+    outcome.state = msg::TrackingState::kRecentlyLost;
+    return outcome;
+  }
+  const LocalMapPtr map = mapping_.snapshot();
+  TrackOutcome outcome = tracker_.track(input.frame, *map);
+  if (outcome.state != msg::TrackingState::kOk) {
+    output.problem = "lost: " + std::to_string(outcome.inliers) + " of " + std::to_string(config_.tracker.min_inliers) +
+                     " landmarks that a pose needs";
+    return outcome;
+  }
+  frames_.push_back(
+      {input.frame->seq, input.frame->stamp_ns, outcome.tracked.reference, outcome.tracked.T_reference_camera});
+  maybe_insert_keyframe(*map, outcome);
+  return outcome;
+}
+
+void SlamSystem::maybe_insert_keyframe(const LocalMap& map, TrackOutcome& outcome) {
+  const std::int64_t start_ns = now_ns_();
+  const KeyframeSituation situation = tracker_.keyframe_situation(map, mapping_.idle());
+  const bool insert = decide_keyframe(situation, config_.keyframe) == KeyframeDecision::kOffer && mapping_.room();
+  outcome.stage_ms[msg::kStageKeyframe] = to_ms(now_ns_() - start_ns);
+  const std::int64_t mapping_start_ns = now_ns_();
+  if (insert) {
+    mapping_.insert(tracker_.propose_keyframe());
+    requested_centre_ = kNoKeyframe;
+  } else if (outcome.tracked.reference != map.keyframes.front().id && outcome.tracked.reference != requested_centre_) {
+    requested_centre_ = outcome.tracked.reference;
+    mapping_.recentre(requested_centre_);
+  }
+  outcome.stage_ms[msg::kStageMapping] = to_ms(now_ns_() - mapping_start_ns);
+}
+
+void SlamSystem::collect_events(SlamOutput& output) {
+  for (const KeyframeChange& change : mapping_.take_changes()) {
+    output.events.push_back({event_count_++, change.frame_seq, change.stamp_ns, msg::to_message(change.T_world_camera),
+                             change.id, to_message(change.kind)});
+  }
+}
+
+void SlamSystem::fill_result(const msg::FeatureFrame& message, const FrameInput& input, const TrackOutcome& outcome,
+                             SlamOutput& output) {
+  msg::TrackingResult& result = output.result;
+  result.seq = message.seq;
+  result.stamp_ns = message.stamp_ns;
+  result.T_world_camera = msg::to_message(outcome.tracked.T_world_camera);
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(result.covariance.data()) = outcome.covariance;
+  result.event_count = event_count_;
+  result.state = outcome.state;
+  result.inliers = static_cast<std::uint32_t>(outcome.inliers);
+  result.features_static = input.frame == nullptr ? 0 : static_cast<std::uint32_t>(input.frame->features.size());
+  result.features_removed = input.removed;
+  result.stage_ms = outcome.stage_ms;
+  if (const LocalMapPtr map = mapping_.snapshot()) {
+    result.keyframes = static_cast<std::uint32_t>(map->map_keyframes);
+    result.landmarks = static_cast<std::uint32_t>(map->map_landmarks);
+  }
+}
+
+std::vector<StampedPose> SlamSystem::trajectory() const {
+  std::vector<StampedPose> poses;
+  mapping_.read([&](const Map& map) { poses = compose_trajectory(map, frames_); });
+  return poses;
+}
+
+std::vector<StampedPose> SlamSystem::keyframes() const {
+  std::vector<StampedPose> poses;
+  mapping_.read([&](const Map& map) { poses = keyframe_trajectory(map); });
+  return poses;
+}
+
+std::vector<MapPoint> SlamSystem::map_points() const {
+  std::vector<MapPoint> points;
+  mapping_.read([&](const Map& map) { points = slam::map_points(map); });
+  return points;
+}
+
+}  // namespace rtd::slam

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/msg/features.hpp"
+#include "common/msg/tracking.hpp"
+#include "services/slam/core/mapping_worker.hpp"
+#include "services/slam/core/tracker.hpp"
+#include "services/slam/core/trajectory.hpp"
+
+namespace rtd::slam {
+
+/// What one frame led to.
+struct SlamOutput {
+  msg::TrackingResult result{};            ///< published_ns and finished_ns are the caller's to fill
+  std::vector<msg::KeyframeEvent> events;  ///< to be published before the result
+  std::uint32_t invalid_features = 0;      ///< left out because a value is not finite or out of range
+  std::string problem;                     ///< one line for people when the frame is not tracked; else empty
+};
+
+/// RGB-D SLAM on features: tracking, keyframes, local mapping. docs/theory/{tracking,mapping}.md.
+/// process() and the writers: one thread. map_points(): any.
+class SlamSystem {
+ public:
+  SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns);
+
+  /// Never throws for the content of the message. Frames are expected in order; a seq that jumps back is taken for a
+  /// source that started again: motion is forgotten, the map stays.
+  SlamOutput process(const msg::FeatureFrame& message);
+  /// Ends mapping: everything queued is worked off. The trajectories are final after it.
+  void finish() { mapping_.finish(); }
+
+  std::vector<StampedPose> trajectory() const;
+  std::vector<StampedPose> keyframes() const;
+  std::vector<MapPoint> map_points() const;
+  std::size_t frames_tracked() const { return frames_.size(); }
+  std::uint64_t source_restarts() const { return source_restarts_; }
+
+ private:
+  void watch_source(const msg::FeatureFrame& message);
+  TrackOutcome initialize(const FrameInput& input, SlamOutput& output);
+  TrackOutcome track(const FrameInput& input, SlamOutput& output);
+  void maybe_insert_keyframe(const LocalMap& map, TrackOutcome& outcome);
+  void follow_reference(const LocalMap& map, KeyframeId reference);
+  void collect_events(SlamOutput& output);
+  void fill_result(const msg::FeatureFrame& message, const FrameInput& input, const TrackOutcome& outcome,
+                   SlamOutput& output);
+
+  SlamConfig config_;
+  Clock now_ns_;
+  MappingWorker mapping_;
+  Tracker tracker_;
+  std::vector<FrameRecord> frames_;
+  std::uint64_t event_count_ = 0;
+  std::uint64_t source_restarts_ = 0;
+  std::optional<std::uint64_t> last_seq_;
+  std::int64_t last_stamp_ns_ = 0;
+  std::array<double, 4> last_intrinsics_{};
+  KeyframeId requested_centre_ = kNoKeyframe;
+};
+
+}  // namespace rtd::slam

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/tracker.hpp"
+
+#include <algorithm>
+
+namespace rtd::slam {
+namespace {
+
+constexpr double kNanosecondsPerSecond = 1e9;
+constexpr double kMaxPredictionGap_s = 0.5;  ///< a longer gap says nothing about the motion
+
+double seconds_between(const Frame& earlier, const Frame& later) {
+  return static_cast<double>(later.stamp_ns - earlier.stamp_ns) / kNanosecondsPerSecond;
+}
+
+}  // namespace
+
+KeyframeId vote_reference(const LocalMap& map, const std::vector<LandmarkId>& landmarks) {
+  std::vector<int> votes(map.keyframes.size(), 0);
+  for (const LandmarkId id : landmarks) {
+    const LocalLandmark* landmark = id == kNoLandmark ? nullptr : map.find_landmark(id);
+    if (landmark == nullptr) continue;
+    for (std::uint32_t i = 0; i < landmark->observers; ++i) ++votes[map.observers[landmark->first_observer + i]];
+  }
+  const auto most = std::max_element(votes.begin(), votes.end());
+  return most == votes.end() || *most == 0 ? kNoKeyframe
+                                           : map.keyframes[static_cast<std::size_t>(most - votes.begin())].id;
+}
+
+bool Tracker::can_initialize(const Frame& frame) const {
+  const auto with_depth = std::count_if(frame.features.begin(), frame.features.end(),
+                                        [](const msg::Feature& feature) { return feature.depth_m > 0; });
+  return with_depth >= config_.tracker.min_initial_points;
+}
+
+TrackOutcome Tracker::initialize(FramePtr frame, KeyframeId first) {
+  TrackOutcome outcome;
+  outcome.state = state_ = msg::TrackingState::kOk;
+  last_ = TrackedFrame{};
+  last_.landmarks.assign(frame->features.size(), kNoLandmark);
+  last_.frame = std::move(frame);
+  last_.reference = first;
+  outcome.tracked = last_;
+  frames_since_keyframe_ = 0;
+  return outcome;
+}
+
+TrackOutcome Tracker::track(FramePtr frame, const LocalMap& map) {
+  const std::int64_t start_ns = now_ns_();
+  const auto elapsed_ms = [&] { return static_cast<float>(static_cast<double>(now_ns_() - start_ns) * 1e-6); };
+  TrackOutcome outcome;
+  adopt(map);
+  const PoseGuess guess = find_pose(*frame, map);
+  outcome.stage_ms[msg::kStageMatch] = elapsed_ms();
+  if (!guess.success) {
+    reject(outcome);
+    return outcome;
+  }
+  const LocalMapTracking tracking = track_local_map(*frame, map, guess, config_);
+  outcome.stage_ms[msg::kStageLocalMap] = elapsed_ms() - outcome.stage_ms[msg::kStageMatch];
+  outcome.inliers = tracking.guess.inliers;
+  if (acceptable(tracking.guess)) {
+    accept(outcome, std::move(frame), map, tracking);
+  } else {
+    reject(outcome);
+  }
+  return outcome;
+}
+
+void Tracker::forget_motion() {
+  velocity_per_s_.reset();
+  if (state_ == msg::TrackingState::kOk) state_ = msg::TrackingState::kRecentlyLost;
+}
+
+/// The map may have moved under the last frame, and the last frame may have become a keyframe with new landmarks.
+void Tracker::adopt(const LocalMap& map) {
+  for (const LocalKeyframe& keyframe : map.keyframes) {
+    if (keyframe.frame != last_.frame) continue;
+    last_.T_world_camera = keyframe.T_world_camera;
+    last_.landmarks = keyframe.landmarks;
+    last_.reference = keyframe.id;
+    last_.T_reference_camera.setIdentity();
+    return;
+  }
+  if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
+    last_.T_world_camera = geometry::normalized(reference->T_world_camera * last_.T_reference_camera);
+  }
+}
+
+/// Constant velocity, docs/theory/tracking.md Eq. (7).
+Eigen::Isometry3d Tracker::predict(const Frame& frame) const {
+  const double gap_s = seconds_between(*last_.frame, frame);
+  if (!velocity_per_s_ || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return last_.T_world_camera;
+  return last_.T_world_camera * geometry::se3_exp(gap_s * *velocity_per_s_);
+}
+
+PoseGuess Tracker::find_pose(const Frame& frame, const LocalMap& map) {
+  if (state_ != msg::TrackingState::kLost) {
+    PoseGuess guess = track_last_frame(frame, last_, map, predict(frame), config_);
+    if (guess.success) return guess;
+    if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
+      guess = track_keyframe(frame, *reference, map);
+      if (guess.success) return guess;
+    }
+  }
+  return state_ == msg::TrackingState::kOk ? PoseGuess{} : recover(frame, map);
+}
+
+/// Tries a few keyframes of the window in each frame, going round. Place recognition will choose them once it exists.
+PoseGuess Tracker::recover(const Frame& frame, const LocalMap& map) {
+  const std::size_t tries =
+      std::min(map.keyframes.size(), static_cast<std::size_t>(config_.tracker.recovery_keyframes));
+  for (std::size_t i = 0; i < tries; ++i) {
+    PoseGuess guess = track_keyframe(frame, map.keyframes[next_recovery_++ % map.keyframes.size()], map);
+    if (guess.success) return guess;
+  }
+  return {};
+}
+
+bool Tracker::acceptable(const PoseGuess& guess) const {
+  // After a loss a wrong place is the greater danger.
+  const double strictness = state_ == msg::TrackingState::kOk ? 1.0 : 1.5;
+  return guess.success && guess.inliers >= strictness * config_.tracker.min_inliers;
+}
+
+void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking) {
+  const double gap_s = seconds_between(*last_.frame, *frame);
+  const bool continuous = state_ == msg::TrackingState::kOk && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
+  velocity_per_s_.reset();
+  if (continuous) {
+    velocity_per_s_ = geometry::se3_log(last_.T_world_camera.inverse() * tracking.guess.T_world_camera) / gap_s;
+  }
+  last_.frame = std::move(frame);
+  last_.T_world_camera = tracking.guess.T_world_camera;
+  last_.landmarks = tracking.guess.landmarks;
+  if (const KeyframeId reference = vote_reference(map, last_.landmarks); reference != kNoKeyframe) {
+    last_.reference = reference;
+  }
+  if (map.find_keyframe(last_.reference) == nullptr) last_.reference = map.keyframes.front().id;
+  last_.T_reference_camera = map.find_keyframe(last_.reference)->T_world_camera.inverse() * last_.T_world_camera;
+  count(tracking);
+  inliers_ = tracking.guess.inliers;
+  failed_frames_ = 0;
+  ++frames_since_keyframe_;
+  outcome.state = state_ = msg::TrackingState::kOk;
+  outcome.tracked = last_;
+  outcome.covariance = tracking.guess.covariance;
+}
+
+void Tracker::reject(TrackOutcome& outcome) {
+  ++failed_frames_;
+  velocity_per_s_.reset();
+  state_ = failed_frames_ > config_.tracker.recently_lost_frames ? msg::TrackingState::kLost
+                                                                 : msg::TrackingState::kRecentlyLost;
+  outcome.state = state_;
+}
+
+void Tracker::count(const LocalMapTracking& tracking) {
+  const auto entry = [&](LandmarkId id) -> LandmarkStatistics& {
+    LandmarkStatistics& statistics = statistics_[id];
+    statistics.landmark = id;
+    return statistics;
+  };
+  for (const LandmarkId id : tracking.visible) ++entry(id).visible;
+  for (const LandmarkId id : tracking.guess.landmarks) {
+    if (id != kNoLandmark) ++entry(id).found;
+  }
+}
+
+KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_idle) const {
+  KeyframeSituation situation;
+  situation.frames_since_keyframe = frames_since_keyframe_;
+  situation.map_keyframes = static_cast<int>(map.map_keyframes);
+  situation.inliers = inliers_;
+  situation.mapper_idle = mapper_idle;
+  if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
+    situation.reference_landmarks = reference->well_observed;
+  }
+  for (std::size_t i = 0; i < last_.frame->features.size(); ++i) {
+    const double depth_m = last_.frame->features[i].depth_m;
+    if (depth_m <= 0 || depth_m > config_.sensor.close_depth_m) continue;
+    ++(last_.landmarks[i] != kNoLandmark ? situation.close_tracked : situation.close_untracked);
+  }
+  return situation;
+}
+
+KeyframeProposal Tracker::propose_keyframe() {
+  KeyframeProposal proposal{last_.frame, last_.reference, last_.T_reference_camera, last_.landmarks, {}};
+  for (const auto& [id, statistics] : statistics_) proposal.statistics.push_back(statistics);  // sums: order is free
+  statistics_.clear();
+  frames_since_keyframe_ = 0;
+  return proposal;
+}
+
+}  // namespace rtd::slam

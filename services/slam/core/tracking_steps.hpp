@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/vision/pose_optimizer.hpp"
+#include "services/slam/core/local_map.hpp"
+
+namespace rtd::slam {
+
+/// A frame whose pose is known, with the landmarks found in it.
+struct TrackedFrame {
+  FramePtr frame;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  std::vector<LandmarkId> landmarks;  ///< per feature
+  KeyframeId reference = kNoKeyframe;
+  Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
+};
+
+/// The outcome of one step of tracking. `landmarks` are the inliers of `T_world_camera`.
+struct PoseGuess {
+  bool success = false;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  std::vector<LandmarkId> landmarks;  ///< per feature
+  int inliers = 0;                    ///< landmarks, without temporary points
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+};
+
+/// Frame to frame: looks for the landmarks of the last frame, and for its close features as temporary points, around
+/// where `T_world_camera_predicted` shows them. docs/theory/tracking.md, "Motion model".
+PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
+                           const Eigen::Isometry3d& T_world_camera_predicted, const SlamConfig& config);
+
+/// Frame to keyframe by descriptors alone, pose by RANSAC: after a jump or a loss. "Recovery".
+PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, const LocalMap& map);
+
+/// Frame to local map: looks for every landmark of the local map that should be visible from `guess`, and optimises
+/// the pose with all of them.
+struct LocalMapTracking {
+  PoseGuess guess;
+  std::vector<LandmarkId> visible;  ///< landmarks that should be seen from the pose
+};
+LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const PoseGuess& guess,
+                                 const SlamConfig& config);
+
+}  // namespace rtd::slam
