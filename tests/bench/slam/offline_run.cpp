@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+
+#include "tests/support/offline_pipeline.hpp"
+
+namespace {
+
+double percentile(std::vector<double> values, double fraction) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1))];
+}
+
+void print(const rtd::test_support::OfflineReport& report) {
+  std::printf("frames %zu  coverage %.3f  ATE %.4f m  RPE %.4f m %.3f deg  keyframes %zu  landmarks %zu\n",
+              report.frames, report.coverage, report.ate_rmse_m, report.rpe_trans_rmse_m, report.rpe_rot_rmse_deg,
+              report.keyframes, report.landmarks);
+  for (const auto& [name, values] : report.stage_ms) {
+    double sum = 0;
+    for (const double value : values) sum += value;
+    std::printf("  %-16s mean %7.2f  p50 %7.2f  p99 %7.2f ms\n", name.c_str(), sum / static_cast<double>(values.size()),
+                percentile(values, 0.5), percentile(values, 0.99));
+  }
+}
+
+}  // namespace
+
+/// Runs the system on a source in one thread and prints its errors and times: the instrument for tuning.
+int main(int argc, char** argv) {
+  CLI::App app("RTD-SLAM offline: accuracy and stage times of one source");
+  rtd::test_support::OfflineOptions options;
+  std::string trajectory_file;
+  bool verbose = false, threaded = false;
+  auto& slam = options.slam;
+  app.add_option("--source", options.source, "source URI or TUM folder")->required();
+  app.add_option("--mode", options.mode, "off, true-mask, semantic, geometry, rtd");
+  app.add_option("--frames", options.max_frames, "stop after so many frames, 0 = all");
+  app.add_option("--out", trajectory_file, "write the trajectory here, TUM format");
+  app.add_option("--disparity", slam.sensor.disparity_px_m);
+  app.add_option("--close-depth", slam.sensor.close_depth_m);
+  app.add_option("--max-depth", slam.sensor.max_depth_m);
+  app.add_option("--reference-ratio", slam.keyframe.reference_ratio);
+  app.add_option("--min-gap", slam.keyframe.min_gap_frames);
+  app.add_option("--ba-keyframes", slam.mapper.ba_keyframes);
+  app.add_option("--ba-fixed", slam.mapper.ba_fixed_keyframes);
+  app.add_option("--ba-robust", slam.mapper.ba_iterations_robust);
+  app.add_option("--ba-iterations", slam.mapper.ba_iterations);
+  app.add_flag("--threaded", threaded, "mapping in a thread of its own");
+  app.add_flag("--verbose", verbose, "a line per frame");
+  CLI11_PARSE(app, argc, argv);
+  if (options.source.find(':') == std::string::npos) {
+    options.source = "tum:" + options.source + (options.mode == "true-mask" ? "?masks=1" : "");
+  }
+  if (threaded) options.mapping = rtd::slam::MappingMode::kThreaded;
+  if (verbose) {
+    options.on_frame = [](const rtd::slam::SlamOutput& output) {
+      const auto& r = output.result;
+      std::printf(
+          "%4lu state %u inliers %4u static %4u removed %4u keyframes %3u landmarks %5u events %zu  %.1f ms %s\n",
+          static_cast<unsigned long>(r.seq), static_cast<unsigned>(r.state), r.inliers, r.features_static,
+          r.features_removed, r.keyframes, r.landmarks, output.events.size(),
+          static_cast<double>(r.stage_ms[rtd::msg::kStageSlamTotal]), output.problem.c_str());
+    };
+  }
+  try {
+    const auto report = rtd::test_support::run_offline(options);
+    print(report);
+    if (!trajectory_file.empty()) std::ofstream(trajectory_file) << report.trajectory_tum;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
