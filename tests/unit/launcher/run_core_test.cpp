@@ -51,14 +51,6 @@ TEST(log_level, the_reason_is_the_last_error_line_else_the_tail) {
   EXPECT_THAT(reason_lines({"--foo: unknown", "Run with --help"}), ElementsAre("--foo: unknown", "Run with --help"));
 }
 
-TEST(process_usage, reads_ticks_behind_any_name) {
-  const std::string rest = " S 1 2 3 4 5 6 7 8 9 10 250 30 0 0 20 0 4 0";
-  EXPECT_EQ(cpu_ticks("42 (rtd-slam)" + rest), 280);
-  EXPECT_EQ(cpu_ticks("42 (a) b (c)" + rest), 280);
-  EXPECT_EQ(cpu_ticks("42 (rtd-slam) S 1"), -1);
-  EXPECT_EQ(cpu_ticks(""), -1);
-}
-
 TEST(process_usage, reads_peak_memory) {
   EXPECT_DOUBLE_EQ(peak_rss_mb("VmPeak:\t  999 kB\nVmHWM:\t    2048 kB\nVmRSS:\t 12 kB\n"), 2.0);
   EXPECT_DOUBLE_EQ(peak_rss_mb("Name:\trtd-slam\nState:\tZ (zombie)\n"), -1.0);

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/launcher/core/run_record.hpp"
+
+namespace rtd::launcher {
+
+/// The poses as they were published, one line per tracked frame in TUM's format: "stamp_s tx ty tz qx qy qz qw".
+std::string online_trajectory_text(const std::vector<FrameRecord>& frames);
+
+}  // namespace rtd::launcher

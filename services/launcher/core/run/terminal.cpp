@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/core/run/terminal.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+constexpr std::chrono::milliseconds kRewriteEvery{100}, kRepeatEvery{2000};
+
+}  // namespace
+
+void Terminal::say(const std::string& line) {
+  if (!options_.quiet) warn(line);
+}
+
+void Terminal::warn(const std::string& line) {
+  clear_status();
+  out_ << line << '\n' << std::flush;
+}
+
+void Terminal::status(const std::string& line, std::chrono::milliseconds now) {
+  if (options_.quiet || now < next_ || line == shown_) return;
+  next_ = now + (options_.interactive ? kRewriteEvery : kRepeatEvery);
+  shown_ = line;
+  if (options_.interactive) {
+    out_ << "\r\033[K" << line.substr(0, options_.columns - 1) << std::flush;
+  } else {
+    out_ << line << '\n' << std::flush;
+  }
+}
+
+void Terminal::end_status() {
+  if (options_.interactive && !shown_.empty()) out_ << '\n' << std::flush;
+  shown_.clear();
+}
+
+void Terminal::clear_status() {
+  if (options_.interactive && !shown_.empty()) out_ << "\r\033[K";
+  shown_.clear();
+  if (options_.interactive) next_ = {};
+}
+
+}  // namespace rtd::launcher

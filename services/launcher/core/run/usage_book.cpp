@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/core/run/usage_book.hpp"
+
+#include <algorithm>
+
+namespace rtd::launcher {
+
+void UsageBook::add_sample(const std::string& service, double peak_rss_mb) {
+  if (peak_rss_mb < 0) return;
+  Entry& entry = entries_[service];
+  entry.usage.peak_rss_mb = entry.sampled ? std::max(entry.usage.peak_rss_mb, peak_rss_mb) : peak_rss_mb;
+  entry.sampled = true;
+}
+
+void UsageBook::add_exit(const std::string& service, const ProcessExit& exit) {
+  Entry& entry = entries_[service];
+  entry.usage.cpu_s += exit.cpu_s;
+  if (!entry.sampled) entry.usage.peak_rss_mb = std::max(entry.usage.peak_rss_mb, exit.peak_rss_mb);
+}
+
+std::map<std::string, ProcessUsage> UsageBook::usage() const {
+  std::map<std::string, ProcessUsage> result;
+  for (const auto& [name, entry] : entries_) result[name] = entry.usage;
+  return result;
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "services/launcher/core/run/process_host.hpp"
+#include "services/launcher/core/run_record.hpp"
+
+namespace rtd::launcher {
+
+/// Adds up what each service used, over all its lives.
+///
+/// CPU time comes from the kernel's final account. Peak memory comes from samples of VmHWM: the final account (ru_maxrss)
+/// also holds the launcher's own memory at the time of the fork, so it only stands in for a process too short to be sampled.
+class UsageBook {
+ public:
+  void add_sample(const std::string& service, double peak_rss_mb);
+  void add_exit(const std::string& service, const ProcessExit& exit);
+  void add_restart(const std::string& service) { ++entries_[service].usage.restarts; }
+  void set(const std::string& process, const ProcessUsage& usage) { entries_[process] = {usage, true}; }
+  std::map<std::string, ProcessUsage> usage() const;
+
+ private:
+  struct Entry {
+    ProcessUsage usage;
+    bool sampled = false;
+  };
+  std::map<std::string, Entry> entries_;
+};
+
+}  // namespace rtd::launcher

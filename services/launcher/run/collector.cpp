@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/run/collector.hpp"
+
+#include <opencv2/imgcodecs.hpp>
+#include <utility>
+
+namespace rtd::launcher {
+namespace {
+
+constexpr int kJpegQuality = 80;
+
+std::vector<std::uint8_t> encode_jpeg(const msg::RgbdFrame& frame) {
+  if (frame.width == 0 || frame.height == 0 || frame.width > msg::kMaxFrameWidth ||
+      frame.height > msg::kMaxFrameHeight) {
+    return {};
+  }
+  const cv::Mat color(static_cast<int>(frame.height), static_cast<int>(frame.width), CV_8UC3,
+                      const_cast<std::uint8_t*>(frame.color_bgr.data()));
+  std::vector<std::uint8_t> jpeg;
+  cv::imencode(".jpg", color, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  return jpeg;
+}
+
+}  // namespace
+
+Collector::Collector(bus::Bus& bus, const Options& options)
+    : samples_(options.samples, options.total), total_(options.total) {
+  encoder_ = std::thread([this] { encode_samples(); });
+  tracking_ = bus.reader<msg::TrackingResult>(bus::topics::kTracking, [this](const auto& result) {
+    const std::lock_guard lock(mutex_);
+    builder_.add(*result);
+  });
+  features_ = bus.reader<msg::FeatureFrame>(bus::topics::kFeatures, [this](const auto& features) {
+    const std::lock_guard lock(mutex_);
+    builder_.add(*features);
+    samples_.add_features(*features);
+  });
+  status_ = bus.reader<msg::ServiceStatus>(bus::topics::kStatus, [this](const auto& status) {
+    const std::lock_guard lock(mutex_);
+    builder_.add(*status);
+  });
+  frames_ = bus.reader<msg::RgbdFrame>(bus::topics::kFrame, [this](const auto& frame) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!samples_.wants(frame->seq)) return;
+    }
+    pictures_.push(frame);
+  });
+}
+
+Collector::~Collector() {
+  pictures_.close();
+  encoder_.join();
+}
+
+bool Collector::connected() const { return tracking_.matched() > 0 && features_.matched() > 0; }
+
+LiveStatus Collector::live() const {
+  const std::lock_guard lock(mutex_);
+  LiveStatus status = builder_.live();
+  if (status.total == 0) status.total = total_;
+  return status;
+}
+
+std::optional<std::string> Collector::take_notice() {
+  const std::lock_guard lock(mutex_);
+  return builder_.take_notice();
+}
+
+bool Collector::tracked_any() const {
+  const std::lock_guard lock(mutex_);
+  return builder_.tracked_any();
+}
+
+void Collector::fill(RunRecord& record) const {
+  const std::lock_guard lock(mutex_);
+  builder_.fill(record);
+  record.samples = samples_.samples();
+}
+
+void Collector::encode_samples() {
+  while (const auto frame = pictures_.pop()) {
+    std::vector<std::uint8_t> jpeg = encode_jpeg(**frame);
+    const std::lock_guard lock(mutex_);
+    if (!jpeg.empty()) samples_.add_picture((*frame)->seq, std::move(jpeg));
+  }
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace rtd::launcher {
+
+/// The command line of `rtd run`.
+struct RunOptions {
+  std::string source;
+  std::string pace = "realtime";
+  std::string filter_mode;  ///< off, semantic, geometry, rtd; empty: configuration, default rtd
+  std::string dds;         ///< empty: configuration, environment, default
+  int domain = -1;         ///< -1: configuration, environment, default
+  std::string config_file;
+  std::vector<std::string> overrides;  ///< "key=value" for any service
+  std::string detector = "auto";       ///< "auto": when weights are found and the filter mode needs them; "off"
+  std::string model;                   ///< ONNX file; empty: search
+  std::string out_dir;
+  bool quiet = false;
+  std::uint64_t frames = 0;  ///< end after so many frames; 0 = all
+};
+
+}  // namespace rtd::launcher

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/run/run_session.hpp"
+
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "common/service/monotonic_clock.hpp"
+#include "services/launcher/core/run/process_usage.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kTick{50};
+constexpr milliseconds kMemoryPeriod{250};
+constexpr milliseconds kConnectTimeout{15000};  ///< then the camera is started all the same: it names who is missing
+constexpr std::size_t kShownTailLines = 6;
+
+milliseconds now() { return milliseconds(service::monotonic_ns() / 1'000'000); }
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+ProcessUsage own_usage() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
+  };
+  return {seconds(usage.ru_utime) + seconds(usage.ru_stime), static_cast<double>(usage.ru_maxrss) / 1024.0, 0};
+}
+
+/// From the first frame handed to the bus to the last pose.
+double span_s(const std::vector<FrameRecord>& frames) {
+  if (frames.empty()) return 0;
+  return static_cast<double>(frames.back().tracking.finished_ns - frames.front().tracking.published_ns) * 1e-9;
+}
+
+std::string existing(const std::string& path) { return std::filesystem::is_regular_file(path) ? path : std::string(); }
+
+}  // namespace
+
+RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, InterruptSignals& signals, Terminal& terminal)
+    : setup_(setup),
+      signals_(signals),
+      terminal_(terminal),
+      logs_(setup.out_dir + "/logs", terminal),
+      collector_(bus, {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames}),
+      host_([this](const std::string& service, const std::string& line) { logs_.add(service, line); }),
+      supervisor_(host_, setup.launcher.supervisor(), [this](const SupervisorEvent& event) { on_event(event); }),
+      started_(now()) {}
+
+RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
+  for (std::size_t i = 0; i + 1 < plans.size(); ++i) supervisor_.start(plans[i], now());
+  supervise(plans.back());
+  terminal_.end_status();
+  return supervisor_.outcome();
+}
+
+void RunSession::supervise(const ServicePlan& camera) {
+  bool camera_started = false;
+  while (!supervisor_.all_ended() || !supervisor_.stopping()) {
+    host_.wait(kTick, signals_.fd());
+    const milliseconds time = now();
+    if (signals_.take() > 0) {
+      const bool again = supervisor_.outcome() == RunOutcome::kInterrupted;
+      supervisor_.stop(time, milliseconds(again ? 0 : setup_.launcher.interrupt_grace_ms), RunOutcome::kInterrupted);
+    }
+    supervisor_.update(time);
+    stop_when_decided(time);
+    if (!camera_started && !supervisor_.stopping() && camera_may_start(time)) {
+      supervisor_.start(camera, time);
+      camera_started = true;
+    }
+    sample_memory(time);
+    tell_notices();
+    if (!supervisor_.stopping()) terminal_.status(format_live_status(collector_.live()), time);
+  }
+}
+
+/// Everyone who answers the first frame is heard here, so that no answer is missed.
+bool RunSession::camera_may_start(milliseconds time) const {
+  return collector_.connected() || time - started_ >= kConnectTimeout;
+}
+
+void RunSession::stop_when_decided(milliseconds time) {
+  if (supervisor_.stopping() || supervisor_.outcome() == RunOutcome::kRunning) return;
+  if (supervisor_.outcome() == RunOutcome::kConfigError) logs_.mute();  // the others only say that they are asked to end
+  supervisor_.stop(time, milliseconds(setup_.launcher.finish_grace_ms), supervisor_.outcome());
+}
+
+void RunSession::on_event(const SupervisorEvent& event) {
+  using Kind = SupervisorEvent::Kind;
+  switch (event.kind) {
+    case Kind::kStarted: return;
+    case Kind::kRestarted: usage_.add_restart(event.service); return note(event.text);
+    case Kind::kEnded:
+      usage_.add_exit(event.service, event.exit);
+      if (!event.exit.clean()) note(event.text);
+      return;
+    case Kind::kKilled: usage_.add_exit(event.service, event.exit); return note(event.text);
+    case Kind::kRefused:
+      usage_.add_exit(event.service, event.exit);
+      note(event.text);
+      return explain(event.service, logs_.reason(event.service));
+    case Kind::kDied:
+    case Kind::kGivenUp:
+      usage_.add_exit(event.service, event.exit);
+      note(event.text);
+      return explain(event.service, logs_.tail(event.service));
+  }
+}
+
+void RunSession::explain(const std::string& service, const std::vector<std::string>& lines) {
+  const std::size_t first = lines.size() > kShownTailLines ? lines.size() - kShownTailLines : 0;
+  for (std::size_t i = first; i < lines.size(); ++i) terminal_.warn("  | " + lines[i]);
+  if (lines.empty()) terminal_.warn("  | (it printed nothing to " + logs_.path(service) + ")");
+}
+
+void RunSession::tell_notices() {
+  while (const auto notice = collector_.take_notice()) note(*notice);
+}
+
+void RunSession::note(const std::string& text) {
+  events_.push_back(text);
+  terminal_.warn("rtd: " + text);
+}
+
+void RunSession::sample_memory(milliseconds time) {
+  if (time < next_sample_) return;
+  next_sample_ = time + kMemoryPeriod;
+  for (const auto& [service, process] : supervisor_.running()) {
+    usage_.add_sample(service, peak_rss_mb(read_file("/proc/" + std::to_string(process) + "/status")));
+  }
+}
+
+RunRecord RunSession::record() const {
+  RunRecord record;
+  record.source = setup_.source;
+  record.pace = setup_.pace;
+  record.filter_mode = setup_.filter_mode;
+  record.dds = setup_.bus.vendor;
+  record.detector = setup_.detector_note;
+  record.groundtruth_path = existing(setup_.groundtruth_path());
+  record.trajectory_path = existing(setup_.out_dir + "/trajectory.txt");
+  collector_.fill(record);
+  record.events = events_;
+  record.duration_s = span_s(record.frames);
+  record.processes = usage_.usage();
+  record.processes["launcher"] = own_usage();
+  return record;
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/service/exit_code.hpp"
+#include "services/launcher/core/run/supervisor.hpp"
+#include "services/launcher/core/run/terminal.hpp"
+#include "services/launcher/core/run/usage_book.hpp"
+#include "services/launcher/process/interrupt_signals.hpp"
+#include "services/launcher/process/posix_process_host.hpp"
+#include "services/launcher/run/collector.hpp"
+#include "services/launcher/run/run_setup.hpp"
+#include "services/launcher/run/service_logs.hpp"
+
+namespace rtd::launcher {
+
+/// One run from the first process to the last: starts the services, watches them, listens, ends them.
+class RunSession {
+ public:
+  RunSession(const RunSetup& setup, bus::Bus& bus, InterruptSignals& signals, Terminal& terminal);
+
+  /// Returns when no process is left. Throws ProcessError when a service cannot be started at all.
+  RunOutcome run(const std::vector<ServicePlan>& plans);
+  /// What was observed; call it behind run().
+  RunRecord record() const;
+  bool tracked_any() const { return collector_.tracked_any(); }
+
+ private:
+  using Milliseconds = std::chrono::milliseconds;
+
+  void supervise(const ServicePlan& camera);
+  bool camera_may_start(Milliseconds now) const;
+  void on_event(const SupervisorEvent& event);
+  void explain(const std::string& service, const std::vector<std::string>& lines);
+  void tell_notices();
+  void stop_when_decided(Milliseconds now);
+  void sample_memory(Milliseconds now);
+  void note(const std::string& text);
+
+  const RunSetup& setup_;
+  InterruptSignals& signals_;
+  Terminal& terminal_;
+  ServiceLogs logs_;
+  UsageBook usage_;
+  Collector collector_;
+  PosixProcessHost host_;
+  Supervisor supervisor_;
+  std::vector<std::string> events_;
+  Milliseconds started_{}, next_sample_{};
+};
+
+}  // namespace rtd::launcher

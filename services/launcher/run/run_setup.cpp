@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/run/run_setup.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "common/service/bus_config.hpp"
+#include "common/service/pace.hpp"
+#include "services/camera/core/source_factory.hpp"
+#include "services/detector/core/model_locator.hpp"
+#include "services/launcher/process/executable.hpp"
+
+namespace rtd::launcher {
+namespace fs = std::filesystem;
+using service::ConfigError;
+namespace {
+
+const std::vector<std::string> kFilterModes = {"off", "semantic", "geometry", "rtd"};
+
+/// The launcher reads its own sections; those of the services are checked by the services when they start.
+void load_config(const RunOptions& options, RunSetup& setup) {
+  service::BusConfig bus;
+  service::ConfigBinder binder;
+  binder.section("bus", bus);
+  binder.section("launcher", setup.launcher);
+  service::apply_bus_environment(binder);
+  if (!options.config_file.empty()) binder.load_file(options.config_file, service::config_sections());
+  for (const std::string& assignment : options.overrides) binder.set(assignment, service::config_sections());
+  if (!options.dds.empty()) binder.set("bus.vendor", options.dds, "--dds");
+  if (options.domain >= 0) binder.set("bus.domain", std::to_string(options.domain), "--domain");
+  setup.bus = service::to_bus_options(bus, "rtd");
+}
+
+/// The value of another service's key as that service will see it; empty when neither --set nor the file names it.
+std::string peek(const RunOptions& options, const std::string& section, const std::string& key) {
+  const std::string prefix = section + "." + key + "=";
+  for (auto assignment = options.overrides.rbegin(); assignment != options.overrides.rend(); ++assignment) {
+    if (assignment->rfind(prefix, 0) == 0) return assignment->substr(prefix.size());
+  }
+  if (options.config_file.empty()) return {};
+  try {
+    const YAML::Node root = YAML::LoadFile(options.config_file);
+    return root[section][key] ? root[section][key].as<std::string>() : std::string();
+  } catch (const YAML::Exception&) {
+    return {};  // the service that owns the key says what is wrong with it
+  }
+}
+
+std::string choose_filter_mode(const RunOptions& options) {
+  std::string mode = options.filter_mode.empty() ? peek(options, "filter", "mode") : options.filter_mode;
+  if (mode.empty()) mode = "rtd";
+  if (std::find(kFilterModes.begin(), kFilterModes.end(), mode) == kFilterModes.end()) {
+    throw ConfigError("--filter: unknown mode '" + mode + "', use off, semantic, geometry or rtd");
+  }
+  return mode;
+}
+
+/// A bare folder is taken as a TUM sequence.
+std::string complete_uri(const std::string& source) {
+  return source.find(':') == std::string::npos && fs::is_directory(source) ? "tum:" + source : source;
+}
+
+std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
+  const std::uint64_t frames = camera::make_source(uri)->info().frames;
+  if (limit == 0) return frames;
+  return frames == 0 ? limit : std::min(frames, limit);
+}
+
+void choose_detector(const RunOptions& options, RunSetup& setup) {
+  if (setup.filter_mode == "off" || setup.filter_mode == "geometry") {
+    setup.detector_note = "off (filter mode " + setup.filter_mode + ")";
+    return;
+  }
+  if (options.detector == "off") {
+    setup.detector_note = "off (asked for)";
+    return;
+  }
+  std::string configured = options.model.empty() ? peek(options, "detector", "model") : options.model;
+  if (!options.model.empty() && fs::is_regular_file(options.model)) configured = fs::absolute(options.model).string();
+  const detector::ModelSearch model = detector::find_model(configured, detector::process_environment());
+  if (!model && !configured.empty()) throw ConfigError(model.message);
+  setup.model_path = model.path;
+  setup.weights_missing = !model;
+  setup.detector_note = model ? fs::path(model.path).filename().string() : "off (" + model.message + ")";
+}
+
+void prepare_out_dir(const std::string& out_dir) {
+  std::error_code error;
+  fs::create_directories(fs::path(out_dir) / "logs", error);
+  if (error) throw ConfigError("--out " + out_dir + ": cannot be created: " + error.message());
+  for (const char* left : {"trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "groundtruth.txt",
+                           "report.json", "report.html"}) {
+    fs::remove(fs::path(out_dir) / left, error);
+    if (error) throw ConfigError("--out " + out_dir + ": cannot be written: " + error.message());
+  }
+}
+
+std::string require_executable(const std::string& service) {
+  const std::string path = find_executable("rtd-" + service);
+  if (path.empty()) {
+    throw ConfigError("rtd-" + service + " is neither beside rtd (" + own_directory() +
+                      ") nor in PATH: build it with 'cmake --build <build folder> --target rtd-" + service + "'");
+  }
+  return path;
+}
+
+std::vector<std::string> common_arguments(const RunSetup& setup) {
+  std::vector<std::string> arguments = {"--pace",   setup.pace,       "--dds",
+                                        setup.bus.vendor, "--domain", std::to_string(setup.bus.domain)};
+  if (!setup.config_file.empty()) arguments.insert(arguments.end(), {"--config", setup.config_file});
+  for (const std::string& assignment : setup.overrides) arguments.insert(arguments.end(), {"--set", assignment});
+  return arguments;
+}
+
+ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole role,
+                 const std::vector<std::string>& own_arguments) {
+  ServicePlan plan{name, {require_executable(name)}, role};
+  const std::vector<std::string> common = common_arguments(setup);
+  plan.command.insert(plan.command.end(), common.begin(), common.end());
+  plan.command.insert(plan.command.end(), own_arguments.begin(), own_arguments.end());
+  return plan;
+}
+
+}  // namespace
+
+RunSetup prepare_run(const RunOptions& options) {
+  RunSetup setup;
+  load_config(options, setup);
+  setup.pace = service::to_string(service::parse_pace(options.pace));
+  setup.filter_mode = choose_filter_mode(options);
+  setup.config_file = options.config_file;
+  setup.overrides = options.overrides;
+  setup.source = complete_uri(options.source);
+  setup.frame_limit = options.frames;
+  setup.total_frames = count_frames(setup.source, options.frames);
+  choose_detector(options, setup);
+  setup.out_dir = options.out_dir;
+  prepare_out_dir(setup.out_dir);
+  return setup;
+}
+
+std::vector<ServicePlan> plan_services(const RunSetup& setup) {
+  std::vector<ServicePlan> plans;
+  std::vector<std::string> filter = {"--set", "filter.mode=" + setup.filter_mode};
+  std::vector<std::string> camera = {"--source", setup.source, "--groundtruth-out", setup.groundtruth_path()};
+  if (setup.frame_limit > 0) camera.insert(camera.end(), {"--frames", std::to_string(setup.frame_limit)});
+  if (setup.model_path.empty()) {
+    filter.insert(filter.end(), {"--set", "filter.detector=off"});
+    camera.insert(camera.end(), {"--wait-for", "filter,slam"});
+  } else {
+    plans.push_back(plan(setup, "detector", ServiceRole::kOptional, {"--set", "detector.model=" + setup.model_path}));
+    camera.insert(camera.end(), {"--wait-for", "filter,slam,detector"});
+  }
+  plans.push_back(plan(setup, "filter", ServiceRole::kEssential, filter));
+  plans.push_back(plan(setup, "slam", ServiceRole::kEssential, {"--out", setup.out_dir}));
+  plans.push_back(plan(setup, "camera", ServiceRole::kSource, camera));
+  return plans;
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "services/launcher/core/run/log_tail.hpp"
+#include "services/launcher/core/run/terminal.hpp"
+
+namespace rtd::launcher {
+
+/// Writes what the services print to FOLDER/<service>.log, shows their warnings and errors, remembers the last lines.
+class ServiceLogs {
+ public:
+  ServiceLogs(std::string folder, Terminal& terminal) : folder_(std::move(folder)), terminal_(terminal) {}
+
+  void add(const std::string& service, const std::string& line);
+  /// Why the service refused to start, in its own words.
+  std::vector<std::string> reason(const std::string& service) const;
+  std::vector<std::string> tail(const std::string& service) const;
+  std::string path(const std::string& service) const { return folder_ + "/" + service + ".log"; }
+  /// From now on lines are only written, not shown.
+  void mute() { muted_ = true; }
+
+ private:
+  struct Log {
+    std::ofstream file;
+    LogTail tail;
+    int shown = 0;
+  };
+  void show(const std::string& service, Log& log, const std::string& line);
+
+  std::string folder_;
+  Terminal& terminal_;
+  std::map<std::string, Log> logs_;
+  bool muted_ = false;
+};
+
+}  // namespace rtd::launcher
