@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/process/executable.hpp"
 
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -30,6 +31,13 @@ std::vector<fs::path> search_directories() {
 bool is_executable(const fs::path& file) {
   std::error_code error;
   return fs::is_regular_file(file, error) && access(file.c_str(), X_OK) == 0;
+}
+
+std::vector<char*> argument_vector(const std::string& executable, const std::vector<std::string>& arguments) {
+  std::vector<char*> argv = {const_cast<char*>(executable.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  return argv;
 }
 
 }  // namespace
@@ -62,11 +70,23 @@ std::vector<std::string> installed_services() {
 }
 
 std::string replace_process(const std::string& executable, const std::vector<std::string>& arguments) {
-  std::vector<char*> argv = {const_cast<char*>(executable.c_str())};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-  execv(executable.c_str(), argv.data());
+  const std::vector<char*> argv = argument_vector(executable, arguments);
+  execv(argv[0], argv.data());
   return "cannot run " + executable + ": " + std::strerror(errno);
+}
+
+int run_in_foreground(const std::string& executable, const std::vector<std::string>& arguments) {
+  const std::vector<char*> argv = argument_vector(executable, arguments);
+  const pid_t pid = fork();
+  if (pid == 0) {
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  while (pid > 0 && waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (pid < 0) return 126;
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
 }  // namespace rtd::launcher

@@ -19,4 +19,7 @@ std::vector<std::string> installed_services();
 /// Becomes the program; returns only on failure, with the reason.
 std::string replace_process(const std::string& executable, const std::vector<std::string>& arguments);
 
+/// Runs a tool that shares this program's terminal and waits for it; its exit code, 128 + signal when one ended it.
+int run_in_foreground(const std::string& executable, const std::vector<std::string>& arguments);
+
 }  // namespace rtd::launcher

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/cli/front.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "common/service/config.hpp"
+#include "common/service/exit_code.hpp"
+#include "services/launcher/demo/demo_command.hpp"
+#include "services/launcher/doctor/doctor_command.hpp"
+#include "services/launcher/eval/eval_command.hpp"
+#include "services/launcher/process/executable.hpp"
+#include "services/launcher/run/run_command.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+const std::vector<std::string> kCommands = {"run", "demo", "eval", "doctor", "version", "help"};
+
+struct Requests {
+  RunOptions run;
+  DemoOptions demo;
+  EvalOptions eval;
+};
+
+void add_run_command(CLI::App& app, RunOptions& options) {
+  CLI::App* command = app.add_subcommand("run", "Run camera, detector, filter and slam on a source and report");
+  command->add_option("--source", options.source, "tum:FOLDER or synthetic:NAME[?seed=..&frames=..]")->required();
+  command->add_option("--out", options.out_dir, "Folder for trajectory, map, logs and report")->required();
+  command->add_option("--pace", options.pace, "realtime, asap or lockstep")
+      ->check(CLI::IsMember({"realtime", "asap", "lockstep"}))
+      ->capture_default_str();
+  command->add_option("--filter", options.filter_mode, "off, semantic, geometry or rtd (default rtd)")
+      ->check(CLI::IsMember({"off", "semantic", "geometry", "rtd"}));
+  command->add_option("--dds", options.dds, "DDS implementation: fastdds (RTD_DDS)");
+  command->add_option("--domain", options.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
+  command->add_option("--config", options.config_file, "YAML file with a section per service")
+      ->check(CLI::ExistingFile);
+  command->add_option("--set", options.overrides, "Override one key, e.g. --set filter.mode=geometry (repeatable)");
+  command->add_option("--detector", options.detector, "auto: when weights are found; off: geometry only")
+      ->check(CLI::IsMember({"auto", "off"}))
+      ->capture_default_str();
+  command->add_option("--model", options.model,
+                      "Detector weights, ONNX (default: RTD_MODEL_DIR, then the user's cache)");
+  command->add_option("--frames", options.frames, "End after so many frames");
+  command->add_flag("--quiet", options.quiet, "Only warnings and errors");
+}
+
+void add_demo_command(CLI::App& app, DemoOptions& options) {
+  CLI::App* command = app.add_subcommand("demo", "The same scene without and with removal of dynamic points");
+  command->add_option("--dataset", options.dataset, "TUM RGB-D sequence to download, e.g. fr3_walking_xyz");
+  command->add_option("--out", options.out_dir, "Folder for both runs and demo.html")->capture_default_str();
+  command->add_option("--frames", options.frames, "End after so many frames");
+  command->add_option("--dds", options.dds, "DDS implementation: fastdds (RTD_DDS)");
+  command->add_option("--domain", options.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
+}
+
+std::string services_text() {
+  std::string text = "Services (each with its own --help):";
+  for (const std::string& service : installed_services()) text += "\n  rtd " + service;
+  return text;
+}
+
+int become_service(const std::string& name, const std::vector<std::string>& arguments) {
+  const std::string executable = find_executable("rtd-" + name);
+  if (!executable.empty()) {
+    std::cerr << "rtd: " << replace_process(executable, arguments) << '\n';
+    return service::kRunFailed;
+  }
+  std::vector<std::string> known = installed_services();
+  known.insert(known.end(), kCommands.begin(), kCommands.end());
+  const std::string near = service::nearest_word(name, known);
+  std::cerr << "rtd: '" << name << "' is no command"
+            << (near.empty() ? ", 'rtd --help' lists them" : ", did you mean '" + near + "'?") << '\n';
+  return service::kUsageOrConfig;
+}
+
+int dispatch(const CLI::App& app, const Requests& requests) {
+  if (app.got_subcommand("run")) return run(requests.run).code;
+  if (app.got_subcommand("demo")) return demo(requests.demo);
+  if (app.got_subcommand("eval")) return run_eval(requests.eval, std::cout, std::cerr);
+  if (app.got_subcommand("doctor")) return doctor(std::cout);
+  if (app.got_subcommand("version")) {
+    std::cout << "rtd " << RTD_VERSION << '\n';
+    return service::kOk;
+  }
+  std::cout << app.help();
+  return service::kOk;
+}
+
+}  // namespace
+
+int front(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  const bool named = !arguments.empty() && !arguments[0].empty() && arguments[0][0] != '-';
+  if (named && std::find(kCommands.begin(), kCommands.end(), arguments[0]) == kCommands.end()) {
+    return become_service(arguments[0], {arguments.begin() + 1, arguments.end()});
+  }
+
+  Requests requests;
+  CLI::App app{"RTD-SLAM: camera pose and static map from RGB-D images in which things move", "rtd"};
+  add_run_command(app, requests.run);
+  add_demo_command(app, requests.demo);
+  add_eval_command(app, requests.eval);
+  app.add_subcommand("doctor", "Check this host: shared memory, sockets, services, weights, data");
+  app.add_subcommand("version", "Print the version");
+  app.add_subcommand("help", "Print this text");
+  app.footer(services_text);
+  app.set_version_flag("--version", std::string("rtd ") + RTD_VERSION);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? service::kOk : service::kUsageOrConfig;
+  }
+  return dispatch(app, requests);
+}
+
+}  // namespace rtd::launcher

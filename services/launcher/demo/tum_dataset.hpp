@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace rtd::launcher {
+
+/// Where a sequence of the TUM RGB-D benchmark is on the network and on this host.
+struct TumDataset {
+  std::string url;     ///< of the archive
+  std::string folder;  ///< name of the folder in the archive, e.g. rgbd_dataset_freiburg3_walking_xyz
+};
+
+/// "fr3_walking_xyz" -> archive and folder below `base_url`. Throws service::ConfigError for a name that is none.
+TumDataset tum_dataset(const std::string& name, const std::string& base_url);
+
+/// The folder of the sequence; downloaded (curl) and unpacked (tar) into the user's cache when it is not there yet.
+/// RTD_TUM_URL replaces the public address. Throws std::runtime_error with cause and fix.
+std::string fetch_tum_dataset(const std::string& name);
+
+}  // namespace rtd::launcher

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/doctor/doctor_command.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "common/service/bus_config.hpp"
+#include "common/service/exit_code.hpp"
+#include "services/detector/core/model_locator.hpp"
+#include "services/launcher/process/executable.hpp"
+
+namespace rtd::launcher {
+namespace fs = std::filesystem;
+namespace {
+
+enum class Verdict { kOk, kWarn, kFail };
+
+struct Finding {
+  Verdict verdict;
+  std::string text;
+};
+using Findings = std::vector<Finding>;
+
+const char* to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kOk:
+      return "ok   ";
+    case Verdict::kWarn:
+      return "warn ";
+    case Verdict::kFail:
+      break;
+  }
+  return "FAIL ";
+}
+
+void check_services(Findings& findings) {
+  std::string missing;
+  for (const char* service : {"camera", "detector", "filter", "slam"}) {
+    if (find_executable(std::string("rtd-") + service).empty()) missing += std::string(" rtd-") + service;
+  }
+  if (missing.empty()) {
+    findings.push_back({Verdict::kOk, "services: camera, detector, filter and slam found"});
+  } else {
+    findings.push_back(
+        {Verdict::kFail, "services: missing" + missing + "; build all of them: cmake --build <build folder>"});
+  }
+}
+
+void check_bus(Findings& findings) {
+  try {
+    service::BusConfig config;
+    service::ConfigBinder binder;
+    binder.section("bus", config);
+    service::apply_bus_environment(binder);
+    const bus::BusOptions options = service::to_bus_options(config, "rtd-doctor");
+    const std::shared_ptr<bus::Bus> bus = bus::connect(options);
+    findings.push_back({Verdict::kOk, "bus: " + bus->vendor() + " joins domain " + std::to_string(options.domain)});
+  } catch (const std::exception& error) {
+    findings.push_back({Verdict::kFail, std::string("bus: ") + error.what()});
+  }
+}
+
+void check_weights(Findings& findings) {
+  const detector::ModelSearch model = detector::find_model({}, detector::process_environment());
+  findings.push_back(
+      model ? Finding{Verdict::kOk, "weights: " + model.path}
+            : Finding{Verdict::kWarn, "weights: " + model.message + "; until then runs use geometry only"});
+}
+
+void check_data(Findings& findings) {
+  const char* folder = std::getenv("RTD_DATA_DIR");
+  std::error_code error;
+  if (folder != nullptr && fs::is_directory(fs::path(folder) / "walk_xyz", error)) {
+    findings.push_back({Verdict::kOk, std::string("data: ") + folder});
+  } else {
+    findings.push_back({Verdict::kOk,
+                        "data: RTD_DATA_DIR names no folder with walk_xyz, 'rtd demo' shows the synthetic room; "
+                        "'rtd demo --dataset fr3_walking_xyz' downloads a real sequence"});
+  }
+}
+
+}  // namespace
+
+int doctor(std::ostream& out) {
+  Findings findings;
+  check_services(findings);
+  check_bus(findings);
+  check_weights(findings);
+  check_data(findings);
+  bool failed = false;
+  for (const Finding& finding : findings) {
+    out << to_string(finding.verdict) << finding.text << '\n';
+    failed = failed || finding.verdict == Verdict::kFail;
+  }
+  return failed ? service::kRunFailed : service::kOk;
+}
+
+}  // namespace rtd::launcher
