@@ -53,9 +53,8 @@ std::string dump_node(const YAML::Node& node) {
   return emitter.c_str();
 }
 
-bool is_foreign(const std::string& key, const std::vector<std::string>& foreign_sections) {
-  const std::string section = key.substr(0, key.find('.'));
-  return std::find(foreign_sections.begin(), foreign_sections.end(), section) != foreign_sections.end();
+std::string section_of(const std::string& key) {
+  return key.substr(0, key.find('.'));
 }
 
 int edit_distance(const std::string& a, const std::string& b) {
@@ -183,6 +182,14 @@ ConfigBinder::Entry* ConfigBinder::find(const std::string& key) {
   return found == entries_.end() ? nullptr : &*found;
 }
 
+/// In a foreign section that holds no key of ours: a typo in our own section stays an error.
+bool ConfigBinder::is_foreign(const std::string& key, const std::vector<std::string>& foreign_sections) const {
+  const std::string section = section_of(key);
+  const bool own = std::any_of(entries_.begin(), entries_.end(),
+                               [&](const Entry& entry) { return section_of(entry.key) == section; });
+  return !own && std::find(foreign_sections.begin(), foreign_sections.end(), section) != foreign_sections.end();
+}
+
 std::vector<std::string> ConfigBinder::keys() const {
   std::vector<std::string> result;
   result.reserve(entries_.size());
@@ -209,7 +216,7 @@ void ConfigBinder::set(const std::string& assignment, const std::vector<std::str
     throw ConfigError(fmt::format("--set {}: write key=value, for example --set filter.mode=rtd", assignment));
   }
   const std::string key = assignment.substr(0, equals);
-  if (find(key) == nullptr && is_foreign(key, foreign_sections)) return;
+  if (is_foreign(key, foreign_sections)) return;
   set(key, assignment.substr(equals + 1), "--set");
 }
 
@@ -243,7 +250,7 @@ void ConfigBinder::load_file(const std::string& path, const std::vector<std::str
   if (root.IsNull()) return;
   if (!root.IsMap()) throw ConfigError(fmt::format("{}: expected sections such as 'filter:' at the top level", path));
   flatten(root, "", keys(), [&](const std::string& key, const std::string& yaml) {
-    if (find(key) == nullptr && is_foreign(key, foreign_sections)) return;
+    if (is_foreign(key, foreign_sections)) return;
     set(key, yaml, path);
   });
 }

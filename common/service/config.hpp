@@ -48,8 +48,8 @@ class ConfigBinder {
     prefix_ = saved;
   }
 
-  /// Loads a YAML file. Top-level sections named in `foreign_sections` belong to other services and are skipped;
-  /// any other unknown key, a wrong type or a value out of range throws ConfigError.
+  /// Loads a YAML file. Top-level sections named in `foreign_sections` belong to other services and are skipped, unless
+  /// a key of this binder lies in them; any other unknown key, a wrong type or a value out of range throws ConfigError.
   void load_file(const std::string& path, const std::vector<std::string>& foreign_sections);
   /// Applies one "key=value" override (value parsed as YAML). With `foreign_sections`, a key of another service is
   /// skipped.
@@ -69,6 +69,7 @@ class ConfigBinder {
   void add(const std::string& key, const std::string& help,
            std::function<void(const std::string&, const std::string&)> assign, std::function<std::string()> to_yaml);
   Entry* find(const std::string& key);
+  bool is_foreign(const std::string& key, const std::vector<std::string>& foreign_sections) const;
   [[noreturn]] void throw_unknown(const std::string& key, const std::string& origin) const;
 
   std::string prefix_;

@@ -22,6 +22,17 @@ namespace {
 
 const std::vector<std::string> kFilterModes = {"off", "semantic", "geometry", "rtd"};
 
+void check_sections(const std::vector<std::string>& overrides) {
+  const std::vector<std::string>& sections = service::config_sections();
+  for (const std::string& assignment : overrides) {
+    const std::string section = assignment.substr(0, assignment.find_first_of(".="));
+    if (std::find(sections.begin(), sections.end(), section) != sections.end()) continue;
+    const std::string near = service::nearest_word(section, sections);
+    throw ConfigError("--set " + assignment + ": unknown section '" + section + "'" +
+                      (near.empty() ? "" : ", did you mean '" + near + "'?"));
+  }
+}
+
 /// The launcher reads its own sections; those of the services are checked by the services when they start.
 void load_config(const RunOptions& options, RunSetup& setup) {
   service::BusConfig bus;
@@ -30,6 +41,7 @@ void load_config(const RunOptions& options, RunSetup& setup) {
   binder.section("launcher", setup.launcher);
   service::apply_bus_environment(binder);
   if (!options.config_file.empty()) binder.load_file(options.config_file, service::config_sections());
+  check_sections(options.overrides);
   for (const std::string& assignment : options.overrides) binder.set(assignment, service::config_sections());
   if (!options.dds.empty()) binder.set("bus.vendor", options.dds, "--dds");
   if (options.domain >= 0) binder.set("bus.domain", std::to_string(options.domain), "--domain");
@@ -110,7 +122,7 @@ std::string require_executable(const std::string& service) {
 }
 
 std::vector<std::string> common_arguments(const RunSetup& setup) {
-  std::vector<std::string> arguments = {"--pace",   setup.pace,       "--dds",
+  std::vector<std::string> arguments = {"--pace",         setup.pace, "--dds",
                                         setup.bus.vendor, "--domain", std::to_string(setup.bus.domain)};
   if (!setup.config_file.empty()) arguments.insert(arguments.end(), {"--config", setup.config_file});
   for (const std::string& assignment : setup.overrides) arguments.insert(arguments.end(), {"--set", assignment});
