@@ -15,7 +15,8 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
   binder.field("max_detections", max_detections, {1, 1000}, "the best ones are published");
   binder.field("threads", threads, {1, 64}, "CPU threads of the network");
   binder.field("max_rate_hz", max_rate_hz, {0.0, 1000.0}, "realtime pace: detect at most this often, 0 = no limit");
-  binder.field("class_names", class_names, "names in the order of the network's classes");
+  binder.field("class_names", class_names,
+               "names in the order of the network's classes; empty: those in the file, else COCO's");
 }
 
 DetectorConfig to_core(const ServiceConfig& config, const std::string& model_path) {

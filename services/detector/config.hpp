@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/service/config.hpp"
 #include "services/detector/core/detector_config.hpp"
@@ -20,8 +21,8 @@ struct ServiceConfig {
   double nms_iou = DecodeConfig{}.nms_iou;
   int max_detections = DecodeConfig{}.max_detections;
   int threads = DetectorConfig{}.threads;
-  double max_rate_hz = 0;  ///< realtime pace only; 0 = as fast as it goes
-  std::vector<std::string> class_names = coco_class_names();
+  double max_rate_hz = 0;                ///< realtime pace only; 0 = as fast as it goes
+  std::vector<std::string> class_names;  ///< empty: those in the model file, else COCO's 80
 
   void bind(service::ConfigBinder& binder);
 };

@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "services/detector/core/coco_classes.hpp"
 #include "services/detector/core/letterbox.hpp"
 #include "services/detector/core/yolo_decoder.hpp"
 
@@ -79,7 +80,7 @@ cv::Mat to_bgr(const cv::Mat& image) {
 /// The loaded network: frame in, logits of the heads out.
 class Detector::Network {
  public:
-  explicit Network(const DetectorConfig& config) : config_(config) {
+  explicit Network(DetectorConfig config) : config_(std::move(config)) {
     const QuietOpenCv quiet;
     try {
       load();
@@ -95,13 +96,15 @@ class Detector::Network {
     return heads_;
   }
   InputSize input() const { return input_; }
+  const DetectorConfig& config() const { return config_; }
 
  private:
   void load() {
     const std::vector<std::uint8_t> bytes = read_bytes(config_.model_path);
-    const OnnxInput onnx = read_onnx_input(bytes.data(), bytes.size());
-    if (!onnx.has_graph) fail(config_.model_path, "is no ONNX model, or cut off");
-    input_ = onnx.fixed.value_or(InputSize{config_.input_width_px, config_.input_height_px});
+    const OnnxFile file = read_onnx_file(bytes.data(), bytes.size());
+    if (!file.has_graph) fail(config_.model_path, "is no ONNX model, or cut off");
+    complete_config(file);
+    input_ = file.input.value_or(InputSize{config_.input_width_px, config_.input_height_px});
     net_ = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
     net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
@@ -110,6 +113,18 @@ class Detector::Network {
       fail(config_.model_path, "has " + std::to_string(output_names_.size()) + " outputs, expected " +
                                    std::to_string(config_.heads.size()) + " (one per stride)");
     }
+  }
+
+  /// What is not configured comes from the file's metadata, else from the family's defaults.
+  void complete_config(const OnnxFile& file) {
+    const auto metadata = [&file](const char* key) {
+      const auto found = file.metadata.find(key);
+      return found == file.metadata.end() ? std::string() : found->second;
+    };
+    if (config_.class_names.empty()) config_.class_names = split_lines(metadata("rtd.class_names"));
+    if (config_.class_names.empty()) config_.class_names = coco_class_names();
+    if (config_.heads.empty()) config_.heads = parse_heads(metadata("rtd.heads"));
+    if (config_.heads.empty()) config_.heads = default_heads();
   }
 
   void warm_up() {
@@ -144,7 +159,7 @@ class Detector::Network {
                                  " classes)");
   }
 
-  const DetectorConfig config_;
+  DetectorConfig config_;
   InputSize input_;
   cv::dnn::Net net_;
   std::vector<cv::String> output_names_;
@@ -175,9 +190,9 @@ vision::Detection to_detection(const Candidate& candidate, const Letterbox& lett
 
 }  // namespace
 
-Detector::Detector(DetectorConfig config) : config_(std::move(config)) {
-  cv::setNumThreads(config_.threads);
-  network_ = std::make_unique<Network>(config_);
+Detector::Detector(DetectorConfig config) {
+  cv::setNumThreads(config.threads);
+  network_ = std::make_unique<Network>(std::move(config));
 }
 Detector::~Detector() = default;
 Detector::Detector(Detector&&) noexcept = default;
@@ -188,12 +203,13 @@ std::vector<vision::Detection> Detector::detect(const cv::Mat& color_bgr) {
   const cv::Mat image = to_bgr(color_bgr);
   const Letterbox letterbox = fit_letterbox(image.size(), network_->input());
   const std::vector<HeadLogits>& heads = network_->infer(image, letterbox);
-  const int class_count = static_cast<int>(config_.class_names.size());
+  const DetectorConfig& config = network_->config();
+  const int class_count = static_cast<int>(config.class_names.size());
   const std::vector<Candidate> kept =
-      suppress_non_maxima(decode_heads(heads, class_count, config_.decode), config_.decode);
+      suppress_non_maxima(decode_heads(heads, class_count, config.decode), config.decode);
   std::vector<vision::Detection> detections;
   for (const Candidate& candidate : kept) {
-    const vision::Detection detection = to_detection(candidate, letterbox, image.size(), config_.class_names);
+    const vision::Detection detection = to_detection(candidate, letterbox, image.size(), config.class_names);
     if (detection.width_px > 0 && detection.height_px > 0) detections.push_back(detection);
   }
   return detections;
@@ -203,7 +219,7 @@ InputSize Detector::input_size() const {
   return network_->input();
 }
 const DetectorConfig& Detector::config() const {
-  return config_;
+  return network_->config();
 }
 
 }  // namespace rtd::detector

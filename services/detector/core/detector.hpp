@@ -9,7 +9,7 @@
 #include "common/vision/detection.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/model_error.hpp"
-#include "services/detector/core/onnx_input_shape.hpp"
+#include "services/detector/core/onnx_file.hpp"
 
 namespace rtd::detector {
 
@@ -28,11 +28,11 @@ class Detector {
   std::vector<vision::Detection> detect(const cv::Mat& color_bgr);
 
   InputSize input_size() const;
+  /// The configuration in force, with class names and heads filled in.
   const DetectorConfig& config() const;
 
  private:
   class Network;
-  DetectorConfig config_;
   std::unique_ptr<Network> network_;
 };
 

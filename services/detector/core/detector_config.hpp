@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "services/detector/core/coco_classes.hpp"
-
 namespace rtd::detector {
 
 /// Size of one anchor in pixels of the network's input.
@@ -29,16 +27,17 @@ struct DecodeConfig {
   int max_detections = 100;            ///< the best ones are kept
 };
 
-/// Everything the detector needs; defaults fit the YOLOv5 family (anchors and strides of YOLOv5 and YOLOv5-Lite).
+/// Strides and anchors of YOLOv5 and YOLOv5-Lite as published.
+std::vector<HeadLayout> default_heads();
+
+/// Everything the detector needs.
 struct DetectorConfig {
   std::string model_path;  ///< ONNX file with one raw output per head (services/detector/README.md)
   int input_width_px = 640, input_height_px = 480;  ///< used only when the file does not fix its input size
   DecodeConfig decode;
-  int threads = 1;  ///< OpenCV threads; process-wide (cv::setNumThreads)
-  std::vector<std::string> class_names = coco_class_names();
-  std::vector<HeadLayout> heads = {{8, {{{10, 13}, {16, 30}, {33, 23}}}},
-                                   {16, {{{30, 61}, {62, 45}, {59, 119}}}},
-                                   {32, {{{116, 90}, {156, 198}, {373, 326}}}}};
+  int threads = 1;                       ///< OpenCV threads; process-wide (cv::setNumThreads)
+  std::vector<std::string> class_names;  ///< empty: those in the file, else COCO's 80
+  std::vector<HeadLayout> heads;         ///< empty: those in the file, else default_heads()
 };
 
 }  // namespace rtd::detector

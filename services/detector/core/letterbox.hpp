@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "services/detector/core/onnx_input_shape.hpp"
+#include "services/detector/core/onnx_file.hpp"
 
 namespace rtd::detector {
 

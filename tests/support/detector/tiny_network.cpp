@@ -92,7 +92,10 @@ std::string tiny_network_onnx(const TinyNetwork& network) {
       network.fixed_size ? std::vector<int>{1, 3, network.height_px, network.width_px} : std::vector<int>{1, 3, 0, 0};
   std::string graph = nodes + bytes_field(2, "tiny") + initializers;
   graph += bytes_field(11, value_info("images", size)) + outputs;
-  return number_field(1, 6) + bytes_field(7, graph) + bytes_field(8, number_field(2, 11));
+  std::string model = number_field(1, 6) + bytes_field(7, graph);
+  for (const auto& [key, value] : network.metadata)
+    model += bytes_field(14, bytes_field(1, key) + bytes_field(2, value));
+  return model + bytes_field(8, number_field(2, 11));
 }
 
 }  // namespace rtd::test

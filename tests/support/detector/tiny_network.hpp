@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct TinyNetwork {
   int class_count = 2;
   bool fixed_size = true;  ///< false: height and width are free dimensions
   std::vector<int> strides = {8, 16, 32};
+  std::map<std::string, std::string> metadata = {};
 };
 
 /// An ONNX network with YOLOv5 heads that needs no training: per stride one convolution over whole cells. Anchor 0 of a

@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "services/detector/core/coco_classes.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 
 namespace rtd::detector {
@@ -92,6 +93,16 @@ TEST_F(DetectorTest, takes_the_input_size_from_the_configuration_when_the_file_l
   Detector detector(free_size);
   EXPECT_EQ(detector.input_size().width_px, 96);
   EXPECT_THAT(detector.detect(one_white_cell({96, 32}, 1, 10)), SizeIs(1));
+}
+
+TEST_F(DetectorTest, takes_class_names_and_anchors_from_the_file_when_none_are_configured) {
+  DetectorConfig described = config({.metadata = {{"rtd.class_names", "robot\nbox"},
+                                                  {"rtd.heads", "8: 20,6 1,1 1,1\n16: 1,1 1,1 1,1\n32: 1,1 1,1 1,1"}}});
+  described.class_names.clear();
+  const std::vector<vision::Detection> found = Detector(described).detect(one_white_cell({64, 64}, 3, 5));
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].class_name, "robot");
+  EXPECT_NEAR(found[0].width_px, 20.0F, 0.01F);
 }
 
 TEST_F(DetectorTest, accepts_grey_and_four_channel_images) {

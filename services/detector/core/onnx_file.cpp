@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/onnx_input_shape.hpp"
+#include "services/detector/core/onnx_file.hpp"
 
-#include <vector>
+#include <sstream>
 
 namespace rtd::detector {
 namespace {
 
-constexpr int kGraphOfModel = 7, kInputOfGraph = 11, kTypeOfValueInfo = 2, kTensorOfType = 1, kShapeOfTensor = 2,
-              kDimOfShape = 1, kValueOfDim = 1;
+constexpr int kGraphOfModel = 7, kMetadataOfModel = 14, kKeyOfEntry = 1, kValueOfEntry = 2, kInputOfGraph = 11,
+              kTypeOfValueInfo = 2, kTensorOfType = 1, kShapeOfTensor = 2, kDimOfShape = 1, kValueOfDim = 1;
 enum WireType : int { kVarint = 0, kFixed64 = 1, kLengthDelimited = 2, kFixed32 = 5 };
 
 struct Span {
@@ -99,26 +99,62 @@ std::vector<std::uint64_t> read_dimensions(Span value_info) {
   return dimensions;
 }
 
-}  // namespace
-
-OnnxInput read_onnx_input(const std::uint8_t* bytes, std::size_t size) {
+std::optional<InputSize> read_input_size(Span graph) {
   constexpr std::uint64_t kMaxSide = 8192;
-  OnnxInput input;
-  std::optional<Span> graph = find_message({bytes, bytes + size}, kGraphOfModel);
-  input.has_graph = graph.has_value();
-  while (graph) {
-    const std::optional<Field> field = take_field(*graph);
-    if (!field) break;
+  while (const std::optional<Field> field = take_field(graph)) {
     if (field->number != kInputOfGraph || field->bytes.begin == nullptr) continue;
     const std::vector<std::uint64_t> dimensions = read_dimensions(field->bytes);
     if (dimensions.size() != 4 || dimensions[1] != 3) continue;
     const std::uint64_t height = dimensions[2], width = dimensions[3];
-    if (height > 0 && width > 0 && height <= kMaxSide && width <= kMaxSide) {
-      input.fixed = InputSize{static_cast<int>(width), static_cast<int>(height)};
-    }
-    break;
+    if (height == 0 || width == 0 || height > kMaxSide || width > kMaxSide) return std::nullopt;
+    return InputSize{static_cast<int>(width), static_cast<int>(height)};
   }
-  return input;
+  return std::nullopt;
+}
+
+std::string text_of(const std::optional<Span>& span) {
+  return span ? std::string(span->begin, span->end) : std::string();
+}
+
+}  // namespace
+
+OnnxFile read_onnx_file(const std::uint8_t* bytes, std::size_t size) {
+  OnnxFile file;
+  Span model{bytes, bytes + size};
+  while (const std::optional<Field> field = take_field(model)) {
+    if (field->bytes.begin == nullptr) continue;
+    if (field->number == kGraphOfModel) {
+      file.has_graph = true;
+      file.input = read_input_size(field->bytes);
+    } else if (field->number == kMetadataOfModel) {
+      file.metadata[text_of(find_message(field->bytes, kKeyOfEntry))] =
+          text_of(find_message(field->bytes, kValueOfEntry));
+    }
+  }
+  return file;
+}
+
+std::vector<std::string> split_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<HeadLayout> parse_heads(const std::string& text) {
+  std::vector<HeadLayout> heads;
+  for (const std::string& line : split_lines(text)) {
+    std::istringstream stream(line);
+    HeadLayout head;
+    char separator = 0;
+    if (!(stream >> head.stride_px >> separator) || separator != ':' || head.stride_px <= 0) return {};
+    for (Anchor& anchor : head.anchors) {
+      if (!(stream >> anchor.width_px >> separator >> anchor.height_px) || separator != ',') return {};
+    }
+    if (stream >> separator) return {};  // more than three anchors
+    heads.push_back(head);
+  }
+  return heads;
 }
 
 }  // namespace rtd::detector

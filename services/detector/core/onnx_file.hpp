@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/detector/core/detector_config.hpp"
+
+namespace rtd::detector {
+
+/// Height and width of an image input, px.
+struct InputSize {
+  int width_px = 0, height_px = 0;
+};
+
+/// What an ONNX file says of itself. OpenCV 4.6 tells none of it.
+struct OnnxFile {
+  bool has_graph = false;                       ///< false: these bytes are no ONNX model, or only the beginning of one
+  std::optional<InputSize> input;               ///< of the first 1x3xHxW input, when H and W are fixed
+  std::map<std::string, std::string> metadata;  ///< ModelProto.metadata_props
+};
+
+/// Reads ONNX bytes (protobuf wire format, field numbers of onnx.proto). Never reads outside the bytes, whatever they
+/// hold.
+OnnxFile read_onnx_file(const std::uint8_t* bytes, std::size_t size);
+
+/// Anchors and strides as our converter writes them, one head a line: "8: 10,13 16,30 33,23". Empty when malformed.
+std::vector<HeadLayout> parse_heads(const std::string& text);
+
+/// The lines of `text`.
+std::vector<std::string> split_lines(const std::string& text);
+
+}  // namespace rtd::detector
