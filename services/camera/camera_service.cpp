@@ -1,0 +1,291 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/camera_service.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <fstream>
+#include <opencv2/core/utility.hpp>
+#include <utility>
+
+#include "common/service/monotonic_clock.hpp"
+#include "services/camera/core/trajectory_file.hpp"
+
+namespace rtd::camera {
+namespace {
+
+constexpr std::size_t kReadAhead = 2;
+constexpr std::size_t kResultQueue = 64;
+constexpr std::chrono::milliseconds kReadinessCheck{50};      // a peer that falls silent makes no event
+constexpr std::chrono::milliseconds kLongestWait{100};        // between two looks at the stop token
+constexpr std::int64_t kLastResultTimeoutNs = 2'000'000'000;  // pace realtime
+constexpr std::chrono::milliseconds kFarewell{300};           // the last heartbeats reach everybody
+constexpr int kReportEvery = 10;                              // frames
+
+std::unique_ptr<FrameSource> open_source(const std::string& uri) {
+  try {
+    return make_source(uri);
+  } catch (const SourceError& error) {
+    throw service::ConfigError(error.what());
+  }
+}
+
+bool consumes_frames(const std::string& service) {
+  return service == "filter" || service == "detector";
+}
+
+}  // namespace
+
+void CameraService::add_options(CLI::App& app, Config& config) {
+  app.add_option("--source", config.source, "tum:FOLDER or synthetic:SCENE[?key=value&...] (camera.source)");
+  app.add_option("--frames", config.frames, "Play at most N frames, 0 = all (camera.frames)")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--wait-for", config.wait_for,
+                 "Services that must be ready first, e.g. filter,slam; none (camera.wait_for)")
+      ->delimiter(',');
+  app.add_option("--groundtruth-out", config.groundtruth_out,
+                 "Write the ground truth to this file (camera.groundtruth_out)");
+  app.add_option("--export", config.export_folder, "Write the source to a new folder in TUM's layout and end");
+}
+
+CameraService::CameraService(const Config& config, service::Runtime& runtime)
+    : config_(config),
+      runtime_(runtime),
+      source_(open_source(config.source)),
+      realtime_(runtime.pace == service::Pace::kRealtime),
+      pacer_(to_pacer_config(config, runtime.pace, source_->info().fps), service::monotonic_ns),
+      results_(std::make_shared<Results>(kResultQueue, concurrency::Overflow::kDropOldest)),
+      changes_(std::make_shared<concurrency::BoundedQueue<bool>>(1, concurrency::Overflow::kDropOldest)),
+      publisher_(runtime.bus, config.jpeg_quality, [changes = changes_] { changes->push(true); }),
+      tracking_(runtime.bus.reader<msg::TrackingResult>(
+          bus::topics::kTracking, [results = results_](const auto& result) { results->push(result->seq); })) {
+  cv::setNumThreads(1);
+  config_.wait_for.erase(std::remove(config_.wait_for.begin(), config_.wait_for.end(), "none"), config_.wait_for.end());
+  runtime.heartbeat.on_status([changes = changes_](const auto&) { changes->push(true); });
+  runtime.stop.on_stop([results = results_, changes = changes_] {
+    results->close();
+    changes->close();
+  });
+  const auto& camera = source_->info().camera.parameters();
+  SPDLOG_INFO("event=source_opened uri={} frames={} width={} height={} fx={} fps={}", source_->info().uri,
+              source_->info().frames, camera.width, camera.height, camera.fx, source_->info().fps);
+}
+
+CameraService::~CameraService() {
+  runtime_.heartbeat.on_status({});
+}
+
+service::ExitCode CameraService::run() {
+  Outcome outcome = wait_for_others();
+  if (outcome == Outcome::kDone) {
+    runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
+    ReadAhead frames(*source_, kReadAhead, static_cast<std::uint64_t>(config_.frames));
+    outcome = play(frames);
+    if (outcome == Outcome::kDone) outcome = drain();
+  }
+  return finish(outcome);
+}
+
+CameraService::Outcome CameraService::wait_for_others() {
+  const std::int64_t deadline_ns = service::monotonic_ns() + static_cast<std::int64_t>(config_.start_timeout_s * 1e9);
+  std::vector<std::string> absent = missing();
+  while (!absent.empty()) {
+    if (runtime_.stop.stop_requested()) return Outcome::kStopped;
+    if (service::monotonic_ns() > deadline_ns) {
+      return fail(fmt::format("not ready within {:g} s: {}; start them, or leave them out with --wait-for",
+                              config_.start_timeout_s, fmt::join(absent, "; ")));
+    }
+    runtime_.heartbeat.set_state(msg::ServiceState::kReady, fmt::format("waits for {}", fmt::join(absent, "; ")));
+    changes_->pop_for(kReadinessCheck);
+    absent = missing();
+  }
+  SPDLOG_INFO("event=all_ready services={}", fmt::join(config_.wait_for, ","));
+  return Outcome::kDone;
+}
+
+std::vector<std::string> CameraService::missing() const {
+  std::vector<std::string> absent;
+  for (const std::string& name : config_.wait_for) {
+    if (!runtime_.heartbeat.ready(name)) absent.push_back(name);
+  }
+  const auto consumers = std::count_if(config_.wait_for.begin(), config_.wait_for.end(), consumes_frames);
+  const int readers = publisher_.frame_readers() + publisher_.jpeg_readers();
+  if (readers < consumers) absent.push_back(fmt::format("{} of {} frame readers", consumers - readers, consumers));
+  return absent;
+}
+
+CameraService::Outcome CameraService::play(ReadAhead& frames) {
+  runtime_.stop.on_stop([results = results_] { results->close(); });
+  while (!runtime_.stop.stop_requested()) {
+    std::optional<ReadItem> item = frames.next();
+    if (!item) break;
+    counters_ = item->counters;
+    log_skipped(*item);
+    if (!item->error.empty()) return fail("the source failed: " + item->error);
+    if (!item->frame) return Outcome::kDone;
+    if (const Outcome outcome = handle(std::move(*item->frame)); outcome != Outcome::kDone) return outcome;
+    if (frames_in_ % kReportEvery == 0) report_counters();
+  }
+  return Outcome::kStopped;
+}
+
+CameraService::Outcome CameraService::handle(SourceFrame frame) {
+  ++frames_in_;
+  while (!runtime_.stop.stop_requested()) {
+    take_results();
+    const PaceDecision decision = pacer_.next(frame.image.stamp_ns);
+    log_timeline(decision, frame);
+    if (decision.action == PaceAction::kSkipLate) return Outcome::kDone;
+    if (decision.action == PaceAction::kSend) {
+      send(frame.image);
+      last_seq_ = frame.image.seq;
+      if (realtime_) return Outcome::kDone;
+      pacer_.sent(frame.image.seq);
+      unanswered_.push_back(std::move(frame.image));
+      return Outcome::kDone;
+    }
+    if (follow(decision) == Outcome::kFailed) return Outcome::kFailed;
+  }
+  return Outcome::kStopped;
+}
+
+CameraService::Outcome CameraService::follow(const PaceDecision& decision) {
+  if (decision.action == PaceAction::kWait) wait(decision.wait_ns);
+  if (decision.action == PaceAction::kResend) resend();
+  if (decision.action == PaceAction::kGiveUp) {
+    return fail(fmt::format("no tracking result for frame {} within {:g} s: are filter and slam alive?",
+                            pacer_.in_flight().front(), config_.result_timeout_s));
+  }
+  return Outcome::kDone;
+}
+
+CameraService::Outcome CameraService::drain() {
+  if (!realtime_) return drain_in_window();
+  drain_by_time();
+  return Outcome::kDone;
+}
+
+CameraService::Outcome CameraService::drain_in_window() {
+  while (!runtime_.stop.stop_requested()) {
+    take_results();
+    const PaceDecision decision = pacer_.drain();
+    if (decision.action == PaceAction::kSend) return Outcome::kDone;
+    if (follow(decision) == Outcome::kFailed) return Outcome::kFailed;
+  }
+  return Outcome::kStopped;
+}
+
+/// Realtime: the last frame may have been dropped on its way, so its result is waited for, but not for long.
+void CameraService::drain_by_time() {
+  const std::int64_t deadline_ns = service::monotonic_ns() + kLastResultTimeoutNs;
+  while (published_ > 0 && !(any_result_ && newest_result_ >= last_seq_) && service::monotonic_ns() < deadline_ns) {
+    const std::optional<std::uint64_t> seq = results_->pop_for(kLongestWait);
+    if (seq) note(*seq);
+    if (runtime_.stop.stop_requested()) return;
+  }
+}
+
+void CameraService::wait(std::int64_t wait_ns) {
+  if (realtime_) {
+    runtime_.stop.wait_for(std::chrono::nanoseconds(wait_ns));
+    return;
+  }
+  const auto wait_ms = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(wait_ns));
+  if (const std::optional<std::uint64_t> seq = results_->pop_for(std::min(wait_ms, kLongestWait))) note(*seq);
+}
+
+void CameraService::take_results() {
+  while (const std::optional<std::uint64_t> seq = results_->pop_for(std::chrono::milliseconds(0))) note(*seq);
+}
+
+void CameraService::note(std::uint64_t seq) {
+  newest_result_ = any_result_ ? std::max(newest_result_, seq) : seq;
+  any_result_ = true;
+  pacer_.answered(seq);
+  while (!unanswered_.empty() && unanswered_.front().seq <= seq) unanswered_.pop_front();
+}
+
+bool CameraService::send(const vision::RgbdImage& image) {
+  const bool taken = publisher_.publish(image);
+  ++published_;
+  if (taken) return true;
+  ++refused_;
+  if (refused_log_.pass()) SPDLOG_WARN("event=frame_refused frame={} total={}", image.seq, refused_);
+  return false;
+}
+
+void CameraService::resend() {
+  SPDLOG_WARN("event=frames_sent_again first={} frames={} silent_ms={}", pacer_.in_flight().front(), unanswered_.size(),
+              config_.resend_after_ms);
+  for (const vision::RgbdImage& image : unanswered_) publisher_.publish(image);
+  pacer_.resent();
+}
+
+void CameraService::log_skipped(const ReadItem& item) {
+  for (const SkippedInput& skipped : item.skipped) {
+    if (!skip_log_.pass()) continue;
+    SPDLOG_WARN("event=input_skipped reason={} total={} detail=\"{}\"", to_string(skipped.reason),
+                item.counters.skipped_total(), skipped.detail);
+  }
+}
+
+void CameraService::log_timeline(const PaceDecision& decision, const SourceFrame& frame) {
+  if (decision.cut_gap_ns > 0) {
+    SPDLOG_WARN("event=gap_cut frame={} cut_s={:.3f} played_s={:g}", frame.image.seq,
+                static_cast<double>(decision.cut_gap_ns) * 1e-9, config_.max_gap_s);
+  }
+  if (decision.shifted_ns > 0) {
+    SPDLOG_WARN("event=timeline_shifted frame={} by_s={:.3f} cause=\"the source is slower than its stamps\"",
+                frame.image.seq, static_cast<double>(decision.shifted_ns) * 1e-9);
+  }
+  if (decision.action == PaceAction::kSkipLate && late_log_.pass()) {
+    SPDLOG_WARN("event=frame_late frame={} total={}", frame.image.seq, pacer_.late());
+  }
+}
+
+void CameraService::report_counters() {
+  const auto set = [this](const char* name, std::uint64_t value) {
+    runtime_.heartbeat.set_metric(name, static_cast<double>(value));
+  };
+  set("frames_in", frames_in_);
+  set("frames_published", published_);
+  set("frames_late", pacer_.late());
+  set("frames_skipped", counters_.skipped_total());
+  set("frames_without_depth", counters_.frames_without_depth);
+  set("frames_refused", refused_);
+  set("resends", pacer_.resends());
+}
+
+void CameraService::write_groundtruth() {
+  if (config_.groundtruth_out.empty()) return;
+  const std::vector<StampedPose> poses = source_->groundtruth();
+  if (poses.empty()) {
+    SPDLOG_INFO("event=no_groundtruth uri={}", source_->info().uri);
+    return;
+  }
+  std::ofstream file(config_.groundtruth_out, std::ios::binary);
+  if (!(file << to_tum_trajectory(poses)) || !file.flush()) {
+    SPDLOG_ERROR("event=groundtruth_not_written file={}", config_.groundtruth_out);
+  }
+}
+
+CameraService::Outcome CameraService::fail(const std::string& message) {
+  SPDLOG_ERROR("event=failed cause=\"{}\"", message);
+  runtime_.heartbeat.set_state(msg::ServiceState::kFailed, message);
+  return Outcome::kFailed;
+}
+
+service::ExitCode CameraService::finish(Outcome outcome) {
+  write_groundtruth();
+  report_counters();
+  if (outcome != Outcome::kFailed) runtime_.heartbeat.set_state(msg::ServiceState::kFinished);
+  SPDLOG_INFO("event=summary frames_in={} published={} late={} skipped={} without_depth={} refused={} resends={}",
+              frames_in_, published_, pacer_.late(), counters_.skipped_total(), counters_.frames_without_depth,
+              refused_, pacer_.resends());
+  if (outcome != Outcome::kStopped) runtime_.stop.wait_for(kFarewell);
+  return outcome == Outcome::kFailed ? service::kRunFailed : service::kOk;
+}
+
+}  // namespace rtd::camera

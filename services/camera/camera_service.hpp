@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/concurrency/bounded_queue.hpp"
+#include "common/service/exit_code.hpp"
+#include "common/service/log.hpp"
+#include "common/service/runtime.hpp"
+#include "services/camera/config.hpp"
+#include "services/camera/core/pacer.hpp"
+#include "services/camera/core/read_ahead.hpp"
+#include "services/camera/core/source_factory.hpp"
+#include "services/camera/frame_publisher.hpp"
+
+namespace rtd::camera {
+
+/// rtd-camera: plays a source onto the bus at the pace asked for (docs/architecture.md, "Pacing").
+class CameraService {
+ public:
+  static constexpr const char* kName = "camera";
+  static constexpr const char* kDescription = "Plays RGB-D frames from a folder or a synthetic scene onto the bus";
+  using Config = ServiceConfig;
+  static void add_options(CLI::App& app, Config& config);
+
+  /// Opens the source; throws ConfigError when it cannot be used.
+  CameraService(const Config& config, service::Runtime& runtime);
+  ~CameraService();
+
+  /// Waits for the others, plays the source, waits for the last result.
+  service::ExitCode run();
+
+ private:
+  using Results = concurrency::BoundedQueue<std::uint64_t>;
+  enum class Outcome { kDone, kStopped, kFailed };
+
+  Outcome wait_for_others();
+  std::vector<std::string> missing() const;
+  Outcome play(ReadAhead& frames);
+  Outcome handle(SourceFrame frame);
+  /// Carries out decisions that concern frames in flight; kDone when the next frame may go.
+  Outcome follow(const PaceDecision& decision);
+  Outcome drain();
+  Outcome drain_in_window();
+  void drain_by_time();
+  void wait(std::int64_t wait_ns);
+  void take_results();
+  void note(std::uint64_t seq);
+  bool send(const vision::RgbdImage& image);
+  void resend();
+  void log_skipped(const ReadItem& item);
+  void log_timeline(const PaceDecision& decision, const SourceFrame& frame);
+  void report_counters();
+  void write_groundtruth();
+  Outcome fail(const std::string& message);
+  service::ExitCode finish(Outcome outcome);
+
+  Config config_;
+  service::Runtime& runtime_;
+  std::unique_ptr<FrameSource> source_;
+  bool realtime_;
+  Pacer pacer_;
+  std::shared_ptr<Results> results_;                          ///< seq of every TrackingResult
+  std::shared_ptr<concurrency::BoundedQueue<bool>> changes_;  ///< somebody became ready or matched
+  FramePublisher publisher_;
+  bus::Reader<msg::TrackingResult> tracking_;
+  std::deque<vision::RgbdImage> unanswered_;  ///< kept for sending again; empty at pace realtime
+  SourceCounters counters_;
+  std::uint64_t frames_in_ = 0, published_ = 0, refused_ = 0, last_seq_ = 0, newest_result_ = 0;
+  bool any_result_ = false;
+  service::RateLimit skip_log_{std::chrono::seconds(1)}, late_log_{std::chrono::seconds(1)},
+      refused_log_{std::chrono::seconds(1)};
+};
+
+}  // namespace rtd::camera

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/tum_export.hpp"
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "services/camera/core/calibration.hpp"
+#include "services/camera/core/trajectory_file.hpp"
+
+namespace rtd::camera {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string stamp_text(std::int64_t stamp_ns) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%lld.%06lld", static_cast<long long>(stamp_ns / 1'000'000'000),
+                static_cast<long long>(stamp_ns % 1'000'000'000 / 1000));
+  return text.data();
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary);
+  if (!(stream << text) || !stream.flush()) throw SourceError("cannot write " + file.string());
+}
+
+void write_png(const fs::path& file, const cv::Mat& image) {
+  constexpr int kFastCompression = 1;
+  if (!cv::imwrite(file.string(), image, {cv::IMWRITE_PNG_COMPRESSION, kFastCompression})) {
+    throw SourceError("cannot write " + file.string());
+  }
+}
+
+void prepare(const fs::path& folder) {
+  if (fs::exists(folder / "rgb.txt")) {
+    throw SourceError(folder.string() + " holds a sequence already; name a new folder or remove it");
+  }
+  std::error_code error;
+  for (const char* name : {"rgb", "depth", "mask"}) {
+    fs::create_directories(folder / name, error);
+    if (error) throw SourceError("cannot make " + (folder / name).string() + ": " + error.message());
+  }
+}
+
+/// The list files while they grow.
+struct Lists {
+  std::string rgb = "# timestamp filename\n", depth = rgb, associations;
+  void add(const std::string& stamp, const std::string& file) {
+    rgb += stamp + " rgb/" + file + '\n';
+    depth += stamp + " depth/" + file + '\n';
+    associations += stamp + " rgb/" + file + ' ' + stamp + " depth/" + file + '\n';
+  }
+};
+
+}  // namespace
+
+std::uint64_t export_tum(FrameSource& source, const fs::path& folder, std::uint64_t max_frames) {
+  if (source.info().frames == 0 && max_frames == 0) {
+    throw SourceError("source " + source.info().uri + " is endless: limit it with --frames N");
+  }
+  prepare(folder);
+  Lists lists;
+  std::uint64_t frames = 0;
+  while (max_frames == 0 || frames < max_frames) {
+    const std::optional<SourceFrame> frame = source.next();
+    if (!frame) break;
+    const std::string stamp = stamp_text(frame->image.stamp_ns), file = stamp + ".png";
+    write_png(folder / "rgb" / file, frame->image.color_bgr);
+    write_png(folder / "depth" / file, frame->image.depth);
+    if (!frame->dynamic_mask.empty()) write_png(folder / "mask" / file, frame->dynamic_mask);
+    lists.add(stamp, file);
+    ++frames;
+  }
+  write_text(folder / "rgb.txt", lists.rgb);
+  write_text(folder / "depth.txt", lists.depth);
+  write_text(folder / "associations.txt", lists.associations);
+  write_text(folder / "groundtruth.txt", to_tum_trajectory(source.groundtruth()));
+  write_text(folder / "calibration.yaml",
+             to_yaml({source.info().camera, source.info().depth_scale_m, source.info().fps}));
+  return frames;
+}
+
+}  // namespace rtd::camera

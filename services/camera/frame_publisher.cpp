@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/frame_publisher.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <opencv2/imgcodecs.hpp>
+#include <random>
+#include <utility>
+
+#include "common/service/monotonic_clock.hpp"
+
+namespace rtd::camera {
+namespace {
+
+constexpr const char* kFrameId = "camera_color_optical_frame";
+
+std::uint64_t random_id() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 32U) | device();
+}
+
+/// Copies the rows packed and clears what a smaller image leaves of the fixed array.
+template <class Array>
+void copy_packed(const cv::Mat& image, Array& target) {
+  auto* bytes = reinterpret_cast<std::uint8_t*>(target.data());
+  const std::size_t row_bytes = static_cast<std::size_t>(image.cols) * image.elemSize();
+  for (int row = 0; row < image.rows; ++row, bytes += row_bytes) std::memcpy(bytes, image.ptr(row), row_bytes);
+  const std::size_t used = row_bytes * static_cast<std::size_t>(image.rows);
+  std::memset(bytes, 0, sizeof(target) - used);
+}
+
+}  // namespace
+
+msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns) {
+  const auto& p = camera.parameters();
+  msg::CameraInfo info;
+  info.header = {msg::to_time(stamp_ns), kFrameId};
+  info.width = static_cast<std::uint32_t>(p.width);
+  info.height = static_cast<std::uint32_t>(p.height);
+  info.distortion_model = "plumb_bob";
+  info.d.assign(p.distortion.begin(), p.distortion.end());
+  info.k = {p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1};
+  info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  info.p = {p.fx, 0, p.cx, 0, 0, p.fy, p.cy, 0, 0, 0, 1, 0};
+  return info;
+}
+
+void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::int64_t published_ns,
+                msg::RgbdFrame& frame) {
+  const auto& p = image.camera.parameters();
+  frame.seq = image.seq;
+  frame.stamp_ns = image.stamp_ns;
+  frame.published_ns = published_ns;
+  frame.intrinsics = {p.fx, p.fy, p.cx, p.cy};
+  frame.distortion = p.distortion;
+  frame.depth_scale_m = image.depth_scale_m;
+  frame.width = static_cast<std::uint32_t>(image.color_bgr.cols);
+  frame.height = static_cast<std::uint32_t>(image.color_bgr.rows);
+  frame.source_id = source_id;
+  copy_packed(image.color_bgr, frame.color_bgr);
+  copy_packed(image.depth, frame.depth);
+}
+
+FramePublisher::FramePublisher(bus::Bus& bus, int jpeg_quality, std::function<void()> on_matched)
+    : jpeg_quality_(jpeg_quality), source_id_(random_id()) {
+  bus::StatusCallbacks callbacks;
+  callbacks.on_matched = [on_matched = std::move(on_matched)](int) { on_matched(); };
+  frames_ = bus.writer(bus::topics::kFrame, callbacks);
+  jpegs_ = bus.writer(bus::topics::kColorJpeg, callbacks);
+  infos_ = bus.writer(bus::topics::kCameraInfo);
+}
+
+bool FramePublisher::publish(const vision::RgbdImage& image) {
+  const bool taken = publish_raw(image);
+  if (jpegs_.matched() > 0) publish_jpeg(image);
+  if (!std::exchange(info_sent_, true) || infos_.matched() > 0) {
+    infos_.write(to_camera_info(image.camera, image.stamp_ns));
+  }
+  return taken;
+}
+
+bool FramePublisher::publish_raw(const vision::RgbdImage& image) {
+  bus::Loan<msg::RgbdFrame> frame = frames_.loan();
+  if (frame.operator->() == nullptr) return false;
+  fill_frame(image, source_id_, service::monotonic_ns(), *frame);
+  return frames_.write(std::move(frame));
+}
+
+void FramePublisher::publish_jpeg(const vision::RgbdImage& image) {
+  msg::CompressedImage message;
+  message.header = {msg::to_time(image.stamp_ns), kFrameId};
+  message.format = "bgr8; jpeg compressed bgr8";
+  if (!cv::imencode(".jpg", image.color_bgr, message.data, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality_})) return;
+  ++jpegs_encoded_;
+  jpegs_.write(message);
+}
+
+}  // namespace rtd::camera
