@@ -117,7 +117,6 @@ std::vector<std::string> CameraService::missing() const {
 }
 
 CameraService::Outcome CameraService::play(ReadAhead& frames) {
-  runtime_.stop.on_stop([results = results_] { results->close(); });
   while (!runtime_.stop.stop_requested()) {
     std::optional<ReadItem> item = frames.next();
     if (!item) break;
