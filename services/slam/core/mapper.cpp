@@ -51,7 +51,9 @@ void Mapper::count_statistics(const std::vector<LandmarkStatistics>& statistics)
 }
 
 void Mapper::create_landmarks(KeyframeId keyframe) {
-  recent_.add(create_from_depth(map_, keyframe, config_.sensor.close_depth_m));
+  // The first keyframe has nothing but its depth: all of it is used.
+  const bool first = map_.keyframes().size() == 1;
+  recent_.add(create_from_depth(map_, keyframe, first ? config_.sensor.max_depth_m : config_.sensor.close_depth_m));
   recent_.add(create_by_triangulation(map_, keyframe, config_.mapper.neighbours));
 }
 
