@@ -54,7 +54,9 @@ Collector::~Collector() {
   encoder_.join();
 }
 
-bool Collector::connected() const { return tracking_.matched() > 0 && features_.matched() > 0; }
+bool Collector::connected() const {
+  return tracking_.matched() > 0 && features_.matched() > 0;
+}
 
 LiveStatus Collector::live() const {
   const std::lock_guard lock(mutex_);

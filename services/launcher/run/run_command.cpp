@@ -39,17 +39,21 @@ void tell_setup(const RunSetup& setup, Terminal& terminal) {
 
 service::ExitCode exit_code(RunOutcome outcome, bool tracked_any) {
   switch (outcome) {
-    case RunOutcome::kInterrupted: return service::kInterrupted;
-    case RunOutcome::kConfigError: return service::kUsageOrConfig;
-    case RunOutcome::kComplete: return tracked_any ? service::kOk : service::kRunFailed;
+    case RunOutcome::kInterrupted:
+      return service::kInterrupted;
+    case RunOutcome::kConfigError:
+      return service::kUsageOrConfig;
+    case RunOutcome::kComplete:
+      return tracked_any ? service::kOk : service::kRunFailed;
     case RunOutcome::kFailed:
-    case RunOutcome::kRunning: break;
+    case RunOutcome::kRunning:
+      break;
   }
   return service::kRunFailed;
 }
 
-/// Everything that the run leaves in its folder beside what slam wrote. A run that slam could not finish is judged by the
-/// poses as they were published.
+/// Everything that the run leaves in its folder beside what slam wrote. A run that slam could not finish is judged by
+/// the poses as they were published.
 void write_results(const RunSetup& setup, RunResult& result) {
   const std::string online_path = setup.out_dir + "/trajectory_online.txt";
   std::ofstream(online_path) << online_trajectory_text(result.record.frames);

@@ -18,8 +18,8 @@ struct RunResult {
   std::optional<RunSummary> summary;  ///< empty: nothing was started
 };
 
-/// `rtd run`: checks, starts, supervises, reports. Prints progress to stderr, the summary to stdout. Never throws for what
-/// the user can cause: that becomes a message and an exit code.
+/// `rtd run`: checks, starts, supervises, reports. Prints progress to stderr, the summary to stdout. Never throws for
+/// what the user can cause: that becomes a message and an exit code.
 RunResult run(const RunOptions& options);
 
 }  // namespace rtd::launcher

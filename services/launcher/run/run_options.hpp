@@ -13,8 +13,8 @@ struct RunOptions {
   std::string source;
   std::string pace = "realtime";
   std::string filter_mode;  ///< off, semantic, geometry, rtd; empty: configuration, default rtd
-  std::string dds;         ///< empty: configuration, environment, default
-  int domain = -1;         ///< -1: configuration, environment, default
+  std::string dds;          ///< empty: configuration, environment, default
+  int domain = -1;          ///< -1: configuration, environment, default
   std::string config_file;
   std::vector<std::string> overrides;  ///< "key=value" for any service
   std::string detector = "auto";       ///< "auto": when weights are found and the filter mode needs them; "off"

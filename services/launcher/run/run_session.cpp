@@ -18,10 +18,11 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kTick{50};
 constexpr milliseconds kMemoryPeriod{250};
-constexpr milliseconds kConnectTimeout{15000};  ///< then the camera is started all the same: it names who is missing
 constexpr std::size_t kShownTailLines = 6;
 
-milliseconds now() { return milliseconds(service::monotonic_ns() / 1'000'000); }
+milliseconds now() {
+  return milliseconds(service::monotonic_ns() / 1'000'000);
+}
 
 std::string read_file(const std::string& path) {
   std::ifstream file(path);
@@ -45,7 +46,9 @@ double span_s(const std::vector<FrameRecord>& frames) {
   return static_cast<double>(frames.back().tracking.finished_ns - frames.front().tracking.published_ns) * 1e-9;
 }
 
-std::string existing(const std::string& path) { return std::filesystem::is_regular_file(path) ? path : std::string(); }
+std::string existing(const std::string& path) {
+  return std::filesystem::is_regular_file(path) ? path : std::string();
+}
 
 }  // namespace
 
@@ -87,27 +90,34 @@ void RunSession::supervise(const ServicePlan& camera) {
   }
 }
 
-/// Everyone who answers the first frame is heard here, so that no answer is missed.
+/// Who answers the first frame is heard here, so that no answer is missed. When somebody never comes, the camera names
+/// them.
 bool RunSession::camera_may_start(milliseconds time) const {
-  return collector_.connected() || time - started_ >= kConnectTimeout;
+  return collector_.connected() || time - started_ >= milliseconds(setup_.launcher.connect_timeout_ms);
 }
 
 void RunSession::stop_when_decided(milliseconds time) {
   if (supervisor_.stopping() || supervisor_.outcome() == RunOutcome::kRunning) return;
-  if (supervisor_.outcome() == RunOutcome::kConfigError) logs_.mute();  // the others only say that they are asked to end
+  if (supervisor_.outcome() == RunOutcome::kConfigError)
+    logs_.mute();  // the others only say that they are asked to end
   supervisor_.stop(time, milliseconds(setup_.launcher.finish_grace_ms), supervisor_.outcome());
 }
 
 void RunSession::on_event(const SupervisorEvent& event) {
   using Kind = SupervisorEvent::Kind;
   switch (event.kind) {
-    case Kind::kStarted: return;
-    case Kind::kRestarted: usage_.add_restart(event.service); return note(event.text);
+    case Kind::kStarted:
+      return;
+    case Kind::kRestarted:
+      usage_.add_restart(event.service);
+      return note(event.text);
     case Kind::kEnded:
       usage_.add_exit(event.service, event.exit);
       if (!event.exit.clean()) note(event.text);
       return;
-    case Kind::kKilled: usage_.add_exit(event.service, event.exit); return note(event.text);
+    case Kind::kKilled:
+      usage_.add_exit(event.service, event.exit);
+      return note(event.text);
     case Kind::kRefused:
       usage_.add_exit(event.service, event.exit);
       note(event.text);

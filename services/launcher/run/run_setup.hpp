@@ -16,12 +16,13 @@ namespace rtd::launcher {
 struct RunSetup {
   LauncherConfig launcher;
   bus::BusOptions bus;
-  std::string source;             ///< URI
+  std::string source;              ///< URI
   std::uint64_t total_frames = 0;  ///< 0 = unknown or endless
   std::string pace, filter_mode, out_dir;
   std::string model_path;     ///< empty: no detector in this run
   std::string detector_note;  ///< model file name, or "off (why)"
-  bool weights_missing = false;  ///< the filter mode wants a detector, but there are no weights; detector_note says where
+  bool weights_missing =
+      false;  ///< the filter mode wants a detector, but there are no weights; detector_note says where
   std::uint64_t frame_limit = 0;
   std::string config_file;
   std::vector<std::string> overrides;
@@ -29,11 +30,12 @@ struct RunSetup {
   std::string groundtruth_path() const { return out_dir + "/groundtruth.txt"; }
 };
 
-/// Checks everything that can be checked before a process is started: source, configuration, weights, output folder (it is
-/// created and cleared of what an earlier run left). Throws service::ConfigError or camera::SourceError.
+/// Checks everything that can be checked before a process is started: source, configuration, weights, output folder (it
+/// is created and cleared of what an earlier run left). Throws service::ConfigError or camera::SourceError.
 RunSetup prepare_run(const RunOptions& options);
 
-/// The services of the run in starting order, camera last. Throws service::ConfigError naming an executable that is missing.
+/// The services of the run in starting order, camera last. Throws service::ConfigError naming an executable that is
+/// missing.
 std::vector<ServicePlan> plan_services(const RunSetup& setup);
 
 }  // namespace rtd::launcher

@@ -44,8 +44,9 @@ std::string run_summary_text(const RunRecord& record, const RunSummary& summary,
   text += row("frames", fmt::format("{} in, {} with pose, {} without answer{}", record.frames_in,
                                     summary.frames_tracked, record.frames_dropped, lost_places(record)));
   text += row("coverage", number(100 * summary.coverage, "{:.1f}", " %"));
-  text += row("ATE rmse", ate(summary.final_trajectory) +
-                              (summary.final_trajectory ? "  (as published: " + ate(summary.online_trajectory) + ")" : ""));
+  text +=
+      row("ATE rmse", ate(summary.final_trajectory) +
+                          (summary.final_trajectory ? "  (as published: " + ate(summary.online_trajectory) + ")" : ""));
   text += row("speed", number(summary.fps, "{:.1f}", " frames/s"));
   text += row("latency", fmt::format("p50 {}, p99 {}", number(summary.latency_ms.p50, "{:.1f}", " ms"),
                                      number(summary.latency_ms.p99, "{:.1f}", " ms")));

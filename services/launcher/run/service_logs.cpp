@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kMaxShownPerService = 10;
 
-/// "warning slam event=..." of "12:34:56.789 warning slam event=..."; empty for a line that is no log event: why a service
-/// died is told together with its death.
+/// "warning slam event=..." of "12:34:56.789 warning slam event=..."; empty for a line that is no log event: why a
+/// service died is told together with its death.
 std::string event_of(const std::string& line) {
   const std::size_t space = line.find(' ');
   const bool has_time = space == 12 && line[2] == ':' && line[5] == ':';
@@ -32,7 +32,8 @@ void ServiceLogs::show(const std::string& service, Log& log, const std::string& 
   if (event.empty()) return;
   ++log.shown;
   if (log.shown <= kMaxShownPerService) terminal_.warn("  " + event);
-  if (log.shown == kMaxShownPerService) terminal_.warn("  (further warnings of " + service + ": " + path(service) + ")");
+  if (log.shown == kMaxShownPerService)
+    terminal_.warn("  (further warnings of " + service + ": " + path(service) + ")");
 }
 
 std::vector<std::string> ServiceLogs::reason(const std::string& service) const {

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "services/launcher/process/posix_process_host.hpp"
+
+namespace rtd::launcher {
+
+/// Runs `rtd` as a user does: another process, its output caught, Ctrl-C as a signal.
+class RtdCommand {
+ public:
+  explicit RtdCommand(std::string executable = RTD_EXECUTABLE) : executable_(std::move(executable)) {}
+
+  void start(const std::vector<std::string>& arguments) {
+    std::vector<std::string> command = {executable_};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    process_ = host_.start("rtd", command);
+  }
+  void interrupt() const { ::kill(static_cast<pid_t>(process_), SIGINT); }
+
+  /// The exit code; a test failure and -1 when it did not end in time.
+  int wait(std::chrono::milliseconds timeout = std::chrono::seconds(60)) {
+    const auto give_up = std::chrono::steady_clock::now() + timeout;
+    while (std::chrono::steady_clock::now() < give_up) {
+      host_.wait(std::chrono::milliseconds(20));
+      if (const auto exit = host_.poll_exit(process_)) return exit->signal != 0 ? -exit->signal : exit->code;
+    }
+    ADD_FAILURE() << "rtd did not end in time:\n" << output_;
+    host_.kill(process_);
+    return -1;
+  }
+  int run(const std::vector<std::string>& arguments) {
+    start(arguments);
+    return wait();
+  }
+  /// Lets it run until its output holds `text`; false when that did not come.
+  bool wait_for(const std::string& text, std::chrono::milliseconds timeout = std::chrono::seconds(30)) {
+    const auto give_up = std::chrono::steady_clock::now() + timeout;
+    while (output_.find(text) == std::string::npos && std::chrono::steady_clock::now() < give_up) {
+      host_.wait(std::chrono::milliseconds(20));
+    }
+    return output_.find(text) != std::string::npos;
+  }
+  const std::string& output() const { return output_; }
+
+ private:
+  std::string executable_, output_;
+  ProcessId process_ = 0;
+  PosixProcessHost host_{[this](const std::string&, const std::string& line) { output_ += line + '\n'; }};
+};
+
+/// A folder of its own for each test, removed at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    path_ = std::filesystem::path(testing::TempDir()) /
+            ("rtd_" + std::string(test->name()) + "_" + std::to_string(getpid()));
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+}  // namespace rtd::launcher

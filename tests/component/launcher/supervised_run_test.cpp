@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "tests/component/launcher/rtd_command.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// `rtd run` with shell scripts in the place of the services: what it does with processes, whatever they compute.
+class SupervisedRunTest : public testing::Test {
+ protected:
+  SupervisedRunTest() {
+    fs::create_directories(scratch_ / "bin");
+    fs::copy_file(RTD_EXECUTABLE, scratch_ / "bin/rtd");  // services are looked for beside it
+    script("detector", kServe);
+    script("filter", kServe);
+    script("slam", kServe);
+    script("camera", "exit 0");
+  }
+  void script(const std::string& service, const std::string& text) {
+    const std::string path = scratch_ / ("bin/rtd-" + service);
+    std::ofstream(path) << "#!/bin/sh\n" << text << '\n';
+    fs::permissions(path, fs::perms::owner_all);
+  }
+  std::vector<std::string> arguments(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> all = {"run",
+                                    "--source",
+                                    "synthetic:office?frames=5",
+                                    "--out",
+                                    scratch_ / "out",
+                                    "--dds",
+                                    "inprocess",
+                                    "--filter",
+                                    "geometry",
+                                    "--set",
+                                    "launcher.connect_timeout_ms=0"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  std::string log(const std::string& service) { return text_of(scratch_ / ("out/logs/" + service + ".log")); }
+
+  static constexpr char kServe[] = "trap 'exit 0' TERM; while :; do sleep 0.05; done";
+  ScratchFolder scratch_;
+  RtdCommand rtd_{scratch_ / "bin/rtd"};
+};
+
+TEST_F(SupervisedRunTest, gives_every_service_its_arguments_and_a_log) {
+  for (const char* service : {"filter", "slam"}) script(service, std::string("echo \"$@\"; ") + kServe);
+  script("camera", "echo \"$@\"; sleep 0.3");
+  rtd_.run(arguments({"--pace", "lockstep", "--domain", "7", "--frames", "3", "--set", "slam.x=1"}));
+  EXPECT_THAT(log("filter"), AllOf(HasSubstr("--pace lockstep --dds inprocess --domain 7"), HasSubstr("--set slam.x=1"),
+                                   HasSubstr("--set filter.mode=geometry --set filter.detector=off")));
+  EXPECT_THAT(log("slam"), HasSubstr("--out " + (scratch_ / "out")));
+  EXPECT_THAT(log("camera"), AllOf(HasSubstr("--source synthetic:office?frames=5"), HasSubstr("--frames 3"),
+                                   HasSubstr("--wait-for filter,slam"), Not(HasSubstr("detector"))));
+  EXPECT_FALSE(fs::exists(scratch_ / "out/logs/detector.log")) << "geometry needs no detector";
+}
+
+TEST_F(SupervisedRunTest, a_run_without_a_pose_fails_and_says_so) {
+  EXPECT_EQ(rtd_.run(arguments()), 1);
+  EXPECT_THAT(rtd_.output(), HasSubstr("no frame got a pose"));
+  EXPECT_TRUE(fs::exists(scratch_ / "out/report.json"));
+  EXPECT_TRUE(fs::exists(scratch_ / "out/report.html"));
+}
+
+TEST_F(SupervisedRunTest, a_refused_configuration_ends_the_run_with_the_services_own_words) {
+  script("camera", kServe);
+  script("filter", "echo \"rtd-filter: --set: unknown key 'filter.mod', did you mean 'filter.mode'?\" >&2; exit 2");
+  EXPECT_EQ(rtd_.run(arguments()), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("did you mean 'filter.mode'?"));
+  EXPECT_FALSE(fs::exists(scratch_ / "out/report.json")) << "nothing ran, nothing to report";
+}
+
+TEST_F(SupervisedRunTest, a_failed_camera_fails_the_run_with_its_last_words) {
+  script("camera", "echo 'rtd-camera: disk on fire' >&2; exit 1");
+  EXPECT_EQ(rtd_.run(arguments()), 1);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("camera died: exit code 1"), HasSubstr("disk on fire")));
+}
+
+TEST_F(SupervisedRunTest, a_killed_service_is_named_and_restarted_and_the_others_go_on) {
+  const std::string marker = scratch_ / "died";
+  script("slam",
+         "if [ ! -e " + marker + " ]; then touch " + marker + "; echo last words; kill -KILL $$; fi; " + kServe);
+  script("camera", "sleep 1");
+  rtd_.run(arguments());
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("slam died: killed by signal 9 (SIGKILL), restart in 200 ms"),
+                                   HasSubstr("| last words"), HasSubstr("slam restarted (1. time)")));
+  EXPECT_THAT(rtd_.output(), Not(HasSubstr("filter died")));
+}
+
+TEST_F(SupervisedRunTest, a_service_that_keeps_dying_fails_the_run) {
+  script("slam", "exit 3");
+  script("camera", kServe);
+  EXPECT_EQ(rtd_.run(arguments({"--set", "launcher.max_restarts=2", "--set", "launcher.first_backoff_ms=10"})), 1);
+  EXPECT_THAT(rtd_.output(), HasSubstr("slam died: exit code 3, 3 times in a row: given up"));
+}
+
+TEST_F(SupervisedRunTest, ctrl_c_ends_polite_and_deaf_services_within_two_seconds) {
+  script("camera", kServe);
+  script("slam", "trap '' TERM INT; echo deaf; while :; do sleep 0.05; done");
+  rtd_.start(arguments());
+  ASSERT_TRUE(rtd_.wait_for("frame"));
+  usleep(300'000);  // the deaf one has set its trap
+
+  const auto pressed = std::chrono::steady_clock::now();
+  rtd_.interrupt();
+  EXPECT_EQ(rtd_.wait(), 130);
+  EXPECT_LT(std::chrono::steady_clock::now() - pressed, std::chrono::seconds(2));
+  EXPECT_THAT(rtd_.output(),
+              AllOf(HasSubstr("slam did not end when asked and was killed"), HasSubstr("partial results")));
+  EXPECT_TRUE(fs::exists(scratch_ / "out/report.json"));
+}
+
+TEST_F(SupervisedRunTest, quiet_shows_problems_only) {
+  script("camera", "echo '12:00:00.000 warning camera event=frame_skipped file=x.png'; sleep 0.3");
+  rtd_.run(arguments({"--quiet"}));
+  EXPECT_EQ(rtd_.output(), "  warning camera event=frame_skipped file=x.png\nrtd: no frame got a pose\n");
+}
+
+TEST_F(SupervisedRunTest, a_missing_service_is_named_before_anything_starts) {
+  fs::remove(scratch_ / "bin/rtd-slam");
+  EXPECT_EQ(rtd_.run(arguments()), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("rtd-slam is neither beside rtd"));
+  EXPECT_FALSE(fs::exists(scratch_ / "out/logs/filter.log"));
+}
+
+TEST_F(SupervisedRunTest, what_an_earlier_run_left_is_not_taken_for_this_ones) {
+  fs::create_directories(scratch_ / "out");
+  std::ofstream(scratch_ / "out/trajectory.txt") << "1.0 0 0 0 0 0 0 1\n";
+  rtd_.run(arguments());
+  EXPECT_FALSE(fs::exists(scratch_ / "out/trajectory.txt"));
+}
+
+TEST_F(SupervisedRunTest, without_weights_it_says_so_once_and_runs_on_geometry) {
+  setenv("RTD_MODEL_DIR", (scratch_ / "nowhere").c_str(), 1);
+  setenv("XDG_CACHE_HOME", (scratch_ / "nowhere").c_str(), 1);
+  std::vector<std::string> with_default_filter = arguments();
+  with_default_filter.erase(with_default_filter.begin() + 7, with_default_filter.begin() + 9);
+  script("filter", std::string("echo \"$@\"; ") + kServe);
+  script("camera", "sleep 0.3");
+  rtd_.run(with_default_filter);
+  EXPECT_THAT(rtd_.output(), HasSubstr("no detector weights"));
+  EXPECT_EQ(rtd_.output().find("no detector weights"), rtd_.output().rfind("no detector weights"));
+  EXPECT_THAT(log("filter"), HasSubstr("filter.mode=rtd --set filter.detector=off"));
+  EXPECT_FALSE(fs::exists(scratch_ / "out/logs/detector.log"));
+}
+
+}  // namespace
+}  // namespace rtd::launcher
