@@ -14,6 +14,7 @@ namespace rtd::plot {
 namespace {
 
 constexpr double kTickTextSize = 11.5;
+constexpr double kLabelDistance = 15;
 constexpr double kPixelsPerXTick = 90, kPixelsPerYTick = 45;
 
 double step_for(double span, int wanted) {
@@ -123,11 +124,16 @@ void Chart::curve(const std::vector<double>& x, const std::vector<double>& y, co
   finish();
 }
 
-void Chart::level(double y, const std::string& label, const Stroke& stroke) {
-  if (!std::isfinite(y) || y < y_.min || y > y_.max) return;
-  const double right = area_.x + area_.width, py = at(0, y).y;
-  svg_.line({area_.x, py}, {right, py}, stroke);
-  svg_.text({right + 6, py + 4}, label, {stroke.colour, kTickTextSize, Anchor::kStart, true});
+void Chart::levels(std::vector<Level> levels) {
+  std::sort(levels.begin(), levels.end(), [](const Level& a, const Level& b) { return a.y > b.y; });
+  double label_px = area_.y - kLabelDistance;
+  for (const Level& level : levels) {
+    if (!std::isfinite(level.y) || level.y < y_.min || level.y > y_.max) continue;
+    const double right = area_.x + area_.width, py = at(0, level.y).y;
+    label_px = std::max(label_px + kLabelDistance, py + 4);
+    svg_.line({area_.x, py}, {right, py}, level.stroke);
+    svg_.text({right + 6, label_px}, level.label, {level.stroke.colour, kTickTextSize, Anchor::kStart, true});
+  }
 }
 
 void Chart::band(double from_x, double to_x, const std::string& fill, double opacity) {
@@ -148,20 +154,23 @@ void draw_legend(Svg& svg, Point at, const std::vector<LegendEntry>& entries) {
   }
 }
 
-void draw_error_scale(Svg& svg, const Area& area, double max, const std::string& title) {
+void draw_error_scale(Svg& svg, const Area& area, const ErrorScale& scale) {
   constexpr int kSlices = 48;
   for (int i = 0; i < kSlices; ++i) {
     const double fraction = (i + 0.5) / kSlices;
     svg.rect({area.x, area.y + area.height * (1 - (i + 1.0) / kSlices), area.width, area.height / kSlices + 0.6},
              error_colour(fraction));
   }
-  const std::vector<double> ticks = nice_ticks({0, max}, 5);
+  const std::vector<double> ticks = nice_ticks({0, scale.max}, 5);
   for (const double tick : ticks) {
-    const double py = area.y + area.height * (1 - tick / max);
+    const double py = area.y + area.height * (1 - tick / scale.max);
     svg.line({area.x + area.width, py}, {area.x + area.width + 4, py}, {palette::kMuted, 1});
     svg.text({area.x + area.width + 8, py + 4}, tick_label(tick, step_of(ticks)), {palette::kMuted, kTickTextSize});
   }
-  svg.text({area.x - 2, area.y - 10}, title, {palette::kInk, 12});
+  if (scale.open_ended) {
+    svg.text({area.x + area.width + 8, area.y + 4}, "more", {palette::kMuted, kTickTextSize, Anchor::kStart, true});
+  }
+  svg.text({area.x - 2, area.y - 10}, scale.title, {palette::kInk, 12});
 }
 
 }  // namespace rtd::plot

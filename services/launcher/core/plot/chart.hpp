@@ -28,6 +28,13 @@ struct AxisLabels {
   std::string x, y;  ///< with unit, e.g. "time [s]"
 };
 
+/// A value worth a line across a chart.
+struct Level {
+  double y = 0;
+  std::string label;
+  Stroke stroke;
+};
+
 /// A framed area with axes that maps data to the drawing.
 class Chart {
  public:
@@ -48,8 +55,9 @@ class Chart {
 
   /// Line through the data, interrupted where x jumps by more than max_gap_x.
   void curve(const std::vector<double>& x, const std::vector<double>& y, const Stroke& stroke, double max_gap_x);
-  /// Horizontal line over the whole width with a label at its right end, outside the frame.
-  void level(double y, const std::string& label, const Stroke& stroke);
+  /// Horizontal lines over the whole width, labelled at their right ends outside the frame; labels keep clear of each
+  /// other.
+  void levels(std::vector<Level> levels);
   /// Vertical band.
   void band(double from_x, double to_x, const std::string& fill, double opacity);
 
@@ -68,7 +76,14 @@ struct LegendEntry {
 /// One row of entries, left-aligned at `at`.
 void draw_legend(Svg& svg, Point at, const std::vector<LegendEntry>& entries);
 
-/// Vertical bar of error_colour from 0 to `max` with labelled ticks on its right and a title above.
-void draw_error_scale(Svg& svg, const Area& area, double max, const std::string& title);
+/// What a bar of error_colour stands for.
+struct ErrorScale {
+  double max = 1;           ///< value of the last colour
+  std::string title;        ///< with unit
+  bool open_ended = false;  ///< the last colour also stands for all that is beyond `max`
+};
+
+/// Vertical bar of error_colour with labelled ticks on its right and the title above.
+void draw_error_scale(Svg& svg, const Area& area, const ErrorScale& scale);
 
 }  // namespace rtd::plot

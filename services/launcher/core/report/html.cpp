@@ -81,8 +81,10 @@ std::string section(const std::string& title, const std::string& note, const std
 std::string cards(const std::vector<Card>& cards) {
   std::string text = "<div class=\"cards\">\n";
   for (const Card& card : cards) {
-    text += "<div class=\"" + std::string(tone_class(card.tone)) + "\"><b>" + escape_markup(card.value) + "</b><span>" +
-            escape_markup(card.label) + "</span><small>" + escape_markup(card.detail) + "</small></div>\n";
+    const std::string accent = card.accent.empty() ? "" : " style=\"border-top-color:" + card.accent + "\"";
+    text += "<div class=\"" + std::string(tone_class(card.tone)) + "\"" + accent + "><b>" + escape_markup(card.value) +
+            "</b><span>" + escape_markup(card.label) + "</span><small>" + escape_markup(card.detail) +
+            "</small></div>\n";
   }
   return text + "</div>\n";
 }

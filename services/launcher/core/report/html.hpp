@@ -20,6 +20,7 @@ enum class Tone { kNeutral, kGood, kWarn, kBad };
 struct Card {
   std::string value, label, detail;
   Tone tone = Tone::kNeutral;
+  std::string accent = "";  ///< colour of its upper edge instead of the tone's
 };
 std::string cards(const std::vector<Card>& cards);
 

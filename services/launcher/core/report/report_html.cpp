@@ -42,21 +42,29 @@ Card drift_card(const RunSummary& summary) {
           number_text(rpe.rotation_rad.rmse * 180 / M_PI, 2, "deg") + " rotation"};
 }
 
-std::string summary_cards(const RunRecord& record, const RunSummary& summary) {
+Card latency_card(const RunSummary& summary) {
+  const TimeSummary& latency = summary.latency_ms;
+  if (latency.count == 0) return {"unknown", "camera to pose", "no frame was timed"};
+  return {number_text(latency.p50, 1, "ms"), "camera to pose, p50",
+          "p99 " + number_text(latency.p99, 1, "ms") + ", max " + number_text(latency.max, 1, "ms")};
+}
+
+Card removed_card(const RunSummary& summary) {
   const double per_frame = summary.kept_mean + summary.removed_mean;
+  if (!(per_frame > 0)) return {"unknown", "features removed", "no features were seen"};
+  return {percent_text(summary.removed_mean / per_frame), "features removed",
+          number_text(summary.removed_mean, 0, "") + " of " + number_text(per_frame, 0, "") + " a frame"};
+}
+
+std::string summary_cards(const RunRecord& record, const RunSummary& summary) {
+  const Card coverage{
+      percent_text(summary.coverage), "frames with pose",
+      fmt::format("{} of {}, {} dropped", summary.frames_tracked, record.frames_in, record.frames_dropped),
+      coverage_tone(summary.coverage)};
+  const Card speed{number_text(summary.fps, 1, "fps"), "frames per second",
+                   number_text(record.duration_s, 1, "s") + " from start to end"};
   return html::cards(
-      {accuracy_card(summary),
-       {percent_text(summary.coverage), "frames with pose",
-        fmt::format("{} of {}, {} dropped", summary.frames_tracked, record.frames_in, record.frames_dropped),
-        coverage_tone(summary.coverage)},
-       drift_card(summary),
-       {number_text(summary.latency_ms.p50, 1, "ms"), "camera to pose, median",
-        "p99 " + number_text(summary.latency_ms.p99, 1, "ms") + ", max " +
-            number_text(summary.latency_ms.max, 1, "ms")},
-       {number_text(summary.fps, 1, "fps"), "frames per second",
-        number_text(record.duration_s, 1, "s") + " from start to end"},
-       {percent_text(per_frame > 0 ? summary.removed_mean / per_frame : std::nan("")), "features removed",
-        number_text(summary.removed_mean, 0, "") + " of " + number_text(per_frame, 0, "") + " a frame"}});
+      {accuracy_card(summary), coverage, drift_card(summary), latency_card(summary), speed, removed_card(summary)});
 }
 
 eval::Trajectory truth_during(const RunSummary& summary, const RunTime& time) {

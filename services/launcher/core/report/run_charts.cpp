@@ -224,10 +224,10 @@ std::string sample_picture(const SampleFrame& sample) {
     const bool is_removed = (feature.flags & msg::kFeatureRemoved) != 0;
     (is_removed ? removed : kept).push_back({feature.u_raw_px, feature.v_raw_px});
   }
-  svg.dots(kept, 7, "#0b2e1a", 0.75);
-  svg.dots(kept, 4.6, "#3ee07f");
-  svg.dots(removed, 7.6, "#3a0709", 0.75);
-  svg.dots(removed, 5.2, "#ff4b52");
+  svg.dots(kept, 6, "#06351b", 0.55);
+  svg.dots(kept, 4.4, "#35e07a");
+  svg.dots(removed, 7, "#ffffff", 0.6);
+  svg.dots(removed, 5.4, "#f5222d");
   return svg.str();
 }
 

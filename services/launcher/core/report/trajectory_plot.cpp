@@ -97,6 +97,15 @@ void mark_ends(plot::Svg& svg, Point start, Point end) {
   svg.text({end.x + 9, end.y + 14}, "end", {palette::kInk, 12, Anchor::kStart, true});
 }
 
+/// A few extreme errors must not paint everything else blue: the scale then ends above the 95th percentile.
+double colour_scale_end_m(const eval::AteResult& ate) {
+  std::vector<double> errors_m;
+  for (const eval::AtePoint& point : ate.points) errors_m.push_back(point.error_m);
+  const double p95_m = eval::percentile(errors_m, 0.95);
+  const double end_m = ate.error_m.max > 2.5 * p95_m ? 1.5 * p95_m : ate.error_m.max;
+  return std::isfinite(end_m) ? std::max(end_m, 1e-6) : 1e-6;
+}
+
 std::vector<double> errors_in(const eval::AteResult& ate, const LengthUnit& unit) {
   std::vector<double> errors;
   for (const eval::AtePoint& point : ate.points) errors.push_back(point.error_m * unit.per_metre);
@@ -156,7 +165,7 @@ void draw_error_path(plot::Svg& svg, const Area& area, const eval::AteResult& at
   const Area frame{area.x + 58, area.y + 30, area.width - 58 - 92, area.height - 30 - 46};
   const Chart chart = path_chart(svg, frame, all_m, plane);
   draw_path(svg, chart, truth, plane);
-  const double max_m = std::max(ate.error_m.max, 1e-6);
+  const double max_m = colour_scale_end_m(ate);
   draw_coloured_path(svg, chart, ate, plane, max_m);
   const auto end_point = [&](const eval::AtePoint& p) {
     return chart.at(p.estimate_m[plane.horizontal], p.estimate_m[plane.vertical]);
@@ -166,8 +175,8 @@ void draw_error_path(plot::Svg& svg, const Area& area, const eval::AteResult& at
   plot::draw_legend(svg, {frame.x, area.y + 14},
                     {{"ground truth", palette::kTruth}, {"estimate, coloured by error", plot::error_colour(0.1)}});
   const LengthUnit unit = length_unit(max_m);
-  plot::draw_error_scale(svg, {frame.x + frame.width + 24, frame.y + 24, 14, frame.height - 24}, max_m * unit.per_metre,
-                         std::string("error [") + unit.name + "]");
+  plot::draw_error_scale(svg, {frame.x + frame.width + 24, frame.y + 24, 14, frame.height - 24},
+                         {max_m * unit.per_metre, fmt::format("error [{}]", unit.name), ate.error_m.max > max_m});
 }
 
 void draw_paths(plot::Svg& svg, const Area& area, const std::vector<PathCurve>& curves) {
@@ -196,16 +205,18 @@ void draw_errors_over_time(plot::Svg& svg, const Area& area, const std::vector<E
     legend.push_back({curve.label, curve.colour});
   }
   const LengthUnit unit = length_unit(max_m);
-  const Area frame{area.x + 58, area.y + 30, area.width - 58 - 92, area.height - 30 - 46};
+  const Area frame{area.x + 58, area.y + 30, area.width - 58 - 106, area.height - 30 - 46};
   Chart chart(svg, frame, {0, std::max(duration_s, 1e-3)}, {0, std::max(max_m, 1e-6) * unit.per_metre * 1.06});
   chart.draw_axes({"time since the first frame [s]", std::string("position error [") + unit.name + "]"});
   for (const ErrorCurve& curve : curves) {
     chart.curve(times_since(*curve.ate, start_ns), errors_in(*curve.ate, unit), {curve.colour, 1.6}, kMaxGapS);
   }
+  std::vector<plot::Level> levels;
   for (const ErrorCurve& curve : curves) {
     const double rmse = curve.ate->error_m.rmse * unit.per_metre;
-    chart.level(rmse, fmt::format("RMSE {:.3g}", rmse), {curve.colour, 1.2, "6 4"});
+    levels.push_back({rmse, fmt::format("RMSE {:.3g} {}", rmse, unit.name), {curve.colour, 1.2, "6 4"}});
   }
+  chart.levels(levels);
   plot::draw_legend(svg, {frame.x, area.y + 14}, legend);
 }
 
