@@ -37,21 +37,37 @@ def find_model(checkpoint):
 
 def walk(graph, model):
     """Adds all layers. Each says by its `f` whose outputs it takes: -1 is the one before. Returns heads, Detect layer."""
-    tensor, outputs = graph.input_name, []
-    for layer in model.require("model").children():
-        came_from = layer.require("f")
-        sources = came_from if isinstance(came_from, list) else [came_from]
-        inputs = [tensor if source == -1 else outputs[source] for source in sources]
-        if layer.class_name == "Detect":
-            return detection_heads(graph, inputs, layer), layer
-        if layer.class_name == "Concat":
-            tensor = layers.concat(graph, inputs)
-        elif layer.class_name == "ADD":  # YOLOv5-Lite e: x + a * y
-            tensor = layers.add(graph, inputs[0], inputs[1], float(layer.get("a", 1.0)))
-        else:
-            tensor = layers.forward(graph, inputs[0], layer)
-        outputs.append(tensor)
+    outputs = []
+    for number, layer in enumerate(model.require("model").children()):
+        try:
+            inputs = [_source(graph, outputs, source) for source in _as_list(layer.require("f"))]
+            if layer.class_name == "Detect":
+                return detection_heads(graph, inputs, layer), layer
+            outputs.append(add_layer(graph, inputs, layer))
+        except ConversionError as error:
+            raise ConversionError(f"layer {number}: {error}") from error
+        except (TypeError, ValueError, IndexError, AttributeError) as error:
+            raise ConversionError(f"layer {number} is no {layer.class_name} as known here: {error}") from error
     raise ConversionError("the model has no Detect layer: only detection networks of the YOLOv5 family are converted")
+
+
+def add_layer(graph, inputs, layer):
+    """One layer of the model; the first two types are the only ones with several inputs."""
+    if layer.class_name == "Concat":
+        return layers.concat(graph, inputs)
+    if layer.class_name == "ADD":  # YOLOv5-Lite e: x + a * y
+        return layers.add(graph, inputs[0], inputs[1], float(layer.get("a", 1.0)))
+    return layers.forward(graph, inputs[0], layer)
+
+
+def _source(graph, outputs, index):
+    if index == -1:
+        return outputs[-1] if outputs else graph.input_name
+    return outputs[index]
+
+
+def _as_list(value):
+    return value if isinstance(value, list) else [value]
 
 
 def detection_heads(graph, inputs, detect):
