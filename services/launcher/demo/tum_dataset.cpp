@@ -40,7 +40,7 @@ void unpack(const fs::path& archive, const fs::path& folder, const std::string& 
   fs::remove_all(unpacking);
   fs::create_directories(unpacking);
   run_tool("tar", {"-xzf", archive.string(), "-C", unpacking.string()},
-           archive.string() + " is no complete archive: delete it and try again");
+           archive.string() + " is no complete archive: try again");
   if (!fs::is_directory(unpacking / name)) {
     throw std::runtime_error(archive.string() + " holds no folder " + name + ": is RTD_TUM_URL right?");
   }
