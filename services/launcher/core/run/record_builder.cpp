@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kRecentFrames = 30;
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
-constexpr std::array<const char*, 4> kLossWords = {"dropped", "late", "skipped", "lost"};
+constexpr std::array<const char*, 5> kLossWords = {"dropped", "late", "skipped", "lost", "refused"};
 
 bool counts_losses(const std::string& metric) {
   return std::any_of(kLossWords.begin(), kLossWords.end(),

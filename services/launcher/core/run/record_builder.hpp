@@ -22,8 +22,8 @@ class RecordBuilder {
  public:
   void add(const msg::FeatureFrame& features);
   void add(const msg::TrackingResult& result);
-  /// Counters of a service. Those named *dropped*, *late*, *skipped* or *lost* become RunRecord::drops; they go on
-  /// counting when the service is restarted.
+  /// Counters of a service. Those named *dropped*, *late*, *skipped*, *lost* or *refused* become RunRecord::drops; they
+  /// go on counting when the service is restarted.
   void add(const msg::ServiceStatus& status);
 
   /// Frames that the source delivered: the camera's own count, else what was seen of it.
