@@ -1,0 +1,132 @@
+# SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+# SPDX-License-Identifier: Apache-2.0
+"""deploy/fetch_model.sh against a web server on this machine."""
+
+import hashlib
+import http.server
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(ROOT / "tests/unit/detector/tools"))
+
+import cv2  # noqa: E402
+import fake_torch  # noqa: E402
+import tiny_yolo  # noqa: E402
+
+MODEL = "v5lite-s-raw-480x640.onnx"
+
+
+class Handler(http.server.BaseHTTPRequestHandler):
+    """Serves one body for v5lite-s.pt, promising `promised` bytes more than it sends."""
+
+    def do_GET(self):
+        self.server.requests += 1
+        if self.path != "/models/v5lite-s.pt" or self.server.body is None:
+            self.send_error(404)
+            return
+        self.send_response(200)
+        self.send_header("Content-Length", str(len(self.server.body) + self.server.promised))
+        self.end_headers()
+        self.wfile.write(self.server.body)
+
+    def log_message(self, *_arguments):
+        pass
+
+
+class FetchModel(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.cache = self.folder / "cache" / "rtd-slam"
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self.server.body, self.server.promised, self.server.requests = None, 0, 0
+        thread = threading.Thread(target=self.server.serve_forever, daemon=True)
+        thread.start()
+        self.addCleanup(thread.join)
+        self.addCleanup(self.server.server_close)
+        self.addCleanup(self.server.shutdown)
+
+    def checkpoint(self):
+        path = self.folder / "tiny.pt"
+        fake_torch.save(tiny_yolo.TinyYolo().checkpoint(), path)
+        return path.read_bytes()
+
+    def fetch(self, sha256=None, url=None):
+        environment = {k: v for k, v in os.environ.items() if not k.lower().endswith("_proxy")}
+        environment["XDG_CACHE_HOME"] = str(self.folder / "cache")
+        environment["RTD_MODEL_URL"] = url or f"http://127.0.0.1:{self.server.server_address[1]}/models"
+        if sha256:
+            environment["RTD_MODEL_SHA256"] = sha256
+        return subprocess.run(
+            [ROOT / "deploy/fetch_model.sh"], env=environment, capture_output=True, text=True, timeout=60, check=False
+        )
+
+    def assert_refused(self, result, pattern):
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertRegex(result.stderr, pattern)
+        self.assertEqual(list(self.cache.iterdir()), [], "something was left behind")
+
+    def test_downloads_checks_and_converts(self):
+        self.server.body = self.checkpoint()
+        result = self.fetch(hashlib.sha256(self.server.body).hexdigest())
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual([p.name for p in self.cache.iterdir()], [MODEL])
+        network = cv2.dnn.readNetFromONNX(str(self.cache / MODEL))
+        self.assertEqual(list(network.getUnconnectedOutLayersNames()), ["p3", "p4", "p5"])
+
+    def test_does_nothing_when_the_model_is_there(self):
+        self.cache.mkdir(parents=True)
+        (self.cache / MODEL).write_bytes(b"mine")
+        result = self.fetch()
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("already there", result.stdout)
+        self.assertEqual(self.server.requests, 0)
+        self.assertEqual((self.cache / MODEL).read_bytes(), b"mine")
+
+    def test_fetches_the_published_checkpoint(self):
+        source = pathlib.Path(os.environ.get("RTD_MODEL_DIR", "/nowhere")) / "pt" / "v5lite-s.pt"
+        if not source.is_file():
+            self.skipTest(f"no {source} (RTD_MODEL_DIR)")
+        self.server.body = source.read_bytes()
+        result = self.fetch()  # the checksum in the script is the published file's
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertTrue((self.cache / MODEL).is_file())
+
+    def test_refuses_a_wrong_checksum(self):
+        self.server.body = self.checkpoint()
+        self.assert_refused(self.fetch(), "wrong checksum .* expected 13e49165")
+
+    def test_says_that_the_server_does_not_have_it_and_asks_once(self):
+        self.assert_refused(self.fetch(), "the server does not have http://127.0.0.1:.*/v5lite-s.pt.*RTD_MODEL_URL")
+        self.assertEqual(self.server.requests, 1)
+
+    def test_tries_a_cut_off_download_again_and_gives_up(self):
+        self.server.body, self.server.promised = self.checkpoint()[:1000], 5000
+        self.assert_refused(self.fetch(), "cut off")
+        self.assertEqual(self.server.requests, 3)
+
+    def test_says_that_there_is_no_connection(self):
+        self.server.shutdown()
+        self.server.server_close()
+        self.assert_refused(self.fetch(), "no connection to http://127.0.0.1")
+
+    def test_refuses_a_checkpoint_that_cannot_be_converted(self):
+        self.server.body = b"not a checkpoint"
+        self.assert_refused(self.fetch(hashlib.sha256(self.server.body).hexdigest()), "no checkpoint of torch")
+
+    def test_says_when_the_cache_cannot_be_written(self):
+        (self.folder / "cache").write_text("a file where the folder should be")
+        result = self.fetch()
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("cannot create", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
