@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/participant.hpp"
 
+#include <unistd.h>
+
+#include <atomic>
+
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastdds/dds/log/Log.hpp>
@@ -9,6 +13,8 @@
 
 namespace rtd::bus::fastdds {
 namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
 
 constexpr std::uint32_t kMib = 1024 * 1024;
 constexpr std::uint32_t kMinSegmentMib = 8;  // below it one image does not fit and is repaired in 20 ms instead
@@ -40,16 +46,49 @@ std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp_transport
   return transport;
 }
 
+rtps::Locator_t udp_locator(std::uint8_t first_octet, std::uint8_t second_octet, std::uint8_t last_octet) {
+  rtps::Locator_t locator;  // port 0: the one that the domain and our participant id give
+  locator.kind = LOCATOR_KIND_UDPv4;
+  locator.address[12] = first_octet;
+  locator.address[13] = second_octet;
+  locator.address[15] = last_octet;
+  return locator;
+}
+
+/// Participant ids choose port numbers. A restarted process must not get the shared-memory port of its killed
+/// predecessor: the writers of others go on feeding the dead port for seconds. So the id follows the process id.
+std::int32_t next_participant_id() {
+  constexpr std::int32_t kIds = 60;  // more do not fit into the port range of domain 232
+  static std::atomic<std::int32_t> participants_so_far{0};
+  return (static_cast<std::int32_t>(getpid()) + participants_so_far++) % kIds;
+}
+
 dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostLimits& limits) {
   dds::DomainParticipantQos qos;
   qos.name(options.participant_name.empty() ? "rtd" : options.participant_name.c_str());
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports = {shared_memory_transport(options), udp_transport(options, limits)};
+  // Discovery over UDP only, samples over shared memory: the kernel closes the socket of a killed process at once.
+  auto& builtin = qos.wire_protocol().builtin;
+  builtin.metatrafficUnicastLocatorList.push_back(udp_locator(0, 0, 0));
+  builtin.metatrafficMulticastLocatorList.push_back(udp_locator(239, 255, 1));
   // A killed process is forgotten after the lease; its heartbeat topic tells much earlier.
-  auto& discovery = qos.wire_protocol().builtin.discovery_config;
-  discovery.leaseDuration = {5, 0};
-  discovery.leaseDuration_announcementperiod = {1, 0};
+  builtin.discovery_config.leaseDuration = {5, 0};
+  builtin.discovery_config.leaseDuration_announcementperiod = {0, 500'000'000};
   return qos;
+}
+
+dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factory, const BusOptions& options,
+                                           const HostLimits& limits) {
+  dds::DomainParticipantQos qos = participant_qos(options, limits);
+  constexpr int kAttempts = 5;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {  // an id may be taken by another connection of this process
+    qos.wire_protocol().participant_id = next_participant_id();
+    if (auto* participant = factory.create_participant(options.domain, qos)) return participant;
+  }
+  throw BusError(
+      "Fast DDS refused to join domain " + std::to_string(options.domain) +
+      "; is the loopback interface up (ip link set lo up) and are fewer than 60 participants in this domain?");
 }
 
 }  // namespace
@@ -61,11 +100,7 @@ Participant::Participant(const BusOptions& options, const HostLimits& limits) {
   }
   log_to_stderr_once();
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
-  participant_ = factory_->create_participant(options.domain, participant_qos(options, limits));
-  if (participant_ == nullptr) {
-    throw BusError("Fast DDS refused to join domain " + std::to_string(options.domain) +
-                   "; is the loopback interface up and are fewer than 60 participants in this domain?");
-  }
+  participant_ = create_participant(*factory_, options, limits);
   publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
 }
