@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/config.hpp"
+
+namespace rtd::slam {
+namespace {
+
+using service::ConfigBinder;
+
+void bind_sensor(ConfigBinder& binder, SensorConfig& c) {
+  binder.field("sensor.disparity_px_m", c.disparity_px_m, {1.0, 10000.0},
+               "weight of depth: a disparity of this / depth counts like a pixel");
+  binder.field("sensor.close_depth_m", c.close_depth_m, {0.5, 20.0}, "nearer depths make landmarks at once");
+  binder.field("sensor.max_depth_m", c.max_depth_m, {0.5, 50.0}, "farther depths are not used");
+}
+
+void bind_tracker(ConfigBinder& binder, TrackerConfig& c) {
+  binder.field("tracker.min_initial_points", c.min_initial_points, {10, 2048},
+               "features with depth that the first keyframe needs");
+  binder.field("tracker.motion_radius_px", c.motion_radius_px, {2.0, 200.0},
+               "search radius around the predicted position");
+  binder.field("tracker.local_radius_px", c.local_radius_px, {1.0, 20.0},
+               "factor on 2.5 / 4 px when the local map is searched");
+  binder.field("tracker.min_motion_inliers", c.min_motion_inliers, {5, 500},
+               "matches with the last frame; fewer: try the reference keyframe");
+  binder.field("tracker.min_inliers", c.min_inliers, {6, 500}, "landmarks that a pose needs");
+  binder.field("tracker.recently_lost_frames", c.recently_lost_frames, {0, 100000},
+               "failed frames before tracking counts as lost");
+  binder.field("tracker.recovery_keyframes", c.recovery_keyframes, {0, 100}, "keyframes tried per frame while lost");
+}
+
+void bind_keyframe(ConfigBinder& binder, KeyframeConfig& c) {
+  binder.field("keyframe.max_gap_frames", c.max_gap_frames, {1, 10000},
+               "a changed view is a keyframe at least so often");
+  binder.field("keyframe.min_gap_frames", c.min_gap_frames, {0, 10000},
+               "frames between keyframes while tracking is strong");
+  binder.field("keyframe.reference_ratio", c.reference_ratio, {0.1, 1.0},
+               "tracked / reference landmarks: below, the view is new");
+  binder.field("keyframe.weak_ratio", c.weak_ratio, {0.0, 1.0}, "below: insert although the mapper is busy");
+  binder.field("keyframe.min_close_tracked", c.min_close_tracked, {0, 2048}, "fewer close landmarks tracked, and ...");
+  binder.field("keyframe.min_close_untracked", c.min_close_untracked, {0, 2048},
+               "... more close features without landmark: insert");
+  binder.field("keyframe.min_inliers", c.min_inliers, {0, 500}, "fewer: no keyframe");
+}
+
+void bind_mapper(ConfigBinder& binder, MapperConfig& c) {
+  binder.field("mapper.neighbours", c.neighbours, {1, 100}, "covisible keyframes for triangulation and fusion");
+  binder.field("mapper.min_found_ratio", c.min_found_ratio, {0.0, 1.0},
+               "landmarks found less often than visible are removed");
+  binder.field("mapper.redundant_ratio", c.redundant_ratio, {0.5, 1.0},
+               "keyframes whose landmarks others see are removed");
+  binder.field("mapper.ba_keyframes", c.ba_keyframes, {2, 200}, "keyframes optimised together");
+  binder.field("mapper.ba_fixed_keyframes", c.ba_fixed_keyframes, {1, 200}, "keyframes that hold the gauge");
+  binder.field("mapper.ba_iterations_robust", c.ba_iterations_robust, {1, 100},
+               "iterations before outliers are taken out");
+  binder.field("mapper.ba_iterations", c.ba_iterations, {0, 100}, "iterations after");
+  binder.field("mapper.correction_m", c.correction_m, {0.0, 1.0}, "a keyframe that moved more is announced again");
+  binder.field("mapper.correction_rad", c.correction_rad, {0.0, 1.0}, "the same for its rotation");
+}
+
+}  // namespace
+
+void ServiceConfig::bind(ConfigBinder& binder) {
+  bind_sensor(binder, core.sensor);
+  bind_tracker(binder, core.tracker);
+  bind_keyframe(binder, core.keyframe);
+  bind_mapper(binder, core.mapper);
+  binder.field("out", out_dir, "folder for trajectory.txt, keyframes.txt and map.ply; empty: none");
+  binder.field("map_frame", map_frame, "frame of all poses in the messages");
+  binder.field("camera_frame", camera_frame, "child frame of the poses: optical");
+  binder.field("path_length", path_length, {1, 1000000}, "poses kept for the path message");
+  binder.field("path_period_ms", path_period_ms, {1, 60000}, "time between two path messages");
+  binder.field("map_period_ms", map_period_ms, {1, 60000}, "time between two point clouds");
+}
+
+}  // namespace rtd::slam

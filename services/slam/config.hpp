@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/service/config.hpp"
+#include "services/slam/core/slam_config.hpp"
+
+namespace rtd::slam {
+
+/// Section `slam` of the configuration. The numbers of the core have their defaults in core/slam_config.hpp.
+struct ServiceConfig {
+  SlamConfig core;
+  std::string out_dir;  ///< trajectory, keyframes and map are written here at the end; empty = nowhere
+  std::string map_frame = "map";
+  std::string camera_frame = "camera_color_optical_frame";
+  int path_length = 2000;    ///< poses kept for rt/slam/path
+  int path_period_ms = 500;  ///< between two paths
+  int map_period_ms = 1000;  ///< between two clouds on rt/slam/map_points
+
+  void bind(service::ConfigBinder& binder);
+};
+
+}  // namespace rtd::slam

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "services/slam/core/slam_system.hpp"
+
+namespace rtd::slam {
+
+/// Writes trajectory.txt, keyframes.txt (TUM format) and map.ply into `folder`, which is made when missing. Call after
+/// SlamSystem::finish(). Throws std::runtime_error naming the file that cannot be written.
+void write_run_files(const SlamSystem& slam, const std::filesystem::path& folder);
+
+}  // namespace rtd::slam

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/slam_messages.hpp"
+
+#include <Eigen/Geometry>
+#include <cstring>
+
+#include "common/geometry/se3.hpp"
+#include "common/msg/transform_eigen.hpp"
+
+namespace rtd::slam {
+namespace {
+
+constexpr double kNsPerS = 1e9;
+constexpr std::uint8_t kFloat32 = 7;  // sensor_msgs/PointField
+
+using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+
+msg::Pose to_pose(const msg::Transform& T) {
+  const auto& [x, y, z] = T.translation_m;
+  const auto& [qx, qy, qz, qw] = T.rotation_xyzw;
+  return {{x, y, z}, {qx, qy, qz, qw}};
+}
+
+/// Covariance of a motion between two poses of known covariance, per second, in the camera frame.
+RowMajor6d twist_covariance(const msg::TrackingResult& result, const msg::TrackingResult& previous, double gap_s) {
+  const RowMajor6d sum =
+      Eigen::Map<const RowMajor6d>(result.covariance.data()) + Eigen::Map<const RowMajor6d>(previous.covariance.data());
+  const Eigen::Matrix3d R_camera_world = msg::to_isometry(result.T_world_camera).linear().transpose();
+  RowMajor6d turn = RowMajor6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R_camera_world;
+  return turn * sum * turn.transpose() / (gap_s * gap_s);
+}
+
+std::string text(double value) {
+  std::string digits = std::to_string(value);
+  return digits.substr(0, digits.find('.') + 3);
+}
+
+}  // namespace
+
+const char* to_string(msg::TrackingState state) {
+  switch (state) {
+    case msg::TrackingState::kInitializing:
+      return "initialising";
+    case msg::TrackingState::kOk:
+      return "ok";
+    case msg::TrackingState::kRecentlyLost:
+      return "recently lost";
+    case msg::TrackingState::kLost:
+      return "lost";
+    case msg::TrackingState::kRelocalizing:
+      break;
+  }
+  return "relocalising";
+}
+
+msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& names) {
+  return {{msg::to_time(result.stamp_ns), names.map}, to_pose(result.T_world_camera)};
+}
+
+msg::TFMessage make_tf(const msg::TrackingResult& result, const FrameNames& names) {
+  const msg::Pose pose = to_pose(result.T_world_camera);
+  return {{{{msg::to_time(result.stamp_ns), names.map},
+            names.camera,
+            {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation}}}};
+}
+
+msg::Odometry make_odometry(const msg::TrackingResult& result, const std::optional<msg::TrackingResult>& previous,
+                            const FrameNames& names) {
+  msg::Odometry odometry;
+  odometry.header = {msg::to_time(result.stamp_ns), names.map};
+  odometry.child_frame_id = names.camera;
+  odometry.pose = {to_pose(result.T_world_camera), result.covariance};
+  if (!previous || previous->stamp_ns >= result.stamp_ns) return odometry;
+  const double gap_s = static_cast<double>(result.stamp_ns - previous->stamp_ns) / kNsPerS;
+  const Eigen::Isometry3d T_previous_camera =
+      msg::to_isometry(previous->T_world_camera).inverse() * msg::to_isometry(result.T_world_camera);
+  const geometry::Vector6d twist = geometry::se3_log(T_previous_camera) / gap_s;
+  odometry.twist.twist = {{twist[0], twist[1], twist[2]}, {twist[3], twist[4], twist[5]}};
+  Eigen::Map<RowMajor6d>(odometry.twist.covariance.data()) = twist_covariance(result, *previous, gap_s);
+  return odometry;
+}
+
+msg::PointCloud2 make_cloud(const std::vector<MapPoint>& points, std::int64_t stamp_ns, const std::string& map_frame) {
+  msg::PointCloud2 cloud;
+  cloud.header = {msg::to_time(stamp_ns), map_frame};
+  cloud.height = 1;
+  cloud.width = static_cast<std::uint32_t>(points.size());
+  cloud.fields = {{"x", 0, kFloat32, 1}, {"y", 4, kFloat32, 1}, {"z", 8, kFloat32, 1}, {"intensity", 12, kFloat32, 1}};
+  cloud.point_step = 16;
+  cloud.row_step = cloud.point_step * cloud.width;
+  cloud.data.resize(cloud.row_step);
+  std::uint8_t* slot = cloud.data.data();
+  for (const MapPoint& point : points) {
+    const std::array<float, 4> values{point.position.x(), point.position.y(), point.position.z(),
+                                      point.static_probability};
+    std::memcpy(slot, values.data(), sizeof(values));
+    slot += sizeof(values);
+  }
+  return cloud;
+}
+
+msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const SlamCounters& counters,
+                                      const std::string& trouble, std::int64_t stamp_ns) {
+  constexpr std::uint8_t kOk = 0, kWarn = 1, kError = 2;
+  msg::DiagnosticStatus status;
+  status.name = "rtd-slam: tracking";
+  status.level = result.state == msg::TrackingState::kLost ? kError : (trouble.empty() ? kOk : kWarn);
+  status.message = trouble.empty() ? to_string(result.state) : trouble;
+  status.values = {{"state", to_string(result.state)},
+                   {"inliers", std::to_string(result.inliers)},
+                   {"keyframes", std::to_string(result.keyframes)},
+                   {"landmarks", std::to_string(result.landmarks)},
+                   {"frames", std::to_string(counters.frames)},
+                   {"frames_tracked", std::to_string(counters.tracked)},
+                   {"frames_dropped", std::to_string(counters.dropped)},
+                   {"frames_duplicate", std::to_string(counters.duplicates)},
+                   {"frames_unusable", std::to_string(counters.unusable_frames)},
+                   {"features_invalid", std::to_string(counters.invalid_features)},
+                   {"source_restarts", std::to_string(counters.source_restarts)},
+                   {"slam_ms", text(static_cast<double>(result.stage_ms[msg::kStageSlamTotal]))}};
+  return {{msg::to_time(stamp_ns), ""}, {status}};
+}
+
+}  // namespace rtd::slam

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/msg/ros.hpp"
+#include "common/msg/tracking.hpp"
+#include "services/slam/core/trajectory.hpp"
+
+namespace rtd::slam {
+
+/// Names of the coordinate frames on the wire, docs/frames.md.
+struct FrameNames {
+  std::string map, camera;
+};
+
+msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& names);
+msg::TFMessage make_tf(const msg::TrackingResult& result, const FrameNames& names);
+/// Pose with covariance, and the twist in the camera frame: the motion since `previous` (state kOk, earlier stamp)
+/// divided by the time; zero without it.
+msg::Odometry make_odometry(const msg::TrackingResult& result, const std::optional<msg::TrackingResult>& previous,
+                            const FrameNames& names);
+/// x y z and intensity (the static probability), all float32.
+msg::PointCloud2 make_cloud(const std::vector<MapPoint>& points, std::int64_t stamp_ns, const std::string& map_frame);
+
+/// Counters of the adapter.
+struct SlamCounters {
+  std::uint64_t frames = 0, tracked = 0, dropped = 0, duplicates = 0, invalid_features = 0, unusable_frames = 0,
+                source_restarts = 0;
+};
+/// One status "rtd-slam: tracking".
+msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const SlamCounters& counters,
+                                      const std::string& trouble, std::int64_t stamp_ns);
+
+/// "ok", "recently lost", ...
+const char* to_string(msg::TrackingState state);
+
+}  // namespace rtd::slam

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/slam_publisher.hpp"
+
+#include "common/service/monotonic_clock.hpp"
+
+namespace rtd::slam {
+
+SlamPublisher::SlamPublisher(const ServiceConfig& config, bus::Bus& bus, std::function<std::vector<MapPoint>()> points)
+    : config_(config),
+      names_{config.map_frame, config.camera_frame},
+      points_(std::move(points)),
+      keyframes_(bus.writer(bus::topics::kKeyframes)),
+      tracking_(bus.writer(bus::topics::kTracking)),
+      odometry_(bus.writer(bus::topics::kOdometry)),
+      pose_(bus.writer(bus::topics::kPose)),
+      tf_(bus.writer(bus::topics::kTf)),
+      path_(bus.writer(bus::topics::kPath)),
+      map_points_(bus.writer(bus::topics::kMapPoints)),
+      diagnostics_(bus.writer(bus::topics::kDiagnostics)),
+      cloud_thread_([this] { publish_clouds(); }) {}
+
+SlamPublisher::~SlamPublisher() {
+  ended_.request_stop();
+  cloud_thread_.join();
+}
+
+void SlamPublisher::publish(const SlamOutput& output) {
+  for (const msg::KeyframeEvent& event : output.events) keyframes_.write(event);
+  tracking_.write(output.result);
+  if (output.result.state == msg::TrackingState::kOk) {
+    publish_pose(output.result);
+  } else {
+    previous_.reset();
+  }
+}
+
+void SlamPublisher::publish_pose(const msg::TrackingResult& result) {
+  msg::PoseStamped pose = make_pose(result, names_);
+  odometry_.write(make_odometry(result, previous_, names_));
+  pose_.write(pose);
+  tf_.write(make_tf(result, names_));
+  previous_ = result;
+  newest_stamp_ns_ = result.stamp_ns;
+  poses_.push_back(std::move(pose));
+  while (poses_.size() > static_cast<std::size_t>(config_.path_length)) poses_.pop_front();
+  publish_path();
+}
+
+void SlamPublisher::publish_path() {
+  const std::int64_t now_ns = service::monotonic_ns();
+  if (path_.matched() == 0 || now_ns - path_published_ns_ < std::int64_t{config_.path_period_ms} * 1'000'000) return;
+  path_published_ns_ = now_ns;
+  path_.write({poses_.back().header, {poses_.begin(), poses_.end()}});
+}
+
+void SlamPublisher::publish_clouds() {
+  while (!ended_.wait_for(std::chrono::milliseconds(config_.map_period_ms))) {
+    const std::int64_t stamp_ns = newest_stamp_ns_;
+    if (stamp_ns >= 0) map_points_.write(make_cloud(points_(), stamp_ns, names_.map));
+  }
+}
+
+}  // namespace rtd::slam

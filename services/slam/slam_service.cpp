@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/slam_service.hpp"
+
+#include <exception>
+
+#include "common/service/monotonic_clock.hpp"
+#include "services/slam/run_files.hpp"
+
+namespace rtd::slam {
+namespace {
+
+constexpr std::size_t kRealtimeQueue = 4, kEveryFrameQueue = 8;
+constexpr std::chrono::milliseconds kStatePeriod{50};
+constexpr std::int64_t kInputGoneAfterNs = 500'000'000, kDiagnosticsPeriodNs = 1'000'000'000;
+
+MappingMode mapping_mode(service::Pace pace) {
+  return pace == service::Pace::kLockstep ? MappingMode::kSynchronous : MappingMode::kThreaded;
+}
+
+}  // namespace
+
+void SlamService::add_options(CLI::App& app, Config& config) {
+  app.add_option("--out", config.out_dir, "Folder for trajectory.txt, keyframes.txt and map.ply (slam.out)");
+}
+
+SlamService::SlamService(const Config& config, service::Runtime& runtime)
+    : config_(config),
+      runtime_(runtime),
+      slam_(config.core, mapping_mode(runtime.pace), service::monotonic_ns),
+      publisher_(config, runtime.bus, [this] { return slam_.map_points(); }),
+      arrivals_(runtime.pace == service::Pace::kRealtime
+                    ? std::make_shared<Arrivals>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
+                    : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)) {
+  runtime.stop.on_stop([arrivals = arrivals_] { arrivals->close(); });
+  runtime.heartbeat.on_status([this](const msg::ServiceStatus& status) {
+    if (status.service == "camera") source_ended_ = status.state == msg::ServiceState::kFinished;
+  });
+  features_ = runtime.bus.reader<msg::FeatureFrame>(
+      bus::topics::kFeatures,
+      [this](std::shared_ptr<const msg::FeatureFrame> frame) { arrivals_->push(std::move(frame)); });
+}
+
+/// A reader waits for its running callback, which may be blocked on the full queue.
+SlamService::~SlamService() {
+  arrivals_->close();
+  runtime_.heartbeat.on_status({});
+}
+
+service::ExitCode SlamService::run() {
+  while (!runtime_.stop.stop_requested()) {
+    report_state();
+    const auto frame = arrivals_->pop_for(kStatePeriod);
+    if (frame) answer(**frame);
+    watch_input(frame.has_value());
+  }
+  SPDLOG_INFO(
+      "event=summary frames={} tracked={} dropped={} duplicates={} invalid_features={} keyframes={} landmarks={}",
+      counters_.frames, counters_.tracked, arrivals_->dropped(), counters_.duplicates, counters_.invalid_features,
+      last_result_.keyframes, last_result_.landmarks);
+  return write_files();
+}
+
+/// Every frame gets one result; a frame sent again because its result was lost gets the same result again.
+void SlamService::answer(const msg::FeatureFrame& frame) {
+  if (answered_before(frame)) {
+    ++counters_.duplicates;
+    publisher_.repeat(last_result_);
+    return;
+  }
+  const msg::TrackingState previous = last_result_.state;
+  SlamOutput output = slam_.process(frame);
+  output.result.published_ns = frame.published_ns;
+  output.result.finished_ns = service::monotonic_ns();
+  publisher_.publish(output);
+  last_result_ = output.result;
+  last_problem_ = output.problem;
+  count(output);
+  log(output, previous);
+}
+
+bool SlamService::answered_before(const msg::FeatureFrame& frame) const {
+  return counters_.frames > 0 && frame.seq == last_result_.seq && frame.stamp_ns == last_result_.stamp_ns;
+}
+
+void SlamService::count(const SlamOutput& output) {
+  ++counters_.frames;
+  if (output.result.state == msg::TrackingState::kOk) ++counters_.tracked;
+  if (output.result.features_static == 0 && !output.problem.empty()) ++counters_.unusable_frames;
+  counters_.invalid_features += output.invalid_features;
+  counters_.dropped = arrivals_->dropped();
+  counters_.source_restarts = slam_.source_restarts();
+  service::Heartbeat& heartbeat = runtime_.heartbeat;
+  heartbeat.set_metric("frames", static_cast<double>(counters_.frames));
+  heartbeat.set_metric("frames_tracked", static_cast<double>(counters_.tracked));
+  heartbeat.set_metric("frames_dropped", static_cast<double>(counters_.dropped));
+  heartbeat.set_metric("features_invalid", static_cast<double>(counters_.invalid_features));
+  heartbeat.set_metric("keyframes", output.result.keyframes);
+  heartbeat.set_metric("landmarks", output.result.landmarks);
+  heartbeat.set_metric("slam_ms", static_cast<double>(output.result.stage_ms[msg::kStageSlamTotal]));
+}
+
+void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
+  const msg::TrackingResult& result = output.result;
+  const bool tracked = result.state == msg::TrackingState::kOk, was_tracked = previous == msg::TrackingState::kOk;
+  if (tracked && counters_.tracked == 1) {
+    SPDLOG_INFO("event=map_started frame={} landmarks={}", result.seq, result.landmarks);
+  } else if (tracked && !was_tracked) {
+    SPDLOG_INFO("event=tracking_recovered frame={} inliers={}", result.seq, result.inliers);
+  } else if (!tracked && was_tracked && counters_.frames > 1) {
+    SPDLOG_WARN("event=tracking_lost frame={} inliers={} cause=\"{}\"", result.seq, result.inliers, output.problem);
+  } else if (!output.problem.empty() && problem_log_.pass()) {
+    SPDLOG_WARN("event=not_tracked frame={} state=\"{}\" cause=\"{}\"", result.seq, to_string(result.state),
+                output.problem);
+  }
+  if (output.invalid_features > 0 && invalid_log_.pass()) {
+    SPDLOG_WARN("event=features_invalid frame={} count={} total={}", result.seq, output.invalid_features,
+                counters_.invalid_features);
+  }
+  if (runtime_.heartbeat.alive("camera") && counters_.dropped > 0 && dropped_log_.pass()) {
+    SPDLOG_DEBUG("event=frames_dropped total={}", counters_.dropped);
+  }
+}
+
+/// Says so when features stop coming although the source has not ended.
+void SlamService::watch_input(bool arrived) {
+  const std::int64_t now_ns = service::monotonic_ns();
+  if (arrived) last_arrival_ns_ = now_ns;
+  const bool gone = counters_.frames > 0 && !source_ended_ && now_ns - last_arrival_ns_ > kInputGoneAfterNs;
+  if (gone != input_gone_) {
+    if (gone) {
+      SPDLOG_WARN("event=input_gone last_frame={} cause=\"no features for 0.5 s\" keyframes={}", last_result_.seq,
+                  last_result_.keyframes);
+    } else if (arrived) {
+      SPDLOG_INFO("event=input_back frame={}", last_result_.seq);
+    }
+  }
+  input_gone_ = gone;
+  if (now_ns - last_diagnostics_ns_ < kDiagnosticsPeriodNs) return;
+  last_diagnostics_ns_ = now_ns;
+  publisher_.publish_diagnostics(make_diagnostics(last_result_, counters_, trouble(), last_result_.stamp_ns));
+}
+
+/// Why the service does less than it should; empty when it does not.
+std::string SlamService::trouble() const {
+  if (input_gone_) return "no features for 0.5 s: camera or filter gone, the map is kept";
+  return counters_.frames > 0 && last_result_.state != msg::TrackingState::kOk ? last_problem_ : std::string{};
+}
+
+void SlamService::report_state() {
+  if (counters_.frames == 0) {
+    const bool ready = features_.matched() > 0 && publisher_.matched();
+    runtime_.heartbeat.set_state(ready ? msg::ServiceState::kReady : msg::ServiceState::kStarting,
+                                 ready ? "" : "waits for a filter and a listener to rtd/tracking");
+    return;
+  }
+  const std::string message = trouble();
+  runtime_.heartbeat.set_state(message.empty() ? msg::ServiceState::kRunning : msg::ServiceState::kDegraded, message);
+}
+
+service::ExitCode SlamService::write_files() {
+  slam_.finish();
+  if (config_.out_dir.empty()) return service::kOk;
+  try {
+    write_run_files(slam_, config_.out_dir);
+  } catch (const std::exception& error) {
+    SPDLOG_ERROR("event=files_not_written cause=\"{}\"", error.what());
+    return service::kRunFailed;
+  }
+  SPDLOG_INFO("event=files_written folder={} poses={}", config_.out_dir, slam_.frames_tracked());
+  return service::kOk;
+}
+
+}  // namespace rtd::slam

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "common/concurrency/bounded_queue.hpp"
+#include "common/service/exit_code.hpp"
+#include "common/service/log.hpp"
+#include "common/service/runtime.hpp"
+#include "services/slam/config.hpp"
+#include "services/slam/core/slam_system.hpp"
+#include "services/slam/slam_publisher.hpp"
+
+namespace rtd::slam {
+
+/// Features in, poses out. Every feature frame is answered by one TrackingResult, after the keyframe events that belong
+/// to it. Realtime pace: at most 4 frames wait, the oldest goes and is counted; asap and lockstep: none is lost.
+/// Mapping runs in this thread at pace lockstep (same input, same map), else in its own.
+class SlamService {
+ public:
+  static constexpr const char* kName = "slam";
+  static constexpr const char* kDescription = "Finds the camera's pose and maps the static world from features";
+  using Config = ServiceConfig;
+  static void add_options(CLI::App& app, Config& config);
+
+  SlamService(const Config& config, service::Runtime& runtime);
+  ~SlamService();
+  SlamService(const SlamService&) = delete;
+  SlamService& operator=(const SlamService&) = delete;
+  /// Runs until stop is requested, then writes the files of --out.
+  service::ExitCode run();
+
+ private:
+  using Arrivals = concurrency::BoundedQueue<std::shared_ptr<const msg::FeatureFrame>>;
+
+  void answer(const msg::FeatureFrame& frame);
+  bool answered_before(const msg::FeatureFrame& frame) const;
+  void count(const SlamOutput& output);
+  void log(const SlamOutput& output, msg::TrackingState previous);
+  void watch_input(bool arrived);
+  void report_state();
+  std::string trouble() const;
+  service::ExitCode write_files();
+
+  const Config config_;
+  service::Runtime& runtime_;
+  SlamSystem slam_;
+  SlamPublisher publisher_;
+  std::shared_ptr<Arrivals> arrivals_;
+  bus::Reader<msg::FeatureFrame> features_;
+  std::atomic<bool> source_ended_{false};  ///< the camera said so
+  SlamCounters counters_;
+  msg::TrackingResult last_result_{};
+  std::string last_problem_;
+  std::int64_t last_arrival_ns_ = 0, last_diagnostics_ns_ = 0;
+  bool input_gone_ = false;
+  service::RateLimit problem_log_{std::chrono::seconds(1)}, invalid_log_{std::chrono::seconds(1)},
+      dropped_log_{std::chrono::seconds(1)};
+};
+
+}  // namespace rtd::slam
