@@ -117,8 +117,9 @@ void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
     SPDLOG_WARN("event=features_invalid frame={} count={} total={}", result.seq, output.invalid_features,
                 counters_.invalid_features);
   }
-  if (runtime_.heartbeat.alive("camera") && counters_.dropped > 0 && dropped_log_.pass()) {
-    SPDLOG_DEBUG("event=frames_dropped total={}", counters_.dropped);
+  if (counters_.dropped > dropped_logged_ && dropped_log_.pass()) {
+    SPDLOG_WARN("event=frames_dropped count={} total={}", counters_.dropped - dropped_logged_, counters_.dropped);
+    dropped_logged_ = counters_.dropped;
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -57,6 +58,7 @@ class SlamService {
   std::string last_problem_;
   std::int64_t last_arrival_ns_ = 0, last_diagnostics_ns_ = 0;
   bool input_gone_ = false;
+  std::uint64_t dropped_logged_ = 0;
   service::RateLimit problem_log_{std::chrono::seconds(1)}, invalid_log_{std::chrono::seconds(1)},
       dropped_log_{std::chrono::seconds(1)};
 };
