@@ -94,8 +94,10 @@ std::optional<SkippedInput> TumSource::check_sizes(const FilePair& pair, const c
 
 cv::Mat TumSource::read_mask(const FilePair& pair) const {
   const std::filesystem::path name = std::filesystem::path(pair.color.file).filename().replace_extension(".png");
-  cv::Mat mask = cv::imread((folder_ / "mask" / name).string(), cv::IMREAD_GRAYSCALE);
-  if (mask.empty()) return mask;
+  const std::filesystem::path file = folder_ / "mask" / name;
+  if (!std::filesystem::exists(file)) return {};
+  const cv::Mat mask = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
+  if (mask.empty()) return {};
   return mask > 0;
 }
 

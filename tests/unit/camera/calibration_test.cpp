@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/calibration.hpp"
+
+#include <gmock/gmock.h>
+
+#include "services/camera/core/frame_source.hpp"
+#include "tests/unit/camera/sequence_folder.hpp"
+
+namespace rtd::camera {
+namespace {
+
+using test::SequenceFolder;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+constexpr const char* kMinimal = "width: 320\nheight: 240\nfx: 262\nfy: 261\ncx: 160\ncy: 120\n";
+
+auto refuses(const std::string& text, const std::string& part) {
+  return [text, part] {
+    EXPECT_THAT([&] { parse_calibration(text, "cal.yaml"); }, ThrowsMessage<SourceError>(HasSubstr(part))) << text;
+  };
+}
+
+TEST(Calibration, HasDefaultsForWhatIsOptional) {
+  const Calibration calibration = parse_calibration(kMinimal, "x");
+  EXPECT_DOUBLE_EQ(calibration.depth_scale_m, 1.0 / 5000);
+  EXPECT_DOUBLE_EQ(calibration.fps, 30);
+  EXPECT_FALSE(calibration.camera.distorted());
+  EXPECT_EQ(calibration.camera.parameters().width, 320);
+}
+
+TEST(Calibration, SurvivesWritingAndReading) {
+  const Calibration before = parse_calibration(
+      std::string(kMinimal) + "k1: 0.2624\nk2: -0.95\np1: -0.005\np2: 0.0026\nk3: 1.16\ndepth_factor: 1000\nfps: 15\n",
+      "x");
+  const Calibration after = parse_calibration(to_yaml(before), "y");
+  EXPECT_EQ(after.camera.parameters().distortion, before.camera.parameters().distortion);
+  EXPECT_DOUBLE_EQ(after.camera.parameters().fx, 262);
+  EXPECT_DOUBLE_EQ(after.depth_scale_m, 0.001);
+  EXPECT_DOUBLE_EQ(after.fps, 15);
+}
+
+TEST(Calibration, RefusesWithKeyLineAndFix) {
+  refuses("width: 320\nfocal: 3\n", "cal.yaml:2: unknown key 'focal'")();
+  refuses("width: 320\n", "is missing")();
+  refuses(std::string(kMinimal) + "fx: 262\n", "stands twice")();
+  refuses("width 320\n", "expected 'key: value'")();
+  refuses("fx: nan\n", "cal.yaml:1: fx is 'nan'")();
+  refuses("fx: inf\n", "fx is 'inf'")();
+  refuses("fx: 0\n", "allowed is a number in [1")();
+  refuses("depth_factor: -5000\n", "depth_factor")();
+  refuses("fx: 5x\n", "fx is '5x'")();
+}
+
+TEST(Calibration, RefusesSizesThatNoFrameTypeCarries) {
+  EXPECT_THAT(
+      [] { parse_calibration(SequenceFolder::calibration(1280, 720), "cal.yaml"); },
+      ThrowsMessage<SourceError>(AllOf(HasSubstr("1280 x 720"), HasSubstr("at most 640 x 480"), HasSubstr("scale"))));
+}
+
+TEST(TumFamily, IsReadFromTheInnermostFolderThatNamesOne) {
+  EXPECT_EQ(tum_family("/data/rgbd_dataset_freiburg1_xyz"), 1);
+  EXPECT_EQ(tum_family("/data/fr2_desk"), 2);
+  EXPECT_EQ(tum_family("/data/freiburg1/fr3_walking_xyz"), 3);
+  EXPECT_EQ(tum_family("/data/FR3/seq"), 3);
+  EXPECT_EQ(tum_family("/data/fr12"), std::nullopt);
+  EXPECT_EQ(tum_family("/data/afr1"), std::nullopt);
+  EXPECT_EQ(tum_family("/data/office"), std::nullopt);
+}
+
+TEST(LoadCalibration, TakesTheFileFirstThenTheFamily) {
+  const SequenceFolder folder("freiburg2_desk");
+  EXPECT_DOUBLE_EQ(load_calibration(folder.path()).camera.parameters().fx, 520.908620);
+  folder.write("calibration.yaml", SequenceFolder::calibration());
+  EXPECT_DOUBLE_EQ(load_calibration(folder.path()).camera.parameters().fx, 52);
+}
+
+TEST(LoadCalibration, KnowsAllThreeFamilies) {
+  const SequenceFolder fr1("fr1_a"), fr3("fr3_a");
+  EXPECT_DOUBLE_EQ(load_calibration(fr1.path()).camera.parameters().distortion[4], 1.163314);
+  EXPECT_DOUBLE_EQ(load_calibration(fr3.path()).camera.parameters().fy, 539.2);
+  EXPECT_FALSE(load_calibration(fr3.path()).camera.distorted());
+}
+
+TEST(LoadCalibration, SaysWhatToWriteOtherwise) {
+  const SequenceFolder folder("kitchen");
+  EXPECT_THAT([&] { load_calibration(folder.path()); },
+              ThrowsMessage<SourceError>(AllOf(HasSubstr("calibration.yaml"), HasSubstr("width height fx fy"))));
+}
+
+}  // namespace
+}  // namespace rtd::camera

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/synthetic/renderer.hpp"
+
+#include <gmock/gmock.h>
+
+namespace rtd::camera::synthetic {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 120;
+
+geometry::CameraModel camera() {
+  geometry::CameraModel::Parameters parameters;
+  parameters.fx = parameters.fy = 130;
+  parameters.cx = (kWidth - 1) / 2.0, parameters.cy = (kHeight - 1) / 2.0;
+  parameters.width = kWidth, parameters.height = kHeight;
+  return geometry::CameraModel(parameters);
+}
+
+/// World = camera frame: the camera looks along +z.
+const Eigen::Isometry3d kAtOrigin = Eigen::Isometry3d::Identity();
+
+/// One grey level everywhere.
+Texture plain(std::uint8_t level) {
+  const std::uint32_t texel = level | level << 8U | level << 16U;
+  return {100, {MipLevel{16, 16, std::vector<std::uint32_t>(256, texel)}}};
+}
+
+/// A face of 2 m x 2 m that looks at the camera, its middle at `center`.
+Face facing_camera(const Eigen::Vector3f& center, bool moving = false) {
+  Face face;
+  face.axis_s = Eigen::Vector3f::UnitX(), face.axis_t = -Eigen::Vector3f::UnitY();  // normal -z, towards the camera
+  face.width_m = face.height_m = 2;
+  face.origin = center - face.axis_s - face.axis_t;
+  face.moving = moving;
+  return face;
+}
+
+float depth_at(const Rendering& rendering, int u, int v) {
+  const float inverse = rendering.inverse_depth.at<float>(v, u);
+  return inverse > 0 ? 1.0F / inverse : 0.0F;
+}
+
+TEST(Renderer, GivesThePlanesDepthAndExtent) {
+  Renderer renderer(camera());
+  const Rendering rendering = renderer.render({{facing_camera({0, 0, 4})}, {}}, {plain(100)}, kAtOrigin);
+  EXPECT_NEAR(depth_at(rendering, 80, 60), 4.0F, 1e-5F);
+  // 1 m at 4 m is 32.5 px from the centre at 79.5
+  EXPECT_GT(depth_at(rendering, 111, 60), 0);
+  EXPECT_EQ(depth_at(rendering, 113, 60), 0);
+  EXPECT_GT(depth_at(rendering, 80, 28), 0);
+  EXPECT_EQ(depth_at(rendering, 80, 26), 0);
+  EXPECT_EQ(rendering.color_bgr.at<cv::Vec3b>(60, 80), cv::Vec3b(100, 100, 100));
+  EXPECT_EQ(rendering.color_bgr.at<cv::Vec3b>(5, 5), cv::Vec3b(0, 0, 0));
+}
+
+TEST(Renderer, DepthIsAlongTheOpticalAxisOfTheMovedCamera) {
+  Renderer renderer(camera());
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  T_world_camera.linear() = Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  T_world_camera.translation() = Eigen::Vector3d(-0.3, 0.1, 0.5);
+  const Rendering rendering = renderer.render({{facing_camera({0, 0, 4})}, {}}, {plain(1)}, T_world_camera);
+  const Eigen::Vector3d p_world(0.2, -0.1, 4);
+  const Eigen::Vector3d p_camera = T_world_camera.inverse() * p_world;
+  const Eigen::Vector2d pixel = camera().project(p_camera);
+  EXPECT_NEAR(depth_at(rendering, static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y()))),
+              p_camera.z(), 0.01)
+      << "half a pixel on a plane slanted by 0.2 rad";
+}
+
+TEST(Renderer, DoesNotShowFacesFromBehind) {
+  Renderer renderer(camera());
+  Face face = facing_camera({0, 0, 4});
+  std::swap(face.axis_s, face.axis_t);
+  const Rendering rendering = renderer.render({{face}, {}}, {plain(100)}, kAtOrigin);
+  EXPECT_EQ(cv::countNonZero(rendering.inverse_depth), 0);
+}
+
+TEST(Renderer, ShowsTheNearerOfTwoAndMasksWhatMoves) {
+  Renderer renderer(camera());
+  Face near = facing_camera({1, 0, 2}, true);
+  near.texture = 1;
+  const Rendering rendering =
+      renderer.render({{near, facing_camera({0, 0, 4})}, {}}, {plain(50), plain(200)}, kAtOrigin);
+  EXPECT_NEAR(depth_at(rendering, 100, 60), 2.0F, 1e-5F);
+  EXPECT_EQ(rendering.color_bgr.at<cv::Vec3b>(60, 100)[0], 200);
+  EXPECT_EQ(rendering.moving_mask.at<std::uint8_t>(60, 100), 255);
+  EXPECT_NEAR(depth_at(rendering, 70, 60), 4.0F, 1e-5F);
+  EXPECT_EQ(rendering.moving_mask.at<std::uint8_t>(60, 70), 0);
+}
+
+TEST(Renderer, DrawsAnEllipsoidWhereItsSurfaceIs) {
+  Renderer renderer(camera());
+  Ellipsoid ellipsoid;
+  ellipsoid.T_world_body.translation() = Eigen::Vector3f(0, 0, 3);
+  ellipsoid.semi_axes_m = Eigen::Vector3f(0.5F, 1.0F, 0.25F);
+  ellipsoid.moving = true;
+  const Rendering rendering = renderer.render({{}, {ellipsoid}}, {plain(100)}, kAtOrigin);
+  EXPECT_NEAR(0.5F * (depth_at(rendering, 79, 59) + depth_at(rendering, 80, 60)), 2.75F, 1e-3F);
+  // Silhouette of the ellipse x^2/0.25 + (z-3)^2/0.0625 = 1 from the origin: x/z = 0.5 / sqrt(9 - 0.0625) -> 21.7 px
+  EXPECT_GT(depth_at(rendering, 100, 60), 0);
+  EXPECT_EQ(depth_at(rendering, 102, 60), 0);
+  EXPECT_EQ(rendering.moving_mask.at<std::uint8_t>(60, 80), 255);
+}
+
+TEST(Renderer, LeavesOutWhatIsBehindTheCamera) {
+  Renderer renderer(camera());
+  Ellipsoid ellipsoid;
+  ellipsoid.T_world_body.translation() = Eigen::Vector3f(0, 0, -3);
+  const Rendering rendering = renderer.render({{facing_camera({0, 0, -4})}, {ellipsoid}}, {plain(100)}, kAtOrigin);
+  EXPECT_EQ(cv::countNonZero(rendering.inverse_depth), 0);
+}
+
+TEST(Renderer, ClosesTheRoomWithoutCracks) {
+  Renderer renderer(camera());
+  Cuboid room;
+  room.size_m = Eigen::Vector3f(4, 4, 3);
+  std::vector<Face> walls;
+  for (Face face : outer_faces(room)) {  // seen from inside: swap the axes
+    std::swap(face.axis_s, face.axis_t);
+    std::swap(face.width_m, face.height_m);
+    walls.push_back(face);
+  }
+  for (int i = 0; i < 20; ++i) {
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+    T_world_camera.translation() = Eigen::Vector3d(0.3 + 0.01 * i, -0.2, 1.4);
+    T_world_camera.linear() = Eigen::AngleAxisd(0.37 * i, Eigen::Vector3d(1, 2, 0.5).normalized()).toRotationMatrix();
+    const Rendering rendering = renderer.render({walls, {}}, {plain(9)}, T_world_camera);
+    EXPECT_EQ(cv::countNonZero(rendering.inverse_depth), kWidth * kHeight) << "view " << i;
+  }
+}
+
+}  // namespace
+}  // namespace rtd::camera::synthetic

@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/synthetic/synthetic_source.hpp"
+
+#include <gmock/gmock.h>
+
+#include "services/camera/core/source_factory.hpp"
+#include "services/camera/core/tum_export.hpp"
+#include "tests/unit/camera/sequence_folder.hpp"
+
+namespace rtd::camera {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
+
+std::vector<SourceFrame> play(const std::string& uri) {
+  const auto source = make_source(uri);
+  std::vector<SourceFrame> frames;
+  while (auto frame = source->next()) frames.push_back(std::move(*frame));
+  return frames;
+}
+
+bool same(const cv::Mat& a, const cv::Mat& b) {
+  return a.size() == b.size() && cv::norm(a, b, cv::NORM_L1) == 0;
+}
+
+TEST(SyntheticSource, GivesTheSameBitsForTheSameSeed) {
+  const auto first = play("synthetic:office?frames=3&seed=7"), second = play("synthetic:office?frames=3&seed=7");
+  const auto other = play("synthetic:office?frames=3&seed=8");
+  ASSERT_THAT(first, SizeIs(3));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_TRUE(same(first[i].image.color_bgr, second[i].image.color_bgr));
+    EXPECT_TRUE(same(first[i].image.depth, second[i].image.depth));
+    EXPECT_TRUE(same(first[i].dynamic_mask, second[i].dynamic_mask));
+    EXPECT_TRUE(first[i].T_world_camera->isApprox(*second[i].T_world_camera, 0));
+  }
+  EXPECT_FALSE(same(first[2].image.color_bgr, other[2].image.color_bgr));
+}
+
+TEST(SyntheticSource, StampsFramesAtItsRate) {
+  const auto frames = play("synthetic:static?frames=4&fps=10&width=64&height=48");
+  EXPECT_EQ(frames[3].image.seq, 3U);
+  EXPECT_EQ(frames[3].image.stamp_ns - frames[0].image.stamp_ns, 300'000'000);
+  EXPECT_EQ(frames[0].image.stamp_ns % 1000, 0) << "TUM files carry microseconds";
+}
+
+/// Share of the pixels of frame b that see at the predicted depth what frame a saw there, and their number.
+struct Agreement {
+  double share = 0;
+  int pixels = 0;
+};
+Agreement agreement(const SourceFrame& a, const SourceFrame& b, const cv::Mat& left_out) {
+  const geometry::CameraModel& camera = a.image.camera;
+  const Eigen::Isometry3d T_b_a = b.T_world_camera->inverse() * *a.T_world_camera;
+  int agreeing = 0, compared = 0;
+  for (int v = 0; v < a.image.depth.rows; v += 3) {
+    for (int u = 0; u < a.image.depth.cols; u += 3) {
+      const double depth_m = a.image.depth.at<std::uint16_t>(v, u) * a.image.depth_scale_m;
+      if (depth_m == 0 || left_out.at<std::uint8_t>(v, u) != 0) continue;
+      const Eigen::Vector3d p_b = T_b_a * camera.unproject({u, v}, depth_m);
+      const Eigen::Vector2d pixel = camera.project(p_b);
+      if (p_b.z() < 0.5 || !camera.contains(pixel, 1)) continue;
+      const cv::Point at(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+      const double seen_m = b.image.depth.at<std::uint16_t>(at) * b.image.depth_scale_m;
+      if (seen_m == 0 || b.dynamic_mask.at<std::uint8_t>(at) != 0) continue;
+      ++compared;
+      if (std::abs(seen_m - p_b.z()) < 0.01 + 0.01 * p_b.z()) ++agreeing;
+    }
+  }
+  return {compared > 0 ? static_cast<double>(agreeing) / compared : 0.0, compared};
+}
+
+TEST(SyntheticSource, PosesAndDepthAgreeBetweenFrames) {
+  const auto frames = play("synthetic:office?frames=16&noise=0&seed=3");
+  const Agreement all = agreement(frames.front(), frames.back(), frames.front().dynamic_mask);
+  EXPECT_GT(all.pixels, 5000);
+  EXPECT_GT(all.share, 0.97) << "the rest is uncovered or slanted background";
+}
+
+TEST(SyntheticSource, MaskedPixelsAreThoseThatMoved) {
+  const auto frames = play("synthetic:crowd?frames=10&noise=0&seed=3");
+  cv::Mat still;
+  cv::compare(frames.front().dynamic_mask, 0, still, cv::CMP_EQ);
+  ASSERT_GT(cv::countNonZero(frames.front().dynamic_mask), 5000);
+  EXPECT_LT(agreement(frames.front(), frames.back(), still).share, 0.5);
+}
+
+TEST(SyntheticSource, ScenesHoldWhatTheirNamesSay) {
+  const auto masked = [](const std::string& uri) {
+    int pixels = 0;
+    for (const SourceFrame& frame : play(uri)) pixels += cv::countNonZero(frame.dynamic_mask);
+    return pixels;
+  };
+  const std::string few = "?frames=90&fps=3&width=160&height=120";
+  const int office = masked("synthetic:office" + few), crowd = masked("synthetic:crowd" + few);
+  EXPECT_EQ(masked("synthetic:static" + few), 0);
+  EXPECT_EQ(masked("synthetic:tour" + few), 0);
+  EXPECT_GT(masked("synthetic:box" + few), 0);
+  EXPECT_GT(office, 0);
+  EXPECT_GT(crowd, office);
+  EXPECT_EQ(masked("synthetic:office" + few + "&people=0&boxes=0"), 0);
+}
+
+TEST(SyntheticSource, CameraStaysInItsPartOfTheRoomAndMovesLikeAHand) {
+  using Room = synthetic::CameraRoom;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    const synthetic::CameraPath path(synthetic::CameraMotion::kHandHeld, seed);
+    for (double t_s = 0; t_s < 600; t_s += 0.5) {
+      const Eigen::Isometry3d now = path.T_world_camera(t_s), next = path.T_world_camera(t_s + 1.0 / 30);
+      const Eigen::Vector3d p = now.translation();
+      ASSERT_TRUE(p.x() > Room::kMinX && p.x() < Room::kMaxX && p.y() > Room::kMinY && p.y() < Room::kMaxY &&
+                  p.z() > Room::kMinZ && p.z() < Room::kMaxZ)
+          << p.transpose();
+      ASSERT_LT((next.translation() - p).norm() * 30, 1.2) << "m/s";
+      ASSERT_LT(Eigen::AngleAxisd(now.linear().transpose() * next.linear()).angle() * 30, 0.6) << "rad/s";
+      ASSERT_NEAR(now.linear().determinant(), 1.0, 1e-12);
+    }
+  }
+}
+
+TEST(SyntheticSource, EveryViewIsRichInDepth) {
+  for (const SourceFrame& frame : play("synthetic:office?frames=40&fps=1")) {
+    EXPECT_GT(cv::countNonZero(frame.image.depth), 640 * 480 * 3 / 4);
+    EXPECT_TRUE(frame.has_depth);
+  }
+}
+
+TEST(SyntheticSource, EndlessOneGivesGroundtruthOfWhatWasPlayed) {
+  const auto source = make_source("synthetic:static?frames=0&width=64&height=48");
+  EXPECT_EQ(source->info().frames, 0U);
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(source->next());
+  const auto poses = source->groundtruth();
+  ASSERT_THAT(poses, SizeIs(5));
+  const auto sixth = source->next();
+  EXPECT_LT(poses[4].stamp_ns, sixth->image.stamp_ns);
+}
+
+TEST(SyntheticSource, RefusesWhatItDoesNotKnow) {
+  EXPECT_THAT([] { make_source("synthetic:kitchen"); },
+              ThrowsMessage<SourceError>(AllOf(HasSubstr("'kitchen'"), HasSubstr("office, static, box, crowd, tour"))));
+  EXPECT_THAT([] { make_source("synthetic:office?sed=1"); },
+              ThrowsMessage<SourceError>(AllOf(HasSubstr("'sed'"), HasSubstr("seed"))));
+  EXPECT_THAT([] { make_source("synthetic:office?width=1280"); }, ThrowsMessage<SourceError>(HasSubstr("[64, 640]")));
+  EXPECT_THAT([] { make_source("synthetic:office?fps=fast"); }, ThrowsMessage<SourceError>(HasSubstr("fps is 'fast'")));
+  EXPECT_THAT([] { make_source("synthetic:office?frames=nan"); }, ThrowsMessage<SourceError>(HasSubstr("frames")));
+}
+
+TEST(TumExport, IsReadBackAsItWas) {
+  const test::SequenceFolder folder;
+  const std::string scene = "synthetic:office?frames=4&width=160&height=120&seed=5";
+  const auto source = make_source(scene);
+  EXPECT_EQ(export_tum(*source, folder.path() / "clip", 0), 4U);
+  const auto before = play(scene), after = play("tum:" + (folder.path() / "clip").string() + "?masks=1");
+  ASSERT_THAT(after, SizeIs(4));
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(after[i].image.stamp_ns, before[i].image.stamp_ns);
+    EXPECT_TRUE(same(after[i].image.depth, before[i].image.depth));
+    EXPECT_TRUE(same(after[i].image.color_bgr, before[i].image.color_bgr));
+    EXPECT_TRUE(same(after[i].dynamic_mask, before[i].dynamic_mask));
+    EXPECT_NEAR(after[i].image.camera.parameters().fx, before[i].image.camera.parameters().fx, 1e-9);
+  }
+  const auto poses = make_source("tum:" + (folder.path() / "clip").string())->groundtruth();
+  ASSERT_THAT(poses, SizeIs(4));
+  EXPECT_TRUE(poses[3].T_world_camera.isApprox(*before[3].T_world_camera, 1e-8));
+}
+
+TEST(TumExport, RefusesEndlessSourcesAndUsedFolders) {
+  const test::SequenceFolder folder;
+  const auto endless = make_source("synthetic:static?frames=0&width=64&height=48");
+  EXPECT_THAT([&] { export_tum(*endless, folder.path() / "clip", 0); },
+              ThrowsMessage<SourceError>(HasSubstr("--frames")));
+  EXPECT_EQ(export_tum(*endless, folder.path() / "clip", 2), 2U);
+  EXPECT_THAT([&] { export_tum(*endless, folder.path() / "clip", 2); },
+              ThrowsMessage<SourceError>(HasSubstr("holds a sequence already")));
+}
+
+}  // namespace
+}  // namespace rtd::camera

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/tum_lists.hpp"
+
+#include <gmock/gmock.h>
+
+#include "services/camera/core/text_fields.hpp"
+#include "tests/unit/camera/sequence_folder.hpp"
+
+namespace rtd::camera {
+namespace {
+
+using test::SequenceFolder;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
+
+std::vector<StampedFile> at_ms(std::initializer_list<int> stamps_ms) {
+  std::vector<StampedFile> files;
+  for (const int ms : stamps_ms) files.push_back({std::int64_t{ms} * 1'000'000, "x"});
+  return files;
+}
+
+TEST(ParseStamp, IsExactToTheNanosecond) {
+  EXPECT_EQ(parse_stamp_ns("1305031102.175304", "x"), 1305031102175304000);
+  EXPECT_EQ(parse_stamp_ns("0.000000001", "x"), 1);
+  EXPECT_EQ(parse_stamp_ns("12", "x"), 12'000'000'000);
+  EXPECT_EQ(parse_stamp_ns("-1.5", "x"), -1'500'000'000);
+  EXPECT_EQ(parse_stamp_ns("1e2", "x"), 100'000'000'000);
+  EXPECT_EQ(parse_stamp_ns("12:30", "x"), std::nullopt);
+}
+
+TEST(ParseStamp, RefusesWhatIsNotFinite) {
+  for (const char* text : {"nan", "inf", "-inf", "1e300"}) {
+    EXPECT_THAT([&] { (void)parse_stamp_ns(text, "rgb.txt:7"); }, ThrowsMessage<SourceError>(HasSubstr("rgb.txt:7")));
+  }
+}
+
+TEST(Associate, TakesTheClosestPairFirst) {
+  // 20 could go to 12 (8 ms) or 29 (9 ms); 30 is nearer to 29, so 20 gets 12.
+  EXPECT_THAT(associate(at_ms({20, 30}), at_ms({12, 29})), ElementsAre(0, 1));
+}
+
+TEST(Associate, UsesEachDepthImageOnce) {
+  EXPECT_THAT(associate(at_ms({0, 10}), at_ms({4})), ElementsAre(0, -1));
+}
+
+TEST(Associate, LeavesOutWhatIsTooFarApart) {
+  EXPECT_THAT(associate(at_ms({0, 100}), at_ms({20, 119})), ElementsAre(-1, 1));
+}
+
+TEST(ReadPairs, RefusesMissingAndEmptyFolders) {
+  EXPECT_THAT([] { read_pairs("/no/such/folder"); }, ThrowsMessage<SourceError>(HasSubstr("does not exist")));
+  const SequenceFolder folder;
+  EXPECT_THAT([&] { read_pairs(folder.path()); }, ThrowsMessage<SourceError>(HasSubstr("needs rgb.txt")));
+}
+
+TEST(ReadPairs, FollowsAssociationsEvenWhenDepthIsUsedTwice) {
+  const SequenceFolder folder;
+  folder.write("associations.txt", "1.0 rgb/a.png 1.01 depth/a.png\r\n1.1 rgb/b.png 1.01 depth/a.png\n");
+  const PairList list = read_pairs(folder.path());
+  ASSERT_THAT(list.pairs, SizeIs(2));
+  EXPECT_EQ(list.pairs[1].depth.file, "depth/a.png");
+  EXPECT_EQ(list.pairs[1].color.stamp_ns, 1'100'000'000);
+}
+
+TEST(ReadPairs, AcceptsAssociationsThatNameDepthFirst) {
+  const SequenceFolder folder;
+  folder.write("associations.txt", "1.0 depth/a.png 1.01 rgb/a.png\n");
+  const PairList list = read_pairs(folder.path());
+  ASSERT_THAT(list.pairs, SizeIs(1));
+  EXPECT_EQ(list.pairs[0].color.file, "rgb/a.png");
+  EXPECT_EQ(list.pairs[0].color.stamp_ns, 1'010'000'000);
+}
+
+TEST(ReadPairs, CountsStampsThatGoBackOrStandStill) {
+  const SequenceFolder folder;
+  folder.write("rgb.txt", "1.0 a\n1.1 b\n1.1 c\n1.05 d\n1.2 e\n");
+  folder.write("depth.txt", "1.0 a\n1.05 b\n1.1 c\n1.2 d\n");
+  const PairList list = read_pairs(folder.path());
+  ASSERT_THAT(list.pairs, SizeIs(3));
+  EXPECT_EQ(list.pairs[2].color.file, "e");
+  ASSERT_THAT(list.skipped, SizeIs(2));
+  EXPECT_EQ(list.skipped[0].reason, SkipReason::kStampDoubled);
+  EXPECT_EQ(list.skipped[1].reason, SkipReason::kStampBackwards);
+}
+
+TEST(ReadPairs, CountsFramesWithoutDepthPartner) {
+  const SequenceFolder folder;
+  folder.write("rgb.txt", "1.0 a\n1.5 b\n");
+  folder.write("depth.txt", "1.0 a\n1.6 b\n");
+  const PairList list = read_pairs(folder.path());
+  EXPECT_THAT(list.pairs, SizeIs(1));
+  ASSERT_THAT(list.skipped, SizeIs(1));
+  EXPECT_EQ(list.skipped[0].reason, SkipReason::kNoDepthPartner);
+}
+
+TEST(ReadPairs, CountsMalformedLinesByFileAndNumber) {
+  const SequenceFolder folder;
+  folder.write("rgb.txt", "# stamps\n1.0 a\nhello world\n1.1\n1.2 b c\n");
+  folder.write("depth.txt", "1.0 a\n");
+  const PairList list = read_pairs(folder.path());
+  EXPECT_THAT(list.pairs, SizeIs(1));
+  ASSERT_THAT(list.skipped, SizeIs(3));
+  EXPECT_EQ(list.skipped[0].reason, SkipReason::kMalformedLine);
+  EXPECT_THAT(list.skipped[0].detail, HasSubstr("rgb.txt:3"));
+}
+
+TEST(ReadPairs, RefusesStampsThatAreNoNumber) {
+  const SequenceFolder folder;
+  folder.write("rgb.txt", "1.0 a\nnan b\n");
+  folder.write("depth.txt", "1.0 a\n");
+  EXPECT_THAT([&] { read_pairs(folder.path()); }, ThrowsMessage<SourceError>(HasSubstr("rgb.txt:2")));
+}
+
+TEST(ReadPairs, AcceptsStampsHoursApart) {
+  const SequenceFolder folder;
+  folder.write("rgb.txt", "1.0 a\n20000.0 b\n");
+  folder.write("depth.txt", "1.0 a\n20000.0 b\n");
+  EXPECT_THAT(read_pairs(folder.path()).pairs, SizeIs(2));
+}
+
+}  // namespace
+}  // namespace rtd::camera

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/tum_source.hpp"
+
+#include <gmock/gmock.h>
+
+#include "services/camera/core/source_factory.hpp"
+#include "tests/unit/camera/sequence_folder.hpp"
+
+namespace rtd::camera {
+namespace {
+
+using test::SequenceFolder;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
+
+struct Played {
+  std::vector<SourceFrame> frames;
+  SourceCounters counters;
+  std::vector<SkippedInput> skipped;
+};
+
+Played play(const SequenceFolder& folder, const std::string& parameters = "") {
+  const auto source = make_source(folder.uri() + parameters);
+  Played played;
+  while (auto frame = source->next()) played.frames.push_back(std::move(*frame));
+  played.counters = source->counters();
+  played.skipped = source->take_skipped();
+  return played;
+}
+
+TEST(TumSource, PlaysFramesInOrderWithCalibration) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  const Played played = play(folder);
+  ASSERT_THAT(played.frames, SizeIs(3));
+  const vision::RgbdImage& image = played.frames[1].image;
+  EXPECT_EQ(image.seq, 1U);
+  EXPECT_EQ(image.stamp_ns, 1'100'000'000);
+  EXPECT_EQ(image.color_bgr.type(), CV_8UC3);
+  EXPECT_EQ(image.depth.at<std::uint16_t>(10, 10), 5000);
+  EXPECT_DOUBLE_EQ(image.depth_scale_m, 1.0 / 5000);
+  EXPECT_DOUBLE_EQ(image.camera.parameters().fy, 53);
+  EXPECT_THAT(played.skipped, IsEmpty());
+}
+
+TEST(TumSource, ReadsJpegColour) {
+  const SequenceFolder folder;
+  folder.write("calibration.yaml", SequenceFolder::calibration());
+  folder.image("rgb/a.jpg", SequenceFolder::color());
+  folder.image("depth/a.png", SequenceFolder::depth());
+  folder.write("associations.txt", "1 rgb/a.jpg 1 depth/a.png\n");
+  EXPECT_THAT(play(folder).frames, SizeIs(1));
+}
+
+TEST(TumSource, ReadsMasksWhenAsked) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  std::filesystem::create_directories(folder.path() / "mask");
+  cv::Mat mask(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_8UC1, cv::Scalar(0));
+  mask.at<std::uint8_t>(5, 6) = 1;
+  folder.image("mask/1.0.png", mask);
+  const Played played = play(folder, "?masks=1");
+  EXPECT_EQ(played.frames[0].dynamic_mask.at<std::uint8_t>(5, 6), 255);
+  EXPECT_EQ(cv::countNonZero(played.frames[0].dynamic_mask), 1);
+  EXPECT_TRUE(played.frames[1].dynamic_mask.empty());
+  EXPECT_TRUE(play(folder).frames[0].dynamic_mask.empty());
+}
+
+TEST(TumSource, SkipsMissingAndTruncatedImagesAndGoesOn) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  for (const char* stamp : {"1.3", "1.4", "1.5", "1.6"}) folder.frame(stamp);
+  std::filesystem::remove(folder.path() / "rgb/1.1.png");
+  folder.truncate("rgb/1.2.png");
+  folder.truncate("depth/1.3.png");
+  folder.write("rgb/1.4.png", "");
+  folder.write("rgb/1.5.png", "this is no image");
+  const Played played = play(folder);
+  ASSERT_THAT(played.frames, SizeIs(2));
+  EXPECT_EQ(played.frames[1].image.seq, 1U) << "no gap in seq";
+  EXPECT_EQ(played.frames[1].image.stamp_ns, 1'600'000'000);
+  EXPECT_EQ(played.counters.of(SkipReason::kColorUnreadable), 4U);
+  EXPECT_EQ(played.counters.of(SkipReason::kDepthUnreadable), 1U);
+  EXPECT_THAT(played.skipped[0].detail, AllOf(HasSubstr("1.1.png"), HasSubstr("cannot be read")));
+  EXPECT_THAT(played.skipped[1].detail, HasSubstr("truncated"));
+}
+
+TEST(TumSource, SkipsTruncatedJpegInsteadOfGreyFilling) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  folder.image("rgb/b.jpg", SequenceFolder::color());
+  folder.truncate("rgb/b.jpg");
+  folder.write("associations.txt", "1.0 rgb/1.0.png 1.0 depth/1.0.png\n1.1 rgb/b.jpg 1.1 depth/1.1.png\n");
+  const Played played = play(folder);
+  EXPECT_THAT(played.frames, SizeIs(1));
+  EXPECT_EQ(played.counters.of(SkipReason::kColorUnreadable), 1U);
+}
+
+TEST(TumSource, NamesThePixelTypeOfDepthThatIsNot16Bit) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  folder.image("depth/1.1.png", cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_8UC1, cv::Scalar(9)));
+  folder.image("depth/f.tiff", cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_32FC1, cv::Scalar(1.5)));
+  folder.append("rgb.txt", "1.3 rgb/1.0.png\n");
+  folder.append("depth.txt", "1.3 depth/f.tiff\n");
+  const Played played = play(folder);
+  EXPECT_THAT(played.frames, SizeIs(2));
+  EXPECT_EQ(played.counters.of(SkipReason::kDepthNot16Bit), 2U);
+  EXPECT_THAT(played.skipped[0].detail, AllOf(HasSubstr("8-bit"), HasSubstr("needed is a 16-bit")));
+  EXPECT_THAT(played.skipped[1].detail, HasSubstr("32-bit float"));
+}
+
+TEST(TumSource, RefusesASequenceWithoutOneGoodFrame) {
+  const SequenceFolder folder;
+  folder.write("calibration.yaml", SequenceFolder::calibration());
+  for (const char* stamp : {"1.0", "1.1"}) {
+    folder.frame(stamp, cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_8UC1, cv::Scalar(9)));
+  }
+  EXPECT_THAT([&] { make_source(folder.uri()); },
+              ThrowsMessage<SourceError>(AllOf(HasSubstr("2 x depth_not_16_bit"), HasSubstr("16-bit"))));
+}
+
+TEST(TumSource, RefusesEmptyLists) {
+  const SequenceFolder folder;
+  folder.write("calibration.yaml", SequenceFolder::calibration());
+  folder.write("rgb.txt", "# nothing\n");
+  folder.write("depth.txt", "");
+  EXPECT_THAT([&] { make_source(folder.uri()); }, ThrowsMessage<SourceError>(HasSubstr("lists are empty")));
+}
+
+TEST(TumSource, PassesFramesWithoutAnyDepthAndCountsThem) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  folder.frame("1.3", SequenceFolder::depth(0));
+  const Played played = play(folder);
+  ASSERT_THAT(played.frames, SizeIs(4));
+  EXPECT_FALSE(played.frames[3].has_depth);
+  EXPECT_TRUE(played.frames[0].has_depth);
+  EXPECT_EQ(played.counters.frames_without_depth, 1U);
+}
+
+TEST(TumSource, TakesSaturatedDepthForNoMeasurement) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  cv::Mat depth = SequenceFolder::depth();
+  depth.at<std::uint16_t>(3, 4) = 65535;
+  depth.at<std::uint16_t>(3, 5) = 65534;
+  folder.frame("1.3", depth);
+  const Played played = play(folder);
+  EXPECT_EQ(played.frames[3].image.depth.at<std::uint16_t>(3, 4), 0);
+  EXPECT_EQ(played.frames[3].image.depth.at<std::uint16_t>(3, 5), 65534);
+}
+
+TEST(TumSource, RefusesFramesLargerThanTheFrameType) {
+  const SequenceFolder folder;
+  folder.write("calibration.yaml", SequenceFolder::calibration());
+  folder.image("rgb/a.png", SequenceFolder::color(800, 600));
+  folder.image("depth/a.png", SequenceFolder::depth());
+  folder.write("associations.txt", "1 rgb/a.png 1 depth/a.png\n");
+  EXPECT_THAT([&] { make_source(folder.uri()); },
+              ThrowsMessage<SourceError>(AllOf(HasSubstr("800 x 600"), HasSubstr("at most 640 x 480"))));
+}
+
+TEST(TumSource, SkipsFramesOfAnotherSizeThanCalibrated) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  folder.image("rgb/1.1.png", SequenceFolder::color(32, 32));
+  const Played played = play(folder);
+  EXPECT_THAT(played.frames, SizeIs(2));
+  EXPECT_EQ(played.counters.of(SkipReason::kSizeMismatch), 1U);
+}
+
+TEST(TumSource, GivesGroundtruthOfItsSpanOnly) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  folder.write("groundtruth.txt", "0.4 0 0 0 0 0 0 1\n0.6 1 0 0 0 0 0 1\n1.6 2 0 0 0 0 0 1\n1.8 3 0 0 0 0 0 1\n");
+  const auto poses = make_source(folder.uri())->groundtruth();
+  ASSERT_THAT(poses, SizeIs(2));
+  EXPECT_EQ(poses[0].T_world_camera.translation().x(), 1);
+  EXPECT_EQ(poses[1].T_world_camera.translation().x(), 2);
+}
+
+TEST(TumSource, RefusesBrokenGroundtruthByLine) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  folder.write("groundtruth.txt", "1.0 0 0 0 0 0 0 1\n1.1 nan 0 0 0 0 0 1\n");
+  EXPECT_THAT([&] { make_source(folder.uri()); },
+              ThrowsMessage<SourceError>(AllOf(HasSubstr("groundtruth.txt:2"), HasSubstr("nan"))));
+}
+
+TEST(MakeSource, NamesWhatItKnows) {
+  EXPECT_THAT([] { make_source("folder"); }, ThrowsMessage<SourceError>(HasSubstr("tum:FOLDER")));
+  EXPECT_THAT([] { make_source("rosbag:x"); }, ThrowsMessage<SourceError>(HasSubstr("known: tum, synthetic")));
+  EXPECT_THAT([] { make_source("tum:"); }, ThrowsMessage<SourceError>(HasSubstr("needs a folder")));
+  EXPECT_THAT([] { make_source("tum:x?mask=1"); }, ThrowsMessage<SourceError>(HasSubstr("unknown parameter 'mask'")));
+  EXPECT_THAT([] { make_source("tum:x?masks"); }, ThrowsMessage<SourceError>(HasSubstr("not key=value")));
+}
+
+}  // namespace
+}  // namespace rtd::camera
