@@ -21,7 +21,7 @@ double step_for(double span, int wanted) {
   const double raw = span / std::max(1, wanted);
   const double power = std::pow(10, std::floor(std::log10(raw)));
   for (const double multiple : {1.0, 2.0, 5.0}) {
-    if (multiple * power >= raw * 0.999) return multiple * power;
+    if (multiple * power >= raw * 0.75) return multiple * power;
   }
   return 10 * power;
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "services/launcher/core/plot/colour.hpp"
 #include "services/launcher/core/report/report_parts.hpp"
@@ -39,7 +40,7 @@ Card drift_card(const RunSummary& summary) {
   if (!summary.final_trajectory) return {"unknown", "drift per second", "no ground truth to compare with"};
   const eval::RpeResult& rpe = summary.final_trajectory->rpe_per_second;
   return {length_text(rpe.translation_m.rmse), "drift per second (RPE)",
-          number_text(rpe.rotation_rad.rmse * 180 / M_PI, 2, "deg") + " rotation"};
+          number_text(rpe.rotation_rad.rmse * 180 / std::numbers::pi, 2, "deg") + " rotation"};
 }
 
 Card latency_card(const RunSummary& summary) {

@@ -46,7 +46,7 @@ std::string number_text(double value, int decimals, const std::string& unit) {
 std::string percent_text(double fraction) {
   if (!std::isfinite(fraction)) return "unknown";
   // Never round up to 100 %: one lost frame must show.
-  const double percent = fraction < 1 ? std::floor(fraction * 1e4) / 100 : fraction * 100;
+  const double percent = fraction < 1 ? std::floor(fraction * 1e4 + 1e-6) / 100 : fraction * 100;
   return fmt::format("{:.{}f} %", percent, fraction == 1 ? 0 : 2);
 }
 

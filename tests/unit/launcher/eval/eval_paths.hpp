@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 #include "services/launcher/core/evaluation/trajectory.hpp"
 
@@ -38,6 +40,22 @@ inline Trajectory moved(const Trajectory& trajectory, const Eigen::Isometry3d& T
     pose.T_world_body = T_other_world * pose.T_world_body;
   }
   return result;
+}
+
+/// The trajectory as a file in TUM format.
+inline std::string tum_text(const Trajectory& trajectory) {
+  std::string text = "# stamp tx ty tz qx qy qz qw\n";
+  for (const StampedPose& pose : trajectory) {
+    const Eigen::Vector3d t = pose.T_world_body.translation();
+    const Eigen::Quaterniond q(pose.T_world_body.linear());
+    char line[256];
+    std::snprintf(line, sizeof line, "%lld.%09lld %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n",
+                  static_cast<long long>(pose.stamp_ns / 1'000'000'000),
+                  static_cast<long long>(pose.stamp_ns % 1'000'000'000), t.x(), t.y(), t.z(), q.x(), q.y(), q.z(),
+                  q.w());
+    text += line;
+  }
+  return text;
 }
 
 }  // namespace rtd::eval::testing_support
