@@ -1,0 +1,309 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/camera_service.hpp"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <condition_variable>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <mutex>
+#include <opencv2/imgcodecs.hpp>
+
+#include "common/bus/bus_factory.hpp"
+#include "services/camera/core/trajectory_file.hpp"
+
+namespace rtd::camera {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
+
+constexpr std::chrono::seconds kPatience{20};
+constexpr std::uint32_t kFirstDomain = 170;  // in-process domains of this binary, one per test
+constexpr const char* kTinyScene = "synthetic:static?width=64&height=48&frames=";
+
+/// Stands for filter and slam: notes every frame, answers those that `answers` accepts.
+class FakeTracker {
+ public:
+  explicit FakeTracker(bus::Bus& bus) : results_(bus.writer(bus::topics::kTracking)) {
+    frames_ = bus.reader<msg::RgbdFrame>(bus::topics::kFrame,
+                                         [this](const std::shared_ptr<const msg::RgbdFrame>& frame) { take(*frame); });
+  }
+
+  /// Whether the n-th frame message (from 0) gets a result. Set before the camera starts.
+  std::function<bool(std::uint64_t message, std::uint64_t seq)> answers = [](std::uint64_t, std::uint64_t) {
+    return true;
+  };
+  /// Called instead of answering at once, when set: the test answers by itself.
+  bool manual = false;
+
+  void answer(std::uint64_t seq) {
+    msg::TrackingResult result{};
+    result.seq = seq;
+    {
+      const std::lock_guard lock(mutex_);
+      ++answered_;
+    }
+    results_.write(result);
+  }
+  std::vector<std::uint64_t> seqs() const {
+    const std::lock_guard lock(mutex_);
+    return seqs_;
+  }
+  bool wait_for_messages(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    return arrived_.wait_for(lock, kPatience, [&] { return seqs_.size() >= count; });
+  }
+  int most_in_flight() const { return most_in_flight_; }
+  msg::RgbdFrame last() const {
+    const std::lock_guard lock(mutex_);
+    return *last_;
+  }
+
+ private:
+  void take(const msg::RgbdFrame& frame) {
+    std::uint64_t message = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      message = seqs_.size();
+      seqs_.push_back(frame.seq);
+      *last_ = frame;
+      most_in_flight_ = std::max(most_in_flight_, static_cast<int>(seqs_.size()) - answered_);
+    }
+    arrived_.notify_all();
+    if (!manual && answers(message, frame.seq)) answer(frame.seq);
+  }
+
+  mutable std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::vector<std::uint64_t> seqs_;
+  std::unique_ptr<msg::RgbdFrame> last_ = std::make_unique<msg::RgbdFrame>();
+  int answered_ = 0, most_in_flight_ = 0;
+  bus::Writer<msg::TrackingResult> results_;
+  bus::Reader<msg::RgbdFrame> frames_;
+};
+
+class CameraServiceTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    static std::uint32_t domain = kFirstDomain;
+    bus::BusOptions options;
+    options.vendor = "inprocess";
+    options.domain = domain++;
+    bus_ = bus::connect(options);
+    statuses_ = bus_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](const auto& status) {
+      const std::lock_guard lock(mutex_);
+      if (status->service == "camera") last_status_ = *status;
+    });
+    config_.wait_for = {};
+    folder_ = std::filesystem::temp_directory_path() / ("rtd_camera_service_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  service::ExitCode run(service::Pace pace) {
+    service::Heartbeat heartbeat(*bus_, "camera", stop_);
+    service::Runtime runtime{*bus_, heartbeat, stop_, pace};
+    return CameraService(config_, runtime).run();
+  }
+  std::future<service::ExitCode> start(service::Pace pace) {
+    return std::async(std::launch::async, [this, pace] { return run(pace); });
+  }
+  msg::ServiceStatus last_status() const {
+    const std::lock_guard lock(mutex_);
+    return last_status_;
+  }
+  double metric(const std::string& name) const {
+    for (const msg::Metric& metric : last_status().metrics)
+      if (metric.name == name) return metric.value;
+    return -1;
+  }
+
+  std::shared_ptr<bus::Bus> bus_;
+  service::StopToken stop_;
+  ServiceConfig config_;
+  std::filesystem::path folder_;
+
+ private:
+  mutable std::mutex mutex_;
+  msg::ServiceStatus last_status_;
+  bus::Reader<msg::ServiceStatus> statuses_;
+};
+
+std::vector<std::uint64_t> counting_to(std::uint64_t count) {
+  std::vector<std::uint64_t> seqs(count);
+  for (std::uint64_t i = 0; i < count; ++i) seqs[i] = i;
+  return seqs;
+}
+
+TEST_F(CameraServiceTest, LockstepSendsEveryFrameOnceAndOneAtATime) {
+  FakeTracker tracker(*bus_);
+  config_.source = std::string(kTinyScene) + "40";
+  EXPECT_EQ(run(service::Pace::kLockstep), service::kOk);
+  EXPECT_THAT(tracker.seqs(), ElementsAreArray(counting_to(40)));
+  EXPECT_EQ(tracker.most_in_flight(), 1);
+  EXPECT_EQ(metric("frames_in"), 40);
+  EXPECT_EQ(metric("frames_published"), 40);
+  EXPECT_EQ(metric("resends"), 0);
+  EXPECT_EQ(last_status().state, msg::ServiceState::kFinished);
+}
+
+TEST_F(CameraServiceTest, AsapFillsItsWindowAndNeverExceedsIt) {
+  FakeTracker tracker(*bus_);
+  tracker.manual = true;
+  config_.source = std::string(kTinyScene) + "30";
+  config_.resend_after_ms = 60000;
+  auto running = start(service::Pace::kAsap);
+  for (std::uint64_t seq = 0; seq < 30; ++seq) {
+    ASSERT_TRUE(tracker.wait_for_messages(std::min<std::size_t>(30, seq + 3))) << "the window is not filled";
+    tracker.answer(seq);
+  }
+  EXPECT_EQ(running.get(), service::kOk);
+  EXPECT_THAT(tracker.seqs(), ElementsAreArray(counting_to(30)));
+  EXPECT_EQ(tracker.most_in_flight(), 3);
+}
+
+TEST_F(CameraServiceTest, SendsTheFrameAgainWhenNobodyAnswers) {
+  FakeTracker tracker(*bus_);
+  tracker.answers = [](std::uint64_t message, std::uint64_t seq) { return seq != 1 || message == 3; };
+  config_.source = std::string(kTinyScene) + "3";
+  config_.resend_after_ms = 50;
+  EXPECT_EQ(run(service::Pace::kLockstep), service::kOk);
+  EXPECT_THAT(tracker.seqs(), ElementsAre(0, 1, 1, 1, 2));
+  EXPECT_EQ(metric("resends"), 2);
+  EXPECT_EQ(metric("frames_published"), 3);
+}
+
+TEST_F(CameraServiceTest, SendsTheWholeWindowAgainInOrder) {
+  FakeTracker tracker(*bus_);
+  tracker.answers = [](std::uint64_t message, std::uint64_t) { return message >= 3; };
+  config_.source = std::string(kTinyScene) + "3";
+  config_.resend_after_ms = 100;
+  EXPECT_EQ(run(service::Pace::kAsap), service::kOk);
+  EXPECT_THAT(tracker.seqs(), ElementsAre(0, 1, 2, 0, 1, 2));
+}
+
+TEST_F(CameraServiceTest, FailsWhenNoResultEverComes) {
+  FakeTracker tracker(*bus_);
+  tracker.manual = true;
+  config_.source = std::string(kTinyScene) + "3";
+  config_.result_timeout_s = 0.2;
+  EXPECT_EQ(run(service::Pace::kLockstep), service::kRunFailed);
+  EXPECT_THAT(last_status().message, HasSubstr("no tracking result for frame 0"));
+  EXPECT_EQ(last_status().state, msg::ServiceState::kFailed);
+}
+
+TEST_F(CameraServiceTest, RealtimeDoesNotWaitForResults) {
+  FakeTracker tracker(*bus_);
+  tracker.answers = [](std::uint64_t, std::uint64_t seq) { return seq == 9; };
+  config_.source = std::string(kTinyScene) + "10&fps=100";
+  EXPECT_EQ(run(service::Pace::kRealtime), service::kOk);
+  EXPECT_EQ(metric("frames_in"), 10);
+  EXPECT_EQ(metric("frames_published") + metric("frames_late"), 10);
+  EXPECT_EQ(tracker.seqs().size(), static_cast<std::size_t>(metric("frames_published")));
+}
+
+TEST_F(CameraServiceTest, FrameCarriesTheImageAndItsCalibration) {
+  FakeTracker tracker(*bus_);
+  config_.source = std::string(kTinyScene) + "2";
+  EXPECT_EQ(run(service::Pace::kLockstep), service::kOk);
+  const auto source = make_source(config_.source);
+  source->next();
+  const auto expected = source->next();
+  const auto frame = std::make_unique<msg::RgbdFrame>(tracker.last());
+  EXPECT_EQ(frame->stamp_ns, expected->image.stamp_ns);
+  EXPECT_EQ(frame->width, 64U);
+  EXPECT_EQ(frame->height, 48U);
+  EXPECT_DOUBLE_EQ(frame->intrinsics[0], expected->image.camera.parameters().fx);
+  EXPECT_DOUBLE_EQ(frame->depth_scale_m, 1.0 / 5000);
+  EXPECT_NE(frame->published_ns, 0);
+  EXPECT_EQ(std::memcmp(frame->color_bgr.data(), expected->image.color_bgr.data, 64 * 48 * 3), 0);
+  EXPECT_EQ(std::memcmp(frame->depth.data(), expected->image.depth.data, 64 * 48 * 2), 0);
+  EXPECT_EQ(frame->depth[64 * 48], 0) << "beyond the image";
+}
+
+TEST_F(CameraServiceTest, EncodesJpegWhileSomebodyListens) {
+  std::promise<msg::CompressedImage> jpeg;
+  std::promise<msg::CameraInfo> info;
+  const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg,
+                                                        [&](const auto& message) { jpeg.set_value(*message); });
+  const auto infos =
+      bus_->reader<msg::CameraInfo>(bus::topics::kCameraInfo, [&](const auto& message) { info.set_value(*message); });
+  FramePublisher publisher(*bus_, 90, [] {});
+  const auto frame = make_source(std::string(kTinyScene) + "1")->next();
+  EXPECT_TRUE(publisher.publish(frame->image));
+  EXPECT_EQ(publisher.jpegs_encoded(), 1U);
+  auto received = jpeg.get_future();
+  ASSERT_EQ(received.wait_for(kPatience), std::future_status::ready);
+  const msg::CompressedImage image = received.get();
+  EXPECT_EQ(msg::to_ns(image.header.stamp), frame->image.stamp_ns);
+  EXPECT_THAT(image.format, HasSubstr("jpeg"));
+  EXPECT_EQ(cv::imdecode(image.data, cv::IMREAD_COLOR).size(), cv::Size(64, 48));
+  auto received_info = info.get_future();
+  ASSERT_EQ(received_info.wait_for(kPatience), std::future_status::ready);
+  EXPECT_EQ(received_info.get().width, 64U);
+}
+
+TEST_F(CameraServiceTest, DoesNotEncodeJpegForNobody) {
+  FramePublisher publisher(*bus_, 90, [] {});
+  const auto frame = make_source(std::string(kTinyScene) + "1")->next();
+  EXPECT_TRUE(publisher.publish(frame->image));
+  EXPECT_EQ(publisher.jpegs_encoded(), 0U);
+}
+
+TEST_F(CameraServiceTest, WaitsForThoseItWasToldTo) {
+  service::StopToken others;
+  service::Heartbeat slam(*bus_, "slam", others);
+  config_.wait_for = {"slam"};
+  config_.source = std::string(kTinyScene) + "3";
+  FakeTracker tracker(*bus_);
+  auto running = start(service::Pace::kLockstep);
+  EXPECT_EQ(running.wait_for(std::chrono::milliseconds(300)), std::future_status::timeout);
+  EXPECT_THAT(tracker.seqs(), SizeIs(0));
+  EXPECT_THAT(last_status().message, HasSubstr("slam"));
+  slam.set_state(msg::ServiceState::kReady);
+  EXPECT_EQ(running.get(), service::kOk);
+  EXPECT_THAT(tracker.seqs(), SizeIs(3));
+}
+
+TEST_F(CameraServiceTest, NamesWhoIsMissingWhenTheWaitIsOver) {
+  config_.wait_for = {"filter", "slam"};
+  config_.start_timeout_s = 0.1;
+  EXPECT_EQ(run(service::Pace::kLockstep), service::kRunFailed);
+  EXPECT_THAT(last_status().message, HasSubstr("filter; slam; 1 of 1 frame readers"));
+}
+
+TEST_F(CameraServiceTest, EndsAtOnceWhenAskedTo) {
+  FakeTracker tracker(*bus_);
+  config_.source = std::string(kTinyScene) + "0";
+  auto running = start(service::Pace::kLockstep);
+  ASSERT_TRUE(tracker.wait_for_messages(5));
+  stop_.request_stop();
+  ASSERT_EQ(running.wait_for(std::chrono::seconds(1)), std::future_status::ready);
+  EXPECT_EQ(running.get(), service::kOk);
+}
+
+TEST_F(CameraServiceTest, LimitsFramesAndWritesTheGroundtruth) {
+  FakeTracker tracker(*bus_);
+  config_.source = std::string(kTinyScene) + "0";
+  config_.frames = 4;
+  config_.groundtruth_out = (folder_ / "gt.txt").string();
+  EXPECT_EQ(run(service::Pace::kLockstep), service::kOk);
+  EXPECT_THAT(tracker.seqs(), SizeIs(4));
+  EXPECT_THAT(read_tum_trajectory(config_.groundtruth_out), SizeIs(4));
+}
+
+TEST_F(CameraServiceTest, RefusesASourceThatCannotBeUsed) {
+  config_.source = "tum:/no/such/folder";
+  EXPECT_THAT([this] { run(service::Pace::kLockstep); },
+              ThrowsMessage<service::ConfigError>(HasSubstr("/no/such/folder does not exist")));
+}
+
+}  // namespace
+}  // namespace rtd::camera
