@@ -155,7 +155,7 @@ std::string samples_section(const std::vector<Entry>& entries) {
   if (best == entries.end()) return "";
   const std::vector<html::Figure> figures = sample_figures(best->run->record, kShownSamples);
   if (figures.empty()) return "";
-  return html::section("What " + best->run->label + " saw", "Green: kept as static. Red: removed as dynamic.",
+  return html::section("Sample frames: " + best->run->label, "Green: kept as static. Red: removed as dynamic.",
                        html::gallery(figures));
 }
 
