@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/run/collector.hpp"
+
+#include <gmock/gmock.h>
+
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <thread>
+
+#include "common/bus/bus_factory.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+constexpr std::uint64_t kFrames = 30;
+
+/// The services' side of the bus: publishes what they would.
+class CollectorTest : public testing::Test {
+ protected:
+  void publish(std::uint64_t seq) {
+    auto frame = frames_.loan();
+    frame->seq = seq;
+    frame->width = 64;
+    frame->height = 48;
+    frame->color_bgr.fill(static_cast<std::uint8_t>(seq));
+    frames_.write(std::move(frame));
+    auto features = std::make_unique<msg::FeatureFrame>();
+    features->seq = seq;
+    features->count = 5;
+    features_.write(*features);
+    msg::TrackingResult result{};
+    result.seq = seq;
+    result.state = msg::TrackingState::kOk;
+    result.finished_ns = 20'000'000;
+    tracking_.write(result);
+  }
+  RunRecord record_when_complete(std::size_t samples) {
+    RunRecord record;
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    do {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      collector_.fill(record);
+    } while ((record.samples.size() < samples || record.frames.size() < kFrames) &&
+             std::chrono::steady_clock::now() < give_up);
+    return record;
+  }
+
+  std::shared_ptr<bus::Bus> bus_ = bus::connect({.vendor = "inprocess", .domain = 71});
+  bus::Writer<msg::RgbdFrame> frames_ = bus_->writer(bus::topics::kFrame);
+  bus::Writer<msg::FeatureFrame> features_ = bus_->writer(bus::topics::kFeatures);
+  bus::Writer<msg::TrackingResult> tracking_ = bus_->writer(bus::topics::kTracking);
+  bus::Writer<msg::ServiceStatus> status_ = bus_->writer(bus::topics::kStatus);
+  Collector collector_{*bus_, {6, kFrames}};
+};
+
+TEST_F(CollectorTest, keeps_every_frame_and_a_few_pictures) {
+  for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
+    publish(seq);
+    std::this_thread::sleep_for(
+        std::chrono::milliseconds(3));  // a camera; the encoder lets pictures go rather than wait
+  }
+  const RunRecord record = record_when_complete(6);
+  ASSERT_EQ(record.frames.size(), kFrames);
+  EXPECT_EQ(record.frames_in, kFrames);
+  ASSERT_EQ(record.samples.size(), 6U);
+  EXPECT_EQ(record.samples[1].seq, 5U);
+  EXPECT_EQ(record.samples[1].features.size(), 5U);
+  const cv::Mat picture = cv::imdecode(record.samples[1].jpeg, cv::IMREAD_COLOR);
+  ASSERT_EQ(picture.size(), cv::Size(64, 48));
+  EXPECT_NEAR(picture.at<cv::Vec3b>(20, 20)[0], 5, 3);
+}
+
+TEST_F(CollectorTest, hears_filter_and_slam_before_the_first_frame) {
+  EXPECT_TRUE(collector_.connected());
+  tracking_ = {};
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (collector_.connected() && std::chrono::steady_clock::now() < give_up) std::this_thread::yield();
+  EXPECT_FALSE(collector_.connected());
+}
+
+TEST_F(CollectorTest, shows_the_known_length_and_what_services_complain_about) {
+  msg::ServiceStatus status;
+  status.service = "filter";
+  status.state = msg::ServiceState::kDegraded;
+  status.message = "detector gone";
+  status_.write(status);
+  std::optional<std::string> notice;
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (!(notice = collector_.take_notice()) && std::chrono::steady_clock::now() < give_up) std::this_thread::yield();
+  EXPECT_EQ(notice, "filter: detector gone");
+  EXPECT_EQ(collector_.live().total, kFrames);
+}
+
+TEST_F(CollectorTest, a_frame_with_an_impossible_size_leaves_no_picture) {
+  auto frame = frames_.loan();
+  frame->seq = 0;
+  frame->width = 100'000;
+  frame->height = 48;
+  frames_.write(std::move(frame));
+  publish(5);
+  RunRecord record;
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (record.samples.empty() && std::chrono::steady_clock::now() < give_up) collector_.fill(record);
+  ASSERT_EQ(record.samples.size(), 1U);
+  EXPECT_EQ(record.samples[0].seq, 5U);
+}
+
+}  // namespace
+}  // namespace rtd::launcher
