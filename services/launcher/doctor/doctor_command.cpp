@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/bus/host_checks.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/detector/core/model_locator.hpp"
@@ -59,6 +60,9 @@ void check_bus(Findings& findings) {
     const bus::BusOptions options = service::to_bus_options(config, "rtd-doctor");
     const std::shared_ptr<bus::Bus> bus = bus::connect(options);
     findings.push_back({Verdict::kOk, "bus: " + bus->vendor() + " joins domain " + std::to_string(options.domain)});
+    const std::vector<std::string> warnings = bus::host_warnings(options);
+    for (const std::string& warning : warnings) findings.push_back({Verdict::kWarn, "host: " + warning});
+    if (warnings.empty()) findings.push_back({Verdict::kOk, "host: /dev/shm and socket buffers are large enough"});
   } catch (const std::exception& error) {
     findings.push_back({Verdict::kFail, std::string("bus: ") + error.what()});
   }
