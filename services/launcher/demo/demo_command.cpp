@@ -50,7 +50,7 @@ std::string ate_text(const RunResult& result) {
 }
 
 std::string coverage_text(const RunResult& result) {
-  return result.summary ? fmt::format("{:.1f} %", 100 * result.summary->coverage) : "-";
+  return result.summary && result.record.frames_in > 0 ? fmt::format("{:.1f} %", 100 * result.summary->coverage) : "-";
 }
 
 void tell_comparison(const RunResult& off, const RunResult& with, const std::string& page) {

@@ -60,7 +60,8 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, InterruptSignals& s
       collector_(bus, {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames}),
       host_([this](const std::string& service, const std::string& line) { logs_.add(service, line); }),
       supervisor_(host_, setup.launcher.supervisor(), [this](const SupervisorEvent& event) { on_event(event); }),
-      started_(now()) {}
+      started_(now()),
+      own_cpu_before_s_(own_usage().cpu_s) {}
 
 RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
   for (std::size_t i = 0; i + 1 < plans.size(); ++i) supervisor_.start(plans[i], now());
@@ -126,14 +127,14 @@ void RunSession::on_event(const SupervisorEvent& event) {
     case Kind::kGivenUp:
       usage_.add_exit(event.service, event.exit);
       note(event.text);
-      return explain(event.service, logs_.tail(event.service));
+      return explain(event.service, event.exit.signal == 0 ? logs_.reason(event.service) : logs_.tail(event.service));
   }
 }
 
 void RunSession::explain(const std::string& service, const std::vector<std::string>& lines) {
   const std::size_t first = lines.size() > kShownTailLines ? lines.size() - kShownTailLines : 0;
   for (std::size_t i = first; i < lines.size(); ++i) terminal_.warn("  | " + lines[i]);
-  if (lines.empty()) terminal_.warn("  | (it printed nothing to " + logs_.path(service) + ")");
+  terminal_.warn("  log: " + logs_.path(service));
 }
 
 void RunSession::tell_notices() {
@@ -167,6 +168,7 @@ RunRecord RunSession::record() const {
   record.duration_s = span_s(record.frames);
   record.processes = usage_.usage();
   record.processes["launcher"] = own_usage();
+  record.processes["launcher"].cpu_s -= own_cpu_before_s_;  // of an earlier run of the same launcher (demo)
   return record;
 }
 

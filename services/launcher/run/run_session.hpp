@@ -52,6 +52,7 @@ class RunSession {
   Supervisor supervisor_;
   std::vector<std::string> events_;
   Milliseconds started_{}, next_sample_{};
+  double own_cpu_before_s_ = 0;
 };
 
 }  // namespace rtd::launcher

@@ -103,6 +103,7 @@ void choose_detector(const RunOptions& options, RunSetup& setup) {
 
 void prepare_out_dir(const std::string& out_dir) {
   std::error_code error;
+  fs::remove_all(fs::path(out_dir) / "logs", error);
   fs::create_directories(fs::path(out_dir) / "logs", error);
   if (error) throw ConfigError("--out " + out_dir + ": cannot be created: " + error.message());
   for (const char* left : {"trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "groundtruth.txt",

@@ -37,7 +37,9 @@ void ServiceLogs::show(const std::string& service, Log& log, const std::string& 
 }
 
 std::vector<std::string> ServiceLogs::reason(const std::string& service) const {
-  return reason_lines(tail(service));
+  std::vector<std::string> lines = reason_lines(tail(service));
+  const bool shown = lines.size() == 1 && !event_of(lines.front()).empty();
+  return shown ? std::vector<std::string>() : lines;
 }
 
 std::vector<std::string> ServiceLogs::tail(const std::string& service) const {

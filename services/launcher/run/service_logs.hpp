@@ -18,7 +18,7 @@ class ServiceLogs {
   ServiceLogs(std::string folder, Terminal& terminal) : folder_(std::move(folder)), terminal_(terminal) {}
 
   void add(const std::string& service, const std::string& line);
-  /// Why the service refused to start, in its own words.
+  /// Why the service ended, in its own words; empty when they were shown already.
   std::vector<std::string> reason(const std::string& service) const;
   std::vector<std::string> tail(const std::string& service) const;
   std::string path(const std::string& service) const { return folder_ + "/" + service + ".log"; }

@@ -61,6 +61,8 @@ TEST(live_status, shows_everything_in_one_short_line) {
   status.frames = 123;
   status.total = 210;
   EXPECT_EQ(format_live_status(status), "frame 123/210  waiting for the first pose");
+  status.camera_message = "waits for detector";
+  EXPECT_EQ(format_live_status(status), "frame 123/210  camera waits for detector");
   status.tracking = true;
   status.state = msg::TrackingState::kOk;
   status.frames_per_s = 29.84;

@@ -25,7 +25,10 @@ const char* to_string(msg::TrackingState state) {
 std::string format_live_status(const LiveStatus& status) {
   const std::string count = status.total > 0 ? fmt::format("frame {}/{}", status.frames, status.total)
                                              : fmt::format("frame {}", status.frames);
-  if (!status.tracking) return count + "  waiting for the first pose";
+  if (!status.tracking) {
+    return count + "  " +
+           (status.camera_message.empty() ? "waiting for the first pose" : "camera " + status.camera_message);
+  }
   return fmt::format("{}  {:.1f} fps  {}  inliers {}  dynamic {}  dropped {}  latency {:.0f} ms", count,
                      status.frames_per_s, to_string(status.state), status.inliers, status.dynamic_points,
                      status.dropped, status.latency_ms);

@@ -11,9 +11,10 @@ namespace rtd::launcher {
 
 /// What the live line shows, as of the newest tracked frame.
 struct LiveStatus {
-  std::uint64_t frames = 0;  ///< frames of the source so far
-  std::uint64_t total = 0;   ///< length of the source, 0 = unknown or endless
-  bool tracking = false;     ///< false until the first TrackingResult: the fields below are empty
+  std::uint64_t frames = 0;    ///< frames of the source so far
+  std::uint64_t total = 0;     ///< length of the source, 0 = unknown or endless
+  std::string camera_message;  ///< what the camera says of itself, e.g. whom it waits for
+  bool tracking = false;       ///< false until the first TrackingResult: the fields below are empty
   msg::TrackingState state = msg::TrackingState::kInitializing;
   double frames_per_s = 0;  ///< over the last second or so
   std::uint32_t inliers = 0;

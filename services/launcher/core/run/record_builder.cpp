@@ -70,9 +70,9 @@ void RecordBuilder::add(const msg::ServiceStatus& status) {
   }
   for (const msg::Metric& metric : status.metrics) service.counters[metric.name].current = metric.value;
 
-  const bool bad = status.state == msg::ServiceState::kDegraded || status.state == msg::ServiceState::kFailed;
+  const bool degraded = status.state == msg::ServiceState::kDegraded;  // one that failed ends, and says why itself
   const bool news = service.state != status.state || service.message != status.message;
-  if (bad && news && !status.message.empty()) notices_.push_back(status.service + ": " + status.message);
+  if (degraded && news && !status.message.empty()) notices_.push_back(status.service + ": " + status.message);
   service.state = status.state;
   service.message = status.message;
 }
@@ -90,6 +90,9 @@ LiveStatus RecordBuilder::live() const {
   status.frames = end_of_seen_;
   status.total = static_cast<std::uint64_t>(camera_counter("frames_total"));
   for (const auto& [place, count] : drops()) status.dropped += static_cast<std::uint64_t>(count);
+  if (const auto camera = services_.find("camera"); camera != services_.end()) {
+    status.camera_message = camera->second.message;
+  }
   if (recent_.empty()) return status;
   const msg::TrackingResult& newest = recent_.back();
   status.tracking = true;

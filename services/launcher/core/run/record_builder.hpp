@@ -30,7 +30,7 @@ class RecordBuilder {
   std::uint64_t frames_in() const;
   bool tracked_any() const;  ///< at least one frame got a pose
   LiveStatus live() const;
-  /// The newest message of a service that is degraded or failed; told once each time it changes.
+  /// The newest message of a service that is degraded; told once each time it changes.
   std::optional<std::string> take_notice();
 
   /// Writes frames, frames_in, frames_dropped and drops.

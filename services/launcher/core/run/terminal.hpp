@@ -8,8 +8,8 @@
 
 namespace rtd::launcher {
 
-/// What people see of a run: messages, and one status line that is rewritten in place on a terminal and repeated every two
-/// seconds elsewhere. Time comes in as an argument. Not thread-safe.
+/// What people see of a run: messages, and one status line that is rewritten in place on a terminal and repeated every
+/// two seconds elsewhere. Time comes in as an argument. Not thread-safe.
 class Terminal {
  public:
   struct Options {

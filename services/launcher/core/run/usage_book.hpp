@@ -12,8 +12,9 @@ namespace rtd::launcher {
 
 /// Adds up what each service used, over all its lives.
 ///
-/// CPU time comes from the kernel's final account. Peak memory comes from samples of VmHWM: the final account (ru_maxrss)
-/// also holds the launcher's own memory at the time of the fork, so it only stands in for a process too short to be sampled.
+/// CPU time comes from the kernel's final account. Peak memory comes from samples of VmHWM: the final account
+/// (ru_maxrss) also holds the launcher's own memory at the time of the fork, so it only stands in for a process too
+/// short to be sampled.
 class UsageBook {
  public:
   void add_sample(const std::string& service, double peak_rss_mb);

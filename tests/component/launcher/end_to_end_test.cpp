@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "tests/component/launcher/rtd_command.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// The real services over Fast DDS. Every test has a DDS domain of its own.
+class EndToEndTest : public testing::Test {
+ protected:
+  std::vector<std::string> arguments(int domain, const std::string& source, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> all = {"run", "--source", source, "--out", out_, "--domain", std::to_string(domain)};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  nlohmann::json report() { return nlohmann::json::parse(text_of(out_ + "/report.json")); }
+  /// Waits until the camera's log says that frames are being sent.
+  bool wait_for_frames() {
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (std::chrono::steady_clock::now() < give_up) {
+      rtd_.wait_for("never printed", std::chrono::milliseconds(50));
+      if (text_of(out_ + "/logs/camera.log").find("event=all_ready") != std::string::npos) return true;
+    }
+    return false;
+  }
+  pid_t pid_of(const std::string& service) {
+    std::smatch found;
+    const std::string log = text_of(out_ + "/logs/" + service + ".log");
+    return std::regex_search(log, found, std::regex("event=started .*pid=([0-9]+)")) ? std::stoi(found[1]) : -1;
+  }
+
+  ScratchFolder scratch_;
+  std::string out_ = scratch_ / "out";
+  RtdCommand rtd_;
+};
+
+TEST_F(EndToEndTest, a_lockstep_run_tracks_every_frame_and_reports_every_key) {
+  ASSERT_EQ(rtd_.run(arguments(121, "synthetic:office?frames=30", {"--pace", "lockstep"})), 0) << rtd_.output();
+  const nlohmann::json json = report();
+  for (const char* key : {"frames_in", "frames_tracked", "frames_dropped", "coverage", "ate_rmse_m", "rpe_trans_rmse_m",
+                          "rpe_rot_rmse_deg", "latency_ms", "stage_ms", "cpu_s", "peak_rss_mb"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  for (const char* key : {"p50", "p99", "max"}) EXPECT_GT(json["latency_ms"][key], 0.0) << key;
+  for (const char* process : {"camera", "filter", "slam", "launcher"}) {
+    EXPECT_GT(json["cpu_s"][process], 0.0) << process;
+    EXPECT_GT(json["peak_rss_mb"][process], 1.0) << process;
+  }
+  EXPECT_EQ(json["frames_in"], 30);
+  EXPECT_EQ(json["frames_dropped"], 0);
+  EXPECT_GE(json["coverage"], 0.96);
+  EXPECT_LT(json["ate_rmse_m"], 0.05);
+  for (const char* file : {"trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "groundtruth.txt",
+                           "report.html", "logs/camera.log", "logs/filter.log", "logs/slam.log"}) {
+    EXPECT_GT(fs::file_size(out_ + "/" + file), 0U) << file;
+  }
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("30 in, "), HasSubstr("ATE rmse"), HasSubstr("report.html")));
+}
+
+TEST_F(EndToEndTest, a_filter_killed_during_the_run_is_restarted_and_the_run_completes) {
+  rtd_.start(arguments(122, "synthetic:office?frames=150", {"--detector", "off"}));
+  ASSERT_TRUE(wait_for_frames()) << rtd_.output();
+  rtd_.wait_for("never printed", std::chrono::seconds(1));
+  ASSERT_EQ(::kill(pid_of("filter"), SIGKILL), 0);
+  EXPECT_EQ(rtd_.wait(), 0) << rtd_.output();
+  EXPECT_THAT(rtd_.output(),
+              AllOf(HasSubstr("filter died: killed by signal 9 (SIGKILL)"), HasSubstr("filter restarted (1. time)")));
+  const nlohmann::json json = report();
+  EXPECT_EQ(json["frames_in"], 150);
+  EXPECT_GT(json["frames_tracked"], 60) << "the restarted filter serves again";
+  EXPECT_GT(json["frames_dropped"], 0) << "what nobody looked at is counted";
+}
+
+TEST_F(EndToEndTest, ctrl_c_ends_an_endless_run_within_two_seconds_with_its_results) {
+  rtd_.start(arguments(123, "synthetic:office", {"--detector", "off"}));
+  ASSERT_TRUE(wait_for_frames()) << rtd_.output();
+  rtd_.wait_for("never printed", std::chrono::seconds(1));
+  const auto pressed = std::chrono::steady_clock::now();
+  rtd_.interrupt();
+  EXPECT_EQ(rtd_.wait(), 130);
+  EXPECT_LT(std::chrono::steady_clock::now() - pressed, std::chrono::seconds(2));
+  EXPECT_THAT(rtd_.output(), testing::Not(HasSubstr("was killed"))) << "everything ends when asked";
+  EXPECT_GT(fs::file_size(out_ + "/trajectory.txt"), 0U);
+  EXPECT_GT(report()["frames_tracked"], 0);
+}
+
+TEST_F(EndToEndTest, a_missing_folder_is_named) {
+  EXPECT_EQ(rtd_.run(arguments(124, "tum:/nonexistent/folder")), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("/nonexistent/folder"));
+}
+
+TEST_F(EndToEndTest, an_unknown_key_is_refused_with_the_nearest_one) {
+  EXPECT_EQ(rtd_.run(arguments(125, "synthetic:office?frames=5", {"--set", "filter.mod=rtd"})), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("did you mean 'filter.mode'?"));
+}
+
+TEST_F(EndToEndTest, without_weights_it_says_so_and_runs_on_geometry) {
+  setenv("RTD_MODEL_DIR", (scratch_ / "nowhere").c_str(), 1);
+  setenv("XDG_CACHE_HOME", (scratch_ / "nowhere").c_str(), 1);
+  EXPECT_EQ(rtd_.run(arguments(126, "synthetic:office?frames=10", {"--pace", "asap"})), 0) << rtd_.output();
+  EXPECT_THAT(rtd_.output(), HasSubstr("no detector weights"));
+  EXPECT_EQ(report()["frames_tracked"], 10);
+}
+
+TEST_F(EndToEndTest, the_demo_needs_no_data_and_shows_both_runs_on_one_page) {
+  unsetenv("RTD_DATA_DIR");
+  EXPECT_EQ(rtd_.run({"demo", "--frames", "10", "--out", out_, "--domain", "127"}), 0) << rtd_.output();
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("synthetic:office"), HasSubstr("every point (--filter off)"),
+                                   HasSubstr("static points (--filter rtd)"), HasSubstr("next:")));
+  EXPECT_THAT(text_of(out_ + "/demo.html"), HasSubstr("<svg"));
+  for (const char* mode : {"off", "rtd"}) EXPECT_TRUE(fs::exists(out_ + "/" + mode + "/report.html")) << mode;
+}
+
+}  // namespace
+}  // namespace rtd::launcher
