@@ -53,6 +53,16 @@ TEST(Ate, mirrored_path_is_not_fitted_by_a_reflection) {
   EXPECT_GT(result.error_m.rmse, 0.05);
 }
 
+TEST(Ate, scale_of_a_mirrored_path_is_the_best_one) {
+  const Trajectory groundtruth = winding_path(50, 0.1);
+  Trajectory mirrored = groundtruth;
+  for (StampedPose& pose : mirrored) pose.T_world_body.translation().x() *= -1;
+  AteOptions options;
+  options.alignment = AlignmentKind::kSimilarity;
+  EXPECT_LT(ate(mirrored, groundtruth, options).error_m.rmse, ate(mirrored, groundtruth).error_m.rmse);
+  EXPECT_LT(ate(mirrored, groundtruth, options).alignment.scale, 0.999);  // a worse fit shrinks
+}
+
 TEST(Ate, error_of_one_square_with_a_known_bump) {
   // A square of side 2 whose corners are lifted by +-d in turn: rigid alignment cannot remove it, each error is d.
   constexpr double d = 0.1;
