@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "common/vision/rgbd_image.hpp"
+
+namespace rtd::filter {
+
+/// Side of a grid cell in pixels of the undistorted image: 640x480 gives 160x120 cells.
+inline constexpr int kCellPx = 4;
+
+/// Shape of the grids of one camera; cells are numbered row by row.
+struct GridShape {
+  int columns = 0, rows = 0;
+  int size() const { return columns * rows; }
+  int index(int column, int row) const { return row * columns + column; }
+  /// Cell of an undistorted pixel, -1 outside.
+  int cell_at(double u_px, double v_px) const {
+    if (!(u_px >= 0 && v_px >= 0 && u_px < columns * kCellPx && v_px < rows * kCellPx)) return -1;
+    return index(static_cast<int>(u_px) / kCellPx, static_cast<int>(v_px) / kCellPx);
+  }
+  /// The same for any position, outside ones to the nearest cell.
+  int nearest_cell(double u_px, double v_px) const {
+    const auto clamp = [](double px, int count) { return static_cast<int>(std::clamp(px / kCellPx, 0.0, count - 1.0)); };
+    return index(clamp(u_px, columns), clamp(v_px, rows));
+  }
+  bool operator==(const GridShape&) const = default;
+};
+
+/// The depth image at low resolution, in undistorted pixels, with what is needed to compare it safely with another view.
+struct DepthGrid {
+  GridShape shape;
+  std::vector<float> depth_m;  ///< typical depth of the cell, 0 = not measured
+  std::vector<float> near_m;   ///< smallest depth of the 3x3 cells around; 0 when fewer than kMinNeighbours were measured
+  std::vector<float> far_m;    ///< largest one
+  static constexpr int kMinNeighbours = 6;
+};
+
+/// Makes depth grids of one camera. Remembers which raw pixels a cell looks at.
+class DepthGridSampler {
+ public:
+  /// Depth outside [min, max] counts as not measured.
+  DepthGridSampler(double min_depth_m, double max_depth_m) : min_depth_m_(min_depth_m), max_depth_m_(max_depth_m) {}
+
+  DepthGrid sample(const vision::RgbdImage& image);
+  /// Viewing rays of the cell centres at z = 1, for the camera of the last image.
+  const std::vector<Eigen::Vector3f>& rays() const { return rays_; }
+
+ private:
+  static constexpr int kSamples = 4;
+  void fit(const vision::RgbdImage& image);
+
+  double min_depth_m_, max_depth_m_;
+  geometry::CameraModel::Parameters parameters_;
+  cv::Size size_;
+  GridShape shape_;
+  std::vector<int> pixels_;  ///< kSamples raw pixels per cell as row * width + column, -1 = outside
+  std::vector<Eigen::Vector3f> rays_;
+};
+
+}  // namespace rtd::filter

@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/dynamic_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "common/geometry/se3.hpp"
+#include "common/msg/transform_eigen.hpp"
+#include "services/filter/core/stage_clock.hpp"
+#include "services/filter/core/static_probability.hpp"
+
+namespace rtd::filter {
+
+struct DynamicFilter::Scene {
+  const vision::RgbdImage& image;
+  DepthGrid grid;
+  DepthClusters clusters;
+  std::vector<std::uint8_t> may_move;  ///< per cell, 1 = on an object of a high level
+};
+
+struct DynamicFilter::Geometry {
+  EgoMotion ego;
+  DepthEvidence evidence;
+  DynamicRegions regions;
+};
+
+/// The story of DESIGN section 4: what may move, where the camera is, what does move, how static each feature is.
+FilterResult DynamicFilter::judge(const vision::RgbdImage& image, std::vector<msg::Feature> features,
+                                  const Detections& detections) {
+  FilterResult result;
+  result.features = std::move(features);
+  if (config_.mode != FilterMode::kOff) {
+    Scene scene = look_at(image);                              // depth cells and surfaces
+    find_what_may_move(detections, scene, result);             // rules 1 and 2: motion levels, boxes to masks
+    const Geometry geometry = find_what_moves(scene, result);  // rule 3: quick pose, multi-view check
+    weigh(scene, geometry, result);                            // rules 4 and 6: one probability, never starve
+    remember(std::move(scene), geometry, result);
+  }
+  result.stage_ms[msg::kStageExtract] = extract_ms_;
+  result.stage_ms[msg::kStageFilterTotal] = std::accumulate(result.stage_ms.begin(), result.stage_ms.begin() + msg::kStageFilterTotal, 0.0F);
+  return result;
+}
+
+namespace {
+
+bool uses_semantics(FilterMode mode) { return mode == FilterMode::kSemantic || mode == FilterMode::kRtd; }
+bool uses_geometry(FilterMode mode) { return mode == FilterMode::kGeometry || mode == FilterMode::kRtd; }
+
+/// Per feature: does it lie on one of these cells?
+std::vector<char> on_cells(const std::vector<msg::Feature>& features, const GridShape& shape, const std::vector<std::uint8_t>& cells) {
+  std::vector<char> on(features.size());
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    on[i] = cells[static_cast<std::size_t>(shape.nearest_cell(features[i].u_px, features[i].v_px))] != 0 ? 1 : 0;
+  }
+  return on;
+}
+
+std::vector<int> clusters_of(const std::vector<msg::Feature>& features, const DepthClusters& clusters) {
+  std::vector<int> of(features.size());
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    of[i] = clusters.label[static_cast<std::size_t>(clusters.shape.nearest_cell(features[i].u_px, features[i].v_px))];
+  }
+  return of;
+}
+
+}  // namespace
+
+DynamicFilter::DynamicFilter(const FilterConfig& config, std::function<std::int64_t()> now_ns)
+    : config_(config),
+      now_ns_(std::move(now_ns)),
+      levels_(config.motion_levels),
+      extractor_(config.orb),
+      sampler_(config.orb.min_depth_m, config.orb.max_depth_m) {}
+
+std::vector<msg::Feature> DynamicFilter::extract(const vision::RgbdImage& image) {
+  StageClock clock(now_ns_);
+  const bool more = something_masked_ && config_.mode != FilterMode::kOff;
+  const double wanted = config_.orb.feature_count * (more ? config_.fusion.boost : 1.0);
+  std::vector<msg::Feature> features = extractor_.extract(image, static_cast<int>(std::lround(wanted)));
+  extract_ms_ = clock.lap_ms();
+  return features;
+}
+
+DynamicFilter::Scene DynamicFilter::look_at(const vision::RgbdImage& image) {
+  DepthGrid grid = sampler_.sample(image);
+  DepthClusters clusters = find_depth_clusters(grid, config_.clusters);
+  const auto cells = static_cast<std::size_t>(grid.shape.size());
+  return {image, std::move(grid), std::move(clusters), std::vector<std::uint8_t>(cells, 0)};
+}
+
+void DynamicFilter::find_what_may_move(const Detections& detections, Scene& scene, FilterResult& result) const {
+  if (!detections || !uses_semantics(config_.mode)) return;
+  StageClock clock(now_ns_);
+  result.objects = find_objects(*detections, levels_, scene.image.camera, scene.grid, scene.clusters, config_.masks);
+  for (const SceneObject& object : result.objects) {
+    if (object.level != MotionLevel::kHigh || object.flat) continue;
+    for (const int cell : object.cells) scene.may_move[static_cast<std::size_t>(cell)] = 1;
+  }
+  scene.may_move = dilate(scene.grid.shape, scene.may_move, config_.masks.dilate_cells);
+  result.stage_ms[msg::kStageMasks] = clock.lap_ms();
+}
+
+DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, FilterResult& result) {
+  const auto cells = static_cast<std::size_t>(scene.grid.shape.size());
+  const std::vector<std::uint8_t> nothing(cells, 0);
+  Geometry geometry{{}, {nothing, nothing}, {false, nothing, 0}};
+  if (views_.empty() || !uses_geometry(config_.mode)) return geometry;
+
+  StageClock clock(now_ns_);
+  const Eigen::Isometry3d T_world_predicted = predict_pose();
+  const auto recall = [&](const Eigen::Isometry3d& T_world_camera) {
+    return memory_.recall(scene.grid, scene.image.camera, T_world_camera.inverse() * views_.newest().T_world_camera);
+  };
+  std::vector<std::uint8_t> avoid = dilate(scene.grid.shape, recall(T_world_predicted), 1);
+  for (std::size_t cell = 0; cell < cells; ++cell) avoid[cell] = std::max(avoid[cell], scene.may_move[cell]);
+
+  const auto& p = scene.image.camera.parameters();
+  const vision::FeatureGrid feature_grid(result.features, p.width, p.height);
+  const std::vector<char> excluded = on_cells(result.features, scene.grid.shape, avoid);
+  const std::vector<int> cluster_of = clusters_of(result.features, scene.clusters);
+  const EgoMotionInput input{{result.features, feature_grid, scene.image.camera}, excluded, cluster_of, views_,
+                             scene.image.stamp_ns, T_world_predicted};
+  geometry.ego = estimate_ego_motion(input, config_.ego_motion, config_.geometry);
+  result.T_world_camera = geometry.ego.T_world_camera;
+  result.pose_reliable = geometry.ego.reliable;
+  result.stage_ms[msg::kStageEgoMotion] = clock.lap_ms();
+  const std::vector<std::uint8_t> remembered = recall(geometry.ego.T_world_camera);
+  ClusterVotes votes;
+  if (geometry.ego.reliable) {
+    const auto views = views_.references(scene.image.stamp_ns, geometry.ego.T_world_camera, static_cast<std::size_t>(config_.geometry.max_views));
+    geometry.evidence = check_depth(scene.grid, sampler_.rays(), geometry.ego.T_world_camera, views, scene.image.camera, config_.geometry);
+    votes = count_votes(geometry.ego.matches, input, scene.clusters.cells.size(), geometry.ego.T_world_camera, config_.geometry);
+  }
+  geometry.regions = find_dynamic_regions(scene.clusters, geometry.evidence, votes, remembered, config_.geometry);
+  geometry.regions.trusted = geometry.regions.trusted && geometry.ego.reliable;
+  result.dynamic_clusters = static_cast<std::uint32_t>(geometry.regions.clusters);
+  result.stage_ms[msg::kStageDepthCheck] = clock.lap_ms();
+  return geometry;
+}
+
+void DynamicFilter::weigh(const Scene& scene, const Geometry& geometry, FilterResult& result) {
+  StageClock clock(now_ns_);
+  std::vector<ObjectMotion> motions;
+  for (const SceneObject& object : result.objects) motions.push_back(judge_motion(object, geometry.regions, geometry.evidence));
+  const std::vector<double> resting_s = history_.update(result.objects, motions, scene.image.stamp_ns);
+  const FrameKnowledge known{scene.grid.shape, result.objects, motions, resting_s, geometry.regions, geometry.evidence};
+  weigh_static_probability(result.features, known, config_.mode, config_.fusion, config_.masks.dilate_cells);
+  result.removed = static_cast<std::uint32_t>(std::count_if(result.features.begin(), result.features.end(), [](const msg::Feature& f) {
+    return (f.flags & msg::kFeatureRemoved) != 0;
+  }));
+  result.stage_ms[msg::kStageFuse] = clock.lap_ms();
+}
+
+void DynamicFilter::remember(Scene scene, const Geometry& geometry, const FilterResult& result) {
+  something_masked_ = result.removed > 0;
+  memory_.store(scene.grid, sampler_.rays(), geometry.regions.frames_left);
+  View view;
+  view.seq = scene.image.seq;
+  view.stamp_ns = scene.image.stamp_ns;
+  view.T_world_camera = result.T_world_camera;
+  view.dynamic = dilate(scene.grid.shape, geometry.regions.frames_left, config_.masks.dilate_cells);
+  for (std::size_t cell = 0; cell < view.dynamic.size(); ++cell) {
+    view.dynamic[cell] = view.dynamic[cell] != 0 || scene.may_move[cell] != 0 ? 1 : 0;
+  }
+  view.grid = std::move(scene.grid);
+  view.features = result.features;
+  views_.add(std::move(view));
+}
+
+Eigen::Isometry3d DynamicFilter::predict_pose() const {
+  const View* before = views_.second_newest();
+  const Eigen::Isometry3d& T_world_newest = views_.newest().T_world_camera;
+  if (before == nullptr) return T_world_newest;
+  return geometry::normalized(T_world_newest * before->T_world_camera.inverse() * T_world_newest);
+}
+
+void DynamicFilter::on_tracking(const msg::TrackingResult& result) {
+  if (result.state != msg::TrackingState::kOk) return;
+  views_.correct(result.seq, msg::to_isometry(result.T_world_camera));
+}
+
+void DynamicFilter::on_keyframe(const msg::KeyframeEvent& event) {
+  if (event.kind == msg::KeyframeEventKind::kRemoved) {
+    views_.forget_keyframe(event.frame_seq);
+  } else {
+    views_.mark_keyframe(event.frame_seq, msg::to_isometry(event.T_world_camera));
+  }
+}
+
+void DynamicFilter::reset() {
+  views_.clear();
+  memory_.clear();
+  history_.clear();
+  something_masked_ = true;
+}
+
+}  // namespace rtd::filter

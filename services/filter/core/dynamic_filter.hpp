@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "common/msg/features.hpp"
+#include "common/msg/tracking.hpp"
+#include "common/vision/detection.hpp"
+#include "common/vision/rgbd_image.hpp"
+#include "services/filter/core/dynamic_memory.hpp"
+#include "services/filter/core/dynamic_regions.hpp"
+#include "services/filter/core/ego_motion.hpp"
+#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/motion_levels.hpp"
+#include "services/filter/core/object_history.hpp"
+#include "services/filter/core/object_masks.hpp"
+#include "services/filter/core/orb_extractor.hpp"
+#include "services/filter/core/view_store.hpp"
+
+namespace rtd::filter {
+
+/// What the filter found out about one frame.
+struct FilterResult {
+  std::vector<msg::Feature> features;  ///< removed ones included and flagged
+  std::vector<SceneObject> objects;
+  std::uint32_t removed = 0;           ///< features flagged as removed
+  std::uint32_t dynamic_clusters = 0;  ///< depth clusters that geometry found moving, with or without a class
+  bool pose_reliable = false;          ///< geometry had a pose and could speak
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< the quick estimate
+  std::array<float, msg::kFilterStages> stage_ms{};                  ///< by msg::FilterStage, waiting not included
+};
+
+using Detections = std::optional<std::vector<vision::Detection>>;
+
+/// Tells the static world from what moves, DESIGN section 4: which features slam may use, and how much. The theory is in
+/// docs/theory/dynamic_points.md.
+///
+/// Give it every frame in order of time, and what slam says as it comes. Deterministic in that order of calls. One thread.
+class DynamicFilter {
+ public:
+  /// `now_ns`: any monotonic clock, for stage times only. Throws std::invalid_argument for an unknown motion level.
+  DynamicFilter(const FilterConfig& config, std::function<std::int64_t()> now_ns);
+
+  /// `detections`: the boxes of this very frame, or carried to it; empty optional = nobody looked, geometry only.
+  FilterResult apply(const vision::RgbdImage& image, const Detections& detections) {
+    return judge(image, extract(image), detections);
+  }
+  /// The two halves of apply(), for a caller that waits for the detections in between.
+  std::vector<msg::Feature> extract(const vision::RgbdImage& image);
+  FilterResult judge(const vision::RgbdImage& image, std::vector<msg::Feature> features, const Detections& detections);
+
+  /// slam's pose of an earlier frame: corrects the pose of its view and of those after it.
+  void on_tracking(const msg::TrackingResult& result);
+  /// A frame became a keyframe, or its pose was corrected.
+  void on_keyframe(const msg::KeyframeEvent& event);
+  /// Forgets all that was seen, e.g. when time went backwards.
+  void reset();
+
+ private:
+  struct Scene;     // the frame in cells: depth, surfaces, objects
+  struct Geometry;  // pose and evidence
+  Scene look_at(const vision::RgbdImage& image);
+  void find_what_may_move(const Detections& detections, Scene& scene, FilterResult& result) const;
+  Geometry find_what_moves(const Scene& scene, FilterResult& result);
+  void weigh(const Scene& scene, const Geometry& geometry, FilterResult& result);
+  void remember(Scene scene, const Geometry& geometry, const FilterResult& result);
+  Eigen::Isometry3d predict_pose() const;
+
+  FilterConfig config_;
+  std::function<std::int64_t()> now_ns_;
+  MotionLevels levels_;
+  OrbExtractor extractor_;
+  DepthGridSampler sampler_;
+  ViewStore views_;
+  DynamicMemory memory_;
+  ObjectHistory history_;
+  bool something_masked_ = true;  ///< in the last frame; the first is treated as if
+  float extract_ms_ = 0;
+};
+
+}  // namespace rtd::filter

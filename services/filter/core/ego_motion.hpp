@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "services/filter/core/depth_clusters.hpp"
+#include "services/filter/core/guided_matching.hpp"
+
+namespace rtd::filter {
+
+/// The quick pose of the current frame and what it was found from.
+struct EgoMotion {
+  bool reliable = false;  ///< otherwise the pose is only the prediction and geometry makes no statement
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  int inliers = 0;
+  std::vector<FeatureMatch> matches;  ///< with views of the last 0.1 s, movers included
+};
+
+/// What the estimate starts from.
+struct EgoMotionInput {
+  SearchableFeatures current;
+  const std::vector<char>& excluded;   ///< per feature, 1 = on something that may move: not used for the pose
+  const std::vector<int>& cluster_of;  ///< per feature, depth cluster or -1
+  const ViewStore& views;              ///< not empty
+  std::int64_t stamp_ns;
+  Eigen::Isometry3d T_world_camera_predicted;
+};
+
+/// Pose of the current frame from features that stand still: matched against the previous view and one 0.1 s old, robustly
+/// optimised (common/vision/pose_optimizer, RANSAC start when the prediction misleads), without the clusters that move as a
+/// whole against it; then refined against older views so that errors do not add up. docs/theory/dynamic_points.md section 2.
+EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig& config, const GeometryConfig& geometry);
+
+/// Squared displacement of a match in the image, in units of its standard deviation: about chi2 with 2 degrees of freedom
+/// for a point at rest.
+double displacement_chi2(const FeatureMatch& match, const SearchableFeatures& current, const Eigen::Isometry3d& T_camera_world);
+
+/// Per cluster: features that are at their place and features that have moved, Eq. (5).
+struct ClusterVotes {
+  std::vector<int> resting, moving;
+  bool moves(std::size_t cluster, const GeometryConfig& config) const {
+    const int votes = resting[cluster] + moving[cluster];
+    return moving[cluster] >= config.min_moving_features && moving[cluster] >= config.min_moving_share * votes;
+  }
+};
+ClusterVotes count_votes(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input, std::size_t clusters,
+                         const Eigen::Isometry3d& T_world_camera, const GeometryConfig& geometry);
+
+}  // namespace rtd::filter

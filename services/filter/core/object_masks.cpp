@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/object_masks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace rtd::filter {
+namespace {
+
+/// A box in cells, ends excluded.
+struct CellBox {
+  int left, top, right, bottom;
+  bool contains(int column, int row) const { return column >= left && column < right && row >= top && row < bottom; }
+};
+
+std::optional<CellBox> to_cells(const vision::Detection& box, const geometry::CameraModel& camera, const GridShape& shape) {
+  constexpr float kAbsurdPx = 1e5F;
+  for (const float value : {box.x_px, box.y_px, box.width_px, box.height_px}) {
+    if (!std::isfinite(value) || std::abs(value) > kAbsurdPx) return std::nullopt;
+  }
+  const auto& p = camera.parameters();
+  const Eigen::Vector2d size(p.width - 1, p.height - 1);
+  const Eigen::Vector2d first = Eigen::Vector2d(box.x_px, box.y_px).cwiseMax(0.0).cwiseMin(size);
+  const Eigen::Vector2d last =
+      Eigen::Vector2d(box.x_px + box.width_px, box.y_px + box.height_px).cwiseMax(0.0).cwiseMin(size);
+  if (last.x() - first.x() < kCellPx || last.y() - first.y() < kCellPx) return std::nullopt;
+  const Eigen::Vector2d from = camera.undistort(first) / kCellPx, to = camera.undistort(last) / kCellPx;
+  const CellBox cells{std::max(0, static_cast<int>(std::floor(from.x()))), std::max(0, static_cast<int>(std::floor(from.y()))),
+                      std::min(shape.columns, static_cast<int>(std::ceil(to.x())) + 1),
+                      std::min(shape.rows, static_cast<int>(std::ceil(to.y())) + 1)};
+  if (cells.left >= cells.right || cells.top >= cells.bottom) return std::nullopt;
+  return cells;
+}
+
+/// A depth cluster as far as it lies inside a box.
+struct ClusterInBox {
+  std::int32_t label;
+  std::vector<int> cells;
+  float median_m;
+};
+
+std::vector<ClusterInBox> clusters_in(const CellBox& box, const DepthGrid& grid, const DepthClusters& clusters) {
+  std::vector<std::vector<int>> cells_of(static_cast<std::size_t>(clusters.count()));
+  for (int row = box.top; row < box.bottom; ++row) {
+    for (int column = box.left; column < box.right; ++column) {
+      const int cell = grid.shape.index(column, row);
+      const std::int32_t label = clusters.label[static_cast<std::size_t>(cell)];
+      if (label >= 0) cells_of[static_cast<std::size_t>(label)].push_back(cell);
+    }
+  }
+  std::vector<ClusterInBox> found;
+  for (std::size_t label = 0; label < cells_of.size(); ++label) {
+    std::vector<int>& cells = cells_of[label];
+    if (cells.empty()) continue;
+    std::vector<float> depths;
+    depths.reserve(cells.size());
+    for (const int cell : cells) depths.push_back(grid.depth_m[static_cast<std::size_t>(cell)]);
+    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    found.push_back({static_cast<std::int32_t>(label), std::move(cells), *middle});
+  }
+  return found;
+}
+
+/// The nearest cluster that fills enough of the box; none when nothing was measured.
+const ClusterInBox* object_cluster(const std::vector<ClusterInBox>& inside, double min_share) {
+  std::size_t measured = 0;
+  for (const ClusterInBox& cluster : inside) measured += cluster.cells.size();
+  const ClusterInBox* nearest = nullptr;
+  for (const ClusterInBox& cluster : inside) {
+    if (static_cast<double>(cluster.cells.size()) < min_share * static_cast<double>(measured)) continue;
+    if (nearest == nullptr || cluster.median_m < nearest->median_m) nearest = &cluster;
+  }
+  return nearest;
+}
+
+/// The object's own cluster (all of it when it lies mostly in the box) and the parts of it that a depth step cut off.
+std::vector<int> collect_cells(const ClusterInBox& object, const std::vector<ClusterInBox>& inside, const DepthGrid& grid,
+                               const DepthClusters& clusters, const MaskConfig& config) {
+  const auto contained = [&](const ClusterInBox& cluster) {
+    return static_cast<double>(cluster.cells.size()) / clusters.cells[static_cast<std::size_t>(cluster.label)];
+  };
+  std::vector<int> cells;
+  for (const ClusterInBox& cluster : inside) {
+    const bool own = cluster.label == object.label;
+    if (!own && (std::abs(cluster.median_m - object.median_m) > config.max_object_depth_m ||
+                 contained(cluster) < config.min_contained)) {
+      continue;
+    }
+    if (contained(cluster) >= config.min_contained) {
+      for (int cell = 0; cell < grid.shape.size(); ++cell) {
+        if (clusters.label[static_cast<std::size_t>(cell)] == cluster.label) cells.push_back(cell);
+      }
+      continue;
+    }
+    for (const int cell : cluster.cells) {  // grown together with the background: only what is near the object's depth
+      const float z = grid.depth_m[static_cast<std::size_t>(cell)];
+      if (std::abs(z - object.median_m) <= config.max_object_depth_m) cells.push_back(cell);
+    }
+  }
+  std::sort(cells.begin(), cells.end());
+  return cells;
+}
+
+/// Share of the outline beyond which the scene lies clearly farther. Looks a few cells outwards, past the blurred edge.
+double outline_step_share(const std::vector<int>& cells, const DepthGrid& grid, double min_step_m) {
+  constexpr int kReachCells = 3;
+  const GridShape& shape = grid.shape;
+  int steps = 0, flats = 0;
+  for (const int cell : cells) {
+    const int column = cell % shape.columns, row = cell / shape.columns;
+    const float z = grid.depth_m[static_cast<std::size_t>(cell)];
+    for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      const int x = column + dx, y = row + dy, far_x = column + kReachCells * dx, far_y = row + kReachCells * dy;
+      if (far_x < 0 || far_y < 0 || far_x >= shape.columns || far_y >= shape.rows) continue;
+      const int outside = shape.index(far_x, far_y);
+      if (std::binary_search(cells.begin(), cells.end(), shape.index(x, y)) ||
+          std::binary_search(cells.begin(), cells.end(), outside)) {
+        continue;
+      }
+      const float z_outside = grid.depth_m[static_cast<std::size_t>(outside)];
+      if (z_outside <= 0 || z_outside < z - min_step_m) continue;  // unknown, or the object itself is partly hidden
+      (z_outside > z + min_step_m ? steps : flats) += 1;
+    }
+  }
+  return steps + flats == 0 ? 1.0 : static_cast<double>(steps) / (steps + flats);
+}
+
+/// Everything in the box: all that can be said where nothing was measured.
+std::vector<int> all_cells(const CellBox& box, const GridShape& shape) {
+  std::vector<int> cells;
+  for (int row = box.top; row < box.bottom; ++row) {
+    for (int column = box.left; column < box.right; ++column) cells.push_back(shape.index(column, row));
+  }
+  return cells;
+}
+
+}  // namespace
+
+std::vector<SceneObject> find_objects(const std::vector<vision::Detection>& detections, const MotionLevels& levels,
+                                      const geometry::CameraModel& camera, const DepthGrid& grid,
+                                      const DepthClusters& clusters, const MaskConfig& config) {
+  std::vector<const vision::Detection*> known;
+  for (const vision::Detection& detection : detections) {
+    if (std::isfinite(detection.score) && levels.find(detection.class_name)) known.push_back(&detection);
+  }
+  std::stable_sort(known.begin(), known.end(), [](const auto* a, const auto* b) { return a->score > b->score; });
+  if (known.size() > kMaxObjects) known.resize(kMaxObjects);
+
+  std::vector<SceneObject> objects;
+  for (const vision::Detection* detection : known) {
+    const std::optional<CellBox> box = to_cells(*detection, camera, grid.shape);
+    if (!box) continue;
+    SceneObject object{detection->class_name, detection->score, *levels.find(detection->class_name), {}, false};
+    const std::vector<ClusterInBox> inside = clusters_in(*box, grid, clusters);
+    if (const ClusterInBox* cluster = object_cluster(inside, config.min_share)) {
+      object.cells = collect_cells(*cluster, inside, grid, clusters, config);
+      object.flat = outline_step_share(object.cells, grid, config.min_outline_step_m) < config.min_outline_share;
+    } else {
+      object.cells = all_cells(*box, grid.shape);
+    }
+    objects.push_back(std::move(object));
+  }
+  return objects;
+}
+
+}  // namespace rtd::filter

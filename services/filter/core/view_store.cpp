@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/view_store.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/geometry/se3.hpp"
+
+namespace rtd::filter {
+namespace {
+
+constexpr double kNewWorldM = 0.25, kNewWorldRad = 0.25;        // slam and we differ by more: another world
+constexpr double kNearM = 0.8, kSameWayRad = 0.5;               // a keyframe worth comparing with
+constexpr std::array<std::int64_t, 4> kAgesNs{100'000'000, 270'000'000, 550'000'000, 1'000'000'000};
+
+auto find_seq(std::deque<View>& views, std::uint64_t seq) {
+  return std::find_if(views.begin(), views.end(), [seq](const View& view) { return view.seq == seq; });
+}
+
+}  // namespace
+
+void ViewStore::add(View view) {
+  recent_.push_back(std::move(view));
+  if (recent_.size() > kMaxRecent) recent_.pop_front();
+}
+
+void ViewStore::clear() {
+  recent_.clear();
+  keyframes_.clear();
+}
+
+bool ViewStore::correct(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera) {
+  const auto found = find_seq(recent_, seq);
+  if (found == recent_.end()) return true;
+  const Eigen::Isometry3d T_new_old = T_world_camera * found->T_world_camera.inverse();
+  const Eigen::Isometry3d T_camera_change = found->T_world_camera.inverse() * T_world_camera;
+  found->T_world_camera = T_world_camera;
+  found->posed_by_slam = true;
+  for (auto later = found + 1; later != recent_.end(); ++later) {
+    if (!later->posed_by_slam) later->T_world_camera = geometry::normalized(T_new_old * later->T_world_camera);
+  }
+  if (T_camera_change.translation().norm() < kNewWorldM && geometry::rotation_angle_rad(T_camera_change) < kNewWorldRad) return true;
+  recent_.erase(recent_.begin(), found);
+  keyframes_.clear();
+  return false;
+}
+
+void ViewStore::mark_keyframe(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera) {
+  if (const auto known = find_seq(keyframes_, seq); known != keyframes_.end()) {
+    known->T_world_camera = T_world_camera;
+    return;
+  }
+  const auto found = find_seq(recent_, seq);
+  if (found == recent_.end()) return;
+  keyframes_.push_back(*found);
+  keyframes_.back().T_world_camera = T_world_camera;
+  if (keyframes_.size() > kMaxKeyframes) keyframes_.pop_front();
+}
+
+void ViewStore::forget_keyframe(std::uint64_t seq) {
+  std::erase_if(keyframes_, [seq](const View& view) { return view.seq == seq; });
+}
+
+const View& ViewStore::of_age(std::int64_t now_ns, std::int64_t age_ns) const {
+  return *std::min_element(recent_.begin(), recent_.end(), [&](const View& a, const View& b) {
+    return std::abs(now_ns - age_ns - a.stamp_ns) < std::abs(now_ns - age_ns - b.stamp_ns);
+  });
+}
+
+std::vector<const View*> ViewStore::references(std::int64_t now_ns, const Eigen::Isometry3d& T_world_camera,
+                                               std::size_t count) const {
+  std::vector<const View*> chosen;
+  if (recent_.empty()) return chosen;
+  for (const std::int64_t age_ns : kAgesNs) {
+    const View* view = &of_age(now_ns, age_ns);
+    if (chosen.size() < count && std::find(chosen.begin(), chosen.end(), view) == chosen.end()) chosen.push_back(view);
+  }
+  std::vector<std::pair<double, const View*>> near;
+  for (const View& keyframe : keyframes_) {
+    if (keyframe.seq >= recent_.front().seq) continue;
+    const Eigen::Isometry3d T_camera_keyframe = T_world_camera.inverse() * keyframe.T_world_camera;
+    const double distance_m = T_camera_keyframe.translation().norm();
+    const double angle_rad = geometry::rotation_angle_rad(T_camera_keyframe);
+    if (distance_m < kNearM && angle_rad < kSameWayRad) near.emplace_back(distance_m / kNearM + angle_rad / kSameWayRad, &keyframe);
+  }
+  std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [cost, keyframe] : near) {
+    if (chosen.size() < count) chosen.push_back(keyframe);
+  }
+  return chosen;
+}
+
+}  // namespace rtd::filter

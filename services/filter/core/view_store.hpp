@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "common/msg/features.hpp"
+#include "services/filter/core/depth_grid.hpp"
+
+namespace rtd::filter {
+
+/// What is kept of a frame so that later frames can be compared with it.
+struct View {
+  std::uint64_t seq = 0;
+  std::int64_t stamp_ns = 0;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  bool posed_by_slam = false;
+  DepthGrid grid;
+  std::vector<std::uint8_t> dynamic;   ///< per cell, 1 = something moved here
+  std::vector<msg::Feature> features;  ///< judged ones
+};
+
+/// The views of the last second and of the last keyframes, bounded in number (about 0.4 MB each), with their poses.
+///
+/// Poses are those of our own quick estimate until slam says better; then the later ones follow. When slam's word is far from
+/// ours, its map has started anew or it has relocalised: older views are dropped, they lie in another world.
+class ViewStore {
+ public:
+  void add(View view);
+  /// slam's pose of a frame. Returns false when it made us drop the older views.
+  bool correct(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera);
+  /// The frame is a keyframe: its view is kept longer.
+  void mark_keyframe(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera);
+  void forget_keyframe(std::uint64_t seq);
+  void clear();
+
+  bool empty() const { return recent_.empty(); }
+  /// The newest view. Precondition: not empty.
+  const View& newest() const { return recent_.back(); }
+  /// The view before the newest one; null when there is none.
+  const View* second_newest() const { return recent_.size() < 2 ? nullptr : &recent_[recent_.size() - 2]; }
+  /// The recent view whose age is nearest to the wanted one. Precondition: not empty.
+  const View& of_age(std::int64_t now_ns, std::int64_t age_ns) const;
+  /// Up to `count` views to compare a camera at this pose with: recent ones of graded ages, then keyframes older than those
+  /// whose camera stood near and looked the same way.
+  std::vector<const View*> references(std::int64_t now_ns, const Eigen::Isometry3d& T_world_camera, std::size_t count) const;
+  std::size_t size() const { return recent_.size() + keyframes_.size(); }
+
+  static constexpr std::size_t kMaxRecent = 32;
+  static constexpr std::size_t kMaxKeyframes = 16;
+
+ private:
+  std::deque<View> recent_;     ///< by seq
+  std::deque<View> keyframes_;  ///< by seq
+};
+
+}  // namespace rtd::filter
