@@ -100,6 +100,7 @@ vision::RgbdImage EvaluationClip::image(std::size_t index) const {
 }
 
 cv::Mat EvaluationClip::dynamic_mask(std::size_t index) const {
+  if (!std::filesystem::exists(frames_.at(index).mask_path)) return {};
   const cv::Mat mask = cv::imread(frames_.at(index).mask_path, cv::IMREAD_GRAYSCALE);
   return mask.empty() ? mask : cv::Mat(mask > 0);
 }

@@ -120,7 +120,7 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
   const vision::FeatureGrid feature_grid(result.features, p.width, p.height);
   const std::vector<char> excluded = on_cells(result.features, scene.grid.shape, avoid);
   const std::vector<int> cluster_of = clusters_of(result.features, scene.clusters);
-  const EgoMotionInput input{{result.features, feature_grid, scene.image.camera}, excluded, cluster_of, views_,
+  const EgoMotionInput input{{result.features, feature_grid, scene.image.camera}, excluded, cluster_of, scene.clusters.cells.size(), views_,
                              scene.image.stamp_ns, T_world_predicted};
   geometry.ego = estimate_ego_motion(input, config_.ego_motion, config_.geometry);
   result.T_world_camera = geometry.ego.T_world_camera;
@@ -131,7 +131,7 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
   if (geometry.ego.reliable) {
     const auto views = views_.references(scene.image.stamp_ns, geometry.ego.T_world_camera, static_cast<std::size_t>(config_.geometry.max_views));
     geometry.evidence = check_depth(scene.grid, sampler_.rays(), geometry.ego.T_world_camera, views, scene.image.camera, config_.geometry);
-    votes = count_votes(geometry.ego.matches, input, scene.clusters.cells.size(), geometry.ego.T_world_camera, config_.geometry);
+    votes = count_votes(geometry.ego.matches, input, geometry.ego.T_world_camera, config_.geometry);
   }
   geometry.regions = find_dynamic_regions(scene.clusters, geometry.evidence, votes, remembered, config_.geometry);
   geometry.regions.trusted = geometry.regions.trusted && geometry.ego.reliable;

@@ -23,19 +23,16 @@ struct EgoMotionInput {
   SearchableFeatures current;
   const std::vector<char>& excluded;   ///< per feature, 1 = on something that may move: not used for the pose
   const std::vector<int>& cluster_of;  ///< per feature, depth cluster or -1
+  std::size_t clusters;                ///< their number
   const ViewStore& views;              ///< not empty
   std::int64_t stamp_ns;
   Eigen::Isometry3d T_world_camera_predicted;
 };
 
-/// Pose of the current frame from features that stand still: matched against the previous view and one 0.1 s old, robustly
-/// optimised (common/vision/pose_optimizer, RANSAC start when the prediction misleads), without the clusters that move as a
-/// whole against it; then refined against older views so that errors do not add up. docs/theory/dynamic_points.md section 2.
+/// Pose of the current frame from what stands still: features matched with the previous view and one 0.1 s old, the motion
+/// that most of the image agrees with, without the clusters that move as a whole against it; then refined
+/// (common/vision/pose_optimizer), against older views too, so that errors do not add up. docs/theory/dynamic_points.md section 2.
 EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig& config, const GeometryConfig& geometry);
-
-/// Squared displacement of a match in the image, in units of its standard deviation: about chi2 with 2 degrees of freedom
-/// for a point at rest.
-double displacement_chi2(const FeatureMatch& match, const SearchableFeatures& current, const Eigen::Isometry3d& T_camera_world);
 
 /// Per cluster: features that are at their place and features that have moved, Eq. (5).
 struct ClusterVotes {
@@ -45,7 +42,7 @@ struct ClusterVotes {
     return moving[cluster] >= config.min_moving_features && moving[cluster] >= config.min_moving_share * votes;
   }
 };
-ClusterVotes count_votes(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input, std::size_t clusters,
+ClusterVotes count_votes(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input,
                          const Eigen::Isometry3d& T_world_camera, const GeometryConfig& geometry);
 
 }  // namespace rtd::filter

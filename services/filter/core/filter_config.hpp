@@ -42,8 +42,9 @@ struct EgoMotionConfig {
   double max_ratio = 0.85;          ///< best to second best distance
   int max_observations = 350;       ///< per pose optimisation
   int min_inliers = 20;             ///< fewer: no pose, geometry makes no statement
-  double min_inlier_share = 0.5;    ///< fewer: robust start by RANSAC
-  int ransac_iterations = 120;
+  double min_image_share = 0.25;    ///< less of the image agrees on a motion: no pose
+  int max_proposals = 6;            ///< surfaces that propose a motion
+  int max_proposal_sightings = 100; ///< per proposal
 };
 
 /// Multi-view checks; docs/theory/dynamic_points.md Eq. (3)-(5).
@@ -58,7 +59,7 @@ struct GeometryConfig {
   int min_moving_features = 4;      ///< features off their place before a cluster is judged by them
   double min_moving_share = 0.6;
   double max_static_chi2 = 6.0;     ///< squared normalised displacement up to which a feature counts as at its place
-  double min_moving_chi2 = 25.0;    ///< and from which as moving
+  double min_moving_chi2 = 16.0;    ///< and from which as moving
   int memory_frames = 30;           ///< a dynamic region is remembered this long after the last evidence
   double max_dynamic_share = 0.75;  ///< more of the image dynamic: the pose is wrong, no statement
 };
