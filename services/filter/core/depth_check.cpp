@@ -13,8 +13,12 @@ class ReferenceCheck {
  public:
   ReferenceCheck(const View& view, const Eigen::Isometry3d& T_world_camera, const geometry::CameraModel& camera,
                  const GeometryConfig& config)
-      : view_(view), config_(config), fx_(static_cast<float>(camera.parameters().fx)), fy_(static_cast<float>(camera.parameters().fy)),
-        cx_(static_cast<float>(camera.parameters().cx)), cy_(static_cast<float>(camera.parameters().cy)),
+      : view_(view),
+        config_(config),
+        fx_(static_cast<float>(camera.parameters().fx)),
+        fy_(static_cast<float>(camera.parameters().fy)),
+        cx_(static_cast<float>(camera.parameters().cx)),
+        cy_(static_cast<float>(camera.parameters().cy)),
         min_cosine_(std::cos(static_cast<float>(config.max_view_angle_deg * std::numbers::pi / 180))) {
     const Eigen::Isometry3d T_reference_camera = view.T_world_camera.inverse() * T_world_camera;
     rotation_ = T_reference_camera.linear().cast<float>();
@@ -22,7 +26,8 @@ class ReferenceCheck {
   }
 
   void judge(const Eigen::Vector3f& p_camera, std::size_t cell, DepthEvidence& evidence) const {
-    const Eigen::Vector3f turned = rotation_ * p_camera;  // the viewing ray of the current camera in the reference frame
+    const Eigen::Vector3f turned =
+        rotation_ * p_camera;  // the viewing ray of the current camera in the reference frame
     const Eigen::Vector3f p_reference = turned + translation_;
     const float z = p_reference.z();
     if (z < kMinDepthM) return;
@@ -44,7 +49,8 @@ class ReferenceCheck {
 
   /// tau(z) = floor + k * sqrt(2) * sigma(z), Eq. (4): both depths are uncertain.
   float tolerance_m(float z) const {
-    const auto offset = static_cast<float>(config_.noise.offset_m), factor = static_cast<float>(config_.noise.factor_per_m);
+    const auto offset = static_cast<float>(config_.noise.offset_m),
+               factor = static_cast<float>(config_.noise.factor_per_m);
     const auto sigmas = static_cast<float>(config_.tau_sigmas * std::numbers::sqrt2);
     return static_cast<float>(config_.tau_floor_m) + sigmas * (offset + factor * z * z);
   }
@@ -58,9 +64,10 @@ class ReferenceCheck {
 
 }  // namespace
 
-DepthEvidence check_depth(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays, const Eigen::Isometry3d& T_world_camera,
-                          const std::vector<const View*>& references, const geometry::CameraModel& camera,
-                          const GeometryConfig& config) {
+DepthEvidence check_depth(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
+                          const Eigen::Isometry3d& T_world_camera, const std::vector<const View*>& references,
+                          const geometry::CameraModel& camera, const GeometryConfig& config) {
+  constexpr std::size_t kManyViews = 4;
   const auto cells = static_cast<std::size_t>(grid.shape.size());
   DepthEvidence evidence{std::vector<std::uint8_t>(cells, 0), std::vector<std::uint8_t>(cells, 0)};
   for (const View* view : references) {
@@ -70,6 +77,8 @@ DepthEvidence check_depth(const DepthGrid& grid, const std::vector<Eigen::Vector
       if (grid.depth_m[cell] > 0) check.judge(rays[cell] * grid.depth_m[cell], cell, evidence);
     }
   }
+  const std::size_t needed = references.size() >= kManyViews ? 2 : 1;
+  for (std::uint8_t& violated : evidence.violated) violated = violated >= needed ? 1 : 0;
   return evidence;
 }
 

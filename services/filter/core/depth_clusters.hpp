@@ -18,8 +18,8 @@ struct DepthClusters {
   int count() const { return static_cast<int>(cells.size()); }
 };
 
-/// Joins neighbouring cells whose depths differ by less than the step of the config (docs/theory/dynamic_points.md Eq. (2)).
-/// Clusters are numbered in the order of their first cell.
+/// Joins neighbouring cells whose depths differ by less than the step of the config (docs/theory/dynamic_points.md Eq.
+/// (2)). Clusters are numbered in the order of their first cell.
 DepthClusters find_depth_clusters(const DepthGrid& grid, const ClusterConfig& config);
 
 }  // namespace rtd::filter

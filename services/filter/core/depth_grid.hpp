@@ -26,18 +26,22 @@ struct GridShape {
   }
   /// The same for any position, outside ones to the nearest cell.
   int nearest_cell(double u_px, double v_px) const {
-    const auto clamp = [](double px, int count) { return static_cast<int>(std::clamp(px / kCellPx, 0.0, count - 1.0)); };
+    const auto clamp = [](double px, int count) {
+      return static_cast<int>(std::clamp(px / kCellPx, 0.0, count - 1.0));
+    };
     return index(clamp(u_px, columns), clamp(v_px, rows));
   }
   bool operator==(const GridShape&) const = default;
 };
 
-/// The depth image at low resolution, in undistorted pixels, with what is needed to compare it safely with another view.
+/// The depth image at low resolution, in undistorted pixels, with what is needed to compare it safely with another
+/// view.
 struct DepthGrid {
   GridShape shape;
   std::vector<float> depth_m;  ///< typical depth of the cell, 0 = not measured
-  std::vector<float> near_m;   ///< smallest depth of the 3x3 cells around; 0 when fewer than kMinNeighbours were measured
-  std::vector<float> far_m;    ///< largest one
+  std::vector<float>
+      near_m;                ///< smallest depth of the 3x3 cells around; 0 when fewer than kMinNeighbours were measured
+  std::vector<float> far_m;  ///< largest one
   static constexpr int kMinNeighbours = 6;
 };
 

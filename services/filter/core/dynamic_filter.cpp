@@ -39,17 +39,23 @@ FilterResult DynamicFilter::judge(const vision::RgbdImage& image, std::vector<ms
     remember(std::move(scene), geometry, result);
   }
   result.stage_ms[msg::kStageExtract] = extract_ms_;
-  result.stage_ms[msg::kStageFilterTotal] = std::accumulate(result.stage_ms.begin(), result.stage_ms.begin() + msg::kStageFilterTotal, 0.0F);
+  result.stage_ms[msg::kStageFilterTotal] =
+      std::accumulate(result.stage_ms.begin(), result.stage_ms.begin() + msg::kStageFilterTotal, 0.0F);
   return result;
 }
 
 namespace {
 
-bool uses_semantics(FilterMode mode) { return mode == FilterMode::kSemantic || mode == FilterMode::kRtd; }
-bool uses_geometry(FilterMode mode) { return mode == FilterMode::kGeometry || mode == FilterMode::kRtd; }
+bool uses_semantics(FilterMode mode) {
+  return mode == FilterMode::kSemantic || mode == FilterMode::kRtd;
+}
+bool uses_geometry(FilterMode mode) {
+  return mode == FilterMode::kGeometry || mode == FilterMode::kRtd;
+}
 
 /// Per feature: does it lie on one of these cells?
-std::vector<char> on_cells(const std::vector<msg::Feature>& features, const GridShape& shape, const std::vector<std::uint8_t>& cells) {
+std::vector<char> on_cells(const std::vector<msg::Feature>& features, const GridShape& shape,
+                           const std::vector<std::uint8_t>& cells) {
   std::vector<char> on(features.size());
   for (std::size_t i = 0; i < features.size(); ++i) {
     on[i] = cells[static_cast<std::size_t>(shape.nearest_cell(features[i].u_px, features[i].v_px))] != 0 ? 1 : 0;
@@ -118,10 +124,18 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
 
   const auto& p = scene.image.camera.parameters();
   const vision::FeatureGrid feature_grid(result.features, p.width, p.height);
-  const std::vector<char> excluded = on_cells(result.features, scene.grid.shape, avoid);
+  std::vector<char> excluded = on_cells(result.features, scene.grid.shape, avoid);
+  if (2 * std::count(excluded.begin(), excluded.end(), 1) > static_cast<std::ptrdiff_t>(excluded.size())) {
+    excluded = on_cells(result.features, scene.grid.shape, scene.may_move);  // memory must not blind us
+  }
   const std::vector<int> cluster_of = clusters_of(result.features, scene.clusters);
-  const EgoMotionInput input{{result.features, feature_grid, scene.image.camera}, excluded, cluster_of, scene.clusters.cells.size(), views_,
-                             scene.image.stamp_ns, T_world_predicted};
+  const EgoMotionInput input{{result.features, feature_grid, scene.image.camera},
+                             excluded,
+                             cluster_of,
+                             scene.clusters.cells.size(),
+                             views_,
+                             scene.image.stamp_ns,
+                             T_world_predicted};
   geometry.ego = estimate_ego_motion(input, config_.ego_motion, config_.geometry);
   result.T_world_camera = geometry.ego.T_world_camera;
   result.pose_reliable = geometry.ego.reliable;
@@ -129,8 +143,10 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
   const std::vector<std::uint8_t> remembered = recall(geometry.ego.T_world_camera);
   ClusterVotes votes;
   if (geometry.ego.reliable) {
-    const auto views = views_.references(scene.image.stamp_ns, geometry.ego.T_world_camera, static_cast<std::size_t>(config_.geometry.max_views));
-    geometry.evidence = check_depth(scene.grid, sampler_.rays(), geometry.ego.T_world_camera, views, scene.image.camera, config_.geometry);
+    const auto views = views_.references(scene.image.stamp_ns, geometry.ego.T_world_camera,
+                                         static_cast<std::size_t>(config_.geometry.max_views));
+    geometry.evidence = check_depth(scene.grid, sampler_.rays(), geometry.ego.T_world_camera, views, scene.image.camera,
+                                    config_.geometry);
     votes = count_votes(geometry.ego.matches, input, geometry.ego.T_world_camera, config_.geometry);
   }
   geometry.regions = find_dynamic_regions(scene.clusters, geometry.evidence, votes, remembered, config_.geometry);
@@ -143,13 +159,14 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
 void DynamicFilter::weigh(const Scene& scene, const Geometry& geometry, FilterResult& result) {
   StageClock clock(now_ns_);
   std::vector<ObjectMotion> motions;
-  for (const SceneObject& object : result.objects) motions.push_back(judge_motion(object, geometry.regions, geometry.evidence));
+  for (const SceneObject& object : result.objects)
+    motions.push_back(judge_motion(object, geometry.regions, geometry.evidence));
   const std::vector<double> resting_s = history_.update(result.objects, motions, scene.image.stamp_ns);
   const FrameKnowledge known{scene.grid.shape, result.objects, motions, resting_s, geometry.regions, geometry.evidence};
   weigh_static_probability(result.features, known, config_.mode, config_.fusion, config_.masks.dilate_cells);
-  result.removed = static_cast<std::uint32_t>(std::count_if(result.features.begin(), result.features.end(), [](const msg::Feature& f) {
-    return (f.flags & msg::kFeatureRemoved) != 0;
-  }));
+  result.removed = static_cast<std::uint32_t>(
+      std::count_if(result.features.begin(), result.features.end(),
+                    [](const msg::Feature& f) { return (f.flags & msg::kFeatureRemoved) != 0; }));
   result.stage_ms[msg::kStageFuse] = clock.lap_ms();
 }
 
@@ -160,6 +177,7 @@ void DynamicFilter::remember(Scene scene, const Geometry& geometry, const Filter
   view.seq = scene.image.seq;
   view.stamp_ns = scene.image.stamp_ns;
   view.T_world_camera = result.T_world_camera;
+  view.settled = views_.empty() || geometry.ego.settled;
   view.dynamic = dilate(scene.grid.shape, geometry.regions.frames_left, config_.masks.dilate_cells);
   for (std::size_t cell = 0; cell < view.dynamic.size(); ++cell) {
     view.dynamic[cell] = view.dynamic[cell] != 0 || scene.may_move[cell] != 0 ? 1 : 0;

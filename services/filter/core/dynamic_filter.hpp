@@ -36,10 +36,11 @@ struct FilterResult {
 
 using Detections = std::optional<std::vector<vision::Detection>>;
 
-/// Tells the static world from what moves, DESIGN section 4: which features slam may use, and how much. The theory is in
-/// docs/theory/dynamic_points.md.
+/// Tells the static world from what moves, DESIGN section 4: which features slam may use, and how much. The theory is
+/// in docs/theory/dynamic_points.md.
 ///
-/// Give it every frame in order of time, and what slam says as it comes. Deterministic in that order of calls. One thread.
+/// Give it every frame in order of time, and what slam says as it comes. Deterministic in that order of calls. One
+/// thread.
 class DynamicFilter {
  public:
   /// `now_ns`: any monotonic clock, for stage times only. Throws std::invalid_argument for an unknown motion level.

@@ -11,7 +11,8 @@ void DynamicMemory::store(const DepthGrid& grid, const std::vector<Eigen::Vector
                           const std::vector<std::uint8_t>& frames_left) {
   points_.clear();
   for (std::size_t cell = 0; cell < frames_left.size(); ++cell) {
-    if (frames_left[cell] > 0 && grid.depth_m[cell] > 0) points_.push_back({rays[cell] * grid.depth_m[cell], frames_left[cell]});
+    if (frames_left[cell] > 0 && grid.depth_m[cell] > 0)
+      points_.push_back({rays[cell] * grid.depth_m[cell], frames_left[cell]});
   }
 }
 
@@ -27,12 +28,14 @@ std::vector<std::uint8_t> DynamicMemory::recall(const DepthGrid& grid, const geo
     const Eigen::Vector3f p_current = rotation * point.p_camera + translation;
     if (p_current.z() < kMinDepthM) continue;
     const double u_px = p.fx * p_current.x() / p_current.z() + p.cx, v_px = p.fy * p_current.y() / p_current.z() + p.cy;
-    for (const double shift_px : {-0.5 * kCellPx, 0.5 * kCellPx}) {  // two by two cells: no holes when things come nearer
+    for (const double shift_px :
+         {-0.5 * kCellPx, 0.5 * kCellPx}) {  // two by two cells: no holes when things come nearer
       for (const double drop_px : {-0.5 * kCellPx, 0.5 * kCellPx}) {
         const int cell = grid.shape.cell_at(u_px + shift_px, v_px + drop_px);
         if (cell < 0) continue;
         const auto i = static_cast<std::size_t>(cell);
-        if (std::abs(grid.depth_m[i] - p_current.z()) < kOwnDepthM) frames_left[i] = std::max(frames_left[i], point.frames_left);
+        if (std::abs(grid.depth_m[i] - p_current.z()) < kOwnDepthM)
+          frames_left[i] = std::max(frames_left[i], point.frames_left);
       }
     }
   }

@@ -14,8 +14,10 @@ namespace rtd::filter {
 class DynamicMemory {
  public:
   /// `frames_left` per cell of the frame just judged; its points are kept in the camera frame.
-  void store(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays, const std::vector<std::uint8_t>& frames_left);
-  /// The same as seen by the current frame: points are moved by the camera's motion and must find about their own depth there.
+  void store(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
+             const std::vector<std::uint8_t>& frames_left);
+  /// The same as seen by the current frame: points are moved by the camera's motion and must find about their own depth
+  /// there.
   std::vector<std::uint8_t> recall(const DepthGrid& grid, const geometry::CameraModel& camera,
                                    const Eigen::Isometry3d& T_current_last) const;
   void clear() { points_.clear(); }

@@ -31,10 +31,13 @@ std::vector<ClusterEvidence> gather(const DepthClusters& clusters, const DepthEv
 }
 
 bool violates(const ClusterEvidence& cluster, const GeometryConfig& config) {
-  return cluster.stated >= config.min_cluster_statements && cluster.violating >= config.min_violated_share * cluster.stated;
+  return cluster.violating >= config.min_region_cells / 2 && cluster.stated >= config.min_cluster_statements &&
+         cluster.violating >= config.min_violated_share * cluster.stated;
 }
 
-std::uint8_t one_less(std::uint8_t frames) { return frames > 0 ? static_cast<std::uint8_t>(frames - 1) : frames; }
+std::uint8_t one_less(std::uint8_t frames) {
+  return frames > 0 ? static_cast<std::uint8_t>(frames - 1) : frames;
+}
 
 /// Cells most of whose 3x3 neighbourhood is set: noise along depth edges is one cell wide and vanishes.
 std::vector<std::uint8_t> compact(const GridShape& shape, const std::vector<std::uint8_t>& cells) {
@@ -43,7 +46,8 @@ std::vector<std::uint8_t> compact(const GridShape& shape, const std::vector<std:
     for (int column = 1; column + 1 < shape.columns; ++column) {
       int set = 0;
       for (int y = row - 1; y <= row + 1; ++y) {
-        for (int x = column - 1; x <= column + 1; ++x) set += cells[static_cast<std::size_t>(shape.index(x, y))] > 0 ? 1 : 0;
+        for (int x = column - 1; x <= column + 1; ++x)
+          set += cells[static_cast<std::size_t>(shape.index(x, y))] > 0 ? 1 : 0;
       }
       const auto i = static_cast<std::size_t>(shape.index(column, row));
       if (set >= kMinCompact) result[i] = cells[i];
@@ -52,11 +56,38 @@ std::vector<std::uint8_t> compact(const GridShape& shape, const std::vector<std:
   return result;
 }
 
+/// Removes connected regions (4 neighbours) of less than `min_cells` cells.
+void drop_small_regions(const GridShape& shape, std::vector<std::uint8_t>& cells, int min_cells) {
+  std::vector<char> visited(cells.size(), 0);
+  std::vector<int> region;
+  for (int start = 0; start < shape.size(); ++start) {
+    if (cells[static_cast<std::size_t>(start)] == 0 || visited[static_cast<std::size_t>(start)] != 0) continue;
+    region.assign(1, start);
+    visited[static_cast<std::size_t>(start)] = 1;
+    const auto visit = [&](int cell) {
+      if (cells[static_cast<std::size_t>(cell)] == 0 || visited[static_cast<std::size_t>(cell)] != 0) return;
+      visited[static_cast<std::size_t>(cell)] = 1;
+      region.push_back(cell);
+    };
+    for (std::size_t i = 0; i < region.size(); ++i) {
+      const int cell = region[i], column = cell % shape.columns;
+      if (column > 0) visit(cell - 1);
+      if (column + 1 < shape.columns) visit(cell + 1);
+      if (cell >= shape.columns) visit(cell - shape.columns);
+      if (cell + shape.columns < shape.size()) visit(cell + shape.columns);
+    }
+    if (static_cast<int>(region.size()) >= min_cells) continue;
+    for (const int cell : region) cells[static_cast<std::size_t>(cell)] = 0;
+  }
+}
+
 }  // namespace
 
-DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEvidence& evidence, const ClusterVotes& votes,
-                                    const std::vector<std::uint8_t>& remembered, const GeometryConfig& config) {
+DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEvidence& evidence,
+                                    const ClusterVotes& votes, const std::vector<std::uint8_t>& remembered,
+                                    const GeometryConfig& config) {
   const auto full_memory = static_cast<std::uint8_t>(config.memory_frames);
+  const auto loose_memory = static_cast<std::uint8_t>(config.loose_memory_frames);
   const std::vector<ClusterEvidence> gathered = gather(clusters, evidence, remembered);
   std::vector<std::uint8_t> cluster_frames(gathered.size(), 0);
   DynamicRegions regions{true, std::vector<std::uint8_t>(clusters.label.size(), 0), 0};
@@ -68,16 +99,18 @@ DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEv
     }
     regions.clusters += cluster_frames[i] > 0 ? 1 : 0;
   }
-  std::vector<std::uint8_t> loose(clusters.label.size(), 0);  // evidence inside clusters that are not dynamic as a whole
+  std::vector<std::uint8_t> loose(clusters.label.size(),
+                                  0);  // evidence inside clusters that are not dynamic as a whole
   for (std::size_t cell = 0; cell < loose.size(); ++cell) {
     const std::int32_t label = clusters.label[cell];
     if (label >= 0 && cluster_frames[static_cast<std::size_t>(label)] > 0) {
       regions.frames_left[cell] = cluster_frames[static_cast<std::size_t>(label)];
     } else {
-      loose[cell] = evidence.violated[cell] > 0 ? full_memory : one_less(remembered[cell]);
+      loose[cell] = evidence.violated[cell] > 0 ? loose_memory : std::min(loose_memory, one_less(remembered[cell]));
     }
   }
-  const std::vector<std::uint8_t> groups = compact(clusters.shape, loose);
+  std::vector<std::uint8_t> groups = compact(clusters.shape, loose);
+  drop_small_regions(clusters.shape, groups, config.min_region_cells);
   int dynamic = 0;
   for (std::size_t cell = 0; cell < groups.size(); ++cell) {
     regions.frames_left[cell] = std::max(regions.frames_left[cell], groups[cell]);

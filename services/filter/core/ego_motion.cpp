@@ -11,12 +11,14 @@
 namespace rtd::filter {
 namespace {
 
-constexpr std::int64_t kNearAgeNs = 100'000'000;
+constexpr std::int64_t kNearAgeNs = 100'000'000, kMinSettledAgeNs = 90'000'000;
 constexpr std::int64_t kOldAgeNs = 500'000'000;
 constexpr double kKeypointSigmaPx = 0.7;  // at octave 0
 constexpr double kRefineWindowPx = 8.0;
 
-double octave_scale(int octave) { return std::pow(1.2, octave); }
+double octave_scale(int octave) {
+  return std::pow(1.2, octave);
+}
 
 PointSighting to_sighting(const FeatureMatch& match, const EgoMotionInput& input) {
   const msg::Feature& f = input.current.features[match.current];
@@ -47,18 +49,19 @@ std::vector<PointSighting> to_sightings(const std::vector<FeatureMatch>& matches
   return sightings;
 }
 
-/// Matches with the previous view and, where that is another one, with the view 0.1 s ago.
-std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const EgoMotionConfig& config) {
+/// Matches with the view 0.1 s ago and, when they are few, with the previous one.
+std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& near, const EgoMotionConfig& config) {
   const View& previous = input.views.newest();
-  const View& near = input.views.of_age(input.stamp_ns, kNearAgeNs);
   const Eigen::Isometry3d& T_world_camera = input.T_world_camera_predicted;
-  std::vector<FeatureMatch> matches = match_by_projection(previous, input.current, T_world_camera, config.window_px, config);
-  if (matches.size() < 4 * static_cast<std::size_t>(config.min_inliers)) {  // the prediction is off: look farther
-    matches = match_by_projection(previous, input.current, T_world_camera, 3 * config.window_px, config);
-  }
-  if (near.seq != previous.seq) {
-    const auto more = match_by_projection(near, input.current, T_world_camera, 1.5 * config.window_px, config);
+  const std::size_t enough = 4 * static_cast<std::size_t>(config.min_inliers);
+  std::vector<FeatureMatch> matches =
+      match_by_projection(near, input.current, T_world_camera, config.window_px, config);
+  if (matches.size() < enough && previous.seq != near.seq) {
+    const auto more = match_by_projection(previous, input.current, T_world_camera, config.window_px, config);
     matches.insert(matches.end(), more.begin(), more.end());
+  }
+  if (matches.size() < enough) {  // the prediction is off: look farther
+    matches = match_by_projection(previous, input.current, T_world_camera, 3 * config.window_px, config);
   }
   return matches;
 }
@@ -79,28 +82,35 @@ ClusterVotes count_votes(const std::vector<FeatureMatch>& matches, const EgoMoti
   return votes;
 }
 
-EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig& config, const GeometryConfig& geometry) {
+EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig& config,
+                              const GeometryConfig& geometry) {
   EgoMotion ego;
   ego.T_world_camera = input.T_world_camera_predicted;
-  ego.matches = match_recent(input, config);
+  const View& near = input.views.of_age(input.stamp_ns, kNearAgeNs);
+  ego.matches = match_recent(input, near, config);
   const auto limit = static_cast<std::size_t>(config.max_observations);
   const std::vector<char> none_moves(input.clusters, 0);
   const auto recent = to_sightings(usable(ego.matches, input, none_moves, limit), input);
-  const StaticConsensus consensus = find_static_consensus(recent, input.current.camera, input.T_world_camera_predicted, config);
+  const StaticConsensus consensus =
+      find_static_consensus(recent, input.current.camera, input.T_world_camera_predicted, config);
   if (consensus.image_share < config.min_image_share) return ego;
 
   const ClusterVotes votes = count_votes(ego.matches, input, consensus.T_world_camera, geometry);
   std::vector<char> moving_cluster(input.clusters, 0);
-  for (std::size_t cluster = 0; cluster < input.clusters; ++cluster) moving_cluster[cluster] = votes.moves(cluster, geometry) ? 1 : 0;
+  for (std::size_t cluster = 0; cluster < input.clusters; ++cluster)
+    moving_cluster[cluster] = votes.moves(cluster, geometry) ? 1 : 0;
 
   const View& old = input.views.of_age(input.stamp_ns, kOldAgeNs);
   const auto old_matches = match_by_projection(old, input.current, consensus.T_world_camera, kRefineWindowPx, config);
   std::vector<PointSighting> sightings = to_sightings(usable(ego.matches, input, moving_cluster, limit / 2), input);
-  const std::vector<PointSighting> old_sightings = to_sightings(usable(old_matches, input, moving_cluster, limit / 2), input);
+  const std::vector<PointSighting> old_sightings =
+      to_sightings(usable(old_matches, input, moving_cluster, limit / 2), input);
   sightings.insert(sightings.end(), old_sightings.begin(), old_sightings.end());
-  const RefinedPose refined = refine_pose(sightings, input.current.camera, consensus.T_world_camera, config.min_inliers);
+  const RefinedPose refined =
+      refine_pose(sightings, input.current.camera, consensus.T_world_camera, config.min_inliers);
   if (!refined.success) return ego;
   ego.reliable = true;
+  ego.settled = input.stamp_ns - near.stamp_ns >= kMinSettledAgeNs;
   ego.T_world_camera = refined.T_world_camera;
   ego.inliers = refined.inliers;
   return ego;

@@ -12,6 +12,8 @@ namespace rtd::filter {
 
 /// The quick pose of the current frame and what it was found from.
 struct EgoMotion {
+  bool settled =
+      false;  ///< found against a view at least 0.09 s old: movers could be told from the camera's own motion
   bool reliable = false;  ///< otherwise the pose is only the prediction and geometry makes no statement
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   int inliers = 0;
@@ -29,10 +31,13 @@ struct EgoMotionInput {
   Eigen::Isometry3d T_world_camera_predicted;
 };
 
-/// Pose of the current frame from what stands still: features matched with the previous view and one 0.1 s old, the motion
-/// that most of the image agrees with, without the clusters that move as a whole against it; then refined
-/// (common/vision/pose_optimizer), against older views too, so that errors do not add up. docs/theory/dynamic_points.md section 2.
-EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig& config, const GeometryConfig& geometry);
+/// Pose of the current frame from what stands still: features matched with the view 0.1 s ago (one frame
+/// is too short: on distant walls a shift nearly looks like a rotation, and one motion explains walls and mover), the
+/// motion that most of the image agrees with, without the clusters that move as a whole against it; then refined
+/// (common/vision/pose_optimizer), against older views too, so that errors do not add up. docs/theory/dynamic_points.md
+/// section 2.
+EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig& config,
+                              const GeometryConfig& geometry);
 
 /// Per cluster: features that are at their place and features that have moved, Eq. (5).
 struct ClusterVotes {

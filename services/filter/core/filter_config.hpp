@@ -20,59 +20,61 @@ enum class FilterMode {
 
 /// How cells of the depth grid join to clusters; docs/theory/dynamic_points.md Eq. (2).
 struct ClusterConfig {
-  double step_m = 0.03;             ///< two neighbouring cells join when their depths differ by less than step + factor * z^2
+  double step_m = 0.03;  ///< two neighbouring cells join when their depths differ by less than step + factor * z^2
   double step_factor_per_m = 0.012;
-  int min_cells = 12;               ///< smaller clusters are nobody's object
+  int min_cells = 12;  ///< smaller clusters are nobody's object
 };
 
 /// How a box becomes a mask.
 struct MaskConfig {
-  double min_share = 0.15;          ///< the object is the nearest cluster with this share of the measured cells of its box
-  double max_object_depth_m = 0.5;  ///< cells this far behind or before the object's median depth do not belong to it
-  double min_contained = 0.5;       ///< share of a cluster inside the box from which the whole cluster is the object
-  double min_outline_step_m = 0.15; ///< an outline counts as a step when the outside lies this much farther
-  double min_outline_share = 0.3;   ///< fewer steps around a mask: a picture on a wall, not an object
-  int dilate_cells = 1;             ///< masks grow by this many cells
+  double min_share = 0.15;  ///< the object is the nearest cluster with this share of the measured cells of its box
+  double max_object_depth_m = 0.5;   ///< cells this far behind or before the object's median depth do not belong to it
+  double min_contained = 0.5;        ///< share of a cluster inside the box from which the whole cluster is the object
+  double min_outline_step_m = 0.15;  ///< an outline counts as a step when the outside lies this much farther
+  double min_outline_share = 0.3;    ///< fewer steps around a mask: a picture on a wall, not an object
+  int dilate_cells = 1;              ///< masks grow by this many cells
 };
 
 /// Quick pose estimate.
 struct EgoMotionConfig {
-  double window_px = 24.0;          ///< half side of the search window towards the previous frame
+  double window_px = 30.0;  ///< half side of the search window towards the view 0.1 s ago
   int max_hamming = 64;
-  double max_ratio = 0.85;          ///< best to second best distance
-  int max_observations = 350;       ///< per pose optimisation
-  int min_inliers = 20;             ///< fewer: no pose, geometry makes no statement
-  double min_image_share = 0.25;    ///< less of the image agrees on a motion: no pose
-  int max_proposals = 6;            ///< surfaces that propose a motion
-  int max_proposal_sightings = 100; ///< per proposal
+  double max_ratio = 0.85;           ///< best to second best distance
+  int max_observations = 350;        ///< per pose optimisation
+  int min_inliers = 20;              ///< fewer: no pose, geometry makes no statement
+  double min_image_share = 0.25;     ///< less of the image agrees on a motion: no pose
+  int max_proposals = 6;             ///< surfaces that propose a motion
+  int max_proposal_sightings = 100;  ///< per proposal
 };
 
 /// Multi-view checks; docs/theory/dynamic_points.md Eq. (3)-(5).
 struct GeometryConfig {
   geometry::DepthNoise noise;
-  double tau_floor_m = 0.04;        ///< smallest depth difference that says something (the paper: 0.4 m)
-  double tau_sigmas = 5.0;          ///< and this many standard deviations of the depth difference
-  double max_view_angle_deg = 30.0; ///< larger angle between the two viewing rays: no statement (paper section III-A)
-  int max_views = 6;                ///< reference views per frame
-  int min_cluster_statements = 15;  ///< cells with a statement before a cluster is judged
+  double tau_floor_m = 0.08;         ///< smallest depth difference that says something (the paper: 0.4 m)
+  double tau_sigmas = 5.0;           ///< and this many standard deviations of the depth difference
+  double max_view_angle_deg = 30.0;  ///< larger angle between the two viewing rays: no statement (paper section III-A)
+  int max_views = 6;                 ///< reference views per frame
+  int min_region_cells = 40;  ///< smaller regions are thin structures that depth cameras see now and then, not movers
+  int min_cluster_statements = 30;  ///< cells with a statement before a cluster is judged
   double min_violated_share = 0.2;  ///< share of violating cells that makes a cluster dynamic
-  int min_moving_features = 4;      ///< features off their place before a cluster is judged by them
+  int min_moving_features = 6;      ///< features off their place before a cluster is judged by them
   double min_moving_share = 0.6;
   double max_static_chi2 = 6.0;     ///< squared normalised displacement up to which a feature counts as at its place
   double min_moving_chi2 = 16.0;    ///< and from which as moving
-  int memory_frames = 30;           ///< a dynamic region is remembered this long after the last evidence
+  int memory_frames = 30;           ///< a dynamic surface is remembered this long after the last evidence
+  int loose_memory_frames = 5;      ///< a dynamic part of a surface that rests as a whole
   double max_dynamic_share = 0.75;  ///< more of the image dynamic: the pose is wrong, no statement
 };
 
 /// Fusion to one probability.
 struct FusionConfig {
-  double remove_below = 0.25;       ///< features less probably static than this are removed
-  double unknown_probability = 0.9; ///< background without any statement
-  double sitting_probability = 0.3; ///< high level, but at rest for long
+  double remove_below = 0.25;        ///< features less probably static than this are removed
+  double unknown_probability = 0.9;  ///< background without any statement
+  double sitting_probability = 0.3;  ///< high level, but at rest for long
   double sitting_seconds = 3.0;
   double doubtful_probability = 0.5;
-  int min_static_features = 120;    ///< fewer left: the best of the doubtful are kept
-  double boost = 1.5;               ///< times as many features while something is masked
+  int min_static_features = 120;  ///< fewer left: the best of the doubtful are kept
+  double boost = 1.5;             ///< times as many features while something is masked
 };
 
 /// Everything the core needs; defaults are the tested values.
@@ -84,7 +86,8 @@ struct FilterConfig {
   EgoMotionConfig ego_motion;
   GeometryConfig geometry;
   FusionConfig fusion;
-  std::map<std::string, std::string> motion_levels;  ///< class name -> "high" | "medium" | "low" | "none", over the built-in table
+  std::map<std::string, std::string>
+      motion_levels;  ///< class name -> "high" | "medium" | "low" | "none", over the built-in table
 };
 
 }  // namespace rtd::filter

@@ -16,7 +16,8 @@ struct Best {
   int hamming = std::numeric_limits<int>::max(), second = std::numeric_limits<int>::max();
 };
 
-Best nearest_descriptor(const msg::Feature& wanted, const SearchableFeatures& current, const vision::SearchWindow& window) {
+Best nearest_descriptor(const msg::Feature& wanted, const SearchableFeatures& current,
+                        const vision::SearchWindow& window) {
   Best best;
   current.grid.for_each(window, [&](std::uint32_t index) {
     const int hamming = vision::hamming_distance(wanted.descriptor, current.features[index].descriptor);
@@ -59,8 +60,8 @@ std::vector<FeatureMatch> match_by_projection(const View& reference, const Searc
     if (p_camera.z() < vision::kMinProjectionDepth_m) continue;
     const Eigen::Vector2d pixel = current.camera.project(p_camera);
     if (!current.camera.contains(pixel)) continue;
-    const vision::SearchWindow window{static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), static_cast<float>(window_px),
-                                      feature.octave - 1, feature.octave + 1};
+    const vision::SearchWindow window{static_cast<float>(pixel.x()), static_cast<float>(pixel.y()),
+                                      static_cast<float>(window_px), feature.octave - 1, feature.octave + 1};
     const Best best = nearest_descriptor(feature, current, window);
     if (best.hamming > config.max_hamming || best.hamming > config.max_ratio * best.second) continue;
     matches.push_back({best.index, i, best.hamming, (feature.flags & msg::kFeatureRemoved) == 0, p_world});

@@ -19,7 +19,7 @@ struct FeatureMatch {
   std::uint32_t current = 0;    ///< index in the current features
   std::uint32_t reference = 0;  ///< index in the features of the reference view
   int hamming = 0;
-  bool reference_static = true; ///< the reference view did not judge it dynamic
+  bool reference_static = true;                       ///< the reference view did not judge it dynamic
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< m, from the reference view's depth and pose
 };
 

@@ -7,12 +7,14 @@
 namespace rtd::filter {
 namespace {
 
-constexpr const char* kHigh[] = {"person", "bird", "cat",   "dog",     "horse",      "sheep", "cow", "elephant",
-                                 "bear",   "zebra", "giraffe", "bicycle", "car", "motorcycle", "bus", "train", "truck"};
+constexpr const char* kHigh[] = {"person", "bird",       "cat",  "dog",   "horse",   "sheep",
+                                 "cow",    "elephant",   "bear", "zebra", "giraffe", "bicycle",
+                                 "car",    "motorcycle", "bus",  "train", "truck"};
 constexpr const char* kMedium[] = {
-    "chair",  "book",       "keyboard", "mouse",   "cup",    "bottle",     "wine glass",   "laptop",      "cell phone",
-    "remote", "backpack",   "handbag",  "umbrella", "tie",   "suitcase",   "sports ball",  "potted plant", "bowl",
-    "vase",   "teddy bear", "scissors", "skateboard", "frisbee", "hair drier", "toothbrush", "banana", "apple", "orange"};
+    "chair",      "book",        "keyboard",     "mouse",      "cup",     "bottle",     "wine glass",
+    "laptop",     "cell phone",  "remote",       "backpack",   "handbag", "umbrella",   "tie",
+    "suitcase",   "sports ball", "potted plant", "bowl",       "vase",    "teddy bear", "scissors",
+    "skateboard", "frisbee",     "hair drier",   "toothbrush", "banana",  "apple",      "orange"};
 constexpr const char* kLow[] = {"tv",   "refrigerator", "couch", "bed",   "dining table", "toilet",
                                 "oven", "microwave",    "sink",  "clock", "bench"};
 

@@ -15,10 +15,12 @@ enum class MotionLevel {
   kLow,     ///< hardly ever moves: tv, refrigerator, ...
 };
 
-/// Class name -> motion level: the table of docs/theory/dynamic_points.md with the entries of the configuration over it.
+/// Class name -> motion level: the table of docs/theory/dynamic_points.md with the entries of the configuration over
+/// it.
 class MotionLevels {
  public:
-  /// `overrides`: class -> "high" | "medium" | "low" | "none"; throws std::invalid_argument naming class and value otherwise.
+  /// `overrides`: class -> "high" | "medium" | "low" | "none"; throws std::invalid_argument naming class and value
+  /// otherwise.
   explicit MotionLevels(const std::map<std::string, std::string>& overrides = {});
   /// Empty: the class does not matter to us.
   std::optional<MotionLevel> find(const std::string& class_name) const;

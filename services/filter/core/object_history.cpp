@@ -47,15 +47,16 @@ const ObjectHistory::Known* ObjectHistory::same_object(const SceneObject& object
   return best;
 }
 
-std::vector<double> ObjectHistory::update(const std::vector<SceneObject>& objects, const std::vector<ObjectMotion>& motions,
-                                          std::int64_t stamp_ns) {
+std::vector<double> ObjectHistory::update(const std::vector<SceneObject>& objects,
+                                          const std::vector<ObjectMotion>& motions, std::int64_t stamp_ns) {
   std::vector<double> resting_s(objects.size(), 0.0);
   std::vector<Known> now;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Known* before = same_object(objects[i]);
     const bool rested = before != nullptr && before->motion == ObjectMotion::kResting;
     now.push_back({objects[i], motions[i], rested ? before->resting_since_ns : stamp_ns});
-    if (motions[i] == ObjectMotion::kResting) resting_s[i] = 1e-9 * static_cast<double>(stamp_ns - now.back().resting_since_ns);
+    if (motions[i] == ObjectMotion::kResting)
+      resting_s[i] = 1e-9 * static_cast<double>(stamp_ns - now.back().resting_since_ns);
   }
   known_ = std::move(now);
   return resting_s;

@@ -21,7 +21,8 @@ ObjectMotion judge_motion(const SceneObject& object, const DynamicRegions& regio
 class ObjectHistory {
  public:
   /// Seconds for which each object of this frame has been seen resting without a break; 0 when it moves or is unknown.
-  std::vector<double> update(const std::vector<SceneObject>& objects, const std::vector<ObjectMotion>& motions, std::int64_t stamp_ns);
+  std::vector<double> update(const std::vector<SceneObject>& objects, const std::vector<ObjectMotion>& motions,
+                             std::int64_t stamp_ns);
   void clear() { known_.clear(); }
 
  private:

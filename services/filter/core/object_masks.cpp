@@ -15,7 +15,8 @@ struct CellBox {
   bool contains(int column, int row) const { return column >= left && column < right && row >= top && row < bottom; }
 };
 
-std::optional<CellBox> to_cells(const vision::Detection& box, const geometry::CameraModel& camera, const GridShape& shape) {
+std::optional<CellBox> to_cells(const vision::Detection& box, const geometry::CameraModel& camera,
+                                const GridShape& shape) {
   constexpr float kAbsurdPx = 1e5F;
   for (const float value : {box.x_px, box.y_px, box.width_px, box.height_px}) {
     if (!std::isfinite(value) || std::abs(value) > kAbsurdPx) return std::nullopt;
@@ -27,7 +28,8 @@ std::optional<CellBox> to_cells(const vision::Detection& box, const geometry::Ca
       Eigen::Vector2d(box.x_px + box.width_px, box.y_px + box.height_px).cwiseMax(0.0).cwiseMin(size);
   if (last.x() - first.x() < kCellPx || last.y() - first.y() < kCellPx) return std::nullopt;
   const Eigen::Vector2d from = camera.undistort(first) / kCellPx, to = camera.undistort(last) / kCellPx;
-  const CellBox cells{std::max(0, static_cast<int>(std::floor(from.x()))), std::max(0, static_cast<int>(std::floor(from.y()))),
+  const CellBox cells{std::max(0, static_cast<int>(std::floor(from.x()))),
+                      std::max(0, static_cast<int>(std::floor(from.y()))),
                       std::min(shape.columns, static_cast<int>(std::ceil(to.x())) + 1),
                       std::min(shape.rows, static_cast<int>(std::ceil(to.y())) + 1)};
   if (cells.left >= cells.right || cells.top >= cells.bottom) return std::nullopt;
@@ -77,8 +79,8 @@ const ClusterInBox* object_cluster(const std::vector<ClusterInBox>& inside, doub
 }
 
 /// The object's own cluster (all of it when it lies mostly in the box) and the parts of it that a depth step cut off.
-std::vector<int> collect_cells(const ClusterInBox& object, const std::vector<ClusterInBox>& inside, const DepthGrid& grid,
-                               const DepthClusters& clusters, const MaskConfig& config) {
+std::vector<int> collect_cells(const ClusterInBox& object, const std::vector<ClusterInBox>& inside,
+                               const DepthGrid& grid, const DepthClusters& clusters, const MaskConfig& config) {
   const auto contained = [&](const ClusterInBox& cluster) {
     return static_cast<double>(cluster.cells.size()) / clusters.cells[static_cast<std::size_t>(cluster.label)];
   };

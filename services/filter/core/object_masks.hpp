@@ -24,9 +24,9 @@ struct SceneObject {
   bool flat = false;       ///< no depth step around it: a picture on a wall, geometry alone decides
 };
 
-/// The objects whose class has a motion level, with masks: inside each box the nearest large depth cluster is the object, the
-/// background seen through the box stays. Boxes that are not finite, empty or outside the image are left out; at most
-/// kMaxObjects, the highest scores first.
+/// The objects whose class has a motion level, with masks: inside each box the nearest large depth cluster is the
+/// object, the background seen through the box stays. Boxes that are not finite, empty or outside the image are left
+/// out; at most kMaxObjects, the highest scores first.
 std::vector<SceneObject> find_objects(const std::vector<vision::Detection>& detections, const MotionLevels& levels,
                                       const geometry::CameraModel& camera, const DepthGrid& grid,
                                       const DepthClusters& clusters, const MaskConfig& config);

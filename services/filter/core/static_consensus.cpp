@@ -18,12 +18,14 @@ std::vector<double> tile_votes(const std::vector<PointSighting>& sightings) {
   constexpr double kTilePx = 40;
   std::map<std::pair<int, int>, int> in_tile;
   const auto tile = [](const PointSighting& s) {
-    return std::pair(static_cast<int>(std::floor(s.pixel.x() / kTilePx)), static_cast<int>(std::floor(s.pixel.y() / kTilePx)));
+    return std::pair(static_cast<int>(std::floor(s.pixel.x() / kTilePx)),
+                     static_cast<int>(std::floor(s.pixel.y() / kTilePx)));
   };
   for (const PointSighting& s : sightings) ++in_tile[tile(s)];
   std::vector<double> votes;
   votes.reserve(sightings.size());
-  for (const PointSighting& s : sightings) votes.push_back(1.0 / (in_tile[tile(s)] * static_cast<double>(in_tile.size())));
+  for (const PointSighting& s : sightings)
+    votes.push_back(1.0 / (in_tile[tile(s)] * static_cast<double>(in_tile.size())));
   return votes;
 }
 
@@ -36,7 +38,8 @@ std::vector<PointSighting> thin_out(const std::vector<PointSighting>& all, std::
 }
 
 /// All sightings, then those of each of the clusters with most sightings.
-std::vector<std::vector<PointSighting>> proposing_groups(const std::vector<PointSighting>& sightings, const EgoMotionConfig& config) {
+std::vector<std::vector<PointSighting>> proposing_groups(const std::vector<PointSighting>& sightings,
+                                                         const EgoMotionConfig& config) {
   std::map<int, std::vector<PointSighting>> by_cluster;
   for (const PointSighting& s : sightings) {
     if (s.cluster >= 0) by_cluster[s.cluster].push_back(s);
@@ -46,14 +49,16 @@ std::vector<std::vector<PointSighting>> proposing_groups(const std::vector<Point
     if (static_cast<int>(members.size()) >= config.min_inliers) groups.push_back(std::move(members));
   }
   std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
-  if (groups.size() > static_cast<std::size_t>(config.max_proposals)) groups.resize(static_cast<std::size_t>(config.max_proposals));
+  if (groups.size() > static_cast<std::size_t>(config.max_proposals))
+    groups.resize(static_cast<std::size_t>(config.max_proposals));
   groups.insert(groups.begin(), sightings);
   return groups;
 }
 
 }  // namespace
 
-double displacement_chi2(const PointSighting& s, const geometry::CameraModel& camera, const Eigen::Isometry3d& T_camera_world) {
+double displacement_chi2(const PointSighting& s, const geometry::CameraModel& camera,
+                         const Eigen::Isometry3d& T_camera_world) {
   constexpr double kBehindCamera = 1e6;
   const Eigen::Vector3d p_camera = T_camera_world * s.p_world;
   if (p_camera.z() < vision::kMinProjectionDepth_m) return kBehindCamera;
@@ -75,7 +80,8 @@ RefinedPose refine_pose(const std::vector<PointSighting>& sightings, const geome
 }
 
 StaticConsensus find_static_consensus(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
-                                      const Eigen::Isometry3d& T_world_camera_predicted, const EgoMotionConfig& config) {
+                                      const Eigen::Isometry3d& T_world_camera_predicted,
+                                      const EgoMotionConfig& config) {
   const std::vector<double> votes = tile_votes(sightings);
   StaticConsensus best{T_world_camera_predicted, 0};
   const auto propose = [&](const Eigen::Isometry3d& T_world_camera) {

@@ -20,7 +20,8 @@ struct PointSighting {
 };
 
 /// Squared displacement in the image in units of sigma: about chi2 with 2 degrees of freedom for a point at rest.
-double displacement_chi2(const PointSighting& sighting, const geometry::CameraModel& camera, const Eigen::Isometry3d& T_camera_world);
+double displacement_chi2(const PointSighting& sighting, const geometry::CameraModel& camera,
+                         const Eigen::Isometry3d& T_camera_world);
 
 /// Robust least squares over some sightings (common/vision/pose_optimizer).
 struct RefinedPose {
@@ -37,11 +38,11 @@ struct StaticConsensus {
   double image_share = 0;  ///< how much of the image agrees, 1 = all of it exactly
 };
 
-/// Every large surface (depth cluster) proposes the motion under which it stands still, all sightings together propose one,
-/// and the prediction is one. The image decides: every 40 px tile has one vote, which its sightings share, so that a mover with
-/// much texture does not outvote plain walls. Agreement is graded (1 - chi2/limit), since a shift of the camera and a rotation
-/// nearly cancel on distant walls: a wrong motion that carries the mover along is betrayed by many small residuals only.
-/// docs/theory/dynamic_points.md section 2.
+/// Every large surface (depth cluster) proposes the motion under which it stands still, all sightings together propose
+/// one, and the prediction is one. The image decides: every 40 px tile has one vote, which its sightings share, so that
+/// a mover with much texture does not outvote plain walls. Agreement is graded (1 - chi2/limit), since a shift of the
+/// camera and a rotation nearly cancel on distant walls: a wrong motion that carries the mover along is betrayed by
+/// many small residuals only. docs/theory/dynamic_points.md section 2.
 StaticConsensus find_static_consensus(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
                                       const Eigen::Isometry3d& T_world_camera_predicted, const EgoMotionConfig& config);
 

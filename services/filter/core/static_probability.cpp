@@ -7,20 +7,23 @@
 namespace rtd::filter {
 namespace {
 
-constexpr float kMovingProbability = 0.02F;   // geometry saw it move
-constexpr float kMayMoveProbability = 0.1F;   // a person of whom geometry says nothing
+constexpr float kMovingProbability = 0.02F;  // geometry saw it move
+constexpr float kMayMoveProbability = 0.1F;  // a person of whom geometry says nothing
 
 msg::FeatureFlag mask_flag(MotionLevel level) {
   switch (level) {
-    case MotionLevel::kHigh: return msg::kFeatureInHighMask;
-    case MotionLevel::kMedium: return msg::kFeatureInMediumMask;
-    case MotionLevel::kLow: break;
+    case MotionLevel::kHigh:
+      return msg::kFeatureInHighMask;
+    case MotionLevel::kMedium:
+      return msg::kFeatureInMediumMask;
+    case MotionLevel::kLow:
+      break;
   }
   return msg::kFeatureInLowMask;
 }
 
-/// The object on each cell, dilated, -1 = none. Where masks overlap the higher level wins: a monitor behind a person is left
-/// to geometry, the person is not.
+/// The object on each cell, dilated, -1 = none. Where masks overlap the higher level wins: a monitor behind a person is
+/// left to geometry, the person is not.
 std::vector<std::int16_t> paint_objects(const FrameKnowledge& known, int dilate_cells) {
   std::vector<std::int16_t> painted(static_cast<std::size_t>(known.shape.size()), -1);
   for (const MotionLevel level : {MotionLevel::kLow, MotionLevel::kMedium, MotionLevel::kHigh}) {
@@ -46,7 +49,8 @@ float geometric_probability(const FrameKnowledge& known, const std::vector<std::
 }
 
 /// The fusion rule for a feature on an object.
-float object_probability(const FrameKnowledge& known, std::size_t object, float geometric, FilterMode mode, const FusionConfig& fusion) {
+float object_probability(const FrameKnowledge& known, std::size_t object, float geometric, FilterMode mode,
+                         const FusionConfig& fusion) {
   const SceneObject& on = known.objects[object];
   if (mode == FilterMode::kSemantic) return on.level == MotionLevel::kHigh ? kMovingProbability : geometric;
   if (on.flat || on.level == MotionLevel::kLow) return geometric;
@@ -70,7 +74,8 @@ void keep_best_of_doubtful(std::vector<msg::Feature>& features, const FusionConf
       doubtful.push_back(&feature);
     }
   }
-  std::stable_sort(doubtful.begin(), doubtful.end(), [](const auto* a, const auto* b) { return a->static_probability > b->static_probability; });
+  std::stable_sort(doubtful.begin(), doubtful.end(),
+                   [](const auto* a, const auto* b) { return a->static_probability > b->static_probability; });
   for (msg::Feature* feature : doubtful) {
     if (kept >= fusion.min_static_features) return;
     feature->flags &= static_cast<std::uint8_t>(~msg::kFeatureRemoved);
@@ -88,7 +93,8 @@ void weigh_static_probability(std::vector<msg::Feature>& features, const FrameKn
     const auto cell = static_cast<std::size_t>(known.shape.nearest_cell(feature.u_px, feature.v_px));
     feature.flags = 0;
     if (dynamic[cell] != 0) feature.flags |= msg::kFeatureGeometryMoving;
-    if (dynamic[cell] == 0 && known.regions.trusted && known.evidence.consistent[cell] > 0) feature.flags |= msg::kFeatureGeometryStatic;
+    if (dynamic[cell] == 0 && known.regions.trusted && known.evidence.consistent[cell] > 0)
+      feature.flags |= msg::kFeatureGeometryStatic;
     feature.static_probability = geometric_probability(known, dynamic, cell, fusion);
     feature.object_id = painted[cell];
     if (feature.object_id >= 0) {

@@ -16,8 +16,8 @@ namespace rtd::filter {
 struct FrameKnowledge {
   GridShape shape;
   const std::vector<SceneObject>& objects;
-  const std::vector<ObjectMotion>& motions;   ///< per object
-  const std::vector<double>& resting_s;       ///< per object
+  const std::vector<ObjectMotion>& motions;  ///< per object
+  const std::vector<double>& resting_s;      ///< per object
   const DynamicRegions& regions;
   const DepthEvidence& evidence;
 };

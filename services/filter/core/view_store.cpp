@@ -11,8 +11,8 @@
 namespace rtd::filter {
 namespace {
 
-constexpr double kNewWorldM = 0.25, kNewWorldRad = 0.25;        // slam and we differ by more: another world
-constexpr double kNearM = 0.8, kSameWayRad = 0.5;               // a keyframe worth comparing with
+constexpr double kNewWorldM = 0.25, kNewWorldRad = 0.25;  // slam and we differ by more: another world
+constexpr double kNearM = 0.8, kSameWayRad = 0.5;         // a keyframe worth comparing with
 constexpr std::array<std::int64_t, 4> kAgesNs{100'000'000, 270'000'000, 550'000'000, 1'000'000'000};
 
 auto find_seq(std::deque<View>& views, std::uint64_t seq) {
@@ -41,7 +41,8 @@ bool ViewStore::correct(std::uint64_t seq, const Eigen::Isometry3d& T_world_came
   for (auto later = found + 1; later != recent_.end(); ++later) {
     if (!later->posed_by_slam) later->T_world_camera = geometry::normalized(T_new_old * later->T_world_camera);
   }
-  if (T_camera_change.translation().norm() < kNewWorldM && geometry::rotation_angle_rad(T_camera_change) < kNewWorldRad) return true;
+  if (T_camera_change.translation().norm() < kNewWorldM && geometry::rotation_angle_rad(T_camera_change) < kNewWorldRad)
+    return true;
   recent_.erase(recent_.begin(), found);
   keyframes_.clear();
   return false;
@@ -65,6 +66,7 @@ void ViewStore::forget_keyframe(std::uint64_t seq) {
 
 const View& ViewStore::of_age(std::int64_t now_ns, std::int64_t age_ns) const {
   return *std::min_element(recent_.begin(), recent_.end(), [&](const View& a, const View& b) {
+    if (a.settled != b.settled) return a.settled;
     return std::abs(now_ns - age_ns - a.stamp_ns) < std::abs(now_ns - age_ns - b.stamp_ns);
   });
 }
@@ -83,7 +85,8 @@ std::vector<const View*> ViewStore::references(std::int64_t now_ns, const Eigen:
     const Eigen::Isometry3d T_camera_keyframe = T_world_camera.inverse() * keyframe.T_world_camera;
     const double distance_m = T_camera_keyframe.translation().norm();
     const double angle_rad = geometry::rotation_angle_rad(T_camera_keyframe);
-    if (distance_m < kNearM && angle_rad < kSameWayRad) near.emplace_back(distance_m / kNearM + angle_rad / kSameWayRad, &keyframe);
+    if (distance_m < kNearM && angle_rad < kSameWayRad)
+      near.emplace_back(distance_m / kNearM + angle_rad / kSameWayRad, &keyframe);
   }
   std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [cost, keyframe] : near) {

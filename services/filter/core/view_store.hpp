@@ -18,6 +18,8 @@ struct View {
   std::int64_t stamp_ns = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   bool posed_by_slam = false;
+  bool settled =
+      true;  ///< its pose was found against a view old enough to tell movers from the camera: fit as a reference
   DepthGrid grid;
   std::vector<std::uint8_t> dynamic;   ///< per cell, 1 = something moved here
   std::vector<msg::Feature> features;  ///< judged ones
@@ -25,8 +27,8 @@ struct View {
 
 /// The views of the last second and of the last keyframes, bounded in number (about 0.4 MB each), with their poses.
 ///
-/// Poses are those of our own quick estimate until slam says better; then the later ones follow. When slam's word is far from
-/// ours, its map has started anew or it has relocalised: older views are dropped, they lie in another world.
+/// Poses are those of our own quick estimate until slam says better; then the later ones follow. When slam's word is
+/// far from ours, its map has started anew or it has relocalised: older views are dropped, they lie in another world.
 class ViewStore {
  public:
   void add(View view);
@@ -42,11 +44,12 @@ class ViewStore {
   const View& newest() const { return recent_.back(); }
   /// The view before the newest one; null when there is none.
   const View* second_newest() const { return recent_.size() < 2 ? nullptr : &recent_[recent_.size() - 2]; }
-  /// The recent view whose age is nearest to the wanted one. Precondition: not empty.
+  /// The settled recent view whose age is nearest to the wanted one. Precondition: not empty.
   const View& of_age(std::int64_t now_ns, std::int64_t age_ns) const;
-  /// Up to `count` views to compare a camera at this pose with: recent ones of graded ages, then keyframes older than those
-  /// whose camera stood near and looked the same way.
-  std::vector<const View*> references(std::int64_t now_ns, const Eigen::Isometry3d& T_world_camera, std::size_t count) const;
+  /// Up to `count` views to compare a camera at this pose with: recent ones of graded ages, then keyframes older than
+  /// those whose camera stood near and looked the same way.
+  std::vector<const View*> references(std::int64_t now_ns, const Eigen::Isometry3d& T_world_camera,
+                                      std::size_t count) const;
   std::size_t size() const { return recent_.size() + keyframes_.size(); }
 
   static constexpr std::size_t kMaxRecent = 32;
