@@ -133,8 +133,9 @@ TEST(JpegSize, is_read_from_the_frame_header) {
   for (std::size_t length = 0; length < 17; ++length) {
     EXPECT_EQ(jpeg_size({jpeg.begin(), jpeg.begin() + static_cast<std::ptrdiff_t>(length)}).width, 0) << length;
   }
-  std::vector<unsigned char> huffman_first{0xFF, 0xD8, 0xFF, 0xC4, 0x00, 0x08, 9, 9, 9, 9, 9, 9};
-  huffman_first.insert(huffman_first.end(), jpeg.begin() + 2, jpeg.end());
+  const std::vector<unsigned char> huffman_first{0xFF, 0xD8, 0xFF, 0xC4, 0x00, 0x08, 9,    9,    9,
+                                                 9,    9,    9,    0xFF, 0xC0, 0x00, 0x11, 0x08, 0x01,
+                                                 0xE0, 0x02, 0x80, 0x03, 0x01, 0x22, 0x00};
   EXPECT_EQ(jpeg_size(huffman_first).width, 640);
   EXPECT_EQ(jpeg_size(bytes("this is no picture at all")).width, 0);
 }
