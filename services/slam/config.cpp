@@ -21,7 +21,7 @@ void bind_tracker(ConfigBinder& binder, TrackerConfig& c) {
                "search radius around the predicted position");
   binder.field("tracker.local_radius_px", c.local_radius_px, {1.0, 20.0},
                "factor on 2.5 / 4 px when the local map is searched");
-  binder.field("tracker.min_motion_inliers", c.min_motion_inliers, {5, 500},
+  binder.field("tracker.min_motion_matches", c.min_motion_matches, {5, 500},
                "matches with the last frame; fewer: try the reference keyframe");
   binder.field("tracker.min_inliers", c.min_inliers, {6, 500}, "landmarks that a pose needs");
   binder.field("tracker.recently_lost_frames", c.recently_lost_frames, {0, 100000},

@@ -17,7 +17,7 @@ struct TrackerConfig {
   int min_initial_points = 100;    ///< features with depth that the first keyframe needs
   double motion_radius_px = 15.0;  ///< search radius of the motion model at the finest octave
   double local_radius_px = 3.0;    ///< factor on 2.5 / 4 px when the local map is searched
-  int min_motion_inliers = 20;     ///< fewer: track against the reference keyframe instead
+  int min_motion_matches = 20;     ///< matches with the last frame; fewer: track against the reference keyframe
   int min_inliers = 30;            ///< landmarks that a pose needs to count as tracked
   int recently_lost_frames = 30;   ///< failed frames before "recently lost" becomes "lost"
   int recovery_keyframes = 3;      ///< keyframes tried in each frame while lost

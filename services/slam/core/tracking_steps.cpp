@@ -96,7 +96,7 @@ std::vector<SearchPoint> predict_points(const Frame& frame, const TrackedFrame& 
 
 PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
                            const Eigen::Isometry3d& T_world_camera_predicted, const SlamConfig& config) {
-  constexpr int kMinMatches = 20, kMinLandmarks = 10;
+  constexpr int kMinLandmarks = 10;
   const std::vector<Association> points = points_of(last, map, config.sensor.close_depth_m);
   const MatchRules rules{100, 1.0, RotationCheck::kOn};
   std::vector<Match> matches;
@@ -104,9 +104,9 @@ PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const L
     const auto search =
         predict_points(frame, last, points, T_world_camera_predicted, widening * config.tracker.motion_radius_px);
     matches = match_projected(frame, search, {}, rules);
-    if (static_cast<int>(matches.size()) >= kMinMatches) break;
+    if (static_cast<int>(matches.size()) >= config.tracker.min_motion_matches) break;
   }
-  if (static_cast<int>(matches.size()) < kMinMatches) return {};
+  if (static_cast<int>(matches.size()) < config.tracker.min_motion_matches) return {};
   std::vector<Association> associations;
   for (const Match& match : matches) {
     associations.push_back(points[match.tag]);

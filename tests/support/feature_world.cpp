@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/feature_world.hpp"
+
+#include <cmath>
+
+#include "common/geometry/se3.hpp"
+
+namespace rtd::test_support {
+
+FeatureWorld::FeatureWorld(const Options& options) : options_(options) {
+  std::mt19937_64 random(options.seed);
+  std::uniform_real_distribution<double> side(-1.2, 1.2), depth(options.min_depth_m, options.max_depth_m), unit(0, 1);
+  for (int i = 0; i < options.points; ++i) {
+    Point point;
+    const double z = depth(random);
+    point.p_world = {side(random) * z, side(random) * z * 0.75, z};
+    point.max_distance_m = z * std::pow(1.2, 4 * unit(random));
+    for (std::uint8_t& byte : point.descriptor) byte = static_cast<std::uint8_t>(random());
+    point.angle_rad = static_cast<float>(6.28 * unit(random));
+    points_.push_back(point);
+  }
+}
+
+Eigen::Isometry3d FeatureWorld::T_world_camera(std::uint64_t seq) {
+  const double t = static_cast<double>(seq) / 30.0;
+  geometry::Vector6d twist;
+  twist << 0.3 * std::sin(1.5 * t), 0.15 * std::sin(1.1 * t), 0.2 * std::sin(0.9 * t), 0.1 * std::sin(1.3 * t),
+      0.17 * std::sin(t), 0.12 * std::sin(0.8 * t);
+  return geometry::se3_exp(twist);
+}
+
+std::unique_ptr<msg::FeatureFrame> FeatureWorld::view(std::uint64_t seq,
+                                                      const Eigen::Isometry3d& T_world_camera) const {
+  auto frame = std::make_unique<msg::FeatureFrame>();
+  frame->seq = seq;
+  frame->stamp_ns = stamp_ns(seq);
+  frame->intrinsics = {kFx, kFy, kCx, kCy};
+  frame->width = kWidth;
+  frame->height = kHeight;
+  std::mt19937_64 random(options_.seed * 7919 + seq);
+  std::normal_distribution<double> normal(0, 1);
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  const double roll_rad = geometry::so3_log(T_world_camera.linear()).z();
+  for (const Point& point : points_) {
+    const Eigen::Vector3d p_camera = T_camera_world * point.p_world;
+    if (p_camera.z() < 0.3 || frame->count == msg::kMaxFeatures) continue;
+    const int octave = static_cast<int>(std::ceil(std::log(point.max_distance_m / p_camera.norm()) / std::log(1.2)));
+    const double u = kFx * p_camera.x() / p_camera.z() + kCx + options_.noise_px * normal(random);
+    const double v = kFy * p_camera.y() / p_camera.z() + kCy + options_.noise_px * normal(random);
+    if (u < 0 || v < 0 || u >= kWidth || v >= kHeight || octave > 7) continue;
+    msg::Feature& feature = frame->features[frame->count++];
+    feature = {};
+    feature.u_px = feature.u_raw_px = static_cast<float>(u);
+    feature.v_px = feature.v_raw_px = static_cast<float>(v);
+    const double noise_m = options_.depth_noise_factor * p_camera.z() * p_camera.z() * normal(random);
+    feature.depth_m = static_cast<float>(p_camera.z() + noise_m);
+    feature.angle_rad = point.angle_rad - static_cast<float>(roll_rad);
+    feature.static_probability = 1;
+    feature.octave = static_cast<std::uint8_t>(std::max(octave, 0));
+    feature.object_id = -1;
+    feature.descriptor = point.descriptor;
+    for (int i = 0; i < options_.flipped_bits; ++i) {
+      const std::uint64_t bit = random() % 256;
+      feature.descriptor[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
+    }
+  }
+  return frame;
+}
+
+}  // namespace rtd::test_support

@@ -1,0 +1,269 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/slam_system.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <set>
+#include <sstream>
+
+#include "common/geometry/se3.hpp"
+#include "common/msg/transform_eigen.hpp"
+#include "tests/support/feature_world.hpp"
+
+namespace rtd::slam {
+namespace {
+
+using msg::TrackingState;
+using test_support::FeatureWorld;
+
+constexpr std::uint64_t kFrames = 90;
+
+std::int64_t frozen_clock() {
+  return 0;
+}
+
+FeatureWorld noisy_world() {
+  FeatureWorld::Options options;
+  options.noise_px = 0.5;
+  options.depth_noise_factor = 0.0015;
+  options.flipped_bits = 12;
+  return FeatureWorld(options);
+}
+
+SlamSystem make_slam(MappingMode mode = MappingMode::kSynchronous) {
+  return {SlamConfig{}, mode, frozen_clock};
+}
+
+std::unique_ptr<msg::FeatureFrame> view(const FeatureWorld& world, std::uint64_t seq) {
+  return world.view(seq, FeatureWorld::T_world_camera(seq));
+}
+
+std::unique_ptr<msg::FeatureFrame> empty_view(std::uint64_t seq) {
+  auto frame = FeatureWorld({}).view(seq, Eigen::Isometry3d::Identity());
+  frame->count = 0;
+  return frame;
+}
+
+double position_error_m(const msg::Transform& estimate, std::uint64_t seq) {
+  return (msg::to_isometry(estimate).translation() - FeatureWorld::T_world_camera(seq).translation()).norm();
+}
+
+TEST(SlamSystem, follows_the_camera_through_an_exact_world) {
+  const FeatureWorld world({});
+  SlamSystem slam = make_slam();
+  for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
+    const SlamOutput output = slam.process(*view(world, seq));
+    ASSERT_EQ(output.result.state, TrackingState::kOk) << "frame " << seq << ": " << output.problem;
+    EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 1e-3) << "frame " << seq;
+  }
+}
+
+TEST(SlamSystem, stays_within_a_centimetre_with_noise) {
+  const FeatureWorld world = noisy_world();
+  SlamSystem slam = make_slam();
+  for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
+    const SlamOutput output = slam.process(*view(world, seq));
+    ASSERT_EQ(output.result.state, TrackingState::kOk);
+    EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 0.01) << "frame " << seq;
+    if (seq == 0) continue;
+    const Eigen::Map<const Eigen::Matrix<double, 6, 6>> covariance(output.result.covariance.data());
+    const double sigma_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+    EXPECT_GT(sigma_m, 1e-5);
+    EXPECT_LT(sigma_m, 0.01);
+  }
+  slam.finish();
+  EXPECT_EQ(slam.trajectory().size(), kFrames);
+  EXPECT_GE(slam.keyframes().size(), 2U);
+  EXPECT_GT(slam.map_points().size(), 300U);
+}
+
+TEST(SlamSystem, gives_the_same_bits_twice) {
+  const FeatureWorld world = noisy_world();
+  std::array<std::string, 2> texts;
+  for (std::string& text : texts) {
+    SlamSystem slam = make_slam();
+    for (std::uint64_t seq = 0; seq < kFrames; ++seq) slam.process(*view(world, seq));
+    std::ostringstream out;
+    write_tum_trajectory(out, slam.trajectory());
+    write_ply(out, slam.map_points());
+    text = out.str();
+  }
+  EXPECT_EQ(texts[0], texts[1]);
+}
+
+TEST(SlamSystem, maps_in_a_thread_as_well) {
+  const FeatureWorld world = noisy_world();
+  SlamSystem slam = make_slam(MappingMode::kThreaded);
+  for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
+    ASSERT_EQ(slam.process(*view(world, seq)).result.state, TrackingState::kOk) << "frame " << seq;
+  }
+  slam.finish();
+  const auto trajectory = slam.trajectory();
+  ASSERT_EQ(trajectory.size(), kFrames);
+  for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
+    EXPECT_LT((trajectory[seq].T_world_camera.translation() - FeatureWorld::T_world_camera(seq).translation()).norm(),
+              0.01);
+  }
+}
+
+TEST(SlamSystem, says_lost_without_features_and_finds_back) {
+  const FeatureWorld world({});
+  SlamConfig config;
+  config.tracker.recently_lost_frames = 5;
+  SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);
+  std::uint64_t seq = 0;
+  for (; seq < 20; ++seq) slam.process(*view(world, seq));
+  const std::size_t tracked = slam.frames_tracked();
+  for (; seq < 30; ++seq) {
+    const SlamOutput output = slam.process(*empty_view(seq));
+    EXPECT_EQ(output.result.state, seq < 25 ? TrackingState::kRecentlyLost : TrackingState::kLost) << "frame " << seq;
+    EXPECT_FALSE(output.problem.empty());
+  }
+  EXPECT_EQ(slam.frames_tracked(), tracked) << "a pose was invented";
+  const SlamOutput back = slam.process(*view(world, seq));
+  ASSERT_EQ(back.result.state, TrackingState::kOk) << back.problem;
+  EXPECT_LT(position_error_m(back.result.T_world_camera, seq), 1e-3);
+}
+
+TEST(SlamSystem, finds_back_after_a_jump) {
+  const FeatureWorld world({});
+  SlamSystem slam = make_slam();
+  for (std::uint64_t seq = 0; seq < 10; ++seq) slam.process(*view(world, seq));
+  constexpr std::uint64_t kFar = 35;  // 0.25 m and some degrees away, next frame
+  auto jumped = world.view(10, FeatureWorld::T_world_camera(kFar));
+  const SlamOutput output = slam.process(*jumped);
+  ASSERT_EQ(output.result.state, TrackingState::kOk) << output.problem;
+  EXPECT_LT(position_error_m(output.result.T_world_camera, kFar), 1e-3);
+}
+
+TEST(SlamSystem, stays_initialising_without_depth) {
+  const FeatureWorld world({});
+  SlamSystem slam = make_slam();
+  for (std::uint64_t seq = 0; seq < 3; ++seq) {
+    auto frame = view(world, seq);
+    for (msg::Feature& feature : frame->features) feature.depth_m = 0;
+    const SlamOutput output = slam.process(*frame);
+    EXPECT_EQ(output.result.state, TrackingState::kInitializing);
+    EXPECT_THAT(output.problem, ::testing::HasSubstr("depth"));
+    EXPECT_TRUE(output.events.empty());
+  }
+  EXPECT_EQ(slam.process(*view(world, 3)).result.state, TrackingState::kOk);
+}
+
+TEST(SlamSystem, drops_features_with_impossible_values_and_counts_them) {
+  const FeatureWorld world({});
+  SlamSystem slam = make_slam();
+  slam.process(*view(world, 0));
+  auto frame = view(world, 1);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  frame->features[0].u_px = nan;
+  frame->features[1].depth_m = nan;
+  frame->features[2].depth_m = -1;
+  frame->features[3].angle_rad = std::numeric_limits<float>::infinity();
+  frame->features[4].static_probability = nan;
+  frame->features[5].static_probability = 2;
+  frame->features[6].octave = 8;
+  const SlamOutput output = slam.process(*frame);
+  EXPECT_EQ(output.invalid_features, 7U);
+  EXPECT_EQ(output.result.state, TrackingState::kOk);
+  EXPECT_LT(position_error_m(output.result.T_world_camera, 1), 1e-3);
+}
+
+TEST(SlamSystem, refuses_frames_without_intrinsics_or_size) {
+  const FeatureWorld world({});
+  SlamSystem slam = make_slam();
+  auto frame = view(world, 0);
+  frame->intrinsics = {0, 0, 0, 0};
+  EXPECT_THAT(slam.process(*frame).problem, ::testing::HasSubstr("intrinsics"));
+  slam.process(*view(world, 1));
+  frame = view(world, 2);
+  frame->count = msg::kMaxFeatures + 1;
+  const SlamOutput output = slam.process(*frame);
+  EXPECT_NE(output.result.state, TrackingState::kOk);
+  EXPECT_THAT(output.problem, ::testing::HasSubstr("out of range"));
+  EXPECT_EQ(slam.process(*view(world, 3)).result.state, TrackingState::kOk);
+}
+
+TEST(SlamSystem, keeps_its_map_when_the_source_starts_again) {
+  const FeatureWorld world({});
+  SlamSystem slam = make_slam();
+  for (std::uint64_t seq = 0; seq < 40; ++seq) slam.process(*view(world, seq));
+  const SlamOutput output = slam.process(*view(world, 0));
+  EXPECT_EQ(slam.source_restarts(), 1U);
+  ASSERT_EQ(output.result.state, TrackingState::kOk) << output.problem;
+  EXPECT_LT(position_error_m(output.result.T_world_camera, 0), 1e-3);
+  EXPECT_EQ(slam.process(*view(world, 1)).result.state, TrackingState::kOk);
+}
+
+TEST(SlamSystem, never_uses_removed_features) {
+  const FeatureWorld world({});
+  SlamSystem slam = make_slam();
+  for (std::uint64_t seq = 0; seq < 30; ++seq) {
+    auto frame = view(world, seq);
+    std::uint32_t removed = 0;
+    for (std::uint32_t i = 0; i < frame->count; ++i) {
+      msg::Feature& feature = frame->features[i];
+      if (feature.u_px >= 320) continue;
+      // The left half moves: 0.5 m nearer and ten pixels further in each frame.
+      feature.u_px = static_cast<float>((static_cast<std::uint64_t>(feature.u_px) + 10 * seq) % 320);
+      feature.depth_m -= 0.5F;
+      feature.flags = msg::kFeatureRemoved;
+      ++removed;
+    }
+    const SlamOutput output = slam.process(*frame);
+    ASSERT_EQ(output.result.state, TrackingState::kOk);
+    EXPECT_EQ(output.result.features_removed, removed);
+    EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 1e-3) << "frame " << seq;
+  }
+}
+
+TEST(SlamSystem, low_static_probability_takes_the_weight_from_movers) {
+  const FeatureWorld world({});
+  SlamSystem slam = make_slam();
+  double worst_m = 0;
+  for (std::uint64_t seq = 0; seq < 30; ++seq) {
+    auto frame = view(world, seq);
+    for (std::uint32_t i = 0; i < frame->count; ++i) {
+      msg::Feature& feature = frame->features[i];
+      if (feature.u_px >= 200) continue;
+      feature.v_px += 0.4F * static_cast<float>(seq);  // a third of the image creeps away, too slowly to be an outlier
+      feature.static_probability = 0.01F;
+    }
+    const SlamOutput output = slam.process(*frame);
+    ASSERT_EQ(output.result.state, TrackingState::kOk);
+    worst_m = std::max(worst_m, position_error_m(output.result.T_world_camera, seq));
+  }
+  EXPECT_LT(worst_m, 2e-3);
+}
+
+TEST(SlamSystem, events_tell_the_whole_story_of_the_keyframes) {
+  const FeatureWorld world = noisy_world();
+  SlamSystem slam = make_slam();
+  std::uint64_t next_index = 0;
+  std::set<std::uint32_t> known;
+  for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
+    const SlamOutput output = slam.process(*view(world, seq));
+    for (const msg::KeyframeEvent& event : output.events) {
+      EXPECT_EQ(event.event_index, next_index++);
+      switch (event.kind) {
+        case msg::KeyframeEventKind::kCreated:
+          EXPECT_TRUE(known.insert(event.keyframe_id).second);
+          EXPECT_EQ(event.frame_seq, seq);
+          break;
+        case msg::KeyframeEventKind::kCorrected:
+          EXPECT_TRUE(known.count(event.keyframe_id));
+          break;
+        case msg::KeyframeEventKind::kRemoved:
+          EXPECT_EQ(known.erase(event.keyframe_id), 1U);
+          break;
+      }
+    }
+    EXPECT_EQ(output.result.event_count, next_index);
+    EXPECT_EQ(output.result.keyframes, known.size());
+  }
+}
+
+}  // namespace
+}  // namespace rtd::slam
