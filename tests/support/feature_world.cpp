@@ -25,8 +25,8 @@ FeatureWorld::FeatureWorld(const Options& options) : options_(options) {
 Eigen::Isometry3d FeatureWorld::T_world_camera(std::uint64_t seq) {
   const double t = static_cast<double>(seq) / 30.0;
   geometry::Vector6d twist;
-  twist << 0.3 * std::sin(1.5 * t), 0.15 * std::sin(1.1 * t), 0.2 * std::sin(0.9 * t), 0.1 * std::sin(1.3 * t),
-      0.17 * std::sin(t), 0.12 * std::sin(0.8 * t);
+  twist << 0.6 * std::sin(1.5 * t), 0.3 * std::sin(1.1 * t), 0.3 * std::sin(0.9 * t), 0.2 * std::sin(1.3 * t),
+      0.4 * std::sin(t), 0.2 * std::sin(0.8 * t);
   return geometry::se3_exp(twist);
 }
 

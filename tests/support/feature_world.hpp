@@ -28,7 +28,7 @@ class FeatureWorld {
 
   /// The features seen from a pose; seq and a stamp of 30 Hz. Same arguments, same frame.
   std::unique_ptr<msg::FeatureFrame> view(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera) const;
-  /// A smooth hand-held motion, identity at seq 0: about 0.3 m and 10 degrees to and fro.
+  /// A smooth hand-held motion, identity at seq 0: about 0.6 m and 25 degrees to and fro.
   static Eigen::Isometry3d T_world_camera(std::uint64_t seq);
   static constexpr std::int64_t stamp_ns(std::uint64_t seq) {
     return 1'000'000'000 + static_cast<std::int64_t>(seq) * 33'333'333;

@@ -81,7 +81,7 @@ TEST(BundleAdjustment, recovers_a_disturbed_scene) {
 TEST(BundleAdjustment, few_iterations_are_enough_with_noise) {
   Scene scene = make_scene(0.5);
   adjust_bundle(scene.problem, {5, 5});
-  for (std::size_t i = 2; i < 5; ++i) EXPECT_LT(camera_error_m(scene, i), 3e-3) << "camera " << i;
+  for (std::size_t i = 2; i < 5; ++i) EXPECT_LT(camera_error_m(scene, i), 5e-3) << "camera " << i;
 }
 
 TEST(BundleAdjustment, fixed_cameras_do_not_move) {
@@ -101,12 +101,12 @@ TEST(BundleAdjustment, holds_the_first_camera_when_none_is_fixed) {
 
 TEST(BundleAdjustment, marks_outliers_and_is_not_bent_by_them) {
   Scene scene = make_scene(0.2);
-  for (std::size_t i = 310; i < scene.problem.observations.size(); i += 10) {
+  for (std::size_t i = 310; i < scene.problem.observations.size(); i += 7) {
     scene.problem.observations[i].measured.pixel.x() += 25;
   }
   adjust_bundle(scene.problem, {10, 10});
   int missed = 0;
-  for (std::size_t i = 310; i < scene.problem.observations.size(); i += 10)
+  for (std::size_t i = 310; i < scene.problem.observations.size(); i += 7)
     missed += scene.problem.observations[i].inlier ? 1 : 0;
   EXPECT_EQ(missed, 0);
   for (std::size_t i = 2; i < 5; ++i) EXPECT_LT(camera_error_m(scene, i), 3e-3);
