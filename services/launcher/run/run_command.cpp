@@ -30,7 +30,7 @@ Terminal open_terminal(bool quiet) {
 }
 
 void tell_setup(const RunSetup& setup, Terminal& terminal) {
-  if (setup.weights_missing) terminal.warn("rtd: " + setup.detector_note.substr(setup.detector_note.find("no ")));
+  if (!setup.weights_advice.empty()) terminal.warn("rtd: geometry only: " + setup.weights_advice);
   terminal.say(fmt::format("source {}{}, pace {}, filter {}, detector {}, {} domain {}", setup.source,
                            setup.total_frames > 0 ? fmt::format(" ({} frames)", setup.total_frames) : "", setup.pace,
                            setup.filter_mode, setup.model_path.empty() ? "off" : setup.detector_note, setup.bus.vendor,
@@ -67,8 +67,8 @@ void write_results(const RunSetup& setup, RunResult& result) {
 RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& plans, bool quiet) {
   InterruptSignals signals;
   Terminal terminal = open_terminal(quiet);
-  tell_setup(setup, terminal);
   const std::shared_ptr<bus::Bus> bus = bus::connect(setup.bus);
+  tell_setup(setup, terminal);
   RunSession session(setup, *bus, signals, terminal);
 
   RunResult result;

@@ -97,8 +97,8 @@ void choose_detector(const RunOptions& options, RunSetup& setup) {
   const detector::ModelSearch model = detector::find_model(configured, detector::process_environment());
   if (!model && !configured.empty()) throw ConfigError(model.message);
   setup.model_path = model.path;
-  setup.weights_missing = !model;
-  setup.detector_note = model ? fs::path(model.path).filename().string() : "off (" + model.message + ")";
+  setup.weights_advice = model.message;
+  setup.detector_note = model ? fs::path(model.path).filename().string() : "off (no weights)";
 }
 
 void prepare_out_dir(const std::string& out_dir) {

@@ -19,10 +19,9 @@ struct RunSetup {
   std::string source;              ///< URI
   std::uint64_t total_frames = 0;  ///< 0 = unknown or endless
   std::string pace, filter_mode, out_dir;
-  std::string model_path;     ///< empty: no detector in this run
-  std::string detector_note;  ///< model file name, or "off (why)"
-  bool weights_missing =
-      false;  ///< the filter mode wants a detector, but there are no weights; detector_note says where
+  std::string model_path;      ///< empty: no detector in this run
+  std::string detector_note;   ///< model file name, or "off (why)"
+  std::string weights_advice;  ///< the filter mode wants a detector, but there are no weights: where to get them
   std::uint64_t frame_limit = 0;
   std::string config_file;
   std::vector<std::string> overrides;
