@@ -59,10 +59,11 @@ void tell_comparison(const RunResult& off, const RunResult& with, const std::str
             << fmt::format("  {:<28}{:>14}{:>12}\n", "static points (--filter rtd)", ate_text(with),
                            coverage_text(with))
             << "\n  both trajectories: " << page << "\n\n  next:\n"
-            << "    rtd run --source tum:FOLDER --out DIR           your own TUM RGB-D sequence, at its recorded pace\n"
-            << "    rtd run --source synthetic:office --out DIR     no data at all; Ctrl-C ends it\n"
-            << "    rtd demo --dataset fr3_walking_xyz              a real sequence with people (download)\n"
-            << "    rtd eval DIR/trajectory.txt GROUNDTRUTH         judge any trajectory\n";
+            << "    rtd run --source tum:FOLDER --out DIR                     your own TUM RGB-D sequence, at its "
+               "recorded pace\n"
+            << "    rtd run --source 'synthetic:office?frames=0' --out DIR    no data at all, endless: Ctrl-C\n"
+            << "    rtd demo --dataset fr3_walking_xyz                        a real sequence with people (download)\n"
+            << "    rtd eval DIR/trajectory.txt GROUNDTRUTH                   judge any trajectory\n";
 }
 
 int run_both(const DemoOptions& options, const std::string& source) {

@@ -14,8 +14,12 @@ std::string number(double value, const char* format, const char* unit) {
 }
 
 std::string ate(const std::optional<eval::Evaluation>& evaluation) {
-  if (!evaluation) return "- (no ground truth)";
-  return number(evaluation->ate.error_m.rmse, "{:.4f}", " m");
+  return evaluation ? number(evaluation->ate.error_m.rmse, "{:.4f}", " m") : "-";
+}
+
+std::string both_ates(const RunSummary& summary) {
+  if (summary.groundtruth.empty()) return "- (no ground truth)";
+  return ate(summary.final_trajectory) + "  (as published: " + ate(summary.online_trajectory) + ")";
 }
 
 std::string lost_places(const RunRecord& record) {
@@ -44,9 +48,7 @@ std::string run_summary_text(const RunRecord& record, const RunSummary& summary,
   text += row("frames", fmt::format("{} in, {} with pose, {} without answer{}", record.frames_in,
                                     summary.frames_tracked, record.frames_dropped, lost_places(record)));
   text += row("coverage", number(100 * summary.coverage, "{:.1f}", " %"));
-  text +=
-      row("ATE rmse", ate(summary.final_trajectory) +
-                          (summary.final_trajectory ? "  (as published: " + ate(summary.online_trajectory) + ")" : ""));
+  text += row("ATE rmse", both_ates(summary));
   text += row("speed", number(summary.fps, "{:.1f}", " frames/s"));
   text += row("latency", fmt::format("p50 {}, p99 {}", number(summary.latency_ms.p50, "{:.1f}", " ms"),
                                      number(summary.latency_ms.p99, "{:.1f}", " ms")));

@@ -81,7 +81,7 @@ TEST_F(EndToEndTest, a_filter_killed_during_the_run_is_restarted_and_the_run_com
 }
 
 TEST_F(EndToEndTest, ctrl_c_ends_an_endless_run_within_two_seconds_with_its_results) {
-  rtd_.start(arguments(123, "synthetic:office", {"--detector", "off"}));
+  rtd_.start(arguments(123, "synthetic:office?frames=0", {"--detector", "off"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   rtd_.wait_for("never printed", std::chrono::seconds(1));
   const auto pressed = std::chrono::steady_clock::now();
