@@ -9,7 +9,6 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <regex>
 #include <sstream>
 #include <vector>
 
@@ -84,6 +83,20 @@ Calibration from_values(std::map<std::string, double>& values, const std::string
   return calibration;
 }
 
+/// The digit of "freiburg2" or of a word that begins with "fr2"; no second digit may follow.
+std::optional<int> family_in(const std::string& name) {
+  for (const std::string prefix : {"freiburg", "fr"}) {
+    for (std::size_t at = name.find(prefix); at != std::string::npos; at = name.find(prefix, at + 1)) {
+      const std::size_t digit = at + prefix.size();
+      if (digit >= name.size() || name[digit] < '1' || name[digit] > '3') continue;
+      if (digit + 1 < name.size() && std::isdigit(static_cast<unsigned char>(name[digit + 1])) != 0) continue;
+      if (prefix == "fr" && at > 0 && std::isalpha(static_cast<unsigned char>(name[at - 1])) != 0) continue;
+      return name[digit] - '0';
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Calibration parse_calibration(const std::string& text, const std::string& origin) {
@@ -98,12 +111,11 @@ Calibration parse_calibration(const std::string& text, const std::string& origin
 }
 
 std::optional<int> tum_family(const std::filesystem::path& folder) {
-  static const std::regex pattern("(?:freiburg|(?:^|[^a-z])fr)([123])(?![0-9])");
   const std::vector<std::filesystem::path> parts(folder.begin(), folder.end());
   for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
     std::string name = part->string();
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (std::smatch match; std::regex_search(name, match, pattern)) return match[1].str()[0] - '0';
+    if (const std::optional<int> family = family_in(name)) return family;
   }
   return std::nullopt;
 }
