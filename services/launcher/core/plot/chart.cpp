@@ -50,7 +50,10 @@ Range range_of(const std::vector<double>& values) {
 }
 
 Range range_from_zero(const std::vector<double>& values) {
-  const double highest = range_of(values).max;
+  double highest = 0;
+  for (const double v : values) {
+    if (std::isfinite(v)) highest = std::max(highest, v);
+  }
   return {0, highest > 0 ? highest * 1.06 : 1};
 }
 

@@ -28,8 +28,13 @@ Tone coverage_tone(double coverage) {
   return coverage >= 0.9 ? Tone::kWarn : Tone::kBad;
 }
 
+const char* why_no_error(const RunSummary& summary) {
+  if (summary.groundtruth.empty()) return "no ground truth to compare with";
+  return summary.estimate.empty() ? "no poses to compare" : "poses and ground truth share no time";
+}
+
 Card accuracy_card(const RunSummary& summary) {
-  if (!summary.final_trajectory) return {"unknown", "ATE RMSE", "no ground truth to compare with"};
+  if (!summary.final_trajectory) return {"unknown", "ATE RMSE", why_no_error(summary)};
   const auto& ate = summary.final_trajectory->ate.error_m;
   std::string detail = "as published: ";
   detail += summary.online_trajectory ? length_text(summary.online_trajectory->ate.error_m.rmse) : "unknown";
@@ -37,7 +42,7 @@ Card accuracy_card(const RunSummary& summary) {
 }
 
 Card drift_card(const RunSummary& summary) {
-  if (!summary.final_trajectory) return {"unknown", "drift per second", "no ground truth to compare with"};
+  if (!summary.final_trajectory) return {"unknown", "drift per second (RPE)", why_no_error(summary)};
   const eval::RpeResult& rpe = summary.final_trajectory->rpe_per_second;
   return {length_text(rpe.translation_m.rmse), "drift per second (RPE)",
           number_text(rpe.rotation_rad.rmse * 180 / std::numbers::pi, 2, "deg") + " rotation"};
@@ -83,15 +88,15 @@ std::string trajectory_section(const RunSummary& summary, const RunTime& time) {
                          "path extends least.",
                          html::columns(svg.str(), html::table(accuracy_table(*summary.final_trajectory))));
   }
-  if (summary.estimate.empty()) return html::section("Trajectory", "No trajectory was written.", "");
+  if (summary.estimate.empty()) return html::section("Trajectory", "The run has no poses to show.", "");
   PathCurve path = path_of(summary.estimate);
   path.label = "estimate";
   path.colour = palette::kBlue;
   path.stroke.width = 2.2;
   draw_paths(svg, {0, 0, 700, 560}, {path});
-  return html::section(
-      "Trajectory", "There is no ground truth for this run, so its error is unknown. World frame: first camera frame.",
-      html::columns(svg.str(), ""));
+  return html::section("Trajectory",
+                       "Without ground truth at these times the error is unknown. World frame: the first camera frame.",
+                       html::columns(svg.str(), ""));
 }
 
 std::string error_section(const RunSummary& summary, const RunTime& time) {
@@ -190,11 +195,14 @@ std::string header_badges(const RunRecord& record, const RunSummary& summary) {
 
 std::string report_html(const RunRecord& record, const RunSummary& summary) {
   const RunTime time = run_time(record, summary);
+  // What went wrong stands first when something did.
+  const bool poor = !(summary.coverage >= 0.9);
+  const std::string events = events_section(record, summary);
   return html::page("RTD-SLAM run report", record.source,
-                    header_badges(record, summary) + summary_cards(record, summary) +
+                    header_badges(record, summary) + summary_cards(record, summary) + (poor ? events : "") +
                         trajectory_section(summary, time) + error_section(summary, time) + samples_section(record) +
                         features_section(record, summary) + latency_section(record, summary) + stage_section(summary) +
-                        processes_section(record) + losses_section(record, summary) + events_section(record, summary));
+                        processes_section(record) + losses_section(record, summary) + (poor ? "" : events));
 }
 
 }  // namespace rtd::launcher

@@ -76,10 +76,10 @@ struct LatencySeries {
 LatencySeries latency_series(const RunRecord& record, const RunTime& time) {
   LatencySeries series;
   for (const FrameRecord& frame : record.frames) {
-    const auto& tracking = frame.tracking;
-    if (tracking.published_ns <= 0 || tracking.finished_ns < tracking.published_ns) continue;
+    const auto latency = latency_ms(frame);
+    if (!latency) continue;
     series.time_s.push_back(source_time_s(frame, time));
-    series.ms.push_back(static_cast<double>(tracking.finished_ns - tracking.published_ns) * 1e-6);
+    series.ms.push_back(*latency);
   }
   return series;
 }

@@ -27,8 +27,7 @@ double mean_of(const std::vector<double>& values) {
 std::vector<double> latencies_ms(const RunRecord& record) {
   std::vector<double> latencies;
   for (const FrameRecord& frame : record.frames) {
-    if (frame.tracking.published_ns <= 0 || frame.tracking.finished_ns < frame.tracking.published_ns) continue;
-    latencies.push_back(static_cast<double>(frame.tracking.finished_ns - frame.tracking.published_ns) * 1e-6);
+    if (const auto latency = latency_ms(frame)) latencies.push_back(*latency);
   }
   return latencies;
 }
@@ -106,6 +105,13 @@ std::optional<eval::Evaluation> evaluate_or_note(const std::string& what, const 
 }
 
 }  // namespace
+
+std::optional<double> latency_ms(const FrameRecord& frame) {
+  const auto& tracking = frame.tracking;
+  if (!is_tracked(frame) || tracking.published_ns <= 0 || tracking.finished_ns < tracking.published_ns)
+    return std::nullopt;
+  return static_cast<double>(tracking.finished_ns - tracking.published_ns) * 1e-6;
+}
 
 TimeSummary summarize_times(const std::vector<double>& times_ms) {
   std::vector<double> finite;

@@ -60,6 +60,9 @@ RunSummary summarize_run(const RunRecord& record);
 /// The poses of the tracked frames as published, in order.
 eval::Trajectory online_trajectory(const RunRecord& record);
 
+/// Camera to pose, ms; nothing when the frame has no pose or was not timed.
+std::optional<double> latency_ms(const FrameRecord& frame);
+
 /// Summary of the finite values.
 TimeSummary summarize_times(const std::vector<double>& times_ms);
 

@@ -184,7 +184,7 @@ void draw_paths(plot::Svg& svg, const Area& area, const std::vector<PathCurve>& 
   std::vector<plot::LegendEntry> legend;
   for (const PathCurve& curve : curves) {
     all_m.insert(all_m.end(), curve.points_m.begin(), curve.points_m.end());
-    legend.push_back({curve.label, curve.colour});
+    if (!curve.points_m.empty()) legend.push_back({curve.label, curve.colour});
   }
   const PlaneView plane = curves.empty() ? PlaneView{} : widest_plane(curves.front().points_m);
   const Area frame{area.x + 58, area.y + 30, area.width - 58 - 14, area.height - 30 - 46};
