@@ -68,7 +68,8 @@ std::string services_text() {
 int become_service(const std::string& name, const std::vector<std::string>& arguments) {
   const std::string executable = find_executable("rtd-" + name);
   if (!executable.empty()) {
-    std::cerr << "rtd: " << replace_process(executable, arguments) << '\n';
+    const std::string failure = replace_process(executable, arguments);
+    std::cerr << "rtd: " << failure << '\n';
     return service::kRunFailed;
   }
   std::vector<std::string> known = installed_services();

@@ -11,6 +11,8 @@
 namespace rtd::launcher {
 
 InterruptSignals::InterruptSignals() {
+  // A shell starts background jobs with SIGINT ignored, and an ignored signal never reaches the descriptor.
+  for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_DFL);
   sigset_t signals;
   sigemptyset(&signals);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, number);

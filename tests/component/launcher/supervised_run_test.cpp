@@ -117,6 +117,17 @@ TEST_F(SupervisedRunTest, ctrl_c_ends_polite_and_deaf_services_within_two_second
   EXPECT_TRUE(fs::exists(scratch_ / "out/report.json"));
 }
 
+TEST_F(SupervisedRunTest, ctrl_c_also_reaches_a_run_that_a_shell_put_into_the_background) {
+  script("camera", kServe);
+  std::string line = "trap '' INT; exec '" + (scratch_ / "bin/rtd") + "'";
+  for (const std::string& argument : arguments()) line += " '" + argument + "'";
+  RtdCommand shell("/bin/sh");
+  shell.start({"-c", line});
+  ASSERT_TRUE(shell.wait_for("frame"));
+  shell.interrupt();
+  EXPECT_EQ(shell.wait(std::chrono::seconds(10)), 130);
+}
+
 TEST_F(SupervisedRunTest, quiet_shows_problems_only) {
   script("camera", "echo '12:00:00.000 warning camera event=frame_skipped file=x.png'; sleep 0.3");
   rtd_.run(arguments({"--quiet"}));

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "tests/component/launcher/rtd_command.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// The command line of `rtd` itself, with a script as the only service beside it.
+class FrontTest : public testing::Test {
+ protected:
+  FrontTest() {
+    fs::copy_file(RTD_EXECUTABLE, scratch_ / "rtd");
+    std::ofstream(scratch_ / "rtd-echo") << "#!/bin/sh\necho \"echo got: $*\"\nexit 7\n";
+    fs::permissions(scratch_ / "rtd-echo", fs::perms::owner_all);
+  }
+  ScratchFolder scratch_;
+  RtdCommand rtd_{scratch_ / "rtd"};
+};
+
+TEST_F(FrontTest, help_names_commands_and_installed_services) {
+  EXPECT_EQ(rtd_.run({"--help"}), 0);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("run"), HasSubstr("demo"), HasSubstr("eval"), HasSubstr("doctor"),
+                                   HasSubstr("rtd echo")));
+}
+
+TEST_F(FrontTest, without_arguments_it_prints_the_help) {
+  EXPECT_EQ(rtd_.run({}), 0);
+  EXPECT_THAT(rtd_.output(), HasSubstr("Subcommands:"));
+}
+
+TEST_F(FrontTest, tells_its_version) {
+  EXPECT_EQ(rtd_.run({"version"}), 0);
+  EXPECT_THAT(rtd_.output(), testing::MatchesRegex("rtd [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST_F(FrontTest, becomes_a_service_with_its_arguments_and_exit_code) {
+  EXPECT_EQ(rtd_.run({"echo", "--help", "a b"}), 7);
+  EXPECT_EQ(rtd_.output(), "echo got: --help a b\n");
+}
+
+TEST_F(FrontTest, an_unknown_command_gets_the_nearest_one) {
+  EXPECT_EQ(rtd_.run({"ehco"}), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("'ehco' is no command, did you mean 'echo'?"));
+}
+
+TEST_F(FrontTest, wrong_usage_is_exit_code_2) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"run"},
+                                             {"run", "--source", "synthetic:office"},
+                                             {"run", "--source", "x", "--out", "y", "--pace", "fast"},
+                                             {"eval", "only_one"},
+                                             {"--nonsense"}}) {
+    EXPECT_EQ(rtd_.run(arguments), 2) << arguments.back();
+  }
+}
+
+TEST_F(FrontTest, bad_input_of_a_run_is_exit_code_2_and_leaves_no_folder) {
+  for (const char* source : {"tum:/nonexistent", "nonsense", "film:x", "synthetic:nowhere"}) {
+    EXPECT_EQ(rtd_.run({"run", "--source", source, "--out", scratch_ / "out"}), 2) << source;
+    EXPECT_FALSE(fs::exists(scratch_ / "out")) << source;
+  }
+}
+
+TEST_F(FrontTest, an_output_folder_that_cannot_be_made_is_named) {
+  EXPECT_EQ(rtd_.run({"run", "--source", "synthetic:office", "--out", "/proc/nowhere"}), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("--out /proc/nowhere: cannot be created"));
+}
+
+TEST_F(FrontTest, a_corrupt_model_path_is_refused_before_anything_starts) {
+  EXPECT_EQ(rtd_.run({"run", "--source", "synthetic:office", "--out", scratch_ / "out", "--model", "/no/such.onnx"}),
+            2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("/no/such.onnx"));
+}
+
+TEST_F(FrontTest, the_doctor_names_every_missing_service_and_fails) {
+  EXPECT_EQ(rtd_.run({"doctor"}), 1);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("FAIL services: missing rtd-camera rtd-detector rtd-filter rtd-slam"),
+                                   HasSubstr("bus: "), HasSubstr("weights: "), HasSubstr("data: ")));
+}
+
+TEST_F(FrontTest, a_demo_of_an_unknown_sequence_is_refused) {
+  EXPECT_EQ(rtd_.run({"demo", "--dataset", "holiday_video"}), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("fr3_walking_xyz"));
+}
+
+}  // namespace
+}  // namespace rtd::launcher
