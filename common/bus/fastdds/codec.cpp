@@ -37,7 +37,7 @@ class PlainCodec : public Codec {
     return writer.write(const_cast<void*>(message));  // the vendor only reads it
   }
   TakenSample take(dds::DataReader& reader) override;
-  std::shared_ptr<void> allocate() const override { return std::make_shared_for_overwrite<T>(); }
+  std::shared_ptr<void> allocate() const override { return pool_.acquire(); }
 
  private:
   MessagePool<T> pool_;

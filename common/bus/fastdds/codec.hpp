@@ -28,7 +28,7 @@ class Codec {
   virtual bool write(eprosima::fastdds::dds::DataWriter& writer, const void* message) const = 0;
   /// For one thread.
   virtual TakenSample take(eprosima::fastdds::dds::DataReader& reader) = 0;
-  /// A message on the heap, for when the vendor has no slot to loan. Plain types only.
+  /// An uninitialised message to fill in. Plain types only. Thread-safe.
   virtual std::shared_ptr<void> allocate() const = 0;
 };
 

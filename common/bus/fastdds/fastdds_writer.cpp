@@ -29,23 +29,17 @@ bool FastddsWriter::write(const void* message) {
 }
 
 void* FastddsWriter::loan() {
-  void* slot = nullptr;
-  const auto kind = dds::DataWriter::LoanInitializationKind::NO_LOAN_INITIALIZATION;
-  if (writer_->loan_sample(slot, kind) == ReturnCode_t::RETCODE_OK) return slot;
-  const std::shared_ptr<void> message = codec_->allocate();
-  return heap_loans_.emplace(message.get(), message).first->first;
+  std::shared_ptr<void> slot = codec_->allocate();
+  return loans_.emplace(slot.get(), slot).first->first;
 }
 
 bool FastddsWriter::write_loaned(void* slot) {
-  if (slot == nullptr) return false;
-  if (const auto node = heap_loans_.extract(slot); !node.empty()) return codec_->write(*writer_, slot);
-  if (codec_->write(*writer_, slot)) return true;
-  writer_->discard_loan(slot);  // a failed write leaves the loan with us, and Fast DDS aborts later if it is kept
-  return false;
+  const auto node = loans_.extract(slot);
+  return !node.empty() && write(slot);
 }
 
 void FastddsWriter::discard_loan(void* slot) {
-  if (heap_loans_.erase(slot) == 0) writer_->discard_loan(slot);
+  loans_.erase(slot);
 }
 
 bool FastddsWriter::wait_acknowledged(int timeout_ms) {

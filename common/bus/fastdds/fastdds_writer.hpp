@@ -17,7 +17,9 @@
 
 namespace rtd::bus::fastdds {
 
-/// One DataWriter. Loans come from the writer's shared memory; when it has none to give, from the heap.
+/// One DataWriter. A loan is an aligned slot of our own, copied into the writer's shared memory by write_loaned() (90
+/// us for a frame): Fast DDS's own slots begin 4 bytes behind an aligned address, after the CDR header, where no struct
+/// with 64-bit members may lie.
 class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
  public:
   FastddsWriter(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic,
@@ -41,7 +43,7 @@ class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
   const StatusCallbacks callbacks_;
   std::atomic<int> matched_{0};
   std::optional<CallbackThread> thread_;  ///< only when there are callbacks
-  std::map<void*, std::shared_ptr<void>> heap_loans_;
+  std::map<void*, std::shared_ptr<void>> loans_;
   dds::DataWriter* writer_ = nullptr;
 };
 

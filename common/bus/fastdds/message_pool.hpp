@@ -14,7 +14,7 @@ namespace rtd::bus::fastdds {
 template <class T>
 class MessagePool {
  public:
-  std::shared_ptr<T> acquire() {
+  std::shared_ptr<T> acquire() const {
     return std::shared_ptr<T>(spares_->pop().release(),
                               [spares = spares_](T* message) { spares->push(std::unique_ptr<T>(message)); });
   }

@@ -51,10 +51,6 @@ class PlainType : public eprosima::fastdds::dds::TopicDataType {
   bool getKey(void*, eprosima::fastrtps::rtps::InstanceHandle_t*, bool) override { return false; }
   bool is_bounded() const override { return true; }
   bool is_plain() const override { return true; }
-  bool construct_sample(void* memory) const override {
-    new (memory) T;
-    return true;
-  }
 };
 
 }  // namespace rtd::bus::fastdds

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The other process of the bus tests and benchmarks: bus_peer ROLE DOMAIN [COUNT]. Roles below; stays until killed.
+// The other process of the bus tests: bus_peer ROLE DOMAIN [COUNT]. Roles below; stays until killed.
 #include <unistd.h>
 
 #include <chrono>
@@ -65,17 +65,6 @@ void answer_features(Bus& bus, int) {
   stay();
 }
 
-/// Answers each frame with a TrackingResult of its seq, at once.
-void answer_frames(Bus& bus, int) {
-  auto results = bus.writer(topics::kTracking);
-  const auto reader = bus.reader(topics::kFrame, [&](std::shared_ptr<const msg::RgbdFrame> frame) {
-    msg::TrackingResult result{};
-    result.seq = frame->seq;
-    results.write(result);
-  });
-  stay();
-}
-
 /// COUNT keyframe events and one camera info for readers yet to come.
 void leave_history(Bus& bus, int count) {
   auto keyframes = bus.writer(topics::kKeyframes);
@@ -95,9 +84,11 @@ void send_heartbeats(Bus& bus, int) {
 }
 
 int run(const std::string& role, std::uint32_t domain, int count) {
-  static const std::map<std::string, std::function<void(Bus&, int)>> kRoles = {
-      {"send_frames", send_frames},     {"flood_frames", flood_frames},   {"answer_features", answer_features},
-      {"answer_frames", answer_frames}, {"leave_history", leave_history}, {"send_heartbeats", send_heartbeats}};
+  static const std::map<std::string, std::function<void(Bus&, int)>> kRoles = {{"send_frames", send_frames},
+                                                                               {"flood_frames", flood_frames},
+                                                                               {"answer_features", answer_features},
+                                                                               {"leave_history", leave_history},
+                                                                               {"send_heartbeats", send_heartbeats}};
   const auto entry = kRoles.find(role);
   if (entry == kRoles.end()) return 2;
   BusOptions options;
