@@ -13,6 +13,8 @@
 
 namespace rtd::detector {
 
+class YoloNetwork;
+
 /// YOLOv5 / YOLOv5-Lite on the CPU through OpenCV's DNN module. Not thread-safe; one instance per thread.
 class Detector {
  public:
@@ -32,8 +34,8 @@ class Detector {
   const DetectorConfig& config() const;
 
  private:
-  class Network;
-  std::unique_ptr<Network> network_;
+  std::unique_ptr<YoloNetwork> network_;
+  cv::Mat blob_;
 };
 
 }  // namespace rtd::detector

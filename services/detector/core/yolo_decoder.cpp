@@ -62,9 +62,12 @@ bool is_finite(const Candidate& box) {
 
 }  // namespace
 
+float objectness_gate(const DecodeConfig& config) {
+  return logit_of(std::max(config.objectness_threshold, config.confidence_threshold));
+}
+
 std::vector<Candidate> decode_heads(const std::vector<HeadLogits>& heads, int class_count, const DecodeConfig& config) {
-  // The score is at most the objectness, so the confidence threshold gates the objectness too.
-  const float min_logit = logit_of(std::max(config.objectness_threshold, config.confidence_threshold));
+  const float min_logit = objectness_gate(config);
   std::vector<Candidate> candidates;
   for (const HeadLogits& head : heads) {
     const std::size_t plane = static_cast<std::size_t>(head.rows) * static_cast<std::size_t>(head.cols);

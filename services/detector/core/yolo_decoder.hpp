@@ -22,6 +22,10 @@ struct Candidate {
   float left_px = 0, top_px = 0, right_px = 0, bottom_px = 0;
 };
 
+/// The least objectness logit that decode_heads() looks at. The score is at most the objectness, so the confidence
+/// threshold gates the objectness too.
+float objectness_gate(const DecodeConfig& config);
+
 /// Decodes YOLOv5 heads (ultralytics v5, `Detect`): with s = sigmoid,
 ///   x = (2 s(tx) - 0.5 + column) stride,  w = (2 s(tw))^2 anchor_w,  score = s(objectness) max_c s(class_c).
 /// Only cells whose objectness logit passes are looked at, so an empty image costs one comparison a cell. Cells with a

@@ -50,28 +50,47 @@ std::string ints(const std::string& name, const std::vector<int>& values) {
   return bytes + number_field(20, 7);
 }
 
-struct HeadWeights {
-  std::vector<float> weights, biases;
+/// A convolution over whole cells of `cell` px: output 0 = gain * mean of the inputs, the others 0, plus biases.
+struct Convolution {
+  std::string name, input, output;
+  int inputs, outputs, cell;
+  float gain;
+  int gained_output;  ///< the output that sees the inputs
+  std::vector<float> biases;
 };
 
-HeadWeights head_weights(int channels, int stride, int class_count) {
-  const auto kernel = static_cast<std::size_t>(3 * stride * stride);
-  HeadWeights head{std::vector<float>(static_cast<std::size_t>(channels) * kernel, 0.0F),
-                   std::vector<float>(static_cast<std::size_t>(channels), 0.0F)};
-  for (std::size_t i = 0; i < kernel; ++i) head.weights[4 * kernel + i] = 40.0F / static_cast<float>(kernel);
-  for (int anchor = 0; anchor < 3; ++anchor) {
-    const auto first = static_cast<std::size_t>(anchor * (5 + class_count));
-    head.biases[first + 4] = -20.0F;
-    head.biases[first + 5] = 20.0F;
-  }
-  return head;
+std::string node_of(const Convolution& convolution) {
+  const std::vector<int> square = {convolution.cell, convolution.cell};
+  std::string node = bytes_field(1, convolution.input) + bytes_field(1, "w" + convolution.name);
+  node += bytes_field(1, "b" + convolution.name) + bytes_field(2, convolution.output);
+  node += bytes_field(3, "conv" + convolution.name) + bytes_field(4, "Conv");
+  return node + bytes_field(5, ints("kernel_shape", square)) + bytes_field(5, ints("strides", square));
 }
 
-std::string conv_node(const std::string& suffix, int stride) {
-  const std::vector<int> square = {stride, stride};
-  std::string node = bytes_field(1, "images") + bytes_field(1, "w" + suffix) + bytes_field(1, "b" + suffix);
-  node += bytes_field(2, "p" + suffix) + bytes_field(3, "conv" + suffix) + bytes_field(4, "Conv");
-  return node + bytes_field(5, ints("kernel_shape", square)) + bytes_field(5, ints("strides", square));
+std::string weights_of(const Convolution& convolution) {
+  const auto kernel = static_cast<std::size_t>(convolution.inputs * convolution.cell * convolution.cell);
+  std::vector<float> weights(static_cast<std::size_t>(convolution.outputs) * kernel, 0.0F);
+  for (std::size_t i = 0; i < kernel; ++i) {
+    weights[static_cast<std::size_t>(convolution.gained_output) * kernel + i] =
+        convolution.gain / static_cast<float>(kernel);
+  }
+  const std::vector<int> shape = {convolution.outputs, convolution.inputs, convolution.cell, convolution.cell};
+  return bytes_field(5, tensor("w" + convolution.name, shape, weights)) +
+         bytes_field(5, tensor("b" + convolution.name, {convolution.outputs}, convolution.biases));
+}
+
+std::vector<Convolution> head_convolutions(const TinyNetwork& network, int stride) {
+  const int channels = 3 * (5 + network.class_count);
+  std::vector<float> biases(static_cast<std::size_t>(channels), 0.0F);
+  for (int anchor = 0; anchor < 3; ++anchor) {
+    const auto first = static_cast<std::size_t>(anchor * (5 + network.class_count));
+    biases[first + 4] = -20.0F;
+    biases[first + 5] = 20.0F;
+  }
+  const std::string suffix = std::to_string(stride), output = "p" + suffix;
+  if (!network.pointwise_heads) return {{suffix, "images", output, 3, channels, stride, 40.0F, 4, biases}};
+  return {{"f" + suffix, "images", "features" + suffix, 3, 1, stride, 1.0F, 0, {0.0F}},
+          {suffix, "features" + suffix, output, 1, channels, 1, 40.0F, 4, biases}};
 }
 
 }  // namespace
@@ -80,13 +99,12 @@ std::string tiny_network_onnx(const TinyNetwork& network) {
   const int channels = 3 * (5 + network.class_count);
   std::string nodes, initializers, outputs;
   for (const int stride : network.strides) {
-    const std::string suffix = std::to_string(stride);
-    const HeadWeights head = head_weights(channels, stride, network.class_count);
-    nodes += bytes_field(1, conv_node(suffix, stride));
-    initializers += bytes_field(5, tensor("w" + suffix, {channels, 3, stride, stride}, head.weights));
-    initializers += bytes_field(5, tensor("b" + suffix, {channels}, head.biases));
-    outputs +=
-        bytes_field(12, value_info("p" + suffix, {1, channels, network.height_px / stride, network.width_px / stride}));
+    for (const Convolution& convolution : head_convolutions(network, stride)) {
+      nodes += bytes_field(1, node_of(convolution));
+      initializers += weights_of(convolution);
+    }
+    const std::vector<int> shape = {1, channels, network.height_px / stride, network.width_px / stride};
+    outputs += bytes_field(12, value_info("p" + std::to_string(stride), shape));
   }
   const std::vector<int> size =
       network.fixed_size ? std::vector<int>{1, 3, network.height_px, network.width_px} : std::vector<int>{1, 3, 0, 0};

@@ -15,6 +15,7 @@ struct TinyNetwork {
   bool fixed_size = true;  ///< false: height and width are free dimensions
   std::vector<int> strides = {8, 16, 32};
   std::map<std::string, std::string> metadata = {};
+  bool pointwise_heads = false;  ///< as in the real networks: features first, then a 1x1 convolution
 };
 
 /// An ONNX network with YOLOv5 heads that needs no training: per stride one convolution over whole cells. Anchor 0 of a

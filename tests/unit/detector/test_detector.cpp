@@ -54,9 +54,7 @@ cv::Mat one_white_cell(cv::Size size, int row, int col) {
   return image;
 }
 
-TEST_F(DetectorTest, finds_the_white_cell) {
-  Detector detector(config({}));
-  const std::vector<vision::Detection> found = detector.detect(one_white_cell({64, 64}, 3, 5));
+void expect_the_white_cell(const std::vector<vision::Detection>& found) {
   ASSERT_THAT(found, SizeIs(1));
   EXPECT_EQ(found[0].class_name, "person");
   EXPECT_GT(found[0].score, 0.99F);
@@ -64,6 +62,14 @@ TEST_F(DetectorTest, finds_the_white_cell) {
   EXPECT_NEAR(found[0].y_px, 3 * 8 + 4 - 6.5F, 0.01F);
   EXPECT_NEAR(found[0].width_px, 10.0F, 0.01F);
   EXPECT_NEAR(found[0].height_px, 13.0F, 0.01F);
+}
+
+TEST_F(DetectorTest, finds_the_white_cell) {
+  expect_the_white_cell(Detector(config({})).detect(one_white_cell({64, 64}, 3, 5)));
+}
+
+TEST_F(DetectorTest, finds_it_with_heads_that_are_computed_only_where_something_is) {
+  expect_the_white_cell(Detector(config({.pointwise_heads = true})).detect(one_white_cell({64, 64}, 3, 5)));
 }
 
 TEST_F(DetectorTest, maps_boxes_of_a_letterboxed_frame_back) {
