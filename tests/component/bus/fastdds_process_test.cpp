@@ -6,7 +6,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdio>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include "common/bus/bus_factory.hpp"
 #include "tests/component/bus/collector.hpp"
@@ -108,6 +111,28 @@ TEST(FastddsProcesses, killed_writer_is_noticed_and_its_successor_heard) {
   const PeerProcess second("send_heartbeats", test_domain());
   while (status.next()->pid == pid) {
   }
+}
+
+/// Output and exit code of bus_peer in a mount namespace whose /dev/shm holds `size`; exit code 77: not permitted here.
+std::pair<std::string, int> run_with_small_shm(const std::string& size) {
+  const std::string inner = "mount -t tmpfs -o size=" + size +
+                            " tmpfs /dev/shm || exit 77; exec timeout 5 " BUS_PEER_PATH " send_heartbeats " +
+                            std::to_string(test_domain());
+  FILE* pipe = popen(("unshare --user --map-root-user --mount sh -c '" + inner + "' 2>&1 || exit $?").c_str(), "r");
+  if (pipe == nullptr) return {"", 77};
+  std::string output;
+  char line[512];
+  while (fgets(line, sizeof(line), pipe) != nullptr) output += line;
+  const int status = pclose(pipe);
+  return {output, WIFEXITED(status) ? WEXITSTATUS(status) : -1};
+}
+
+TEST(FastddsProcesses, too_small_shared_memory_ends_with_the_fix_instead_of_a_bus_error) {
+  const auto [output, code] = run_with_small_shm("8m");
+  if (code == 77 || output.find("unshare") != std::string::npos) GTEST_SKIP() << "no mount namespaces here: " << output;
+  EXPECT_EQ(code, 2);
+  EXPECT_NE(output.find("/dev/shm is too small: 8 MiB free"), std::string::npos) << output;
+  EXPECT_NE(output.find("remount,size="), std::string::npos) << output;
 }
 
 }  // namespace
