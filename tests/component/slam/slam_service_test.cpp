@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/slam_service.hpp"
+
+#include <gmock/gmock.h>
+
+#include <condition_variable>
+#include <filesystem>
+#include <fstream>
+#include <future>
+
+#include "common/bus/bus_factory.hpp"
+#include "common/msg/transform_eigen.hpp"
+#include "tests/support/feature_world.hpp"
+
+namespace rtd::slam {
+namespace {
+
+using test_support::FeatureWorld;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr std::chrono::seconds kPatience{20};
+constexpr std::uint32_t kFirstDomain = 180;  // in-process domains of this binary, one per test
+
+/// Keeps what a reader was given; tests wait for it.
+template <class T>
+class Inbox {
+ public:
+  void take(std::shared_ptr<const T> message) {
+    {
+      const std::lock_guard lock(mutex_);
+      messages_.push_back(std::move(message));
+    }
+    arrived_.notify_all();
+  }
+  /// True once `ready(messages)` holds.
+  template <class Predicate>
+  bool wait(Predicate ready) {
+    std::unique_lock lock(mutex_);
+    return arrived_.wait_for(lock, kPatience, [&] { return ready(messages_); });
+  }
+  bool wait_count(std::size_t count) {
+    return wait([count](const auto& messages) { return messages.size() >= count; });
+  }
+  std::vector<std::shared_ptr<const T>> all() const {
+    const std::lock_guard lock(mutex_);
+    return messages_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::vector<std::shared_ptr<const T>> messages_;
+};
+
+/// A filter and listeners around one slam service that runs in a thread.
+class SlamServiceTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    static std::uint32_t domain = kFirstDomain;
+    bus::BusOptions options;
+    options.vendor = "inprocess";
+    options.domain = domain++;
+    bus_ = bus::connect(options);
+    features_ = bus_->writer(bus::topics::kFeatures);
+    status_writer_ = bus_->writer(bus::topics::kStatus);
+    readers_ = std::make_unique<Readers>(Readers{
+        bus_->reader<msg::TrackingResult>(bus::topics::kTracking, [this](auto m) { results_.take(std::move(m)); }),
+        bus_->reader<msg::KeyframeEvent>(bus::topics::kKeyframes, [this](auto m) { events_.take(std::move(m)); }),
+        bus_->reader<msg::Odometry>(bus::topics::kOdometry, [this](auto m) { odometry_.take(std::move(m)); }),
+        bus_->reader<msg::TFMessage>(bus::topics::kTf, [this](auto m) { tf_.take(std::move(m)); }),
+        bus_->reader<msg::Path>(bus::topics::kPath, [this](auto m) { paths_.take(std::move(m)); }),
+        bus_->reader<msg::PointCloud2>(bus::topics::kMapPoints, [this](auto m) { clouds_.take(std::move(m)); }),
+        bus_->reader<msg::DiagnosticArray>(bus::topics::kDiagnostics,
+                                           [this](auto m) { diagnostics_.take(std::move(m)); }),
+        bus_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](auto m) { statuses_.take(std::move(m)); })});
+    folder_ = std::filesystem::temp_directory_path() /
+              (std::string("rtd_slam_service_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    config_.map_period_ms = 20;
+    config_.path_period_ms = 1;
+  }
+  void TearDown() override {
+    stop();
+    std::filesystem::remove_all(folder_);
+  }
+
+  void start(service::Pace pace) {
+    running_ = std::async(std::launch::async, [this, pace] {
+      service::Heartbeat heartbeat(*bus_, "slam", stop_);
+      service::Runtime runtime{*bus_, heartbeat, stop_, pace};
+      return SlamService(config_, runtime).run();
+    });
+    ASSERT_TRUE(wait_state(msg::ServiceState::kReady)) << "slam did not become ready";
+  }
+  service::ExitCode stop() {
+    stop_.request_stop();
+    return running_.valid() ? running_.get() : service::kOk;
+  }
+  bool wait_state(msg::ServiceState state, const std::string& text = {}) {
+    return statuses_.wait([&](const auto& all) {
+      return !all.empty() && all.back()->service == "slam" && all.back()->state == state &&
+             all.back()->message.find(text) != std::string::npos;
+    });
+  }
+  bool send(std::uint64_t seq) { return features_.write(*world_.view(seq, FeatureWorld::T_world_camera(seq))); }
+  /// Sends a frame and waits for its result, as the camera does in lockstep.
+  void step(std::uint64_t seq) {
+    const std::size_t before = results_.all().size();
+    ASSERT_TRUE(send(seq));
+    ASSERT_TRUE(results_.wait_count(before + 1)) << "no result for frame " << seq;
+  }
+  std::string read(const char* name) const {
+    std::ifstream file(folder_ / name);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  struct Readers {
+    bus::Reader<msg::TrackingResult> tracking;
+    bus::Reader<msg::KeyframeEvent> keyframes;
+    bus::Reader<msg::Odometry> odometry;
+    bus::Reader<msg::TFMessage> tf;
+    bus::Reader<msg::Path> path;
+    bus::Reader<msg::PointCloud2> map_points;
+    bus::Reader<msg::DiagnosticArray> diagnostics;
+    bus::Reader<msg::ServiceStatus> status;
+  };
+
+  const FeatureWorld world_{{}};
+  ServiceConfig config_;
+  std::filesystem::path folder_;
+  service::StopToken stop_;
+  std::shared_ptr<bus::Bus> bus_;
+  Inbox<msg::TrackingResult> results_;
+  Inbox<msg::KeyframeEvent> events_;
+  Inbox<msg::Odometry> odometry_;
+  Inbox<msg::TFMessage> tf_;
+  Inbox<msg::Path> paths_;
+  Inbox<msg::PointCloud2> clouds_;
+  Inbox<msg::DiagnosticArray> diagnostics_;
+  Inbox<msg::ServiceStatus> statuses_;
+  std::unique_ptr<Readers> readers_;
+  bus::Writer<msg::FeatureFrame> features_;
+  bus::Writer<msg::ServiceStatus> status_writer_;
+  std::future<service::ExitCode> running_;
+};
+
+TEST_F(SlamServiceTest, answers_every_frame_with_pose_odometry_and_tf) {
+  start(service::Pace::kLockstep);
+  constexpr std::uint64_t kFrames = 20;
+  for (std::uint64_t seq = 0; seq < kFrames; ++seq) step(seq);
+  ASSERT_TRUE(tf_.wait_count(kFrames));
+  ASSERT_TRUE(odometry_.wait_count(kFrames));
+  const auto results = results_.all();
+  for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
+    const msg::TrackingResult& result = *results[seq];
+    EXPECT_EQ(result.seq, seq);
+    EXPECT_EQ(result.state, msg::TrackingState::kOk);
+    EXPECT_GT(result.finished_ns, 0);
+    const Eigen::Isometry3d error =
+        msg::to_isometry(result.T_world_camera).inverse() * FeatureWorld::T_world_camera(seq);
+    EXPECT_LT(error.translation().norm(), 1e-3);
+  }
+  const msg::Odometry odometry = *odometry_.all().back();
+  EXPECT_EQ(odometry.header.frame_id, "map");
+  EXPECT_EQ(odometry.child_frame_id, "camera_color_optical_frame");
+  EXPECT_GT(odometry.pose.covariance[0], 0);
+  const Eigen::Isometry3d T_18_19 = FeatureWorld::T_world_camera(18).inverse() * FeatureWorld::T_world_camera(19);
+  EXPECT_NEAR(odometry.twist.twist.linear.x, T_18_19.translation().x() * 30, 0.05);  // m/s
+  EXPECT_EQ(tf_.all().back()->transforms.at(0).child_frame_id, "camera_color_optical_frame");
+  EXPECT_TRUE(wait_state(msg::ServiceState::kRunning));
+}
+
+TEST_F(SlamServiceTest, tells_keyframes_before_the_result_that_counts_them) {
+  start(service::Pace::kLockstep);
+  for (std::uint64_t seq = 0; seq < 40; ++seq) {
+    step(seq);
+    const std::uint64_t expected = results_.all().back()->event_count;
+    ASSERT_TRUE(events_.wait_count(expected)) << "frame " << seq;
+  }
+  EXPECT_GE(events_.all().size(), 2U);
+  EXPECT_EQ(events_.all().front()->kind, msg::KeyframeEventKind::kCreated);
+  EXPECT_EQ(events_.all().front()->frame_seq, 0U);
+}
+
+TEST_F(SlamServiceTest, answers_a_repeated_frame_with_the_same_result) {
+  start(service::Pace::kLockstep);
+  for (std::uint64_t seq = 0; seq < 3; ++seq) step(seq);
+  step(2);
+  const auto results = results_.all();
+  ASSERT_THAT(results, SizeIs(4));
+  EXPECT_EQ(std::memcmp(results[2].get(), results[3].get(), sizeof(msg::TrackingResult)), 0);
+  step(3);
+  EXPECT_EQ(results_.all().back()->state, msg::TrackingState::kOk);
+}
+
+TEST_F(SlamServiceTest, publishes_map_path_and_diagnostics) {
+  start(service::Pace::kLockstep);
+  for (std::uint64_t seq = 0; seq < 5; ++seq) step(seq);
+  ASSERT_TRUE(clouds_.wait_count(1));
+  const msg::PointCloud2 cloud = *clouds_.all().back();
+  EXPECT_GT(cloud.width, 100U);
+  EXPECT_EQ(cloud.data.size(), cloud.width * 16U);
+  EXPECT_THAT(cloud.fields, SizeIs(4));
+  ASSERT_TRUE(paths_.wait_count(1));
+  EXPECT_EQ(paths_.all().back()->header.frame_id, "map");
+  ASSERT_TRUE(
+      diagnostics_.wait([](const auto& all) { return !all.empty() && all.back()->status.at(0).message == "ok"; }));
+}
+
+TEST_F(SlamServiceTest, writes_its_files_when_asked_to_stop) {
+  config_.out_dir = (folder_ / "run").string();
+  start(service::Pace::kLockstep);
+  for (std::uint64_t seq = 0; seq < 5; ++seq) step(seq);
+  EXPECT_EQ(stop(), service::kOk);
+  const std::string trajectory = read("run/trajectory.txt");
+  EXPECT_EQ(std::count(trajectory.begin(), trajectory.end(), '\n'), 5);
+  EXPECT_THAT(trajectory, HasSubstr("1.000000 0.000000000 0.000000000"));
+  EXPECT_FALSE(read("run/keyframes.txt").empty());
+  EXPECT_THAT(read("run/map.ply"), HasSubstr("element vertex"));
+}
+
+TEST_F(SlamServiceTest, fails_when_the_files_cannot_be_written) {
+  std::filesystem::create_directories(folder_);
+  std::ofstream(folder_ / "file") << "not a folder";
+  config_.out_dir = (folder_ / "file").string();
+  start(service::Pace::kLockstep);
+  step(0);
+  EXPECT_EQ(stop(), service::kRunFailed);
+}
+
+TEST_F(SlamServiceTest, says_that_the_camera_is_gone_and_keeps_its_map) {
+  start(service::Pace::kRealtime);
+  for (std::uint64_t seq = 0; seq < 5; ++seq) step(seq);
+  ASSERT_TRUE(wait_state(msg::ServiceState::kDegraded, "no features for 0.5 s"));
+  step(5);
+  EXPECT_EQ(results_.all().back()->state, msg::TrackingState::kOk) << "the map is still there";
+  EXPECT_TRUE(wait_state(msg::ServiceState::kRunning));
+}
+
+TEST_F(SlamServiceTest, is_not_troubled_by_the_end_of_the_source) {
+  start(service::Pace::kRealtime);
+  step(0);
+  msg::ServiceStatus camera;
+  camera.service = "camera";
+  camera.state = msg::ServiceState::kFinished;
+  status_writer_.write(camera);
+  ASSERT_TRUE(diagnostics_.wait_count(diagnostics_.all().size() + 2)) << "a second and more has passed";
+  EXPECT_TRUE(diagnostics_.all().back()->status.at(0).message == "ok");
+}
+
+TEST_F(SlamServiceTest, is_degraded_while_tracking_has_no_depth) {
+  start(service::Pace::kLockstep);
+  auto frame = world_.view(0, Eigen::Isometry3d::Identity());
+  for (msg::Feature& feature : frame->features) feature.depth_m = 0;
+  features_.write(*frame);
+  ASSERT_TRUE(wait_state(msg::ServiceState::kDegraded, "features with depth"));
+  EXPECT_EQ(results_.all().back()->state, msg::TrackingState::kInitializing);
+}
+
+TEST_F(SlamServiceTest, realtime_pace_never_blocks_the_filter) {
+  start(service::Pace::kRealtime);
+  for (std::uint64_t seq = 0; seq < 60; ++seq) ASSERT_TRUE(send(seq));
+  ASSERT_TRUE(results_.wait([](const auto& all) { return !all.empty() && all.back()->seq == 59; })) << "newest wins";
+}
+
+TEST_F(SlamServiceTest, asap_pace_answers_every_frame) {
+  start(service::Pace::kAsap);
+  for (std::uint64_t seq = 0; seq < 60; ++seq) ASSERT_TRUE(send(seq));
+  ASSERT_TRUE(results_.wait_count(60));
+  for (std::uint64_t seq = 0; seq < 60; ++seq) EXPECT_EQ(results_.all()[seq]->seq, seq);
+}
+
+}  // namespace
+}  // namespace rtd::slam
