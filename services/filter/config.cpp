@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/config.hpp"
+
+#include <map>
+
+#include "services/filter/core/motion_levels.hpp"
+
+namespace rtd::filter {
+namespace {
+
+using service::ConfigBinder;
+
+void bind_orb(ConfigBinder& binder, OrbConfig& c) {
+  binder.field("orb.feature_count", c.feature_count, {100, 1300}, "wanted features per frame");
+  binder.field("orb.levels", c.levels, {1, 12}, "pyramid levels");
+  binder.field("orb.scale_factor", c.scale_factor, {1.05, 2.0}, "between two levels");
+  binder.field("orb.fast_threshold", c.fast_threshold, {1, 255}, "grey values, first try");
+  binder.field("orb.fast_threshold_low", c.fast_threshold_low, {1, 255}, "where the first try finds nothing");
+  binder.field("orb.cell_px", c.cell_px, {10, 200}, "side of a FAST cell");
+  binder.field("orb.min_depth_m", c.min_depth_m, {0.0, 10.0}, "nearer readings count as not measured");
+  binder.field("orb.max_depth_m", c.max_depth_m, {0.5, 50.0}, "farther readings count as not measured");
+}
+
+void bind_surfaces(ConfigBinder& binder, ClusterConfig& clusters, MaskConfig& masks) {
+  binder.field("clusters.step_m", clusters.step_m, {0.001, 1.0}, "depth step that separates neighbouring cells");
+  binder.field("clusters.step_factor_per_m", clusters.step_factor_per_m, {0.0, 1.0}, "plus this times depth squared");
+  binder.field("clusters.min_cells", clusters.min_cells, {1, 10000}, "smaller clusters are nobody's object");
+  binder.field("masks.min_share", masks.min_share, {0.01, 1.0}, "share of the box that the nearest cluster needs");
+  binder.field("masks.max_object_depth_m", masks.max_object_depth_m, {0.05, 5.0},
+               "depth of an object about its median");
+  binder.field("masks.min_contained", masks.min_contained, {0.0, 1.0},
+               "share inside the box: the whole cluster is the object");
+  binder.field("masks.min_outline_step_m", masks.min_outline_step_m, {0.0, 5.0},
+               "depth step at the outline of an object");
+  binder.field("masks.min_outline_share", masks.min_outline_share, {0.0, 1.0}, "fewer steps: a picture on a wall");
+  binder.field("masks.dilate_cells", masks.dilate_cells, {0, 10}, "masks grow by so many cells");
+}
+
+void bind_ego_motion(ConfigBinder& binder, EgoMotionConfig& c) {
+  binder.field("ego.window_px", c.window_px, {2.0, 200.0}, "half side of the search window");
+  binder.field("ego.max_hamming", c.max_hamming, {1, 256}, "largest descriptor distance of a match");
+  binder.field("ego.max_ratio", c.max_ratio, {0.1, 1.0}, "best to second best distance");
+  binder.field("ego.max_observations", c.max_observations, {20, 2048}, "per pose optimisation");
+  binder.field("ego.min_inliers", c.min_inliers, {6, 1000}, "fewer: no pose, geometry makes no statement");
+  binder.field("ego.min_image_share", c.min_image_share, {0.0, 1.0}, "less of the image agrees: no pose");
+}
+
+void bind_geometry(ConfigBinder& binder, GeometryConfig& c) {
+  binder.field("geometry.tau_floor_m", c.tau_floor_m, {0.01, 2.0}, "smallest depth difference that says something");
+  binder.field("geometry.tau_sigmas", c.tau_sigmas, {1.0, 50.0}, "and so many standard deviations");
+  binder.field("geometry.max_view_angle_deg", c.max_view_angle_deg, {1.0, 90.0}, "larger angle: no statement");
+  binder.field("geometry.max_views", c.max_views, {1, 30}, "reference views per frame");
+  binder.field("geometry.min_cluster_statements", c.min_cluster_statements, {1, 10000}, "before a cluster is judged");
+  binder.field("geometry.min_violated_share", c.min_violated_share, {0.01, 1.0}, "that makes a cluster dynamic");
+  binder.field("geometry.memory_frames", c.memory_frames, {0, 1000}, "a dynamic surface is remembered so long");
+  binder.field("geometry.max_dynamic_share", c.max_dynamic_share, {0.1, 1.0},
+               "more of the image dynamic: no statement");
+}
+
+void bind_fusion(ConfigBinder& binder, FusionConfig& c) {
+  binder.field("fusion.remove_below", c.remove_below, {0.0, 1.0}, "features less probably static are removed");
+  binder.field("fusion.unknown_probability", c.unknown_probability, {0.0, 1.0}, "background without statement");
+  binder.field("fusion.sitting_probability", c.sitting_probability, {0.0, 1.0}, "high level, but at rest for long");
+  binder.field("fusion.sitting_seconds", c.sitting_seconds, {0.0, 60.0}, "what long means");
+  binder.field("fusion.doubtful_probability", c.doubtful_probability, {0.0, 1.0}, "weight of a doubtful feature");
+  binder.field("fusion.min_static_features", c.min_static_features, {0, 2048}, "fewer: the best of the doubtful stay");
+  binder.field("fusion.boost", c.boost, {1.0, 2.0}, "times as many features while something is masked");
+}
+
+}  // namespace
+
+void ServiceConfig::bind(ConfigBinder& binder) {
+  binder.choice("mode", mode, {"off", "semantic", "geometry", "rtd"}, "which parts of the filter are at work");
+  binder.choice("detector", detector, {"auto", "off"}, "auto: use a detector that is heard");
+  binder.field("detections_timeout_ms", detections_timeout_ms, {1, 600000}, "asap, lockstep: longest wait for boxes");
+  binder.field("feedback_timeout_ms", feedback_timeout_ms, {1, 600000}, "lockstep: longest wait for slam");
+  binder.field("carry_max_ms", carry_max_ms, {0, 60000}, "realtime: older boxes are not used");
+  binder.field("carry_growth_per_s", carry_growth_per_s, {0.0, 10.0}, "realtime: growth of a carried box");
+  bind_orb(binder, core.orb);
+  bind_surfaces(binder, core.clusters, core.masks);
+  bind_ego_motion(binder, core.ego_motion);
+  bind_geometry(binder, core.geometry);
+  bind_fusion(binder, core.fusion);
+  binder.field("motion_levels", core.motion_levels, "class -> high, medium, low, none; over the built-in table");
+}
+
+FilterConfig ServiceConfig::core_config() const {
+  static const std::map<std::string, FilterMode> kModes = {{"off", FilterMode::kOff},
+                                                           {"semantic", FilterMode::kSemantic},
+                                                           {"geometry", FilterMode::kGeometry},
+                                                           {"rtd", FilterMode::kRtd}};
+  FilterConfig config = core;
+  config.mode = kModes.at(mode);
+  try {
+    const MotionLevels check(config.motion_levels);
+  } catch (const std::invalid_argument& error) {
+    throw service::ConfigError(std::string("filter.motion_levels: ") + error.what());
+  }
+  return config;
+}
+
+}  // namespace rtd::filter

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/filter_service.hpp"
+
+#include <opencv2/core/utility.hpp>
+
+#include "common/service/monotonic_clock.hpp"
+#include "services/filter/frame_messages.hpp"
+
+namespace rtd::filter {
+namespace {
+
+constexpr std::size_t kRealtimeQueue = 2, kEveryFrameQueue = 8;
+constexpr std::chrono::milliseconds kStatePeriod{50};
+constexpr std::int64_t kSourceGoneAfterNs = 1'000'000'000;
+constexpr std::int64_t kPatienceNs = 1'500'000'000;  // before a silent heartbeat ends the wait for detections
+
+}  // namespace
+
+void FilterService::add_options(CLI::App& app, Config& config) {
+  app.add_option("--mode", config.mode, "off, semantic, geometry or rtd (filter.mode)")
+      ->check(CLI::IsMember({"off", "semantic", "geometry", "rtd"}));
+}
+
+FilterService::FilterService(const Config& config, service::Runtime& runtime)
+    : config_(config),
+      runtime_(runtime),
+      filter_(config.core_config(), service::monotonic_ns),
+      frames_(runtime.pace == service::Pace::kRealtime
+                  ? std::make_shared<Frames>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
+                  : std::make_shared<Frames>(kEveryFrameQueue, concurrency::Overflow::kBlock)) {
+  cv::setNumThreads(1);
+  runtime.stop.on_stop([frames = frames_, detections = detections_, feedback = feedback_] {
+    frames->close();
+    detections->close();
+    feedback->close();
+  });
+  writer_ = runtime.bus.writer(bus::topics::kFeatures);
+  tracking_reader_ = runtime.bus.reader<msg::TrackingResult>(
+      bus::topics::kTracking,
+      [this](const std::shared_ptr<const msg::TrackingResult>& result) { feedback_->put(*result); });
+  keyframe_reader_ = runtime.bus.reader<msg::KeyframeEvent>(
+      bus::topics::kKeyframes,
+      [this](const std::shared_ptr<const msg::KeyframeEvent>& event) { feedback_->put(*event); });
+  detection_reader_ = runtime.bus.reader<msg::Detection2DArray>(
+      bus::topics::kDetections, [this](const std::shared_ptr<const msg::Detection2DArray>& message) {
+        detections_->put(from_message(*message));
+      });
+  frame_reader_ = runtime.bus.reader<msg::RgbdFrame>(
+      bus::topics::kFrame, [this](std::shared_ptr<const msg::RgbdFrame> frame) { frames_->push(std::move(frame)); });
+}
+
+/// A reader waits for its running callback, which may be blocked on the full queue.
+FilterService::~FilterService() {
+  frames_->close();
+}
+
+service::ExitCode FilterService::run() {
+  while (!runtime_.stop.stop_requested()) {
+    report_state();
+    const auto frame = frames_->pop_for(kStatePeriod);
+    watch_detector();
+    if (frame && accept(**frame)) answer(**frame);
+  }
+  SPDLOG_INFO("event=summary frames={} dropped={} defective={} foreign={} without_detections={}", answered_,
+              frames_->dropped(), defective_, foreign_, unpaired_);
+  return service::kOk;
+}
+
+/// One frame: features while the detector still looks, then its boxes, then the judgement.
+void FilterService::answer(const msg::RgbdFrame& frame) {
+  const vision::RgbdImage image = view_image(frame);
+  std::vector<msg::Feature> features = filter_.extract(image);
+  const std::int64_t waiting_since_ns = service::monotonic_ns();
+  const PairedDetections paired = detections_of(frame);
+  listen_to_slam();
+  const std::int64_t waited_ns = service::monotonic_ns() - waiting_since_ns;
+
+  FilterResult result = filter_.judge(image, std::move(features), paired.detections);
+  result.stage_ms[msg::kStageWaitDetections] = static_cast<float>(static_cast<double>(waited_ns) * 1e-6);
+  fill_message(frame, result, paired.use, *message_);
+  writer_.write(*message_);
+  ++answered_;
+  count(result);
+}
+
+/// False for a frame that is not to be processed: from a second camera, defective, or sent again (answered again).
+bool FilterService::accept(const msg::RgbdFrame& frame) {
+  if (foreign(frame)) return false;
+  if (const std::string cause = defect(frame); !cause.empty()) {
+    ++defective_;
+    if (defect_log_.pass()) SPDLOG_ERROR("event=frame_defective frame={} cause=\"{}\"", frame.seq, cause);
+    return false;
+  }
+  if (answered_ == 0) return true;
+  if (frame.seq == message_->seq && frame.stamp_ns == message_->stamp_ns) {
+    writer_.write(*message_);
+    return false;
+  }
+  if (frame.stamp_ns <= message_->stamp_ns) {
+    SPDLOG_WARN("event=time_went_back frame={} stamp_ns={} last_stamp_ns={}", frame.seq, frame.stamp_ns,
+                message_->stamp_ns);
+    filter_.reset();
+    detections_->clear();
+  }
+  return true;
+}
+
+/// Of two cameras on the topic, the first is followed as long as it sends.
+bool FilterService::foreign(const msg::RgbdFrame& frame) {
+  const std::int64_t now_ns = service::monotonic_ns();
+  const bool other = answered_ > 0 && frame.source_id != source_id_;
+  if (other && now_ns - source_heard_ns_ < kSourceGoneAfterNs) {
+    ++foreign_;
+    if (foreign_log_.pass()) {
+      SPDLOG_ERROR("event=second_camera source={:x} followed={:x} fix=\"stop one, or give it another --domain\"",
+                   frame.source_id, source_id_);
+    }
+    return true;
+  }
+  if (other) SPDLOG_INFO("event=camera_changed source={:x}", frame.source_id);
+  source_id_ = frame.source_id;
+  source_heard_ns_ = now_ns;
+  return false;
+}
+
+void FilterService::listen_to_slam() {
+  SlamWords words;
+  if (runtime_.pace == service::Pace::kLockstep && answered_ > 0) {
+    words = feedback_->take_after(message_->seq, std::chrono::milliseconds(config_.feedback_timeout_ms));
+    if (!words.complete && !runtime_.stop.stop_requested() && wait_log_.pass()) {
+      SPDLOG_WARN("event=slam_silent frame={} waited_ms={}", message_->seq, config_.feedback_timeout_ms);
+    }
+  } else {
+    words = feedback_->take();
+  }
+  for (const msg::KeyframeEvent& event : words.events) filter_.on_keyframe(event);
+  for (const msg::TrackingResult& result : words.results) filter_.on_tracking(result);
+}
+
+FilterService::PairedDetections FilterService::detections_of(const msg::RgbdFrame& frame) {
+  const bool looks_at_boxes = config_.mode == "semantic" || config_.mode == "rtd";
+  if (!looks_at_boxes || config_.detector == "off") return {};
+  if (runtime_.pace != service::Pace::kRealtime) return wait_for_detections(frame);
+  const auto newest = detections_->newest(frame.stamp_ns, std::int64_t{config_.carry_max_ms} * 1'000'000);
+  if (!newest) return {std::nullopt, detector_gone_ ? msg::DetectionUse::kDetectorGone : msg::DetectionUse::kNone};
+  if (newest->stamp_ns == frame.stamp_ns) return {newest->detections, msg::DetectionUse::kExact};
+  return {carry(*newest, frame.stamp_ns, config_.carry_growth_per_s), msg::DetectionUse::kCarried};
+}
+
+FilterService::PairedDetections FilterService::wait_for_detections(const msg::RgbdFrame& frame) {
+  if (!detector_seen_) return {};
+  if (detector_gone_) return {std::nullopt, msg::DetectionUse::kDetectorGone};
+  const std::int64_t since_ns = service::monotonic_ns();
+  const auto give_up = [&] {
+    const std::int64_t waited_ns = service::monotonic_ns() - since_ns;
+    return waited_ns > std::int64_t{config_.detections_timeout_ms} * 1'000'000 ||
+           (waited_ns > kPatienceNs && !runtime_.heartbeat.alive("detector"));
+  };
+  auto exact = detections_->wait_for(frame.stamp_ns, give_up);
+  if (exact) return {std::move(exact->detections), msg::DetectionUse::kExact};
+  ++unpaired_;
+  if (wait_log_.pass()) SPDLOG_WARN("event=no_detections frame={} total={}", frame.seq, unpaired_);
+  return {std::nullopt, msg::DetectionUse::kDetectorGone};
+}
+
+void FilterService::watch_detector() {
+  if (config_.detector == "off") return;
+  const bool alive = runtime_.heartbeat.alive("detector");
+  if (alive && (!detector_seen_ || detector_gone_)) SPDLOG_INFO("event=detector_heard frames={}", answered_);
+  if (!alive && detector_seen_ && !detector_gone_) {
+    SPDLOG_WARN("event=detector_gone frames={} effect=\"geometry only until it is back\"", answered_);
+  }
+  detector_gone_ = detector_seen_ && !alive;
+  detector_seen_ = detector_seen_ || alive;
+}
+
+void FilterService::count(const FilterResult& result) {
+  service::Heartbeat& heartbeat = runtime_.heartbeat;
+  heartbeat.set_metric("frames", static_cast<double>(answered_));
+  heartbeat.set_metric("frames_dropped", static_cast<double>(frames_->dropped()));
+  heartbeat.set_metric("frames_defective", static_cast<double>(defective_));
+  heartbeat.set_metric("frames_foreign", static_cast<double>(foreign_));
+  heartbeat.set_metric("frames_without_detections", static_cast<double>(unpaired_));
+  heartbeat.set_metric("features", static_cast<double>(result.features.size()));
+  heartbeat.set_metric("features_removed", result.removed);
+  heartbeat.set_metric("objects", static_cast<double>(result.objects.size()));
+  heartbeat.set_metric("dynamic_clusters", result.dynamic_clusters);
+  heartbeat.set_metric("filter_ms", static_cast<double>(result.stage_ms[msg::kStageFilterTotal]));
+}
+
+void FilterService::report_state() {
+  if (answered_ == 0) {
+    const bool ready = frame_reader_.matched() > 0 && writer_.matched() > 0 && tracking_reader_.matched() > 0 &&
+                       keyframe_reader_.matched() > 0;
+    runtime_.heartbeat.set_state(ready ? msg::ServiceState::kReady : msg::ServiceState::kStarting,
+                                 ready ? "" : "waits for a camera and slam");
+    return;
+  }
+  if (detector_gone_) {
+    runtime_.heartbeat.set_state(msg::ServiceState::kDegraded, "detector gone: geometry only");
+  } else {
+    runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
+  }
+}
+
+}  // namespace rtd::filter

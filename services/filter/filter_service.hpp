@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/concurrency/bounded_queue.hpp"
+#include "common/service/exit_code.hpp"
+#include "common/service/log.hpp"
+#include "common/service/runtime.hpp"
+#include "services/filter/config.hpp"
+#include "services/filter/core/dynamic_filter.hpp"
+#include "services/filter/detection_inbox.hpp"
+#include "services/filter/slam_feedback.hpp"
+
+namespace rtd::filter {
+
+/// Frames and detections in, features with their static probability out. Realtime pace: never waits for the detector,
+/// at most 2 frames wait, the oldest goes and is counted. Asap and lockstep: every frame, with the detections of
+/// exactly that frame; lockstep also after slam's word on the frame before, so that every run sees the same.
+class FilterService {
+ public:
+  static constexpr const char* kName = "filter";
+  static constexpr const char* kDescription = "Extracts ORB features and tells which of them lie on moving things";
+  using Config = ServiceConfig;
+  static void add_options(CLI::App& app, Config& config);
+
+  FilterService(const Config& config, service::Runtime& runtime);
+  ~FilterService();
+  FilterService(const FilterService&) = delete;
+  FilterService& operator=(const FilterService&) = delete;
+  service::ExitCode run();
+
+ private:
+  using Frames = concurrency::BoundedQueue<std::shared_ptr<const msg::RgbdFrame>>;
+  struct PairedDetections {
+    Detections detections;
+    msg::DetectionUse use = msg::DetectionUse::kNone;
+  };
+
+  void answer(const msg::RgbdFrame& frame);
+  bool accept(const msg::RgbdFrame& frame);
+  bool foreign(const msg::RgbdFrame& frame);
+  void listen_to_slam();
+  PairedDetections detections_of(const msg::RgbdFrame& frame);
+  PairedDetections wait_for_detections(const msg::RgbdFrame& frame);
+  void watch_detector();
+  void count(const FilterResult& result);
+  void report_state();
+
+  const Config config_;
+  service::Runtime& runtime_;
+  DynamicFilter filter_;
+  std::shared_ptr<Frames> frames_;
+  std::shared_ptr<DetectionInbox> detections_ = std::make_shared<DetectionInbox>();
+  std::shared_ptr<SlamFeedback> feedback_ = std::make_shared<SlamFeedback>();
+  bus::Writer<msg::FeatureFrame> writer_;
+  bus::Reader<msg::RgbdFrame> frame_reader_;
+  bus::Reader<msg::Detection2DArray> detection_reader_;
+  bus::Reader<msg::TrackingResult> tracking_reader_;
+  bus::Reader<msg::KeyframeEvent> keyframe_reader_;
+
+  std::unique_ptr<msg::FeatureFrame> message_ = std::make_unique<msg::FeatureFrame>();
+  std::uint64_t answered_ = 0, defective_ = 0, foreign_ = 0, unpaired_ = 0;
+  std::uint64_t source_id_ = 0;
+  std::int64_t source_heard_ns_ = 0;
+  bool detector_seen_ = false, detector_gone_ = false;
+  service::RateLimit defect_log_{std::chrono::seconds(1)}, foreign_log_{std::chrono::seconds(5)},
+      wait_log_{std::chrono::seconds(1)};
+};
+
+}  // namespace rtd::filter

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/slam_feedback.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace rtd::filter {
+namespace {
+
+constexpr std::size_t kMaxWaiting = 1024;
+
+template <class Map>
+void keep_newest(Map& map) {
+  while (map.size() > kMaxWaiting) map.erase(map.begin());
+}
+
+}  // namespace
+
+void SlamFeedback::put(const msg::TrackingResult& result) {
+  {
+    const std::lock_guard lock(mutex_);
+    results_[result.seq] = result;
+    newest_ = result;
+    keep_newest(results_);
+  }
+  arrived_.notify_all();
+}
+
+void SlamFeedback::put(const msg::KeyframeEvent& event) {
+  {
+    const std::lock_guard lock(mutex_);
+    events_[event.event_index] = event;
+    events_heard_ = event.event_index + 1;  // one writer, reliable and in order; a restarted slam counts from 0 again
+    keep_newest(events_);
+  }
+  arrived_.notify_all();
+}
+
+bool SlamFeedback::complete(std::uint64_t seq) const {
+  return newest_ && newest_->seq == seq && events_heard_ >= newest_->event_count;
+}
+
+SlamWords SlamFeedback::take_locked(bool complete) {
+  SlamWords words;
+  words.complete = complete;
+  for (const auto& [index, event] : events_) words.events.push_back(event);
+  for (const auto& [seq, result] : results_) words.results.push_back(result);
+  events_.clear();
+  results_.clear();
+  return words;
+}
+
+SlamWords SlamFeedback::take() {
+  const std::lock_guard lock(mutex_);
+  return take_locked(true);
+}
+
+SlamWords SlamFeedback::take_after(std::uint64_t seq, std::chrono::milliseconds timeout) {
+  std::unique_lock lock(mutex_);
+  arrived_.wait_for(lock, timeout, [&] { return closed_ || complete(seq); });
+  return take_locked(complete(seq));
+}
+
+void SlamFeedback::close() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  arrived_.notify_all();
+}
+
+}  // namespace rtd::filter
