@@ -3,50 +3,16 @@
 #include "tests/support/offline_pipeline.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <numbers>
-#include <opencv2/imgproc.hpp>
 #include <sstream>
-#include <stdexcept>
 
+#include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/filter/core/orb_extractor.hpp"
 #include "services/launcher/core/evaluation/ate.hpp"
 #include "services/launcher/core/evaluation/rpe.hpp"
 
 namespace rtd::test_support {
 namespace {
-
-std::int64_t steady_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-/// ORB features, with those on the source's mask removed.
-class MaskedOrb final : public FrontEnd {
- public:
-  explicit MaskedOrb(bool use_mask) : use_mask_(use_mask) {}
-
-  std::vector<msg::Feature> process(const camera::SourceFrame& frame) override {
-    std::vector<msg::Feature> features = extractor_.extract(frame.image);
-    if (!use_mask_) return features;
-    if (frame.dynamic_mask.empty()) throw std::invalid_argument("true-mask: the source has no masks (tum:DIR?masks=1)");
-    constexpr int kGrow_px = 3;
-    cv::Mat grown;
-    cv::dilate(frame.dynamic_mask, grown,
-               cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * kGrow_px + 1, 2 * kGrow_px + 1}));
-    for (msg::Feature& feature : features) {
-      const int x = std::clamp(static_cast<int>(std::lround(feature.u_raw_px)), 0, grown.cols - 1);
-      const int y = std::clamp(static_cast<int>(std::lround(feature.v_raw_px)), 0, grown.rows - 1);
-      if (grown.at<std::uint8_t>(y, x) != 0) feature.flags |= msg::kFeatureRemoved;
-    }
-    return features;
-  }
-
- private:
-  filter::OrbExtractor extractor_{filter::OrbConfig{}};
-  bool use_mask_;
-};
 
 void add_stage_times(const msg::TrackingResult& result, OfflineReport& report) {
   static constexpr std::array<const char*, 6> kNames{"slam.match",    "slam.local_map", "slam.pose",
@@ -68,11 +34,6 @@ void evaluate(OfflineReport& report) {
 
 }  // namespace
 
-std::unique_ptr<FrontEnd> make_front_end(const std::string& mode) {
-  if (mode == "off" || mode == "true-mask") return std::make_unique<MaskedOrb>(mode == "true-mask");
-  throw std::invalid_argument("unknown mode '" + mode + "': off, true-mask");
-}
-
 std::unique_ptr<msg::FeatureFrame> make_feature_frame(const vision::RgbdImage& image,
                                                       const std::vector<msg::Feature>& features) {
   auto message = std::make_unique<msg::FeatureFrame>();
@@ -90,14 +51,14 @@ std::unique_ptr<msg::FeatureFrame> make_feature_frame(const vision::RgbdImage& i
 OfflineReport run_offline(const OfflineOptions& options) {
   const auto source = camera::make_source(options.source);
   const auto front_end = make_front_end(options.mode);
-  slam::SlamSystem slam(options.slam, options.mapping, steady_ns);
+  slam::SlamSystem slam(options.slam, options.mapping, service::monotonic_ns);
   OfflineReport report;
   while (options.max_frames == 0 || report.frames < options.max_frames) {
     const auto frame = source->next();
     if (!frame) break;
-    const std::int64_t start_ns = steady_ns();
-    const auto message = make_feature_frame(frame->image, front_end->process(*frame));
-    report.stage_ms["front_end"].push_back(static_cast<double>(steady_ns() - start_ns) * 1e-6);
+    const FrontEndOutput front = front_end->process(*frame);
+    const auto message = make_feature_frame(frame->image, front.features);
+    for (const auto& [name, ms] : front.stage_ms) report.stage_ms[name].push_back(ms);
     const slam::SlamOutput output = slam.process(*message);
     front_end->listen(output);
     add_stage_times(output.result, report);

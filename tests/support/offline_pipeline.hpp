@@ -17,11 +17,17 @@
 
 namespace rtd::test_support {
 
+/// The features of one frame and what they cost.
+struct FrontEndOutput {
+  std::vector<msg::Feature> features;
+  std::map<std::string, double> stage_ms;  ///< by name, e.g. "detector", "filter.extract"
+};
+
 /// What turns an image into features, and listens to what slam says of them.
 class FrontEnd {
  public:
   virtual ~FrontEnd() = default;
-  virtual std::vector<msg::Feature> process(const camera::SourceFrame& frame) = 0;
+  virtual FrontEndOutput process(const camera::SourceFrame& frame) = 0;
   virtual void listen(const slam::SlamOutput& /*output*/) {}
 };
 
