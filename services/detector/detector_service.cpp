@@ -35,6 +35,7 @@ void DetectorService::add_options(CLI::App& app, Config& config) {
   app.add_option("--input", config.input, "frame or jpeg (detector.input)")->check(CLI::IsMember({"frame", "jpeg"}));
   app.add_option("--max-rate", config.max_rate_hz, "Realtime pace: at most this many detections a second, 0 = no limit")
       ->check(CLI::Range(0.0, 1000.0));
+  app.footer("rtd-detector --image FILE...  prints what it finds in image files and ends.");
 }
 
 DetectorService::DetectorService(const Config& config, service::Runtime& runtime)

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/service/run_service.hpp"
 #include "services/detector/detector_service.hpp"
+#include "services/detector/image_table.hpp"
 
 int main(int argc, char** argv) {
+  if (rtd::detector::asks_for_image_table(argc, argv)) return rtd::detector::print_image_table(argc, argv);
   return rtd::service::run_service<rtd::detector::DetectorService>(argc, argv);
 }

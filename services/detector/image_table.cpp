@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/detector/image_table.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/service/exit_code.hpp"
+#include "services/detector/core/detector.hpp"
+#include "services/detector/core/model_locator.hpp"
+
+namespace rtd::detector {
+namespace {
+
+void print_row(const std::string& file, const vision::Detection& detection) {
+  std::cout << fmt::format("{:<32} {:<14} {:>5.2f} {:>6.0f} {:>6.0f} {:>6.0f} {:>6.0f}\n", file, detection.class_name,
+                           detection.score, detection.x_px, detection.y_px, detection.width_px, detection.height_px);
+}
+
+int print_files(Detector& detector, const std::vector<std::string>& files) {
+  int code = service::kOk;
+  std::cout << fmt::format("{:<32} {:<14} {:>5} {:>6} {:>6} {:>6} {:>6}\n", "file", "class", "score", "x_px", "y_px",
+                           "width", "height");
+  for (const std::string& file : files) {
+    const cv::Mat image = cv::imread(file);
+    if (image.empty()) {
+      std::cerr << "rtd-detector: " << file << " is missing or no image\n";
+      code = service::kRunFailed;
+      continue;
+    }
+    const std::vector<vision::Detection> detections = detector.detect(image);
+    for (const vision::Detection& detection : detections) print_row(file, detection);
+    if (detections.empty()) std::cout << fmt::format("{:<32} nothing found\n", file);
+  }
+  return code;
+}
+
+}  // namespace
+
+bool asks_for_image_table(int argc, const char* const* argv) {
+  return argc > 1 && std::string_view(argv[1]) == "--image";
+}
+
+int print_image_table(int argc, const char* const* argv) {
+  CLI::App app{"Prints what is found in image files", "rtd-detector"};
+  std::vector<std::string> files;
+  std::string model_name;
+  DetectorConfig config;
+  app.add_option("--image", files, "Image files")->required();
+  app.add_option("--model", model_name, "ONNX file");
+  app.add_option("--confidence", config.decode.confidence_threshold, "Least score")->check(CLI::Range(0.01, 1.0));
+  try {
+    app.parse(argc, argv);
+    const ModelSearch model = find_model(model_name, process_environment());
+    if (!model) throw ModelError(model.message);
+    config.model_path = model.path;
+    Detector detector(config);
+    return print_files(detector, files);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? service::kOk : service::kUsageOrConfig;
+  } catch (const ModelError& error) {
+    std::cerr << "rtd-detector: " << error.what() << '\n';
+    return service::kUsageOrConfig;
+  }
+}
+
+}  // namespace rtd::detector

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Times of the detector on one thread: whole, and by part. Needs the weights; RTD_DATA_DIR gives a real image.
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+
+#include "services/detector/core/detector.hpp"
+#include "services/detector/core/letterbox.hpp"
+#include "services/detector/core/model_locator.hpp"
+#include "services/detector/core/yolo_decoder.hpp"
+#include "services/detector/core/yolo_network.hpp"
+
+namespace rtd::detector {
+namespace {
+
+DetectorConfig config_or_skip(benchmark::State& state) {
+  const ModelSearch model = find_model("", process_environment());
+  if (!model) state.SkipWithError(model.message.c_str());
+  DetectorConfig config;
+  config.model_path = model.path;
+  return config;
+}
+
+/// An office with two people; noise when there is no data.
+cv::Mat test_image() {
+  const char* const data = std::getenv("RTD_DATA_DIR");
+  cv::Mat image;
+  if (data != nullptr) image = cv::imread((std::filesystem::path(data) / "people_stills/rgb/img2.jpg").string());
+  if (image.empty()) {
+    image.create(480, 640, CV_8UC3);
+    cv::randu(image, 0, 255);
+  }
+  return image;
+}
+
+void detect(benchmark::State& state) {
+  const DetectorConfig config = config_or_skip(state);
+  if (config.model_path.empty()) return;
+  Detector detector(config);
+  const cv::Mat image = test_image();
+  for (auto _ : state) benchmark::DoNotOptimize(detector.detect(image));
+}
+BENCHMARK(detect)->Unit(benchmark::kMillisecond)->MinTime(2);
+
+void preprocess(benchmark::State& state) {
+  const cv::Mat image = test_image();
+  cv::Mat blob;
+  for (auto _ : state) fill_blob(image, fit_letterbox(image.size(), {640, 480}), {640, 480}, blob);
+}
+BENCHMARK(preprocess)->Unit(benchmark::kMillisecond);
+
+void decode_and_suppress(benchmark::State& state) {
+  const DetectorConfig config = config_or_skip(state);
+  if (config.model_path.empty()) return;
+  YoloNetwork network(config);
+  const cv::Mat image = test_image();
+  cv::Mat blob;
+  fill_blob(image, fit_letterbox(image.size(), network.input()), network.input(), blob);
+  const std::vector<HeadLogits> heads = network.infer(blob);
+  const int class_count = static_cast<int>(network.config().class_names.size());
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(suppress_non_maxima(decode_heads(heads, class_count, config.decode), config.decode));
+  }
+}
+BENCHMARK(decode_and_suppress)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace rtd::detector
+
+BENCHMARK_MAIN();
