@@ -111,7 +111,7 @@ void DynamicFilter::find_what_may_move(const Detections& detections, Scene& scen
 DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, FilterResult& result) {
   const auto cells = static_cast<std::size_t>(scene.grid.shape.size());
   const std::vector<std::uint8_t> nothing(cells, 0);
-  Geometry geometry{{}, {nothing, nothing}, {false, nothing, 0}};
+  Geometry geometry{{}, DepthEvidence::none(cells), {false, nothing, 0}};
   if (views_.empty() || !uses_geometry(config_.mode)) return geometry;
 
   StageClock clock(now_ns_);
@@ -145,7 +145,7 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
   if (geometry.ego.reliable) {
     const auto views = views_.references(scene.image.stamp_ns, geometry.ego.T_world_camera,
                                          static_cast<std::size_t>(config_.geometry.max_views));
-    geometry.evidence = check_depth(scene.grid, sampler_.rays(), geometry.ego.T_world_camera, views, scene.image.camera,
+    geometry.evidence = check_depth(scene.grid, sampler_.rays(), {scene.image.stamp_ns, geometry.ego.T_world_camera}, views, scene.image.camera,
                                     config_.geometry);
     votes = count_votes(geometry.ego.matches, input, geometry.ego.T_world_camera, config_.geometry);
   }

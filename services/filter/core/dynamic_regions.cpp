@@ -81,6 +81,19 @@ void drop_small_regions(const GridShape& shape, std::vector<std::uint8_t>& cells
   }
 }
 
+/// Most of the cluster's features are at their place: more than the mover belongs to it.
+bool mostly_resting(const ClusterVotes& votes, std::size_t cluster) {
+  return cluster < votes.resting.size() && votes.resting[cluster] > votes.moving[cluster];
+}
+
+/// Large parts that have lasted: the floor on which a walker stands belongs to his depth cluster but not to him.
+std::vector<std::uint8_t> resting_part(const DepthClusters& clusters, const DepthEvidence& evidence,
+                                       const GeometryConfig& config) {
+  std::vector<std::uint8_t> lasting = compact(clusters.shape, evidence.lasting);
+  drop_small_regions(clusters.shape, lasting, config.min_resting_cells);
+  return lasting;
+}
+
 }  // namespace
 
 DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEvidence& evidence,
@@ -99,11 +112,13 @@ DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEv
     }
     regions.clusters += cluster_frames[i] > 0 ? 1 : 0;
   }
+  const std::vector<std::uint8_t> at_rest = resting_part(clusters, evidence, config);
   std::vector<std::uint8_t> loose(clusters.label.size(),
                                   0);  // evidence inside clusters that are not dynamic as a whole
   for (std::size_t cell = 0; cell < loose.size(); ++cell) {
     const std::int32_t label = clusters.label[cell];
-    if (label >= 0 && cluster_frames[static_cast<std::size_t>(label)] > 0) {
+    if (label >= 0 && cluster_frames[static_cast<std::size_t>(label)] > 0 &&
+        (at_rest[cell] == 0 || !mostly_resting(votes, static_cast<std::size_t>(label)))) {
       regions.frames_left[cell] = cluster_frames[static_cast<std::size_t>(label)];
     } else {
       loose[cell] = evidence.violated[cell] > 0 ? loose_memory : std::min(loose_memory, one_less(remembered[cell]));
