@@ -14,8 +14,8 @@ namespace rtd::filter {
 
 /// What the reference views say about each cell of the current frame.
 struct DepthEvidence {
-  std::vector<std::uint8_t> violated;    ///< 1 = views saw through the place where the surface now is: two where there are
-                                         ///< four or more to ask
+  std::vector<std::uint8_t> violated;  ///< 1 = views saw through the place where the surface now is: two where there
+                                       ///< are four or more to ask
   std::vector<std::uint8_t> consistent;  ///< number of views that saw the surface there too
   std::vector<std::uint8_t> lasting;     ///< 1 = views of at least 0.4 s ago saw it there, and none saw through it
   static DepthEvidence none(std::size_t cells) {
@@ -37,8 +37,8 @@ struct CameraPose {
 /// the surface was there. Where it measured nearer, the point was hidden: no statement; nor where the two viewing rays
 /// differ by more than the angle of the config, the reference measured nothing, or (for `consistent`) something
 /// dynamic.
-DepthEvidence check_depth(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
-                          const CameraPose& pose, const std::vector<const View*>& references,
-                          const geometry::CameraModel& camera, const GeometryConfig& config);
+DepthEvidence check_depth(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays, const CameraPose& pose,
+                          const std::vector<const View*>& references, const geometry::CameraModel& camera,
+                          const GeometryConfig& config);
 
 }  // namespace rtd::filter

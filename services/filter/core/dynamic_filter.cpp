@@ -145,8 +145,8 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
   if (geometry.ego.reliable) {
     const auto views = views_.references(scene.image.stamp_ns, geometry.ego.T_world_camera,
                                          static_cast<std::size_t>(config_.geometry.max_views));
-    geometry.evidence = check_depth(scene.grid, sampler_.rays(), {scene.image.stamp_ns, geometry.ego.T_world_camera}, views, scene.image.camera,
-                                    config_.geometry);
+    geometry.evidence = check_depth(scene.grid, sampler_.rays(), {scene.image.stamp_ns, geometry.ego.T_world_camera},
+                                    views, scene.image.camera, config_.geometry);
     votes = count_votes(geometry.ego.matches, input, geometry.ego.T_world_camera, config_.geometry);
   }
   geometry.regions = find_dynamic_regions(scene.clusters, geometry.evidence, votes, remembered, config_.geometry);
