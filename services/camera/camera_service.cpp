@@ -123,19 +123,22 @@ CameraService::Outcome CameraService::play(ReadAhead& frames) {
     counters_ = item->counters;
     log_skipped(*item);
     if (!item->error.empty()) return fail("the source failed: " + item->error);
+    frames_in_ += item->passed_over;
+    passed_over_ += item->passed_over;
     if (!item->frame) return Outcome::kDone;
-    if (const Outcome outcome = handle(std::move(*item->frame)); outcome != Outcome::kDone) return outcome;
+    if (const Outcome outcome = handle(std::move(*item->frame), frames); outcome != Outcome::kDone) return outcome;
     if (frames_in_ % kReportEvery == 0) report_counters();
   }
   return Outcome::kStopped;
 }
 
-CameraService::Outcome CameraService::handle(SourceFrame frame) {
+CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frames) {
   ++frames_in_;
   while (!runtime_.stop.stop_requested()) {
     take_results();
-    const PaceDecision decision = pacer_.next(frame.image.stamp_ns);
+    const PaceDecision decision = pacer_.next(frame.image.stamp_ns, frames.waiting());
     log_timeline(decision, frame);
+    if (decision.late_ns > 0) frames.pass_over(frame.image.stamp_ns + decision.late_ns);
     if (decision.action == PaceAction::kSkipLate) return Outcome::kDone;
     if (decision.action == PaceAction::kSend) {
       send(frame.image);
@@ -240,7 +243,7 @@ void CameraService::log_timeline(const PaceDecision& decision, const SourceFrame
                 frame.image.seq, static_cast<double>(decision.shifted_ns) * 1e-9);
   }
   if (decision.action == PaceAction::kSkipLate && late_log_.pass()) {
-    SPDLOG_WARN("event=frame_late frame={} total={}", frame.image.seq, pacer_.late());
+    SPDLOG_WARN("event=frame_late frame={} total={}", frame.image.seq, late());
   }
 }
 
@@ -250,7 +253,7 @@ void CameraService::report_counters() {
   };
   set("frames_in", frames_in_);
   set("frames_published", published_);
-  set("frames_late", pacer_.late());
+  set("frames_late", late());
   set("frames_skipped", counters_.skipped_total());
   set("frames_without_depth", counters_.frames_without_depth);
   set("frames_refused", refused_);
@@ -281,8 +284,8 @@ service::ExitCode CameraService::finish(Outcome outcome) {
   report_counters();
   if (outcome != Outcome::kFailed) runtime_.heartbeat.set_state(msg::ServiceState::kFinished);
   SPDLOG_INFO("event=summary frames_in={} published={} late={} skipped={} without_depth={} refused={} resends={}",
-              frames_in_, published_, pacer_.late(), counters_.skipped_total(), counters_.frames_without_depth,
-              refused_, pacer_.resends());
+              frames_in_, published_, late(), counters_.skipped_total(), counters_.frames_without_depth, refused_,
+              pacer_.resends());
   if (outcome != Outcome::kStopped) runtime_.stop.wait_for(kFarewell);
   return outcome == Outcome::kFailed ? service::kRunFailed : service::kOk;
 }

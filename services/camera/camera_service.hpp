@@ -43,7 +43,7 @@ class CameraService {
   Outcome wait_for_others();
   std::vector<std::string> missing() const;
   Outcome play(ReadAhead& frames);
-  Outcome handle(SourceFrame frame);
+  Outcome handle(SourceFrame frame, ReadAhead& frames);
   /// Carries out decisions that concern frames in flight; kDone when the next frame may go.
   Outcome follow(const PaceDecision& decision);
   Outcome drain();
@@ -60,6 +60,7 @@ class CameraService {
   void write_groundtruth();
   Outcome fail(const std::string& message);
   service::ExitCode finish(Outcome outcome);
+  std::uint64_t late() const { return pacer_.late() + passed_over_; }
 
   Config config_;
   service::Runtime& runtime_;
@@ -72,7 +73,7 @@ class CameraService {
   bus::Reader<msg::TrackingResult> tracking_;
   std::deque<vision::RgbdImage> unanswered_;  ///< kept for sending again; empty at pace realtime
   SourceCounters counters_;
-  std::uint64_t frames_in_ = 0, published_ = 0, refused_ = 0, last_seq_ = 0, newest_result_ = 0;
+  std::uint64_t frames_in_ = 0, passed_over_ = 0, published_ = 0, refused_ = 0, last_seq_ = 0, newest_result_ = 0;
   bool any_result_ = false;
   service::RateLimit skip_log_{std::chrono::seconds(1)}, late_log_{std::chrono::seconds(1)},
       refused_log_{std::chrono::seconds(1)};

@@ -44,7 +44,7 @@ struct SkippedInput {
 
 /// What a source has done so far.
 struct SourceCounters {
-  std::uint64_t frames = 0;                           ///< handed out
+  std::uint64_t frames = 0;                           ///< handed out or passed over
   std::array<std::uint64_t, kSkipReasons> skipped{};  ///< by SkipReason
   std::uint64_t frames_without_depth = 0;             ///< handed out although no pixel has a measurement
   std::uint64_t skipped_total() const;
@@ -81,6 +81,9 @@ class FrameSource {
   virtual ~FrameSource() = default;
   /// The next good frame; empty at the end.
   virtual std::optional<SourceFrame> next() = 0;
+  /// Passes over the frames older than `stamp_ns` without the work of making them; they keep their seq. Returns how
+  /// many.
+  virtual std::uint64_t pass_over(std::int64_t stamp_ns) = 0;
   virtual const SourceInfo& info() const = 0;
   virtual const SourceCounters& counters() const = 0;
   /// Ground truth of the span covered, oldest first; empty when there is none. Endless sources give what was played so

@@ -10,15 +10,15 @@ namespace rtd::camera {
 Pacer::Pacer(const PacerConfig& config, std::function<std::int64_t()> now_ns)
     : config_(config), now_ns_(std::move(now_ns)) {}
 
-PaceDecision Pacer::next(std::int64_t stamp_ns) {
-  return config_.window == 0 ? by_stamp(stamp_ns) : by_window(static_cast<std::size_t>(config_.window));
+PaceDecision Pacer::next(std::int64_t stamp_ns, std::size_t newer_waiting) {
+  return config_.window == 0 ? by_stamp(stamp_ns, newer_waiting) : by_window(static_cast<std::size_t>(config_.window));
 }
 
 PaceDecision Pacer::drain() {
   return by_window(1);
 }
 
-PaceDecision Pacer::by_stamp(std::int64_t stamp_ns) {
+PaceDecision Pacer::by_stamp(std::int64_t stamp_ns, std::size_t newer_waiting) {
   PaceDecision decision;
   if (stamp_ns_ != stamp_ns) advance_timeline(stamp_ns, decision);
   const std::int64_t late_ns = now_ns_() - *due_ns_;
@@ -29,8 +29,11 @@ PaceDecision Pacer::by_stamp(std::int64_t stamp_ns) {
     *due_ns_ += late_ns;
     decision.shifted_ns = late_ns;
   } else if (late_ns > config_.period_ns) {
-    decision.action = PaceAction::kSkipLate;
-    ++late_;
+    decision.late_ns = late_ns;
+    if (newer_waiting > 0) {
+      decision.action = PaceAction::kSkipLate;
+      ++late_;
+    }
   }
   return decision;
 }
@@ -50,11 +53,11 @@ void Pacer::advance_timeline(std::int64_t stamp_ns, PaceDecision& decision) {
 PaceDecision Pacer::by_window(std::size_t room) {
   if (in_flight_.size() < room) return {};
   const std::int64_t now_ns = now_ns_();
-  if (now_ns - last_progress_ns_ >= config_.result_timeout_ns) return {PaceAction::kGiveUp, 0, 0, 0};
-  if (now_ns - last_sent_ns_ >= config_.resend_after_ns) return {PaceAction::kResend, 0, 0, 0};
+  if (now_ns - last_progress_ns_ >= config_.result_timeout_ns) return {.action = PaceAction::kGiveUp};
+  if (now_ns - last_sent_ns_ >= config_.resend_after_ns) return {.action = PaceAction::kResend};
   const std::int64_t until_ns =
       std::min(last_sent_ns_ + config_.resend_after_ns, last_progress_ns_ + config_.result_timeout_ns);
-  return {PaceAction::kWait, until_ns - now_ns, 0, 0};
+  return {.action = PaceAction::kWait, .wait_ns = until_ns - now_ns};
 }
 
 void Pacer::sent(std::uint64_t seq) {

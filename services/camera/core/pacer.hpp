@@ -13,9 +13,9 @@ namespace rtd::camera {
 struct PacerConfig {
   /// Frames that may be without a result at a time (1: lockstep, 3: asap). 0: by their stamps (realtime).
   int window = 0;
-  std::int64_t period_ns = 33'333'333;              ///< realtime: a frame later than this is skipped
+  std::int64_t period_ns = 33'333'333;              ///< realtime: a frame later than this is skipped for a newer one
   std::int64_t max_gap_ns = 1'000'000'000;          ///< realtime: longest pause between two stamps that is played
-  std::int64_t max_lateness_ns = 1'000'000'000;     ///< realtime: beyond this the timeline is shifted, not skipped
+  std::int64_t max_lateness_ns = 500'000'000;       ///< realtime: beyond this the timeline is shifted, not skipped
   std::int64_t resend_after_ns = 2'000'000'000;     ///< window: silence after which the frames in flight are sent again
   std::int64_t result_timeout_ns = 30'000'000'000;  ///< window: silence after which the run has failed
 };
@@ -31,6 +31,7 @@ enum class PaceAction {
 struct PaceDecision {
   PaceAction action = PaceAction::kSend;
   std::int64_t wait_ns = 0;
+  std::int64_t late_ns = 0;     ///< realtime: how far the frame is behind its time, when more than one period
   std::int64_t cut_gap_ns = 0;  ///< realtime: how much of the pause before this frame is left out
   std::int64_t shifted_ns = 0;  ///< realtime: how much the timeline was shifted because the source is too slow
 };
@@ -41,8 +42,9 @@ class Pacer {
  public:
   Pacer(const PacerConfig& config, std::function<std::int64_t()> now_ns);
 
-  /// What to do about the frame with this stamp, the next one of the source.
-  PaceDecision next(std::int64_t stamp_ns);
+  /// What to do about the frame with this stamp, the next one of the source, while `newer_waiting` frames stand ready
+  /// behind it. A late frame is only skipped for a newer one: a source that is too slow still gives what it can.
+  PaceDecision next(std::int64_t stamp_ns, std::size_t newer_waiting = 1);
   /// After the last frame: kWait while results are missing, kResend, kGiveUp; kSend when every frame is answered.
   PaceDecision drain();
 
@@ -55,7 +57,7 @@ class Pacer {
   std::uint64_t resends() const { return resends_; }
 
  private:
-  PaceDecision by_stamp(std::int64_t stamp_ns);
+  PaceDecision by_stamp(std::int64_t stamp_ns, std::size_t newer_waiting);
   PaceDecision by_window(std::size_t room);
   void advance_timeline(std::int64_t stamp_ns, PaceDecision& decision);
 

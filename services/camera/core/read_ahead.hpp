@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
+#include <atomic>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <thread>
@@ -17,6 +19,7 @@ namespace rtd::camera {
 struct ReadItem {
   std::optional<SourceFrame> frame;   ///< empty: the source is at its end
   std::vector<SkippedInput> skipped;  ///< left out before this frame
+  std::uint64_t passed_over = 0;      ///< frames before this one that pass_over() left unread
   SourceCounters counters;            ///< of the source, after this frame
   std::string error;                  ///< not empty: the source failed; no frame follows
 };
@@ -33,14 +36,20 @@ class ReadAhead {
 
   /// The next frame, in order; waits for it. Empty after close().
   std::optional<ReadItem> next() { return items_.pop(); }
+  /// Frames read and waiting.
+  std::size_t waiting() const { return items_.size(); }
+  /// Frames older than this need not be read any more. Thread-safe.
+  void pass_over(std::int64_t stamp_ns) { oldest_wanted_ns_ = stamp_ns; }
   /// Ends the reading; thread-safe, wakes next().
   void close() { items_.close(); }
 
  private:
+  void read_all(FrameSource& source);
   ReadItem read(FrameSource& source, std::uint64_t frames_read) const;
 
   concurrency::BoundedQueue<ReadItem> items_;
   std::uint64_t max_frames_;
+  std::atomic<std::int64_t> oldest_wanted_ns_{std::numeric_limits<std::int64_t>::min()};
   std::thread thread_;
 };
 

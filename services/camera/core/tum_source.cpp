@@ -49,6 +49,17 @@ std::optional<SourceFrame> TumSource::next() {
   return frame;
 }
 
+std::uint64_t TumSource::pass_over(std::int64_t stamp_ns) {
+  std::uint64_t passed = 0;
+  if (first_ && first_->image.stamp_ns < stamp_ns) {
+    first_.reset();
+    ++passed;
+  }
+  for (; !first_ && next_pair_ < pairs_.size() && pairs_[next_pair_].color.stamp_ns < stamp_ns; ++next_pair_) ++passed;
+  counters_.frames += passed;
+  return passed;
+}
+
 std::vector<SkippedInput> TumSource::take_skipped() {
   return std::exchange(skipped_, {});
 }

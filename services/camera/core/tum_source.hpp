@@ -25,6 +25,7 @@ class TumSource final : public FrameSource {
   TumSource(std::string uri, std::filesystem::path folder, Options options);
 
   std::optional<SourceFrame> next() override;
+  std::uint64_t pass_over(std::int64_t stamp_ns) override;
   const SourceInfo& info() const override { return info_; }
   const SourceCounters& counters() const override { return counters_; }
   std::vector<StampedPose> groundtruth() const override { return groundtruth_; }

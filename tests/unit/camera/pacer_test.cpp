@@ -44,6 +44,16 @@ TEST_F(PacerTest, RealtimeSkipsAndCountsFramesLaterThanOnePeriod) {
   EXPECT_EQ(pacer.late(), 2U);
 }
 
+TEST_F(PacerTest, RealtimeSendsALateFrameWhenNoNewerOneIsReady) {
+  Pacer pacer = this->pacer(0);
+  pacer.next(0);
+  now_ns_ += 100 * kMs;
+  const PaceDecision decision = pacer.next(33 * kMs, 0);
+  EXPECT_EQ(decision.action, PaceAction::kSend);
+  EXPECT_EQ(decision.late_ns, 67 * kMs) << "for the source: what is older need not be made";
+  EXPECT_EQ(pacer.late(), 0U);
+}
+
 TEST_F(PacerTest, RealtimeCutsLongPauses) {
   Pacer pacer = this->pacer(0);
   pacer.next(0);

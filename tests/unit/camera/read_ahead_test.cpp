@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <future>
 
 namespace rtd::camera {
@@ -20,7 +21,14 @@ class CountingSource final : public FrameSource {
     }
     SourceFrame frame;
     frame.image.seq = counters_.frames++;
+    frame.image.stamp_ns = static_cast<std::int64_t>(frame.image.seq);
     return frame;
+  }
+  std::uint64_t pass_over(std::int64_t stamp_ns) override {
+    const std::uint64_t before = counters_.frames;
+    counters_.frames =
+        std::max(before, std::min(frames_, static_cast<std::uint64_t>(std::max<std::int64_t>(stamp_ns, 0))));
+    return counters_.frames - before;
   }
   const SourceInfo& info() const override { return info_; }
   const SourceCounters& counters() const override { return counters_; }
@@ -48,6 +56,23 @@ TEST(ReadAhead, HandsOverEveryFrameInOrderThenTheEnd) {
   ASSERT_TRUE(end);
   EXPECT_FALSE(end->frame);
   EXPECT_TRUE(end->error.empty());
+}
+
+TEST(ReadAhead, PassesOverWhatIsNoLongerWanted) {
+  CountingSource source(1000, false);
+  ReadAhead frames(source, 2, 0);
+  frames.next();
+  frames.pass_over(500);
+  std::uint64_t passed_over = 0, read = 1, last_seq = 0;
+  while (const std::optional<ReadItem> item = frames.next()) {
+    passed_over += item->passed_over;
+    if (!item->frame) break;
+    ++read;
+    last_seq = item->frame->image.seq;
+  }
+  EXPECT_EQ(last_seq, 999U);
+  EXPECT_EQ(read + passed_over, 1000U) << "every frame is either read or counted";
+  EXPECT_GE(passed_over, 490U);
 }
 
 TEST(ReadAhead, StopsAtTheLimit) {

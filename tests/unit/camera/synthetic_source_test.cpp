@@ -138,6 +138,17 @@ TEST(SyntheticSource, EndlessOneGivesGroundtruthOfWhatWasPlayed) {
   EXPECT_LT(poses[4].stamp_ns, sixth->image.stamp_ns);
 }
 
+TEST(SyntheticSource, PassesOverFramesWithoutChangingTheLaterOnes) {
+  const std::string uri = "synthetic:office?frames=6&width=64&height=48";
+  const auto source = make_source(uri);
+  const auto all = play(uri);
+  EXPECT_EQ(source->pass_over(all[4].image.stamp_ns), 4U);
+  const auto frame = source->next();
+  EXPECT_EQ(frame->image.seq, 4U);
+  EXPECT_TRUE(same(frame->image.color_bgr, all[4].image.color_bgr));
+  EXPECT_TRUE(same(frame->image.depth, all[4].image.depth));
+}
+
 TEST(SyntheticSource, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT([] { make_source("synthetic:kitchen"); },
               ThrowsMessage<SourceError>(AllOf(HasSubstr("'kitchen'"), HasSubstr("office, static, box, crowd, tour"))));

@@ -97,7 +97,7 @@ double SyntheticSource::time_s(std::uint64_t frame) const {
 }
 
 std::optional<SourceFrame> SyntheticSource::next() {
-  if (options_.frames != 0 && counters_.frames >= options_.frames) return std::nullopt;
+  if (at_end()) return std::nullopt;
   const std::uint64_t index = counters_.frames++;
   const Eigen::Isometry3d T_world_camera = scene_.T_world_camera(time_s(index));
   const synthetic::Rendering rendering =
@@ -112,6 +112,12 @@ std::optional<SourceFrame> SyntheticSource::next() {
   frame.dynamic_mask = rendering.moving_mask.clone();
   frame.T_world_camera = T_world_camera;
   return frame;
+}
+
+std::uint64_t SyntheticSource::pass_over(std::int64_t stamp_ns) {
+  const std::uint64_t before = counters_.frames;
+  while (!at_end() && this->stamp_ns(counters_.frames) < stamp_ns) ++counters_.frames;
+  return counters_.frames - before;
 }
 
 std::vector<StampedPose> SyntheticSource::groundtruth() const {

@@ -31,6 +31,7 @@ class SyntheticSource final : public FrameSource {
   SyntheticSource(std::string uri, const SyntheticOptions& options);
 
   std::optional<SourceFrame> next() override;
+  std::uint64_t pass_over(std::int64_t stamp_ns) override;
   const SourceInfo& info() const override { return info_; }
   const SourceCounters& counters() const override { return counters_; }
   std::vector<StampedPose> groundtruth() const override;  ///< of all frames, endless: of those played
@@ -39,6 +40,7 @@ class SyntheticSource final : public FrameSource {
  private:
   std::int64_t stamp_ns(std::uint64_t frame) const;
   double time_s(std::uint64_t frame) const;
+  bool at_end() const { return options_.frames != 0 && counters_.frames >= options_.frames; }
 
   SyntheticOptions options_;
   SourceInfo info_;
