@@ -99,8 +99,8 @@ std::string paths_section(const std::vector<Entry>& entries) {
   std::vector<PathCurve> curves;
   if (PathCurve truth = truth_path(entries); !truth.points_m.empty()) curves.push_back(truth);
   for (const Entry& entry : entries) curves.push_back(run_path(entry));
-  plot::Svg svg(1080, 640, "Trajectories of the runs");
-  draw_paths(svg, {0, 0, 1080, 640}, curves);
+  plot::Svg svg(1080, fitting_height(curves, 1080), "Trajectories of the runs");
+  draw_paths(svg, {0, 0, 1080, svg.height()}, curves);
   return html::section("Trajectories",
                        "Each run is aligned to the ground truth by the one rigid motion that favours it most.",
                        svg.str());

@@ -42,17 +42,17 @@ Card accuracy_card(const RunSummary& summary) {
 }
 
 Card drift_card(const RunSummary& summary) {
-  if (!summary.final_trajectory) return {"unknown", "drift per second (RPE)", why_no_error(summary)};
+  if (!summary.final_trajectory) return {"unknown", "RPE per second", why_no_error(summary)};
   const eval::RpeResult& rpe = summary.final_trajectory->rpe_per_second;
-  return {length_text(rpe.translation_m.rmse), "drift per second (RPE)",
+  return {length_text(rpe.translation_m.rmse), "RPE per second",
           number_text(rpe.rotation_rad.rmse * 180 / std::numbers::pi, 2, "deg") + " rotation"};
 }
 
 Card latency_card(const RunSummary& summary) {
   const TimeSummary& latency = summary.latency_ms;
-  if (latency.count == 0) return {"unknown", "camera to pose", "no frame was timed"};
-  return {number_text(latency.p50, 1, "ms"), "camera to pose, p50",
-          "p99 " + number_text(latency.p99, 1, "ms") + ", max " + number_text(latency.max, 1, "ms")};
+  if (latency.count == 0) return {"unknown", "latency p50", "no frame was timed"};
+  return {number_text(latency.p50, 1, "ms"), "latency p50",
+          "camera to pose; p99 " + number_text(latency.p99, 1, "ms") + ", max " + number_text(latency.max, 1, "ms")};
 }
 
 Card removed_card(const RunSummary& summary) {
@@ -79,9 +79,11 @@ eval::Trajectory truth_during(const RunSummary& summary, const RunTime& time) {
 }
 
 std::string trajectory_section(const RunSummary& summary, const RunTime& time) {
-  plot::Svg svg(700, 560, "Trajectory");
   if (summary.final_trajectory) {
-    draw_error_path(svg, {0, 0, 700, 560}, summary.final_trajectory->ate, truth_during(summary, time));
+    const eval::Trajectory truth = truth_during(summary, time);
+    const double height = fitting_height({path_of(truth)}, 700);
+    plot::Svg svg(700, height, "Trajectory coloured by error");
+    draw_error_path(svg, {0, 0, 700, height}, summary.final_trajectory->ate, truth);
     return html::section("Trajectory against ground truth",
                          "Final trajectory (trajectory.txt) aligned to the ground truth by one rigid motion, seen "
                          "along the axis in which the "
@@ -93,7 +95,8 @@ std::string trajectory_section(const RunSummary& summary, const RunTime& time) {
   path.label = "estimate";
   path.colour = palette::kBlue;
   path.stroke.width = 2.2;
-  draw_paths(svg, {0, 0, 700, 560}, {path});
+  plot::Svg svg(700, fitting_height({path}, 700), "Trajectory");
+  draw_paths(svg, {0, 0, 700, svg.height()}, {path});
   return html::section("Trajectory",
                        "Without ground truth at these times the error is unknown. World frame: the first camera frame.",
                        html::columns(svg.str(), ""));

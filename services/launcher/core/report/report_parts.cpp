@@ -18,7 +18,7 @@ constexpr double kRadToDeg = 180 / std::numbers::pi;
 
 std::vector<std::string> length_row(const std::string& name, const eval::Statistics& s) {
   if (s.count == 0) return {name, "-", "-", "-", "-"};
-  const LengthUnit unit = length_unit(s.max);
+  const LengthUnit unit = length_unit(s.rmse);
   const auto text = [&](double value_m) { return fmt::format("{:.2f}", value_m * unit.per_metre); };
   return {name + " [" + unit.name + "]", text(s.rmse), text(s.median), text(s.max), fmt::format("{}", s.count)};
 }

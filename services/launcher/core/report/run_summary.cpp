@@ -16,6 +16,8 @@ constexpr std::array<const char*, msg::kStageFilterTotal + 1> kFilterStageNames{
 constexpr std::array<const char*, msg::kStageSlamTotal + 1> kSlamStageNames{
     "slam.match", "slam.local_map", "slam.pose", "slam.keyframe", "slam.mapping", "slam.total"};
 
+constexpr float kRanMs = 0.01F;  // a shorter time is that of asking whether there is anything to do
+
 bool is_tracked(const FrameRecord& frame) {
   return frame.tracking.state == msg::TrackingState::kOk;
 }
@@ -38,7 +40,7 @@ void append_stages(const RunRecord& record, const std::array<const char*, N>& na
   for (std::size_t stage = 0; stage < N; ++stage) {
     std::vector<double> times_ms;
     for (const FrameRecord& frame : record.frames) {
-      if (const float ms = times_of(frame)[stage]; ms > 0) times_ms.push_back(ms);
+      if (const float ms = times_of(frame)[stage]; ms >= kRanMs) times_ms.push_back(ms);
     }
     stages.push_back({names[stage], summarize_times(times_ms)});
   }

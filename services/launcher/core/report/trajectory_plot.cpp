@@ -154,6 +154,16 @@ eval::Trajectory within(const eval::Trajectory& trajectory, std::int64_t first_n
   return part;
 }
 
+double fitting_height(const std::vector<PathCurve>& curves, double width) {
+  constexpr double kMarginX = 150, kMarginY = 76, kLowest = 330, kHighest = 640;
+  std::vector<Eigen::Vector3d> all_m;
+  for (const PathCurve& curve : curves) all_m.insert(all_m.end(), curve.points_m.begin(), curve.points_m.end());
+  const PlaneView plane = curves.empty() ? PlaneView{} : widest_plane(curves.front().points_m);
+  const double across = plot::range_of(coordinate(all_m, plane.horizontal)).span();
+  const double up = plot::range_of(coordinate(all_m, plane.vertical)).span();
+  return std::clamp(kMarginY + (width - kMarginX) * 1.1 * up / across, kLowest, kHighest);
+}
+
 void draw_error_path(plot::Svg& svg, const Area& area, const eval::AteResult& ate,
                      const eval::Trajectory& groundtruth) {
   PathCurve truth = path_of(groundtruth);

@@ -38,6 +38,10 @@ PathCurve path_of(const eval::Trajectory& trajectory);
 /// The poses from first_ns to last_ns.
 eval::Trajectory within(const eval::Trajectory& trajectory, std::int64_t first_ns, std::int64_t last_ns);
 
+/// Height of a drawing of this width in which the paths, at equal aspect, leave little of it empty; within sensible
+/// limits.
+double fitting_height(const std::vector<PathCurve>& curves, double width);
+
 /// The estimate coloured by its error over the grey ground truth, equal aspect, colour scale at the right.
 void draw_error_path(plot::Svg& svg, const plot::Area& area, const eval::AteResult& ate,
                      const eval::Trajectory& groundtruth);

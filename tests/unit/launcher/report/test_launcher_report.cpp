@@ -79,6 +79,9 @@ TEST_F(Report, latency_is_from_published_to_pose) {
 }
 
 TEST_F(Report, stage_times_count_the_frames_in_which_the_stage_ran) {
+  for (FrameRecord& frame : record_.frames) {
+    if (frame.tracking.stage_ms[msg::kStageMapping] == 0) frame.tracking.stage_ms[msg::kStageMapping] = 0.0004F;
+  }
   const auto stages = json()["stage_ms"];
   EXPECT_EQ(stages["slam.mapping"]["count"], 9);  // every tenth frame, frame 60 is missing
   EXPECT_EQ(stages["slam.mapping"]["p50"], 20);
