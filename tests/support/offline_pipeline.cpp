@@ -6,7 +6,6 @@
 #include <numbers>
 #include <sstream>
 
-#include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/launcher/core/evaluation/ate.hpp"
 #include "services/launcher/core/evaluation/rpe.hpp"
@@ -51,7 +50,7 @@ std::unique_ptr<msg::FeatureFrame> make_feature_frame(const vision::RgbdImage& i
 OfflineReport run_offline(const OfflineOptions& options) {
   const auto source = camera::make_source(options.source);
   const auto front_end = make_front_end(options.mode);
-  slam::SlamSystem slam(options.slam, options.mapping, service::monotonic_ns);
+  slam::SlamSystem slam(options.slam, options.mapping, options.now_ns);
   OfflineReport report;
   while (options.max_frames == 0 || report.frames < options.max_frames) {
     const auto frame = source->next();

@@ -11,6 +11,7 @@
 
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
+#include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/launcher/core/evaluation/trajectory.hpp"
 #include "services/slam/core/slam_system.hpp"
@@ -44,6 +45,7 @@ struct OfflineOptions {
   std::size_t max_frames = 0;  ///< 0 = all
   slam::SlamConfig slam;
   slam::MappingMode mapping = slam::MappingMode::kSynchronous;
+  slam::Clock now_ns = service::monotonic_ns;             ///< for slam's stage times
   std::function<void(const slam::SlamOutput&)> on_frame;  ///< called after each frame; may be empty
 };
 

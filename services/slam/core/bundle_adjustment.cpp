@@ -66,6 +66,7 @@ class BundleStage {
     ceres::Problem::Options problem_options;
     problem_options.cost_function_ownership = ceres::TAKE_OWNERSHIP;
     problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    problem_options.disable_all_safety_checks = true;  // blocks are added once each by construction
     ceres::Problem ceres_problem(problem_options);
     ceres::Solver::Options solver;
     solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
@@ -98,14 +99,20 @@ class BundleStage {
       } else {
         cost = new ObservationCost<2>(problem_.camera, T_camera_world, observation);
       }
-      // The weight multiplies the loss, so that the Huber threshold stays one of pixels.
-      const double delta = std::sqrt(chi2_limit(options_, observation));
-      losses.push_back(std::make_unique<ceres::ScaledLoss>(robust ? new ceres::HuberLoss(delta) : nullptr,
-                                                           observation.weight, ceres::TAKE_OWNERSHIP));
-      ceres_problem.AddResidualBlock(cost, losses.back().get(), poses_[observation.camera].data(),
+      ceres::LossFunction* loss = robust ? &huber(observation) : nullptr;
+      if (observation.weight < 1) {
+        // The weight multiplies the loss, so that the Huber threshold stays one of pixels.
+        losses.push_back(std::make_unique<ceres::ScaledLoss>(loss, observation.weight, ceres::DO_NOT_TAKE_OWNERSHIP));
+        loss = losses.back().get();
+      }
+      ceres_problem.AddResidualBlock(cost, loss, poses_[observation.camera].data(),
                                      problem_.points[observation.point].data());
     }
     return losses;
+  }
+
+  ceres::LossFunction& huber(const BundleObservation& observation) {
+    return observation.measured.has_depth() ? huber_rgbd_ : huber_pixel_;
   }
 
   void hold_gauge(ceres::Problem& ceres_problem, ceres::ParameterBlockOrdering& ordering) {
@@ -134,6 +141,7 @@ class BundleStage {
 
   BundleProblem& problem_;
   const BundleOptions& options_;
+  ceres::HuberLoss huber_pixel_{std::sqrt(options_.max_chi2_pixel)}, huber_rgbd_{std::sqrt(options_.max_chi2_rgbd)};
   std::vector<Eigen::Isometry3d> T_camera_world_;
   std::vector<Vector6d> poses_;  ///< [rho; phi]
 };

@@ -34,7 +34,7 @@ int RecentLandmarks::cull(Map& map, KeyframeId newest, double min_found_ratio) {
     if (landmark == nullptr) continue;
     const KeyframeId age = newest - landmark->first_keyframe;
     const bool rarely_found = landmark->found < min_found_ratio * landmark->visible;
-    const bool unconfirmed = age >= kConfirmAfter && map.observation_weight(*landmark) <= kMinWeight;
+    const bool unconfirmed = age >= kConfirmAfter && landmark->observation_weight <= kMinWeight;
     if (rarely_found || unconfirmed) {
       map.remove_landmark(id);
       ++removed;

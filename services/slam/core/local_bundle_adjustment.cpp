@@ -102,7 +102,7 @@ void apply(Map& map, const LocalProblem& problem) {
     map.remove_observation(landmark, problem.keyframes[observation.camera]);
     // What a single view is left to vouch for, after another one contradicted, is not kept.
     const Landmark* rest = map.find_landmark(landmark);
-    if (rest != nullptr && map.observation_weight(*rest) <= 2) map.remove_landmark(landmark);
+    if (rest != nullptr && rest->observation_weight <= 2) map.remove_landmark(landmark);
   }
   for (const LandmarkId landmark : problem.landmarks) {
     if (map.find_landmark(landmark) != nullptr) map.refresh_geometry(landmark);

@@ -24,13 +24,8 @@ std::vector<KeyframeId> select_window(const Map& map, KeyframeId centre, std::si
   return window;
 }
 
-LocalKeyframe copy_keyframe(const Map& map, const Keyframe& keyframe) {
-  LocalKeyframe local{keyframe.id, keyframe.frame, keyframe.T_world_camera, keyframe.landmarks, 0};
-  const int min_weight = map.keyframes().size() <= 2 ? 2 : 3;
-  for (const LandmarkId id : keyframe.landmarks) {
-    if (id != kNoLandmark && map.observation_weight(*map.find_landmark(id)) >= min_weight) ++local.well_observed;
-  }
-  return local;
+LocalKeyframe copy_keyframe(const Keyframe& keyframe) {
+  return {keyframe.id, keyframe.frame, keyframe.T_world_camera, keyframe.landmarks};
 }
 
 LocalLandmark copy_landmark(const Landmark& landmark) {
@@ -40,6 +35,7 @@ LocalLandmark copy_landmark(const Landmark& landmark) {
           landmark.min_distance_m,
           landmark.max_distance_m,
           landmark.static_probability,
+          landmark.observation_weight,
           landmark.descriptor,
           0,
           0};
@@ -58,6 +54,14 @@ const LocalKeyframe* LocalMap::find_keyframe(KeyframeId id) const {
   return it == keyframes.end() ? nullptr : &*it;
 }
 
+int LocalMap::confirmed_landmarks(const LocalKeyframe& keyframe) const {
+  const int min_weight = map_keyframes <= 2 ? 2 : 3;
+  return static_cast<int>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(), [&](LandmarkId id) {
+    const LocalLandmark* landmark = id == kNoLandmark ? nullptr : find_landmark(id);
+    return landmark != nullptr && landmark->observation_weight >= min_weight;
+  }));
+}
+
 LocalMapPtr make_local_map(const Map& map, KeyframeId centre, std::uint64_t version, std::size_t max_keyframes) {
   auto local = std::make_shared<LocalMap>();
   local->version = version;
@@ -66,7 +70,7 @@ LocalMapPtr make_local_map(const Map& map, KeyframeId centre, std::uint64_t vers
   std::vector<std::pair<LandmarkId, std::uint32_t>> seen;  // landmark, index of a keyframe that sees it
   for (const KeyframeId id : select_window(map, centre, max_keyframes)) {
     const auto index = static_cast<std::uint32_t>(local->keyframes.size());
-    local->keyframes.push_back(copy_keyframe(map, *map.find_keyframe(id)));
+    local->keyframes.push_back(copy_keyframe(*map.find_keyframe(id)));
     for (const LandmarkId landmark : local->keyframes.back().landmarks) {
       if (landmark != kNoLandmark) seen.emplace_back(landmark, index);
     }

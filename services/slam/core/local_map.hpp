@@ -16,6 +16,7 @@ struct LocalLandmark {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   double min_distance_m = 0, max_distance_m = 0;
   double static_probability = 1.0;
+  int observation_weight = 0;
   msg::Descriptor descriptor{};
   std::uint32_t first_observer = 0, observers = 0;  ///< range in LocalMap::observers
 };
@@ -26,7 +27,6 @@ struct LocalKeyframe {
   FramePtr frame;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::vector<LandmarkId> landmarks;  ///< per feature
-  int well_observed = 0;              ///< its landmarks that several keyframes confirm
 };
 
 /// The part of the map around one keyframe, copied out of it: immutable, so that tracking needs no lock.
@@ -39,6 +39,8 @@ struct LocalMap {
 
   const LocalLandmark* find_landmark(LandmarkId id) const;
   const LocalKeyframe* find_keyframe(KeyframeId id) const;
+  /// Landmarks of a keyframe that more than one view confirms; in a young map one view with depth is enough.
+  int confirmed_landmarks(const LocalKeyframe& keyframe) const;
 };
 using LocalMapPtr = std::shared_ptr<const LocalMap>;
 

@@ -14,6 +14,10 @@ namespace {
 /// Descriptors compared when the most typical one is chosen; the newest of a long track say enough.
 constexpr std::size_t kMaxComparedDescriptors = 16;
 
+int weight_of(const Keyframe& keyframe, std::uint32_t feature) {
+  return keyframe.frame->features[feature].depth_m > 0 ? 2 : 1;
+}
+
 auto find_observation(std::vector<Observation>& observations, KeyframeId keyframe) {
   return std::lower_bound(observations.begin(), observations.end(), keyframe,
                           [](const Observation& o, KeyframeId id) { return o.keyframe < id; });
@@ -52,6 +56,7 @@ bool Map::add_observation(LandmarkId id, Observation observation) {
   if (position != landmark.observations.end() && position->keyframe == observation.keyframe) return false;
   change_covisibility(landmark, observation.keyframe, +1);
   landmark.observations.insert(position, observation);
+  landmark.observation_weight += weight_of(keyframe, observation.feature);
   keyframe.landmarks[observation.feature] = id;
   return true;
 }
@@ -60,7 +65,9 @@ void Map::remove_observation(LandmarkId id, KeyframeId keyframe) {
   Landmark& landmark = landmarks_.at(id);
   const auto position = find_observation(landmark.observations, keyframe);
   if (position == landmark.observations.end() || position->keyframe != keyframe) return;
-  keyframes_.at(keyframe).landmarks[position->feature] = kNoLandmark;
+  Keyframe& observer = keyframes_.at(keyframe);
+  observer.landmarks[position->feature] = kNoLandmark;
+  landmark.observation_weight -= weight_of(observer, position->feature);
   landmark.observations.erase(position);
   change_covisibility(landmark, keyframe, -1);
   if (landmark.observations.empty()) {
@@ -193,14 +200,6 @@ std::vector<KeyframeId> Map::best_covisible(KeyframeId id, std::size_t count, in
   best.reserve(ranked.size());
   for (const auto& [shared, other] : ranked) best.push_back(other);
   return best;
-}
-
-int Map::observation_weight(const Landmark& landmark) const {
-  int weight = 0;
-  for (const Observation& o : landmark.observations) {
-    weight += keyframes_.at(o.keyframe).frame->features[o.feature].depth_m > 0 ? 2 : 1;
-  }
-  return weight;
 }
 
 std::vector<LandmarkId> Map::landmark_ids() const {

@@ -36,6 +36,7 @@ struct Landmark {
   KeyframeId reference = kNoKeyframe;                  ///< keyframe that scale is measured from
   KeyframeId first_keyframe = kNoKeyframe;             ///< keyframe that made it
   std::uint32_t visible = 1, found = 1;                ///< frames that should have seen it / did
+  int observation_weight = 0;                          ///< as ORB-SLAM2 counts: an observation with depth is two
   std::vector<Observation> observations;               ///< ordered by keyframe, one per keyframe
 };
 
@@ -90,8 +91,6 @@ class Map {
   KeyframeId parent_of_removed(KeyframeId id) const { return removed_.at(id).parent; }
   /// Up to `count` keyframes with at least `min_shared` landmarks in common, most first.
   std::vector<KeyframeId> best_covisible(KeyframeId id, std::size_t count, int min_shared = 15) const;
-  /// Observations counted as ORB-SLAM2 does: one with depth counts two.
-  int observation_weight(const Landmark& landmark) const;
 
   const std::map<KeyframeId, Keyframe>& keyframes() const { return keyframes_; }
   std::vector<LandmarkId> landmark_ids() const;  ///< ascending

@@ -11,14 +11,16 @@ std::string check_landmark(const Map& map, const Landmark& landmark) {
   const std::string name = "landmark " + std::to_string(landmark.id);
   if (landmark.observations.empty()) return name + " has no observation";
   KeyframeId previous = kNoKeyframe;
+  int weight = 0;
   for (const Observation& observation : landmark.observations) {
     if (previous != kNoKeyframe && observation.keyframe <= previous) return name + " has unordered observations";
     previous = observation.keyframe;
     const Keyframe* keyframe = map.find_keyframe(observation.keyframe);
     if (keyframe == nullptr) return name + " is seen by a keyframe that is gone";
     if (keyframe->landmarks[observation.feature] != landmark.id) return name + " is unknown to its keyframe";
+    weight += keyframe->frame->features[observation.feature].depth_m > 0 ? 2 : 1;
   }
-  return {};
+  return weight == landmark.observation_weight ? std::string{} : name + " miscounts its observations";
 }
 
 std::string check_keyframe(const Map& map, const Keyframe& keyframe) {

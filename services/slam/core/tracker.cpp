@@ -175,7 +175,7 @@ KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_i
   situation.inliers = inliers_;
   situation.mapper_idle = mapper_idle;
   if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
-    situation.reference_landmarks = reference->well_observed;
+    situation.reference_landmarks = map.confirmed_landmarks(*reference);
   }
   for (std::size_t i = 0; i < last_.frame->features.size(); ++i) {
     const double depth_m = last_.frame->features[i].depth_m;
