@@ -45,6 +45,7 @@ std::string against_baseline(const Entry& baseline, const Entry& entry) {
   if (&baseline == &entry) return "";
   const double ratio = baseline.ate_m() / entry.ate_m();
   if (!std::isfinite(ratio)) return "";
+  if (std::abs(ratio - 1) < 0.02) return "as much as " + baseline.run->label;
   return ratio >= 1 ? fmt::format("{:.3g} times less than {}", ratio, baseline.run->label)
                     : fmt::format("{:.3g} times more than {}", 1 / ratio, baseline.run->label);
 }
@@ -52,7 +53,9 @@ std::string against_baseline(const Entry& baseline, const Entry& entry) {
 std::string headline_cards(const std::vector<Entry>& entries) {
   std::vector<html::Card> cards;
   for (const Entry& entry : entries) {
-    std::string detail = percent_text(entry.summary.coverage) + " of frames with pose";
+    std::string detail = std::isfinite(entry.summary.coverage)
+                             ? percent_text(entry.summary.coverage) + " of frames with pose"
+                             : "no frames came in";
     if (const std::string ratio = against_baseline(entries.front(), entry); !ratio.empty())
       detail = ratio + "; " + detail;
     cards.push_back(

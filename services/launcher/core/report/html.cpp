@@ -17,8 +17,8 @@ header{margin:0 0 20px}
 h1{font-size:26px;line-height:1.25;margin:0;letter-spacing:-.01em}
 header p{margin:4px 0 12px;color:#64727f;overflow-wrap:anywhere}
 section{background:#fff;border:1px solid #e2e7ec;border-radius:10px;padding:18px 20px 16px;margin:0 0 18px}
-h2{font-size:17px;margin:0}
-.note{color:#64727f;font-size:13.5px;margin:2px 0 12px;max-width:95ch}
+h2{font-size:17px;margin:0 0 8px}
+.note{color:#64727f;font-size:13.5px;margin:-6px 0 12px;max-width:105ch}
 svg{display:block;width:100%;height:auto}
 .cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(165px,1fr));gap:12px;margin:0 0 18px}
 .card{background:#fff;border:1px solid #e2e7ec;border-top:4px solid #9aa5b1;border-radius:10px;padding:12px 14px}

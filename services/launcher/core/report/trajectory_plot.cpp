@@ -155,7 +155,7 @@ eval::Trajectory within(const eval::Trajectory& trajectory, std::int64_t first_n
 }
 
 double fitting_height(const std::vector<PathCurve>& curves, double width) {
-  constexpr double kMarginX = 150, kMarginY = 76, kLowest = 330, kHighest = 640;
+  constexpr double kMarginX = 150, kMarginY = 76, kLowest = 400, kHighest = 640;
   std::vector<Eigen::Vector3d> all_m;
   for (const PathCurve& curve : curves) all_m.insert(all_m.end(), curve.points_m.begin(), curve.points_m.end());
   const PlaneView plane = curves.empty() ? PlaneView{} : widest_plane(curves.front().points_m);
