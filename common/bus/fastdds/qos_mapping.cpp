@@ -57,6 +57,13 @@ Qos endpoint_qos(const QosSettings& settings, bool plain) {
 
 dds::DataWriterQos writer_qos(const QosSettings& settings, bool plain) {
   auto qos = endpoint_qos<dds::DataWriterQos>(settings, plain);
+  if (qos.data_sharing().kind() != dds::OFF) {
+    // Fast DDS 2.9 takes acknowledged samples of a volatile writer out of its history in whatever thread brought the
+    // acknowledgement. With several readers a slot of the shared pool then gets lost now and then, and write() fails
+    // for good with OUT_OF_RESOURCES (a race like eProsima/Fast-DDS#5762). A transient-local writer only lets go of
+    // samples in write(). Readers stay volatile: they are not given old frames.
+    qos.durability().kind = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
+  }
   qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
   qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
   qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(kHeartbeatPeriodMs);
