@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/codec.hpp"
 
-#include <fastdds/dds/core/LoanableSequence.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
 #include "common/bus/fastdds/converted_type.hpp"
@@ -27,6 +26,21 @@ constexpr const char* kPlainTypeName<msg::KeyframeEvent> = "rtd_msgs::msg::dds_:
 template <>
 constexpr const char* kPlainTypeName<msg::TrackingResult> = "rtd_msgs::msg::dds_::TrackingResult_";
 
+/// Whether the counts in a message from outside stay within its arrays.
+bool is_plausible(const msg::RgbdFrame& frame) {
+  return frame.width > 0 && frame.width <= msg::kMaxFrameWidth && frame.height > 0 &&
+         frame.height <= msg::kMaxFrameHeight;
+}
+bool is_plausible(const msg::FeatureFrame& features) {
+  return features.count <= msg::kMaxFeatures;
+}
+bool is_plausible(const msg::KeyframeEvent&) {
+  return true;
+}
+bool is_plausible(const msg::TrackingResult&) {
+  return true;
+}
+
 /// Fixed-size messages: the plain struct itself goes through the bus.
 template <class T>
 class PlainCodec : public Codec {
@@ -43,26 +57,17 @@ class PlainCodec : public Codec {
   MessagePool<T> pool_;
 };
 
-/// Copies first and asks then whether the writer has overwritten the sample meanwhile: with data sharing the loaned
-/// memory is the writer's own ring, and nothing keeps it from going on.
+/// Copies the sample out, never takes it as a loan. With data sharing the sample lies in the writer's own ring, which
+/// the writer overwrites and at its end unmaps whenever it likes. Fast DDS copies under its lock, which keeps the ring
+/// mapped, and refuses the sample when it finds it overwritten after the copy.
 template <class T>
 TakenSample PlainCodec<T>::take(dds::DataReader& reader) {
-  dds::LoanableSequence<T> samples;
-  dds::SampleInfoSeq infos;
-  if (reader.take(samples, infos, 1) != ReturnCode_t::RETCODE_OK) return {};
-  TakenSample taken{TakenSample::Kind::kNoData, nullptr};
-  if (infos.length() > 0 && infos[0].valid_data) {
-    const void* loaned = samples.buffer()[0];  // not aligned for T: it follows the 4-byte CDR header
-    std::shared_ptr<T> copy = pool_.acquire();
-    std::memcpy(copy.get(), loaned, sizeof(T));
-    if (reader.is_sample_valid(loaned, &infos[0])) {
-      taken = {TakenSample::Kind::kMessage, std::move(copy)};
-    } else {
-      taken.kind = TakenSample::Kind::kTorn;
-    }
-  }
-  reader.return_loan(samples, infos);
-  return taken;
+  std::shared_ptr<T> copy = pool_.acquire();
+  dds::SampleInfo info;
+  if (reader.take_next_sample(copy.get(), &info) != ReturnCode_t::RETCODE_OK) return {};
+  if (!info.valid_data) return {TakenSample::Kind::kNoData, nullptr};
+  if (!is_plausible(*copy)) return {TakenSample::Kind::kUnusable, nullptr};
+  return {TakenSample::Kind::kMessage, std::move(copy)};
 }
 
 /// Messages of variable size: converted to and from the generated type.
@@ -70,7 +75,7 @@ template <class T>
 class ConvertedCodec : public Codec {
  public:
   bool plain() const override { return false; }
-  dds::TypeSupport create_type() const override { return dds::TypeSupport(new typename ConvertedType<T>::PubSub); }
+  dds::TypeSupport create_type() const override { return dds::TypeSupport(new SafeType<T>); }
   bool write(dds::DataWriter& writer, const void* message) const override {
     VendorOf<T> vendor;
     ToVendor{}(*static_cast<const T*>(message), vendor);

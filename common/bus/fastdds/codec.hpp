@@ -13,8 +13,8 @@ namespace rtd::bus::fastdds {
 
 /// What one attempt to take a sample brought.
 struct TakenSample {
-  enum class Kind { kNothing, kMessage, kNoData, kTorn };
-  Kind kind = Kind::kNothing;  ///< kNoData: a dispose or the like; kTorn: overwritten by the writer while it was copied
+  enum class Kind { kNothing, kMessage, kNoData, kUnusable };
+  Kind kind = Kind::kNothing;           ///< kNoData: a dispose or the like; kUnusable: absurd content
   std::shared_ptr<const void> message;  ///< plain struct of common/msg, for kMessage
 };
 

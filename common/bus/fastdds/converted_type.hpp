@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <exception>
+
 #include "common/bus/fastdds/field_maps_ros.hpp"
 #include "common/bus/fastdds/field_maps_rtd.hpp"
 
@@ -23,5 +25,19 @@ template <> struct ConvertedType<msg::PoseStamped> { using PubSub = geometry_msg
 template <> struct ConvertedType<msg::TFMessage> { using PubSub = tf2_msgs::msg::dds_::TFMessage_PubSubType; };
 template <> struct ConvertedType<msg::DiagnosticArray> { using PubSub = diagnostic_msgs::msg::dds_::DiagnosticArray_PubSubType; };
 // clang-format on
+
+/// The same, but a malformed sample from outside is refused instead of ending the process: the generated code lets the
+/// exceptions of an absurd sequence length through.
+template <class T>
+class SafeType : public ConvertedType<T>::PubSub {
+ public:
+  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
+    try {
+      return ConvertedType<T>::PubSub::deserialize(payload, data);
+    } catch (const std::exception&) {
+      return false;
+    }
+  }
+};
 
 }  // namespace rtd::bus::fastdds

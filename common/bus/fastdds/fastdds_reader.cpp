@@ -12,6 +12,7 @@ FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, MessageId
                              const QosSettings& settings, ErasedCallback on_message, StatusCallbacks callbacks)
     : participant_(std::move(participant)),
       codec_(create_codec(id)),
+      depth_(settings.depth),
       on_message_(std::move(on_message)),
       callbacks_(std::move(callbacks)),
       thread_([this] { return handle_one(); }) {
@@ -34,23 +35,32 @@ bool FastddsReader::handle_one() {
   TakenSample taken = codec_->take(*reader);
   switch (taken.kind) {
     case TakenSample::Kind::kNothing:
-      return false;
+      return may_have_skipped_one(*reader);
     case TakenSample::Kind::kNoData:
       break;
-    case TakenSample::Kind::kTorn:
-      ++torn_;
+    case TakenSample::Kind::kUnusable:
+      ++unusable_;
       report_lost();
       break;
     case TakenSample::Kind::kMessage:
+      skipped_ = 0;
       on_message_(std::move(taken.message));
       break;
   }
   return true;
 }
 
+/// Fast DDS says "no data" also when it has just dropped an overwritten sample, with good ones behind it. Unread
+/// samples may also be waiting for a repair, hence the limit.
+bool FastddsReader::may_have_skipped_one(const dds::DataReader& reader) {
+  const bool again = skipped_ < depth_ && reader.get_unread_count() > 0;
+  skipped_ = again ? skipped_ + 1 : 0;
+  return again;
+}
+
 void FastddsReader::report_lost() {
   if (!callbacks_.on_samples_lost) return;
-  thread_.post([this, total = lost_in_transit_ + torn_] { callbacks_.on_samples_lost(total); });
+  thread_.post([this, total = lost_in_transit_ + unusable_] { callbacks_.on_samples_lost(total); });
 }
 
 void FastddsReader::on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) {

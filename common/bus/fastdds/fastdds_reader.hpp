@@ -26,6 +26,7 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
 
  private:
   bool handle_one();
+  bool may_have_skipped_one(const dds::DataReader& reader);
   void report_lost();
 
   void on_data_available(dds::DataReader*) override { thread_.wake(); }
@@ -37,10 +38,12 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
 
   std::shared_ptr<Participant> participant_;
   std::unique_ptr<Codec> codec_;
+  const int depth_;
+  int skipped_ = 0;  ///< used by the callback thread
   const ErasedCallback on_message_;
   const StatusCallbacks callbacks_;
   std::atomic<int> matched_{0};
-  std::atomic<int> lost_in_transit_{0}, torn_{0};
+  std::atomic<int> lost_in_transit_{0}, unusable_{0};
   std::atomic<dds::DataReader*> reader_{nullptr};
   CallbackThread thread_;
 };

@@ -98,12 +98,21 @@ Percentiles measure_memcpy(int messages) {
   return percentiles(samples_us);
 }
 
+void make_plausible(msg::RgbdFrame& frame) {
+  frame.width = msg::kMaxFrameWidth;
+  frame.height = msg::kMaxFrameHeight;
+}
+void make_plausible(msg::FeatureFrame& features) {
+  features.count = msg::kMaxFeatures;
+}
+
 template <class T>
 Percentiles measure_loan(int messages, Results& results, Writer<T>& writer) {
   return measure(messages, results, [&](std::uint64_t seq) {
     auto message = writer.loan();
     std::memset(static_cast<void*>(&*message), static_cast<int>(seq), sizeof(T));
     message->seq = seq;
+    make_plausible(*message);
     const std::int64_t sent_ns = now_ns();
     writer.write(std::move(message));
     return sent_ns;

@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The other process of the bus tests: bus_peer ROLE DOMAIN [COUNT]. Roles below; stays until killed.
+// The other process of the bus tests: bus_peer ROLE DOMAIN [COUNT]. Roles below; runs until SIGTERM.
+#include <signal.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -20,20 +22,40 @@ namespace {
 
 using namespace std::chrono_literals;
 
+sigset_t stop_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGTERM);
+  return set;
+}
+
+/// True once SIGTERM has come (it is blocked in all threads and taken here).
+bool stop_asked(std::chrono::milliseconds wait = 0ms) {
+  static bool asked = false;
+  const sigset_t set = stop_signals();
+  const timespec timeout{wait.count() / 1000, static_cast<long>(wait.count() % 1000) * 1'000'000};
+  asked = asked || sigtimedwait(&set, nullptr, &timeout) == SIGTERM;
+  return asked;
+}
+
 template <class T>
 void wait_for_reader(const Writer<T>& writer) {
-  while (writer.matched() == 0) std::this_thread::sleep_for(1ms);
+  while (writer.matched() == 0 && !stop_asked()) std::this_thread::sleep_for(1ms);
 }
 
-[[noreturn]] void stay() {
-  while (true) pause();
+void stay() {
+  while (!stop_asked(1000ms)) {
+  }
 }
 
-/// COUNT frames as loans, the next when the last is acknowledged.
+/// COUNT frames as loans once a TrackingResult has come, the next when the last is acknowledged.
 void send_frames(Bus& bus, int count) {
   auto writer = bus.writer(topics::kFrame);
+  std::atomic<bool> go{false};  // either side may match first, and what is sent before both did may be missed
+  const auto reader = bus.reader(topics::kTracking, [&](auto) { go = true; });
+  while (!go && !stop_asked()) std::this_thread::sleep_for(1ms);
   wait_for_reader(writer);
-  for (int seq = 0; seq < count; ++seq) {
+  for (int seq = 0; seq < count && !stop_asked(); ++seq) {
     auto frame = writer.loan();
     fill_frame(*frame, static_cast<std::uint64_t>(seq));
     writer.write(std::move(frame));
@@ -46,7 +68,7 @@ void send_frames(Bus& bus, int count) {
 /// Frames without end as fast as possible: a reader cannot keep up.
 void flood_frames(Bus& bus, int) {
   auto writer = bus.writer(topics::kFrame);
-  for (std::uint64_t seq = 0;; ++seq) {
+  for (std::uint64_t seq = 0; !stop_asked(); ++seq) {
     auto frame = writer.loan();
     fill_frame(*frame, seq);
     writer.write(std::move(frame));
@@ -56,6 +78,7 @@ void flood_frames(Bus& bus, int) {
 /// Answers each FeatureFrame with a TrackingResult of its seq; inliers tells whether every byte was right.
 void answer_features(Bus& bus, int) {
   auto results = bus.writer(topics::kTracking);
+  wait_for_reader(results);  // so that whoever sees our reader can rely on being answered
   const auto reader = bus.reader(topics::kFeatures, [&](std::shared_ptr<const msg::FeatureFrame> features) {
     msg::TrackingResult result{};
     result.seq = features->seq;
@@ -77,10 +100,7 @@ void leave_history(Bus& bus, int count) {
 /// A heartbeat every 50 ms.
 void send_heartbeats(Bus& bus, int) {
   auto writer = bus.writer(topics::kStatus);
-  while (true) {
-    writer.write(msg::ServiceStatus{.service = "peer", .pid = getpid()});
-    std::this_thread::sleep_for(50ms);
-  }
+  while (!stop_asked(50ms)) writer.write(msg::ServiceStatus{.service = "peer", .pid = getpid()});
 }
 
 int run(const std::string& role, std::uint32_t domain, int count) {
@@ -103,6 +123,8 @@ int run(const std::string& role, std::uint32_t domain, int count) {
 
 int main(int argc, char** argv) try {
   if (argc < 3) return 2;
+  const sigset_t set = rtd::bus::stop_signals();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread exists
   return rtd::bus::run(argv[1], static_cast<std::uint32_t>(std::atoi(argv[2])), argc > 3 ? std::atoi(argv[3]) : 0);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "bus_peer: %s\n", error.what());

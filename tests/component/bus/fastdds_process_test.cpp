@@ -33,7 +33,10 @@ TEST(FastddsProcesses, frames_arrive_whole_and_in_order) {
   const auto bus = connect_fastdds();
   Collector<msg::RgbdFrame> frames;
   const auto reader = bus->reader(topics::kFrame, frames.callback());
+  auto go = bus->writer(topics::kTracking);
   const PeerProcess peer("send_frames", test_domain(), kFrames);
+  while (reader.matched() == 0 || go.matched() == 0) std::this_thread::sleep_for(1ms);
+  go.write(msg::TrackingResult{});
 
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
     const auto frame = frames.next();

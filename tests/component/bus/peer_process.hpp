@@ -15,7 +15,9 @@ extern char** environ;
 
 namespace rtd::bus {
 
-/// A bus_peer that is killed with this object.
+/// A bus_peer that is asked to end with this object. Killing it is for tests of that: Fast DDS 2.9 ends the reader's
+/// process too when the writer's is killed in the microseconds in which it holds the lock of a data-sharing
+/// notification.
 class PeerProcess {
  public:
   PeerProcess(std::string role, std::uint32_t domain, int count = 0) {
@@ -25,18 +27,20 @@ class PeerProcess {
       throw std::runtime_error("cannot start " + path);
     }
   }
-  ~PeerProcess() { kill_now(); }
+  ~PeerProcess() { end_by(SIGTERM); }
   PeerProcess(const PeerProcess&) = delete;
   PeerProcess& operator=(const PeerProcess&) = delete;
 
-  void kill_now() {
+  void kill_now() { end_by(SIGKILL); }
+
+ private:
+  void end_by(int signal) {
     if (pid_ <= 0) return;
-    kill(pid_, SIGKILL);
+    kill(pid_, signal);
     waitpid(pid_, nullptr, 0);
     pid_ = 0;
   }
 
- private:
   pid_t pid_ = 0;
 };
 

@@ -60,6 +60,25 @@ TYPED_TEST(Conversion, has_its_ros2_name) {
   EXPECT_EQ(name.find("dds_::dds_"), std::string::npos) << name;
 }
 
+TYPED_TEST(Conversion, refuses_bytes_cut_short_and_absurd_lengths) {
+  std::mt19937_64 random(9);
+  TypeParam message;
+  reflect::randomize(message, random);
+  SafeType<TypeParam> type;
+  VendorOf<TypeParam> vendor, received;
+  ToVendor{}(message, vendor);
+  eprosima::fastrtps::rtps::SerializedPayload_t payload(type.getSerializedSizeProvider(&vendor)());
+  ASSERT_TRUE(type.serialize(&vendor, &payload));
+  const std::uint32_t whole = payload.length;
+  for (const std::uint32_t length : {whole - 1, whole / 2, 5U}) {
+    payload.length = length;
+    EXPECT_FALSE(type.deserialize(&payload, &received)) << length << " of " << whole << " bytes";
+  }
+  payload.length = whole;
+  for (std::uint32_t i = 4; i < whole; ++i) payload.data[i] = 0xff;  // every length is 4 billion
+  EXPECT_FALSE(type.deserialize(&payload, &received));
+}
+
 TEST(Fingerprint, changes_with_every_kind_of_field) {
   msg::CameraInfo info;
   const auto original = reflect::fingerprint(info);
