@@ -10,6 +10,10 @@ namespace {
 constexpr double kNanosecondsPerSecond = 1e9;
 constexpr double kMaxPredictionGap_s = 0.5;  ///< a longer gap says nothing about the motion
 
+float to_ms(std::int64_t duration_ns) {
+  return static_cast<float>(static_cast<double>(duration_ns) * 1e-6);
+}
+
 double seconds_between(const Frame& earlier, const Frame& later) {
   return static_cast<double>(later.stamp_ns - earlier.stamp_ns) / kNanosecondsPerSecond;
 }
@@ -48,17 +52,19 @@ TrackOutcome Tracker::initialize(FramePtr frame, KeyframeId first) {
 
 TrackOutcome Tracker::track(FramePtr frame, const LocalMap& map) {
   const std::int64_t start_ns = now_ns_();
-  const auto elapsed_ms = [&] { return static_cast<float>(static_cast<double>(now_ns_() - start_ns) * 1e-6); };
   TrackOutcome outcome;
   adopt(map);
   const PoseGuess guess = find_pose(*frame, map);
-  outcome.stage_ms[msg::kStageMatch] = elapsed_ms();
+  const std::int64_t matched_ns = now_ns_();
+  outcome.stage_ms[msg::kStageMatch] = to_ms(matched_ns - start_ns - guess.optimizer_ns);
+  outcome.stage_ms[msg::kStagePose] = to_ms(guess.optimizer_ns);
   if (!guess.success) {
     reject(outcome);
     return outcome;
   }
-  const LocalMapTracking tracking = track_local_map(*frame, map, guess, config_);
-  outcome.stage_ms[msg::kStageLocalMap] = elapsed_ms() - outcome.stage_ms[msg::kStageMatch];
+  const LocalMapTracking tracking = track_local_map(*frame, map, guess, context());
+  outcome.stage_ms[msg::kStageLocalMap] = to_ms(now_ns_() - matched_ns - tracking.guess.optimizer_ns);
+  outcome.stage_ms[msg::kStagePose] += to_ms(tracking.guess.optimizer_ns);
   outcome.inliers = tracking.guess.inliers;
   if (acceptable(tracking.guess)) {
     accept(outcome, std::move(frame), map, tracking);
@@ -97,10 +103,10 @@ Eigen::Isometry3d Tracker::predict(const Frame& frame) const {
 
 PoseGuess Tracker::find_pose(const Frame& frame, const LocalMap& map) {
   if (state_ != msg::TrackingState::kLost) {
-    PoseGuess guess = track_last_frame(frame, last_, map, predict(frame), config_);
+    PoseGuess guess = track_last_frame(frame, last_, map, predict(frame), context());
     if (guess.success) return guess;
     if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
-      guess = track_keyframe(frame, *reference, map);
+      guess = track_keyframe(frame, *reference, map, context());
       if (guess.success) return guess;
     }
   }
@@ -112,7 +118,7 @@ PoseGuess Tracker::recover(const Frame& frame, const LocalMap& map) {
   const std::size_t tries =
       std::min(map.keyframes.size(), static_cast<std::size_t>(config_.tracker.recovery_keyframes));
   for (std::size_t i = 0; i < tries; ++i) {
-    PoseGuess guess = track_keyframe(frame, map.keyframes[next_recovery_++ % map.keyframes.size()], map);
+    PoseGuess guess = track_keyframe(frame, map.keyframes[next_recovery_++ % map.keyframes.size()], map, context());
     if (guess.success) return guess;
   }
   return {};

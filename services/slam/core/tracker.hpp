@@ -14,8 +14,6 @@
 
 namespace rtd::slam {
 
-using Clock = std::function<std::int64_t()>;  ///< ns, monotonic; injected
-
 /// What tracking says of one frame.
 struct TrackOutcome {
   msg::TrackingState state = msg::TrackingState::kInitializing;
@@ -45,6 +43,7 @@ class Tracker {
   KeyframeProposal propose_keyframe();
 
  private:
+  TrackingContext context() const { return {config_, now_ns_}; }
   void adopt(const LocalMap& map);
   Eigen::Isometry3d predict(const Frame& frame) const;
   PoseGuess find_pose(const Frame& frame, const LocalMap& map);

@@ -27,12 +27,13 @@ vision::PoseObservation make_observation(const Frame& frame, const Association& 
 }
 
 PoseGuess optimize(const Frame& frame, const std::vector<Association>& associations,
-                   const Eigen::Isometry3d& T_world_camera_initial) {
+                   const Eigen::Isometry3d& T_world_camera_initial, const Clock& now_ns) {
+  const std::int64_t start_ns = now_ns();
   std::vector<vision::PoseObservation> observations;
   observations.reserve(associations.size());
   for (const Association& association : associations) observations.push_back(make_observation(frame, association));
   const auto optimized = vision::optimize_pose(frame.camera, observations, T_world_camera_initial);
-  PoseGuess guess{optimized.success, optimized.T_world_camera, {}, 0, optimized.covariance};
+  PoseGuess guess{optimized.success, optimized.T_world_camera, {}, 0, now_ns() - start_ns, optimized.covariance};
   guess.landmarks.assign(frame.features.size(), kNoLandmark);
   for (std::size_t i = 0; i < associations.size(); ++i) {
     if (optimized.inlier[i] == 0 || associations[i].landmark == kNoLandmark) continue;
@@ -95,7 +96,8 @@ std::vector<SearchPoint> predict_points(const Frame& frame, const TrackedFrame& 
 }  // namespace
 
 PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
-                           const Eigen::Isometry3d& T_world_camera_predicted, const SlamConfig& config) {
+                           const Eigen::Isometry3d& T_world_camera_predicted, const TrackingContext& context) {
+  const SlamConfig& config = context.config;
   constexpr int kMinLandmarks = 10;
   const std::vector<Association> points = points_of(last, map, config.sensor.close_depth_m);
   const MatchRules rules{100, 1.0, RotationCheck::kOn};
@@ -112,12 +114,13 @@ PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const L
     associations.push_back(points[match.tag]);
     associations.back().feature = match.feature;
   }
-  PoseGuess guess = optimize(frame, associations, T_world_camera_predicted);
+  PoseGuess guess = optimize(frame, associations, T_world_camera_predicted, context.now_ns);
   guess.success = guess.success && guess.inliers >= kMinLandmarks;
   return guess;
 }
 
-PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, const LocalMap& map) {
+PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, const LocalMap& map,
+                         const TrackingContext& context) {
   constexpr int kMinMatches = 15, kMinInliers = 10;
   std::vector<std::uint32_t> features;
   for (std::uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
@@ -135,13 +138,15 @@ PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, cons
   PoseRansacOptions options;
   options.seed = frame.seq;
   const auto coarse = estimate_pose_ransac(frame.camera, observations, options);
-  PoseGuess guess = optimize(frame, associations, coarse.success ? coarse.T_world_camera : keyframe.T_world_camera);
+  PoseGuess guess =
+      optimize(frame, associations, coarse.success ? coarse.T_world_camera : keyframe.T_world_camera, context.now_ns);
   guess.success = guess.success && guess.inliers >= kMinInliers;
   return guess;
 }
 
 LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const PoseGuess& guess,
-                                 const SlamConfig& config) {
+                                 const TrackingContext& context) {
+  const SlamConfig& config = context.config;
   constexpr double kStraightView = 0.998;  // 3.6 degrees
   constexpr double kStraightRadius_px = 2.5, kObliqueRadius_px = 4.0;
   LocalMapTracking result;
@@ -175,7 +180,7 @@ LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const 
     const LocalLandmark& landmark = map.landmarks[match.tag];
     associations.push_back({match.feature, landmark.id, landmark.position, landmark.static_probability});
   }
-  result.guess = optimize(frame, associations, guess.T_world_camera);
+  result.guess = optimize(frame, associations, guess.T_world_camera, context.now_ns);
   return result;
 }
 

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "common/vision/pose_optimizer.hpp"
 #include "services/slam/core/local_map.hpp"
 
 namespace rtd::slam {
+
+using Clock = std::function<std::int64_t()>;  ///< ns, monotonic; injected
 
 /// A frame whose pose is known, with the landmarks found in it.
 struct TrackedFrame {
@@ -24,16 +27,24 @@ struct PoseGuess {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::vector<LandmarkId> landmarks;  ///< per feature
   int inliers = 0;                    ///< landmarks, without temporary points
+  std::int64_t optimizer_ns = 0;      ///< spent in pose optimisation
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+};
+
+/// What the steps need beside frame and map.
+struct TrackingContext {
+  const SlamConfig& config;
+  const Clock& now_ns;
 };
 
 /// Frame to frame: looks for the landmarks of the last frame, and for its close features as temporary points, around
 /// where `T_world_camera_predicted` shows them. docs/theory/tracking.md, "Motion model".
 PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
-                           const Eigen::Isometry3d& T_world_camera_predicted, const SlamConfig& config);
+                           const Eigen::Isometry3d& T_world_camera_predicted, const TrackingContext& context);
 
 /// Frame to keyframe by descriptors alone, pose by RANSAC: after a jump or a loss. "Recovery".
-PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, const LocalMap& map);
+PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, const LocalMap& map,
+                         const TrackingContext& context);
 
 /// Frame to local map: looks for every landmark of the local map that should be visible from `guess`, and optimises
 /// the pose with all of them.
@@ -42,6 +53,6 @@ struct LocalMapTracking {
   std::vector<LandmarkId> visible;  ///< landmarks that should be seen from the pose
 };
 LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const PoseGuess& guess,
-                                 const SlamConfig& config);
+                                 const TrackingContext& context);
 
 }  // namespace rtd::slam

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/slam_messages.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+#include "common/geometry/se3.hpp"
+#include "common/msg/transform_eigen.hpp"
+#include "services/slam/config.hpp"
+
+namespace rtd::slam {
+namespace {
+
+using geometry::Vector6d;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+const FrameNames kNames{"map", "camera"};
+
+msg::TrackingResult result_at(std::int64_t stamp_ns, const Eigen::Isometry3d& T_world_camera) {
+  msg::TrackingResult result{};
+  result.stamp_ns = stamp_ns;
+  result.state = msg::TrackingState::kOk;
+  result.T_world_camera = msg::to_message(T_world_camera);
+  for (std::size_t i = 0; i < 6; ++i) result.covariance[7 * i] = i < 3 ? 1e-4 : 1e-6;
+  return result;
+}
+
+TEST(Odometry, twist_is_the_motion_per_second_in_the_camera_frame) {
+  Eigen::Isometry3d T_world_first = Eigen::Isometry3d::Identity();
+  T_world_first.linear() = Eigen::AngleAxisd(1.2, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  const Vector6d twist = (Vector6d() << 0.3, 0, 0.6, 0, 0.9, 0).finished();  // m/s, rad/s
+  const auto first = result_at(1'000'000'000, T_world_first);
+  const auto second = result_at(1'100'000'000, T_world_first * geometry::se3_exp(0.1 * twist));
+  const msg::Odometry odometry = make_odometry(second, first, kNames);
+  EXPECT_NEAR(odometry.twist.twist.linear.x, 0.3, 1e-6);
+  EXPECT_NEAR(odometry.twist.twist.linear.z, 0.6, 1e-6);
+  EXPECT_NEAR(odometry.twist.twist.angular.y, 0.9, 1e-6);
+  EXPECT_NEAR(odometry.twist.covariance[0], 2e-4 / 0.01, 1e-9);
+  EXPECT_NEAR(odometry.pose.covariance[35], 1e-6, 1e-12);
+  EXPECT_EQ(odometry.header.stamp.nanosec, 100'000'000U);
+  EXPECT_EQ(odometry.child_frame_id, "camera");
+}
+
+TEST(Odometry, has_no_twist_without_an_earlier_pose) {
+  const auto result = result_at(5, Eigen::Isometry3d::Identity());
+  EXPECT_EQ(make_odometry(result, std::nullopt, kNames).twist.twist.linear.x, 0);
+  EXPECT_EQ(make_odometry(result, result_at(5, geometry::se3_exp(Vector6d::Ones())), kNames).twist.twist.linear.x, 0);
+}
+
+TEST(Cloud, lays_out_floats) {
+  const msg::PointCloud2 cloud = make_cloud({{{1, 2, 3}, 0.5F}, {{4, 5, 6}, 1.0F}}, 7'000'000'001, "map");
+  ASSERT_EQ(cloud.data.size(), 32U);
+  float z = 0, intensity = 0;
+  std::memcpy(&z, cloud.data.data() + 16 + cloud.fields[2].offset, 4);
+  std::memcpy(&intensity, cloud.data.data() + cloud.fields[3].offset, 4);
+  EXPECT_EQ(z, 6);
+  EXPECT_EQ(intensity, 0.5F);
+  EXPECT_EQ(cloud.header.stamp.sec, 7);
+  EXPECT_EQ(make_cloud({}, 0, "map").width, 0U);
+}
+
+TEST(Diagnostics, level_follows_the_trouble) {
+  auto result = result_at(0, Eigen::Isometry3d::Identity());
+  EXPECT_EQ(make_diagnostics(result, {}, "", 0).status[0].level, 0);
+  EXPECT_EQ(make_diagnostics(result, {}, "no features", 0).status[0].level, 1);
+  EXPECT_EQ(make_diagnostics(result, {}, "no features", 0).status[0].message, "no features");
+  result.state = msg::TrackingState::kLost;
+  EXPECT_EQ(make_diagnostics(result, {}, "lost", 0).status[0].level, 2);
+}
+
+TEST(Config, refuses_unknown_keys_and_values_out_of_range) {
+  ServiceConfig config;
+  service::ConfigBinder binder;
+  binder.section("slam", config);
+  binder.set("slam.tracker.min_inliers=40");
+  EXPECT_EQ(config.core.tracker.min_inliers, 40);
+  EXPECT_THAT([&] { binder.set("slam.tracker.min_inlier=40"); },
+              ThrowsMessage<service::ConfigError>(HasSubstr("min_inliers")));
+  EXPECT_THAT([&] { binder.set("slam.mapper.redundant_ratio=1.5"); },
+              ThrowsMessage<service::ConfigError>(HasSubstr("redundant_ratio")));
+}
+
+}  // namespace
+}  // namespace rtd::slam
