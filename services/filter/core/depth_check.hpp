@@ -14,8 +14,8 @@ namespace rtd::filter {
 
 /// What the reference views say about each cell of the current frame.
 struct DepthEvidence {
-  std::vector<std::uint8_t> violated;  ///< 1 = views saw through the place where the surface now is: two where there
-                                       ///< are four or more to ask
+  std::vector<std::uint8_t> violated;    ///< 1 = views saw through the place where the surface now is: two where there
+                                         ///< are four or more to ask
   std::vector<std::uint8_t> consistent;  ///< number of views that saw the surface there too
   std::vector<std::uint8_t> lasting;     ///< 1 = views of at least 0.4 s ago saw it there, and none saw through it
   static DepthEvidence none(std::size_t cells) {

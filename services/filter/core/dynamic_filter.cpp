@@ -132,7 +132,7 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
   const EgoMotionInput input{{result.features, feature_grid, scene.image.camera},
                              excluded,
                              cluster_of,
-                             scene.clusters.cells.size(),
+                             scene.clusters,
                              views_,
                              scene.image.stamp_ns,
                              T_world_predicted};
@@ -141,15 +141,14 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
   result.pose_reliable = geometry.ego.reliable;
   result.stage_ms[msg::kStageEgoMotion] = clock.lap_ms();
   const std::vector<std::uint8_t> remembered = recall(geometry.ego.T_world_camera);
-  ClusterVotes votes;
   if (geometry.ego.reliable) {
     const auto views = views_.references(scene.image.stamp_ns, geometry.ego.T_world_camera,
                                          static_cast<std::size_t>(config_.geometry.max_views));
     geometry.evidence = check_depth(scene.grid, sampler_.rays(), {scene.image.stamp_ns, geometry.ego.T_world_camera},
                                     views, scene.image.camera, config_.geometry);
-    votes = count_votes(geometry.ego.matches, input, geometry.ego.T_world_camera, config_.geometry);
   }
-  geometry.regions = find_dynamic_regions(scene.clusters, geometry.evidence, votes, remembered, config_.geometry);
+  geometry.regions =
+      find_dynamic_regions(scene.clusters, geometry.evidence, geometry.ego.votes, remembered, config_.geometry);
   geometry.regions.trusted = geometry.regions.trusted && geometry.ego.reliable;
   result.dynamic_clusters = static_cast<std::uint32_t>(geometry.regions.clusters);
   result.stage_ms[msg::kStageDepthCheck] = clock.lap_ms();

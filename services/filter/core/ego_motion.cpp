@@ -68,51 +68,36 @@ std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& 
 
 }  // namespace
 
-ClusterVotes count_votes(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input,
-                         const Eigen::Isometry3d& T_world_camera, const GeometryConfig& geometry) {
-  ClusterVotes votes{std::vector<int>(input.clusters, 0), std::vector<int>(input.clusters, 0)};
-  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  for (const FeatureMatch& match : matches) {
-    const int cluster = input.cluster_of[match.current];
-    if (cluster < 0) continue;
-    const double chi2 = displacement_chi2(to_sighting(match, input), input.current.camera, T_camera_world);
-    if (chi2 < geometry.max_static_chi2) ++votes.resting[static_cast<std::size_t>(cluster)];
-    if (chi2 > geometry.min_moving_chi2) ++votes.moving[static_cast<std::size_t>(cluster)];
-  }
-  return votes;
-}
-
 EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig& config,
                               const GeometryConfig& geometry) {
   EgoMotion ego;
   ego.T_world_camera = input.T_world_camera_predicted;
+  const geometry::CameraModel& camera = input.current.camera;
   const View& near = input.views.of_age(input.stamp_ns, kNearAgeNs);
-  ego.matches = match_recent(input, near, config);
+  const std::vector<FeatureMatch> near_matches = match_recent(input, near, config);
   const auto limit = static_cast<std::size_t>(config.max_observations);
-  const std::vector<char> none_moves(input.clusters, 0);
-  const auto recent = to_sightings(usable(ego.matches, input, none_moves, limit), input);
-  const StaticConsensus consensus =
-      find_static_consensus(recent, input.current.camera, input.T_world_camera_predicted, config);
+  const std::vector<char> none_moves(input.clusters.cells.size(), 0);
+  const auto recent = to_sightings(usable(near_matches, input, none_moves, limit), input);
+  const StaticConsensus consensus = find_static_consensus(recent, camera, input.T_world_camera_predicted, config);
   if (consensus.image_share < config.min_image_share) return ego;
 
-  const ClusterVotes votes = count_votes(ego.matches, input, consensus.T_world_camera, geometry);
-  std::vector<char> moving_cluster(input.clusters, 0);
-  for (std::size_t cluster = 0; cluster < input.clusters; ++cluster)
-    moving_cluster[cluster] = votes.moves(cluster, geometry) ? 1 : 0;
+  const auto all_near = to_sightings(near_matches, input);
+  const FeatureVotes first_votes = count_votes(all_near, camera, consensus.T_world_camera, input.clusters, geometry);
+  std::vector<char> moves(none_moves);
+  for (std::size_t i = 0; i < moves.size(); ++i) moves[i] = first_votes.cluster_moves(i, geometry) ? 1 : 0;
 
   const View& old = input.views.of_age(input.stamp_ns, kOldAgeNs);
   const auto old_matches = match_by_projection(old, input.current, consensus.T_world_camera, kRefineWindowPx, config);
-  std::vector<PointSighting> sightings = to_sightings(usable(ego.matches, input, moving_cluster, limit / 2), input);
-  const std::vector<PointSighting> old_sightings =
-      to_sightings(usable(old_matches, input, moving_cluster, limit / 2), input);
-  sightings.insert(sightings.end(), old_sightings.begin(), old_sightings.end());
-  const RefinedPose refined =
-      refine_pose(sightings, input.current.camera, consensus.T_world_camera, config.min_inliers);
+  std::vector<PointSighting> sightings = to_sightings(usable(near_matches, input, moves, limit / 2), input);
+  const std::vector<PointSighting> more = to_sightings(usable(old_matches, input, moves, limit / 2), input);
+  sightings.insert(sightings.end(), more.begin(), more.end());
+  const RefinedPose refined = refine_pose(sightings, camera, consensus.T_world_camera, config.min_inliers);
   if (!refined.success) return ego;
   ego.reliable = true;
   ego.settled = input.stamp_ns - near.stamp_ns >= kMinSettledAgeNs;
   ego.T_world_camera = refined.T_world_camera;
   ego.inliers = refined.inliers;
+  ego.votes = count_votes(all_near, camera, refined.T_world_camera, input.clusters, geometry);
   return ego;
 }
 

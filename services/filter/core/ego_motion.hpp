@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "services/filter/core/depth_clusters.hpp"
+#include "services/filter/core/feature_votes.hpp"
 #include "services/filter/core/guided_matching.hpp"
 
 namespace rtd::filter {
@@ -17,7 +18,7 @@ struct EgoMotion {
   bool reliable = false;  ///< otherwise the pose is only the prediction and geometry makes no statement
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   int inliers = 0;
-  std::vector<FeatureMatch> matches;  ///< with views of the last 0.1 s, movers included
+  FeatureVotes votes;  ///< of the features found again in the view 0.1 s ago, movers included
 };
 
 /// What the estimate starts from.
@@ -25,8 +26,8 @@ struct EgoMotionInput {
   SearchableFeatures current;
   const std::vector<char>& excluded;   ///< per feature, 1 = on something that may move: not used for the pose
   const std::vector<int>& cluster_of;  ///< per feature, depth cluster or -1
-  std::size_t clusters;                ///< their number
-  const ViewStore& views;              ///< not empty
+  const DepthClusters& clusters;
+  const ViewStore& views;  ///< not empty
   std::int64_t stamp_ns;
   Eigen::Isometry3d T_world_camera_predicted;
 };
@@ -38,16 +39,5 @@ struct EgoMotionInput {
 /// section 2.
 EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig& config,
                               const GeometryConfig& geometry);
-
-/// Per cluster: features that are at their place and features that have moved, Eq. (5).
-struct ClusterVotes {
-  std::vector<int> resting, moving;
-  bool moves(std::size_t cluster, const GeometryConfig& config) const {
-    const int votes = resting[cluster] + moving[cluster];
-    return moving[cluster] >= config.min_moving_features && moving[cluster] >= config.min_moving_share * votes;
-  }
-};
-ClusterVotes count_votes(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input,
-                         const Eigen::Isometry3d& T_world_camera, const GeometryConfig& geometry);
 
 }  // namespace rtd::filter

@@ -57,6 +57,7 @@ struct GeometryConfig {
   int min_region_cells = 40;  ///< smaller regions are thin structures that depth cameras see now and then, not movers
   int min_cluster_statements = 30;  ///< cells with a statement before a cluster is judged
   int min_resting_cells = 400;      ///< parts of a dynamic cluster of at least this size may turn out to rest
+  double min_resting_ratio = 5.0;   ///< ... if this many times more of their features are at their place than not
   double min_violated_share = 0.2;  ///< share of violating cells that makes a cluster dynamic
   int min_moving_features = 6;      ///< features off their place before a cluster is judged by them
   double min_moving_share = 0.6;

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/cell_masks.hpp"
+
+#include <algorithm>
+
+namespace rtd::filter {
+namespace {
+
+constexpr int kMinCompact = 6;  // of the 9 cells around one
+
+/// The cells connected with `start`; they are cleared in `open`.
+std::vector<int> take_region(const GridShape& shape, CellMask& open, int start) {
+  std::vector<int> region{start};
+  open[static_cast<std::size_t>(start)] = 0;
+  const auto visit = [&](int cell) {
+    if (open[static_cast<std::size_t>(cell)] == 0) return;
+    open[static_cast<std::size_t>(cell)] = 0;
+    region.push_back(cell);
+  };
+  for (std::size_t i = 0; i < region.size(); ++i) {
+    const int cell = region[i], column = cell % shape.columns;
+    if (column > 0) visit(cell - 1);
+    if (column + 1 < shape.columns) visit(cell + 1);
+    if (cell >= shape.columns) visit(cell - shape.columns);
+    if (cell + shape.columns < shape.size()) visit(cell + shape.columns);
+  }
+  return region;
+}
+
+}  // namespace
+
+CellMask dilate(const GridShape& shape, const CellMask& cells, int radius) {
+  CellMask wide(cells), result(cells);
+  for (int row = 0; row < shape.rows; ++row) {
+    for (int column = 0; column < shape.columns; ++column) {
+      std::uint8_t& value = wide[static_cast<std::size_t>(shape.index(column, row))];
+      for (int x = std::max(0, column - radius); x <= std::min(shape.columns - 1, column + radius); ++x) {
+        value = std::max(value, cells[static_cast<std::size_t>(shape.index(x, row))]);
+      }
+    }
+  }
+  for (int row = 0; row < shape.rows; ++row) {
+    for (int column = 0; column < shape.columns; ++column) {
+      std::uint8_t& value = result[static_cast<std::size_t>(shape.index(column, row))];
+      for (int y = std::max(0, row - radius); y <= std::min(shape.rows - 1, row + radius); ++y) {
+        value = std::max(value, wide[static_cast<std::size_t>(shape.index(column, y))]);
+      }
+    }
+  }
+  return result;
+}
+
+CellMask compact(const GridShape& shape, const CellMask& cells) {
+  CellMask result(cells.size(), 0);
+  for (int row = 1; row + 1 < shape.rows; ++row) {
+    for (int column = 1; column + 1 < shape.columns; ++column) {
+      const auto centre = static_cast<std::size_t>(shape.index(column, row));
+      if (cells[centre] == 0) continue;
+      int set = 0;
+      for (int y = row - 1; y <= row + 1; ++y) {
+        for (int x = column - 1; x <= column + 1; ++x) {
+          set += cells[static_cast<std::size_t>(shape.index(x, y))] > 0 ? 1 : 0;
+        }
+      }
+      if (set >= kMinCompact) result[centre] = cells[centre];
+    }
+  }
+  return result;
+}
+
+CellMask keep_regions(const GridShape& shape, CellMask cells,
+                      const std::function<bool(const std::vector<int>&)>& keep) {
+  CellMask open(cells);
+  for (int start = 0; start < shape.size(); ++start) {
+    if (open[static_cast<std::size_t>(start)] == 0) continue;
+    const std::vector<int> region = take_region(shape, open, start);
+    if (keep(region)) continue;
+    for (const int cell : region) cells[static_cast<std::size_t>(cell)] = 0;
+  }
+  return cells;
+}
+
+}  // namespace rtd::filter

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/feature_votes.hpp"
+
+namespace rtd::filter {
+
+bool FeatureVotes::cluster_moves(std::size_t cluster, const GeometryConfig& config) const {
+  if (cluster >= moving.size()) return false;
+  const int cast = resting[cluster] + moving[cluster];
+  return moving[cluster] >= config.min_moving_features && moving[cluster] >= config.min_moving_share * cast;
+}
+
+FeatureVotes count_votes(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
+                         const Eigen::Isometry3d& T_world_camera, const DepthClusters& clusters,
+                         const GeometryConfig& config) {
+  FeatureVotes votes{{}, std::vector<int>(clusters.cells.size(), 0), std::vector<int>(clusters.cells.size(), 0)};
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  for (const PointSighting& sighting : sightings) {
+    const double chi2 = displacement_chi2(sighting, camera, T_camera_world);
+    const bool moving = chi2 > config.min_moving_chi2;
+    if (!moving && chi2 >= config.max_static_chi2) continue;
+    votes.votes.push_back({clusters.shape.nearest_cell(sighting.pixel.x(), sighting.pixel.y()), moving});
+    if (sighting.cluster >= 0) ++(moving ? votes.moving : votes.resting)[static_cast<std::size_t>(sighting.cluster)];
+  }
+  return votes;
+}
+
+}  // namespace rtd::filter

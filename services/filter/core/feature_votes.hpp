@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "services/filter/core/depth_clusters.hpp"
+#include "services/filter/core/static_consensus.hpp"
+
+namespace rtd::filter {
+
+/// A feature found again: at its place, or displaced against the static world.
+struct FeatureVote {
+  int cell = 0;
+  bool moving = false;
+};
+
+/// The votes of all features found again and their count per depth cluster, docs/theory/dynamic_points.md Eq. (5).
+/// Displacements between the two limits of the config are no vote.
+struct FeatureVotes {
+  std::vector<FeatureVote> votes;
+  std::vector<int> resting, moving;  ///< per cluster
+  /// Enough of the cluster's features are displaced.
+  bool cluster_moves(std::size_t cluster, const GeometryConfig& config) const;
+};
+FeatureVotes count_votes(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
+                         const Eigen::Isometry3d& T_world_camera, const DepthClusters& clusters,
+                         const GeometryConfig& config);
+
+}  // namespace rtd::filter
