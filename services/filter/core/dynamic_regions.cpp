@@ -86,8 +86,8 @@ DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEv
   for (std::size_t cell = 0; cell < none.size(); ++cell) {
     const std::int32_t label = clusters.label[cell];
     const std::uint8_t frames_left = label < 0 ? std::uint8_t{0} : of_cluster[static_cast<std::size_t>(label)];
-    if (frames_left > 0 && resting[cell] == 0) {
-      regions.frames_left[cell] = frames_left;
+    if (frames_left > 0) {  // resting parts are not taken in, but what has moved is let go slowly
+      regions.frames_left[cell] = resting[cell] == 0 ? frames_left : one_less(remembered[cell]);
     } else {
       loose[cell] = evidence.violated[cell] > 0 ? loose_memory : std::min(loose_memory, one_less(remembered[cell]));
     }
