@@ -15,13 +15,13 @@ constexpr double kSecondRate = 2.618;   ///< times the rate: never in step with 
 constexpr double kTremorShare = 0.004;  ///< of the amplitude
 constexpr double kTremorRateRadS = 23.0;
 constexpr double kTurnRateRadS = kTwoPi / 60.0;
-constexpr double kMeanYM = -1.3, kMeanZM = 1.3, kMeanPitchRad = -0.14;
+constexpr double kMeanYM = -1.5, kMeanZM = 1.3, kMeanPitchRad = -0.14;
 
 struct Axis {
   double amplitude, rate_rad_s;
 };
 constexpr std::array<Axis, 6> kAxes = {
-    {{0.85, 0.37}, {0.50, 0.43}, {0.14, 0.61}, {0.42, 0.29}, {0.10, 0.47}, {0.05, 0.71}}};
+    {{0.85, 0.37}, {0.40, 0.43}, {0.14, 0.61}, {0.42, 0.29}, {0.10, 0.47}, {0.05, 0.71}}};
 
 Eigen::Matrix3d camera_rotation(double yaw_rad, double pitch_rad, double roll_rad) {
   const Eigen::Vector3d forward(std::sin(yaw_rad) * std::cos(pitch_rad), std::cos(yaw_rad) * std::cos(pitch_rad),

@@ -34,7 +34,7 @@ class CameraPath {
 
 /// The box that the camera centre stays in, world frame, m: nothing else may stand there.
 struct CameraRoom {
-  static constexpr double kMinX = -1.2, kMaxX = 1.2, kMinY = -2.1, kMaxY = -0.5, kMinZ = 1.0, kMaxZ = 1.6;
+  static constexpr double kMinX = -1.2, kMaxX = 1.2, kMinY = -2.1, kMaxY = -0.9, kMinZ = 1.0, kMaxZ = 1.6;
 };
 
 }  // namespace rtd::camera::synthetic

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr float kTwoPi = 6.2831853F;
-constexpr float kWalkCenterY = 1.15F, kWalkReachX = 2.3F, kWalkReachY = 0.65F;  ///< m: in front of CameraRoom
+constexpr float kWalkingSpeedMS = 1.2F, kCarryingSpeedMS = 0.9F;
 constexpr float kFigureTexelsPerM = 256;
 
 /// One ellipsoid of a figure, person frame: x forward, y left, z up, origin between the feet.
@@ -43,26 +43,27 @@ ColorBgr vivid(SeededRandom& random) {
 
 }  // namespace
 
-FloorPath::FloorPath(std::uint64_t seed, float speed) {
+FloorPath::FloorPath(std::uint64_t seed, const WalkArea& area, float speed_m_s) : area_(area) {
   SeededRandom random(seed);
-  rate_x_ = speed * random.between(0.45F, 0.62F);
-  rate_y_ = speed * random.between(0.55F, 0.85F);
+  rate_x_ = speed_m_s / area.reach_x_m * random.between(0.8F, 1.1F);
+  rate_y_ = rate_x_ * random.between(1.2F, 1.5F);
   phase_x_ = kTwoPi * random.unit();
   phase_y_ = kTwoPi * random.unit();
 }
 
 Eigen::Vector2f FloorPath::position_m(double t_s) const {
   const auto t = static_cast<double>(t_s);
-  return {kWalkReachX * static_cast<float>(std::sin(rate_x_ * t + phase_x_)),
-          kWalkCenterY + kWalkReachY * static_cast<float>(std::sin(rate_y_ * t + phase_y_))};
+  return {area_.reach_x_m * static_cast<float>(std::sin(rate_x_ * t + phase_x_)),
+          area_.center_y_m + area_.reach_y_m * static_cast<float>(std::sin(rate_y_ * t + phase_y_))};
 }
 
 float FloorPath::heading_rad(double t_s) const {
-  return static_cast<float>(std::atan2(kWalkReachY * rate_y_ * std::cos(rate_y_ * t_s + phase_y_),
-                                       kWalkReachX * rate_x_ * std::cos(rate_x_ * t_s + phase_x_)));
+  return static_cast<float>(std::atan2(area_.reach_y_m * rate_y_ * std::cos(rate_y_ * t_s + phase_y_),
+                                       area_.reach_x_m * rate_x_ * std::cos(rate_x_ * t_s + phase_x_)));
 }
 
-Person::Person(std::uint64_t seed, std::vector<Texture>& textures) : path_(seed, 1.0F) {
+Person::Person(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures)
+    : path_(seed, area, kWalkingSpeedMS) {
   SeededRandom random(seed ^ 0x9E450AULL);
   height_scale_ = random.between(0.92F, 1.08F);
   step_rate_rad_s_ = kTwoPi * random.between(0.8F, 1.0F);
@@ -93,7 +94,8 @@ void Person::append_to(Geometry& geometry, double t_s) const {
   }
 }
 
-CarriedBox::CarriedBox(std::uint64_t seed, std::vector<Texture>& textures) : path_(seed, 0.8F) {
+CarriedBox::CarriedBox(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures)
+    : path_(seed, area, kCarryingSpeedMS) {
   SeededRandom random(seed ^ 0xB0BULL);
   size_m_ = Vector3f(random.between(0.3F, 0.55F), random.between(0.3F, 0.55F), random.between(0.3F, 0.5F));
   height_m_ = random.between(0.75F, 1.15F);

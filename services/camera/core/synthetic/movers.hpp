@@ -8,15 +8,22 @@
 
 namespace rtd::camera::synthetic {
 
-/// A closed, smooth, never repeating path over the floor in the part of the room where movers walk.
+/// The part of the floor where movers walk, world frame: x within +-reach_x_m, y around center_y_m. In front of
+/// CameraRoom.
+struct WalkArea {
+  float center_y_m = 0.45F, reach_x_m = 1.4F, reach_y_m = 0.45F;
+};
+
+/// A closed, smooth, never repeating path over a WalkArea.
 class FloorPath {
  public:
-  /// `speed` scales the mean walking speed of about 0.9 m/s.
-  FloorPath(std::uint64_t seed, float speed);
+  /// `speed_m_s`: the highest along x.
+  FloorPath(std::uint64_t seed, const WalkArea& area, float speed_m_s);
   Eigen::Vector2f position_m(double t_s) const;
   float heading_rad(double t_s) const;  ///< direction of travel, from x towards y
 
  private:
+  WalkArea area_;
   float rate_x_, rate_y_, phase_x_, phase_y_;  ///< rad/s, rad
 };
 
@@ -24,7 +31,7 @@ class FloorPath {
 class Person {
  public:
   /// Adds the person's textures to `textures`.
-  Person(std::uint64_t seed, std::vector<Texture>& textures);
+  Person(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures);
   void append_to(Geometry& geometry, double t_s) const;
 
  private:
@@ -36,7 +43,7 @@ class Person {
 /// A box that is carried about, bobbing and turning: of no class that a detector knows.
 class CarriedBox {
  public:
-  CarriedBox(std::uint64_t seed, std::vector<Texture>& textures);
+  CarriedBox(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures);
   void append_to(Geometry& geometry, double t_s) const;
 
  private:

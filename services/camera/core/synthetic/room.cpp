@@ -38,12 +38,12 @@ const std::vector<Furniture>& furniture() {
       {{-3.1F, -1.6F, 0}, {0.7F, 1.0F, 0.9F}, 0.15F},
       {{-1.6F, -2.9F, 0}, {1.2F, 0.5F, 1.7F}, 0},  // rear wall
       {{1.4F, -2.9F, 0}, {1.6F, 0.5F, 0.9F}, 0},
-      {{0.1F, 0.05F, 0}, {1.3F, 0.5F, kTableTopM}, 0.12F},  // low table between camera and movers
-      {{-0.3F, 0.0F, kTableTopM}, {0.24F, 0.18F, 0.16F}, 0.5F},
-      {{0.15F, 0.1F, kTableTopM}, {0.16F, 0.22F, 0.09F}, -0.3F},
-      {{0.5F, 0.05F, kTableTopM}, {0.18F, 0.14F, 0.24F}, 0.9F},
-      {{-2.0F, 0.0F, 0}, {0.45F, 0.4F, 0.5F}, 0.6F},  // boxes on the floor
-      {{2.1F, -0.1F, 0}, {0.5F, 0.4F, 0.55F}, -0.5F}};
+      {{0.1F, 2.0F, 0}, {1.3F, 0.5F, kTableTopM}, 0.12F},  // low table behind the movers
+      {{-0.3F, 1.95F, kTableTopM}, {0.24F, 0.18F, 0.16F}, 0.5F},
+      {{0.15F, 2.05F, kTableTopM}, {0.16F, 0.22F, 0.09F}, -0.3F},
+      {{0.5F, 2.0F, kTableTopM}, {0.18F, 0.14F, 0.24F}, 0.9F},
+      {{-2.0F, -0.4F, 0}, {0.45F, 0.4F, 0.5F}, 0.6F},  // boxes on the floor
+      {{2.1F, -0.4F, 0}, {0.5F, 0.4F, 0.55F}, -0.5F}};
   return pieces;
 }
 
@@ -51,7 +51,7 @@ TextureStyle random_style(SeededRandom& random, float patches_per_m2) {
   const float brightness = random.between(90, 190);
   const auto channel = [&] { return brightness + random.between(-16, 16); };
   const float b = channel(), g = channel();
-  return {{b, g, channel()}, random.between(8, 14), patches_per_m2, 0.04F, 0.45F, random.between(0.5F, 0.95F)};
+  return {{b, g, channel()}, random.between(5, 9), patches_per_m2, 0.04F, 0.45F, random.between(0.5F, 0.95F)};
 }
 
 int add_texture(std::vector<Texture>& textures, float width_m, float height_m, float texels_per_m,
@@ -72,7 +72,7 @@ std::vector<Face> shell(SeededRandom& random, std::vector<Texture>& textures) {
                              {{-kX, kY, kRoomHeightM}, x, -y, kRoomWidthM, kRoomDepthM, 0, false}};  // ceiling: -z
   for (Face& face : faces) {
     const bool wall = face.height_m == kRoomHeightM;
-    const TextureStyle style = random_style(random, wall ? 9.0F : 5.0F);
+    const TextureStyle style = random_style(random, wall ? 3.0F : 2.5F);
     face.texture = add_texture(textures, face.width_m, face.height_m, wall ? kWallTexelsPerM : kFloorTexelsPerM, style,
                                random.next());
   }
@@ -91,7 +91,7 @@ std::vector<Face> build_room(std::uint64_t seed, std::vector<Texture>& textures)
     cuboid.size_m = piece.size_m;
     const float width_m = std::max(piece.size_m.x(), piece.size_m.y());
     cuboid.texture = add_texture(textures, width_m, std::max(piece.size_m.z(), width_m), kFurnitureTexelsPerM,
-                                 random_style(random, 22.0F), random.next());
+                                 random_style(random, 12.0F), random.next());
     for (const Face& face : outer_faces(cuboid)) faces.push_back(face);
   }
   return faces;

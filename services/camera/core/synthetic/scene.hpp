@@ -17,6 +17,7 @@ struct SceneSpec {
   std::string name;
   int people = 0, boxes = 0;
   CameraMotion motion = CameraMotion::kHandHeld;
+  WalkArea area;
 };
 
 /// The scenes that have a name: office, static, box, crowd, tour.
