@@ -33,9 +33,15 @@ Pipe open_pipe() {
   return {ends[0], ends[1]};
 }
 
+/// The ends that the new process writes to: what it prints, and the errno of a failed exec.
+struct ChildPipes {
+  int output_fd, error_fd;
+};
+
 /// Runs in the new process between fork and exec: async-signal-safe calls only, the launcher has other threads.
-[[noreturn]] void become(char* const* argv, int output_fd, int error_fd, pid_t parent) {
+[[noreturn]] void become(char* const* argv, int niceness, ChildPipes pipes, pid_t parent) {
   setpgid(0, 0);
+  [[maybe_unused]] const int priority = nice(niceness);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(1);  // it died before the line above
 
@@ -46,12 +52,12 @@ Pipe open_pipe() {
 
   const int null_fd = open("/dev/null", O_RDONLY);
   dup2(null_fd, STDIN_FILENO);
-  dup2(output_fd, STDOUT_FILENO);
-  dup2(output_fd, STDERR_FILENO);
+  dup2(pipes.output_fd, STDOUT_FILENO);
+  dup2(pipes.output_fd, STDERR_FILENO);
   close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);  // the bus's sockets of the launcher are not the child's
   execv(argv[0], argv);
   const int reason = errno;
-  [[maybe_unused]] const ssize_t written = write(error_fd, &reason, sizeof(reason));
+  [[maybe_unused]] const ssize_t written = write(pipes.error_fd, &reason, sizeof(reason));
   _exit(127);
 }
 
@@ -81,16 +87,16 @@ PosixProcessHost::~PosixProcessHost() {
   }
 }
 
-ProcessId PosixProcessHost::start(const std::string& name, const std::vector<std::string>& command) {
+ProcessId PosixProcessHost::start(const ProcessSpec& spec) {
   std::vector<char*> argv;
-  argv.reserve(command.size() + 1);
-  for (const std::string& argument : command) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.reserve(spec.command.size() + 1);
+  for (const std::string& argument : spec.command) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
 
   const Pipe output = open_pipe(), failure = open_pipe();
   const pid_t parent = getpid();
   const pid_t pid = fork();
-  if (pid == 0) become(argv.data(), output.write_end, failure.write_end, parent);
+  if (pid == 0) become(argv.data(), spec.niceness, {output.write_end, failure.write_end}, parent);
   close(output.write_end);
   close(failure.write_end);
   const int reason = pid < 0 ? errno : exec_error(failure.read_end);
@@ -98,11 +104,11 @@ ProcessId PosixProcessHost::start(const std::string& name, const std::vector<std
   if (reason != 0) {
     close(output.read_end);
     if (pid > 0) waitpid(pid, nullptr, 0);
-    throw ProcessError("cannot run " + command.front() + ": " + std::strerror(reason));
+    throw ProcessError("cannot run " + spec.command.front() + ": " + std::strerror(reason));
   }
   fcntl(output.read_end, F_SETFL, O_NONBLOCK);
   Child& child = children_[pid];
-  child.name = name;
+  child.name = spec.name;
   child.output_fd = output.read_end;
   return pid;
 }

@@ -25,7 +25,7 @@ class PosixProcessHost : public ProcessHost {
   PosixProcessHost(const PosixProcessHost&) = delete;
   PosixProcessHost& operator=(const PosixProcessHost&) = delete;
 
-  ProcessId start(const std::string& name, const std::vector<std::string>& command) override;
+  ProcessId start(const ProcessSpec& spec) override;
   std::optional<ProcessExit> poll_exit(ProcessId process) override;
   void terminate(ProcessId process) override;
   void kill(ProcessId process) override;

@@ -20,6 +20,9 @@ namespace fs = std::filesystem;
 using service::ConfigError;
 namespace {
 
+/// In realtime nobody waits for the detector, so it takes the processor time that the pose does not need.
+constexpr int kRealtimeDetectorNiceness = 10;
+
 const std::vector<std::string> kFilterModes = {"off", "semantic", "geometry", "rtd"};
 
 void check_sections(const std::vector<std::string>& overrides) {
@@ -167,6 +170,7 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
     camera.insert(camera.end(), {"--wait-for", "filter,slam"});
   } else {
     plans.push_back(plan(setup, "detector", ServiceRole::kOptional, {"--set", "detector.model=" + setup.model_path}));
+    if (setup.pace == "realtime") plans.back().niceness = kRealtimeDetectorNiceness;
     camera.insert(camera.end(), {"--wait-for", "filter,slam,detector"});
   }
   plans.push_back(plan(setup, "filter", ServiceRole::kEssential, filter));

@@ -25,7 +25,7 @@ class RtdCommand {
   void start(const std::vector<std::string>& arguments) {
     std::vector<std::string> command = {executable_};
     command.insert(command.end(), arguments.begin(), arguments.end());
-    process_ = host_.start("rtd", command);
+    process_ = host_.start({"rtd", command});
   }
   void interrupt() const { ::kill(static_cast<pid_t>(process_), SIGINT); }
 

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <map>
@@ -28,7 +29,7 @@ milliseconds now() {
 class PosixProcessHostTest : public testing::Test {
  protected:
   ProcessId start(const std::string& name, const std::string& script) {
-    return host.start(name, {"/bin/sh", "-c", script});
+    return host.start({name, {"/bin/sh", "-c", script}});
   }
   ProcessExit wait_for_exit(ProcessId process) {
     const milliseconds give_up = now() + milliseconds(10000);
@@ -69,7 +70,7 @@ TEST_F(PosixProcessHostTest, measures_cpu_time_and_memory) {
 
 TEST_F(PosixProcessHostTest, names_an_executable_that_cannot_be_run) {
   try {
-    host.start("a", {"/nonexistent/rtd-slam"});
+    host.start({"a", {"/nonexistent/rtd-slam"}});
     FAIL() << "started what does not exist";
   } catch (const ProcessError& error) {
     EXPECT_STREQ(error.what(), "cannot run /nonexistent/rtd-slam: No such file or directory");
@@ -81,6 +82,12 @@ TEST_F(PosixProcessHostTest, child_leads_its_own_process_group_with_a_closed_std
   wait_for_line("a");
   EXPECT_THAT(lines["a"], ElementsAre(std::to_string(process)));
   EXPECT_EQ(getpgid(static_cast<pid_t>(process)), static_cast<pid_t>(process));
+}
+
+TEST_F(PosixProcessHostTest, child_gets_the_niceness_asked_for) {
+  wait_for_exit(host.start({"a", {"/bin/sh", "-c", "nice"}, 7}));
+  wait_for_exit(start("b", "nice"));
+  EXPECT_EQ(std::stoi(lines["a"].at(0)), std::min(19, std::stoi(lines["b"].at(0)) + 7));
 }
 
 TEST_F(PosixProcessHostTest, child_inherits_no_descriptor) {
@@ -96,7 +103,7 @@ TEST_F(PosixProcessHostTest, nothing_outlives_the_launcher) {
   const pid_t launcher = fork();
   if (launcher == 0) {
     PosixProcessHost inner([](const std::string&, const std::string&) {});
-    const ProcessId process = inner.start("a", {"/bin/sleep", "60"});
+    const ProcessId process = inner.start({"a", {"/bin/sleep", "60"}});
     [[maybe_unused]] const auto written = write(told[1], &process, sizeof(process));
     raise(SIGKILL);
   }

@@ -114,6 +114,8 @@ TEST(record_builder, drops_are_named_by_place_and_survive_a_restart) {
   EXPECT_THAT(record.drops,
               UnorderedElementsAre(Pair("filter.queue_dropped", 6), Pair("camera.late", 3), Pair("camera.skipped", 0)));
   EXPECT_EQ(builder.live().dropped, 9U);
+  builder.add(status_of("detector", 10, {{"frames_dropped", 100}}));
+  EXPECT_EQ(builder.live().dropped, 9U) << "the detector only ever looks at the newest frame";
 }
 
 TEST(record_builder, knows_whether_anything_was_tracked) {

@@ -17,7 +17,8 @@ using testing::HasSubstr;
 /// Processes that end when the test says so.
 class FakeHost : public ProcessHost {
  public:
-  ProcessId start(const std::string& name, const std::vector<std::string>&) override {
+  ProcessId start(const ProcessSpec& spec) override {
+    const std::string& name = spec.name;
     if (missing.count(name) != 0) throw ProcessError("cannot run " + name + ": No such file or directory");
     started.push_back(name);
     names[++last_id] = name;

@@ -19,7 +19,7 @@ struct LiveStatus {
   double frames_per_s = 0;  ///< over the last second or so
   std::uint32_t inliers = 0;
   std::uint32_t dynamic_points = 0;
-  std::uint64_t dropped = 0;  ///< sum over all places
+  std::uint64_t dropped = 0;  ///< on the way from the camera to the pose
   double latency_ms = 0;      ///< camera -> pose, median of the last frames
 };
 

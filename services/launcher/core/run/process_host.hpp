@@ -31,12 +31,18 @@ struct ProcessExit {
 /// "exit code 1" or "killed by signal 9 (KILL)".
 std::string describe(const ProcessExit& exit);
 
+struct ProcessSpec {
+  std::string name;                  ///< for messages and logs
+  std::vector<std::string> command;  ///< path of the executable and its arguments
+  int niceness = 0;  ///< added to the launcher's own: 0 = the same priority, 19 = only what others leave
+};
+
 /// Starts and ends processes. Injected, so that the supervisor is tested without an operating system.
 class ProcessHost {
  public:
   virtual ~ProcessHost() = default;
   /// Throws ProcessError when the executable cannot be run.
-  virtual ProcessId start(const std::string& name, const std::vector<std::string>& command) = 0;
+  virtual ProcessId start(const ProcessSpec& spec) = 0;
   /// How the process ended; empty while it runs. Told once, then the id is gone.
   virtual std::optional<ProcessExit> poll_exit(ProcessId process) = 0;
   virtual void terminate(ProcessId process) = 0;  ///< asks (SIGTERM)

@@ -89,7 +89,11 @@ LiveStatus RecordBuilder::live() const {
   LiveStatus status;
   status.frames = end_of_seen_;
   status.total = static_cast<std::uint64_t>(camera_counter("frames_total"));
-  for (const auto& [place, count] : drops()) status.dropped += static_cast<std::uint64_t>(count);
+  for (const auto& [place, count] : drops()) {
+    const bool on_the_way_to_the_pose =
+        place.rfind("detector.", 0) != 0;  // the detector's job is the newest frame only
+    if (on_the_way_to_the_pose) status.dropped += static_cast<std::uint64_t>(count);
+  }
   if (const auto camera = services_.find("camera"); camera != services_.end()) {
     status.camera_message = camera->second.message;
   }

@@ -74,7 +74,7 @@ std::vector<std::pair<std::string, ProcessId>> Supervisor::running() const {
 }
 
 void Supervisor::launch(Child& child, Clock now) {
-  child.process = host_.start(child.plan.name, child.plan.command);
+  child.process = host_.start({child.plan.name, child.plan.command, child.plan.niceness});
   child.state = State::kRunning;
   child.started = now;
   child.killed = false;

@@ -23,6 +23,7 @@ struct ServicePlan {
   std::string name;
   std::vector<std::string> command;  ///< executable and arguments
   ServiceRole role = ServiceRole::kEssential;
+  int niceness = 0;  ///< see ProcessSpec
 };
 
 struct SupervisorOptions {
