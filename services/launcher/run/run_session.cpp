@@ -86,7 +86,7 @@ void RunSession::supervise(const ServicePlan& camera) {
       camera_started = true;
     }
     sample_memory(time);
-    tell_notices();
+    keep_notices();
     if (!supervisor_.stopping()) terminal_.status(format_live_status(collector_.live()), time);
   }
 }
@@ -137,8 +137,9 @@ void RunSession::explain(const std::string& service, const std::vector<std::stri
   terminal_.warn("  log: " + logs_.path(service));
 }
 
-void RunSession::tell_notices() {
-  while (const auto notice = collector_.take_notice()) note(*notice);
+/// For the report; on the terminal the service's own warning says it.
+void RunSession::keep_notices() {
+  while (const auto notice = collector_.take_notice()) events_.push_back(*notice);
 }
 
 void RunSession::note(const std::string& text) {

@@ -37,7 +37,7 @@ class RunSession {
   bool camera_may_start(Milliseconds now) const;
   void on_event(const SupervisorEvent& event);
   void explain(const std::string& service, const std::vector<std::string>& lines);
-  void tell_notices();
+  void keep_notices();
   void stop_when_decided(Milliseconds now);
   void sample_memory(Milliseconds now);
   void note(const std::string& text);
