@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/fastdds_writer.hpp"
 
+#include <exception>
 #include <utility>
 
 #include "common/bus/fastdds/qos_mapping.hpp"

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/concurrency/bounded_queue.hpp"
 #include "tests/component/bus/patterns.hpp"
 
 namespace rtd::bus {
@@ -75,17 +76,34 @@ void flood_frames(Bus& bus, int) {
   }
 }
 
-/// Answers each FeatureFrame with a TrackingResult of its seq; inliers tells whether every byte was right.
-void answer_features(Bus& bus, int) {
-  auto results = bus.writer(topics::kTracking);
-  wait_for_reader(results);  // so that whoever sees our reader can rely on being answered
-  const auto reader = bus.reader(topics::kFeatures, [&](std::shared_ptr<const msg::FeatureFrame> features) {
+/// Answers each message of the topic with a TrackingResult of its seq; inliers tells whether every byte was right,
+/// landmarks which peer this is. The writer of the answers appears when the messages can be received: who sees it may
+/// send.
+template <class T>
+void answer(Bus& bus, const Topic<T>& topic, int number) {
+  concurrency::BoundedQueue<msg::TrackingResult> answers(64, concurrency::Overflow::kBlock);
+  const auto reader = bus.reader(topic, [&](std::shared_ptr<const T> message) {
     msg::TrackingResult result{};
-    result.seq = features->seq;
-    result.inliers = equals_pattern(*features) ? 1 : 0;
-    results.write(result);
+    result.seq = message->seq;
+    result.landmarks = static_cast<std::uint32_t>(number);
+    result.inliers = equals_pattern(*message) ? 1 : 0;
+    answers.push(result);
   });
-  stay();
+  while (reader.matched() == 0 && !stop_asked(1ms)) {
+  }
+  auto results = bus.writer(topics::kTracking);
+  wait_for_reader(results);
+  while (!stop_asked()) {
+    if (const auto result = answers.pop_for(20ms)) results.write(*result);
+  }
+  answers.close();
+}
+
+void answer_features(Bus& bus, int number) {
+  answer(bus, topics::kFeatures, number);
+}
+void answer_frames(Bus& bus, int number) {
+  answer(bus, topics::kFrame, number);
 }
 
 /// COUNT keyframe events and one camera info for readers yet to come.
@@ -104,11 +122,9 @@ void send_heartbeats(Bus& bus, int) {
 }
 
 int run(const std::string& role, std::uint32_t domain, int count) {
-  static const std::map<std::string, std::function<void(Bus&, int)>> kRoles = {{"send_frames", send_frames},
-                                                                               {"flood_frames", flood_frames},
-                                                                               {"answer_features", answer_features},
-                                                                               {"leave_history", leave_history},
-                                                                               {"send_heartbeats", send_heartbeats}};
+  static const std::map<std::string, std::function<void(Bus&, int)>> kRoles = {
+      {"send_frames", send_frames},     {"flood_frames", flood_frames},   {"answer_features", answer_features},
+      {"answer_frames", answer_frames}, {"leave_history", leave_history}, {"send_heartbeats", send_heartbeats}};
   const auto entry = kRoles.find(role);
   if (entry == kRoles.end()) return 2;
   BusOptions options;

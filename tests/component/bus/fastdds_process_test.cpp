@@ -4,9 +4,11 @@
 // Between processes: shared memory, data sharing and a peer that dies.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <string>
 #include <thread>
 #include <utility>
@@ -79,6 +81,33 @@ TEST(FastddsProcesses, nothing_is_lost_with_three_feature_frames_in_flight) {
     const auto result = results.next();
     ASSERT_EQ(result->seq, answered);
     ASSERT_EQ(result->inliers, 1U) << "features " << answered << " arrived changed";
+  }
+}
+
+/// The writer's shared memory has five slots: one that gets lost now and then ends the stream.
+TEST(FastddsProcesses, two_readers_get_every_frame_of_a_long_stream) {
+  constexpr std::uint64_t kFrames = 2000, kWindow = 3;
+  const auto bus = connect_fastdds();
+  Collector<msg::TrackingResult> results;
+  const auto reader = bus->reader(topics::kTracking, results.callback());
+  auto writer = bus->writer(topics::kFrame);
+  const PeerProcess filter("answer_frames", test_domain(), 1), detector("answer_frames", test_domain(), 2);
+  while (writer.matched() < 2 || reader.matched() < 2) std::this_thread::sleep_for(1ms);
+
+  std::map<std::uint32_t, std::uint64_t> answered;  // by the peer's number
+  const auto answered_by_both = [&] {
+    return answered.size() < 2 ? 0 : std::min(answered.begin()->second, answered.rbegin()->second);
+  };
+  std::uint64_t sent = 0;
+  while (answered_by_both() < kFrames) {
+    for (; sent < kFrames && sent < answered_by_both() + kWindow; ++sent) {
+      auto frame = writer.loan();
+      fill_frame(*frame, sent);
+      ASSERT_TRUE(writer.write(std::move(frame))) << "frame " << sent;
+    }
+    const auto result = results.next();
+    ASSERT_EQ(result->seq, answered[result->landmarks]++);
+    ASSERT_EQ(result->inliers, 1U);
   }
 }
 
