@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/read_ahead.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace rtd::camera {
@@ -28,10 +29,9 @@ ReadAhead::~ReadAhead() {
 ReadItem ReadAhead::read(FrameSource& source, std::uint64_t frames_read) const {
   ReadItem item;
   try {
-    const std::int64_t oldest_wanted_ns = oldest_wanted_ns_;
-    // A limited run counts what it reads: nothing is passed over there.
-    if (max_frames_ == 0) item.passed_over = source.pass_over(oldest_wanted_ns);
-    if (max_frames_ == 0 || frames_read < max_frames_) item.frame = source.next();
+    const std::uint64_t left = max_frames_ == 0 ? std::numeric_limits<std::uint64_t>::max() : max_frames_ - frames_read;
+    item.passed_over = std::min(source.pass_over(oldest_wanted_ns_), left);
+    if (item.passed_over < left) item.frame = source.next();
   } catch (const std::exception& error) {
     item.error = error.what();
   }

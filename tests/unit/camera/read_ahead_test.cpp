@@ -83,6 +83,19 @@ TEST(ReadAhead, StopsAtTheLimit) {
   EXPECT_EQ(count, 3);
 }
 
+TEST(ReadAhead, CountsWhatItPassedOverAgainstTheLimit) {
+  CountingSource source(1000, false);
+  ReadAhead frames(source, 2, 10);
+  frames.pass_over(500);
+  std::uint64_t read = 0, passed_over = 0;
+  for (std::optional<ReadItem> item = frames.next();; item = frames.next()) {
+    passed_over += item->passed_over;
+    if (!item->frame) break;
+    ++read;
+  }
+  EXPECT_EQ(read + passed_over, 10U);
+}
+
 TEST(ReadAhead, ReportsAFailingSource) {
   CountingSource source(1, true);
   ReadAhead frames(source, 2, 0);
