@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/dynamic_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "tests/unit/filter/moving_scene.hpp"
+
+namespace rtd::filter {
+namespace {
+
+using test::MovingScene;
+using test::removed_share;
+
+constexpr double kNoBlock = 100;
+constexpr double kCameraStepM = 0.008, kBlockStepM = 0.03;  // per frame: 0.24 and 0.9 m/s
+
+DynamicFilter make_filter(FilterMode mode) {
+  FilterConfig config;
+  config.mode = mode;
+  return DynamicFilter(config, [] { return std::int64_t{0}; });
+}
+
+TEST(DynamicFilter, finds_the_pose_of_a_moving_camera_in_a_static_scene) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kGeometry);
+  FilterResult result;
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    result = filter.apply(scene.render(i, kCameraStepM * static_cast<double>(i), 0.0), std::nullopt);
+    EXPECT_EQ(result.removed, 0U) << "frame " << i;
+  }
+  EXPECT_TRUE(result.pose_reliable);
+  EXPECT_NEAR(result.T_world_camera.translation().x(), 11 * kCameraStepM, 0.006) << "m";
+  EXPECT_NEAR(result.T_world_camera.translation().y(), 0, 0.006) << "m";
+}
+
+TEST(DynamicFilter, removes_a_mover_of_no_class_and_keeps_the_room) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kGeometry);
+  for (std::uint64_t i = 0; i < 15; ++i) {
+    const double camera_x = kCameraStepM * static_cast<double>(i),
+                 block_x = -0.25 + kBlockStepM * static_cast<double>(i);
+    const FilterResult result = filter.apply(scene.render(i, camera_x, block_x), std::nullopt);
+    if (i < 5) continue;
+    const cv::Rect block = MovingScene::block(camera_x, block_x);
+    EXPECT_GE(removed_share(result, block, true), 0.95) << "frame " << i;
+    EXPECT_LE(removed_share(result, block, false), 0.05) << "frame " << i;
+    EXPECT_NEAR(result.T_world_camera.translation().x(), camera_x, 0.01) << "m, frame " << i;
+  }
+}
+
+TEST(DynamicFilter, does_not_believe_a_mover_that_pauses_for_half_a_second) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kGeometry);
+  for (std::uint64_t i = 0; i < 25; ++i) {
+    const double block_x = -0.25 + kBlockStepM * static_cast<double>(std::min<std::uint64_t>(i, 10));
+    const FilterResult result = filter.apply(scene.render(i, 0, block_x), std::nullopt);
+    if (i < 5) continue;
+    EXPECT_GE(removed_share(result, MovingScene::block(0, block_x), true), 0.9) << "frame " << i;
+  }
+}
+
+TEST(DynamicFilter, accepts_a_block_that_was_put_down_for_good) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kGeometry);
+  FilterResult result;
+  for (std::uint64_t i = 0; i < 110; ++i) {
+    result = filter.apply(scene.render(i, 0, -0.25 + kBlockStepM * static_cast<double>(std::min<std::uint64_t>(i, 10))),
+                          std::nullopt);
+  }
+  EXPECT_EQ(result.removed, 0U) << "three seconds later";
+}
+
+TEST(DynamicFilter, removes_a_person_from_the_first_frame_on) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kRtd);
+  const cv::Rect block = MovingScene::block(0, 0);
+  const std::vector<vision::Detection> boxes{
+      {"person", 0.9F, static_cast<float>(block.x - 10), static_cast<float>(block.y - 10), 160, 240}};
+  const FilterResult result = filter.apply(scene.render(0, 0, 0), boxes);
+  ASSERT_EQ(result.objects.size(), 1U);
+  EXPECT_EQ(removed_share(result, block, true), 1.0);
+  EXPECT_EQ(removed_share(result, block, false), 0.0);
+}
+
+TEST(DynamicFilter, ignores_boxes_in_geometry_mode_and_everything_in_mode_off) {
+  const MovingScene scene;
+  const std::vector<vision::Detection> boxes{{"person", 0.9F, 0, 0, 640, 480}};
+  for (const FilterMode mode : {FilterMode::kGeometry, FilterMode::kOff}) {
+    EXPECT_EQ(make_filter(mode).apply(scene.render(0, 0, 0), boxes).removed, 0U);
+  }
+}
+
+TEST(DynamicFilter, extracts_more_features_while_something_is_masked) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kRtd);
+  const std::vector<vision::Detection> person{{"person", 0.9F, 240, 110, 160, 240}}, nobody;
+  filter.apply(scene.render(0, 0, 0), person);
+  const std::size_t with = filter.apply(scene.render(1, 0, 0), nobody).features.size();
+  const std::size_t without = filter.apply(scene.render(2, 0, 0), nobody).features.size();
+  EXPECT_NEAR(static_cast<double>(with) / static_cast<double>(without), 1.5, 0.05);
+}
+
+TEST(DynamicFilter, makes_no_statement_without_depth) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kRtd);
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    vision::RgbdImage image = scene.render(i, 0, 0.05 * static_cast<double>(i));
+    image.depth.setTo(0);
+    const FilterResult result = filter.apply(image, std::vector<vision::Detection>{});
+    EXPECT_EQ(result.removed, 0U);
+    EXPECT_FALSE(result.pose_reliable);
+    EXPECT_GT(result.features.size(), 500U);
+  }
+}
+
+TEST(DynamicFilter, survives_broken_images_between_good_ones) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kRtd);
+  const std::vector<vision::Detection> none;
+  for (std::uint64_t i = 0; i < 4; ++i) filter.apply(scene.render(i, 0, kNoBlock), none);
+  vision::RgbdImage black = scene.render(4, 0, kNoBlock), saturated = scene.render(5, 0, kNoBlock);
+  black.color_bgr.setTo(0);
+  saturated.depth.setTo(65535);
+  EXPECT_TRUE(filter.apply(black, none).features.empty());
+  EXPECT_FALSE(filter.apply(saturated, none).features.empty());
+  FilterResult result;
+  for (std::uint64_t i = 6; i < 10; ++i) result = filter.apply(scene.render(i, 0, kNoBlock), none);
+  EXPECT_TRUE(result.pose_reliable);
+  EXPECT_EQ(result.removed, 0U);
+}
+
+TEST(DynamicFilter, takes_stamps_that_stand_still_or_go_backwards) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kGeometry);
+  for (const std::int64_t stamp_ns : {100, 100, 50, -1'000'000'000, 7'200'000}) {
+    vision::RgbdImage image = scene.render(0, 0, 0);
+    image.stamp_ns = stamp_ns;
+    EXPECT_EQ(filter.apply(image, std::nullopt).removed, 0U);
+  }
+}
+
+TEST(DynamicFilter, follows_slam_into_its_world) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kGeometry);
+  FilterResult result;
+  for (std::uint64_t i = 0; i < 6; ++i) result = filter.apply(scene.render(i, 0, 0), std::nullopt);
+  EXPECT_NEAR(result.T_world_camera.translation().norm(), 0, 0.002) << "m";
+  msg::TrackingResult tracked{};
+  tracked.seq = 5;
+  tracked.state = msg::TrackingState::kOk;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  T_world_camera.translation() = Eigen::Vector3d(4, 5, 6);
+  tracked.T_world_camera = msg::to_message(T_world_camera);
+  filter.on_tracking(tracked);
+  result = filter.apply(scene.render(6, 0, 0), std::nullopt);
+  EXPECT_NEAR((result.T_world_camera.translation() - Eigen::Vector3d(4, 5, 6)).norm(), 0, 0.005) << "m";
+  EXPECT_EQ(result.removed, 0U);
+}
+
+TEST(DynamicFilter, gives_the_same_bits_for_the_same_input) {
+  const MovingScene scene;
+  DynamicFilter first = make_filter(FilterMode::kGeometry), second = make_filter(FilterMode::kGeometry);
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    const vision::RgbdImage image =
+        scene.render(i, 0.01 * static_cast<double>(i), -0.2 + 0.03 * static_cast<double>(i));
+    const FilterResult a = first.apply(image, std::nullopt), b = second.apply(image, std::nullopt);
+    ASSERT_EQ(a.features.size(), b.features.size());
+    EXPECT_EQ(std::memcmp(a.features.data(), b.features.data(), a.features.size() * sizeof(msg::Feature)), 0)
+        << "frame " << i;
+  }
+}
+
+}  // namespace
+}  // namespace rtd::filter

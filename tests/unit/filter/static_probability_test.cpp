@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/static_probability.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rtd::filter {
+namespace {
+
+constexpr std::size_t kCells = 160 * 120;
+
+/// One object on the left third of the image, features on a grid over all of it.
+class StaticProbabilityTest : public ::testing::Test {
+ protected:
+  StaticProbabilityTest() {
+    for (int v = 10; v < 480; v += 20) {
+      for (int u = 10; u < 640; u += 20) {
+        msg::Feature feature{};
+        feature.u_px = static_cast<float>(u);
+        feature.v_px = static_cast<float>(v);
+        features_.push_back(feature);
+      }
+    }
+    SceneObject object{"person", 0.9F, MotionLevel::kHigh, {}, false};
+    for (int cell = 0; cell < static_cast<int>(kCells); ++cell) {
+      if (cell % 160 < 53) object.cells.push_back(cell);
+    }
+    objects_.push_back(object);
+    fusion_.min_static_features = 0;
+  }
+  void weigh(FilterMode mode = FilterMode::kRtd) {
+    weigh_static_probability(features_, {{160, 120}, objects_, motions_, resting_s_, regions_, evidence_}, mode,
+                             fusion_, 1);
+  }
+  const msg::Feature& on_object() const { return features_[2]; }
+  const msg::Feature& background() const { return features_[25]; }
+  static bool removed(const msg::Feature& feature) { return (feature.flags & msg::kFeatureRemoved) != 0; }
+
+  std::vector<msg::Feature> features_;
+  std::vector<SceneObject> objects_;
+  std::vector<ObjectMotion> motions_{ObjectMotion::kUnknown};
+  std::vector<double> resting_s_{0};
+  DynamicRegions regions_{true, CellMask(kCells, 0), 0};
+  DepthEvidence evidence_ = DepthEvidence::none(kCells);
+  FusionConfig fusion_;
+};
+
+TEST_F(StaticProbabilityTest, removes_a_person_of_whom_nothing_is_known) {
+  weigh();
+  EXPECT_TRUE(removed(on_object()));
+  EXPECT_EQ(on_object().object_id, 0);
+  EXPECT_NE(on_object().flags & msg::kFeatureInHighMask, 0);
+  EXPECT_FALSE(removed(background()));
+  EXPECT_EQ(background().object_id, -1);
+}
+
+TEST_F(StaticProbabilityTest, gives_a_person_who_sits_for_long_a_low_weight) {
+  motions_[0] = ObjectMotion::kResting;
+  resting_s_[0] = 1.0;
+  weigh();
+  EXPECT_TRUE(removed(on_object())) << "not long enough";
+  resting_s_[0] = 10.0;
+  weigh();
+  EXPECT_FALSE(removed(on_object()));
+  EXPECT_FLOAT_EQ(on_object().static_probability, static_cast<float>(fusion_.sitting_probability));
+}
+
+TEST_F(StaticProbabilityTest, lets_geometry_decide_on_a_chair) {
+  objects_[0].level = MotionLevel::kMedium;
+  weigh();
+  EXPECT_FALSE(removed(on_object()));
+  EXPECT_FLOAT_EQ(on_object().static_probability, static_cast<float>(fusion_.doubtful_probability));
+  motions_[0] = ObjectMotion::kResting;
+  evidence_.consistent.assign(kCells, 3);
+  weigh();
+  EXPECT_FLOAT_EQ(on_object().static_probability, 1.0F);
+  motions_[0] = ObjectMotion::kMoving;
+  weigh();
+  EXPECT_TRUE(removed(on_object()));
+}
+
+TEST_F(StaticProbabilityTest, trusts_a_screen_unless_it_moves) {
+  objects_[0].level = MotionLevel::kLow;
+  weigh();
+  EXPECT_FALSE(removed(on_object()));
+  regions_.frames_left.assign(kCells, 10);
+  weigh();
+  EXPECT_TRUE(removed(on_object()));
+}
+
+TEST_F(StaticProbabilityTest, leaves_a_person_on_a_poster_to_geometry) {
+  objects_[0].flat = true;
+  weigh();
+  EXPECT_FALSE(removed(on_object()));
+}
+
+TEST_F(StaticProbabilityTest, prefers_the_person_where_masks_overlap) {
+  SceneObject screen = objects_[0];
+  screen.level = MotionLevel::kLow;
+  objects_.push_back(screen);
+  motions_.push_back(ObjectMotion::kUnknown);
+  resting_s_.push_back(0);
+  weigh();
+  EXPECT_EQ(on_object().object_id, 0);
+  EXPECT_TRUE(removed(on_object()));
+}
+
+TEST_F(StaticProbabilityTest, removes_what_moves_without_a_class) {
+  objects_.clear();
+  regions_.frames_left.assign(kCells, 10);
+  weigh();
+  EXPECT_TRUE(removed(background()));
+  EXPECT_NE(background().flags & msg::kFeatureGeometryMoving, 0);
+}
+
+TEST_F(StaticProbabilityTest, removes_people_and_nothing_else_in_semantic_mode) {
+  motions_[0] = ObjectMotion::kResting;
+  resting_s_[0] = 100;
+  weigh(FilterMode::kSemantic);
+  EXPECT_TRUE(removed(on_object()));
+  EXPECT_FALSE(removed(background()));
+}
+
+TEST_F(StaticProbabilityTest, keeps_the_best_of_the_doubtful_when_too_few_remain) {
+  for (int cell = 0; cell < static_cast<int>(kCells); ++cell) objects_[0].cells.push_back(cell);  // a person everywhere
+  fusion_.min_static_features = 100;
+  weigh();
+  EXPECT_EQ(std::count_if(features_.begin(), features_.end(), [](const auto& f) { return !removed(f); }), 100);
+}
+
+TEST_F(StaticProbabilityTest, never_takes_back_what_geometry_saw_moving) {
+  regions_.frames_left.assign(kCells, 10);
+  fusion_.min_static_features = 100;
+  weigh();
+  EXPECT_EQ(std::count_if(features_.begin(), features_.end(), [](const auto& f) { return !removed(f); }), 0);
+}
+
+}  // namespace
+}  // namespace rtd::filter
