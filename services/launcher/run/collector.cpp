@@ -58,6 +58,11 @@ bool Collector::connected() const {
   return tracking_.matched() > 0 && features_.matched() > 0;
 }
 
+std::string Collector::services_heard() const {
+  const std::lock_guard lock(mutex_);
+  return builder_.services_heard();
+}
+
 LiveStatus Collector::live() const {
   const std::lock_guard lock(mutex_);
   LiveStatus status = builder_.live();

@@ -28,6 +28,7 @@ class Collector {
 
   /// filter and slam are heard: from now on no frame is missed.
   bool connected() const;
+  std::string services_heard() const;
   LiveStatus live() const;
   std::optional<std::string> take_notice();
   bool tracked_any() const;

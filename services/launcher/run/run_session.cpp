@@ -60,14 +60,27 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, InterruptSignals& s
       collector_(bus, {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames}),
       host_([this](const std::string& service, const std::string& line) { logs_.add(service, line); }),
       supervisor_(host_, setup.launcher.supervisor(), [this](const SupervisorEvent& event) { on_event(event); }),
-      started_(now()),
       own_cpu_before_s_(own_usage().cpu_s) {}
 
 RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
+  require_free_domain();
+  started_ = now();
   for (std::size_t i = 0; i + 1 < plans.size(); ++i) supervisor_.start(plans[i], now());
   supervise(plans.back());
   terminal_.end_status();
   return supervisor_.outcome();
+}
+
+/// Two runs in one domain would feed each other's filters and trackers until the services notice.
+void RunSession::require_free_domain() {
+  const milliseconds until = now() + milliseconds(setup_.launcher.domain_check_ms);
+  while (now() < until) {
+    host_.wait(kTick);
+    const std::string others = collector_.services_heard();
+    if (others.empty()) continue;
+    throw service::ConfigError("DDS domain " + std::to_string(setup_.bus.domain) + " is taken by " + others +
+                               ": stop them first or choose another domain with --domain");
+  }
 }
 
 void RunSession::supervise(const ServicePlan& camera) {

@@ -24,7 +24,8 @@ class RunSession {
  public:
   RunSession(const RunSetup& setup, bus::Bus& bus, InterruptSignals& signals, Terminal& terminal);
 
-  /// Returns when no process is left. Throws ProcessError when a service cannot be started at all.
+  /// Returns when no process is left. Throws ProcessError when a service cannot be started at all,
+  /// service::ConfigError when another run is heard in the same DDS domain.
   RunOutcome run(const std::vector<ServicePlan>& plans);
   /// What was observed; call it behind run().
   RunRecord record() const;
@@ -33,6 +34,7 @@ class RunSession {
  private:
   using Milliseconds = std::chrono::milliseconds;
 
+  void require_free_domain();
   void supervise(const ServicePlan& camera);
   bool camera_may_start(Milliseconds now) const;
   void on_event(const SupervisorEvent& event);

@@ -104,16 +104,10 @@ void choose_detector(const RunOptions& options, RunSetup& setup) {
   setup.detector_note = model ? fs::path(model.path).filename().string() : "off (no weights)";
 }
 
-void prepare_out_dir(const std::string& out_dir) {
+void create_out_dir(const std::string& out_dir) {
   std::error_code error;
-  fs::remove_all(fs::path(out_dir) / "logs", error);
-  fs::create_directories(fs::path(out_dir) / "logs", error);
+  fs::create_directories(out_dir, error);
   if (error) throw ConfigError("--out " + out_dir + ": cannot be created: " + error.message());
-  for (const char* left : {"trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "groundtruth.txt",
-                           "report.json", "report.html"}) {
-    fs::remove(fs::path(out_dir) / left, error);
-    if (error) throw ConfigError("--out " + out_dir + ": cannot be written: " + error.message());
-  }
 }
 
 std::string require_executable(const std::string& service) {
@@ -156,8 +150,19 @@ RunSetup prepare_run(const RunOptions& options) {
   setup.total_frames = count_frames(setup.source, options.frames);
   choose_detector(options, setup);
   setup.out_dir = options.out_dir;
-  prepare_out_dir(setup.out_dir);
+  create_out_dir(setup.out_dir);
   return setup;
+}
+
+void clear_out_dir(const RunSetup& setup) {
+  const fs::path out_dir = setup.out_dir;
+  std::error_code error;
+  for (const char* left : {"logs", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply",
+                           "groundtruth.txt", "report.json", "report.html"}) {
+    fs::remove_all(out_dir / left, error);
+    if (!error) fs::create_directories(out_dir / "logs", error);
+    if (error) throw ConfigError("--out " + setup.out_dir + ": cannot be written: " + error.message());
+  }
 }
 
 std::vector<ServicePlan> plan_services(const RunSetup& setup) {

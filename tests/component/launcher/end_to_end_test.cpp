@@ -111,6 +111,16 @@ TEST_F(EndToEndTest, without_weights_it_says_so_and_runs_on_geometry) {
   EXPECT_EQ(report()["frames_tracked"], 10);
 }
 
+TEST_F(EndToEndTest, a_second_run_in_the_same_domain_is_refused_and_leaves_the_first_alone) {
+  rtd_.start(arguments(128, "synthetic:office?frames=60", {"--detector", "off", "--pace", "lockstep"}));
+  ASSERT_TRUE(wait_for_frames()) << rtd_.output();
+  RtdCommand second;
+  EXPECT_EQ(second.run({"run", "--source", "synthetic:office", "--domain", "128", "--out", scratch_ / "second"}), 2);
+  EXPECT_THAT(second.output(), AllOf(HasSubstr("domain 128 is taken by"), HasSubstr("--domain")));
+  EXPECT_EQ(rtd_.wait(), 0) << rtd_.output();
+  EXPECT_EQ(report()["frames_tracked"], 60);
+}
+
 TEST_F(EndToEndTest, the_demo_needs_no_data_and_shows_both_runs_on_one_page) {
   unsetenv("RTD_DATA_DIR");
   EXPECT_EQ(rtd_.run({"demo", "--frames", "10", "--out", out_, "--domain", "127"}), 0) << rtd_.output();

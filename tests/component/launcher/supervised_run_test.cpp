@@ -39,7 +39,9 @@ class SupervisedRunTest : public testing::Test {
                                     "--filter",
                                     "geometry",
                                     "--set",
-                                    "launcher.connect_timeout_ms=0"};
+                                    "launcher.connect_timeout_ms=0",
+                                    "--set",
+                                    "launcher.domain_check_ms=0"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }

@@ -151,6 +151,17 @@ TEST(record_builder, tells_a_degraded_service_once) {
   EXPECT_EQ(builder.take_notice(), std::nullopt);
 }
 
+TEST(record_builder, names_the_services_that_are_heard_and_have_not_finished) {
+  RecordBuilder builder;
+  EXPECT_EQ(builder.services_heard(), "");
+  builder.add(status_of("slam", 8, {}));
+  builder.add(status_of("filter", 7, {}));
+  msg::ServiceStatus finished = status_of("camera", 9, {});
+  finished.state = msg::ServiceState::kFinished;
+  builder.add(finished);
+  EXPECT_EQ(builder.services_heard(), "filter (pid 7), slam (pid 8)");
+}
+
 std::vector<SampleFrame> run_samples(SampleKeeper& keeper, std::uint64_t frames) {
   for (std::uint64_t seq = 0; seq < frames; ++seq) {
     if (keeper.wants(seq)) keeper.add_picture(seq, {1, 2, 3});

@@ -115,6 +115,15 @@ std::optional<std::string> RecordBuilder::take_notice() {
   return notice;
 }
 
+std::string RecordBuilder::services_heard() const {
+  std::string text;
+  for (const auto& [name, service] : services_) {
+    if (service.state == msg::ServiceState::kFinished) continue;
+    text += (text.empty() ? "" : ", ") + name + " (pid " + std::to_string(service.pid) + ")";
+  }
+  return text;
+}
+
 void RecordBuilder::fill(RunRecord& record) const {
   record.frames.clear();
   for (const auto& [seq, frame] : frames_) {

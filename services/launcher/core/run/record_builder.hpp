@@ -33,6 +33,9 @@ class RecordBuilder {
   /// The newest message of a service that is degraded; told once each time it changes.
   std::optional<std::string> take_notice();
 
+  /// "filter (pid 42), slam (pid 43)": every service heard that has not said goodbye; empty when there is none.
+  std::string services_heard() const;
+
   /// Writes frames, frames_in, frames_dropped and drops.
   void fill(RunRecord& record) const;
 
