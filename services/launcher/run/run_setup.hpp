@@ -30,8 +30,11 @@ struct RunSetup {
 };
 
 /// Checks everything that can be checked before a process is started: source, configuration, weights, output folder (it
-/// is created and cleared of what an earlier run left). Throws service::ConfigError or camera::SourceError.
+/// is created). Throws service::ConfigError or camera::SourceError.
 RunSetup prepare_run(const RunOptions& options);
+
+/// Removes what an earlier run left in the output folder. Throws service::ConfigError.
+void clear_out_dir(const RunSetup& setup);
 
 /// The services of the run in starting order, camera last. Throws service::ConfigError naming an executable that is
 /// missing.
