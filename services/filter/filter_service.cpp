@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t kRealtimeQueue = 2, kEveryFrameQueue = 8;
 constexpr std::chrono::milliseconds kStatePeriod{50};
 constexpr std::int64_t kSourceGoneAfterNs = 1'000'000'000;
-constexpr std::int64_t kPatienceNs = 1'500'000'000;  // before a silent heartbeat ends the wait for detections
+constexpr std::int64_t kDetectorSilentNs = 450'000'000;  // two heartbeats missed: said within half a second
+constexpr std::int64_t kPatienceNs = 1'500'000'000;      // before a silent heartbeat ends the wait for detections
 
 }  // namespace
 
@@ -35,6 +36,10 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
     detections->close();
     feedback->close();
   });
+  runtime.heartbeat.on_status([this](const msg::ServiceStatus& status) {
+    if (status.service != "detector") return;
+    detector_heard_ns_ = status.state == msg::ServiceState::kFinished ? 0 : service::monotonic_ns();
+  });
   writer_ = runtime.bus.writer(bus::topics::kFeatures);
   tracking_reader_ = runtime.bus.reader<msg::TrackingResult>(
       bus::topics::kTracking,
@@ -53,6 +58,7 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
 /// A reader waits for its running callback, which may be blocked on the full queue.
 FilterService::~FilterService() {
   frames_->close();
+  runtime_.heartbeat.on_status({});
 }
 
 service::ExitCode FilterService::run() {
@@ -88,8 +94,7 @@ void FilterService::answer(const msg::RgbdFrame& frame) {
 bool FilterService::accept(const msg::RgbdFrame& frame) {
   if (foreign(frame)) return false;
   if (const std::string cause = defect(frame); !cause.empty()) {
-    ++defective_;
-    if (defect_log_.pass()) SPDLOG_ERROR("event=frame_defective frame={} cause=\"{}\"", frame.seq, cause);
+    answer_defective(frame, cause);
     return false;
   }
   if (answered_ == 0) return true;
@@ -98,12 +103,27 @@ bool FilterService::accept(const msg::RgbdFrame& frame) {
     return false;
   }
   if (frame.stamp_ns <= message_->stamp_ns) {
-    SPDLOG_WARN("event=time_went_back frame={} stamp_ns={} last_stamp_ns={}", frame.seq, frame.stamp_ns,
-                message_->stamp_ns);
-    filter_.reset();
-    detections_->clear();
+    forget(frame, "time went back");
+  } else if (frame.intrinsics != message_->intrinsics) {
+    forget(frame, "another calibration");
   }
   return true;
+}
+
+/// What was seen before cannot be compared with this frame.
+void FilterService::forget(const msg::RgbdFrame& frame, const char* cause) {
+  SPDLOG_WARN("event=views_forgotten frame={} stamp_ns={} last_stamp_ns={} cause=\"{}\"", frame.seq, frame.stamp_ns,
+              message_->stamp_ns, cause);
+  filter_.reset();
+  detections_->clear();
+}
+
+/// The others wait for every frame: a frame that cannot be used has no features.
+void FilterService::answer_defective(const msg::RgbdFrame& frame, const std::string& cause) {
+  runtime_.heartbeat.set_metric("frames_defective", static_cast<double>(++defective_));
+  if (defect_log_.pass()) SPDLOG_ERROR("event=frame_defective frame={} cause=\"{}\"", frame.seq, cause);
+  fill_message(frame, {}, msg::DetectionUse::kNone, *message_);
+  writer_.write(*message_);
 }
 
 /// Of two cameras on the topic, the first is followed as long as it sends.
@@ -118,7 +138,10 @@ bool FilterService::foreign(const msg::RgbdFrame& frame) {
     }
     return true;
   }
-  if (other) SPDLOG_INFO("event=camera_changed source={:x}", frame.source_id);
+  if (other) {
+    SPDLOG_INFO("event=camera_changed source={:x}", frame.source_id);
+    filter_.reset();
+  }
   source_id_ = frame.source_id;
   source_heard_ns_ = now_ns;
   return false;
@@ -166,7 +189,7 @@ FilterService::PairedDetections FilterService::wait_for_detections(const msg::Rg
 
 void FilterService::watch_detector() {
   if (config_.detector == "off") return;
-  const bool alive = runtime_.heartbeat.alive("detector");
+  const bool alive = detector_heard();
   if (alive && (!detector_seen_ || detector_gone_)) SPDLOG_INFO("event=detector_heard frames={}", answered_);
   if (!alive && detector_seen_ && !detector_gone_) {
     SPDLOG_WARN("event=detector_gone frames={} effect=\"geometry only until it is back\"", answered_);
@@ -175,18 +198,28 @@ void FilterService::watch_detector() {
   detector_seen_ = detector_seen_ || alive;
 }
 
+/// Without a wait at stake, silence is noticed sooner; in lockstep and asap a busy host must not change the result.
+bool FilterService::detector_heard() const {
+  if (runtime_.pace != service::Pace::kRealtime) return runtime_.heartbeat.alive("detector");
+  return service::monotonic_ns() - detector_heard_ns_ < kDetectorSilentNs;
+}
+
 void FilterService::count(const FilterResult& result) {
   service::Heartbeat& heartbeat = runtime_.heartbeat;
   heartbeat.set_metric("frames", static_cast<double>(answered_));
   heartbeat.set_metric("frames_dropped", static_cast<double>(frames_->dropped()));
-  heartbeat.set_metric("frames_defective", static_cast<double>(defective_));
   heartbeat.set_metric("frames_foreign", static_cast<double>(foreign_));
   heartbeat.set_metric("frames_without_detections", static_cast<double>(unpaired_));
   heartbeat.set_metric("features", static_cast<double>(result.features.size()));
   heartbeat.set_metric("features_removed", result.removed);
   heartbeat.set_metric("objects", static_cast<double>(result.objects.size()));
   heartbeat.set_metric("dynamic_clusters", result.dynamic_clusters);
-  heartbeat.set_metric("filter_ms", static_cast<double>(result.stage_ms[msg::kStageFilterTotal]));
+  static constexpr std::array<const char*, 7> kNames{"wait_ms",        "extract_ms", "masks_ms", "ego_motion_ms",
+                                                     "depth_check_ms", "fuse_ms",    "filter_ms"};
+  for (std::size_t stage = 0; stage < kNames.size(); ++stage) {  // means so far
+    total_stage_ms_[stage] += static_cast<double>(result.stage_ms[stage]);
+    heartbeat.set_metric(kNames[stage], total_stage_ms_[stage] / static_cast<double>(answered_));
+  }
 }
 
 void FilterService::report_state() {

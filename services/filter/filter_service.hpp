@@ -3,6 +3,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -44,6 +46,9 @@ class FilterService {
 
   void answer(const msg::RgbdFrame& frame);
   bool accept(const msg::RgbdFrame& frame);
+  void answer_defective(const msg::RgbdFrame& frame, const std::string& cause);
+  void forget(const msg::RgbdFrame& frame, const char* cause);
+  bool detector_heard() const;
   bool foreign(const msg::RgbdFrame& frame);
   void listen_to_slam();
   PairedDetections detections_of(const msg::RgbdFrame& frame);
@@ -69,6 +74,8 @@ class FilterService {
   std::uint64_t source_id_ = 0;
   std::int64_t source_heard_ns_ = 0;
   bool detector_seen_ = false, detector_gone_ = false;
+  std::atomic<std::int64_t> detector_heard_ns_{0};           ///< CLOCK_MONOTONIC of its last heartbeat, 0 = ended
+  std::array<double, msg::kFilterStages> total_stage_ms_{};  ///< of all answered frames
   service::RateLimit defect_log_{std::chrono::seconds(1)}, foreign_log_{std::chrono::seconds(5)},
       wait_log_{std::chrono::seconds(1)};
 };
