@@ -1,58 +1,63 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
+#include "tests/support/filter_quality.hpp"
+
+#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <cstring>
+#include <exception>
+#include <opencv2/core/utility.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "services/filter/core/dynamic_filter.hpp"
-#include "tests/support/evaluation_clip.hpp"
+namespace {
 
-using namespace rtd;
+using rtd::msg::Feature;
 
+/// Removed features red, features found at their place green, the others blue.
+void draw(const rtd::vision::RgbdImage& image, const rtd::filter::FilterResult& result, const std::string& folder) {
+  cv::Mat canvas = image.color_bgr.clone();
+  for (const Feature& feature : result.features) {
+    cv::Scalar color(255, 160, 0);
+    if ((feature.flags & rtd::msg::kFeatureGeometryStatic) != 0) color = cv::Scalar(0, 220, 0);
+    if ((feature.flags & rtd::msg::kFeatureRemoved) != 0) color = cv::Scalar(0, 0, 255);
+    cv::circle(canvas, cv::Point2f(feature.u_raw_px, feature.v_raw_px), 3, color);
+  }
+  cv::imwrite(folder + "/" + std::to_string(image.seq) + ".png", canvas);
+}
+
+}  // namespace
+
+/// Precision, recall, own pose error and stage times of the filter's geometry on a clip with masks.
 int main(int argc, char** argv) {
+  CLI::App app("Quality of the dynamic filter by geometry alone, without detector and slam");
+  std::string clip_folder, picture_folder;
+  bool verbose = false;
+  app.add_option("clip", clip_folder, "folder in TUM layout with mask/")->required();
+  app.add_option("--pictures", picture_folder, "write every tenth frame with its features here");
+  app.add_flag("--verbose", verbose, "a line per frame");
+  CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);
-  test_support::EvaluationClip clip(argv[1]);
-  filter::FilterConfig config;
-  config.mode = filter::FilterMode::kGeometry;
-  bool verbose = false; const char* draw = nullptr; bool gt = false;
-  for (int i = 2; i < argc; ++i) {
-    if (!strcmp(argv[i], "-v")) verbose = true;
-    if (!strcmp(argv[i], "-gt")) gt = true;
-    if (!strcmp(argv[i], "-draw")) draw = argv[++i];
+  rtd::filter::FilterConfig config;
+  config.mode = rtd::filter::FilterMode::kGeometry;
+  try {
+    const rtd::test_support::EvaluationClip clip(clip_folder);
+    const auto quality = rtd::test_support::measure_filter(clip, config, [&](const auto& image, const auto& result) {
+      if (verbose) {
+        std::printf("%4lu features %4zu removed %4u clusters %u pose %s\n", static_cast<unsigned long>(image.seq),
+                    result.features.size(), result.removed, result.dynamic_clusters,
+                    result.pose_reliable ? "ok" : "none");
+      }
+      if (!picture_folder.empty() && image.seq % 10 == 0) draw(image, result, picture_folder);
+    });
+    const auto& ms = quality.stage_ms;
+    std::printf("precision %.4f  recall %.4f  removed wrongly %.1f a frame  worst own pose error %.4f m\n",
+                quality.precision(), quality.recall(), quality.removed_wrongly_per_frame(), quality.max_pose_error_m);
+    std::printf("ms: extract %.2f  ego motion %.2f  depth check %.2f  fuse %.2f  total %.2f\n",
+                ms[rtd::msg::kStageExtract], ms[rtd::msg::kStageEgoMotion], ms[rtd::msg::kStageDepthCheck],
+                ms[rtd::msg::kStageFuse], ms[rtd::msg::kStageFilterTotal]);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
   }
-  filter::DynamicFilter f(config, [] { return std::chrono::steady_clock::now().time_since_epoch().count(); });
-  double tp = 0, fp = 0, fn = 0, tn = 0; std::array<double, 8> ms{}; double worst_t = 0;
-  std::vector<Eigen::Isometry3d> est;
-  for (std::size_t i = 0; i < clip.size(); ++i) {
-    auto image = clip.image(i);
-    auto r = f.apply(image, std::nullopt);
-    if (gt) { msg::TrackingResult t{}; t.seq = i; t.state = msg::TrackingState::kOk;
-      Eigen::Isometry3d T = clip.T_world_camera(i); Eigen::Quaterniond q(T.linear());
-      t.T_world_camera = {{T.translation().x(), T.translation().y(), T.translation().z()}, {q.x(), q.y(), q.z(), q.w()}}; f.on_tracking(t); }
-    est.push_back(r.T_world_camera);
-    cv::Mat mask = clip.dynamic_mask(i), wide;
-    if (!mask.empty()) cv::dilate(mask, wide, cv::getStructuringElement(cv::MORPH_RECT, {7, 7}));
-    int a = 0, b = 0, c = 0, d = 0;
-    for (const auto& x : r.features) {
-      bool removed = x.flags & msg::kFeatureRemoved;
-      int u = std::lround(x.u_raw_px), v = std::lround(x.v_raw_px);
-      bool on = !mask.empty() && mask.at<uint8_t>(v, u), near = !mask.empty() && wide.at<uint8_t>(v, u);
-      if (removed) (near ? a : b)++; else (on ? c : d)++;
-    }
-    tp += a; fp += b; fn += c; tn += d;
-    for (int k = 0; k < 8; ++k) ms[k] += r.stage_ms[k];
-    Eigen::Isometry3d E = clip.T_world_camera(i).inverse() * r.T_world_camera;
-    worst_t = std::max(worst_t, E.translation().norm());
-    if (verbose) printf("%3zu n %4zu tp %4d fp %4d fn %4d clusters %u rel %d err %.4f m %.2f deg\n", i, r.features.size(), a, b, c, r.dynamic_clusters, r.pose_reliable, E.translation().norm(), Eigen::AngleAxisd(E.linear()).angle() * 57.3);
-    if (draw && i % 10 == 0) {
-      cv::Mat im = image.color_bgr.clone();
-      for (const auto& x : r.features) cv::circle(im, {int(x.u_raw_px), int(x.v_raw_px)}, 3, x.flags & msg::kFeatureRemoved ? cv::Scalar(0, 0, 255) : (x.flags & msg::kFeatureGeometryStatic ? cv::Scalar(0, 255, 0) : cv::Scalar(255, 255, 0)), 1);
-      cv::imwrite(std::string(draw) + std::to_string(i) + ".png", im);
-    }
-  }
-  double n = clip.size();
-  printf("%s precision %.4f recall %.4f fn/frame %.1f fp/frame %.1f tn/frame %.0f worst own pose error %.4f m\n", argv[1], tp / std::max(1.0, tp + fp), tp / std::max(1.0, tp + fn), fn / n, fp / n, tn/n, worst_t);
-  printf("ms: extract %.2f masks %.2f ego %.2f check %.2f fuse %.2f total %.2f\n", ms[1] / n, ms[2] / n, ms[3] / n, ms[4] / n, ms[5] / n, ms[6] / n);
+  return 0;
 }

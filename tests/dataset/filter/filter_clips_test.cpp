@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "tests/support/filter_quality.hpp"
+
+namespace rtd::test_support {
+namespace {
+
+/// What geometry alone must reach on a clip; a little below what it was measured to do (docs/theory/dynamic_points.md).
+struct Demand {
+  const char* clip;
+  double precision, recall, pose_error_m;
+};
+
+class FilterClips : public ::testing::TestWithParam<Demand> {};
+
+TEST_P(FilterClips, geometry_alone_finds_the_movers) {
+  const auto clip = EvaluationClip::find(GetParam().clip);
+  if (!clip) GTEST_SKIP() << "RTD_DATA_DIR has no " << GetParam().clip;
+  filter::FilterConfig config;
+  config.mode = filter::FilterMode::kGeometry;
+  const FilterQuality quality = measure_filter(*clip, config);
+  EXPECT_GE(quality.precision(), GetParam().precision);
+  EXPECT_GE(quality.recall(), GetParam().recall);
+  EXPECT_LE(quality.max_pose_error_m, GetParam().pose_error_m) << "m";
+}
+
+INSTANTIATE_TEST_SUITE_P(walks, FilterClips,
+                         ::testing::Values(Demand{"walk_xyz", 0.92, 0.97, 0.06}, Demand{"walk_rpy", 0.75, 0.88, 0.08},
+                                           Demand{"walk_box", 0.96, 0.95, 0.05}),
+                         [](const auto& tested) { return std::string(tested.param.clip); });
+
+TEST(FilterDesk, leaves_a_real_static_desk_alone) {
+  const auto clip = EvaluationClip::find("fr1_xyz");
+  if (!clip) GTEST_SKIP() << "RTD_DATA_DIR has no fr1_xyz";
+  filter::FilterConfig config;
+  config.mode = filter::FilterMode::kGeometry;
+  EXPECT_LE(measure_filter(*clip, config).removed_wrongly_per_frame(), 25.0) << "of about 1200 features";
+}
+
+}  // namespace
+}  // namespace rtd::test_support
