@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/host_checks.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/log.hpp"
 
@@ -75,7 +76,9 @@ class SignalWatcher {
 ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_config, Pace pace) {
   StopToken stop;
   const SignalWatcher signals(stop);
-  const std::shared_ptr<bus::Bus> bus = bus::connect(to_bus_options(bus_config, "rtd-" + definition.name));
+  const bus::BusOptions options = to_bus_options(bus_config, "rtd-" + definition.name);
+  const std::shared_ptr<bus::Bus> bus = bus::connect(options);
+  for (const std::string& warning : bus::host_warnings(options)) SPDLOG_INFO("event=host_limit cause=\"{}\"", warning);
   ExitCode code = kOk;
   std::string duplicate;
   {
