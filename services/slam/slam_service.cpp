@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/slam_service.hpp"
 
+#include <fmt/format.h>
+
 #include <exception>
 
 #include "common/service/monotonic_clock.hpp"
@@ -12,7 +14,12 @@ namespace {
 
 constexpr std::size_t kRealtimeQueue = 4, kEveryFrameQueue = 8;
 constexpr std::chrono::milliseconds kStatePeriod{50};
-constexpr std::int64_t kInputGoneAfterNs = 500'000'000, kDiagnosticsPeriodNs = 1'000'000'000;
+constexpr std::int64_t kDiagnosticsPeriodNs = 1'000'000'000;
+
+/// Only in realtime do frames come at a rate that one can rely on; else the slowest stage of a busy host sets it.
+double input_gone_after_s(service::Pace pace) {
+  return pace == service::Pace::kRealtime ? 0.5 : 5.0;
+}
 
 MappingMode mapping_mode(service::Pace pace) {
   return pace == service::Pace::kLockstep ? MappingMode::kSynchronous : MappingMode::kThreaded;
@@ -127,11 +134,12 @@ void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
 void SlamService::watch_input(bool arrived) {
   const std::int64_t now_ns = service::monotonic_ns();
   if (arrived) last_arrival_ns_ = now_ns;
-  const bool gone = counters_.frames > 0 && !source_ended_ && now_ns - last_arrival_ns_ > kInputGoneAfterNs;
+  const bool gone = counters_.frames > 0 && !source_ended_ &&
+                    static_cast<double>(now_ns - last_arrival_ns_) * 1e-9 > input_gone_after_s(runtime_.pace);
   if (gone != input_gone_) {
     if (gone) {
-      SPDLOG_WARN("event=input_gone last_frame={} cause=\"no features for 0.5 s\" keyframes={}", last_result_.seq,
-                  last_result_.keyframes);
+      SPDLOG_WARN("event=input_gone last_frame={} cause=\"no features for {:g} s\" keyframes={}", last_result_.seq,
+                  input_gone_after_s(runtime_.pace), last_result_.keyframes);
     } else if (arrived) {
       SPDLOG_INFO("event=input_back frame={}", last_result_.seq);
     }
@@ -144,7 +152,10 @@ void SlamService::watch_input(bool arrived) {
 
 /// Why the service does less than it should; empty when it does not.
 std::string SlamService::trouble() const {
-  if (input_gone_) return "no features for 0.5 s: camera or filter gone, the map is kept";
+  if (input_gone_) {
+    return fmt::format("no features for {:g} s: camera or filter gone, the map is kept",
+                       input_gone_after_s(runtime_.pace));
+  }
   return counters_.frames > 0 && last_result_.state != msg::TrackingState::kOk ? last_problem_ : std::string{};
 }
 
