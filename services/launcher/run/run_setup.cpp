@@ -159,10 +159,10 @@ void clear_out_dir(const RunSetup& setup) {
   std::error_code error;
   for (const char* left : {"logs", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply",
                            "groundtruth.txt", "report.json", "report.html"}) {
-    fs::remove_all(out_dir / left, error);
-    if (!error) fs::create_directories(out_dir / "logs", error);
-    if (error) throw ConfigError("--out " + setup.out_dir + ": cannot be written: " + error.message());
+    if (!error) fs::remove_all(out_dir / left, error);
   }
+  if (!error) fs::create_directories(out_dir / "logs", error);
+  if (error) throw ConfigError("--out " + setup.out_dir + ": cannot be written: " + error.message());
 }
 
 std::vector<ServicePlan> plan_services(const RunSetup& setup) {
