@@ -125,7 +125,7 @@ void RunSession::on_event(const SupervisorEvent& event) {
       return;
     case Kind::kRestarted:
       usage_.add_restart(event.service);
-      return note(event.text);
+      return note(event.text + (event.service == "slam" ? ": map and trajectory.txt begin anew" : ""));
     case Kind::kEnded:
       usage_.add_exit(event.service, event.exit);
       if (!event.exit.clean()) note(event.text);

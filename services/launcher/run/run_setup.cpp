@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/run/run_setup.hpp"
 
+#include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -31,8 +32,8 @@ void check_sections(const std::vector<std::string>& overrides) {
     const std::string section = assignment.substr(0, assignment.find_first_of(".="));
     if (std::find(sections.begin(), sections.end(), section) != sections.end()) continue;
     const std::string near = service::nearest_word(section, sections);
-    throw ConfigError("--set " + assignment + ": unknown section '" + section + "'" +
-                      (near.empty() ? "" : ", did you mean '" + near + "'?"));
+    throw ConfigError(fmt::format("--set {}: unknown section '{}'{}", assignment, section,
+                                  near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
   }
 }
 
@@ -111,7 +112,7 @@ void create_out_dir(const std::string& out_dir) {
 }
 
 std::string require_executable(const std::string& service) {
-  const std::string path = find_executable("rtd-" + service);
+  std::string path = find_executable("rtd-" + service);
   if (path.empty()) {
     throw ConfigError("rtd-" + service + " is neither beside rtd (" + own_directory() +
                       ") nor in PATH: build it with 'cmake --build <build folder> --target rtd-" + service + "'");

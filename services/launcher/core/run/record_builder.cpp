@@ -26,6 +26,7 @@ std::string place_of(const std::string& service, const std::string& metric) {
 
 double median_latency_ms(const std::deque<msg::TrackingResult>& results) {
   std::vector<double> latencies_ms;
+  latencies_ms.reserve(results.size());
   for (const msg::TrackingResult& r : results) {
     latencies_ms.push_back(static_cast<double>(r.finished_ns - r.published_ns) / kNsPerMs);
   }
