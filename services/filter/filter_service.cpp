@@ -182,6 +182,7 @@ FilterService::PairedDetections FilterService::wait_for_detections(const msg::Rg
   };
   auto exact = detections_->wait_for(frame.stamp_ns, give_up);
   if (exact) return {std::move(exact->detections), msg::DetectionUse::kExact};
+  if (runtime_.stop.stop_requested()) return {};
   ++unpaired_;
   if (wait_log_.pass()) SPDLOG_WARN("event=no_detections frame={} total={}", frame.seq, unpaired_);
   return {std::nullopt, msg::DetectionUse::kDetectorGone};
