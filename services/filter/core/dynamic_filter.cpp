@@ -104,6 +104,7 @@ void DynamicFilter::find_what_may_move(const Detections& detections, Scene& scen
     if (object.level != MotionLevel::kHigh || object.flat) continue;
     for (const int cell : object.cells) scene.may_move[static_cast<std::size_t>(cell)] = 1;
   }
+  scene.clusters = separate_objects(std::move(scene.clusters), result.objects);
   scene.may_move = dilate(scene.grid.shape, scene.may_move, config_.masks.dilate_cells);
   result.stage_ms[msg::kStageMasks] = clock.lap_ms();
 }

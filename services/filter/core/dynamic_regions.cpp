@@ -8,6 +8,7 @@ namespace rtd::filter {
 namespace {
 
 constexpr double kMinRememberedShare = 0.4;
+constexpr int kForgetFaster = 4;  // frames of memory that one frame at rest costs
 
 /// The counts by which a cluster is judged.
 struct ClusterEvidence {
@@ -38,6 +39,13 @@ std::uint8_t one_less(std::uint8_t frames) {
   return frames > 0 ? static_cast<std::uint8_t>(frames - 1) : frames;
 }
 
+/// Depth and features both say that it rests: what was believed of it was wrong, or is over.
+bool rests(const ClusterEvidence& cluster, const FeatureVotes& votes, std::size_t index, const GeometryConfig& config) {
+  return cluster.stated >= config.min_cluster_statements && cluster.violating == 0 && index < votes.resting.size() &&
+         votes.resting[index] >= config.min_moving_features &&
+         votes.resting[index] >= config.min_resting_ratio * votes.moving[index];
+}
+
 /// Per cluster: how long it is believed to be dynamic, 0 = it is not.
 std::vector<std::uint8_t> judge_clusters(const DepthClusters& clusters, const DepthEvidence& evidence,
                                          const FeatureVotes& votes, const CellMask& remembered,
@@ -48,7 +56,8 @@ std::vector<std::uint8_t> judge_clusters(const DepthClusters& clusters, const De
     if (violates(gathered[i], config) || votes.cluster_moves(i, config)) {
       frames_left[i] = static_cast<std::uint8_t>(config.memory_frames);
     } else if (gathered[i].remembered >= kMinRememberedShare * clusters.cells[i]) {
-      frames_left[i] = one_less(gathered[i].frames_left);
+      const int fewer = rests(gathered[i], votes, i, config) ? kForgetFaster : 1;
+      frames_left[i] = static_cast<std::uint8_t>(std::max(0, gathered[i].frames_left - fewer));
     }
   }
   return frames_left;

@@ -18,7 +18,7 @@ enum class FilterMode {
   kRtd,       ///< both, DESIGN section 4
 };
 
-/// How cells of the depth grid join to clusters; docs/theory/dynamic_points.md Eq. (2).
+/// How cells of the depth grid join to clusters; docs/theory/dynamic_points.md Eq. (1).
 struct ClusterConfig {
   double step_m = 0.03;  ///< two neighbouring cells join when their depths differ by less than step + factor * z^2
   double step_factor_per_m = 0.012;
@@ -59,7 +59,7 @@ struct GeometryConfig {
   int min_resting_cells = 400;      ///< parts of a dynamic cluster of at least this size may turn out to rest
   double min_resting_ratio = 5.0;   ///< ... if this many times more of their features are at their place than not
   double min_violated_share = 0.2;  ///< share of violating cells that makes a cluster dynamic
-  int min_moving_features = 6;      ///< features off their place before a cluster is judged by them
+  int min_moving_features = 12;     ///< features off their place before a cluster is judged by them
   double min_moving_share = 0.6;
   double max_static_chi2 = 6.0;     ///< squared normalised displacement up to which a feature counts as at its place
   double min_moving_chi2 = 16.0;    ///< and from which as moving

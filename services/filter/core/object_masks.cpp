@@ -168,4 +168,20 @@ std::vector<SceneObject> find_objects(const std::vector<vision::Detection>& dete
   return objects;
 }
 
+DepthClusters separate_objects(DepthClusters clusters, const std::vector<SceneObject>& objects) {
+  for (const SceneObject& object : objects) {
+    if (object.flat) continue;
+    const std::int32_t own = clusters.count();
+    clusters.cells.push_back(0);
+    for (const int cell : object.cells) {
+      std::int32_t& label = clusters.label[static_cast<std::size_t>(cell)];
+      if (label < 0) continue;
+      --clusters.cells[static_cast<std::size_t>(label)];
+      ++clusters.cells[static_cast<std::size_t>(own)];
+      label = own;
+    }
+  }
+  return clusters;
+}
+
 }  // namespace rtd::filter

@@ -27,7 +27,7 @@ TEST_P(FilterClips, geometry_alone_finds_the_movers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(walks, FilterClips,
-                         ::testing::Values(Demand{"walk_xyz", 0.92, 0.97, 0.06}, Demand{"walk_rpy", 0.75, 0.88, 0.08},
+                         ::testing::Values(Demand{"walk_xyz", 0.95, 0.97, 0.06}, Demand{"walk_rpy", 0.93, 0.88, 0.06},
                                            Demand{"walk_box", 0.96, 0.95, 0.05}),
                          [](const auto& tested) { return std::string(tested.param.clip); });
 

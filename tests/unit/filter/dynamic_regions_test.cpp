@@ -65,12 +65,12 @@ TEST_F(DynamicRegionsTest, takes_the_whole_cluster_when_a_part_of_it_violates) {
 }
 
 TEST_F(DynamicRegionsTest, takes_the_cluster_whose_features_are_displaced) {
-  for (int i = 0; i < config_.min_moving_features; ++i) vote({250 + 10 * i, 200}, true);
+  for (int i = 0; i < config_.min_moving_features; ++i) vote({250 + 8 * i, 200}, true);
   EXPECT_EQ(count_in(kShape, judge().frames_left, kBlock), cells_in(kBlock));
 }
 
 TEST_F(DynamicRegionsTest, leaves_a_cluster_with_a_few_displaced_features_alone) {
-  for (int i = 0; i < config_.min_moving_features; ++i) vote({250 + 10 * i, 200}, true);
+  for (int i = 0; i < config_.min_moving_features; ++i) vote({250 + 8 * i, 200}, true);
   for (int i = 0; i < 20; ++i) vote({250, 170 + 5 * i}, false);
   EXPECT_EQ(judge().clusters, 0);
 }
@@ -98,6 +98,13 @@ TEST_F(DynamicRegionsTest, remembers_a_mover_that_pauses_for_a_while) {
   EXPECT_EQ(judge().frames_left[static_cast<std::size_t>(kShape.cell_at(300, 240))], 29);
   set(remembered_, kBlock, 1);
   EXPECT_EQ(count_in(kShape, judge().frames_left, kBlock), 0) << "the last frame of memory";
+}
+
+TEST_F(DynamicRegionsTest, forgets_faster_what_depth_and_features_see_at_rest) {
+  set(evidence_.consistent, kBlock, 2);
+  set(remembered_, kBlock, 30);
+  for (int i = 0; i < 20; ++i) vote({250, 170 + 5 * i}, false);
+  EXPECT_EQ(judge().frames_left[static_cast<std::size_t>(kShape.cell_at(300, 240))], 26);
 }
 
 TEST_F(DynamicRegionsTest, leaves_the_floor_out_on_which_a_walker_stands) {

@@ -71,6 +71,17 @@ TEST(ObjectMasks, cover_the_whole_box_where_nothing_was_measured) {
   EXPECT_EQ(count_in(kShape, mask_of(objects[0]), {200, 100, 100, 200}), cells_in({200, 100, 100, 200}));
 }
 
+TEST(ObjectMasks, part_an_object_from_what_it_touches) {
+  DepthClusters clusters{kShape, std::vector<std::int32_t>(160 * 120, 0), {160 * 120}};
+  SceneObject object{"person", 0.9F, MotionLevel::kHigh, {10, 11, 12}, false};
+  SceneObject poster{"person", 0.9F, MotionLevel::kHigh, {50, 51}, true};
+  const DepthClusters parted = separate_objects(clusters, {object, poster});
+  EXPECT_EQ(parted.count(), 2);
+  EXPECT_EQ(parted.cells[0], 160 * 120 - 3);
+  EXPECT_EQ(parted.label[11], 1);
+  EXPECT_EQ(parted.label[50], 0) << "a picture belongs to its wall";
+}
+
 TEST(ObjectMasks, ignore_classes_without_motion_level) {
   EXPECT_TRUE(find(wall_image(), {{"traffic light", 0.9F, 100, 100, 50, 50}}).empty());
 }
