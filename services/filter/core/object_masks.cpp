@@ -110,6 +110,8 @@ std::vector<int> collect_cells(const ClusterInBox& object, const std::vector<Clu
 double outline_step_share(const std::vector<int>& cells, const DepthGrid& grid, double min_step_m) {
   constexpr int kReachCells = 3;
   const GridShape& shape = grid.shape;
+  std::vector<char> on_object(static_cast<std::size_t>(shape.size()), 0);
+  for (const int cell : cells) on_object[static_cast<std::size_t>(cell)] = 1;
   int steps = 0, flats = 0;
   for (const int cell : cells) {
     const int column = cell % shape.columns, row = cell / shape.columns;
@@ -118,8 +120,8 @@ double outline_step_share(const std::vector<int>& cells, const DepthGrid& grid, 
       const int x = column + dx, y = row + dy, far_x = column + kReachCells * dx, far_y = row + kReachCells * dy;
       if (far_x < 0 || far_y < 0 || far_x >= shape.columns || far_y >= shape.rows) continue;
       const int outside = shape.index(far_x, far_y);
-      if (std::binary_search(cells.begin(), cells.end(), shape.index(x, y)) ||
-          std::binary_search(cells.begin(), cells.end(), outside)) {
+      if (on_object[static_cast<std::size_t>(shape.index(x, y))] != 0 ||
+          on_object[static_cast<std::size_t>(outside)] != 0) {
         continue;
       }
       const float z_outside = grid.depth_m[static_cast<std::size_t>(outside)];

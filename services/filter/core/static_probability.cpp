@@ -25,16 +25,20 @@ msg::FeatureFlag mask_flag(MotionLevel level) {
 /// The object on each cell, dilated, -1 = none. Where masks overlap the higher level wins: a monitor behind a person is
 /// left to geometry, the person is not.
 std::vector<std::int16_t> paint_objects(const FrameKnowledge& known, int dilate_cells) {
-  std::vector<std::int16_t> painted(static_cast<std::size_t>(known.shape.size()), -1);
+  const GridShape& shape = known.shape;
+  std::vector<std::int16_t> painted(static_cast<std::size_t>(shape.size()), -1);
+  const auto paint_around = [&](int cell, std::int16_t object) {
+    const int column = cell % shape.columns, row = cell / shape.columns;
+    for (int y = std::max(0, row - dilate_cells); y <= std::min(shape.rows - 1, row + dilate_cells); ++y) {
+      for (int x = std::max(0, column - dilate_cells); x <= std::min(shape.columns - 1, column + dilate_cells); ++x) {
+        painted[static_cast<std::size_t>(shape.index(x, y))] = object;
+      }
+    }
+  };
   for (const MotionLevel level : {MotionLevel::kLow, MotionLevel::kMedium, MotionLevel::kHigh}) {
     for (std::size_t k = 0; k < known.objects.size(); ++k) {
       if (known.objects[k].level != level) continue;
-      std::vector<std::uint8_t> mask(painted.size(), 0);
-      for (const int cell : known.objects[k].cells) mask[static_cast<std::size_t>(cell)] = 1;
-      const std::vector<std::uint8_t> wide = dilate(known.shape, mask, dilate_cells);
-      for (std::size_t cell = 0; cell < wide.size(); ++cell) {
-        if (wide[cell] != 0) painted[cell] = static_cast<std::int16_t>(k);
-      }
+      for (const int cell : known.objects[k].cells) paint_around(cell, static_cast<std::int16_t>(k));
     }
   }
   return painted;
