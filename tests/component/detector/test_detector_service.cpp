@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include <condition_variable>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -15,48 +14,18 @@
 #include "common/service/monotonic_clock.hpp"
 #include "services/detector/core/model_locator.hpp"
 #include "tests/support/detector/tiny_network.hpp"
+#include "tests/support/inbox.hpp"
 
 namespace rtd::detector {
 namespace {
 
+using test_support::Inbox;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
 
-constexpr std::chrono::seconds kPatience{10};
 constexpr std::uint32_t kFirstDomain = 150;  // in-process domains of this binary, one per test
-
-/// Keeps what a reader was given; tests wait for it.
-template <class T>
-class Inbox {
- public:
-  void take(std::shared_ptr<const T> message) {
-    {
-      const std::lock_guard lock(mutex_);
-      messages_.push_back(std::move(message));
-    }
-    arrived_.notify_all();
-  }
-  /// True once `ready(messages)` holds.
-  template <class Predicate>
-  bool wait(Predicate ready) {
-    std::unique_lock lock(mutex_);
-    return arrived_.wait_for(lock, kPatience, [&] { return ready(messages_); });
-  }
-  bool wait_count(std::size_t count) {
-    return wait([count](const auto& messages) { return messages.size() >= count; });
-  }
-  std::vector<std::shared_ptr<const T>> all() const {
-    const std::lock_guard lock(mutex_);
-    return messages_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::condition_variable arrived_;
-  std::vector<std::shared_ptr<const T>> messages_;
-};
 
 double metric(const msg::ServiceStatus& status, const std::string& name) {
   for (const msg::Metric& metric : status.metrics)

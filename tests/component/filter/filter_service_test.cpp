@@ -4,50 +4,21 @@
 
 #include <gmock/gmock.h>
 
-#include <condition_variable>
 #include <cstring>
 #include <future>
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "tests/support/inbox.hpp"
 #include "tests/unit/filter/moving_scene.hpp"
 
 namespace rtd::filter {
 namespace {
 
+using test_support::Inbox;
 constexpr std::chrono::seconds kPatience{15};
 constexpr std::uint32_t kFirstDomain = 120;  // in-process domains of this binary, one per test
-
-/// Keeps what a reader was given; tests wait for it.
-template <class T>
-class Inbox {
- public:
-  void take(std::shared_ptr<const T> message) {
-    {
-      const std::lock_guard lock(mutex_);
-      messages_.push_back(std::move(message));
-    }
-    arrived_.notify_all();
-  }
-  template <class Predicate>
-  bool wait(Predicate ready, std::chrono::milliseconds patience = kPatience) {
-    std::unique_lock lock(mutex_);
-    return arrived_.wait_for(lock, patience, [&] { return ready(messages_); });
-  }
-  bool wait_count(std::size_t count, std::chrono::milliseconds patience = kPatience) {
-    return wait([count](const auto& messages) { return messages.size() >= count; }, patience);
-  }
-  std::shared_ptr<const T> at(std::size_t index) const {
-    const std::lock_guard lock(mutex_);
-    return messages_.at(index);
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::condition_variable arrived_;
-  std::vector<std::shared_ptr<const T>> messages_;
-};
 
 /// A camera, a detector and a slam around one filter service that runs in a thread.
 class FilterServiceTest : public ::testing::Test {

@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include <condition_variable>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -12,47 +11,17 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "tests/support/feature_world.hpp"
+#include "tests/support/inbox.hpp"
 
 namespace rtd::slam {
 namespace {
 
 using test_support::FeatureWorld;
+using test_support::Inbox;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-constexpr std::chrono::seconds kPatience{20};
 constexpr std::uint32_t kFirstDomain = 180;  // in-process domains of this binary, one per test
-
-/// Keeps what a reader was given; tests wait for it.
-template <class T>
-class Inbox {
- public:
-  void take(std::shared_ptr<const T> message) {
-    {
-      const std::lock_guard lock(mutex_);
-      messages_.push_back(std::move(message));
-    }
-    arrived_.notify_all();
-  }
-  /// True once `ready(messages)` holds.
-  template <class Predicate>
-  bool wait(Predicate ready) {
-    std::unique_lock lock(mutex_);
-    return arrived_.wait_for(lock, kPatience, [&] { return ready(messages_); });
-  }
-  bool wait_count(std::size_t count) {
-    return wait([count](const auto& messages) { return messages.size() >= count; });
-  }
-  std::vector<std::shared_ptr<const T>> all() const {
-    const std::lock_guard lock(mutex_);
-    return messages_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::condition_variable arrived_;
-  std::vector<std::shared_ptr<const T>> messages_;
-};
 
 /// A filter and listeners around one slam service that runs in a thread.
 class SlamServiceTest : public ::testing::Test {
