@@ -225,6 +225,7 @@ TEST_F(SlamServiceTest, is_degraded_while_tracking_has_no_depth) {
   for (msg::Feature& feature : frame->features) feature.depth_m = 0;
   features_.write(*frame);
   ASSERT_TRUE(wait_state(msg::ServiceState::kDegraded, "features with depth"));
+  ASSERT_TRUE(results_.wait_count(1));
   EXPECT_EQ(results_.all().back()->state, msg::TrackingState::kInitializing);
 }
 
