@@ -6,6 +6,7 @@
 #include <ctime>
 #include <fstream>
 
+#include "services/launcher/core/evaluation/ate.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
 namespace {
@@ -35,6 +36,12 @@ void print(const rtd::test_support::OfflineReport& report) {
   }
 }
 
+void print_errors(const rtd::test_support::OfflineReport& report) {
+  for (const auto& point : rtd::eval::ate(report.trajectory, report.groundtruth).points) {
+    std::printf("%.6f %.4f\n", static_cast<double>(point.stamp_ns) * 1e-9, point.error_m);
+  }
+}
+
 }  // namespace
 
 /// Runs the system on a source in one thread and prints its errors and times: the instrument for tuning.
@@ -42,7 +49,7 @@ int main(int argc, char** argv) {
   CLI::App app("RTD-SLAM offline: accuracy and stage times of one source");
   rtd::test_support::OfflineOptions options;
   std::string trajectory_file;
-  bool verbose = false, threaded = false;
+  bool verbose = false, threaded = false, errors = false;
   auto& slam = options.slam;
   app.add_option("--source", options.source, "source URI or TUM folder")->required();
   app.add_option("--mode", options.mode, "off, true-mask, semantic, geometry, rtd");
@@ -60,6 +67,7 @@ int main(int argc, char** argv) {
   app.add_flag("--threaded", threaded, "mapping in a thread of its own");
   app.add_flag_callback(
       "--cpu-time", [&] { options.now_ns = cpu_ns; }, "slam's stage times in CPU time");
+  app.add_flag("--errors", errors, "position error of every frame after alignment, metres");
   app.add_flag("--verbose", verbose, "a line per frame");
   CLI11_PARSE(app, argc, argv);
   if (options.source.find(':') == std::string::npos) {
@@ -79,6 +87,7 @@ int main(int argc, char** argv) {
   try {
     const auto report = rtd::test_support::run_offline(options);
     print(report);
+    if (errors) print_errors(report);
     if (!trajectory_file.empty()) std::ofstream(trajectory_file) << report.trajectory_tum;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
