@@ -3,6 +3,7 @@
 #include "services/slam/slam_service.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <exception>
 
@@ -25,6 +26,13 @@ MappingMode mapping_mode(service::Pace pace) {
   return pace == service::Pace::kLockstep ? MappingMode::kSynchronous : MappingMode::kThreaded;
 }
 
+/// The pose of the next frame is more urgent than the map. On Linux niceness belongs to the thread.
+void yield_to_tracking() {
+  constexpr int kNicer = 5;
+  const int own = getpriority(PRIO_PROCESS, 0);
+  setpriority(PRIO_PROCESS, 0, own + kNicer);
+}
+
 }  // namespace
 
 void SlamService::add_options(CLI::App& app, Config& config) {
@@ -34,7 +42,7 @@ void SlamService::add_options(CLI::App& app, Config& config) {
 SlamService::SlamService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
-      slam_(config.core, mapping_mode(runtime.pace), service::monotonic_ns),
+      slam_(config.core, mapping_mode(runtime.pace), service::monotonic_ns, yield_to_tracking),
       publisher_(config, runtime.bus, [this] { return slam_.map_points(); }),
       arrivals_(runtime.pace == service::Pace::kRealtime
                     ? std::make_shared<Arrivals>(kRealtimeQueue, concurrency::Overflow::kDropOldest)

@@ -24,11 +24,17 @@ struct LocalProblem {
   }
 };
 
-std::vector<LandmarkId> landmarks_seen_by(const Map& map, const std::vector<KeyframeId>& keyframes) {
+/// Whether a landmark is seen by one keyframe only: it ties that keyframe to nothing and simply moves with it.
+bool rides_along(const Landmark& landmark) {
+  return landmark.observations.size() == 1;
+}
+
+/// Landmarks that tie the keyframes together, by id.
+std::vector<LandmarkId> landmarks_between(const Map& map, const std::vector<KeyframeId>& keyframes) {
   std::vector<LandmarkId> landmarks;
   for (const KeyframeId id : keyframes) {
     for (const LandmarkId landmark : map.find_keyframe(id)->landmarks) {
-      if (landmark != kNoLandmark) landmarks.push_back(landmark);
+      if (landmark != kNoLandmark && !rides_along(*map.find_landmark(landmark))) landmarks.push_back(landmark);
     }
   }
   std::sort(landmarks.begin(), landmarks.end());
@@ -73,7 +79,7 @@ LocalProblem build(const Map& map, KeyframeId newest, const MapperConfig& config
   LocalProblem problem;
   std::vector<KeyframeId> window = map.best_covisible(newest, static_cast<std::size_t>(config.ba_keyframes - 1));
   window.insert(window.begin(), newest);
-  problem.landmarks = landmarks_seen_by(map, window);
+  problem.landmarks = landmarks_between(map, window);
   std::vector<KeyframeId> fixed =
       select_fixed(map, window, problem.landmarks, static_cast<std::size_t>(config.ba_fixed_keyframes));
   const KeyframeId oldest = *std::min_element(window.begin(), window.end());
@@ -87,11 +93,22 @@ LocalProblem build(const Map& map, KeyframeId newest, const MapperConfig& config
   return problem;
 }
 
+void move_keyframe(Map& map, KeyframeId id, const Eigen::Isometry3d& T_world_camera) {
+  Keyframe& keyframe = *map.find_keyframe(id);
+  const Eigen::Isometry3d T_after_before = T_world_camera * keyframe.T_world_camera.inverse();
+  keyframe.T_world_camera = T_world_camera;
+  for (const LandmarkId landmark_id : keyframe.landmarks) {
+    Landmark* landmark = landmark_id == kNoLandmark ? nullptr : map.find_landmark(landmark_id);
+    if (landmark == nullptr || !rides_along(*landmark)) continue;
+    landmark->position = T_after_before * landmark->position;
+    map.refresh_geometry(landmark_id);
+  }
+}
+
 void apply(Map& map, const LocalProblem& problem) {
   for (std::size_t i = 0; i < problem.keyframes.size(); ++i) {
-    if (!problem.bundle.cameras[i].fixed) {
-      map.find_keyframe(problem.keyframes[i])->T_world_camera = problem.bundle.cameras[i].T_world_camera;
-    }
+    const BundleCamera& camera = problem.bundle.cameras[i];
+    if (!camera.fixed) move_keyframe(map, problem.keyframes[i], camera.T_world_camera);
   }
   for (std::size_t i = 0; i < problem.landmarks.size(); ++i) {
     map.find_landmark(problem.landmarks[i])->position = problem.bundle.points[i];

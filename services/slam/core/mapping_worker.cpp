@@ -10,9 +10,13 @@ constexpr int kMaxPendingKeyframes = 3;
 
 }  // namespace
 
-MappingWorker::MappingWorker(const SlamConfig& config, MappingMode mode)
+MappingWorker::MappingWorker(const SlamConfig& config, MappingMode mode, std::function<void()> on_thread_start)
     : mode_(mode), mapper_(config), queue_(kQueueCapacity, concurrency::Overflow::kBlock) {
-  if (mode_ == MappingMode::kThreaded) thread_ = std::thread([this] { loop(); });
+  if (mode_ == MappingMode::kSynchronous) return;
+  thread_ = std::thread([this, on_start = std::move(on_thread_start)] {
+    if (on_start) on_start();
+    loop();
+  });
 }
 
 MappingWorker::~MappingWorker() {

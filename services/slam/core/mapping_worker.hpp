@@ -24,7 +24,8 @@ enum class MappingMode : std::uint8_t {
 /// insert(), recentre(), finish(): one thread (tracking). snapshot(), take_changes(), room(), idle(), read(): any.
 class MappingWorker {
  public:
-  MappingWorker(const SlamConfig& config, MappingMode mode);
+  /// `on_thread_start` runs first in the mapper's own thread (priority, name); may be empty.
+  MappingWorker(const SlamConfig& config, MappingMode mode, std::function<void()> on_thread_start);
   ~MappingWorker();
 
   /// Room for another keyframe; idle: nothing queued or in work. Synchronous: both always true.

@@ -27,8 +27,12 @@ float to_ms(std::int64_t duration_ns) {
 
 }  // namespace
 
-SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns)
-    : config_(config), now_ns_(now_ns), mapping_(config, mode), tracker_(config, std::move(now_ns)) {}
+SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns,
+                       std::function<void()> on_mapping_thread)
+    : config_(config),
+      now_ns_(now_ns),
+      mapping_(config, mode, std::move(on_mapping_thread)),
+      tracker_(config, std::move(now_ns)) {}
 
 SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
   const std::int64_t start_ns = now_ns_();

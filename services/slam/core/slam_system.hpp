@@ -26,7 +26,8 @@ struct SlamOutput {
 /// process() and the writers: one thread. map_points(): any.
 class SlamSystem {
  public:
-  SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns);
+  /// `on_mapping_thread` runs first in the mapper's thread (kThreaded only), e.g. to lower its priority.
+  SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns, std::function<void()> on_mapping_thread = {});
 
   /// Never throws for the content of the message. Frames are expected in order; a seq that jumps back is taken for a
   /// source that started again: motion is forgotten, the map stays.
