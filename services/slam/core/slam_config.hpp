@@ -9,7 +9,7 @@ namespace rtd::slam {
 /// The camera and its features, as SLAM weighs them.
 struct SensorConfig {
   double disparity_px_m = 40.0;  ///< weight of depth against pixels, vision::RgbdProjection::disparity_px_m
-  double close_depth_m = 3.0;    ///< nearer depths make landmarks at once, farther ones wait for a second view
+  double close_depth_m = 4.0;    ///< nearer depths make landmarks at once, farther ones wait for a second view
   double max_depth_m = 8.0;      ///< depth beyond is not used at all
 };
 
@@ -41,7 +41,7 @@ struct MapperConfig {
   int ba_keyframes = 12;          ///< optimised keyframes of a local bundle adjustment
   int ba_fixed_keyframes = 20;    ///< keyframes that hold the gauge
   int ba_iterations_robust = 5;   ///< with Huber, before outliers are taken out
-  int ba_iterations = 5;          ///< after
+  int ba_iterations = 0;  ///< after that, inliers only and no loss; 0 = no second stage
   double correction_m = 0.002;    ///< a keyframe that moved more is announced again
   double correction_rad = 0.001;
 };
