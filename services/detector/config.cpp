@@ -14,6 +14,7 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
   binder.field("nms_iou", nms_iou, {0.0, 1.0}, "boxes of a class that overlap a better one by more are dropped");
   binder.field("max_detections", max_detections, {1, 1000}, "the best ones are published");
   binder.field("threads", threads, {1, 64}, "CPU threads of the network");
+  binder.field("workers", workers, {1, 16}, "pace asap: images worked on side by side, each with its own network");
   binder.field("max_rate_hz", max_rate_hz, {0.0, 1000.0}, "realtime pace: detect at most this often, 0 = no limit");
   binder.field("class_names", class_names,
                "names in the order of the network's classes; empty: those in the file, else COCO's");

@@ -21,6 +21,7 @@ struct ServiceConfig {
   double nms_iou = DecodeConfig{}.nms_iou;
   int max_detections = DecodeConfig{}.max_detections;
   int threads = DetectorConfig{}.threads;
+  int workers = 2;                       ///< pace asap: images worked on side by side
   double max_rate_hz = 0;                ///< realtime pace only; 0 = as fast as it goes
   std::vector<std::string> class_names;  ///< empty: those in the model file, else COCO's 80
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 #include <opencv2/imgcodecs.hpp>
+#include <thread>
 #include <utility>
 
 #include "common/service/monotonic_clock.hpp"
@@ -28,6 +29,14 @@ Detector load_detector(const ServiceConfig& config) {
   }
 }
 
+/// Of its own for each worker: a network holds the memory of its layers. Only pace asap has several images to work on.
+std::vector<std::unique_ptr<Detector>> load_detectors(const ServiceConfig& config, service::Pace pace) {
+  std::vector<std::unique_ptr<Detector>> detectors;
+  const int count = pace == service::Pace::kAsap ? config.workers : 1;
+  for (int i = 0; i < count; ++i) detectors.push_back(std::make_unique<Detector>(load_detector(config)));
+  return detectors;
+}
+
 }  // namespace
 
 void DetectorService::add_options(CLI::App& app, Config& config) {
@@ -41,7 +50,7 @@ void DetectorService::add_options(CLI::App& app, Config& config) {
 DetectorService::DetectorService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
-      detector_(load_detector(config)),
+      detectors_(load_detectors(config, runtime.pace)),
       arrivals_(runtime.pace == service::Pace::kRealtime
                     ? std::make_shared<Arrivals>(1, concurrency::Overflow::kDropOldest)
                     : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
@@ -60,8 +69,9 @@ DetectorService::DetectorService(const Config& config, service::Runtime& runtime
           arrivals_->push({stamp_ns, std::move(frame), nullptr});
         });
   }
-  SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={}", detector_.config().model_path,
-              detector_.input_size().width_px, detector_.input_size().height_px, config_.threads);
+  const Detector& detector = *detectors_.front();
+  SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} workers={}", detector.config().model_path,
+              detector.input_size().width_px, detector.input_size().height_px, config_.threads, detectors_.size());
 }
 
 /// A reader waits for its running callback, which may be blocked on the full queue.
@@ -70,18 +80,26 @@ DetectorService::~DetectorService() {
 }
 
 service::ExitCode DetectorService::run() {
+  std::vector<std::thread> others;
+  for (std::size_t i = 1; i < detectors_.size(); ++i) others.emplace_back([this, i] { work(*detectors_[i]); });
+  work(*detectors_.front());
+  for (std::thread& other : others) other.join();
+  SPDLOG_INFO("event=summary frames={} dropped={} broken={} detect_ms={:.1f} detect_ms_max={:.1f}", answered_,
+              arrivals_->dropped(), broken_,
+              total_detect_ms_ / static_cast<double>(std::max<std::uint64_t>(answered_, 1)), max_detect_ms_);
+  return service::kOk;
+}
+
+/// Answers images until the end; several workers share the queue and answer in the order in which they are done.
+void DetectorService::work(Detector& detector) {
   while (!runtime_.stop.stop_requested()) {
     report_state();
     const std::optional<Arrival> arrival = arrivals_->pop_for(kStatePeriod);
     if (!arrival) continue;
     const std::int64_t started_ns = service::monotonic_ns();
-    answer(*arrival);
+    answer(detector, *arrival);
     keep_rate(started_ns);
   }
-  SPDLOG_INFO("event=summary frames={} dropped={} broken={} detect_ms={:.1f} detect_ms_max={:.1f}", answered_,
-              arrivals_->dropped(), broken_,
-              total_detect_ms_ / static_cast<double>(std::max<std::uint64_t>(answered_, 1)), max_detect_ms_);
-  return service::kOk;
 }
 
 /// The pixels of an arrival; empty when they are broken. A frame's pixels stay in the message.
@@ -100,12 +118,12 @@ std::optional<cv::Mat> DetectorService::image_of(const Arrival& arrival) {
                  const_cast<std::uint8_t*>(frame.color_bgr.data()));  // read only: cv::Mat has no const view
 }
 
-void DetectorService::answer(const Arrival& arrival) {
+void DetectorService::answer(Detector& detector, const Arrival& arrival) {
   const std::int64_t started_ns = service::monotonic_ns();
   try {
     const std::optional<cv::Mat> image = image_of(arrival);
     if (!image) return skip(arrival, "no image of a size that can be read");
-    detections_.write(to_message(detector_.detect(*image), arrival.stamp_ns));
+    detections_.write(to_message(detector.detect(*image), arrival.stamp_ns));
   } catch (const std::exception& error) {  // data from outside never ends the process
     return skip(arrival, error.what());
   }
@@ -113,6 +131,7 @@ void DetectorService::answer(const Arrival& arrival) {
 }
 
 void DetectorService::skip(const Arrival& arrival, const std::string& cause) {
+  const std::lock_guard lock(counters_mutex_);
   runtime_.heartbeat.set_metric("frames_broken", static_cast<double>(++broken_));
   if (broken_log_.pass()) {
     SPDLOG_WARN("event=image_skipped stamp_ns={} total={} cause=\"{}\"", arrival.stamp_ns, broken_, cause);
@@ -120,6 +139,7 @@ void DetectorService::skip(const Arrival& arrival, const std::string& cause) {
 }
 
 void DetectorService::count(double detect_ms) {
+  const std::lock_guard lock(counters_mutex_);
   ++answered_;
   total_detect_ms_ += detect_ms;
   max_detect_ms_ = std::max(max_detect_ms_, detect_ms);

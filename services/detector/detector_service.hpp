@@ -3,10 +3,14 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/service/exit_code.hpp"
@@ -18,7 +22,7 @@
 namespace rtd::detector {
 
 /// Images in, boxes out. Realtime pace: the newest image wins, what came meanwhile is dropped and counted. Asap and
-/// lockstep: every image is answered in order, with an empty array where nothing was found.
+/// lockstep: every image is answered, with an empty array where nothing was found.
 class DetectorService {
  public:
   static constexpr const char* kName = "detector";
@@ -43,7 +47,8 @@ class DetectorService {
   using Arrivals = concurrency::BoundedQueue<Arrival>;
 
   static std::optional<cv::Mat> image_of(const Arrival& arrival);
-  void answer(const Arrival& arrival);
+  void work(Detector& detector);
+  void answer(Detector& detector, const Arrival& arrival);
   void skip(const Arrival& arrival, const std::string& cause);
   void count(double detect_ms);
   bool peers_matched() const;
@@ -52,12 +57,14 @@ class DetectorService {
 
   const Config config_;
   service::Runtime& runtime_;
-  Detector detector_;
+  std::vector<std::unique_ptr<Detector>> detectors_;  ///< one for each worker
   std::shared_ptr<Arrivals> arrivals_;
   bus::Writer<msg::Detection2DArray> detections_;
   bus::Reader<msg::RgbdFrame> frames_;
   bus::Reader<msg::CompressedImage> jpegs_;
-  std::uint64_t answered_ = 0, broken_ = 0;
+  std::mutex counters_mutex_;
+  std::atomic<std::uint64_t> answered_{0};
+  std::uint64_t broken_ = 0;
   double total_detect_ms_ = 0, max_detect_ms_ = 0;
   service::RateLimit broken_log_{std::chrono::seconds(1)};
 };
