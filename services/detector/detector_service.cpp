@@ -90,16 +90,31 @@ service::ExitCode DetectorService::run() {
   return service::kOk;
 }
 
-/// Answers images until the end; several workers share the queue and answer in the order in which they are done.
+/// Answers images until the end. Several workers share the queue; their answers go out in the order of the images.
 void DetectorService::work(Detector& detector) {
   while (!runtime_.stop.stop_requested()) {
     report_state();
-    const std::optional<Arrival> arrival = arrivals_->pop_for(kStatePeriod);
-    if (!arrival) continue;
+    const std::optional<Taken> taken = take();
+    if (!taken) continue;
     const std::int64_t started_ns = service::monotonic_ns();
-    answer(detector, *arrival);
+    publish_in_turn(taken->turn, detect(detector, taken->arrival));
     keep_rate(started_ns);
   }
+}
+
+std::optional<DetectorService::Taken> DetectorService::take() {
+  const std::lock_guard lock(take_mutex_);
+  std::optional<Arrival> arrival = arrivals_->pop_for(kStatePeriod);
+  if (!arrival) return std::nullopt;
+  return Taken{std::move(*arrival), taken_++};
+}
+
+void DetectorService::publish_in_turn(std::uint64_t turn, const std::optional<msg::Detection2DArray>& answer) {
+  std::unique_lock lock(turn_mutex_);
+  turn_changed_.wait(lock, [&] { return published_ == turn; });
+  if (answer) detections_.write(*answer);
+  ++published_;
+  turn_changed_.notify_all();
 }
 
 /// The pixels of an arrival; empty when they are broken. A frame's pixels stay in the message.
@@ -118,16 +133,20 @@ std::optional<cv::Mat> DetectorService::image_of(const Arrival& arrival) {
                  const_cast<std::uint8_t*>(frame.color_bgr.data()));  // read only: cv::Mat has no const view
 }
 
-void DetectorService::answer(Detector& detector, const Arrival& arrival) {
+/// Empty, counted and said for an image that cannot be used.
+std::optional<msg::Detection2DArray> DetectorService::detect(Detector& detector, const Arrival& arrival) {
   const std::int64_t started_ns = service::monotonic_ns();
   try {
-    const std::optional<cv::Mat> image = image_of(arrival);
-    if (!image) return skip(arrival, "no image of a size that can be read");
-    detections_.write(to_message(detector.detect(*image), arrival.stamp_ns));
+    if (const std::optional<cv::Mat> image = image_of(arrival)) {
+      msg::Detection2DArray answer = to_message(detector.detect(*image), arrival.stamp_ns);
+      count(static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs);
+      return answer;
+    }
+    skip(arrival, "no image of a size that can be read");
   } catch (const std::exception& error) {  // data from outside never ends the process
-    return skip(arrival, error.what());
+    skip(arrival, error.what());
   }
-  count(static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs);
+  return std::nullopt;
 }
 
 void DetectorService::skip(const Arrival& arrival, const std::string& cause) {

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -22,7 +23,7 @@
 namespace rtd::detector {
 
 /// Images in, boxes out. Realtime pace: the newest image wins, what came meanwhile is dropped and counted. Asap and
-/// lockstep: every image is answered, with an empty array where nothing was found.
+/// lockstep: every image is answered in order, with an empty array where nothing was found.
 class DetectorService {
  public:
   static constexpr const char* kName = "detector";
@@ -44,11 +45,18 @@ class DetectorService {
     std::shared_ptr<const msg::RgbdFrame> frame;       ///< input "frame"
     std::shared_ptr<const msg::CompressedImage> jpeg;  ///< input "jpeg"
   };
+  /// An image that a worker has taken, and its place in the order of answers.
+  struct Taken {
+    Arrival arrival;
+    std::uint64_t turn = 0;
+  };
   using Arrivals = concurrency::BoundedQueue<Arrival>;
 
   static std::optional<cv::Mat> image_of(const Arrival& arrival);
   void work(Detector& detector);
-  void answer(Detector& detector, const Arrival& arrival);
+  std::optional<Taken> take();
+  std::optional<msg::Detection2DArray> detect(Detector& detector, const Arrival& arrival);
+  void publish_in_turn(std::uint64_t turn, const std::optional<msg::Detection2DArray>& answer);
   void skip(const Arrival& arrival, const std::string& cause);
   void count(double detect_ms);
   bool peers_matched() const;
@@ -62,6 +70,11 @@ class DetectorService {
   bus::Writer<msg::Detection2DArray> detections_;
   bus::Reader<msg::RgbdFrame> frames_;
   bus::Reader<msg::CompressedImage> jpegs_;
+  std::mutex take_mutex_;
+  std::uint64_t taken_ = 0;
+  std::mutex turn_mutex_;
+  std::condition_variable turn_changed_;
+  std::uint64_t published_ = 0;  ///< turns that are over
   std::mutex counters_mutex_;
   std::atomic<std::uint64_t> answered_{0};
   std::uint64_t broken_ = 0;
