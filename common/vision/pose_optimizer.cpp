@@ -34,7 +34,9 @@ class PoseCost {
 
   void add(const PoseObservation& observation) { active_.push_back(&observation); }
   std::size_t size() const { return active_.size(); }
-  int NumResiduals() const { return static_cast<int>(3 * active_.size()); }
+  int NumResiduals() const {  // NOLINT(readability-identifier-naming): the name that TinySolver asks for
+    return static_cast<int>(3 * active_.size());
+  }
 
   bool operator()(const double* parameters, double* residuals, double* jacobian) const {
     const Eigen::Map<const Vector6d> x(parameters);
@@ -128,7 +130,7 @@ bool world_covariance(const Matrix6d& H, const Eigen::Isometry3d& T_camera_world
   // Metres and radians are of like size here; a direction known ten million times worse than the best is not known.
   constexpr double kMinConditionInverse = 1e-14;
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(H);
-  const Vector6d values = eigen.eigenvalues();
+  const Vector6d& values = eigen.eigenvalues();
   if (!(values.maxCoeff() > 0) || values.minCoeff() < kMinConditionInverse * values.maxCoeff()) return false;
   const Matrix6d inverse = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
   const Eigen::Matrix3d R_world_camera = T_camera_world.linear().transpose();

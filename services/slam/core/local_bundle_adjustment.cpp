@@ -51,10 +51,12 @@ std::vector<KeyframeId> select_fixed(const Map& map, const std::vector<KeyframeI
   }
   for (const KeyframeId id : window) shared.erase(id);
   std::vector<std::pair<int, KeyframeId>> ranked;
+  ranked.reserve(shared.size());
   for (const auto& [id, number] : shared) ranked.emplace_back(-number, id);
   std::sort(ranked.begin(), ranked.end());
   if (ranked.size() > count) ranked.resize(count);
   std::vector<KeyframeId> fixed;
+  fixed.reserve(ranked.size());
   for (const auto& [number, id] : ranked) fixed.push_back(id);
   return fixed;
 }
