@@ -11,6 +11,25 @@ namespace {
 
 using service::ConfigBinder;
 
+void bind_techniques(ConfigBinder& binder, Techniques& t) {
+  binder.field("techniques.motion_levels", t.motion_levels, "off: every class of the table counts as high");
+  binder.field("techniques.depth_masks", t.depth_masks, "off: the whole box is the object");
+  binder.field("techniques.flat_objects", t.flat_objects, "off: a poster of a person is a person");
+  binder.field("techniques.depth_check", t.depth_check, "off: no multi-view check of range images");
+  binder.field("techniques.feature_votes", t.feature_votes, "off: displaced features do not vote");
+  binder.field("techniques.noise_aware_tau", t.noise_aware_tau, "off: the paper's 0.4 m at every depth");
+  binder.field("techniques.mover_tracks", t.mover_tracks, "off: movers are found anew in each frame");
+  binder.field("techniques.surface_poses", t.surface_poses, "off: surfaces do not propose the camera's motion");
+  binder.field("techniques.belief", t.belief, "off: static probability from one frame alone");
+  binder.field("techniques.resting_objects", t.resting_objects, "off: high classes are never used");
+  binder.field("techniques.feature_weights", t.feature_weights, "off: what is kept weighs 1");
+  binder.field("techniques.box_tracks", t.box_tracks, "off: only the boxes of the frame itself");
+  binder.field("techniques.mask_flow", t.mask_flow, "off: masks move with the predicted box");
+  binder.field("techniques.roll_distrust", t.roll_distrust, "off: an empty answer is always believed");
+  binder.field("techniques.more_features", t.more_features, "off: as many features whatever is masked");
+  binder.field("techniques.keep_doubtful", t.keep_doubtful, "off: too few features stay too few");
+}
+
 void bind_orb(ConfigBinder& binder, OrbConfig& c) {
   binder.field("orb.feature_count", c.feature_count, {100, 1300}, "wanted features per frame");
   binder.field("orb.levels", c.levels, {1, 12}, "pyramid levels");
@@ -77,6 +96,7 @@ void ServiceConfig::bind(ConfigBinder& binder) {
   binder.field("feedback_timeout_ms", feedback_timeout_ms, {1, 600000}, "lockstep: longest wait for slam");
   binder.field("carry_max_ms", carry_max_ms, {0, 60000}, "realtime: older boxes are not used");
   binder.field("carry_growth_per_s", carry_growth_per_s, {0.0, 10.0}, "realtime: growth of a carried box");
+  bind_techniques(binder, core.techniques);
   bind_orb(binder, core.orb);
   bind_surfaces(binder, core.clusters, core.masks);
   bind_ego_motion(binder, core.ego_motion);
