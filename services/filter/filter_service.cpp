@@ -82,7 +82,7 @@ void FilterService::answer(const msg::RgbdFrame& frame) {
   listen_to_slam();
   const std::int64_t waited_ns = service::monotonic_ns() - waiting_since_ns;
 
-  FilterResult result = filter_.judge(image, std::move(features), paired.detections);
+  FilterResult result = filter_.judge(image, std::move(features), word_of(frame.stamp_ns, paired.detections));
   result.stage_ms[msg::kStageWaitDetections] = static_cast<float>(static_cast<double>(waited_ns) * 1e-6);
   fill_message(frame, result, paired.use, *message_);
   writer_.write(*message_);

@@ -26,24 +26,6 @@ struct DynamicFilter::Geometry {
   DynamicRegions regions;
 };
 
-/// The story of DESIGN section 4: what may move, where the camera is, what does move, how static each feature is.
-FilterResult DynamicFilter::judge(const vision::RgbdImage& image, std::vector<msg::Feature> features,
-                                  const Detections& detections) {
-  FilterResult result;
-  result.features = std::move(features);
-  if (config_.mode != FilterMode::kOff) {
-    Scene scene = look_at(image);                              // depth cells and surfaces
-    find_what_may_move(detections, scene, result);             // rules 1 and 2: motion levels, boxes to masks
-    const Geometry geometry = find_what_moves(scene, result);  // rule 3: quick pose, multi-view check
-    weigh(scene, geometry, result);                            // rules 4 and 6: one probability, never starve
-    remember(std::move(scene), geometry, result);
-  }
-  result.stage_ms[msg::kStageExtract] = extract_ms_;
-  result.stage_ms[msg::kStageFilterTotal] =
-      std::accumulate(result.stage_ms.begin(), result.stage_ms.begin() + msg::kStageFilterTotal, 0.0F);
-  return result;
-}
-
 namespace {
 
 bool uses_semantics(FilterMode mode) {
@@ -51,6 +33,12 @@ bool uses_semantics(FilterMode mode) {
 }
 bool uses_geometry(FilterMode mode) {
   return mode == FilterMode::kGeometry || mode == FilterMode::kRtd;
+}
+
+/// The boxes of this very frame.
+Detections boxes_of(const DetectorWord& word, std::int64_t stamp_ns) {
+  if (word.answers.empty() || word.answers.back().stamp_ns != stamp_ns) return std::nullopt;
+  return word.answers.back().detections;
 }
 
 /// Per feature: does it lie on one of these cells?
@@ -72,6 +60,29 @@ std::vector<int> clusters_of(const std::vector<msg::Feature>& features, const De
 }
 
 }  // namespace
+
+DetectorWord word_of(std::int64_t stamp_ns, const Detections& detections) {
+  if (!detections) return {};
+  return {true, {{stamp_ns, *detections}}};
+}
+
+/// The story of DESIGN section 4: what may move, where the camera is, what does move, how static each feature is.
+FilterResult DynamicFilter::judge(const vision::RgbdImage& image, std::vector<msg::Feature> features,
+                                  const DetectorWord& word) {
+  FilterResult result;
+  result.features = std::move(features);
+  if (config_.mode != FilterMode::kOff) {
+    Scene scene = look_at(image);                                       // depth cells and surfaces
+    find_what_may_move(boxes_of(word, image.stamp_ns), scene, result);  // rules 1 and 2: motion levels, boxes to masks
+    const Geometry geometry = find_what_moves(scene, result);           // rule 3: quick pose, multi-view check
+    weigh(scene, geometry, result);                                     // rules 4 and 6: one probability, never starve
+    remember(std::move(scene), geometry, result);
+  }
+  result.stage_ms[msg::kStageExtract] = extract_ms_;
+  result.stage_ms[msg::kStageFilterTotal] =
+      std::accumulate(result.stage_ms.begin(), result.stage_ms.begin() + msg::kStageFilterTotal, 0.0F);
+  return result;
+}
 
 DynamicFilter::DynamicFilter(const FilterConfig& config, std::function<std::int64_t()> now_ns)
     : config_(config),

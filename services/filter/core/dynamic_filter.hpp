@@ -36,6 +36,20 @@ struct FilterResult {
 
 using Detections = std::optional<std::vector<vision::Detection>>;
 
+/// One answer of the detector: the boxes of the frame with this stamp, perhaps none.
+struct DetectorAnswer {
+  std::int64_t stamp_ns = 0;
+  std::vector<vision::Detection> detections;
+};
+
+/// What was heard of the detector since the frame before.
+struct DetectorWord {
+  bool watching = false;                ///< somebody looks: silence means "not yet"; else geometry only
+  std::vector<DetectorAnswer> answers;  ///< new ones by stamp; of this frame or of earlier ones, late ones included
+};
+/// The boxes of this very frame; empty optional = nobody looks.
+DetectorWord word_of(std::int64_t stamp_ns, const Detections& detections);
+
 /// Tells the static world from what moves, DESIGN section 4: which features slam may use, and how much. The theory is
 /// in docs/theory/dynamic_points.md.
 ///
@@ -46,13 +60,15 @@ class DynamicFilter {
   /// `now_ns`: any monotonic clock, for stage times only. Throws std::invalid_argument for an unknown motion level.
   DynamicFilter(const FilterConfig& config, std::function<std::int64_t()> now_ns);
 
-  /// `detections`: the boxes of this very frame, or carried to it; empty optional = nobody looked, geometry only.
+  FilterResult apply(const vision::RgbdImage& image, const DetectorWord& word) {
+    return judge(image, extract(image), word);
+  }
   FilterResult apply(const vision::RgbdImage& image, const Detections& detections) {
-    return judge(image, extract(image), detections);
+    return apply(image, word_of(image.stamp_ns, detections));
   }
   /// The two halves of apply(), for a caller that waits for the detections in between.
   std::vector<msg::Feature> extract(const vision::RgbdImage& image);
-  FilterResult judge(const vision::RgbdImage& image, std::vector<msg::Feature> features, const Detections& detections);
+  FilterResult judge(const vision::RgbdImage& image, std::vector<msg::Feature> features, const DetectorWord& word);
 
   /// slam's pose of an earlier frame: corrects the pose of its view and of those after it.
   void on_tracking(const msg::TrackingResult& result);

@@ -18,8 +18,9 @@ enum class FilterMode {
   kRtd,       ///< both, DESIGN section 4
 };
 
-/// The techniques of DESIGN section 4, each of which can be left out alone to see what it is worth (`rtd ablate`). A mode
-/// uses those that belong to it; one that is off here is off in every mode. docs/theory/dynamic_points.md names each.
+/// The techniques of DESIGN section 4, each of which can be left out alone to see what it is worth (`rtd ablate`). A
+/// mode uses those that belong to it; one that is off here is off in every mode. docs/theory/dynamic_points.md names
+/// each.
 struct Techniques {
   // Rule 1: what may move
   bool motion_levels = true;  ///< off: every class of the table counts as high
@@ -33,16 +34,16 @@ struct Techniques {
   bool mover_tracks = true;     ///< movers are followed and masked before there is new evidence; off: each frame alone
   bool surface_poses = true;    ///< surfaces propose the camera's motion; off: all features together only
   // Rule 4: one probability
-  bool belief = true;            ///< static probability gathered over time; off: from this frame alone
-  bool resting_objects = true;   ///< a person at rest is used again; off: high classes never are
-  bool feature_weights = true;   ///< off: what is kept weighs 1
+  bool belief = true;           ///< static probability gathered over time; off: from this frame alone
+  bool resting_objects = true;  ///< a person at rest is used again; off: high classes never are
+  bool feature_weights = true;  ///< off: what is kept weighs 1
   // Rule 5: missed detections
   bool box_tracks = true;     ///< boxes survive misses and come to every frame; off: only the boxes of this frame
   bool mask_flow = true;      ///< masks carried by optical flow; off: by the box's predicted motion alone
   bool roll_distrust = true;  ///< an empty answer during fast roll is not believed
   // Rule 6: never starve
-  bool more_features = true;   ///< 1.5x while something is masked
-  bool keep_doubtful = true;   ///< too few left: the best of the doubtful stay
+  bool more_features = true;  ///< 1.5x while something is masked
+  bool keep_doubtful = true;  ///< too few left: the best of the doubtful stay
 };
 
 /// How cells of the depth grid join to clusters; docs/theory/dynamic_points.md Eq. (1).
