@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/config.hpp"
 
-#include <map>
-
+#include "services/filter/core/modes/mode_table.hpp"
+#include "services/filter/core/modes/techniques.hpp"
 #include "services/filter/core/motion_levels.hpp"
 
 namespace rtd::filter {
@@ -11,23 +11,17 @@ namespace {
 
 using service::ConfigBinder;
 
-void bind_techniques(ConfigBinder& binder, Techniques& t) {
-  binder.field("techniques.motion_levels", t.motion_levels, "off: every class of the table counts as high");
-  binder.field("techniques.depth_masks", t.depth_masks, "off: the whole box is the object");
-  binder.field("techniques.flat_objects", t.flat_objects, "off: a poster of a person is a person");
-  binder.field("techniques.depth_check", t.depth_check, "off: no multi-view check of range images");
-  binder.field("techniques.feature_votes", t.feature_votes, "off: displaced features do not vote");
-  binder.field("techniques.noise_aware_tau", t.noise_aware_tau, "off: the paper's 0.4 m at every depth");
-  binder.field("techniques.mover_tracks", t.mover_tracks, "off: movers are found anew in each frame");
-  binder.field("techniques.surface_poses", t.surface_poses, "off: surfaces do not propose the camera's motion");
-  binder.field("techniques.belief", t.belief, "off: static probability from one frame alone");
-  binder.field("techniques.resting_objects", t.resting_objects, "off: high classes are never used");
-  binder.field("techniques.feature_weights", t.feature_weights, "off: what is kept weighs 1");
-  binder.field("techniques.box_tracks", t.box_tracks, "off: only the boxes of the frame itself");
-  binder.field("techniques.mask_flow", t.mask_flow, "off: masks move with the predicted box");
-  binder.field("techniques.roll_distrust", t.roll_distrust, "off: an empty answer is always believed");
-  binder.field("techniques.more_features", t.more_features, "off: as many features whatever is masked");
-  binder.field("techniques.keep_doubtful", t.keep_doubtful, "off: too few features stay too few");
+std::vector<std::string> mode_names() {
+  std::vector<std::string> names;
+  for (const ModeEntry& entry : all_modes()) names.emplace_back(entry.name);
+  return names;
+}
+
+void bind_techniques(ConfigBinder& binder, Techniques& techniques) {
+  for (const NamedTechnique& technique : all_techniques()) {
+    binder.field(std::string("techniques.") + technique.name, techniques.*technique.on,
+                 std::string("off: ") + technique.without);
+  }
 }
 
 void bind_orb(ConfigBinder& binder, OrbConfig& c) {
@@ -90,7 +84,7 @@ void bind_fusion(ConfigBinder& binder, FusionConfig& c) {
 }  // namespace
 
 void ServiceConfig::bind(ConfigBinder& binder) {
-  binder.choice("mode", mode, {"off", "semantic", "geometry", "rtd"}, "which parts of the filter are at work");
+  binder.choice("mode", mode, mode_names(), "which parts of the filter are at work");
   binder.choice("detector", detector, {"auto", "off"}, "auto: use a detector that is heard");
   binder.field("detections_timeout_ms", detections_timeout_ms, {1, 600000}, "asap, lockstep: longest wait for boxes");
   binder.field("feedback_timeout_ms", feedback_timeout_ms, {1, 600000}, "lockstep: longest wait for slam");
@@ -106,12 +100,10 @@ void ServiceConfig::bind(ConfigBinder& binder) {
 }
 
 FilterConfig ServiceConfig::core_config() const {
-  static const std::map<std::string, FilterMode> kModes = {{"off", FilterMode::kOff},
-                                                           {"semantic", FilterMode::kSemantic},
-                                                           {"geometry", FilterMode::kGeometry},
-                                                           {"rtd", FilterMode::kRtd}};
   FilterConfig config = core;
-  config.mode = kModes.at(mode);
+  for (const ModeEntry& entry : all_modes()) {
+    if (mode == entry.name) config.mode = entry.mode;
+  }
   try {
     const MotionLevels check(config.motion_levels);
   } catch (const std::invalid_argument& error) {

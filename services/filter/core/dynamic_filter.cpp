@@ -8,6 +8,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
+#include "services/filter/core/modes/mode_table.hpp"
 #include "services/filter/core/stage_clock.hpp"
 #include "services/filter/core/static_probability.hpp"
 
@@ -85,9 +86,10 @@ FilterResult DynamicFilter::judge(const vision::RgbdImage& image, std::vector<ms
 }
 
 DynamicFilter::DynamicFilter(const FilterConfig& config, std::function<std::int64_t()> now_ns)
-    : config_(config),
+    : config_(effective_config(config)),
       now_ns_(std::move(now_ns)),
-      levels_(config.motion_levels),
+      levels_(config_.techniques.motion_levels ? MotionLevels(config.motion_levels)
+                                               : MotionLevels(config.motion_levels).all_high()),
       extractor_(config.orb),
       sampler_(config.orb.min_depth_m, config.orb.max_depth_m) {}
 

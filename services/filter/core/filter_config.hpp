@@ -55,6 +55,7 @@ struct ClusterConfig {
 
 /// How a box becomes a mask.
 struct MaskConfig {
+  bool whole_boxes = false;  ///< the box is the object, its depth is not looked at
   double min_share = 0.15;  ///< the object is the nearest cluster with this share of the measured cells of its box
   double max_object_depth_m = 0.5;   ///< cells this far behind or before the object's median depth do not belong to it
   double min_contained = 0.5;        ///< share of a cluster inside the box from which the whole cluster is the object

@@ -41,6 +41,12 @@ MotionLevels::MotionLevels(const std::map<std::string, std::string>& overrides) 
   }
 }
 
+MotionLevels MotionLevels::all_high() const {
+  MotionLevels high(*this);
+  for (auto& [name, level] : high.levels_) level = MotionLevel::kHigh;
+  return high;
+}
+
 std::optional<MotionLevel> MotionLevels::find(const std::string& class_name) const {
   const auto found = levels_.find(class_name);
   if (found == levels_.end()) return std::nullopt;

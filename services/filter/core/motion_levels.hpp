@@ -22,6 +22,8 @@ class MotionLevels {
   /// `overrides`: class -> "high" | "medium" | "low" | "none"; throws std::invalid_argument naming class and value
   /// otherwise.
   explicit MotionLevels(const std::map<std::string, std::string>& overrides = {});
+  /// The same classes, all of them high.
+  MotionLevels all_high() const;
   /// Empty: the class does not matter to us.
   std::optional<MotionLevel> find(const std::string& class_name) const;
 

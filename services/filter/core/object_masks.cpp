@@ -158,7 +158,7 @@ std::vector<SceneObject> find_objects(const std::vector<vision::Detection>& dete
     const std::optional<CellBox> box = to_cells(*detection, camera, grid.shape);
     if (!box) continue;
     SceneObject object{detection->class_name, detection->score, *levels.find(detection->class_name), {}, false};
-    const std::vector<ClusterInBox> inside = clusters_in(*box, grid, clusters);
+    const auto inside = config.whole_boxes ? std::vector<ClusterInBox>{} : clusters_in(*box, grid, clusters);
     if (const ClusterInBox* cluster = object_cluster(inside, config.min_share)) {
       object.cells = collect_cells(*cluster, inside, grid, clusters, config);
       object.flat = outline_step_share(object.cells, grid, config.min_outline_step_m) < config.min_outline_share;

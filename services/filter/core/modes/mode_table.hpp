@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "services/filter/core/filter_config.hpp"
+
+namespace rtd::filter {
+
+/// A mode as a composition of techniques.
+struct ModeEntry {
+  FilterMode mode;
+  const char* name;  ///< `filter.mode`
+  Techniques techniques;
+};
+
+/// All modes, from nothing to everything.
+std::span<const ModeEntry> all_modes();
+const ModeEntry& entry_of(FilterMode mode);
+
+/// The configuration that the algorithms work with: the techniques that belong to the mode and are not switched off,
+/// and what that means for the numbers.
+FilterConfig effective_config(FilterConfig config);
+
+}  // namespace rtd::filter

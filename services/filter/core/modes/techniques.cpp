@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/modes/techniques.hpp"
+
+#include <limits>
+
+namespace rtd::filter {
+namespace {
+
+constexpr double kPaperTauM = 0.4;  // section III-A
+
+constexpr NamedTechnique kAll[] = {
+    {"motion_levels", &Techniques::motion_levels, "every class of the table counts as high"},
+    {"depth_masks", &Techniques::depth_masks, "the whole box is the object"},
+    {"flat_objects", &Techniques::flat_objects, "a poster of a person is a person"},
+    {"depth_check", &Techniques::depth_check, "no multi-view check of range images"},
+    {"feature_votes", &Techniques::feature_votes, "displaced features do not vote"},
+    {"noise_aware_tau", &Techniques::noise_aware_tau, "the paper's 0.4 m at every depth"},
+    {"mover_tracks", &Techniques::mover_tracks, "movers are found anew in each frame"},
+    {"surface_poses", &Techniques::surface_poses, "surfaces do not propose the camera's motion"},
+    {"belief", &Techniques::belief, "static probability from one frame alone"},
+    {"resting_objects", &Techniques::resting_objects, "high classes are never used"},
+    {"feature_weights", &Techniques::feature_weights, "what is kept weighs 1"},
+    {"box_tracks", &Techniques::box_tracks, "only the boxes of the frame itself"},
+    {"mask_flow", &Techniques::mask_flow, "masks move with the predicted box"},
+    {"roll_distrust", &Techniques::roll_distrust, "an empty answer is always believed"},
+    {"more_features", &Techniques::more_features, "as many features whatever is masked"},
+    {"keep_doubtful", &Techniques::keep_doubtful, "too few features stay too few"},
+};
+
+}  // namespace
+
+std::span<const NamedTechnique> all_techniques() {
+  return kAll;
+}
+
+Techniques in_common(const Techniques& a, const Techniques& b) {
+  Techniques both;
+  for (const NamedTechnique& technique : kAll) both.*technique.on = a.*technique.on && b.*technique.on;
+  return both;
+}
+
+FilterConfig with_techniques_applied(FilterConfig config) {
+  const Techniques& on = config.techniques;
+  if (!on.depth_masks) config.masks.whole_boxes = true;
+  if (!on.flat_objects) config.masks.min_outline_share = 0;  // no outline is flat enough
+  if (!on.depth_check) config.geometry.max_views = 0;        // nobody to ask
+  if (!on.feature_votes) config.geometry.min_moving_features = std::numeric_limits<int>::max();
+  if (!on.noise_aware_tau) {
+    config.geometry.tau_floor_m = kPaperTauM;
+    config.geometry.tau_sigmas = 0;
+  }
+  if (!on.surface_poses) config.ego_motion.max_proposals = 0;
+  if (!on.more_features) config.fusion.boost = 1;
+  if (!on.keep_doubtful) config.fusion.min_static_features = 0;
+  return config;
+}
+
+}  // namespace rtd::filter
