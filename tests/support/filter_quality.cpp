@@ -3,35 +3,10 @@
 #include "tests/support/filter_quality.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "common/service/monotonic_clock.hpp"
 
 namespace rtd::test_support {
-namespace {
-
-bool on(const cv::Mat& mask, const msg::Feature& feature) {
-  if (mask.empty()) return false;
-  const int u = std::clamp(static_cast<int>(std::lround(feature.u_raw_px)), 0, mask.cols - 1);
-  const int v = std::clamp(static_cast<int>(std::lround(feature.v_raw_px)), 0, mask.rows - 1);
-  return mask.at<std::uint8_t>(v, u) != 0;
-}
-
-void count(const std::vector<msg::Feature>& features, const cv::Mat& mask, FilterQuality& quality) {
-  cv::Mat grown;
-  if (!mask.empty()) cv::dilate(mask, grown, cv::getStructuringElement(cv::MORPH_RECT, {7, 7}));
-  for (const msg::Feature& feature : features) {
-    if ((feature.flags & msg::kFeatureRemoved) != 0) {
-      ++(on(grown, feature) ? quality.removed_rightly : quality.removed_wrongly);
-    } else {
-      ++(on(mask, feature) ? quality.kept_wrongly : quality.kept_rightly);
-    }
-  }
-}
-
-}  // namespace
-
 FilterQuality measure_filter(
     const EvaluationClip& clip, const filter::FilterConfig& config,
     const std::function<void(const vision::RgbdImage&, const filter::FilterResult&)>& on_frame) {
@@ -41,7 +16,7 @@ FilterQuality measure_filter(
   for (std::size_t i = 0; i < clip.size(); ++i) {
     const vision::RgbdImage image = clip.image(i);
     const filter::FilterResult result = dynamic_filter.apply(image, std::nullopt);
-    count(result.features, clip.dynamic_mask(i), quality);
+    quality.count(result.features, clip.dynamic_mask(i));
     const Eigen::Isometry3d T_true_estimated = clip.T_world_camera(i).inverse() * result.T_world_camera;
     quality.max_pose_error_m = std::max(quality.max_pose_error_m, T_true_estimated.translation().norm());
     for (std::size_t stage = 0; stage < quality.stage_ms.size(); ++stage) {

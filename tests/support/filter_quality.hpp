@@ -8,26 +8,18 @@
 
 #include "services/filter/core/dynamic_filter.hpp"
 #include "tests/support/evaluation_clip.hpp"
+#include "tests/support/removal_quality.hpp"
 
 namespace rtd::test_support {
 
-/// How well a filter told moving from static features on a clip with true masks. A feature counts as removed rightly on
-/// the mask grown by 3 px, as kept wrongly on the mask itself.
-struct FilterQuality {
+/// How well a filter told moving from static features on a clip with true masks.
+struct FilterQuality : RemovalQuality {
   std::size_t frames = 0;
-  std::size_t removed_rightly = 0, removed_wrongly = 0, kept_wrongly = 0, kept_rightly = 0;
   double max_pose_error_m = 0;                        ///< of the filter's own pose estimate, no slam around it
   std::array<double, msg::kFilterStages> stage_ms{};  ///< means
 
-  double precision() const { return ratio(removed_rightly, removed_wrongly); }
-  double recall() const { return ratio(removed_rightly, kept_wrongly); }
   double removed_wrongly_per_frame() const {
     return static_cast<double>(removed_wrongly) / static_cast<double>(frames);
-  }
-
- private:
-  static double ratio(std::size_t good, std::size_t bad) {
-    return good + bad == 0 ? 1.0 : static_cast<double>(good) / static_cast<double>(good + bad);
   }
 };
 

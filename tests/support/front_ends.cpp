@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "common/service/monotonic_clock.hpp"
-#include "services/detector/core/detector.hpp"
-#include "services/detector/core/model_locator.hpp"
+#include "services/filter/config.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
+#include "tests/support/detector_pace.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
 namespace rtd::test_support {
@@ -48,21 +49,22 @@ class MaskedOrb final : public FrontEnd {
   bool use_mask_;
 };
 
-/// The dynamic filter, told by slam what the service tells it, with the boxes of every frame when there is a detector.
+/// The dynamic filter, told by slam and the detector what the service tells it.
 class Filtered final : public FrontEnd {
  public:
-  Filtered(const filter::FilterConfig& config, std::unique_ptr<detector::Detector> detector)
-      : filter_(config, service::monotonic_ns), detector_(std::move(detector)) {}
+  /// Without `look`: no detector.
+  Filtered(const filter::FilterConfig& config, const Look& look, const DetectorOptions& detector)
+      : filter_(config, service::monotonic_ns) {
+    if (!look) return;
+    detector_.emplace([this, look](const camera::SourceFrame& frame) { return timed(look, frame); }, detector);
+  }
 
   FrontEndOutput process(const camera::SourceFrame& frame) override {
     FrontEndOutput output;
-    filter::Detections detections;
-    if (detector_ != nullptr) {
-      const std::int64_t start_ns = service::monotonic_ns();
-      detections = detector_->detect(frame.image.color_bgr);
-      output.stage_ms["detector"] = ms_since(start_ns);
-    }
-    filter::FilterResult result = filter_.apply(frame.image, detections);
+    detector_ms_ = 0;
+    const filter::DetectorWord word = detector_ ? detector_->hear(frame) : filter::DetectorWord{};
+    if (detector_ms_ > 0) output.stage_ms["detector"] = detector_ms_;
+    filter::FilterResult result = filter_.apply(frame.image, word);
     static constexpr std::array<const char*, 7> kNames{"filter.wait",       "filter.extract", "filter.masks",
                                                        "filter.ego_motion", "filter.check",   "filter.fuse",
                                                        "filter.total"};
@@ -77,29 +79,36 @@ class Filtered final : public FrontEnd {
   }
 
  private:
+  std::vector<vision::Detection> timed(const Look& look, const camera::SourceFrame& frame) {
+    const std::int64_t start_ns = service::monotonic_ns();
+    std::vector<vision::Detection> boxes = look(frame);
+    detector_ms_ += ms_since(start_ns);
+    return boxes;
+  }
+
   filter::DynamicFilter filter_;
-  std::unique_ptr<detector::Detector> detector_;
+  std::optional<DetectorPace> detector_;
+  double detector_ms_ = 0;  ///< spent for the present frame
 };
 
-std::unique_ptr<detector::Detector> load_detector() {
-  const detector::ModelSearch model = detector::find_model("", detector::process_environment());
-  if (!model) throw std::invalid_argument(model.message);
-  detector::DetectorConfig config;
-  config.model_path = model.path;
-  return std::make_unique<detector::Detector>(config);
+filter::FilterConfig filter_config(const FrontEndOptions& options) {
+  filter::ServiceConfig config;
+  service::ConfigBinder binder;
+  binder.section("filter", config);
+  binder.set("filter.mode=" + options.mode);
+  for (const std::string& setting : options.filter_settings) binder.set(setting);
+  return config.core_config();
 }
 
 }  // namespace
 
-std::unique_ptr<FrontEnd> make_front_end(const std::string& mode) {
-  if (mode == "off" || mode == "true-mask") return std::make_unique<MaskedOrb>(mode == "true-mask");
-  filter::FilterConfig config;
-  if (mode == "semantic") config.mode = filter::FilterMode::kSemantic;
-  if (mode == "geometry") config.mode = filter::FilterMode::kGeometry;
-  if (mode == "rtd") config.mode = filter::FilterMode::kRtd;
-  if (mode == "geometry") return std::make_unique<Filtered>(config, nullptr);
-  if (mode == "semantic" || mode == "rtd") return std::make_unique<Filtered>(config, load_detector());
-  throw std::invalid_argument("unknown mode '" + mode + "': off, true-mask, semantic, geometry, rtd");
+std::unique_ptr<FrontEnd> make_front_end(const FrontEndOptions& options) {
+  if (options.mode == "off" || options.mode == "true-mask") {
+    return std::make_unique<MaskedOrb>(options.mode == "true-mask");
+  }
+  const filter::FilterConfig config = filter_config(options);
+  const bool looks = options.mode != "geometry" && options.detector.kind != "off";
+  return std::make_unique<Filtered>(config, looks ? make_look(options.detector) : Look{}, options.detector);
 }
 
 }  // namespace rtd::test_support

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <optional>
 #include <sstream>
 
 #include "services/camera/core/source_factory.hpp"
@@ -22,6 +23,8 @@ void add_stage_times(const msg::TrackingResult& result, OfflineReport& report) {
   report.stage_ms["slam.tracking"].push_back(
       static_cast<double>(result.stage_ms[msg::kStageSlamTotal] - result.stage_ms[msg::kStageMapping]));
 }
+
+constexpr std::int64_t kSettledAfterNs = 1'000'000'000;
 
 void evaluate(OfflineReport& report) {
   report.coverage = report.frames == 0 ? 0.0 : static_cast<double>(report.tracked) / static_cast<double>(report.frames);
@@ -49,13 +52,19 @@ std::unique_ptr<msg::FeatureFrame> make_feature_frame(const vision::RgbdImage& i
 
 OfflineReport run_offline(const OfflineOptions& options) {
   const auto source = camera::make_source(options.source);
-  const auto front_end = make_front_end(options.mode);
+  const auto front_end = make_front_end(options.front_end);
   slam::SlamSystem slam(options.slam, options.mapping, options.now_ns);
   OfflineReport report;
+  std::optional<std::int64_t> first_ns;
   while (options.max_frames == 0 || report.frames < options.max_frames) {
     const auto frame = source->next();
     if (!frame) break;
     const FrontEndOutput front = front_end->process(*frame);
+    if (options.on_features) options.on_features(*frame, front.features);
+    if (!first_ns) first_ns = frame->image.stamp_ns;
+    if (!frame->dynamic_mask.empty() && frame->image.stamp_ns - *first_ns >= kSettledAfterNs) {
+      report.removal.count(front.features, frame->dynamic_mask);
+    }
     const auto message = make_feature_frame(frame->image, front.features);
     for (const auto& [name, ms] : front.stage_ms) report.stage_ms[name].push_back(ms);
     const slam::SlamOutput output = slam.process(*message);

@@ -15,6 +15,8 @@
 #include "services/camera/core/frame_source.hpp"
 #include "services/launcher/core/evaluation/trajectory.hpp"
 #include "services/slam/core/slam_system.hpp"
+#include "tests/support/removal_quality.hpp"
+#include "tests/support/simulated_detector.hpp"
 
 namespace rtd::test_support {
 
@@ -32,21 +34,27 @@ class FrontEnd {
   virtual void listen(const slam::SlamOutput& /*output*/) {}
 };
 
-/// The front end of a mode:
-///   off        every ORB feature is used
-///   true-mask  features on the source's own mask of moving pixels, grown by 3 px, are removed
-///   semantic, geometry, rtd   the dynamic filter; semantic and rtd with the detector model in RTD_MODEL_DIR
-/// Throws std::invalid_argument for other names and when a model is missing.
-std::unique_ptr<FrontEnd> make_front_end(const std::string& mode);
+struct FrontEndOptions {
+  /// off        every ORB feature is used
+  /// true-mask  features on the source's own mask of moving pixels, grown by 3 px, are removed
+  /// others     the dynamic filter in the mode of this name (filter.mode); all but geometry with the detector
+  std::string mode = "off";
+  DetectorOptions detector;
+  std::vector<std::string> filter_settings;  ///< "filter.KEY=VALUE", as on rtd-filter's command line
+};
+/// Throws service::ConfigError for other names and settings, std::invalid_argument when a model is missing.
+std::unique_ptr<FrontEnd> make_front_end(const FrontEndOptions& options);
 
 struct OfflineOptions {
   std::string source;  ///< URI, e.g. "tum:/data/walk_xyz?masks=1"
-  std::string mode = "off";
+  FrontEndOptions front_end;
   std::size_t max_frames = 0;  ///< 0 = all
   slam::SlamConfig slam;
   slam::MappingMode mapping = slam::MappingMode::kSynchronous;
   slam::Clock now_ns = service::monotonic_ns;             ///< for slam's stage times
   std::function<void(const slam::SlamOutput&)> on_frame;  ///< called after each frame; may be empty
+  /// Called with what the front end makes of each frame; may be empty.
+  std::function<void(const camera::SourceFrame&, const std::vector<msg::Feature>&)> on_features;
 };
 
 /// The whole system in one thread without transport: what lockstep computes.
@@ -57,6 +65,7 @@ struct OfflineReport {
   double ate_rmse_m = 0;                                ///< NaN without ground truth
   double rpe_trans_rmse_m = 0, rpe_rot_rmse_deg = 0;    ///< per second
   double coverage = 0;                                  ///< tracked / frames
+  RemovalQuality removal;                               ///< after the first second; of sources with masks
   std::map<std::string, std::vector<double>> stage_ms;  ///< per frame, by name
 };
 OfflineReport run_offline(const OfflineOptions& options);

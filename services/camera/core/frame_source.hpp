@@ -51,11 +51,21 @@ struct SourceCounters {
   std::uint64_t of(SkipReason reason) const { return skipped[static_cast<std::size_t>(reason)]; }
 };
 
+/// An object that a source knows to be in the image: the truth that a detector is measured against.
+struct SourceObject {
+  int id = 0;              ///< the same in every frame of a source
+  std::string class_name;  ///< COCO name, or "box": no class of a detector
+  cv::Rect box_px;         ///< around its visible pixels
+  int visible_px = 0;
+  bool moving = false;  ///< now, wholly or in part
+};
+
 /// One frame of a source.
 struct SourceFrame {
   vision::RgbdImage image;                          ///< seq counts from 0 without gaps; depth 0 = no measurement
   cv::Mat dynamic_mask;                             ///< CV_8UC1, 255 = moving object; empty when the source has none
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< exact pose, synthetic sources only
+  std::vector<SourceObject> objects;                ///< all that are seen, synthetic sources only
   bool has_depth = true;                            ///< some pixel has a measurement
 };
 

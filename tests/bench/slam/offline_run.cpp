@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 
 #include "services/launcher/core/evaluation/ate.hpp"
@@ -28,12 +29,39 @@ void print(const rtd::test_support::OfflineReport& report) {
   std::printf("frames %zu  coverage %.3f  ATE %.4f m  RPE %.4f m %.3f deg  keyframes %zu  landmarks %zu\n",
               report.frames, report.coverage, report.ate_rmse_m, report.rpe_trans_rmse_m, report.rpe_rot_rmse_deg,
               report.keyframes, report.landmarks);
+  if (report.removal.removed_rightly + report.removal.kept_wrongly > 0) {
+    std::printf("removed features after 1 s: precision %.3f  recall %.3f\n", report.removal.precision(),
+                report.removal.recall());
+  }
   for (const auto& [name, values] : report.stage_ms) {
     double sum = 0;
     for (const double value : values) sum += value;
     std::printf("  %-16s mean %7.2f  p50 %7.2f  p99 %7.2f ms\n", name.c_str(), sum / static_cast<double>(values.size()),
                 percentile(values, 0.5), percentile(values, 0.99));
   }
+}
+
+/// "2:3" -> from second 2 to second 3.
+rtd::test_support::Outage parse_outage(const std::string& text) {
+  rtd::test_support::Outage outage;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf:%lf%c", &outage.begin_s, &outage.end_s, &rest) == 2) return outage;
+  throw CLI::ValidationError("--detector-outage", "'" + text + "' is not BEGIN:END in seconds");
+}
+
+void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& detector) {
+  app.add_option("--detector", detector.kind, "real, truth (synthetic sources), lying, off")
+      ->check(CLI::IsMember({"real", "truth", "lying", "off"}));
+  app.add_option("--detector-hz", detector.rate_hz, "at most so many images a second, 0 = every frame");
+  app.add_option("--detector-delay-ms", detector.delay_ms, "its boxes come so late");
+  app.add_option("--detector-seed", detector.seed, "of truth and lying");
+  app.add_option("--detector-missed", detector.missed_share, "truth: share of the boxes not found");
+  app.add_option_function<std::vector<std::string>>(
+      "--detector-outage",
+      [&detector](const std::vector<std::string>& spans) {
+        for (const std::string& span : spans) detector.outages.push_back(parse_outage(span));
+      },
+      "gone from BEGIN:END, seconds after the first frame");
 }
 
 void print_errors(const rtd::test_support::OfflineReport& report) {
@@ -52,7 +80,9 @@ int main(int argc, char** argv) {
   bool verbose = false, threaded = false, errors = false;
   auto& slam = options.slam;
   app.add_option("--source", options.source, "source URI or TUM folder")->required();
-  app.add_option("--mode", options.mode, "off, true-mask, semantic, geometry, rtd");
+  app.add_option("--mode", options.front_end.mode, "off, true-mask, semantic, geometry, rtd");
+  app.add_option("--set", options.front_end.filter_settings, "filter.KEY=VALUE, e.g. filter.techniques.belief=false");
+  add_detector_options(app, options.front_end.detector);
   app.add_option("--frames", options.max_frames, "stop after so many frames, 0 = all");
   app.add_option("--out", trajectory_file, "write the trajectory here, TUM format");
   app.add_option("--disparity", slam.sensor.disparity_px_m);
@@ -71,7 +101,8 @@ int main(int argc, char** argv) {
   app.add_flag("--verbose", verbose, "a line per frame");
   CLI11_PARSE(app, argc, argv);
   if (options.source.find(':') == std::string::npos) {
-    options.source = "tum:" + options.source + (options.mode == "true-mask" ? "?masks=1" : "");
+    const std::string has_masks = std::filesystem::exists(options.source + "/mask") ? "?masks=1" : "";
+    options.source = "tum:" + options.source + has_masks;
   }
   if (threaded) options.mapping = rtd::slam::MappingMode::kThreaded;
   if (verbose) {

@@ -20,7 +20,7 @@ std::string clip(const std::string& name, const std::string& parameters = {}) {
 OfflineReport run(const std::string& source, const std::string& mode) {
   OfflineOptions options;
   options.source = source;
-  options.mode = mode;
+  options.front_end.mode = mode;
   return run_offline(options);
 }
 

@@ -89,6 +89,22 @@ TEST(Renderer, ShowsTheNearerOfTwoAndMasksWhatMoves) {
   EXPECT_EQ(rendering.moving_mask.at<std::uint8_t>(60, 70), 0);
 }
 
+TEST(Renderer, GivesTheBoundsOfWhatIsSeenOfAnObject) {
+  Renderer renderer(camera());
+  Geometry geometry;
+  Face behind = facing_camera({0, 0, 4}, true), before = facing_camera({1, 0, 2});
+  behind.object = geometry.add_object("person");
+  geometry.add_object("unseen");
+  geometry.faces = {behind, before};
+  const Rendering rendering = renderer.render(geometry, {plain(50)}, kAtOrigin);
+  ASSERT_EQ(rendering.objects.size(), 1U);
+  EXPECT_EQ(rendering.objects[0].object, 0);
+  EXPECT_TRUE(rendering.objects[0].moving);
+  // from 79.5 - 32.5 px to the edge of the face before it at 79.5; rows 59.5 -+ 32.5
+  EXPECT_EQ(rendering.objects[0].bounds_px, cv::Rect(47, 27, 33, 66));
+  EXPECT_EQ(rendering.objects[0].visible_px, rendering.objects[0].bounds_px.area());
+}
+
 TEST(Renderer, DrawsAnEllipsoidWhereItsSurfaceIs) {
   Renderer renderer(camera());
   Ellipsoid ellipsoid;

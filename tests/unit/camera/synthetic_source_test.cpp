@@ -88,6 +88,26 @@ TEST(SyntheticSource, MaskedPixelsAreThoseThatMoved) {
   EXPECT_LT(agreement(frames.front(), frames.back(), still).share, 0.5);
 }
 
+TEST(SyntheticSource, KnowsTheBoxesOfItsObjects) {
+  bool person = false, box = false;
+  for (const SourceFrame& frame : play("synthetic:office?frames=60&fps=6&width=160&height=120")) {
+    cv::Mat outside = frame.dynamic_mask.clone();
+    int visible = 0;
+    for (const SourceObject& object : frame.objects) {
+      EXPECT_TRUE(object.moving);
+      ASSERT_EQ(object.box_px & cv::Rect(0, 0, 160, 120), object.box_px);
+      EXPECT_LE(object.visible_px, object.box_px.area());
+      outside(object.box_px).setTo(0);
+      visible += object.visible_px;
+      person = person || object.class_name == "person";
+      box = box || object.class_name == "box";
+    }
+    EXPECT_EQ(visible, cv::countNonZero(frame.dynamic_mask)) << "everything that moves is an object here";
+    EXPECT_EQ(cv::countNonZero(outside), 0);
+  }
+  EXPECT_TRUE(person && box);
+}
+
 TEST(SyntheticSource, ScenesHoldWhatTheirNamesSay) {
   const auto masked = [](const std::string& uri) {
     int pixels = 0;

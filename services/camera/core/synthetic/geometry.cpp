@@ -4,6 +4,11 @@
 
 namespace rtd::camera::synthetic {
 
+int Geometry::add_object(std::string class_name) {
+  object_classes.push_back(std::move(class_name));
+  return static_cast<int>(object_classes.size()) - 1;
+}
+
 std::array<Face, 6> outer_faces(const Cuboid& cuboid) {
   using Eigen::Vector3f;
   const Vector3f center(0, 0, cuboid.size_m.z() / 2);
@@ -17,7 +22,8 @@ std::array<Face, 6> outer_faces(const Cuboid& cuboid) {
                 extent(s),
                 extent(t),
                 cuboid.texture,
-                cuboid.moving};
+                cuboid.moving,
+                cuboid.object};
   };
   const Vector3f x = Vector3f::UnitX(), y = Vector3f::UnitY(), z = Vector3f::UnitZ();
   return {face(x, y, z), face(-x, -y, z), face(y, -x, z), face(-y, x, z), face(z, x, y), face(-z, -x, y)};

@@ -4,11 +4,14 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <string>
 #include <vector>
 
 #include "services/camera/core/synthetic/texture.hpp"
 
 namespace rtd::camera::synthetic {
+
+inline constexpr int kRoomItself = -1;  ///< no object: walls and furniture
 
 /// A textured rectangle, seen from the side its normal axis_s x axis_t points to. World frame: z up.
 struct Face {
@@ -17,6 +20,7 @@ struct Face {
   float width_m = 0, height_m = 0;                                                       ///< along axis_s, axis_t
   int texture = 0;                                                                       ///< index
   bool moving = false;
+  int object = kRoomItself;  ///< index
 };
 
 /// A textured ellipsoid. Body frame: centre and main axes.
@@ -25,12 +29,16 @@ struct Ellipsoid {
   Eigen::Vector3f semi_axes_m = Eigen::Vector3f::Ones();
   int texture = 0;  ///< index
   bool moving = false;
+  int object = kRoomItself;  ///< index
 };
 
 /// Everything there is to see at one moment.
 struct Geometry {
   std::vector<Face> faces;
   std::vector<Ellipsoid> ellipsoids;
+  std::vector<std::string> object_classes = {};  ///< index: object
+  /// A new object; its index.
+  int add_object(std::string class_name);
 };
 
 /// A box with one texture for all sides. Frame: origin in the middle of its lower side, z up.
@@ -39,6 +47,7 @@ struct Cuboid {
   Eigen::Vector3f size_m = Eigen::Vector3f::Ones();
   int texture = 0;
   bool moving = false;
+  int object = kRoomItself;
 };
 
 /// The six outer sides of a cuboid.

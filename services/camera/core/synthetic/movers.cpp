@@ -24,12 +24,12 @@ struct BodyPart {
 constexpr float kLegSwingRad = 0.42F, kArmSwingRad = 0.5F;
 
 void append_part(Geometry& geometry, const Eigen::Isometry3f& T_world_person, float scale, const BodyPart& part,
-                 float swing, int texture) {
+                 float swing, int texture, int object) {
   const Vector3f joint(part.center_m.x(), part.center_m.y(), part.joint_height_m);
   Eigen::Isometry3f T_person_body = Eigen::Isometry3f::Identity();
   T_person_body.linear() = Eigen::AngleAxisf(swing * part.swing_rad, Vector3f::UnitY()).toRotationMatrix();
   T_person_body.translation() = scale * (joint + T_person_body.linear() * (part.center_m - joint));
-  geometry.ellipsoids.push_back({T_world_person * T_person_body, scale * part.semi_axes_m, texture, true});
+  geometry.ellipsoids.push_back({T_world_person * T_person_body, scale * part.semi_axes_m, texture, true, object});
 }
 
 int add_texture(std::vector<Texture>& textures, Texture texture) {
@@ -81,8 +81,9 @@ void Person::append_to(Geometry& geometry, double t_s) const {
   T_world_person.translation() = Vector3f(position_m.x(), position_m.y(), 0);
   T_world_person.linear() = Eigen::AngleAxisf(path_.heading_rad(t_s), Vector3f::UnitZ()).toRotationMatrix();
   const auto swing = static_cast<float>(std::sin(step_rate_rad_s_ * t_s));
+  const int object = geometry.add_object("person");
   const auto add = [&](const BodyPart& part, float signed_swing, int texture) {
-    append_part(geometry, T_world_person, height_scale_, part, signed_swing, texture);
+    append_part(geometry, T_world_person, height_scale_, part, signed_swing, texture, object);
   };
   add({{0.02F, 0, 1.62F}, {0.105F, 0.085F, 0.135F}, 0, 0}, 0, skin_texture_);  // head
   add({{0, 0, 1.46F}, {0.055F, 0.055F, 0.10F}, 0, 0}, 0, skin_texture_);       // neck
@@ -115,6 +116,7 @@ void CarriedBox::append_to(Geometry& geometry, double t_s) const {
   box.size_m = size_m_;
   box.texture = texture_;
   box.moving = true;
+  box.object = geometry.add_object("box");
   for (const Face& face : outer_faces(box)) geometry.faces.push_back(face);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace rtd::camera::synthetic {
 namespace {
@@ -52,8 +53,12 @@ Rendering Renderer::render(const Geometry& geometry, const std::vector<Texture>&
   std::int32_t id = 0;
   for (const VisibleFace& face : faces_) cover_with_face(face, id++);
   for (const VisibleEllipsoid& ellipsoid : ellipsoids_) cover_with_ellipsoid(ellipsoid, id++);
+  objects_.assign(geometry.object_classes.size(), {});
   shade();
-  return {color_bgr_, inverse_depth_, moving_mask_};
+  std::vector<ObjectView> seen;
+  std::copy_if(objects_.begin(), objects_.end(), std::back_inserter(seen),
+               [](const ObjectView& o) { return o.visible_px > 0; });
+  return {color_bgr_, inverse_depth_, moving_mask_, std::move(seen)};
 }
 
 void Renderer::set_pose(const Eigen::Isometry3d& T_world_camera) {
@@ -81,6 +86,7 @@ void Renderer::collect(const Geometry& geometry, const std::vector<Texture>& tex
     VisibleFace visible;
     visible.texture = &textures[static_cast<std::size_t>(face.texture)];
     visible.moving = face.moving;
+    visible.object = face.object;
     visible.plane_distance_m = distance_m;
     const float scale = visible.texture->texels_per_m;
     const LinearForm toward = along(normal * (-1.0F / distance_m));  // 1/z = -(n . ray) / distance
@@ -113,6 +119,7 @@ void Renderer::collect_ellipsoid(const Ellipsoid& ellipsoid, const std::vector<T
   visible.radius_m = ellipsoid.semi_axes_m.maxCoeff();
   visible.texture = &textures[static_cast<std::size_t>(ellipsoid.texture)];
   visible.moving = ellipsoid.moving;
+  visible.object = ellipsoid.object;
   ellipsoids_.push_back(visible);
 }
 
@@ -202,22 +209,32 @@ void Renderer::shade() {
       int end = begin + 1;
       while (end < camera_.width && end < begin + kRunBlock && ids[end] == id) ++end;
       bool moving = false;
+      int object = kRoomItself;
       if (id == kNothing) {
         std::fill_n(color_bgr_.ptr<std::uint8_t>(row) + 3 * begin, 3 * (end - begin), std::uint8_t{0});
       } else if (id < face_count) {
         const VisibleFace& face = faces_[static_cast<std::size_t>(id)];
         shade_face_run(face, row, {begin, end});
-        moving = face.moving;
+        moving = face.moving, object = face.object;
       } else {
         const VisibleEllipsoid& ellipsoid = ellipsoids_[static_cast<std::size_t>(id - face_count)];
         shade_ellipsoid_run(ellipsoid, row, {begin, end});
-        moving = ellipsoid.moving;
+        moving = ellipsoid.moving, object = ellipsoid.object;
       }
+      if (object != kRoomItself) note_object(object, moving, row, {begin, end});
       std::fill(moving_mask_.ptr<std::uint8_t>(row) + begin, moving_mask_.ptr<std::uint8_t>(row) + end,
                 static_cast<std::uint8_t>(moving ? 255 : 0));
       begin = end;
     }
   }
+}
+
+void Renderer::note_object(int object, bool moving, int row, Span span) {
+  ObjectView& view = objects_[static_cast<std::size_t>(object)];
+  view.object = object;
+  view.bounds_px |= cv::Rect(span.begin, row, span.end - span.begin, 1);  // union; an empty one counts for nothing
+  view.visible_px += span.end - span.begin;
+  view.moving = view.moving || moving;
 }
 
 /// Texels of level 0 under one pixel of a surface seen head-on.

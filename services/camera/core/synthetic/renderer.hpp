@@ -11,11 +11,20 @@
 
 namespace rtd::camera::synthetic {
 
+/// What of an object is seen.
+struct ObjectView {
+  int object = kRoomItself;  ///< index
+  cv::Rect bounds_px;        ///< of its visible pixels
+  int visible_px = 0;
+  bool moving = false;  ///< some of what is seen of it moves
+};
+
 /// What an ideal pinhole RGB-D camera sees. Valid until the next call of the renderer that made it.
 struct Rendering {
-  cv::Mat color_bgr;      ///< CV_8UC3
-  cv::Mat inverse_depth;  ///< CV_32FC1, 1 / z in 1/m; 0 = nothing there
-  cv::Mat moving_mask;    ///< CV_8UC1, 255 = moving object
+  cv::Mat color_bgr;                ///< CV_8UC3
+  cv::Mat inverse_depth;            ///< CV_32FC1, 1 / z in 1/m; 0 = nothing there
+  cv::Mat moving_mask;              ///< CV_8UC1, 255 = moving object
+  std::vector<ObjectView> objects;  ///< those that are seen, by index
 };
 
 /// Draws textured rectangles and ellipsoids into a pinhole camera without distortion, exact to float precision: 1/z and
@@ -41,6 +50,7 @@ class Renderer {
     float plane_distance_m = 0;  ///< of the camera centre
     const Texture* texture = nullptr;
     bool moving = false;
+    int object = kRoomItself;
   };
   /// An ellipsoid in the frame where it is the unit sphere; the ray to a pixel is center + z * (ray0 + u * ray_u + v *
   /// ray_v).
@@ -51,6 +61,7 @@ class Renderer {
     float radius_m = 0;
     const Texture* texture = nullptr;
     bool moving = false;
+    int object = kRoomItself;
   };
   struct Span {
     int begin, end;
@@ -65,6 +76,7 @@ class Renderer {
   Span row_span(const VisibleFace& face, float v) const;
   void cover_with_ellipsoid(const VisibleEllipsoid& ellipsoid, std::int32_t id);
   void shade();
+  void note_object(int object, bool moving, int row, Span span);
   void shade_face_run(const VisibleFace& face, int row, Span span);
   void shade_ellipsoid_run(const VisibleEllipsoid& ellipsoid, int row, Span span);
   float footprint_texels(float texels_per_m, float inverse_depth) const;
@@ -75,6 +87,7 @@ class Renderer {
   Eigen::Matrix3f R_camera_world_;
   std::vector<VisibleFace> faces_;
   std::vector<VisibleEllipsoid> ellipsoids_;
+  std::vector<ObjectView> objects_;  ///< index: object; visible_px 0 = not seen
   cv::Mat color_bgr_, inverse_depth_, moving_mask_,
       ids_;  ///< ids: CV_32SC1, index of a face, then of an ellipsoid, -1 nothing
 };

@@ -100,8 +100,8 @@ std::optional<SourceFrame> SyntheticSource::next() {
   if (at_end()) return std::nullopt;
   const std::uint64_t index = counters_.frames++;
   const Eigen::Isometry3d T_world_camera = scene_.T_world_camera(time_s(index));
-  const synthetic::Rendering rendering =
-      renderer_.render(scene_.geometry_at(time_s(index)), scene_.textures(), T_world_camera);
+  const synthetic::Geometry geometry = scene_.geometry_at(time_s(index));
+  const synthetic::Rendering rendering = renderer_.render(geometry, scene_.textures(), T_world_camera);
   SourceFrame frame;
   frame.image = {index,
                  stamp_ns(index),
@@ -111,6 +111,10 @@ std::optional<SourceFrame> SyntheticSource::next() {
                  info_.camera};
   frame.dynamic_mask = rendering.moving_mask.clone();
   frame.T_world_camera = T_world_camera;
+  for (const synthetic::ObjectView& seen : rendering.objects) {
+    const std::string& class_name = geometry.object_classes[static_cast<std::size_t>(seen.object)];
+    frame.objects.push_back({seen.object, class_name, seen.bounds_px, seen.visible_px, seen.moving});
+  }
   return frame;
 }
 

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/simulated_detector.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "services/camera/core/synthetic/seeded_random.hpp"
+#include "services/detector/core/coco_classes.hpp"
+#include "services/detector/core/detector.hpp"
+#include "services/detector/core/model_locator.hpp"
+
+namespace rtd::test_support {
+namespace {
+
+using camera::synthetic::SeededRandom;
+using Boxes = std::vector<vision::Detection>;
+
+constexpr float kLowestScore = 0.3F, kHighestScore = 0.95F;
+
+SeededRandom random_of(const DetectorOptions& options, const camera::SourceFrame& frame) {
+  SeededRandom seeds(options.seed * 0x9E3779B97F4A7C15ULL + frame.image.seq);
+  return SeededRandom(seeds.next());
+}
+
+bool detectable(const camera::SourceObject& object, const DetectorOptions& options) {
+  const auto& classes = detector::coco_class_names();
+  return object.visible_px >= options.min_visible_px &&
+         std::find(classes.begin(), classes.end(), object.class_name) != classes.end();
+}
+
+/// The box with every edge a little off, within the image.
+vision::Detection jittered(const camera::SourceObject& object, float share, const cv::Size& image,
+                           SeededRandom& random) {
+  const cv::Rect2f box = object.box_px;
+  const auto edge = [&](float at, float size, int end) {
+    return std::clamp(at + share * size * random.normal(), 0.0F, static_cast<float>(end));
+  };
+  const float left = edge(box.x, box.width, image.width), right = edge(box.x + box.width, box.width, image.width);
+  const float top = edge(box.y, box.height, image.height), low = edge(box.y + box.height, box.height, image.height);
+  const float score = random.between(kLowestScore, kHighestScore);
+  return {object.class_name, score, left, top, std::max(right - left, 1.0F), std::max(low - top, 1.0F)};
+}
+
+Boxes see_truth(const camera::SourceFrame& frame, const DetectorOptions& options) {
+  if (!frame.T_world_camera) throw std::invalid_argument("detector truth: only synthetic sources know their objects");
+  SeededRandom random = random_of(options, frame);
+  Boxes boxes;
+  for (const camera::SourceObject& object : frame.objects) {
+    const bool missed = static_cast<double>(random.unit()) < options.missed_share;
+    vision::Detection box =
+        jittered(object, static_cast<float>(options.jitter_share), frame.image.color_bgr.size(), random);
+    if (!missed && detectable(object, options)) boxes.push_back(std::move(box));
+  }
+  return boxes;
+}
+
+Boxes lie(const camera::SourceFrame& frame, const DetectorOptions& options) {
+  SeededRandom random = random_of(options, frame);
+  const auto& classes = detector::coco_class_names();
+  const auto width = static_cast<float>(frame.image.color_bgr.cols),
+             height = static_cast<float>(frame.image.color_bgr.rows);
+  Boxes boxes(static_cast<std::size_t>(random.index(options.max_lies + 1)));
+  for (vision::Detection& box : boxes) {
+    box.class_name = random.unit() < 0.5F
+                         ? "person"
+                         : classes[static_cast<std::size_t>(random.index(static_cast<int>(classes.size())))];
+    box.score = random.between(kLowestScore, kHighestScore);
+    box.width_px = random.between(0.03F, 0.6F) * width, box.height_px = random.between(0.03F, 0.9F) * height;
+    box.x_px = random.between(0, width - box.width_px), box.y_px = random.between(0, height - box.height_px);
+  }
+  return boxes;
+}
+
+Look real_look() {
+  const detector::ModelSearch model = detector::find_model("", detector::process_environment());
+  if (!model) throw std::invalid_argument(model.message);
+  detector::DetectorConfig config;
+  config.model_path = model.path;
+  return [network = std::make_shared<detector::Detector>(config)](const camera::SourceFrame& frame) {
+    return network->detect(frame.image.color_bgr);
+  };
+}
+
+}  // namespace
+
+Look make_look(const DetectorOptions& options) {
+  if (options.kind == "real") return real_look();
+  if (options.kind == "truth") return [options](const auto& frame) { return see_truth(frame, options); };
+  if (options.kind == "lying") return [options](const auto& frame) { return lie(frame, options); };
+  throw std::invalid_argument("unknown detector '" + options.kind + "': real, truth, lying, off");
+}
+
+}  // namespace rtd::test_support

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/vision/detection.hpp"
+#include "services/camera/core/frame_source.hpp"
+
+namespace rtd::test_support {
+
+/// A span in which the detector is gone, seconds after the first frame.
+struct Outage {
+  double begin_s = 0, end_s = 0;
+};
+
+/// Which detector a run has, and how fast it is.
+struct DetectorOptions {
+  /// off; real: the network in RTD_MODEL_DIR; truth: the boxes that the source knows, a little wrong, now and then
+  /// missed; lying: random boxes of random classes
+  std::string kind = "real";
+  double rate_hz = 0;   ///< at most so many images a second, 0 = every frame
+  double delay_ms = 0;  ///< from an image to its boxes; other images wait meanwhile
+  std::vector<Outage> outages;
+  std::uint64_t seed = 1;      ///< of truth and lying
+  double jitter_share = 0.03;  ///< truth: standard deviation of each edge, of the box's size
+  double missed_share = 0.04;  ///< truth: boxes that are not found
+  int min_visible_px = 900;    ///< truth: less of an object is not found
+  int max_lies = 8;            ///< lying: boxes of one image
+};
+
+/// The boxes that a detector finds in one frame.
+using Look = std::function<std::vector<vision::Detection>(const camera::SourceFrame&)>;
+
+/// What the detector of `options` finds; a pure function of seed and frame for truth and lying. Not for kind off.
+/// Throws std::invalid_argument for an unknown kind and, at the first frame, for truth without SourceFrame::objects.
+Look make_look(const DetectorOptions& options);
+
+}  // namespace rtd::test_support
