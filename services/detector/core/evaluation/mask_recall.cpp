@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/detector/core/evaluation/mask_recall.hpp"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace rtd::detector {
+namespace {
+
+constexpr std::size_t kMinPerson_px = 400;
+constexpr double kFoundShare = 0.5, kBesideShare = 0.05;
+
+std::size_t count(const cv::Mat& mask) {
+  return static_cast<std::size_t>(cv::countNonZero(mask));
+}
+
+cv::Rect pixels_of(const vision::Detection& box, cv::Size image) {
+  const cv::Point corner(cvRound(box.x_px), cvRound(box.y_px));
+  const cv::Point opposite(cvRound(box.x_px + box.width_px), cvRound(box.y_px + box.height_px));
+  return cv::Rect(corner, opposite) & cv::Rect({0, 0}, image);
+}
+
+void count_people(const cv::Mat& marked, const cv::Mat& covered, MaskRecall& recall) {
+  cv::Mat labels, stats, centroids;
+  const int areas = cv::connectedComponentsWithStats(marked, labels, stats, centroids);
+  for (int i = 1; i < areas; ++i) {
+    const auto area_px = static_cast<std::size_t>(stats.at<int>(i, cv::CC_STAT_AREA));
+    if (area_px < kMinPerson_px) continue;
+    ++recall.people;
+    if (static_cast<double>(count((labels == i) & covered)) >= kFoundShare * static_cast<double>(area_px)) {
+      ++recall.people_found;
+    }
+  }
+}
+
+}  // namespace
+
+double MaskRecall::pixel_recall() const {
+  return pixels == 0 ? 1 : static_cast<double>(covered_pixels) / static_cast<double>(pixels);
+}
+
+double MaskRecall::image_share() const {
+  return images == 0 ? 1 : static_cast<double>(images_complete) / static_cast<double>(images);
+}
+
+MaskRecall& MaskRecall::operator+=(const MaskRecall& other) {
+  images += other.images;
+  images_complete += other.images_complete;
+  pixels += other.pixels;
+  covered_pixels += other.covered_pixels;
+  people += other.people;
+  people_found += other.people_found;
+  boxes += other.boxes;
+  boxes_beside += other.boxes_beside;
+  return *this;
+}
+
+MaskRecall measure_mask_recall(const cv::Mat& mask, const std::vector<vision::Detection>& boxes) {
+  const cv::Mat marked = mask != 0;
+  cv::Mat boxed = cv::Mat::zeros(mask.size(), CV_8UC1);
+  MaskRecall recall;
+  recall.images = 1;
+  for (const vision::Detection& box : boxes) {
+    const cv::Rect area = pixels_of(box, mask.size());
+    if (area.empty()) continue;
+    boxed(area).setTo(255);
+    ++recall.boxes;
+    if (static_cast<double>(count(marked(area))) < kBesideShare * area.area()) ++recall.boxes_beside;
+  }
+  recall.pixels = count(marked);
+  recall.covered_pixels = count(marked & boxed);
+  count_people(marked, marked & boxed, recall);
+  recall.images_complete = recall.people == recall.people_found ? 1 : 0;
+  return recall;
+}
+
+}  // namespace rtd::detector

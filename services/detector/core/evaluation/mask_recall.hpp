@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "common/vision/detection.hpp"
+
+namespace rtd::detector {
+
+/// How much of what a mask marks lies in boxes. Sums up over images with +=.
+struct MaskRecall {
+  std::size_t images = 0, images_complete = 0;  ///< complete: every person in it found
+  std::size_t pixels = 0, covered_pixels = 0;   ///< marked; marked and inside a box
+  std::size_t people = 0, people_found = 0;     ///< connected marked areas of 400 px or more; half of it inside boxes
+  std::size_t boxes = 0, boxes_beside = 0;      ///< beside: less than 5 % of the box is marked (pictures of people)
+
+  double pixel_recall() const;  ///< 1 when nothing is marked
+  double image_share() const;   ///< images_complete / images
+  MaskRecall& operator+=(const MaskRecall& other);
+};
+
+/// One image: `mask` (CV_8UC1, not 0 = marked) against boxes in the same pixels.
+MaskRecall measure_mask_recall(const cv::Mat& mask, const std::vector<vision::Detection>& boxes);
+
+}  // namespace rtd::detector
