@@ -20,6 +20,7 @@ enum class MessageId : std::uint8_t {
   kTrackingResult,
   kServiceStatus,
   kCompressedImage,
+  kImage,
   kCameraInfo,
   kDetection2DArray,
   kOdometry,
@@ -52,6 +53,8 @@ template <>
 struct MessageTraits<msg::ServiceStatus> : MessageTraitsBase<MessageId::kServiceStatus, false> {};
 template <>
 struct MessageTraits<msg::CompressedImage> : MessageTraitsBase<MessageId::kCompressedImage, false> {};
+template <>
+struct MessageTraits<msg::Image> : MessageTraitsBase<MessageId::kImage, false> {};
 template <>
 struct MessageTraits<msg::CameraInfo> : MessageTraitsBase<MessageId::kCameraInfo, false> {};
 template <>

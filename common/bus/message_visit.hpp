@@ -25,6 +25,8 @@ decltype(auto) visit_message_type(MessageId id, Visitor&& visitor) {
       return visitor.template operator()<msg::ServiceStatus>();
     case MessageId::kCompressedImage:
       return visitor.template operator()<msg::CompressedImage>();
+    case MessageId::kImage:
+      return visitor.template operator()<msg::Image>();
     case MessageId::kCameraInfo:
       return visitor.template operator()<msg::CameraInfo>();
     case MessageId::kDetection2DArray:

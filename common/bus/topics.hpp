@@ -24,11 +24,13 @@ inline constexpr Topic<msg::CompressedImage> kColorJpeg{"rt/camera/color/image_r
                                                         QosProfile::kNetworkFrame};
 inline constexpr Topic<msg::CameraInfo> kCameraInfo{"rt/camera/color/camera_info", QosProfile::kLatched};
 inline constexpr Topic<msg::Detection2DArray> kDetections{"rt/detector/detections", QosProfile::kDetections};
+inline constexpr Topic<msg::Image> kDynamicMask{"rt/filter/dynamic_mask", QosProfile::kDetections};
 inline constexpr Topic<msg::Odometry> kOdometry{"rt/slam/odometry", QosProfile::kPose};
 inline constexpr Topic<msg::PoseStamped> kPose{"rt/slam/pose", QosProfile::kPose};
 inline constexpr Topic<msg::TFMessage> kTf{"rt/tf", QosProfile::kPose};
 inline constexpr Topic<msg::Path> kPath{"rt/slam/path", QosProfile::kPose};
 inline constexpr Topic<msg::PointCloud2> kMapPoints{"rt/slam/map_points", QosProfile::kLatched};
+inline constexpr Topic<msg::PointCloud2> kDensePoints{"rt/dense/points", QosProfile::kLatched};
 inline constexpr Topic<msg::DiagnosticArray> kDiagnostics{"rt/diagnostics", QosProfile::kPose};
 }  // namespace topics
 

@@ -77,6 +77,14 @@ struct CompressedImage {
   std::string format;
   std::vector<std::uint8_t> data;
 };
+struct Image {
+  Header header;
+  std::uint32_t height = 0, width = 0;
+  std::string encoding;  ///< "mono8", "bgr8", ...
+  std::uint8_t is_bigendian = 0;
+  std::uint32_t step = 0;  ///< bytes of a row
+  std::vector<std::uint8_t> data;
+};
 struct RegionOfInterest {
   std::uint32_t x_offset = 0, y_offset = 0, height = 0, width = 0;
   bool do_rectify = false;

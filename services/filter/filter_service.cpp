@@ -41,6 +41,7 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
     detector_heard_ns_ = status.state == msg::ServiceState::kFinished ? 0 : service::monotonic_ns();
   });
   writer_ = runtime.bus.writer(bus::topics::kFeatures);
+  mask_writer_ = runtime.bus.writer(bus::topics::kDynamicMask);
   tracking_reader_ = runtime.bus.reader<msg::TrackingResult>(
       bus::topics::kTracking,
       [this](const std::shared_ptr<const msg::TrackingResult>& result) { feedback_->put(*result); });
@@ -85,9 +86,16 @@ void FilterService::answer(const msg::RgbdFrame& frame) {
   FilterResult result = filter_.judge(image, std::move(features), word_of(frame.stamp_ns, paired.detections));
   result.stage_ms[msg::kStageWaitDetections] = static_cast<float>(static_cast<double>(waited_ns) * 1e-6);
   fill_message(frame, result, paired.use, *message_);
+  publish_mask(frame, result);
   writer_.write(*message_);
   ++answered_;
   count(result);
+}
+
+/// Before the features, so that whoever has slam's pose of a frame need not wait for its mask. Costs nothing unless
+/// somebody listens.
+void FilterService::publish_mask(const msg::RgbdFrame& frame, const FilterResult& result) {
+  if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result));
 }
 
 /// False for a frame that is not to be processed: from a second camera, defective, or sent again (answered again).

@@ -48,6 +48,7 @@ class FilterService {
   bool accept(const msg::RgbdFrame& frame);
   void answer_defective(const msg::RgbdFrame& frame, const std::string& cause);
   void forget(const msg::RgbdFrame& frame, const char* cause);
+  void publish_mask(const msg::RgbdFrame& frame, const FilterResult& result);
   bool detector_heard() const;
   bool foreign(const msg::RgbdFrame& frame);
   void listen_to_slam();
@@ -64,6 +65,7 @@ class FilterService {
   std::shared_ptr<DetectionInbox> detections_ = std::make_shared<DetectionInbox>();
   std::shared_ptr<SlamFeedback> feedback_ = std::make_shared<SlamFeedback>();
   bus::Writer<msg::FeatureFrame> writer_;
+  bus::Writer<msg::Image> mask_writer_;
   bus::Reader<msg::RgbdFrame> frame_reader_;
   bus::Reader<msg::Detection2DArray> detection_reader_;
   bus::Reader<msg::TrackingResult> tracking_reader_;

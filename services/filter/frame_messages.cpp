@@ -71,4 +71,19 @@ void fill_message(const msg::RgbdFrame& frame, const FilterResult& result, msg::
   }
 }
 
+msg::Image make_mask(const msg::RgbdFrame& frame, const FilterResult& result) {
+  const auto cells = [](std::uint32_t px) { return std::max(1U, px / kCellPx); };
+  const bool judged = !result.motion.empty();
+  msg::Image mask;
+  mask.header = {msg::to_time(frame.stamp_ns), "camera_color_optical_frame"};
+  mask.width = judged ? static_cast<std::uint32_t>(result.cells.columns) : cells(frame.width);
+  mask.height = judged ? static_cast<std::uint32_t>(result.cells.rows) : cells(frame.height);
+  mask.encoding = "mono8";
+  mask.step = mask.width;
+  mask.data.resize(std::size_t{mask.width} * mask.height, static_cast<std::uint8_t>(CellMotion::kStatic));
+  std::transform(result.motion.begin(), result.motion.end(), mask.data.begin(),
+                 [](CellMotion motion) { return static_cast<std::uint8_t>(motion); });
+  return mask;
+}
+
 }  // namespace rtd::filter

@@ -16,6 +16,7 @@ struct ConvertedType;
 // clang-format off
 template <> struct ConvertedType<msg::ServiceStatus> { using PubSub = rtd_msgs::msg::dds_::ServiceStatus_PubSubType; };
 template <> struct ConvertedType<msg::CompressedImage> { using PubSub = sensor_msgs::msg::dds_::CompressedImage_PubSubType; };
+template <> struct ConvertedType<msg::Image> { using PubSub = sensor_msgs::msg::dds_::Image_PubSubType; };
 template <> struct ConvertedType<msg::CameraInfo> { using PubSub = sensor_msgs::msg::dds_::CameraInfo_PubSubType; };
 template <> struct ConvertedType<msg::PointCloud2> { using PubSub = sensor_msgs::msg::dds_::PointCloud2_PubSubType; };
 template <> struct ConvertedType<msg::Detection2DArray> { using PubSub = vision_msgs::msg::dds_::Detection2DArray_PubSubType; };

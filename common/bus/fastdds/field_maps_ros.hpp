@@ -45,6 +45,18 @@ template <> struct FieldMap<msg::CompressedImage> {
     copy(plain.data, vendor.data());
   }
 };
+template <> struct FieldMap<msg::Image> {
+  using Vendor = sensor_msgs::msg::dds_::Image_;
+  static void pair(auto& plain, auto& vendor, auto copy) {
+    copy(plain.header, vendor.header());
+    copy(plain.height, vendor.height());
+    copy(plain.width, vendor.width());
+    copy(plain.encoding, vendor.encoding());
+    copy(plain.is_bigendian, vendor.is_bigendian());
+    copy(plain.step, vendor.step());
+    copy(plain.data, vendor.data());
+  }
+};
 template <> struct FieldMap<msg::RegionOfInterest> {
   using Vendor = sensor_msgs::msg::dds_::RegionOfInterest_;
   static void pair(auto& plain, auto& vendor, auto copy) {

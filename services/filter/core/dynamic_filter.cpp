@@ -19,6 +19,7 @@ struct DynamicFilter::Scene {
   DepthGrid grid;
   DepthClusters clusters;
   std::vector<std::uint8_t> may_move;  ///< per cell, 1 = on an object of a high level
+  bool watched = false;                ///< somebody has looked for objects in this frame
 };
 
 struct DynamicFilter::Geometry {
@@ -50,6 +51,15 @@ std::vector<char> on_cells(const std::vector<msg::Feature>& features, const Grid
     on[i] = cells[static_cast<std::size_t>(shape.nearest_cell(features[i].u_px, features[i].v_px))] != 0 ? 1 : 0;
   }
   return on;
+}
+
+/// `spoken`: cells that are not dynamic were found to be at rest.
+std::vector<CellMotion> cell_motion(const CellMask& dynamic, bool spoken) {
+  std::vector<CellMotion> motion(dynamic.size());
+  std::transform(dynamic.begin(), dynamic.end(), motion.begin(), [spoken](std::uint8_t moves) {
+    return moves != 0 ? CellMotion::kDynamic : spoken ? CellMotion::kStatic : CellMotion::kUnknown;
+  });
+  return motion;
 }
 
 std::vector<int> clusters_of(const std::vector<msg::Feature>& features, const DepthClusters& clusters) {
@@ -106,12 +116,13 @@ DynamicFilter::Scene DynamicFilter::look_at(const vision::RgbdImage& image) {
   DepthGrid grid = sampler_.sample(image);
   DepthClusters clusters = find_depth_clusters(grid, config_.clusters);
   const auto cells = static_cast<std::size_t>(grid.shape.size());
-  return {image, std::move(grid), std::move(clusters), std::vector<std::uint8_t>(cells, 0)};
+  return {image, std::move(grid), std::move(clusters), std::vector<std::uint8_t>(cells, 0), false};
 }
 
 void DynamicFilter::find_what_may_move(const Detections& detections, Scene& scene, FilterResult& result) const {
   if (!detections || !uses_semantics(config_.mode)) return;
   StageClock clock(now_ns_);
+  scene.watched = true;
   result.objects = find_objects(*detections, levels_, scene.image.camera, scene.grid, scene.clusters, config_.masks);
   for (const SceneObject& object : result.objects) {
     if (object.level != MotionLevel::kHigh || object.flat) continue;
@@ -183,7 +194,7 @@ void DynamicFilter::weigh(const Scene& scene, const Geometry& geometry, FilterRe
   result.stage_ms[msg::kStageFuse] = clock.lap_ms();
 }
 
-void DynamicFilter::remember(Scene scene, const Geometry& geometry, const FilterResult& result) {
+void DynamicFilter::remember(Scene scene, const Geometry& geometry, FilterResult& result) {
   something_masked_ = result.removed > 0;
   memory_.store(scene.grid, sampler_.rays(), geometry.regions.frames_left);
   View view;
@@ -195,6 +206,8 @@ void DynamicFilter::remember(Scene scene, const Geometry& geometry, const Filter
   for (std::size_t cell = 0; cell < view.dynamic.size(); ++cell) {
     view.dynamic[cell] = view.dynamic[cell] != 0 || scene.may_move[cell] != 0 ? 1 : 0;
   }
+  result.cells = scene.grid.shape;
+  result.motion = cell_motion(view.dynamic, uses_geometry(config_.mode) ? geometry.regions.trusted : scene.watched);
   view.grid = std::move(scene.grid);
   view.features = result.features;
   views_.add(std::move(view));

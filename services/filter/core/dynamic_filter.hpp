@@ -23,6 +23,13 @@
 
 namespace rtd::filter {
 
+/// What is known of the motion of a grid cell; the values are grey values of the picture that is published.
+enum class CellMotion : std::uint8_t {
+  kStatic = 0,
+  kUnknown = 128,  ///< nothing that may move covers the cell, but whether it moves could not be found out
+  kDynamic = 255,  ///< moves, or belongs to an object of a high level; grown by masks.dilate_cells
+};
+
 /// What the filter found out about one frame.
 struct FilterResult {
   std::vector<msg::Feature> features;  ///< removed ones included and flagged
@@ -31,7 +38,9 @@ struct FilterResult {
   std::uint32_t dynamic_clusters = 0;  ///< depth clusters that geometry found moving, with or without a class
   bool pose_reliable = false;          ///< geometry had a pose and could speak
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< the quick estimate
-  std::array<float, msg::kFilterStages> stage_ms{};                  ///< by msg::FilterStage, waiting not included
+  GridShape cells;                                   ///< shape of `motion`, in undistorted pixels; 0x0 in mode off
+  std::vector<CellMotion> motion;                    ///< per cell
+  std::array<float, msg::kFilterStages> stage_ms{};  ///< by msg::FilterStage, waiting not included
 };
 
 using Detections = std::optional<std::vector<vision::Detection>>;
@@ -84,7 +93,7 @@ class DynamicFilter {
   void find_what_may_move(const Detections& detections, Scene& scene, FilterResult& result) const;
   Geometry find_what_moves(const Scene& scene, FilterResult& result);
   void weigh(const Scene& scene, const Geometry& geometry, FilterResult& result);
-  void remember(Scene scene, const Geometry& geometry, const FilterResult& result);
+  void remember(Scene scene, const Geometry& geometry, FilterResult& result);
   Eigen::Isometry3d predict_pose() const;
 
   FilterConfig config_;

@@ -170,6 +170,20 @@ TEST_F(FilterServiceTest, pairs_each_frame_with_its_own_boxes) {
   EXPECT_EQ(answers_.at(1)->stamp_ns, stamp(1));
 }
 
+TEST_F(FilterServiceTest, publishes_what_moves_to_those_who_listen) {
+  Inbox<msg::Image> masks;
+  const auto reader =
+      bus_->reader<msg::Image>(bus::topics::kDynamicMask, [&](auto mask) { masks.take(std::move(mask)); });
+  start(service::Pace::kAsap, true);
+  send_boxes(0, true);
+  send_frame(0);
+  ASSERT_TRUE(masks.wait_count(1));
+  EXPECT_EQ(msg::to_ns(masks.at(0)->header.stamp), stamp(0));
+  EXPECT_EQ(masks.at(0)->width, 160U);
+  const cv::Rect block = test::MovingScene::block(0, 0);
+  EXPECT_EQ(masks.at(0)->data.at(static_cast<std::size_t>(160 * (block.y / 4 + 2) + block.x / 4 + 2)), 255);
+}
+
 TEST_F(FilterServiceTest, waits_for_boxes_that_come_late) {
   start(service::Pace::kAsap, true);
   send_frame(0);

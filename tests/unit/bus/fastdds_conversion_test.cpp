@@ -11,8 +11,8 @@ namespace {
 template <class T>
 class Conversion : public testing::Test {};
 using ConvertedMessages =
-    testing::Types<msg::ServiceStatus, msg::CompressedImage, msg::CameraInfo, msg::Detection2DArray, msg::Odometry,
-                   msg::PoseStamped, msg::TFMessage, msg::Path, msg::PointCloud2, msg::DiagnosticArray>;
+    testing::Types<msg::ServiceStatus, msg::CompressedImage, msg::Image, msg::CameraInfo, msg::Detection2DArray,
+                   msg::Odometry, msg::PoseStamped, msg::TFMessage, msg::Path, msg::PointCloud2, msg::DiagnosticArray>;
 TYPED_TEST_SUITE(Conversion, ConvertedMessages);
 
 /// Through conversion, XCDR1 bytes and back.

@@ -29,9 +29,10 @@ TopicFacts facts(const Topic<T>& topic) {
 
 std::vector<TopicFacts> all_topics() {
   using namespace topics;
-  return {facts(kFrame),     facts(kFeatures),   facts(kKeyframes),  facts(kTracking),   facts(kStatus),
-          facts(kColorJpeg), facts(kCameraInfo), facts(kDetections), facts(kOdometry),   facts(kPose),
-          facts(kTf),        facts(kPath),       facts(kMapPoints),  facts(kDiagnostics)};
+  return {facts(kFrame),     facts(kFeatures),    facts(kKeyframes),   facts(kTracking),
+          facts(kStatus),    facts(kColorJpeg),   facts(kCameraInfo),  facts(kDetections),
+          facts(kOdometry),  facts(kPose),        facts(kTf),          facts(kPath),
+          facts(kMapPoints), facts(kDiagnostics), facts(kDynamicMask), facts(kDensePoints)};
 }
 
 TEST(Topics, have_names_of_their_own) {

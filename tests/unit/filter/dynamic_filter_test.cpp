@@ -93,6 +93,24 @@ TEST(DynamicFilter, ignores_boxes_in_geometry_mode_and_everything_in_mode_off) {
   }
 }
 
+TEST(DynamicFilter, tells_cell_by_cell_what_moves_and_of_what_it_knows_nothing) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kRtd);
+  const cv::Rect block = MovingScene::block(0, 0);
+  const std::vector<vision::Detection> boxes{
+      {"person", 0.9F, static_cast<float>(block.x - 10), static_cast<float>(block.y - 10), 160, 240}};
+  FilterResult result = filter.apply(scene.render(0, 0, 0), boxes);
+  const auto at = [&](int x_px, int y_px) {
+    return result.motion.at(static_cast<std::size_t>(result.cells.cell_at(x_px, y_px)));
+  };
+  EXPECT_EQ(at(block.x + 2, block.y + 2), CellMotion::kDynamic);
+  EXPECT_EQ(at(block.x - 40, block.y), CellMotion::kUnknown) << "nothing to compare the first frame with";
+  for (std::uint64_t i = 1; i < 4; ++i) result = filter.apply(scene.render(i, 0, 0), boxes);
+  EXPECT_EQ(at(block.x + 2, block.y + 2), CellMotion::kDynamic);
+  EXPECT_EQ(at(block.x - 40, block.y), CellMotion::kStatic);
+  EXPECT_TRUE(make_filter(FilterMode::kOff).apply(scene.render(0, 0, 0), boxes).motion.empty());
+}
+
 TEST(DynamicFilter, extracts_more_features_while_something_is_masked) {
   const MovingScene scene;
   DynamicFilter filter = make_filter(FilterMode::kRtd);

@@ -98,6 +98,26 @@ TEST(FrameMessages, name_what_is_wrong_with_a_frame) {
   EXPECT_THAT(defect(*frame), testing::HasSubstr("5000"));
 }
 
+TEST(FrameMessages, show_the_motion_of_the_cells_as_a_grey_picture) {
+  const auto frame = std::make_unique<msg::RgbdFrame>();
+  *frame = {};
+  frame->stamp_ns = 1'500'000'000;
+  frame->width = 12;
+  frame->height = 8;
+  FilterResult result;
+  EXPECT_EQ(make_mask(*frame, result).data, std::vector<std::uint8_t>(6, 0)) << "mode off: all is static";
+  result.cells = {3, 2};
+  result.motion.assign(6, CellMotion::kUnknown);
+  result.motion[4] = CellMotion::kDynamic;
+  const msg::Image mask = make_mask(*frame, result);
+  EXPECT_EQ(msg::to_ns(mask.header.stamp), 1'500'000'000);
+  EXPECT_EQ(mask.encoding, "mono8");
+  EXPECT_EQ(mask.width, 3U);
+  EXPECT_EQ(mask.height, 2U);
+  EXPECT_EQ(mask.step, 3U);
+  EXPECT_THAT(mask.data, testing::ElementsAre(128, 128, 128, 128, 255, 128));
+}
+
 TEST(FilterConfig, is_bound_completely_and_refuses_what_is_out_of_range) {
   ServiceConfig config;
   service::ConfigBinder binder;
