@@ -32,8 +32,33 @@ enum class TrackingState : std::uint32_t {
   kOk = 1,
   kRecentlyLost = 2,
   kLost = 3,
-  kRelocalizing = 4
+  kRelocalizing = 4,
+  kPredicted = 5,  ///< nothing static in view: the motion goes on as before for a moment, nothing is measured
 };
+
+/// For logs, diagnostics and the live line.
+constexpr const char* to_string(TrackingState state) {
+  switch (state) {
+    case TrackingState::kInitializing:
+      return "initializing";
+    case TrackingState::kOk:
+      return "ok";
+    case TrackingState::kRecentlyLost:
+      return "recently lost";
+    case TrackingState::kLost:
+      return "lost";
+    case TrackingState::kRelocalizing:
+      return "relocalizing";
+    case TrackingState::kPredicted:
+      return "predicted";
+  }
+  return "unknown";
+}
+
+/// Whether a result of this state bears a pose: measured (kOk) or predicted.
+constexpr bool has_pose(TrackingState state) {
+  return state == TrackingState::kOk || state == TrackingState::kPredicted;
+}
 
 /// Stages of slam whose time travels in TrackingResult::stage_ms.
 enum SlamStage : std::uint32_t {
@@ -52,7 +77,7 @@ struct TrackingResult {
   std::int64_t stamp_ns;
   std::int64_t published_ns;          ///< copied from the RgbdFrame
   std::int64_t finished_ns;           ///< CLOCK_MONOTONIC when the pose was ready; latency = finished_ns - published_ns
-  Transform T_world_camera;           ///< valid in state kOk only; camera frame is optical
+  Transform T_world_camera;           ///< valid where has_pose(state); camera frame is optical
   std::array<double, 36> covariance;  ///< 6x6 row-major, order x y z rx ry rz, m and rad, in the world frame
   std::uint64_t event_count;          ///< keyframe events published up to and including this frame
   TrackingState state;

@@ -39,22 +39,6 @@ std::string text(double value) {
 
 }  // namespace
 
-const char* to_string(msg::TrackingState state) {
-  switch (state) {
-    case msg::TrackingState::kInitializing:
-      return "initialising";
-    case msg::TrackingState::kOk:
-      return "ok";
-    case msg::TrackingState::kRecentlyLost:
-      return "recently lost";
-    case msg::TrackingState::kLost:
-      return "lost";
-    case msg::TrackingState::kRelocalizing:
-      break;
-  }
-  return "relocalising";
-}
-
 msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& names) {
   return {{msg::to_time(result.stamp_ns), names.map}, to_pose(result.T_world_camera)};
 }

@@ -36,7 +36,4 @@ struct SlamCounters {
 msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const SlamCounters& counters,
                                       const std::string& trouble, std::int64_t stamp_ns);
 
-/// "ok", "recently lost", ...
-const char* to_string(msg::TrackingState state);
-
 }  // namespace rtd::slam

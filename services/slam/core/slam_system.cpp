@@ -66,7 +66,7 @@ TrackOutcome SlamSystem::initialize(const FrameInput& input, SlamOutput& output)
   }
   if (!tracker_.can_initialize(*input.frame)) {
     output.problem =
-        "initialising: fewer than " + std::to_string(config_.tracker.min_initial_points) + " features with depth";
+        "initializing: fewer than " + std::to_string(config_.tracker.min_initial_points) + " features with depth";
     return {};
   }
   const std::int64_t start_ns = now_ns_();

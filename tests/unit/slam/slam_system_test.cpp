@@ -138,7 +138,7 @@ TEST(SlamSystem, finds_back_after_a_jump) {
   EXPECT_LT(position_error_m(output.result.T_world_camera, kFar), 1e-3);
 }
 
-TEST(SlamSystem, stays_initialising_without_depth) {
+TEST(SlamSystem, stays_initializing_without_depth) {
   const FeatureWorld world({});
   SlamSystem slam = make_slam();
   for (std::uint64_t seq = 0; seq < 3; ++seq) {

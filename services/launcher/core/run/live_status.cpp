@@ -6,22 +6,6 @@
 
 namespace rtd::launcher {
 
-const char* to_string(msg::TrackingState state) {
-  switch (state) {
-    case msg::TrackingState::kInitializing:
-      return "initializing";
-    case msg::TrackingState::kOk:
-      return "ok";
-    case msg::TrackingState::kRecentlyLost:
-      return "recently lost";
-    case msg::TrackingState::kLost:
-      return "lost";
-    case msg::TrackingState::kRelocalizing:
-      return "relocalizing";
-  }
-  return "unknown";
-}
-
 std::string format_live_status(const LiveStatus& status) {
   const std::string count = status.total > 0 ? fmt::format("frame {}/{}", status.frames, status.total)
                                              : fmt::format("frame {}", status.frames);

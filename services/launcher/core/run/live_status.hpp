@@ -23,8 +23,6 @@ struct LiveStatus {
   double latency_ms = 0;      ///< camera -> pose, median of the last frames
 };
 
-const char* to_string(msg::TrackingState state);
-
 /// "frame 123/210  29.8 fps  ok  inliers 213  dynamic 87  dropped 0  latency 31 ms", always short enough for 100
 /// columns.
 std::string format_live_status(const LiveStatus& status);
