@@ -7,6 +7,12 @@ namespace {
 
 using service::ConfigBinder;
 
+void bind_techniques(ConfigBinder& binder, Techniques& t) {
+  binder.field("techniques.landmark_belief", t.landmark_belief, "off: landmarks weigh the mean of their observations");
+  binder.field("techniques.adaptive_kernel", t.adaptive_kernel, "off: Huber's loss with a fixed threshold");
+  binder.field("techniques.prediction", t.prediction, "off: lost at once when nothing static is in view");
+}
+
 void bind_sensor(ConfigBinder& binder, SensorConfig& c) {
   binder.field("sensor.disparity_px_m", c.disparity_px_m, {1.0, 10000.0},
                "weight of depth: a disparity of this / depth counts like a pixel");
@@ -61,6 +67,7 @@ void bind_mapper(ConfigBinder& binder, MapperConfig& c) {
 }  // namespace
 
 void ServiceConfig::bind(ConfigBinder& binder) {
+  bind_techniques(binder, core.techniques);
   bind_sensor(binder, core.sensor);
   bind_tracker(binder, core.tracker);
   bind_keyframe(binder, core.keyframe);

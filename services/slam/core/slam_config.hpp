@@ -6,6 +6,13 @@ namespace rtd::slam {
 
 /// Every number of the SLAM core with its default; bound to keys `slam.*` in services/slam/config.cpp.
 
+/// One switch for each technique beyond ORB-SLAM2's tracking and mapping, so that its worth can be measured.
+struct Techniques {
+  bool landmark_belief = true;  ///< landmarks bear a static probability over time; off: the mean of their observations
+  bool adaptive_kernel = true;  ///< robust loss fitted to the residuals; off: Huber with a fixed threshold
+  bool prediction = true;       ///< a short, marked prediction when nothing static is in view; off: lost at once
+};
+
 /// The camera and its features, as SLAM weighs them.
 struct SensorConfig {
   double disparity_px_m = 40.0;  ///< weight of depth against pixels, vision::RgbdProjection::disparity_px_m
@@ -41,12 +48,13 @@ struct MapperConfig {
   int ba_keyframes = 12;          ///< optimised keyframes of a local bundle adjustment
   int ba_fixed_keyframes = 20;    ///< keyframes that hold the gauge
   int ba_iterations_robust = 5;   ///< with Huber, before outliers are taken out
-  int ba_iterations = 0;  ///< after that, inliers only and no loss; 0 = no second stage
+  int ba_iterations = 0;          ///< after that, inliers only and no loss; 0 = no second stage
   double correction_m = 0.002;    ///< a keyframe that moved more is announced again
   double correction_rad = 0.001;
 };
 
 struct SlamConfig {
+  Techniques techniques;
   SensorConfig sensor;
   TrackerConfig tracker;
   KeyframeConfig keyframe;
