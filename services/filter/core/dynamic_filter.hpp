@@ -11,6 +11,7 @@
 #include "common/msg/tracking.hpp"
 #include "common/vision/detection.hpp"
 #include "common/vision/rgbd_image.hpp"
+#include "services/filter/core/detector_word.hpp"
 #include "services/filter/core/dynamic_memory.hpp"
 #include "services/filter/core/dynamic_regions.hpp"
 #include "services/filter/core/ego_motion.hpp"
@@ -19,6 +20,7 @@
 #include "services/filter/core/object_history.hpp"
 #include "services/filter/core/object_masks.hpp"
 #include "services/filter/core/orb_extractor.hpp"
+#include "services/filter/core/tracks/box_tracks.hpp"
 #include "services/filter/core/view_store.hpp"
 
 namespace rtd::filter {
@@ -42,22 +44,6 @@ struct FilterResult {
   std::vector<CellMotion> motion;                    ///< per cell
   std::array<float, msg::kFilterStages> stage_ms{};  ///< by msg::FilterStage, waiting not included
 };
-
-using Detections = std::optional<std::vector<vision::Detection>>;
-
-/// One answer of the detector: the boxes of the frame with this stamp, perhaps none.
-struct DetectorAnswer {
-  std::int64_t stamp_ns = 0;
-  std::vector<vision::Detection> detections;
-};
-
-/// What was heard of the detector since the frame before.
-struct DetectorWord {
-  bool watching = false;                ///< somebody looks: silence means "not yet"; else geometry only
-  std::vector<DetectorAnswer> answers;  ///< new ones by stamp; of this frame or of earlier ones, late ones included
-};
-/// The boxes of this very frame; empty optional = nobody looks.
-DetectorWord word_of(std::int64_t stamp_ns, const Detections& detections);
 
 /// Tells the static world from what moves, DESIGN section 4: which features slam may use, and how much. The theory is
 /// in docs/theory/dynamic_points.md.
@@ -90,7 +76,10 @@ class DynamicFilter {
   struct Scene;     // the frame in cells: depth, surfaces, objects
   struct Geometry;  // pose and evidence
   Scene look_at(const vision::RgbdImage& image);
-  void find_what_may_move(const Detections& detections, Scene& scene, FilterResult& result) const;
+  void find_what_may_move(const DetectorWord& word, Scene& scene, FilterResult& result);
+  std::vector<ObjectBox> boxes_now(const DetectorWord& word, const Scene& scene);
+  std::vector<ObjectBox> follow_boxes(const DetectorWord& word, const Scene& scene);
+  double roll_rate_rad_s() const;
   Geometry find_what_moves(const Scene& scene, FilterResult& result);
   void weigh(const Scene& scene, const Geometry& geometry, FilterResult& result);
   void remember(Scene scene, const Geometry& geometry, FilterResult& result);
@@ -104,6 +93,8 @@ class DynamicFilter {
   ViewStore views_;
   DynamicMemory memory_;
   ObjectHistory history_;
+  BoxTracks box_tracks_;
+  std::int64_t watched_ns_ = 0;   ///< stamp of the last frame for which somebody looked
   bool something_masked_ = true;  ///< in the last frame; the first is treated as if
   float extract_ms_ = 0;
 };

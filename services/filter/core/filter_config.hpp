@@ -7,6 +7,7 @@
 
 #include "common/geometry/depth_noise.hpp"
 #include "services/filter/core/orb/orb_config.hpp"
+#include "services/filter/core/tracks/box_kalman.hpp"
 
 namespace rtd::filter {
 
@@ -56,7 +57,7 @@ struct ClusterConfig {
 /// How a box becomes a mask.
 struct MaskConfig {
   bool whole_boxes = false;  ///< the box is the object, its depth is not looked at
-  double min_share = 0.15;  ///< the object is the nearest cluster with this share of the measured cells of its box
+  double min_share = 0.15;   ///< the object is the nearest cluster with this share of the measured cells of its box
   double max_object_depth_m = 0.5;   ///< cells this far behind or before the object's median depth do not belong to it
   double min_contained = 0.5;        ///< share of a cluster inside the box from which the whole cluster is the object
   double min_outline_step_m = 0.15;  ///< an outline counts as a step when the outside lies this much farther
@@ -108,6 +109,19 @@ struct FusionConfig {
   double boost = 1.5;             ///< times as many features while something is masked
 };
 
+/// The life of box tracks; docs/theory/dynamic_points.md section 6.
+struct BoxTrackConfig {
+  BoxNoise noise;
+  double min_overlap = 0.15;      ///< intersection over union of a track's box and a detection, less: not the same
+  double max_match_cost = 1.0;    ///< 1 - overlap, and what another class and another depth add
+  int confirm_hits = 2;           ///< seen less often: the first answer without it ends it
+  double survive_misses_s = 0.5;  ///< answers without a confirmed track are believed after this time
+  double silence_s = 1.5;         ///< without any answer a track is carried this long
+  double fast_roll_deg_s = 30.0;  ///< turning faster about the optical axis: answers without a track do not count
+  double roll_patience_s = 3.0;   ///< but not for longer than this
+  double unwatched_s = 0.5;       ///< nobody looks for this long: geometry only
+};
+
 /// Everything the core needs; defaults are the tested values.
 struct FilterConfig {
   FilterMode mode = FilterMode::kRtd;
@@ -118,6 +132,7 @@ struct FilterConfig {
   EgoMotionConfig ego_motion;
   GeometryConfig geometry;
   FusionConfig fusion;
+  BoxTrackConfig tracks;
   std::map<std::string, std::string>
       motion_levels;  ///< class name -> "high" | "medium" | "low" | "none", over the built-in table
 };

@@ -9,6 +9,15 @@
 namespace rtd::filter {
 namespace {
 
+constexpr float kAbsurdPx = 1e5F;
+
+bool is_box(const vision::Detection& box) {
+  for (const float value : {box.x_px, box.y_px, box.width_px, box.height_px}) {
+    if (!std::isfinite(value) || std::abs(value) > kAbsurdPx) return false;
+  }
+  return box.width_px > 0 && box.height_px > 0;
+}
+
 /// A box in cells, ends excluded.
 struct CellBox {
   int left, top, right, bottom;
@@ -17,10 +26,7 @@ struct CellBox {
 
 std::optional<CellBox> to_cells(const vision::Detection& box, const geometry::CameraModel& camera,
                                 const GridShape& shape) {
-  constexpr float kAbsurdPx = 1e5F;
-  for (const float value : {box.x_px, box.y_px, box.width_px, box.height_px}) {
-    if (!std::isfinite(value) || std::abs(value) > kAbsurdPx) return std::nullopt;
-  }
+  if (!is_box(box)) return std::nullopt;
   const auto& p = camera.parameters();
   const Eigen::Vector2d size(p.width - 1, p.height - 1);
   const Eigen::Vector2d first = Eigen::Vector2d(box.x_px, box.y_px).cwiseMax(0.0).cwiseMin(size);
@@ -76,6 +82,16 @@ const ClusterInBox* object_cluster(const std::vector<ClusterInBox>& inside, doub
     if (nearest == nullptr || cluster.median_m < nearest->median_m) nearest = &cluster;
   }
   return nearest;
+}
+
+/// The largest cluster near the depth that is expected of the object; none when it is hidden.
+const ClusterInBox* cluster_at_depth(const std::vector<ClusterInBox>& inside, double depth_m, double tolerance_m) {
+  const ClusterInBox* largest = nullptr;
+  for (const ClusterInBox& cluster : inside) {
+    if (std::abs(static_cast<double>(cluster.median_m) - depth_m) > tolerance_m) continue;
+    if (largest == nullptr || cluster.cells.size() > largest->cells.size()) largest = &cluster;
+  }
+  return largest;
 }
 
 /// The object's own cluster (all of it when it lies mostly in the box) and the parts of it that a depth step cut off.
@@ -143,25 +159,58 @@ std::vector<int> all_cells(const CellBox& box, const GridShape& shape) {
 
 }  // namespace
 
-std::vector<SceneObject> find_objects(const std::vector<vision::Detection>& detections, const MotionLevels& levels,
-                                      const geometry::CameraModel& camera, const DepthGrid& grid,
-                                      const DepthClusters& clusters, const MaskConfig& config) {
+std::vector<vision::Detection> usable_detections(const std::vector<vision::Detection>& detections,
+                                                 const MotionLevels& levels) {
   std::vector<const vision::Detection*> known;
   for (const vision::Detection& detection : detections) {
-    if (std::isfinite(detection.score) && levels.find(detection.class_name)) known.push_back(&detection);
+    if (std::isfinite(detection.score) && is_box(detection) && levels.find(detection.class_name))
+      known.push_back(&detection);
   }
   std::stable_sort(known.begin(), known.end(), [](const auto* a, const auto* b) { return a->score > b->score; });
   if (known.size() > kMaxObjects) known.resize(kMaxObjects);
+  std::vector<vision::Detection> usable;
+  for (const vision::Detection* detection : known) usable.push_back(*detection);
+  return usable;
+}
 
+double depth_in_box(const vision::Detection& box, const geometry::CameraModel& camera, const DepthGrid& grid) {
+  const vision::Detection middle{
+      box.class_name,      box.score,           box.x_px + 0.2F * box.width_px, box.y_px + 0.2F * box.height_px,
+      0.6F * box.width_px, 0.6F * box.height_px};
+  const std::optional<CellBox> cells = to_cells(middle, camera, grid.shape);
+  std::vector<float> depths;
+  if (cells) {
+    for (const int cell : all_cells(*cells, grid.shape)) {
+      const float depth_m = grid.depth_m[static_cast<std::size_t>(cell)];
+      if (depth_m > 0) depths.push_back(depth_m);
+    }
+  }
+  if (depths.empty()) return 0;
+  const auto quarter = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 4);
+  std::nth_element(depths.begin(), quarter, depths.end());
+  return static_cast<double>(*quarter);
+}
+
+std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const MotionLevels& levels,
+                                      const geometry::CameraModel& camera, const DepthGrid& grid,
+                                      const DepthClusters& clusters, const MaskConfig& config) {
   std::vector<SceneObject> objects;
-  for (const vision::Detection* detection : known) {
-    const std::optional<CellBox> box = to_cells(*detection, camera, grid.shape);
+  for (const ObjectBox& from : boxes) {
+    const vision::Detection& detection = from.detection;
+    const std::optional<MotionLevel> level = levels.find(detection.class_name);
+    const std::optional<CellBox> box = level ? to_cells(detection, camera, grid.shape) : std::nullopt;
     if (!box) continue;
-    SceneObject object{detection->class_name, detection->score, *levels.find(detection->class_name), {}, false};
+    SceneObject object{detection.class_name, detection.score,  *level,      {}, false,
+                       from.track_id,        from.track_age_s, from.carried};
     const auto inside = config.whole_boxes ? std::vector<ClusterInBox>{} : clusters_in(*box, grid, clusters);
-    if (const ClusterInBox* cluster = object_cluster(inside, config.min_share)) {
+    const bool depth_known = from.carried && from.depth_m > 0;
+    const ClusterInBox* cluster = depth_known ? cluster_at_depth(inside, from.depth_m, config.max_object_depth_m)
+                                              : object_cluster(inside, config.min_share);
+    if (cluster != nullptr) {
       object.cells = collect_cells(*cluster, inside, grid, clusters, config);
       object.flat = outline_step_share(object.cells, grid, config.min_outline_step_m) < config.min_outline_share;
+    } else if (from.carried && !config.whole_boxes) {
+      continue;
     } else {
       object.cells = all_cells(*box, grid.shape);
     }

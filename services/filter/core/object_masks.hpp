@@ -22,12 +22,31 @@ struct SceneObject {
   MotionLevel level = MotionLevel::kHigh;
   std::vector<int> cells;  ///< ascending; what the mask covers, before dilation
   bool flat = false;       ///< no depth step around it: a picture on a wall, geometry alone decides
+  int track_id = -1;       ///< the same object has the same number in every frame; -1 = not tracked
+  double track_age_s = 0;  ///< since it was seen first
+  bool carried = false;    ///< the detector said nothing of it in this frame: its track did
 };
 
-/// The objects whose class has a motion level, with masks: inside each box the nearest large depth cluster is the
-/// object, the background seen through the box stays. Boxes that are not finite, empty or outside the image are left
-/// out; at most kMaxObjects, the highest scores first.
-std::vector<SceneObject> find_objects(const std::vector<vision::Detection>& detections, const MotionLevels& levels,
+/// A box to cut an object from.
+struct ObjectBox {
+  vision::Detection detection;
+  int track_id = -1;
+  double track_age_s = 0;
+  bool carried = false;
+  double depth_m = 0;  ///< expected depth of a carried object, 0 = unknown
+};
+
+/// Detections whose class has a level and whose numbers make a box within `kAbsurdPx` of the image, the kMaxObjects
+/// highest scores, best first.
+std::vector<vision::Detection> usable_detections(const std::vector<vision::Detection>& detections,
+                                                 const MotionLevels& levels);
+/// Depth of what stands in the middle of a box, the nearer quarter of it; 0 = nothing measured.
+double depth_in_box(const vision::Detection& box, const geometry::CameraModel& camera, const DepthGrid& grid);
+
+/// The objects with masks: inside each box the nearest large depth cluster is the object, or of a carried box the
+/// largest near its depth; the background seen through the box stays. Boxes without a level or outside the image are
+/// left out, and carried ones where nothing is found.
+std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const MotionLevels& levels,
                                       const geometry::CameraModel& camera, const DepthGrid& grid,
                                       const DepthClusters& clusters, const MaskConfig& config);
 inline constexpr std::size_t kMaxObjects = 64;

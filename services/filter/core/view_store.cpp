@@ -64,6 +64,12 @@ void ViewStore::forget_keyframe(std::uint64_t seq) {
   std::erase_if(keyframes_, [seq](const View& view) { return view.seq == seq; });
 }
 
+const View* ViewStore::at(std::int64_t stamp_ns) const {
+  const auto found =
+      std::find_if(recent_.rbegin(), recent_.rend(), [&](const View& view) { return view.stamp_ns == stamp_ns; });
+  return found == recent_.rend() ? nullptr : &*found;
+}
+
 const View& ViewStore::of_age(std::int64_t now_ns, std::int64_t age_ns) const {
   return *std::min_element(recent_.begin(), recent_.end(), [&](const View& a, const View& b) {
     if (a.settled != b.settled) return a.settled;

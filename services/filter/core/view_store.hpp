@@ -44,6 +44,8 @@ class ViewStore {
   const View& newest() const { return recent_.back(); }
   /// The view before the newest one; null when there is none.
   const View* second_newest() const { return recent_.size() < 2 ? nullptr : &recent_[recent_.size() - 2]; }
+  /// The recent view with this stamp; null when there is none.
+  const View* at(std::int64_t stamp_ns) const;
   /// The settled recent view whose age is nearest to the wanted one. Precondition: not empty.
   const View& of_age(std::int64_t now_ns, std::int64_t age_ns) const;
   /// Up to `count` views to compare a camera at this pose with: recent ones of graded ages, then keyframes older than

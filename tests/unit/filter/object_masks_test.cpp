@@ -20,7 +20,10 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::nume
 
 std::vector<SceneObject> find(const vision::RgbdImage& image, const std::vector<vision::Detection>& detections) {
   const DepthGrid grid = test::make_sampler().sample(image);
-  return find_objects(detections, MotionLevels{}, image.camera, grid, find_depth_clusters(grid, ClusterConfig{}),
+  std::vector<ObjectBox> boxes;
+  for (const vision::Detection& d : usable_detections(detections, MotionLevels{}))
+    boxes.push_back({d, -1, 0, false, 0});
+  return find_objects(boxes, MotionLevels{}, image.camera, grid, find_depth_clusters(grid, ClusterConfig{}),
                       MaskConfig{});
 }
 std::vector<std::uint8_t> mask_of(const SceneObject& object) {

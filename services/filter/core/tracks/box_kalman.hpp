@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "common/vision/detection.hpp"
+
+namespace rtd::filter {
+
+/// A box in pixels of the camera's own image.
+struct Box {
+  Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
+  Eigen::Vector2d size_px = Eigen::Vector2d::Zero();
+  double area_px2() const { return size_px.prod(); }
+};
+Box box_of(const vision::Detection& detection);
+/// Shared area over joint area, 0..1.
+double intersection_over_union(const Box& a, const Box& b);
+
+/// How a box moved from one image to the next.
+struct BoxFlow {
+  Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();  ///< of its centre
+  double scale = 1;
+};
+
+/// Noise in units of the box's own size, so that near and far objects are treated alike.
+struct BoxNoise {
+  double detection = 0.05;      ///< standard deviation of a detected centre or side
+  double acceleration = 4.0;    ///< of the object, box sizes / s^2
+  double flow = 0.01;           ///< of a shift measured by optical flow from image to image
+  double first_velocity = 1.5;  ///< of a box seen once, box sizes / s
+};
+
+/// Kalman filter of a box: centre and size with constant velocity, the four axes independent of each other
+/// (docs/theory/dynamic_points.md Eq. (6)-(8)). Measured by detections (position) and by optical flow (velocity).
+class BoxKalman {
+ public:
+  BoxKalman(const Box& first, const BoxNoise& noise);
+
+  void predict(double dt_s);
+  void detected(const Box& measured);
+  /// The motion of the next `dt_s`, to be followed by predict(dt_s).
+  void flowed(const BoxFlow& flow, double dt_s);
+
+  Box box() const;
+  Eigen::Vector2d velocity_px_s() const { return {axes_[0].state[1], axes_[1].state[1]}; }
+  double sigma_px(std::size_t axis) const;  ///< of centre x, y, width, height
+
+ private:
+  struct Axis {
+    Eigen::Vector2d state = Eigen::Vector2d::Zero();  ///< px, px/s
+    Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+    void update(const Eigen::RowVector2d& observe, double measured, double sigma);
+  };
+  /// The size that noise on this axis is measured in.
+  double unit_px(std::size_t axis) const;
+
+  BoxNoise noise_;
+  std::array<Axis, 4> axes_;  ///< centre x, y, width, height
+};
+
+}  // namespace rtd::filter
