@@ -57,16 +57,30 @@ void bind_ego_motion(ConfigBinder& binder, EgoMotionConfig& c) {
   binder.field("ego.max_observations", c.max_observations, {20, 2048}, "per pose optimisation");
   binder.field("ego.min_inliers", c.min_inliers, {6, 1000}, "fewer: no pose, geometry makes no statement");
   binder.field("ego.min_image_share", c.min_image_share, {0.0, 1.0}, "less of the image agrees: no pose");
+  binder.field("ego.max_proposals", c.max_proposals, {0, 64}, "surfaces that propose a motion");
+  binder.field("ego.max_proposal_sightings", c.max_proposal_sightings, {6, 2048}, "features per proposal");
 }
 
 void bind_geometry(ConfigBinder& binder, GeometryConfig& c) {
+  binder.field("geometry.noise_offset_m", c.noise.offset_m, {0.0, 0.1}, "depth noise: this");
+  binder.field("geometry.noise_factor_per_m", c.noise.factor_per_m, {0.0, 0.1}, "plus this times depth squared");
   binder.field("geometry.tau_floor_m", c.tau_floor_m, {0.01, 2.0}, "smallest depth difference that says something");
   binder.field("geometry.tau_sigmas", c.tau_sigmas, {1.0, 50.0}, "and so many standard deviations");
   binder.field("geometry.max_view_angle_deg", c.max_view_angle_deg, {1.0, 90.0}, "larger angle: no statement");
   binder.field("geometry.max_views", c.max_views, {1, 30}, "reference views per frame");
   binder.field("geometry.min_cluster_statements", c.min_cluster_statements, {1, 10000}, "before a cluster is judged");
   binder.field("geometry.min_violated_share", c.min_violated_share, {0.01, 1.0}, "that makes a cluster dynamic");
-  binder.field("geometry.memory_frames", c.memory_frames, {0, 1000}, "a dynamic surface is remembered so long");
+  binder.field("geometry.min_region_cells", c.min_region_cells, {1, 10000}, "smaller moving regions are noise");
+  binder.field("geometry.min_resting_cells", c.min_resting_cells, {1, 100000},
+               "a part of a moving surface may rest from this size");
+  binder.field("geometry.min_resting_ratio", c.min_resting_ratio, {1.0, 1000.0},
+               "so many times more features at their place than displaced: at rest");
+  binder.field("geometry.min_moving_features", c.min_moving_features, {1, 2048}, "before a surface is judged by them");
+  binder.field("geometry.min_moving_share", c.min_moving_share, {0.05, 1.0}, "of its features displaced: it moves");
+  binder.field("geometry.max_static_chi2", c.max_static_chi2, {0.1, 100.0}, "a feature displaced less is at its place");
+  binder.field("geometry.min_moving_chi2", c.min_moving_chi2, {0.1, 1000.0}, "one displaced more has moved");
+  binder.field("geometry.memory_frames", c.memory_frames, {0, 255}, "a dynamic surface is remembered so long");
+  binder.field("geometry.loose_memory_frames", c.loose_memory_frames, {0, 255}, "a moving part of a resting surface");
   binder.field("geometry.max_dynamic_share", c.max_dynamic_share, {0.1, 1.0},
                "more of the image dynamic: no statement");
 }
