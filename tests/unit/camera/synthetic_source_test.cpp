@@ -6,26 +6,20 @@
 
 #include "services/camera/core/source_factory.hpp"
 #include "services/camera/core/tum_export.hpp"
+#include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"
 
 namespace rtd::camera {
 namespace {
 
+using test::agreement;
+using test::Agreement;
+using test::play;
+using test::same;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
-
-std::vector<SourceFrame> play(const std::string& uri) {
-  const auto source = make_source(uri);
-  std::vector<SourceFrame> frames;
-  while (auto frame = source->next()) frames.push_back(std::move(*frame));
-  return frames;
-}
-
-bool same(const cv::Mat& a, const cv::Mat& b) {
-  return a.size() == b.size() && cv::norm(a, b, cv::NORM_L1) == 0;
-}
 
 TEST(SyntheticSource, GivesTheSameBitsForTheSameSeed) {
   const auto first = play("synthetic:office?frames=3&seed=7"), second = play("synthetic:office?frames=3&seed=7");
@@ -45,32 +39,6 @@ TEST(SyntheticSource, StampsFramesAtItsRate) {
   EXPECT_EQ(frames[3].image.seq, 3U);
   EXPECT_EQ(frames[3].image.stamp_ns - frames[0].image.stamp_ns, 300'000'000);
   EXPECT_EQ(frames[0].image.stamp_ns % 1000, 0) << "TUM files carry microseconds";
-}
-
-/// Share of the pixels of frame b that see at the predicted depth what frame a saw there, and their number.
-struct Agreement {
-  double share = 0;
-  int pixels = 0;
-};
-Agreement agreement(const SourceFrame& a, const SourceFrame& b, const cv::Mat& left_out) {
-  const geometry::CameraModel& camera = a.image.camera;
-  const Eigen::Isometry3d T_b_a = b.T_world_camera->inverse() * *a.T_world_camera;
-  int agreeing = 0, compared = 0;
-  for (int v = 0; v < a.image.depth.rows; v += 3) {
-    for (int u = 0; u < a.image.depth.cols; u += 3) {
-      const double depth_m = a.image.depth.at<std::uint16_t>(v, u) * a.image.depth_scale_m;
-      if (depth_m == 0 || left_out.at<std::uint8_t>(v, u) != 0) continue;
-      const Eigen::Vector3d p_b = T_b_a * camera.unproject({u, v}, depth_m);
-      const Eigen::Vector2d pixel = camera.project(p_b);
-      if (p_b.z() < 0.5 || !camera.contains(pixel, 1)) continue;
-      const cv::Point at(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
-      const double seen_m = b.image.depth.at<std::uint16_t>(at) * b.image.depth_scale_m;
-      if (seen_m == 0 || b.dynamic_mask.at<std::uint8_t>(at) != 0) continue;
-      ++compared;
-      if (std::abs(seen_m - p_b.z()) < 0.01 + 0.01 * p_b.z()) ++agreeing;
-    }
-  }
-  return {compared > 0 ? static_cast<double>(agreeing) / compared : 0.0, compared};
 }
 
 TEST(SyntheticSource, PosesAndDepthAgreeBetweenFrames) {
@@ -171,7 +139,9 @@ TEST(SyntheticSource, PassesOverFramesWithoutChangingTheLaterOnes) {
 
 TEST(SyntheticSource, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT([] { make_source("synthetic:kitchen"); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr("'kitchen'"), HasSubstr("office, static, box, crowd, tour"))));
+              ThrowsMessage<SourceError>(
+                  AllOf(HasSubstr("'kitchen'"),
+                        HasSubstr("office, static, box, crowd, tour, sitting, fill, approach, slow, flicker"))));
   EXPECT_THAT([] { make_source("synthetic:office?sed=1"); },
               ThrowsMessage<SourceError>(AllOf(HasSubstr("'sed'"), HasSubstr("seed"))));
   EXPECT_THAT([] { make_source("synthetic:office?width=1280"); }, ThrowsMessage<SourceError>(HasSubstr("[64, 640]")));

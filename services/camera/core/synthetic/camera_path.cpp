@@ -14,9 +14,11 @@ constexpr double kSecondShare = 0.3;    ///< of the amplitude, in a faster sway
 constexpr double kSecondRate = 2.618;   ///< times the rate: never in step with the first
 constexpr double kTremorShare = 0.004;  ///< of the amplitude
 constexpr double kTremorRateRadS = 23.0;
+constexpr double kWatchingYawShare = 0.4;
 constexpr double kTurnRateRadS = kTwoPi / 60.0;
 constexpr double kMeanYM = -1.5, kMeanZM = 1.3, kMeanPitchRad = -0.14;
 
+constexpr std::size_t kYaw = 3;  ///< index of Sway
 struct Axis {
   double amplitude, rate_rad_s;
 };
@@ -47,6 +49,7 @@ CameraPath::CameraPath(CameraMotion motion, std::uint64_t seed) : motion_(motion
     const double first = phase(), second = phase();
     sways_[i] = {kAxes[i].amplitude, kAxes[i].rate_rad_s, first, second, phase()};
   }
+  if (motion == CameraMotion::kWatching) sways_[kYaw].amplitude *= kWatchingYawShare;
 }
 
 Eigen::Isometry3d CameraPath::T_world_camera(double t_s) const {

@@ -11,6 +11,7 @@ namespace rtd::camera::synthetic {
 /// How the camera moves.
 enum class CameraMotion {
   kHandHeld,  ///< swaying in the rear half of the room, looking to the front
+  kWatching,  ///< the same sway, turning less: what is in the middle stays in view
   kTour,      ///< the same sway while turning round once a minute
 };
 

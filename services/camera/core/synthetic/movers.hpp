@@ -4,9 +4,18 @@
 
 #include <cstdint>
 
+#include "services/camera/core/synthetic/figure.hpp"
 #include "services/camera/core/synthetic/geometry.hpp"
+#include "services/camera/core/synthetic/seeded_random.hpp"
 
 namespace rtd::camera::synthetic {
+
+/// Something that moves, or may. A pure function of the time; adds the same objects in the same order every time.
+class Mover {
+ public:
+  virtual ~Mover() = default;
+  virtual void append_to(Geometry& geometry, double t_s) const = 0;
+};
 
 /// The part of the floor where movers walk, world frame: x within +-reach_x_m, y around center_y_m. In front of
 /// CameraRoom.
@@ -27,30 +36,38 @@ class FloorPath {
   float rate_x_, rate_y_, phase_x_, phase_y_;  ///< rad/s, rad
 };
 
-/// A figure of ellipsoids (head, torso, hips, arms, legs) that walks with swinging limbs.
-class Person {
+/// Somebody who walks about with swinging limbs.
+class Walker final : public Mover {
  public:
   /// Adds the person's textures to `textures`.
-  Person(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures);
-  void append_to(Geometry& geometry, double t_s) const;
+  Walker(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures);
+  void append_to(Geometry& geometry, double t_s) const override;
 
  private:
   FloorPath path_;
-  float height_scale_, step_rate_rad_s_;
-  int skin_texture_, shirt_texture_, trousers_texture_;
+  Figure figure_;
 };
 
-/// A box that is carried about, bobbing and turning: of no class that a detector knows.
-class CarriedBox {
+/// A box of no class that a detector knows.
+struct MovingBox {
+  Eigen::Vector3f size_m = Eigen::Vector3f::Ones();
+  int texture = 0;  ///< index
+  /// Adds an object of class "box" with the middle of its lower side at `position_m`, turned about the vertical.
+  void append_to(Geometry& geometry, const Eigen::Vector3f& position_m, float turned_rad) const;
+};
+/// A random texture that is large enough for a box; its index.
+int paint_box(SeededRandom& random, const Eigen::Vector3f& size_m, std::vector<Texture>& textures);
+
+/// A box that is carried about, bobbing and turning.
+class CarriedBox final : public Mover {
  public:
   CarriedBox(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures);
-  void append_to(Geometry& geometry, double t_s) const;
+  void append_to(Geometry& geometry, double t_s) const override;
 
  private:
   FloorPath path_;
-  Eigen::Vector3f size_m_;
+  MovingBox box_;
   float height_m_, turn_rate_rad_s_, phase_rad_;
-  int texture_;
 };
 
 }  // namespace rtd::camera::synthetic

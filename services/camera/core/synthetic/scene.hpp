@@ -3,24 +3,34 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "services/camera/core/synthetic/camera_path.hpp"
+#include "services/camera/core/synthetic/lighting.hpp"
 #include "services/camera/core/synthetic/movers.hpp"
 #include "services/camera/core/synthetic/room.hpp"
 
 namespace rtd::camera::synthetic {
 
+/// Movers with a plot; staged_movers.hpp.
+enum class Plot { kNone, kSitter, kBlocker, kAxialBox, kSlowBoxes };
+
 /// What is in a scene beside the room.
 struct SceneSpec {
   std::string name;
-  int people = 0, boxes = 0;
+  int people = 0, boxes = 0;  ///< who walk about, which are carried about
   CameraMotion motion = CameraMotion::kHandHeld;
-  WalkArea area;
+  WalkArea area = {};
+  Plot plot = Plot::kNone;
+  std::uint64_t frames = 300;  ///< of a clip, unless asked for otherwise
+  double flicker = 0;          ///< Lighting's unrest, [0, 1]
+  double sit_s = 10;           ///< a sitter rises after this time
+  double fidget_rad = 0.03;    ///< ... and moves arms and head so much meanwhile
 };
 
-/// The scenes that have a name: office, static, box, crowd, tour.
+/// The scenes that have a name.
 const std::vector<SceneSpec>& scene_catalog();
 
 /// The world of a synthetic source; everything is a pure function of seed and time.
@@ -29,14 +39,17 @@ class Scene {
   Scene(const SceneSpec& spec, std::uint64_t seed);
   Geometry geometry_at(double t_s) const;
   Eigen::Isometry3d T_world_camera(double t_s) const { return camera_path_.T_world_camera(t_s); }
+  const Lighting& lighting() const { return lighting_; }
   const std::vector<Texture>& textures() const { return textures_; }
 
  private:
+  void add_plot(const SceneSpec& spec, SeededRandom& random);
+
   std::vector<Texture> textures_;
   std::vector<Face> room_;
-  std::vector<Person> people_;
-  std::vector<CarriedBox> boxes_;
+  std::vector<std::unique_ptr<Mover>> movers_;
   CameraPath camera_path_;
+  Lighting lighting_;
 };
 
 }  // namespace rtd::camera::synthetic

@@ -55,6 +55,7 @@ synthetic::SensorModel make_sensor(const SyntheticOptions& options) {
 SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
   SyntheticOptions options;
   options.scene = find_scene(uri);
+  options.frames = options.scene.frames;
   struct Parameter {
     const char* key;
     double min, max;
@@ -67,14 +68,18 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
       {"noise", 0, 1, [&](double v) { options.noise = v > 0; }},
       {"people", 0, 20, [&](double v) { options.scene.people = static_cast<int>(v); }},
       {"boxes", 0, 20, [&](double v) { options.scene.boxes = static_cast<int>(v); }},
+      {"flicker", 0, 1, [&](double v) { options.scene.flicker = v; }},
+      {"sit", 0, 1e6, [&](double v) { options.scene.sit_s = v; }},
+      {"fidget", 0, 0.5, [&](double v) { options.scene.fidget_rad = v; }},
       {"width", 64, msg::kMaxFrameWidth, [&](double v) { options.width = static_cast<int>(v); }},
       {"height", 48, msg::kMaxFrameHeight, [&](double v) { options.height = static_cast<int>(v); }}};
   for (const auto& [key, value] : uri.parameters) {
     const auto known =
         std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& p) { return key == p.key; });
     if (known == parameters.end()) {
-      throw SourceError("source '" + uri.text + "': unknown parameter '" + key +
-                        "'; known: seed, frames (0 = endless), fps, noise, people, boxes, width, height");
+      throw SourceError(
+          "source '" + uri.text + "': unknown parameter '" + key +
+          "'; known: seed, frames (0 = endless), fps, noise, people, boxes, flicker, sit, fidget, width, height");
     }
     known->assign(number_in(uri, key, value, known->min, known->max));
   }
@@ -101,7 +106,8 @@ std::optional<SourceFrame> SyntheticSource::next() {
   const std::uint64_t index = counters_.frames++;
   const Eigen::Isometry3d T_world_camera = scene_.T_world_camera(time_s(index));
   const synthetic::Geometry geometry = scene_.geometry_at(time_s(index));
-  const synthetic::Rendering rendering = renderer_.render(geometry, scene_.textures(), T_world_camera);
+  synthetic::Rendering rendering = renderer_.render(geometry, scene_.textures(), T_world_camera);
+  scene_.lighting().apply(rendering.color_bgr, time_s(index));
   SourceFrame frame;
   frame.image = {index,
                  stamp_ns(index),

@@ -16,7 +16,7 @@ namespace rtd::camera {
 struct SyntheticOptions {
   synthetic::SceneSpec scene;
   std::uint64_t seed = 1;
-  std::uint64_t frames = 300;  ///< 0 = endless
+  std::uint64_t frames = 0;  ///< 0 = endless
   double fps = 30;
   bool noise = true;
   int width = 640, height = 480;
