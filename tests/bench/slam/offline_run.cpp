@@ -6,6 +6,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "services/launcher/core/evaluation/ate.hpp"
 #include "tests/support/offline_pipeline.hpp"
@@ -39,6 +40,34 @@ void print(const rtd::test_support::OfflineReport& report) {
     std::printf("  %-16s mean %7.2f  p50 %7.2f  p99 %7.2f ms\n", name.c_str(), sum / static_cast<double>(values.size()),
                 percentile(values, 0.5), percentile(values, 0.99));
   }
+}
+
+/// One line for programs; null where nothing could be measured.
+void print_json(const rtd::test_support::OfflineReport& report) {
+  double lost_m = 0;  // worst position error
+  for (const auto& point : rtd::eval::ate(report.trajectory, report.groundtruth).points) {
+    lost_m = std::max(lost_m, point.error_m);
+  }
+  const rtd::test_support::RemovalQuality& removal = report.removal;
+  const bool masks = removal.removed_rightly + removal.kept_wrongly > 0;
+  const bool removes = removal.removed_rightly + removal.removed_wrongly > 0;
+  const auto ms = [&](const char* stage) {
+    const auto found = report.stage_ms.find(stage);
+    return found == report.stage_ms.end() ? nlohmann::json() : nlohmann::json(percentile(found->second, 0.5));
+  };
+  const nlohmann::json line = {{"frames", report.frames},
+                               {"coverage", report.coverage},
+                               {"ate_m", report.ate_rmse_m},
+                               {"max_error_m", lost_m},
+                               {"rpe_m", report.rpe_trans_rmse_m},
+                               {"rpe_deg", report.rpe_rot_rmse_deg},
+                               {"keyframes", report.keyframes},
+                               {"landmarks", report.landmarks},
+                               {"precision", masks && removes ? nlohmann::json(removal.precision()) : nlohmann::json()},
+                               {"recall", masks ? nlohmann::json(removal.recall()) : nlohmann::json()},
+                               {"filter_ms", ms("filter.total")},
+                               {"slam_ms", ms("slam.total")}};
+  std::printf("%s\n", line.dump().c_str());  // NaN is written as null
 }
 
 /// "2:3" -> from second 2 to second 3.
@@ -77,7 +106,7 @@ int main(int argc, char** argv) {
   CLI::App app("RTD-SLAM offline: accuracy and stage times of one source");
   rtd::test_support::OfflineOptions options;
   std::string trajectory_file;
-  bool verbose = false, threaded = false, errors = false;
+  bool verbose = false, threaded = false, errors = false, json = false;
   auto& slam = options.slam;
   app.add_option("--source", options.source, "source URI or TUM folder")->required();
   app.add_option("--mode", options.front_end.mode, "off, true-mask, semantic, geometry, rtd");
@@ -98,6 +127,7 @@ int main(int argc, char** argv) {
   app.add_flag_callback(
       "--cpu-time", [&] { options.now_ns = cpu_ns; }, "slam's stage times in CPU time");
   app.add_flag("--errors", errors, "position error of every frame after alignment, metres");
+  app.add_flag("--json", json, "one line of JSON instead of the table");
   app.add_flag("--verbose", verbose, "a line per frame");
   CLI11_PARSE(app, argc, argv);
   if (options.source.find(':') == std::string::npos) {
@@ -117,7 +147,7 @@ int main(int argc, char** argv) {
   }
   try {
     const auto report = rtd::test_support::run_offline(options);
-    print(report);
+    json ? print_json(report) : print(report);
     if (errors) print_errors(report);
     if (!trajectory_file.empty()) std::ofstream(trajectory_file) << report.trajectory_tum;
   } catch (const std::exception& error) {
