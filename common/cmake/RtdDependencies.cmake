@@ -4,7 +4,7 @@
 # Every third-party package, found once. docs/dependencies.md says why each is here.
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs features2d dnn)
+find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs features2d calib3d video dnn)
 find_package(Ceres 2.1 REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(CLI11 REQUIRED)

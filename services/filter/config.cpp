@@ -11,12 +11,6 @@ namespace {
 
 using service::ConfigBinder;
 
-std::vector<std::string> mode_names() {
-  std::vector<std::string> names;
-  for (const ModeEntry& entry : all_modes()) names.emplace_back(entry.name);
-  return names;
-}
-
 void bind_techniques(ConfigBinder& binder, Techniques& techniques) {
   for (const NamedTechnique& technique : all_techniques()) {
     binder.field(std::string("techniques.") + technique.name, techniques.*technique.on,
@@ -95,7 +89,25 @@ void bind_fusion(ConfigBinder& binder, FusionConfig& c) {
   binder.field("fusion.boost", c.boost, {1.0, 2.0}, "times as many features while something is masked");
 }
 
+void bind_published(ConfigBinder& binder, EpipolarConfig& epipolar, PaperConfig& paper) {
+  binder.field("epipolar.max_corners", epipolar.max_corners, {50, 10000}, "mode epipolar: corners followed");
+  binder.field("epipolar.max_distance_px", epipolar.max_distance_px, {0.1, 20.0},
+               "mode epipolar: farther from its line: moving");
+  binder.field("epipolar.max_still_points", epipolar.max_still_points, {0, 1000},
+               "mode epipolar: more moving points: the person moves");
+  binder.field("paper.tau_m", paper.tau_m, {0.01, 2.0}, "mode rtd-paper: depth difference of a mover");
+  binder.field("paper.max_view_angle_deg", paper.max_view_angle_deg, {1.0, 90.0},
+               "mode rtd-paper: no statement beyond");
+  binder.field("paper.keyframes", paper.keyframes, {1, 16}, "mode rtd-paper: keyframes asked");
+}
+
 }  // namespace
+
+std::vector<std::string> mode_names() {
+  std::vector<std::string> names;
+  for (const ModeEntry& entry : all_modes()) names.emplace_back(entry.name);
+  return names;
+}
 
 void ServiceConfig::bind(ConfigBinder& binder) {
   binder.choice("mode", mode, mode_names(), "which parts of the filter are at work");
@@ -110,6 +122,7 @@ void ServiceConfig::bind(ConfigBinder& binder) {
   bind_ego_motion(binder, core.ego_motion);
   bind_geometry(binder, core.geometry);
   bind_fusion(binder, core.fusion);
+  bind_published(binder, core.epipolar, core.paper);
   binder.field("motion_levels", core.motion_levels, "class -> high, medium, low, none; over the built-in table");
 }
 

@@ -19,8 +19,8 @@ constexpr std::int64_t kPatienceNs = 1'500'000'000;      // before a silent hear
 }  // namespace
 
 void FilterService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--mode", config.mode, "off, semantic, geometry or rtd (filter.mode)")
-      ->check(CLI::IsMember({"off", "semantic", "geometry", "rtd"}));
+  app.add_option("--mode", config.mode, "off, semantic, geometry, epipolar, rtd-paper or rtd (filter.mode)")
+      ->check(CLI::IsMember(mode_names()));
 }
 
 FilterService::FilterService(const Config& config, service::Runtime& runtime)

@@ -32,7 +32,7 @@ struct DynamicFilter::Geometry {
 namespace {
 
 bool uses_semantics(FilterMode mode) {
-  return mode == FilterMode::kSemantic || mode == FilterMode::kRtd;
+  return mode != FilterMode::kOff && mode != FilterMode::kGeometry;
 }
 bool uses_geometry(FilterMode mode) {
   return mode == FilterMode::kGeometry || mode == FilterMode::kRtd;
@@ -65,6 +65,11 @@ std::vector<int> clusters_of(const std::vector<msg::Feature>& features, const De
   return of;
 }
 
+std::uint32_t count_removed(const std::vector<msg::Feature>& features) {
+  return static_cast<std::uint32_t>(std::count_if(
+      features.begin(), features.end(), [](const msg::Feature& f) { return (f.flags & msg::kFeatureRemoved) != 0; }));
+}
+
 }  // namespace
 
 DetectorWord word_of(std::int64_t stamp_ns, const Detections& detections) {
@@ -78,11 +83,15 @@ FilterResult DynamicFilter::judge(const vision::RgbdImage& image, std::vector<ms
   FilterResult result;
   result.features = std::move(features);
   if (config_.mode != FilterMode::kOff) {
-    Scene scene = look_at(image);                              // depth cells and surfaces
-    find_what_may_move(word, scene, result);                   // rules 1, 2, 5: motion levels, boxes to masks, tracks
-    const Geometry geometry = find_what_moves(scene, result);  // rule 3: quick pose, multi-view check
-    weigh(scene, geometry, result);                            // rules 4 and 6: one probability, never starve
-    remember(std::move(scene), geometry, result);
+    Scene scene = look_at(image);             // depth cells and surfaces
+    find_what_may_move(word, scene, result);  // rules 1, 2, 5: motion levels, boxes to masks, tracks
+    if (published_ != nullptr) {
+      judge_as_published(scene, result);
+    } else {
+      const Geometry geometry = find_what_moves(scene, result);  // rule 3: quick pose, multi-view check
+      weigh(scene, geometry, result);                            // rules 4 and 6: one probability, never starve
+      remember(std::move(scene), geometry, result);
+    }
   }
   result.stage_ms[msg::kStageExtract] = extract_ms_;
   result.stage_ms[msg::kStageFilterTotal] =
@@ -97,7 +106,8 @@ DynamicFilter::DynamicFilter(const FilterConfig& config, std::function<std::int6
                                                : MotionLevels(config.motion_levels).all_high()),
       extractor_(config.orb),
       sampler_(config.orb.min_depth_m, config.orb.max_depth_m),
-      box_tracks_(config.tracks) {}
+      box_tracks_(config.tracks),
+      published_(make_published_mode(config_)) {}
 
 std::vector<msg::Feature> DynamicFilter::extract(const vision::RgbdImage& image) {
   StageClock clock(now_ns_);
@@ -232,10 +242,19 @@ void DynamicFilter::weigh(const Scene& scene, const Geometry& geometry, FilterRe
   const std::vector<double> resting_s = history_.update(result.objects, motions, scene.image.stamp_ns);
   const FrameKnowledge known{scene.grid.shape, result.objects, motions, resting_s, geometry.regions, geometry.evidence};
   weigh_static_probability(result.features, known, config_.mode, config_.fusion, config_.masks.dilate_cells);
-  result.removed = static_cast<std::uint32_t>(
-      std::count_if(result.features.begin(), result.features.end(),
-                    [](const msg::Feature& f) { return (f.flags & msg::kFeatureRemoved) != 0; }));
+  result.removed = count_removed(result.features);
   result.stage_ms[msg::kStageFuse] = clock.lap_ms();
+}
+
+void DynamicFilter::judge_as_published(const Scene& scene, FilterResult& result) {
+  StageClock clock(now_ns_);
+  const PublishedVerdict verdict = published_->judge({scene.image, scene.grid.shape, result.objects}, result.features);
+  result.T_world_camera = verdict.T_world_camera;
+  result.pose_reliable = verdict.pose_reliable;
+  result.cells = scene.grid.shape;
+  result.motion = cell_motion(verdict.removed, false);
+  result.removed = count_removed(result.features);
+  result.stage_ms[msg::kStageDepthCheck] = clock.lap_ms();
 }
 
 void DynamicFilter::remember(Scene scene, const Geometry& geometry, FilterResult& result) {
@@ -267,13 +286,16 @@ Eigen::Isometry3d DynamicFilter::predict_pose() const {
 void DynamicFilter::on_tracking(const msg::TrackingResult& result) {
   if (result.state != msg::TrackingState::kOk) return;
   views_.correct(result.seq, msg::to_isometry(result.T_world_camera));
+  if (published_ != nullptr) published_->on_tracking(result.seq, msg::to_isometry(result.T_world_camera));
 }
 
 void DynamicFilter::on_keyframe(const msg::KeyframeEvent& event) {
   if (event.kind == msg::KeyframeEventKind::kRemoved) {
     views_.forget_keyframe(event.frame_seq);
+    if (published_ != nullptr) published_->forget_keyframe(event.frame_seq);
   } else {
     views_.mark_keyframe(event.frame_seq, msg::to_isometry(event.T_world_camera));
+    if (published_ != nullptr) published_->on_keyframe(event.frame_seq, msg::to_isometry(event.T_world_camera));
   }
 }
 
@@ -282,6 +304,7 @@ void DynamicFilter::reset() {
   memory_.clear();
   history_.clear();
   box_tracks_.clear();
+  if (published_ != nullptr) published_->reset();
   something_masked_ = true;
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "services/filter/core/dynamic_regions.hpp"
 #include "services/filter/core/ego_motion.hpp"
 #include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/modes/published_mode.hpp"
 #include "services/filter/core/motion_levels.hpp"
 #include "services/filter/core/object_history.hpp"
 #include "services/filter/core/object_masks.hpp"
@@ -80,6 +82,7 @@ class DynamicFilter {
   std::vector<ObjectBox> boxes_now(const DetectorWord& word, const Scene& scene);
   std::vector<ObjectBox> follow_boxes(const DetectorWord& word, const Scene& scene);
   double roll_rate_rad_s() const;
+  void judge_as_published(const Scene& scene, FilterResult& result);
   Geometry find_what_moves(const Scene& scene, FilterResult& result);
   void weigh(const Scene& scene, const Geometry& geometry, FilterResult& result);
   void remember(Scene scene, const Geometry& geometry, FilterResult& result);
@@ -94,8 +97,9 @@ class DynamicFilter {
   DynamicMemory memory_;
   ObjectHistory history_;
   BoxTracks box_tracks_;
-  std::int64_t watched_ns_ = 0;   ///< stamp of the last frame for which somebody looked
-  bool something_masked_ = true;  ///< in the last frame; the first is treated as if
+  std::int64_t watched_ns_ = 0;               ///< stamp of the last frame for which somebody looked
+  std::unique_ptr<PublishedMode> published_;  ///< somebody else's rule in place of ours; null in our own modes
+  bool something_masked_ = true;              ///< in the last frame; the first is treated as if
   float extract_ms_ = 0;
 };
 

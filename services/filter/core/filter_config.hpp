@@ -16,6 +16,8 @@ enum class FilterMode {
   kOff,       ///< features only: ORB-SLAM2's front end
   kSemantic,  ///< every object of a high motion level is removed, nothing else
   kGeometry,  ///< multi-view geometry only, boxes are not looked at
+  kEpipolar,  ///< DS-SLAM's rule: people with moving points on them are removed
+  kRtdPaper,  ///< the RTD-SLAM paper's own rules and thresholds
   kRtd,       ///< both, DESIGN section 4
 };
 
@@ -122,6 +124,24 @@ struct BoxTrackConfig {
   double unwatched_s = 0.5;       ///< nobody looks for this long: geometry only
 };
 
+/// Mode `epipolar`, DS-SLAM's moving consistency check.
+struct EpipolarConfig {
+  int max_corners = 1000;
+  double corner_distance_px = 8;     ///< between two corners
+  int border_px = 5;                 ///< matches that end nearer to the border are dropped
+  double max_patch_difference = 25;  ///< mean grey value difference of the 3x3 patches; more: no match
+  double ransac_distance_px = 0.2;   ///< of the matches that the fundamental matrix is made of
+  double max_distance_px = 1;        ///< farther from the epipolar line: it has moved
+  int max_still_points = 5;          ///< more moving points on a person: the person moves
+};
+
+/// Mode `rtd-paper`, section III of the paper.
+struct PaperConfig {
+  double tau_m = 0.4;              ///< depth difference from which something has come
+  double max_view_angle_deg = 30;  ///< larger angle between the two viewing rays: no statement
+  int keyframes = 5;               ///< overlapping keyframes asked per frame
+};
+
 /// Everything the core needs; defaults are the tested values.
 struct FilterConfig {
   FilterMode mode = FilterMode::kRtd;
@@ -133,6 +153,8 @@ struct FilterConfig {
   GeometryConfig geometry;
   FusionConfig fusion;
   BoxTrackConfig tracks;
+  EpipolarConfig epipolar;
+  PaperConfig paper;
   std::map<std::string, std::string>
       motion_levels;  ///< class name -> "high" | "medium" | "low" | "none", over the built-in table
 };

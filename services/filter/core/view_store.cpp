@@ -85,9 +85,15 @@ std::vector<const View*> ViewStore::references(std::int64_t now_ns, const Eigen:
     const View* view = &of_age(now_ns, age_ns);
     if (chosen.size() < count && std::find(chosen.begin(), chosen.end(), view) == chosen.end()) chosen.push_back(view);
   }
+  for (const View* keyframe : near_keyframes(T_world_camera, kMaxKeyframes)) {
+    if (chosen.size() < count && keyframe->seq < recent_.front().seq) chosen.push_back(keyframe);
+  }
+  return chosen;
+}
+
+std::vector<const View*> ViewStore::near_keyframes(const Eigen::Isometry3d& T_world_camera, std::size_t count) const {
   std::vector<std::pair<double, const View*>> near;
   for (const View& keyframe : keyframes_) {
-    if (keyframe.seq >= recent_.front().seq) continue;
     const Eigen::Isometry3d T_camera_keyframe = T_world_camera.inverse() * keyframe.T_world_camera;
     const double distance_m = T_camera_keyframe.translation().norm();
     const double angle_rad = geometry::rotation_angle_rad(T_camera_keyframe);
@@ -95,6 +101,7 @@ std::vector<const View*> ViewStore::references(std::int64_t now_ns, const Eigen:
       near.emplace_back(distance_m / kNearM + angle_rad / kSameWayRad, &keyframe);
   }
   std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<const View*> chosen;
   for (const auto& [cost, keyframe] : near) {
     if (chosen.size() < count) chosen.push_back(keyframe);
   }

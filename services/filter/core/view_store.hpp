@@ -52,6 +52,8 @@ class ViewStore {
   /// those whose camera stood near and looked the same way.
   std::vector<const View*> references(std::int64_t now_ns, const Eigen::Isometry3d& T_world_camera,
                                       std::size_t count) const;
+  /// Up to `count` of the keyframes whose camera stood near and looked the same way, nearest first; recent ones too.
+  std::vector<const View*> near_keyframes(const Eigen::Isometry3d& T_world_camera, std::size_t count) const;
   std::size_t size() const { return recent_.size() + keyframes_.size(); }
 
   static constexpr std::size_t kMaxRecent = 32;

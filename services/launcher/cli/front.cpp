@@ -34,8 +34,9 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--pace", options.pace, "realtime, asap or lockstep")
       ->check(CLI::IsMember({"realtime", "asap", "lockstep"}))
       ->capture_default_str();
-  command->add_option("--filter", options.filter_mode, "off, semantic, geometry or rtd (default rtd)")
-      ->check(CLI::IsMember({"off", "semantic", "geometry", "rtd"}));
+  command
+      ->add_option("--filter", options.filter_mode, "off, semantic, geometry, epipolar, rtd-paper or rtd (default rtd)")
+      ->check(CLI::IsMember(kFilterModes));
   command->add_option("--dds", options.dds, "DDS implementation: fastdds (RTD_DDS)");
   command->add_option("--domain", options.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
   command->add_option("--config", options.config_file, "YAML file with a section per service")

@@ -8,11 +8,18 @@
 
 namespace rtd::launcher {
 
+/// From nothing to everything; what each is made of: docs/theory/dynamic_points.md "Modes".
+inline const std::vector<std::string> kFilterModes{"off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd"};
+/// Modes that look at no boxes need no detector.
+inline bool needs_detector(const std::string& filter_mode) {
+  return filter_mode != "off" && filter_mode != "geometry";
+}
+
 /// The command line of `rtd run`.
 struct RunOptions {
   std::string source;
   std::string pace = "realtime";
-  std::string filter_mode;  ///< off, semantic, geometry, rtd; empty: configuration, default rtd
+  std::string filter_mode;  ///< one of kFilterModes; empty: configuration, default rtd
   std::string dds;          ///< empty: configuration, environment, default
   int domain = -1;          ///< -1: configuration, environment, default
   std::string config_file;

@@ -24,8 +24,6 @@ namespace {
 /// In realtime nobody waits for the detector, so it takes the processor time that the pose does not need.
 constexpr int kRealtimeDetectorNiceness = 10;
 
-const std::vector<std::string> kFilterModes = {"off", "semantic", "geometry", "rtd"};
-
 void check_sections(const std::vector<std::string>& overrides) {
   const std::vector<std::string>& sections = service::config_sections();
   for (const std::string& assignment : overrides) {
@@ -71,7 +69,8 @@ std::string choose_filter_mode(const RunOptions& options) {
   std::string mode = options.filter_mode.empty() ? peek(options, "filter", "mode") : options.filter_mode;
   if (mode.empty()) mode = "rtd";
   if (std::find(kFilterModes.begin(), kFilterModes.end(), mode) == kFilterModes.end()) {
-    throw ConfigError("--filter: unknown mode '" + mode + "', use off, semantic, geometry or rtd");
+    throw ConfigError("--filter: unknown mode '" + mode + "', use one of " +
+                      fmt::format("{}", fmt::join(kFilterModes, ", ")));
   }
   return mode;
 }
@@ -88,7 +87,7 @@ std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
 }
 
 void choose_detector(const RunOptions& options, RunSetup& setup) {
-  if (setup.filter_mode == "off" || setup.filter_mode == "geometry") {
+  if (!needs_detector(setup.filter_mode)) {
     setup.detector_note = "off (filter mode " + setup.filter_mode + ")";
     return;
   }

@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
   bool verbose = false, threaded = false, errors = false, json = false;
   auto& slam = options.slam;
   app.add_option("--source", options.source, "source URI or TUM folder")->required();
-  app.add_option("--mode", options.front_end.mode, "off, true-mask, semantic, geometry, rtd");
+  app.add_option("--mode", options.front_end.mode, "off, true-mask, semantic, geometry, epipolar, rtd-paper, rtd");
   app.add_option("--set", options.front_end.filter_settings, "filter.KEY=VALUE, e.g. filter.techniques.belief=false");
   add_detector_options(app, options.front_end.detector);
   app.add_option("--frames", options.max_frames, "stop after so many frames, 0 = all");

@@ -29,6 +29,8 @@ const std::vector<ModeEntry>& table() {
       {FilterMode::kGeometry, "geometry",
        only({&T::depth_check, &T::feature_votes, &T::noise_aware_tau, &T::mover_tracks, &T::surface_poses, &T::belief,
              &T::feature_weights, &T::more_features, &T::keep_doubtful})},
+      {FilterMode::kEpipolar, "epipolar", only({&T::motion_levels, &T::depth_masks})},
+      {FilterMode::kRtdPaper, "rtd-paper", only({&T::motion_levels})},
       {FilterMode::kRtd, "rtd", Techniques{}},
   };
   return entries;

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/modes/epipolar_check.hpp"
+
+#include <Eigen/Core>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+
+namespace rtd::filter {
+namespace {
+
+constexpr std::size_t kMinMatches = 16;  // twice what the 8-point algorithm needs
+
+/// Mean absolute difference of grey values of the 3x3 patches.
+double patch_difference(const cv::Mat& before, const cv::Mat& now, const FlowMatch& match) {
+  cv::Mat a, b;
+  cv::getRectSubPix(before, {3, 3}, match.before, a);
+  cv::getRectSubPix(now, {3, 3}, match.now, b);
+  return cv::norm(a, b, cv::NORM_L1) / 9;
+}
+
+bool near_border(const cv::Point2f& p, const cv::Size& size, int border_px) {
+  const auto border = static_cast<float>(border_px);
+  return !(p.x >= border && p.y >= border && p.x < static_cast<float>(size.width) - border &&
+           p.y < static_cast<float>(size.height) - border);
+}
+
+std::vector<cv::Point2f> undistorted(const std::vector<FlowMatch>& matches, cv::Point2f FlowMatch::*end,
+                                     const geometry::CameraModel& camera) {
+  std::vector<cv::Point2f> points;
+  points.reserve(matches.size());
+  for (const FlowMatch& match : matches) {
+    const Eigen::Vector2d p = camera.undistort(Eigen::Vector2d((match.*end).x, (match.*end).y));
+    points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
+  }
+  return points;
+}
+
+/// Distance of a point to the epipolar line F x of its partner, px; infinite when the line is none.
+double epipolar_distance_px(const cv::Matx33d& fundamental, const cv::Point2f& before, const cv::Point2f& now) {
+  const cv::Vec3d line = fundamental * cv::Vec3d(before.x, before.y, 1);
+  const double norm = std::hypot(line[0], line[1]);
+  return norm > 0 ? std::abs(line.dot(cv::Vec3d(now.x, now.y, 1))) / norm : 0.0;
+}
+
+}  // namespace
+
+std::vector<FlowMatch> follow_corners(const cv::Mat& before, const cv::Mat& now, const EpipolarConfig& config) {
+  std::vector<cv::Point2f> corners, ends;
+  cv::goodFeaturesToTrack(before, corners, config.max_corners, 0.01, config.corner_distance_px);
+  if (corners.empty()) return {};
+  std::vector<unsigned char> found;
+  std::vector<float> errors;
+  cv::calcOpticalFlowPyrLK(before, now, corners, ends, found, errors, {21, 21}, 4);
+  std::vector<FlowMatch> matches;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const FlowMatch match{corners[i], ends[i]};
+    if (found[i] == 0 || near_border(match.now, now.size(), config.border_px)) continue;
+    if (patch_difference(before, now, match) <= config.max_patch_difference) matches.push_back(match);
+  }
+  return matches;
+}
+
+std::vector<cv::Point2f> find_moving_points(const std::vector<FlowMatch>& matches, const geometry::CameraModel& camera,
+                                            const EpipolarConfig& config) {
+  if (matches.size() < kMinMatches) return {};
+  const std::vector<cv::Point2f> before = undistorted(matches, &FlowMatch::before, camera);
+  const std::vector<cv::Point2f> now = undistorted(matches, &FlowMatch::now, camera);
+  cv::setRNGSeed(0);  // the same input gives the same answer
+  const cv::Mat found = cv::findFundamentalMat(before, now, cv::FM_RANSAC, config.ransac_distance_px, 0.99);
+  if (found.rows != 3 || found.cols != 3 || !cv::checkRange(found)) return {};
+  const cv::Matx33d fundamental(found.ptr<double>());
+  std::vector<cv::Point2f> moving;
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (epipolar_distance_px(fundamental, before[i], now[i]) > config.max_distance_px) moving.push_back(matches[i].now);
+  }
+  return moving;
+}
+
+}  // namespace rtd::filter
