@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "services/detector/core/letterbox.hpp"
+#include "services/detector/core/upright_view.hpp"
 #include "services/detector/core/yolo_decoder.hpp"
 #include "services/detector/core/yolo_network.hpp"
 
@@ -65,19 +66,34 @@ std::vector<vision::Detection> Detector::detect(const cv::Mat& color_bgr) {
   const cv::Mat image = to_bgr(color_bgr);
   const Letterbox letterbox = fit_letterbox(image.size(), network_->input());
   fill_blob(image, letterbox, network_->input(), blob_);
-  const std::vector<HeadLogits>& heads = network_->infer(blob_);
-
-  const DetectorConfig& config = network_->config();
-  const int class_count = static_cast<int>(config.class_names.size());
-  const std::vector<Candidate> kept =
-      suppress_non_maxima(decode_heads(heads, class_count, config.decode), config.decode);
-
   std::vector<vision::Detection> detections;
-  for (const Candidate& candidate : kept) {
-    const vision::Detection detection = to_detection(candidate, letterbox, image.size(), config.class_names);
+  for (const Candidate& candidate : find_in_blob()) {
+    const vision::Detection detection =
+        to_detection(candidate, letterbox, image.size(), network_->config().class_names);
     if (detection.width_px > 0 && detection.height_px > 0) detections.push_back(detection);
   }
   return detections;
+}
+
+std::vector<vision::Detection> Detector::detect_upright(const cv::Mat& color_bgr, double roll_rad) {
+  if (roll_rad == 0 || color_bgr.empty()) return detect(color_bgr);
+  const cv::Mat image = to_bgr(color_bgr);
+  const UprightView view = fit_upright(image.size(), network_->input(), roll_rad);
+  fill_upright_blob(image, view, blob_);
+  std::vector<vision::Detection> detections;
+  for (const Candidate& candidate : find_in_blob()) {
+    const cv::Rect2f box = box_in_frame(candidate, view);
+    if (box.empty()) continue;
+    const std::string& name = network_->config().class_names[static_cast<std::size_t>(candidate.class_index)];
+    detections.push_back({name, candidate.score, box.x, box.y, box.width, box.height});
+  }
+  return detections;
+}
+
+std::vector<Candidate> Detector::find_in_blob() {
+  const DetectorConfig& config = network_->config();
+  const int class_count = static_cast<int>(config.class_names.size());
+  return suppress_non_maxima(decode_heads(network_->infer(blob_), class_count, config.decode), config.decode);
 }
 
 InputSize Detector::input_size() const {

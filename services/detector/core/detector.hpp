@@ -10,6 +10,7 @@
 #include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/model_error.hpp"
 #include "services/detector/core/onnx_file.hpp"
+#include "services/detector/core/yolo_decoder.hpp"
 
 namespace rtd::detector {
 
@@ -28,12 +29,17 @@ class Detector {
   /// Objects of one image, best score first; boxes in pixels of the image, clipped to it. 8-bit BGR, BGRA or grey of
   /// any size; an empty image has no objects. Throws std::invalid_argument for another pixel type.
   std::vector<vision::Detection> detect(const cv::Mat& color_bgr);
+  /// The same on the image turned clockwise by `roll_rad` (CameraRoll); the boxes are axis-parallel in the image as it
+  /// was given (UprightView). A roll of 0 is detect().
+  std::vector<vision::Detection> detect_upright(const cv::Mat& color_bgr, double roll_rad);
 
   InputSize input_size() const;
   /// The configuration in force, with class names and heads filled in.
   const DetectorConfig& config() const;
 
  private:
+  std::vector<Candidate> find_in_blob();
+
   std::unique_ptr<YoloNetwork> network_;
   cv::Mat blob_;
 };

@@ -8,7 +8,9 @@ namespace rtd::detector {
 namespace {
 
 constexpr int kGraphOfModel = 7, kMetadataOfModel = 14, kKeyOfEntry = 1, kValueOfEntry = 2, kInputOfGraph = 11,
-              kTypeOfValueInfo = 2, kTensorOfType = 1, kShapeOfTensor = 2, kDimOfShape = 1, kValueOfDim = 1;
+              kTypeOfValueInfo = 2, kTensorOfType = 1, kShapeOfTensor = 2, kDimOfShape = 1, kValueOfDim = 1,
+              kInitializerOfGraph = 5, kDimsOfTensor = 1, kDataTypeOfTensor = 2;
+constexpr std::uint64_t kFloat = 1;
 enum WireType : int { kVarint = 0, kFixed64 = 1, kLengthDelimited = 2, kFixed32 = 5 };
 
 struct Span {
@@ -112,6 +114,31 @@ std::optional<InputSize> read_input_size(Span graph) {
   return std::nullopt;
 }
 
+/// Elements of a TensorProto of floats, 0 for other types. `dims` may be packed or not.
+std::uint64_t count_floats(Span tensor) {
+  std::uint64_t elements = 1, type = 0;
+  while (const std::optional<Field> field = take_field(tensor)) {
+    if (field->number == kDataTypeOfTensor) type = field->varint;
+    if (field->number != kDimsOfTensor) continue;
+    if (field->bytes.begin == nullptr) elements *= field->varint;
+    Span packed = field->bytes;
+    while (packed.size() > 0) {
+      const std::optional<std::uint64_t> dimension = take_varint(packed);
+      if (!dimension) return 0;
+      elements *= *dimension;
+    }
+  }
+  return type == kFloat ? elements : 0;
+}
+
+std::uint64_t count_parameters(Span graph) {
+  std::uint64_t parameters = 0;
+  while (const std::optional<Field> field = take_field(graph)) {
+    if (field->number == kInitializerOfGraph && field->bytes.begin != nullptr) parameters += count_floats(field->bytes);
+  }
+  return parameters;
+}
+
 std::string text_of(const std::optional<Span>& span) {
   return span ? std::string(span->begin, span->end) : std::string();
 }
@@ -126,6 +153,7 @@ OnnxFile read_onnx_file(const std::uint8_t* bytes, std::size_t size) {
     if (field->number == kGraphOfModel) {
       file.has_graph = true;
       file.input = read_input_size(field->bytes);
+      file.parameters = count_parameters(field->bytes);
     } else if (field->number == kMetadataOfModel) {
       file.metadata[text_of(find_message(field->bytes, kKeyOfEntry))] =
           text_of(find_message(field->bytes, kValueOfEntry));

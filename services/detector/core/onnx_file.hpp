@@ -23,6 +23,7 @@ struct OnnxFile {
   bool has_graph = false;                       ///< false: these bytes are no ONNX model, or only the beginning of one
   std::optional<InputSize> input;               ///< of the first 1x3xHxW input, when H and W are fixed
   std::map<std::string, std::string> metadata;  ///< ModelProto.metadata_props
+  std::uint64_t parameters = 0;                 ///< numbers in the float tensors of the graph
 };
 
 /// Reads ONNX bytes (protobuf wire format, field numbers of onnx.proto). Never reads outside the bytes, whatever they

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/detector/tiny_network.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -67,12 +68,16 @@ std::string node_of(const Convolution& convolution) {
   return node + bytes_field(5, ints("kernel_shape", square)) + bytes_field(5, ints("strides", square));
 }
 
-std::string weights_of(const Convolution& convolution) {
+std::string weights_of(Convolution convolution, const std::function<float(float)>& spoil) {
   const auto kernel = static_cast<std::size_t>(convolution.inputs * convolution.cell * convolution.cell);
   std::vector<float> weights(static_cast<std::size_t>(convolution.outputs) * kernel, 0.0F);
   for (std::size_t i = 0; i < kernel; ++i) {
     weights[static_cast<std::size_t>(convolution.gained_output) * kernel + i] =
         convolution.gain / static_cast<float>(kernel);
+  }
+  if (spoil) {
+    std::transform(weights.begin(), weights.end(), weights.begin(), spoil);
+    std::transform(convolution.biases.begin(), convolution.biases.end(), convolution.biases.begin(), spoil);
   }
   const std::vector<int> shape = {convolution.outputs, convolution.inputs, convolution.cell, convolution.cell};
   return bytes_field(5, tensor("w" + convolution.name, shape, weights)) +
@@ -101,7 +106,7 @@ std::string tiny_network_onnx(const TinyNetwork& network) {
   for (const int stride : network.strides) {
     for (const Convolution& convolution : head_convolutions(network, stride)) {
       nodes += bytes_field(1, node_of(convolution));
-      initializers += weights_of(convolution);
+      initializers += weights_of(convolution, network.spoil);
     }
     const std::vector<int> shape = {1, channels, network.height_px / stride, network.width_px / stride};
     outputs += bytes_field(12, value_info("p" + std::to_string(stride), shape));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -15,7 +16,8 @@ struct TinyNetwork {
   bool fixed_size = true;  ///< false: height and width are free dimensions
   std::vector<int> strides = {8, 16, 32};
   std::map<std::string, std::string> metadata = {};
-  bool pointwise_heads = false;  ///< as in the real networks: features first, then a 1x1 convolution
+  bool pointwise_heads = false;            ///< as in the real networks: features first, then a 1x1 convolution
+  std::function<float(float)> spoil = {};  ///< what every weight and bias becomes; empty = itself
 };
 
 /// An ONNX network with YOLOv5 heads that needs no training: per stride one convolution over whole cells. Anchor 0 of a

@@ -34,6 +34,11 @@ TEST(OnnxFile, says_when_the_size_is_free) {
   EXPECT_FALSE(file.input);
 }
 
+TEST(OnnxFile, counts_the_parameters) {
+  const OnnxFile file = read(test::tiny_network_onnx({.class_count = 1, .strides = {8}}));
+  EXPECT_EQ(file.parameters, 18U * 3 * 8 * 8 + 18);  // 3 x (5 + 1) outputs over 3 channels of 8 x 8 px, and biases
+}
+
 TEST(OnnxFile, finds_no_graph_in_other_files) {
   EXPECT_FALSE(read("").has_graph);
   EXPECT_FALSE(read("<html>404 not found</html>").has_graph);

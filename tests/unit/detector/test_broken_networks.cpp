@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Networks whose weights are wrong: whatever they say, the answer is a short list of boxes inside the image.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+
+#include "services/detector/core/detector.hpp"
+#include "tests/support/detector/tiny_network.hpp"
+
+namespace rtd::detector {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+class BrokenNetwork : public ::testing::TestWithParam<bool> {
+ protected:
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  /// A network of 640 x 480 with 18,900 cells, each weight replaced.
+  Detector detector(const std::function<float(float)>& spoil) {
+    const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
+    std::string name = std::string("rtd_broken_") + info->name() + ".onnx";
+    std::replace(name.begin(), name.end(), '/', '_');
+    path_ = std::filesystem::temp_directory_path() / name;
+    std::ofstream(path_, std::ios::binary)
+        << test::tiny_network_onnx({.width_px = 640, .height_px = 480, .pointwise_heads = GetParam(), .spoil = spoil});
+    DetectorConfig config;
+    config.model_path = path_.string();
+    config.class_names = {"person", "box"};
+    config.decode.confidence_threshold = config.decode.objectness_threshold = 0.01;
+    return Detector(config);
+  }
+  static void expect_sane(const std::vector<vision::Detection>& found) {
+    EXPECT_LE(found.size(), 100U);
+    for (const vision::Detection& box : found) {
+      EXPECT_TRUE(box.score > 0 && box.score <= 1) << box.score;
+      EXPECT_TRUE(box.x_px >= 0 && box.y_px >= 0 && box.width_px > 0 && box.height_px > 0);
+      EXPECT_TRUE(box.x_px + box.width_px <= 640.01F && box.y_px + box.height_px <= 480.01F);
+    }
+  }
+  static cv::Mat noise() {
+    cv::Mat image(480, 640, CV_8UC3);
+    cv::RNG random(5);
+    random.fill(image, cv::RNG::UNIFORM, 0, 255);
+    return image;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TEST_P(BrokenNetwork, of_nothing_but_nan_finds_nothing) {
+  Detector network = detector([](float) { return kNan; });
+  EXPECT_TRUE(network.detect(noise()).empty());
+  EXPECT_TRUE(network.detect_upright(noise(), 1.0).empty());
+}
+
+TEST_P(BrokenNetwork, that_sees_something_in_every_cell_gives_the_hundred_best) {
+  Detector network = detector([](float) { return 0.1F; });
+  const std::vector<vision::Detection> found = network.detect(noise());
+  EXPECT_EQ(found.size(), 100U);
+  expect_sane(found);
+  expect_sane(network.detect_upright(noise(), 1.0));
+}
+
+TEST_P(BrokenNetwork, of_random_weights_gives_boxes_inside_the_image) {
+  for (const float size : {0.1F, 3.0F, 1e4F, 1e30F}) {
+    std::mt19937 random(11);
+    std::normal_distribution<float> normal(0, size);
+    Detector network = detector([&](float) { return normal(random); });
+    expect_sane(network.detect(noise()));
+    expect_sane(network.detect_upright(noise(), -2.0));
+  }
+}
+
+TEST_P(BrokenNetwork, with_some_weights_lost_gives_boxes_inside_the_image) {
+  for (const float lost : {kNan, kInfinity, -kInfinity}) {
+    std::mt19937 random(13);
+    Detector network = detector([&](float weight) { return random() % 50 == 0 ? lost : weight + 0.02F; });
+    expect_sane(network.detect(noise()));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Heads, BrokenNetwork, ::testing::Bool(),
+                         [](const auto& variant) { return variant.param ? "pointwise" : "whole"; });
+
+}  // namespace
+}  // namespace rtd::detector

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/detector/core/camera_roll.hpp"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Geometry>
+#include <limits>
+
+#include "common/msg/transform_eigen.hpp"
+
+namespace rtd::detector {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kTolerance_rad = 1e-9;
+
+/// slam's word when the camera stands turned by `angle_rad` about an axis of the first camera.
+msg::TrackingResult turned(double angle_rad, const Eigen::Vector3d& axis,
+                           msg::TrackingState state = msg::TrackingState::kOk) {
+  msg::TrackingResult result{};
+  result.state = state;
+  result.T_world_camera = msg::to_message(Eigen::Isometry3d(Eigen::AngleAxisd(angle_rad, axis)));
+  return result;
+}
+
+double roll_after(const msg::TrackingResult& result, const RollConfig& config = {.min_roll_rad = 0}) {
+  CameraRoll roll(config);
+  roll.on_tracking(result);
+  return roll.roll_rad();
+}
+
+TEST(CameraRoll, is_zero_before_the_first_pose) {
+  EXPECT_EQ(CameraRoll({}).roll_rad(), 0);
+}
+
+TEST(CameraRoll, is_the_turn_about_the_viewing_axis) {
+  for (const double degrees : {-170.0, -90.0, -30.0, 45.0, 120.0}) {
+    // A camera rolled clockwise sees the world turned the other way: turning it clockwise by the same angle helps.
+    EXPECT_NEAR(roll_after(turned(degrees * kDegree, Eigen::Vector3d::UnitZ())), degrees * kDegree, kTolerance_rad);
+  }
+}
+
+TEST(CameraRoll, does_not_mind_looking_around_or_up_and_down) {
+  EXPECT_NEAR(roll_after(turned(100 * kDegree, Eigen::Vector3d::UnitY())), 0, kTolerance_rad);
+  EXPECT_NEAR(roll_after(turned(60 * kDegree, Eigen::Vector3d::UnitX())), 0, kTolerance_rad);
+}
+
+TEST(CameraRoll, is_zero_when_the_camera_looks_at_the_ceiling) {
+  const Eigen::Vector3d axis = Eigen::Vector3d(1, 0.1, 0).normalized();
+  EXPECT_EQ(roll_after(turned(89 * kDegree, axis)), 0);
+}
+
+TEST(CameraRoll, ignores_small_angles) {
+  const RollConfig config{.min_roll_rad = 20 * kDegree};
+  EXPECT_EQ(roll_after(turned(19 * kDegree, Eigen::Vector3d::UnitZ()), config), 0);
+  EXPECT_NEAR(roll_after(turned(21 * kDegree, Eigen::Vector3d::UnitZ()), config), 21 * kDegree, kTolerance_rad);
+}
+
+TEST(CameraRoll, stays_while_there_is_no_pose) {
+  CameraRoll roll({.min_roll_rad = 0});
+  roll.on_tracking(turned(1.0, Eigen::Vector3d::UnitZ()));
+  roll.on_tracking(turned(2.0, Eigen::Vector3d::UnitZ(), msg::TrackingState::kLost));
+  msg::TrackingResult broken = turned(0.5, Eigen::Vector3d::UnitZ());
+  broken.T_world_camera.rotation_xyzw.fill(std::numeric_limits<double>::quiet_NaN());
+  roll.on_tracking(broken);
+  EXPECT_NEAR(roll.roll_rad(), 1.0, kTolerance_rad);
+}
+
+TEST(CameraRoll, takes_gravity_from_a_first_camera_that_was_turned_itself) {
+  RollConfig config{.down_world = down_of_first_camera(90 * kDegree, 30 * kDegree), .min_roll_rad = 0};
+  EXPECT_NEAR(roll_after(turned(0, Eigen::Vector3d::UnitZ()), config), 90 * kDegree, kTolerance_rad);
+  EXPECT_NEAR(roll_after(turned(-90 * kDegree, Eigen::Vector3d::UnitZ()), config), 0, kTolerance_rad);
+  config.down_world = down_of_first_camera(0, 30 * kDegree);
+  EXPECT_NEAR(roll_after(turned(180 * kDegree, config.down_world), config), 0, kTolerance_rad);  // turned round on foot
+}
+
+}  // namespace
+}  // namespace rtd::detector
