@@ -13,18 +13,20 @@
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/eval/eval_command.hpp"
+#include "services/launcher/eval_detector/eval_detector_command.hpp"
 #include "services/launcher/process/executable.hpp"
 #include "services/launcher/run/run_command.hpp"
 
 namespace rtd::launcher {
 namespace {
 
-const std::vector<std::string> kCommands = {"run", "demo", "eval", "doctor", "version", "help"};
+const std::vector<std::string> kCommands = {"run", "demo", "eval", "eval-detector", "doctor", "version", "help"};
 
 struct Requests {
   RunOptions run;
   DemoOptions demo;
   EvalOptions eval;
+  EvalDetectorOptions eval_detector;
 };
 
 void add_run_command(CLI::App& app, RunOptions& options) {
@@ -85,6 +87,7 @@ int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("run")) return run(requests.run).code;
   if (app.got_subcommand("demo")) return demo(requests.demo);
   if (app.got_subcommand("eval")) return run_eval(requests.eval, std::cout, std::cerr);
+  if (app.got_subcommand("eval-detector")) return run_eval_detector(requests.eval_detector, std::cout, std::cerr);
   if (app.got_subcommand("doctor")) return doctor(std::cout);
   if (app.got_subcommand("version")) {
     std::cout << "rtd " << RTD_VERSION << '\n';
@@ -108,6 +111,7 @@ int front(int argc, char** argv) {
   add_run_command(app, requests.run);
   add_demo_command(app, requests.demo);
   add_eval_command(app, requests.eval);
+  add_eval_detector_command(app, requests.eval_detector);
   app.add_subcommand("doctor", "Check this host: shared memory, sockets, services, weights, data");
   app.add_subcommand("version", "Print the version");
   app.add_subcommand("help", "Print this text");
