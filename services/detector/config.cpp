@@ -18,6 +18,18 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
   binder.field("max_rate_hz", max_rate_hz, {0.0, 1000.0}, "realtime pace: detect at most this often, 0 = no limit");
   binder.field("class_names", class_names,
                "names in the order of the network's classes; empty: those in the file, else COCO's");
+  binder.choice("derotate", derotate, {"off", "on"},
+                "on: detect on the image turned upright by the roll of slam's poses");
+  binder.field("derotate_min_deg", derotate_min_deg, {0.0, 180.0}, "a smaller roll is left as it is");
+  binder.field("roll_timeout_ms", roll_timeout_ms, {1, 60000}, "pace lockstep: longest wait for slam's pose before");
+  binder.field("first_roll_deg", first_roll_deg, {-180.0, 180.0},
+               "roll of the first image: by how much it must be turned clockwise to stand upright");
+  binder.field("first_pitch_deg", first_pitch_deg, {-60.0, 60.0}, "how far the first camera looked down");
+}
+
+RollConfig roll_config(const ServiceConfig& config) {
+  return {down_of_first_camera(config.first_roll_deg * kRadPerDeg, config.first_pitch_deg * kRadPerDeg),
+          config.derotate_min_deg * kRadPerDeg};
 }
 
 DetectorConfig to_core(const ServiceConfig& config, const std::string& model_path) {

@@ -69,6 +69,13 @@ DetectorService::DetectorService(const Config& config, service::Runtime& runtime
           arrivals_->push({stamp_ns, std::move(frame), nullptr});
         });
   }
+  if (config_.derotate == "on") {
+    roll_ = std::make_shared<RollFeedback>(roll_config(config_));
+    runtime_.stop.on_stop([roll = roll_] { roll->close(); });
+    tracking_ = runtime.bus.reader<msg::TrackingResult>(
+        bus::topics::kTracking,
+        [roll = roll_](std::shared_ptr<const msg::TrackingResult> result) { roll->put(*result); });
+  }
   const Detector& detector = *detectors_.front();
   SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} workers={}", detector.config().model_path,
               detector.input_size().width_px, detector.input_size().height_px, config_.threads, detectors_.size());
@@ -138,7 +145,7 @@ std::optional<msg::Detection2DArray> DetectorService::detect(Detector& detector,
   const std::int64_t started_ns = service::monotonic_ns();
   try {
     if (const std::optional<cv::Mat> image = image_of(arrival)) {
-      msg::Detection2DArray answer = to_message(detector.detect(*image), arrival.stamp_ns);
+      msg::Detection2DArray answer = to_message(detector.detect_upright(*image, roll_for(arrival)), arrival.stamp_ns);
       count(static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs);
       return answer;
     }
@@ -147,6 +154,22 @@ std::optional<msg::Detection2DArray> DetectorService::detect(Detector& detector,
     skip(arrival, error.what());
   }
   return std::nullopt;
+}
+
+/// Lockstep: the roll after the image before, which slam has answered by now: same input, same boxes. Else that of the
+/// newest pose, as the filter takes slam's word.
+double DetectorService::roll_for(const Arrival& arrival) {
+  if (!roll_) return 0;
+  if (runtime_.pace == service::Pace::kLockstep) {
+    const std::optional<std::int64_t> before_ns = std::exchange(last_stamp_ns_, arrival.stamp_ns);
+    const bool later = before_ns && *before_ns < arrival.stamp_ns;
+    if (later && !roll_->wait_for(*before_ns, std::chrono::milliseconds(config_.roll_timeout_ms)) &&
+        !runtime_.stop.stop_requested() && roll_log_.pass()) {
+      SPDLOG_WARN("event=roll_unknown stamp_ns={} waited_ms={} effect=\"last known roll is used\"", *before_ns,
+                  config_.roll_timeout_ms);
+    }
+  }
+  return roll_->roll_rad();
 }
 
 void DetectorService::skip(const Arrival& arrival, const std::string& cause) {
@@ -170,7 +193,8 @@ void DetectorService::count(double detect_ms) {
 
 bool DetectorService::peers_matched() const {
   const int sources = config_.input == "jpeg" ? jpegs_.matched() : frames_.matched();
-  return sources > 0 && detections_.matched() > 0;
+  const bool hears_slam = !roll_ || runtime_.pace != service::Pace::kLockstep || tracking_.matched() > 0;
+  return sources > 0 && detections_.matched() > 0 && hears_slam;
 }
 
 void DetectorService::report_state() {

@@ -19,6 +19,7 @@
 #include "common/service/runtime.hpp"
 #include "services/detector/config.hpp"
 #include "services/detector/core/detector.hpp"
+#include "services/detector/roll_feedback.hpp"
 
 namespace rtd::detector {
 
@@ -61,6 +62,7 @@ class DetectorService {
   void count(double detect_ms);
   bool peers_matched() const;
   void report_state();
+  double roll_for(const Arrival& arrival);
   void keep_rate(std::int64_t started_ns) const;
 
   const Config config_;
@@ -70,6 +72,9 @@ class DetectorService {
   bus::Writer<msg::Detection2DArray> detections_;
   bus::Reader<msg::RgbdFrame> frames_;
   bus::Reader<msg::CompressedImage> jpegs_;
+  std::shared_ptr<RollFeedback> roll_;  ///< none: detector.derotate is off
+  bus::Reader<msg::TrackingResult> tracking_;
+  std::optional<std::int64_t> last_stamp_ns_;  ///< lockstep: of the image before, whose pose is waited for
   std::mutex take_mutex_;
   std::uint64_t taken_ = 0;
   std::mutex turn_mutex_;
@@ -79,7 +84,7 @@ class DetectorService {
   std::atomic<std::uint64_t> answered_{0};
   std::uint64_t broken_ = 0;
   double total_detect_ms_ = 0, max_detect_ms_ = 0;
-  service::RateLimit broken_log_{std::chrono::seconds(1)};
+  service::RateLimit broken_log_{std::chrono::seconds(1)}, roll_log_{std::chrono::seconds(1)};
 };
 
 }  // namespace rtd::detector

@@ -54,7 +54,7 @@ class Filtered final : public FrontEnd {
  public:
   /// Without `look`: no detector.
   Filtered(const filter::FilterConfig& config, const Look& look, const DetectorOptions& detector)
-      : filter_(config, service::monotonic_ns) {
+      : filter_(config, service::monotonic_ns), roll_(detector.roll) {
     if (!look) return;
     detector_.emplace([this, look](const camera::SourceFrame& frame) { return timed(look, frame); }, detector);
   }
@@ -76,6 +76,7 @@ class Filtered final : public FrontEnd {
   void listen(const slam::SlamOutput& output) override {
     for (const msg::KeyframeEvent& event : output.events) filter_.on_keyframe(event);
     filter_.on_tracking(output.result);
+    if (roll_) roll_->on_tracking(output.result);
   }
 
  private:
@@ -87,6 +88,7 @@ class Filtered final : public FrontEnd {
   }
 
   filter::DynamicFilter filter_;
+  std::shared_ptr<detector::CameraRoll> roll_;  ///< may be none
   std::optional<DetectorPace> detector_;
   double detector_ms_ = 0;  ///< spent for the present frame
 };

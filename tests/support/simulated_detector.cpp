@@ -73,20 +73,23 @@ Boxes lie(const camera::SourceFrame& frame, const DetectorOptions& options) {
   return boxes;
 }
 
-Look real_look() {
+Look real_look(const DetectorOptions& options) {
   const detector::ModelSearch model = detector::find_model("", detector::process_environment());
   if (!model) throw std::invalid_argument(model.message);
   detector::DetectorConfig config;
   config.model_path = model.path;
-  return [network = std::make_shared<detector::Detector>(config)](const camera::SourceFrame& frame) {
-    return network->detect(frame.image.color_bgr);
-  };
+  config.decode.confidence_threshold = options.confidence;
+  config.decode.objectness_threshold = std::min(config.decode.objectness_threshold, options.confidence);
+  return
+      [network = std::make_shared<detector::Detector>(config), roll = options.roll](const camera::SourceFrame& frame) {
+        return network->detect_upright(frame.image.color_bgr, roll ? roll->roll_rad() : 0);
+      };
 }
 
 }  // namespace
 
 Look make_look(const DetectorOptions& options) {
-  if (options.kind == "real") return real_look();
+  if (options.kind == "real") return real_look(options);
   if (options.kind == "truth") return [options](const auto& frame) { return see_truth(frame, options); };
   if (options.kind == "lying") return [options](const auto& frame) { return lie(frame, options); };
   throw std::invalid_argument("unknown detector '" + options.kind + "': real, truth, lying, off");

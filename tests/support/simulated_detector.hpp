@@ -4,11 +4,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "common/vision/detection.hpp"
 #include "services/camera/core/frame_source.hpp"
+#include "services/detector/core/camera_roll.hpp"
+#include "services/detector/core/detector_config.hpp"
 
 namespace rtd::test_support {
 
@@ -30,6 +33,9 @@ struct DetectorOptions {
   double missed_share = 0.04;  ///< truth: boxes that are not found
   int min_visible_px = 900;    ///< truth: less of an object is not found
   int max_lies = 8;            ///< lying: boxes of one image
+  /// real: least score
+  double confidence = detector::DecodeConfig{}.confidence_threshold;
+  std::shared_ptr<detector::CameraRoll> roll;  ///< real: detects on the image turned upright by it; none = as it is
 };
 
 /// The boxes that a detector finds in one frame.

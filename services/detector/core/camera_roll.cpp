@@ -19,7 +19,7 @@ Eigen::Vector3d down_of_first_camera(double roll_rad, double pitch_rad) {
 }
 
 void CameraRoll::on_tracking(const msg::TrackingResult& result) {
-  if (result.state != msg::TrackingState::kOk) return;
+  if (!msg::has_pose(result.state)) return;
   const Eigen::Vector3d down_camera = msg::to_isometry(result.T_world_camera).linear().transpose() * config_.down_world;
   const double across = std::hypot(down_camera.x(), down_camera.y());
   if (!std::isfinite(across)) return;

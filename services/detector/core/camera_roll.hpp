@@ -9,12 +9,14 @@
 
 namespace rtd::detector {
 
+inline constexpr double kRadPerDeg = std::numbers::pi / 180;
+
 /// Where down is, and when to care.
 struct RollConfig {
   /// Direction of gravity in the frame of slam's poses, which is that of the first camera: the default means that the
   /// first image was upright.
   Eigen::Vector3d down_world = Eigen::Vector3d::UnitY();
-  double min_roll_rad = 35 * std::numbers::pi / 180;  ///< smaller ones are taken as 0: people are found all the same
+  double min_roll_rad = 35 * kRadPerDeg;  ///< smaller ones are taken as 0: people are found all the same
 };
 
 /// Gravity in the frame of a first camera that was itself rolled (as CameraRoll counts) and looked down by a pitch.

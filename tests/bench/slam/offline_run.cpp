@@ -85,6 +85,14 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
   app.add_option("--detector-delay-ms", detector.delay_ms, "its boxes come so late");
   app.add_option("--detector-seed", detector.seed, "of truth and lying");
   app.add_option("--detector-missed", detector.missed_share, "truth: share of the boxes not found");
+  app.add_option("--detector-confidence", detector.confidence, "real: least score");
+  app.add_option_function<double>(
+      "--derotate",
+      [&detector](double min_deg) {
+        const double min_rad = min_deg * rtd::detector::kRadPerDeg;
+        detector.roll = std::make_shared<rtd::detector::CameraRoll>(rtd::detector::RollConfig{.min_roll_rad = min_rad});
+      },
+      "real: on the image turned upright, from this roll on (degrees)");
   app.add_option_function<std::vector<std::string>>(
       "--detector-outage",
       [&detector](const std::vector<std::string>& spans) {
