@@ -7,14 +7,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <future>
 #include <opencv2/imgcodecs.hpp>
 
-#include "common/bus/bus_factory.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/detector/core/model_locator.hpp"
 #include "tests/support/detector/tiny_network.hpp"
-#include "tests/support/inbox.hpp"
+#include "tests/support/service_fixture.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -25,60 +23,21 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
 
-constexpr std::uint32_t kFirstDomain = 150;  // in-process domains of this binary, one per test
-
-double metric(const msg::ServiceStatus& status, const std::string& name) {
-  for (const msg::Metric& metric : status.metrics)
-    if (metric.name == name) return metric.value;
-  return -1;
-}
-
-/// A camera and a filter around one detector service that runs in a thread.
-class DetectorServiceTest : public ::testing::Test {
+/// A camera and a filter around one detector service.
+class DetectorServiceTest : public test_support::ServiceFixture<DetectorService> {
  protected:
-  void SetUp() override {
-    static std::uint32_t domain = kFirstDomain;
-    bus::BusOptions options;
-    options.vendor = "inprocess";
-    options.domain = domain++;
-    bus_ = bus::connect(options);
-    frames_ = bus_->writer(bus::topics::kFrame);
-    jpegs_ = bus_->writer(bus::topics::kColorJpeg);
-    tracking_ = bus_->writer(bus::topics::kTracking);
-    answers_ = bus_->reader<msg::Detection2DArray>(bus::topics::kDetections,
-                                                   [this](auto message) { answer_box_.take(std::move(message)); });
-    statuses_ = bus_->reader<msg::ServiceStatus>(bus::topics::kStatus,
-                                                 [this](auto message) { status_box_.take(std::move(message)); });
-    const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() / (std::string("rtd_detector_service_") + info->name());
+  DetectorServiceTest()
+      : frames_(bus_->writer(bus::topics::kFrame)),
+        jpegs_(bus_->writer(bus::topics::kColorJpeg)),
+        tracking_(bus_->writer(bus::topics::kTracking)) {
+    hear(bus::topics::kDetections, answer_box_);
     std::filesystem::create_directories(folder_);
     config_.model = (folder_ / "tiny.onnx").string();
     config_.class_names = {"person", "box"};
     config_.derotate = "off";  // no slam here, but where a test plays it
     std::ofstream(config_.model, std::ios::binary) << test::tiny_network_onnx({});
   }
-  void TearDown() override {
-    stop_.request_stop();
-    if (running_.valid()) {
-      EXPECT_EQ(running_.get(), service::kOk);
-    }
-    std::filesystem::remove_all(folder_);
-  }
 
-  void start(service::Pace pace) {
-    running_ = std::async(std::launch::async, [this, pace] {
-      service::Heartbeat heartbeat(*bus_, "detector", stop_);
-      service::Runtime runtime{*bus_, heartbeat, stop_, pace};
-      return DetectorService(config_, runtime).run();
-    });
-    ASSERT_TRUE(wait_state(msg::ServiceState::kReady)) << "the detector did not become ready";
-  }
-  bool wait_state(msg::ServiceState state) {
-    return status_box_.wait([state](const auto& all) { return !all.empty() && all.back()->state == state; });
-  }
-  bool wait_metric(const std::string& name, double value) {
-    return status_box_.wait([&](const auto& all) { return !all.empty() && metric(*all.back(), name) == value; });
-  }
   /// A 64x64 frame, white in one cell or black.
   void send_frame(std::int64_t stamp_ns, bool white_cell = false) {
     auto frame = std::make_unique<msg::RgbdFrame>();
@@ -110,18 +69,10 @@ class DetectorServiceTest : public ::testing::Test {
     return stamps;
   }
 
-  ServiceConfig config_;
-  std::filesystem::path folder_;
-  service::StopToken stop_;
-  std::shared_ptr<bus::Bus> bus_;
   Inbox<msg::Detection2DArray> answer_box_;
-  Inbox<msg::ServiceStatus> status_box_;
   bus::Writer<msg::RgbdFrame> frames_;
   bus::Writer<msg::CompressedImage> jpegs_;
   bus::Writer<msg::TrackingResult> tracking_;
-  bus::Reader<msg::Detection2DArray> answers_;
-  bus::Reader<msg::ServiceStatus> statuses_;
-  std::future<service::ExitCode> running_;
 };
 
 TEST_F(DetectorServiceTest, answers_every_frame_in_lockstep) {
@@ -266,8 +217,7 @@ TEST_F(DetectorServiceTest, ends_within_a_second_while_it_waits_for_slam) {
   send_frame(2);
   EXPECT_FALSE(answer_box_.wait_count(2, std::chrono::milliseconds(50)));
   const std::int64_t asked_ns = service::monotonic_ns();
-  stop_.request_stop();
-  EXPECT_EQ(running_.get(), service::kOk);
+  EXPECT_EQ(stop(), service::kOk);
   EXPECT_LT(service::monotonic_ns() - asked_ns, 1'000'000'000);
 }
 
@@ -275,27 +225,22 @@ TEST_F(DetectorServiceTest, reports_how_long_it_took) {
   start(service::Pace::kLockstep);
   send_frame(1);
   ASSERT_TRUE(wait_metric("frames", 1));
-  EXPECT_GT(metric(*status_box_.all().back(), "detect_ms"), 0.0);
+  EXPECT_GT(metric(*states_.all().back(), "detect_ms").value_or(0), 0.0);
   EXPECT_TRUE(wait_state(msg::ServiceState::kRunning));
 }
 
 TEST_F(DetectorServiceTest, is_not_ready_without_a_filter) {
-  answers_ = {};
-  running_ = std::async(std::launch::async, [this] {
-    service::Heartbeat heartbeat(*bus_, "detector", stop_);
-    service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kLockstep};
-    return DetectorService(config_, runtime).run();
-  });
-  ASSERT_TRUE(status_box_.wait([](const auto& all) { return !all.empty() && !all.back()->message.empty(); }));
-  for (const auto& status : status_box_.all()) EXPECT_EQ(status->state, msg::ServiceState::kStarting);
+  hear_no_more();
+  launch(service::Pace::kLockstep);
+  ASSERT_TRUE(states_.wait([](const auto& all) { return !all.empty() && !all.back()->message.empty(); }));
+  for (const auto& status : states_.all()) EXPECT_EQ(status->state, msg::ServiceState::kStarting);
 }
 
 TEST_F(DetectorServiceTest, ends_within_a_second_while_frames_wait) {
   start(service::Pace::kAsap);
   for (std::int64_t stamp_ns = 0; stamp_ns < 30; ++stamp_ns) send_frame(stamp_ns);
   const std::int64_t asked_ns = service::monotonic_ns();
-  stop_.request_stop();
-  EXPECT_EQ(running_.get(), service::kOk);
+  EXPECT_EQ(stop(), service::kOk);
   EXPECT_LT(service::monotonic_ns() - asked_ns, 1'000'000'000);
 }
 

@@ -6,12 +6,10 @@
 
 #include <filesystem>
 #include <fstream>
-#include <future>
 
-#include "common/bus/bus_factory.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "tests/support/feature_world.hpp"
-#include "tests/support/inbox.hpp"
+#include "tests/support/service_fixture.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -21,58 +19,22 @@ using test_support::Inbox;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-constexpr std::uint32_t kFirstDomain = 180;  // in-process domains of this binary, one per test
-
-/// A filter and listeners around one slam service that runs in a thread.
-class SlamServiceTest : public ::testing::Test {
+/// A filter and listeners around one slam service.
+class SlamServiceTest : public test_support::ServiceFixture<SlamService> {
  protected:
-  void SetUp() override {
-    static std::uint32_t domain = kFirstDomain;
-    bus::BusOptions options;
-    options.vendor = "inprocess";
-    options.domain = domain++;
-    bus_ = bus::connect(options);
-    features_ = bus_->writer(bus::topics::kFeatures);
-    status_writer_ = bus_->writer(bus::topics::kStatus);
-    readers_ = std::make_unique<Readers>(Readers{
-        bus_->reader<msg::TrackingResult>(bus::topics::kTracking, [this](auto m) { results_.take(std::move(m)); }),
-        bus_->reader<msg::KeyframeEvent>(bus::topics::kKeyframes, [this](auto m) { events_.take(std::move(m)); }),
-        bus_->reader<msg::Odometry>(bus::topics::kOdometry, [this](auto m) { odometry_.take(std::move(m)); }),
-        bus_->reader<msg::TFMessage>(bus::topics::kTf, [this](auto m) { tf_.take(std::move(m)); }),
-        bus_->reader<msg::Path>(bus::topics::kPath, [this](auto m) { paths_.take(std::move(m)); }),
-        bus_->reader<msg::PointCloud2>(bus::topics::kMapPoints, [this](auto m) { clouds_.take(std::move(m)); }),
-        bus_->reader<msg::DiagnosticArray>(bus::topics::kDiagnostics,
-                                           [this](auto m) { diagnostics_.take(std::move(m)); }),
-        bus_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](auto m) { statuses_.take(std::move(m)); })});
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("rtd_slam_service_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(folder_);
+  SlamServiceTest()
+      : features_(bus_->writer(bus::topics::kFeatures)), status_writer_(bus_->writer(bus::topics::kStatus)) {
+    hear(bus::topics::kTracking, results_);
+    hear(bus::topics::kKeyframes, events_);
+    hear(bus::topics::kOdometry, odometry_);
+    hear(bus::topics::kTf, tf_);
+    hear(bus::topics::kPath, paths_);
+    hear(bus::topics::kMapPoints, clouds_);
+    hear(bus::topics::kDiagnostics, diagnostics_);
     config_.map_period_ms = 20;
     config_.path_period_ms = 1;
   }
-  void TearDown() override {
-    stop();
-    std::filesystem::remove_all(folder_);
-  }
 
-  void start(service::Pace pace) {
-    running_ = std::async(std::launch::async, [this, pace] {
-      service::Heartbeat heartbeat(*bus_, "slam", stop_);
-      service::Runtime runtime{*bus_, heartbeat, stop_, pace};
-      return SlamService(config_, runtime).run();
-    });
-    ASSERT_TRUE(wait_state(msg::ServiceState::kReady)) << "slam did not become ready";
-  }
-  service::ExitCode stop() {
-    stop_.request_stop();
-    return running_.valid() ? running_.get() : service::kOk;
-  }
-  bool wait_state(msg::ServiceState state, const std::string& text = {}) {
-    return statuses_.wait([&](const auto& all) {
-      return !all.empty() && all.back()->service == "slam" && all.back()->state == state &&
-             all.back()->message.find(text) != std::string::npos;
-    });
-  }
   bool send(std::uint64_t seq) { return features_.write(*world_.view(seq, FeatureWorld::T_world_camera(seq))); }
   /// Sends a frame and waits for its result, as the camera does in lockstep.
   void step(std::uint64_t seq) {
@@ -85,22 +47,7 @@ class SlamServiceTest : public ::testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  struct Readers {
-    bus::Reader<msg::TrackingResult> tracking;
-    bus::Reader<msg::KeyframeEvent> keyframes;
-    bus::Reader<msg::Odometry> odometry;
-    bus::Reader<msg::TFMessage> tf;
-    bus::Reader<msg::Path> path;
-    bus::Reader<msg::PointCloud2> map_points;
-    bus::Reader<msg::DiagnosticArray> diagnostics;
-    bus::Reader<msg::ServiceStatus> status;
-  };
-
   const FeatureWorld world_{{}};
-  ServiceConfig config_;
-  std::filesystem::path folder_;
-  service::StopToken stop_;
-  std::shared_ptr<bus::Bus> bus_;
   Inbox<msg::TrackingResult> results_;
   Inbox<msg::KeyframeEvent> events_;
   Inbox<msg::Odometry> odometry_;
@@ -108,11 +55,8 @@ class SlamServiceTest : public ::testing::Test {
   Inbox<msg::Path> paths_;
   Inbox<msg::PointCloud2> clouds_;
   Inbox<msg::DiagnosticArray> diagnostics_;
-  Inbox<msg::ServiceStatus> statuses_;
-  std::unique_ptr<Readers> readers_;
   bus::Writer<msg::FeatureFrame> features_;
   bus::Writer<msg::ServiceStatus> status_writer_;
-  std::future<service::ExitCode> running_;
 };
 
 TEST_F(SlamServiceTest, answers_every_frame_with_pose_odometry_and_tf) {
