@@ -79,12 +79,29 @@ void bind_geometry(ConfigBinder& binder, GeometryConfig& c) {
                "more of the image dynamic: no statement");
 }
 
+void bind_belief(ConfigBinder& binder, BeliefConfig& c) {
+  binder.field("belief.background_prior", c.background_prior, {0.0, 1.0}, "static probability of a new surface");
+  binder.field("belief.medium_prior", c.medium_prior, {0.0, 1.0}, "the same on an object of a medium level");
+  binder.field("belief.high_prior", c.high_prior, {0.0, 1.0}, "the same on an object of a high level");
+  binder.field("belief.gain_per_s", c.gain_per_s, {0.0, 1000.0}, "log-odds for each second at rest");
+  binder.field("belief.high_gain_per_s", c.high_gain_per_s, {0.0, 1000.0}, "the same for a high level");
+  binder.field("belief.highest_probability", c.highest_probability, {0.5, 1.0}, "evidence adds up to this");
+  binder.field("belief.high_limit", c.high_limit, {0.0, 1.0}, "the same for a high level");
+  binder.field("belief.lowest_probability", c.lowest_probability, {0.0, 0.5}, "what moves falls to this");
+  binder.field("belief.forget_s", c.forget_s, {0.01, 1000.0}, "without a statement: back to the prior");
+  binder.field("belief.min_moving_cells", c.min_moving_cells, {0.01, 1.0}, "share dynamic: the object moves");
+  binder.field("belief.min_moving_votes", c.min_moving_votes, {1, 2048}, "or so many of its features displaced");
+  binder.field("belief.min_moving_votes_share", c.min_moving_votes_share, {0.01, 1.0}, "... and this share of them");
+  binder.field("belief.max_dynamic_cells", c.max_dynamic_cells, {0.0, 1.0}, "share dynamic: less, it may rest");
+  binder.field("belief.min_lasting_cells", c.min_lasting_cells, {0.0, 1.0}, "... this share there 0.4 s ago");
+  binder.field("belief.min_resting_votes", c.min_resting_votes, {0, 2048}, "... so many features at their place");
+  binder.field("belief.min_resting_ratio", c.min_resting_ratio, {1.0, 1000.0}, "... to displaced ones");
+  binder.field("belief.min_used_probability", c.min_used_probability, {0.0, 1.0},
+               "believed in so much, an object takes part in the quick pose");
+}
+
 void bind_fusion(ConfigBinder& binder, FusionConfig& c) {
   binder.field("fusion.remove_below", c.remove_below, {0.0, 1.0}, "features less probably static are removed");
-  binder.field("fusion.unknown_probability", c.unknown_probability, {0.0, 1.0}, "background without statement");
-  binder.field("fusion.sitting_probability", c.sitting_probability, {0.0, 1.0}, "high level, but at rest for long");
-  binder.field("fusion.sitting_seconds", c.sitting_seconds, {0.0, 60.0}, "what long means");
-  binder.field("fusion.doubtful_probability", c.doubtful_probability, {0.0, 1.0}, "weight of a doubtful feature");
   binder.field("fusion.min_static_features", c.min_static_features, {0, 2048}, "fewer: the best of the doubtful stay");
   binder.field("fusion.boost", c.boost, {1.0, 2.0}, "times as many features while something is masked");
 }
@@ -121,6 +138,7 @@ void ServiceConfig::bind(ConfigBinder& binder) {
   bind_surfaces(binder, core.clusters, core.masks);
   bind_ego_motion(binder, core.ego_motion);
   bind_geometry(binder, core.geometry);
+  bind_belief(binder, core.belief);
   bind_fusion(binder, core.fusion);
   bind_published(binder, core.epipolar, core.paper);
   binder.field("motion_levels", core.motion_levels, "class -> high, medium, low, none; over the built-in table");

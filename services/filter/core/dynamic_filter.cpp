@@ -9,6 +9,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
+#include "services/filter/core/belief/log_odds.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
 #include "services/filter/core/stage_clock.hpp"
 #include "services/filter/core/static_probability.hpp"
@@ -136,6 +137,7 @@ void DynamicFilter::find_what_may_move(const DetectorWord& word, Scene& scene, F
     for (const int cell : object.cells) scene.may_move[static_cast<std::size_t>(cell)] = 1;
   }
   scene.clusters = separate_objects(std::move(scene.clusters), result.objects);
+  trust_known_surfaces(scene);
   scene.may_move = dilate(scene.grid.shape, scene.may_move, config_.masks.dilate_cells);
   result.stage_ms[msg::kStageMasks] = clock.lap_ms();
 }
@@ -187,6 +189,22 @@ double DynamicFilter::roll_rate_rad_s() const {
   return std::atan2(turn(1, 0), turn(0, 0)) / dt_s;
 }
 
+CellBeliefs DynamicFilter::recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const {
+  if (views_.empty()) return CellBeliefs(scene.may_move.size(), kNoBelief);
+  return beliefs_.recall(scene.grid, sampler_.rays(), scene.image.camera,
+                         views_.newest().T_world_camera.inverse() * T_world_camera);
+}
+
+/// What has been seen at rest for long takes part in the pose and in later checks, whatever its class.
+void DynamicFilter::trust_known_surfaces(Scene& scene) const {
+  if (views_.empty() || !config_.techniques.belief || !config_.techniques.resting_objects) return;
+  const CellBeliefs beliefs = recall_beliefs(scene, predict_pose());
+  const float enough = log_odds(config_.belief.min_used_probability);
+  for (std::size_t cell = 0; cell < beliefs.size(); ++cell) {
+    if (is_known(beliefs[cell]) && beliefs[cell] >= enough) scene.may_move[cell] = 0;
+  }
+}
+
 DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, FilterResult& result) {
   const auto cells = static_cast<std::size_t>(scene.grid.shape.size());
   const std::vector<std::uint8_t> nothing(cells, 0);
@@ -236,12 +254,17 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
 
 void DynamicFilter::weigh(const Scene& scene, const Geometry& geometry, FilterResult& result) {
   StageClock clock(now_ns_);
-  std::vector<ObjectMotion> motions;
-  for (const SceneObject& object : result.objects)
-    motions.push_back(judge_motion(object, geometry.regions, geometry.evidence));
-  const std::vector<double> resting_s = history_.update(result.objects, motions, scene.image.stamp_ns);
-  const FrameKnowledge known{scene.grid.shape, result.objects, motions, resting_s, geometry.regions, geometry.evidence};
-  weigh_static_probability(result.features, known, config_.mode, config_.fusion, config_.masks.dilate_cells);
+  const MotionEvidence evidence{geometry.regions, geometry.evidence, geometry.ego.votes};
+  const std::vector<std::int16_t> object_on = objects_on_cells(scene.grid.shape, result.objects);
+  const std::vector<ObjectMotion> motions = judge_objects(result.objects, evidence, config_.belief);
+  const double elapsed_s =
+      views_.empty() ? 0.0 : 1e-9 * static_cast<double>(scene.image.stamp_ns - views_.newest().stamp_ns);
+  CellBeliefs beliefs =
+      update_beliefs(recall_beliefs(scene, result.T_world_camera),
+                     {result.objects, motions, object_on, evidence, elapsed_s}, config_.belief, config_.techniques);
+  const FrameKnowledge known{scene.grid.shape, result.objects, object_on, beliefs, geometry.regions, geometry.evidence};
+  weigh_static_probability(result.features, known, config_);
+  beliefs_.store(scene.grid, std::move(beliefs));
   result.removed = count_removed(result.features);
   result.stage_ms[msg::kStageFuse] = clock.lap_ms();
 }
@@ -302,7 +325,7 @@ void DynamicFilter::on_keyframe(const msg::KeyframeEvent& event) {
 void DynamicFilter::reset() {
   views_.clear();
   memory_.clear();
-  history_.clear();
+  beliefs_.clear();
   box_tracks_.clear();
   if (published_ != nullptr) published_->reset();
   something_masked_ = true;

@@ -12,6 +12,7 @@
 #include "common/msg/tracking.hpp"
 #include "common/vision/detection.hpp"
 #include "common/vision/rgbd_image.hpp"
+#include "services/filter/core/belief/belief_update.hpp"
 #include "services/filter/core/detector_word.hpp"
 #include "services/filter/core/dynamic_memory.hpp"
 #include "services/filter/core/dynamic_regions.hpp"
@@ -19,7 +20,6 @@
 #include "services/filter/core/filter_config.hpp"
 #include "services/filter/core/modes/published_mode.hpp"
 #include "services/filter/core/motion_levels.hpp"
-#include "services/filter/core/object_history.hpp"
 #include "services/filter/core/object_masks.hpp"
 #include "services/filter/core/orb_extractor.hpp"
 #include "services/filter/core/tracks/box_tracks.hpp"
@@ -83,6 +83,8 @@ class DynamicFilter {
   std::vector<ObjectBox> follow_boxes(const DetectorWord& word, const Scene& scene);
   double roll_rate_rad_s() const;
   void judge_as_published(const Scene& scene, FilterResult& result);
+  CellBeliefs recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const;
+  void trust_known_surfaces(Scene& scene) const;
   Geometry find_what_moves(const Scene& scene, FilterResult& result);
   void weigh(const Scene& scene, const Geometry& geometry, FilterResult& result);
   void remember(Scene scene, const Geometry& geometry, FilterResult& result);
@@ -95,7 +97,7 @@ class DynamicFilter {
   DepthGridSampler sampler_;
   ViewStore views_;
   DynamicMemory memory_;
-  ObjectHistory history_;
+  SurfaceBeliefs beliefs_;
   BoxTracks box_tracks_;
   std::int64_t watched_ns_ = 0;               ///< stamp of the last frame for which somebody looked
   std::unique_ptr<PublishedMode> published_;  ///< somebody else's rule in place of ours; null in our own modes

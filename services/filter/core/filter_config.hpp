@@ -100,13 +100,33 @@ struct GeometryConfig {
   double max_dynamic_share = 0.75;  ///< more of the image dynamic: the pose is wrong, no statement
 };
 
+/// How the belief that a surface is static grows and fades; docs/theory/dynamic_points.md Eq. (6)-(8).
+struct BeliefConfig {
+  // What is believed of a surface seen for the first time
+  double background_prior = 0.9;  ///< no class, a class of a low level, or a picture on a wall
+  double medium_prior = 0.5;
+  double high_prior = 0.1;
+  // How evidence counts, in log-odds
+  double gain_per_s = 10.0;           ///< for each second at rest
+  double high_gain_per_s = 2.5;       ///< the same for a high level: somebody who sits down is used after a second
+  double highest_probability = 0.99;  ///< evidence adds up to this and no further, so that it can be outweighed
+  double high_limit = 0.6;            ///< the same for a high level: rest alone lifts it no higher
+  double lowest_probability = 0.05;   ///< what moves falls to this at once
+  double forget_s = 2.0;              ///< without a statement a belief returns to the prior with this time constant
+  // When an object with a class moves, and when it rests
+  double min_moving_cells = 0.2;         ///< share of its cells dynamic: it moves
+  int min_moving_votes = 8;              ///< or so many features displaced
+  double min_moving_votes_share = 0.35;  ///< ... and this share of those found again
+  double max_dynamic_cells = 0.05;       ///< it rests: hardly a cell dynamic (a share)
+  double min_lasting_cells = 0.3;        ///< ... this share of its cells there 0.4 s ago
+  int min_resting_votes = 12;            ///< ... and so many features at their place
+  double min_resting_ratio = 5.0;        ///< ... this many times more than displaced ones
+  double min_used_probability = 0.5;     ///< an object believed in at least so much takes part in the quick pose
+};
+
 /// Fusion to one probability.
 struct FusionConfig {
-  double remove_below = 0.25;        ///< features less probably static than this are removed
-  double unknown_probability = 0.9;  ///< background without any statement
-  double sitting_probability = 0.3;  ///< high level, but at rest for long
-  double sitting_seconds = 3.0;
-  double doubtful_probability = 0.5;
+  double remove_below = 0.25;     ///< features less probably static than this are removed
   int min_static_features = 120;  ///< fewer left: the best of the doubtful are kept
   double boost = 1.5;             ///< times as many features while something is masked
 };
@@ -151,6 +171,7 @@ struct FilterConfig {
   MaskConfig masks;
   EgoMotionConfig ego_motion;
   GeometryConfig geometry;
+  BeliefConfig belief;
   FusionConfig fusion;
   BoxTrackConfig tracks;
   EpipolarConfig epipolar;

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 
+#include "services/filter/core/belief/log_odds.hpp"
+
 namespace rtd::filter {
 namespace {
 
-constexpr float kMovingProbability = 0.02F;  // geometry saw it move
-constexpr float kMayMoveProbability = 0.1F;  // a person of whom geometry says nothing
+constexpr float kMovingProbability = 0.02F;  // geometry sees it move
 
 msg::FeatureFlag mask_flag(MotionLevel level) {
   switch (level) {
@@ -44,71 +45,81 @@ std::vector<std::int16_t> paint_objects(const FrameKnowledge& known, int dilate_
   return painted;
 }
 
-/// What geometry says of a cell, as a probability.
-float geometric_probability(const FrameKnowledge& known, const std::vector<std::uint8_t>& dynamic, std::size_t cell,
-                            const FusionConfig& fusion) {
-  if (dynamic[cell] != 0) return kMovingProbability;
-  if (known.regions.trusted && known.evidence.consistent[cell] > 0) return 1.0F;
-  return static_cast<float>(fusion.unknown_probability);
-}
-
-/// The fusion rule for a feature on an object.
-float object_probability(const FrameKnowledge& known, std::size_t object, float geometric, FilterMode mode,
-                         const FusionConfig& fusion) {
-  const SceneObject& on = known.objects[object];
-  if (mode == FilterMode::kSemantic) return on.level == MotionLevel::kHigh ? kMovingProbability : geometric;
-  if (on.flat || on.level == MotionLevel::kLow) return geometric;
-  if (known.motions[object] == ObjectMotion::kMoving) return kMovingProbability;
-  if (on.level == MotionLevel::kHigh) {
-    const bool sits = known.resting_s[object] >= fusion.sitting_seconds;
-    return std::min(geometric, sits ? static_cast<float>(fusion.sitting_probability) : kMayMoveProbability);
+/// The beliefs with those in objects that may not be used spread around them: the outline of a mask is not exact.
+CellBeliefs grow_doubt(const FrameKnowledge& known, int cells) {
+  CellBeliefs grown(known.beliefs);
+  const GridShape& shape = known.shape;
+  for (int row = 0; row < shape.rows; ++row) {
+    for (int column = 0; column < shape.columns; ++column) {
+      const auto cell = static_cast<std::size_t>(shape.index(column, row));
+      const float belief = known.beliefs[cell];
+      if (known.object_on[cell] < 0 || belief >= 0) continue;
+      for (int y = std::max(0, row - cells); y <= std::min(shape.rows - 1, row + cells); ++y) {
+        for (int x = std::max(0, column - cells); x <= std::min(shape.columns - 1, column + cells); ++x) {
+          float& near = grown[static_cast<std::size_t>(shape.index(x, y))];
+          near = std::min(near, belief);
+        }
+      }
+    }
   }
-  const bool rests = known.motions[object] == ObjectMotion::kResting;
-  return std::min(geometric, rests ? 1.0F : static_cast<float>(fusion.doubtful_probability));
+  return grown;
 }
 
 /// Takes back the most probable of the removed features until enough remain.
-void keep_best_of_doubtful(std::vector<msg::Feature>& features, const FusionConfig& fusion) {
+void keep_best_of_doubtful(std::vector<msg::Feature>& features, const FilterConfig& config) {
+  const auto seen_moving = static_cast<float>(config.belief.lowest_probability) * 1.01F;
   int kept = 0;
   std::vector<msg::Feature*> doubtful;
   for (msg::Feature& feature : features) {
     if ((feature.flags & msg::kFeatureRemoved) == 0) {
       ++kept;
-    } else if (feature.static_probability > kMovingProbability) {
+    } else if (feature.static_probability > seen_moving) {
       doubtful.push_back(&feature);
     }
   }
   std::stable_sort(doubtful.begin(), doubtful.end(),
                    [](const auto* a, const auto* b) { return a->static_probability > b->static_probability; });
   for (msg::Feature* feature : doubtful) {
-    if (kept >= fusion.min_static_features) return;
+    if (kept >= config.fusion.min_static_features) return;
     feature->flags &= static_cast<std::uint8_t>(~msg::kFeatureRemoved);
     ++kept;
   }
 }
 
+/// What is kept counts in full.
+void weigh_alike(std::vector<msg::Feature>& features) {
+  for (msg::Feature& feature : features) {
+    if ((feature.flags & msg::kFeatureRemoved) == 0) feature.static_probability = 1;
+  }
+}
+
 }  // namespace
 
-void weigh_static_probability(std::vector<msg::Feature>& features, const FrameKnowledge& known, FilterMode mode,
-                              const FusionConfig& fusion, int dilate_cells) {
-  const std::vector<std::int16_t> painted = paint_objects(known, dilate_cells);
-  const std::vector<std::uint8_t> dynamic = dilate(known.shape, known.regions.frames_left, dilate_cells);
+void weigh_static_probability(std::vector<msg::Feature>& features, const FrameKnowledge& known,
+                              const FilterConfig& config) {
+  const std::vector<std::int16_t> painted = paint_objects(known, config.masks.dilate_cells);
+  const CellMask dynamic = dilate(known.shape, known.regions.frames_left, config.masks.dilate_cells);
+  const CellBeliefs beliefs = grow_doubt(known, config.masks.dilate_cells);
   for (msg::Feature& feature : features) {
     const auto cell = static_cast<std::size_t>(known.shape.nearest_cell(feature.u_px, feature.v_px));
     feature.flags = 0;
-    if (dynamic[cell] != 0) feature.flags |= msg::kFeatureGeometryMoving;
-    if (dynamic[cell] == 0 && known.regions.trusted && known.evidence.consistent[cell] > 0)
+    feature.static_probability = dynamic[cell] != 0 ? kMovingProbability : probability(beliefs[cell]);
+    if (dynamic[cell] != 0) {
+      feature.flags |= msg::kFeatureGeometryMoving;
+    } else if (known.regions.trusted && known.evidence.consistent[cell] > 0) {
       feature.flags |= msg::kFeatureGeometryStatic;
-    feature.static_probability = geometric_probability(known, dynamic, cell, fusion);
+    }
     feature.object_id = painted[cell];
     if (feature.object_id >= 0) {
-      const auto object = static_cast<std::size_t>(feature.object_id);
-      feature.flags |= mask_flag(known.objects[object].level);
-      feature.static_probability = object_probability(known, object, feature.static_probability, mode, fusion);
+      const MotionLevel level = known.objects[static_cast<std::size_t>(feature.object_id)].level;
+      feature.flags |= mask_flag(level);
+      if (config.mode == FilterMode::kSemantic && level == MotionLevel::kHigh)
+        feature.static_probability = kMovingProbability;
     }
-    if (feature.static_probability < fusion.remove_below) feature.flags |= msg::kFeatureRemoved;
+    if (feature.static_probability < config.fusion.remove_below) feature.flags |= msg::kFeatureRemoved;
   }
-  keep_best_of_doubtful(features, fusion);
+  keep_best_of_doubtful(features, config);
+  if (!config.techniques.feature_weights) weigh_alike(features);
 }
 
 }  // namespace rtd::filter

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "common/msg/features.hpp"
+#include "services/filter/core/belief/belief_update.hpp"
 #include "services/filter/core/depth_check.hpp"
 #include "services/filter/core/dynamic_regions.hpp"
-#include "services/filter/core/object_history.hpp"
 #include "services/filter/core/object_masks.hpp"
 
 namespace rtd::filter {
@@ -16,8 +16,8 @@ namespace rtd::filter {
 struct FrameKnowledge {
   GridShape shape;
   const std::vector<SceneObject>& objects;
-  const std::vector<ObjectMotion>& motions;  ///< per object
-  const std::vector<double>& resting_s;      ///< per object
+  const std::vector<std::int16_t>& object_on;  ///< per cell, objects_on_cells()
+  const CellBeliefs& beliefs;                  ///< per cell, this frame included
   const DynamicRegions& regions;
   const DepthEvidence& evidence;
 };
@@ -25,7 +25,7 @@ struct FrameKnowledge {
 /// Gives every feature its probability to be static, its flags and its object (docs/theory/dynamic_points.md section 5,
 /// DESIGN section 4 rule 4), marks the improbable ones as removed and, when that leaves too few, takes the best of the
 /// doubtful back. Features that geometry saw moving stay removed.
-void weigh_static_probability(std::vector<msg::Feature>& features, const FrameKnowledge& known, FilterMode mode,
-                              const FusionConfig& fusion, int dilate_cells);
+void weigh_static_probability(std::vector<msg::Feature>& features, const FrameKnowledge& known,
+                              const FilterConfig& config);
 
 }  // namespace rtd::filter

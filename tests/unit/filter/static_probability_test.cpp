@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "services/filter/core/belief/log_odds.hpp"
+
 namespace rtd::filter {
 namespace {
 
@@ -26,11 +28,16 @@ class StaticProbabilityTest : public ::testing::Test {
       if (cell % 160 < 53) object.cells.push_back(cell);
     }
     objects_.push_back(object);
-    fusion_.min_static_features = 0;
+    config_.fusion.min_static_features = 0;
   }
   void weigh(FilterMode mode = FilterMode::kRtd) {
-    weigh_static_probability(features_, {{160, 120}, objects_, motions_, resting_s_, regions_, evidence_}, mode,
-                             fusion_, 1);
+    config_.mode = mode;
+    const FeatureVotes no_votes;
+    const MotionEvidence evidence{regions_, evidence_, no_votes};
+    const auto object_on = objects_on_cells({160, 120}, objects_);
+    const CellBeliefs beliefs =
+        update_beliefs(recalled_, {objects_, motions_, object_on, evidence, 0.033}, config_.belief, config_.techniques);
+    weigh_static_probability(features_, {{160, 120}, objects_, object_on, beliefs, regions_, evidence_}, config_);
   }
   const msg::Feature& on_object() const { return features_[2]; }
   const msg::Feature& background() const { return features_[25]; }
@@ -39,10 +46,10 @@ class StaticProbabilityTest : public ::testing::Test {
   std::vector<msg::Feature> features_;
   std::vector<SceneObject> objects_;
   std::vector<ObjectMotion> motions_{ObjectMotion::kUnknown};
-  std::vector<double> resting_s_{0};
   DynamicRegions regions_{true, CellMask(kCells, 0), 0};
   DepthEvidence evidence_ = DepthEvidence::none(kCells);
-  FusionConfig fusion_;
+  CellBeliefs recalled_ = CellBeliefs(kCells, kNoBelief);
+  FilterConfig config_;
 };
 
 TEST_F(StaticProbabilityTest, removes_a_person_of_whom_nothing_is_known) {
@@ -56,24 +63,27 @@ TEST_F(StaticProbabilityTest, removes_a_person_of_whom_nothing_is_known) {
 
 TEST_F(StaticProbabilityTest, gives_a_person_who_sits_for_long_a_low_weight) {
   motions_[0] = ObjectMotion::kResting;
-  resting_s_[0] = 1.0;
-  weigh();
-  EXPECT_TRUE(removed(on_object())) << "not long enough";
-  resting_s_[0] = 10.0;
+  recalled_.assign(kCells, log_odds(0.4));
   weigh();
   EXPECT_FALSE(removed(on_object()));
-  EXPECT_FLOAT_EQ(on_object().static_probability, static_cast<float>(fusion_.sitting_probability));
+  EXPECT_NEAR(on_object().static_probability, 0.42, 0.01);
+}
+
+TEST_F(StaticProbabilityTest, weighs_all_alike_when_weights_are_off) {
+  config_.techniques.feature_weights = false;
+  recalled_.assign(kCells, log_odds(0.4));
+  weigh();
+  EXPECT_EQ(on_object().static_probability, 1.0F);
 }
 
 TEST_F(StaticProbabilityTest, lets_geometry_decide_on_a_chair) {
   objects_[0].level = MotionLevel::kMedium;
   weigh();
   EXPECT_FALSE(removed(on_object()));
-  EXPECT_FLOAT_EQ(on_object().static_probability, static_cast<float>(fusion_.doubtful_probability));
+  EXPECT_NEAR(on_object().static_probability, config_.belief.medium_prior, 1e-3);
   motions_[0] = ObjectMotion::kResting;
-  evidence_.consistent.assign(kCells, 3);
   weigh();
-  EXPECT_FLOAT_EQ(on_object().static_probability, 1.0F);
+  EXPECT_GT(on_object().static_probability, config_.belief.medium_prior);
   motions_[0] = ObjectMotion::kMoving;
   weigh();
   EXPECT_TRUE(removed(on_object()));
@@ -99,7 +109,6 @@ TEST_F(StaticProbabilityTest, prefers_the_person_where_masks_overlap) {
   screen.level = MotionLevel::kLow;
   objects_.push_back(screen);
   motions_.push_back(ObjectMotion::kUnknown);
-  resting_s_.push_back(0);
   weigh();
   EXPECT_EQ(on_object().object_id, 0);
   EXPECT_TRUE(removed(on_object()));
@@ -114,8 +123,7 @@ TEST_F(StaticProbabilityTest, removes_what_moves_without_a_class) {
 }
 
 TEST_F(StaticProbabilityTest, removes_people_and_nothing_else_in_semantic_mode) {
-  motions_[0] = ObjectMotion::kResting;
-  resting_s_[0] = 100;
+  recalled_.assign(kCells, log_odds(0.9));
   weigh(FilterMode::kSemantic);
   EXPECT_TRUE(removed(on_object()));
   EXPECT_FALSE(removed(background()));
@@ -123,14 +131,14 @@ TEST_F(StaticProbabilityTest, removes_people_and_nothing_else_in_semantic_mode) 
 
 TEST_F(StaticProbabilityTest, keeps_the_best_of_the_doubtful_when_too_few_remain) {
   for (int cell = 0; cell < static_cast<int>(kCells); ++cell) objects_[0].cells.push_back(cell);  // a person everywhere
-  fusion_.min_static_features = 100;
+  config_.fusion.min_static_features = 100;
   weigh();
   EXPECT_EQ(std::count_if(features_.begin(), features_.end(), [](const auto& f) { return !removed(f); }), 100);
 }
 
 TEST_F(StaticProbabilityTest, never_takes_back_what_geometry_saw_moving) {
   regions_.frames_left.assign(kCells, 10);
-  fusion_.min_static_features = 100;
+  config_.fusion.min_static_features = 100;
   weigh();
   EXPECT_EQ(std::count_if(features_.begin(), features_.end(), [](const auto& f) { return !removed(f); }), 0);
 }

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/belief/belief_update.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/filter/core/belief/log_odds.hpp"
+
+namespace rtd::filter {
+namespace {
+
+/// How the belief in surfaces of one motion level behaves, per step of this frame.
+struct Pace {
+  float prior;
+  float gain;   ///< log-odds that a frame of rest adds
+  float limit;  ///< rest alone lifts it no higher
+};
+
+/// The numbers of the config for a frame that took this long.
+class BeliefStep {
+ public:
+  BeliefStep(const BeliefInput& input, const BeliefConfig& config, const Techniques& techniques)
+      : input_(input), techniques_(techniques), lowest_(log_odds(config.lowest_probability)) {
+    constexpr double kLongestStepS = 0.2;  // a pause of the camera is no evidence
+    const double step_s = std::clamp(input.elapsed_s, 0.0, kLongestStepS);
+    const auto highest = log_odds(config.highest_probability);
+    const auto gain = static_cast<float>(config.gain_per_s * step_s),
+               high_gain = static_cast<float>(config.high_gain_per_s * step_s);
+    background_ = {log_odds(config.background_prior), gain, highest};
+    medium_ = {log_odds(config.medium_prior), gain, highest};
+    high_ = {log_odds(config.high_prior), high_gain, log_odds(config.high_limit)};
+    forgotten_ = static_cast<float>(1 - std::exp(-step_s / config.forget_s));
+    if (!techniques.belief) background_.gain = medium_.gain = highest - lowest_;  // one frame says it all
+    if (!techniques.belief || !techniques.resting_objects) high_.gain = 0;
+  }
+
+  float operator()(std::size_t cell, float recalled) const {
+    const std::int16_t on = input_.object_on[cell];
+    const SceneObject* object = on < 0 ? nullptr : &input_.objects[static_cast<std::size_t>(on)];
+    const ObjectMotion motion = on < 0 ? ObjectMotion::kUnknown : input_.motions[static_cast<std::size_t>(on)];
+    const Pace& pace = pace_of(object);
+    const bool never_used = object != nullptr && object->level == MotionLevel::kHigh && !techniques_.resting_objects;
+    const float before = !is_known(recalled) ? pace.prior : never_used ? std::min(recalled, pace.prior) : recalled;
+    const MotionEvidence& evidence = input_.evidence;
+    if (evidence.regions.frames_left[cell] > 0 || motion == ObjectMotion::kMoving) return lowest_;
+    if (!evidence.regions.trusted) return before;
+    if (evidence.depth.violated[cell] == 0 && rests(cell, object, motion))
+      return std::min(before + pace.gain, std::max(before, pace.limit));
+    return before + forgotten_ * (pace.prior - before);
+  }
+
+ private:
+  const Pace& pace_of(const SceneObject* object) const {
+    if (object == nullptr || object->level == MotionLevel::kLow) return background_;
+    return object->level == MotionLevel::kHigh ? high_ : medium_;
+  }
+  /// An object rests as a whole or not at all: the inside of a slow mover looks as if it had always been there.
+  bool rests(std::size_t cell, const SceneObject* object, ObjectMotion motion) const {
+    if (object != nullptr && object->level != MotionLevel::kLow) return motion == ObjectMotion::kResting;
+    return input_.evidence.depth.consistent[cell] > 0 || input_.evidence.depth.lasting[cell] > 0;
+  }
+
+  const BeliefInput& input_;
+  const Techniques& techniques_;
+  float lowest_;
+  float forgotten_ = 0;
+  Pace background_{}, medium_{}, high_{};
+};
+
+}  // namespace
+
+std::vector<std::int16_t> objects_on_cells(const GridShape& shape, const std::vector<SceneObject>& objects) {
+  std::vector<std::int16_t> on(static_cast<std::size_t>(shape.size()), -1);
+  for (const MotionLevel level : {MotionLevel::kLow, MotionLevel::kMedium, MotionLevel::kHigh}) {
+    for (std::size_t k = 0; k < objects.size(); ++k) {
+      if (objects[k].level != level || objects[k].flat) continue;
+      for (const int cell : objects[k].cells) on[static_cast<std::size_t>(cell)] = static_cast<std::int16_t>(k);
+    }
+  }
+  return on;
+}
+
+CellBeliefs update_beliefs(CellBeliefs recalled, const BeliefInput& input, const BeliefConfig& config,
+                           const Techniques& techniques) {
+  const BeliefStep step(input, config, techniques);
+  for (std::size_t cell = 0; cell < recalled.size(); ++cell) {
+    recalled[cell] = step(cell, techniques.belief ? recalled[cell] : kNoBelief);
+  }
+  return recalled;
+}
+
+}  // namespace rtd::filter

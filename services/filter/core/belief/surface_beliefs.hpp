@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "common/geometry/camera_model.hpp"
+#include "services/filter/core/depth_grid.hpp"
+
+namespace rtd::filter {
+
+/// Per cell the log-odds that its surface is static; kNoBelief where nothing is known of it.
+using CellBeliefs = std::vector<float>;
+inline constexpr float kNoBelief = 1e9F;
+inline bool is_known(float belief) {
+  return belief < kNoBelief;
+}
+
+/// What was believed of the surfaces of the last frame, carried to the current one. A belief lies on a place in space:
+/// what steps in front of a wall finds no belief there, and a wall keeps its own whatever a detector calls it.
+class SurfaceBeliefs {
+ public:
+  void store(const DepthGrid& grid, CellBeliefs beliefs);
+  void clear() { beliefs_.clear(); }
+
+  /// Looks up every measured cell of the current frame where `T_last_current` puts it in the last one; the depth there
+  /// must agree within `tolerance_m`, at the cell or at one beside it. `rays`: viewing rays of the cells at z = 1.
+  CellBeliefs recall(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
+                     const geometry::CameraModel& camera, const Eigen::Isometry3d& T_last_current,
+                     float tolerance_m = kOwnDepthM) const;
+
+  static constexpr float kOwnDepthM = 0.15F;
+
+ private:
+  float near(int cell, float depth_m, float tolerance_m) const;
+
+  GridShape shape_;
+  std::vector<float> depth_m_;
+  CellBeliefs beliefs_;
+};
+
+}  // namespace rtd::filter
