@@ -2,21 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-
 #include "common/msg/features.hpp"
 #include "common/msg/rgbd_frame.hpp"
 #include "common/msg/ros.hpp"
-#include "common/vision/rgbd_image.hpp"
+#include "common/vision/frame_view.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
 
 namespace rtd::filter {
 
-/// Why a frame cannot be used (size, intrinsics or depth scale out of bounds); empty when it can.
-std::string defect(const msg::RgbdFrame& frame);
-
-/// The images of a message without copying: `frame` must outlive the result, which must not be written to.
-vision::RgbdImage view_image(const msg::RgbdFrame& frame);
+using vision::defect;
+using vision::view_image;
 
 /// Fills a feature message. Of more than kMaxFeatures features, the removed ones are left out first.
 void fill_message(const msg::RgbdFrame& frame, const FilterResult& result, msg::DetectionUse use,

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <ostream>
 
+#include "common/geometry/ply.hpp"
+
 namespace rtd::slam {
 namespace {
 
@@ -64,8 +66,8 @@ void write_tum_trajectory(std::ostream& out, const std::vector<StampedPose>& pos
 }
 
 void write_ply(std::ostream& out, const std::vector<MapPoint>& points) {
-  out << "ply\nformat ascii 1.0\ncomment RTD-SLAM landmarks, world frame, metres\nelement vertex " << points.size()
-      << "\nproperty float x\nproperty float y\nproperty float z\nproperty float static_probability\nend_header\n";
+  geometry::write_ply_header(out, geometry::PlyFormat::kAscii, "RTD-SLAM landmarks, world frame, metres", points.size(),
+                             {{"float", "x"}, {"float", "y"}, {"float", "z"}, {"float", "static_probability"}});
   std::array<char, kLineLength> line{};
   for (const MapPoint& point : points) {
     std::snprintf(line.data(), line.size(), "%.5f %.5f %.5f %.3f\n", static_cast<double>(point.position.x()),
