@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/dense/core/static_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rtd::dense {
+namespace {
+
+VoxelMap::Limits limits(const DenseConfig& config) {
+  return {config.fusion.voxel_m, static_cast<std::size_t>(config.fusion.max_voxels),
+          static_cast<float>(config.fusion.max_weight), static_cast<std::int16_t>(config.carving.max_evidence)};
+}
+
+bool usable(const Eigen::Isometry3d& T) {
+  return T.matrix().allFinite() && std::abs(T.linear().determinant() - 1) < 1e-3;
+}
+
+bool usable(const vision::RgbdImage& image, const DynamicMask& mask) {
+  const auto& p = image.camera.parameters();
+  return image.depth.type() == CV_16UC1 && image.color_bgr.type() == CV_8UC3 && image.depth.cols == p.width &&
+         image.depth.rows == p.height && image.color_bgr.size() == image.depth.size() && image.depth_scale_m > 0 &&
+         p.fx > 0 && p.fy > 0 && mask.columns > 0 && mask.rows > 0 &&
+         mask.cells.size() == static_cast<std::size_t>(mask.columns) * static_cast<std::size_t>(mask.rows);
+}
+
+}  // namespace
+
+StaticMap::StaticMap(const DenseConfig& config) : config_(config), map_(limits(config)) {}
+
+void StaticMap::hear(const msg::KeyframeEvent& event) {
+  const auto removed = keyframes_.hear(event);
+  if (!removed) return;
+  follow_corrections();
+  map_.reanchor(removed->keyframe, removed->follows);
+}
+
+FusionReport StaticMap::integrate(const vision::RgbdImage& image, const DynamicMask& mask,
+                                  const Eigen::Isometry3d& T_world_camera) {
+  FusionReport report;
+  if (!usable(T_world_camera)) report.outcome = FusionReport::Outcome::kBadPose;
+  if (!usable(image, mask)) report.outcome = FusionReport::Outcome::kBadImage;
+  if (report.outcome != FusionReport::Outcome::kFused) return report;
+  follow_corrections();
+  table_.fit(image.camera);
+  const DynamicMask wide = grow(mask, config_.fusion.mask_grow_cells);
+  const DepthView view(image, wide, table_, config_.fusion);
+  ++frame_;
+  report.carved = carve(view, T_world_camera.inverse().cast<float>());
+  fuse(view, T_world_camera.cast<float>(), report);
+  return report;
+}
+
+void StaticMap::follow_corrections() {
+  const std::map<AnchorId, Eigen::Isometry3f> motions = keyframes_.take_motions();
+  if (motions.empty()) return;
+  map_.move([&motions](AnchorId anchor) {
+    const auto found = motions.find(anchor);
+    return found == motions.end() ? nullptr : &found->second;
+  });
+}
+
+/// Eq. (4): whoever stands nearer than what is measured behind him, is not there. That holds at pixels of movers too.
+std::uint64_t StaticMap::carve(const DepthView& view, const Eigen::Isometry3f& T_camera_world) {
+  const auto& limits = config_.carving;
+  const auto min_m = static_cast<float>(config_.fusion.min_depth_m);
+  return map_.remove_if([&](Voxel& voxel) {
+    const Eigen::Vector3f p_camera = T_camera_world * voxel.p_world;
+    if (p_camera.z() < min_m) return false;
+    const int pixel = view.table().raw_pixel(view.table().project(p_camera));
+    const float behind_m = pixel < 0 ? 0.0F : view.nearest_around_m(pixel);
+    const float margin_m =
+        std::max(static_cast<float>(limits.margin_m), static_cast<float>(limits.sigmas) * sigma_m(behind_m));
+    if (behind_m - p_camera.z() <= margin_m) return false;
+    --voxel.evidence;
+    return voxel.evidence <= -limits.frames;
+  });
+}
+
+/// Eq. (1)-(3).
+void StaticMap::fuse(const DepthView& view, const Eigen::Isometry3f& T_world_camera, FusionReport& report) {
+  const int stride = config_.fusion.stride_px, width = view.table().width();
+  const std::uint8_t allowed = config_.fusion.unknown_is_static ? DynamicMask::kUnknown : DynamicMask::kStatic;
+  const float sigma_1m = sigma_m(1.0F);
+  const AnchorId anchor = keyframes_.newest();
+  for (int row = 1; row < view.table().height(); row += stride) {
+    const auto* color = view.image().color_bgr.ptr<std::array<std::uint8_t, 3>>(row);
+    for (int column = 1; column < width; column += stride) {
+      const int pixel = row * width + column;
+      const float depth_m = view.depth_m(pixel);
+      if (depth_m <= 0 || !view.on_surface(column, row)) continue;
+      if (view.motion(pixel) > allowed) {
+        ++report.masked;
+        continue;
+      }
+      const Eigen::Vector3f ray = view.table().ray(pixel);
+      const float length = ray.norm(), ratio = sigma_1m / sigma_m(depth_m);
+      const Sample sample{T_world_camera * (depth_m * ray), T_world_camera.linear() * (ray / length),
+                          static_cast<float>(config_.fusion.gate_sigmas) * sigma_m(depth_m) * length, ratio * ratio,
+                          color[column]};
+      ++(map_.add(sample, frame_, anchor) ? report.fused : report.refused);
+    }
+  }
+}
+
+bool StaticMap::believed(const Voxel& voxel) const {
+  return voxel.sightings >= config_.carving.min_sightings && voxel.evidence > 0;
+}
+
+std::vector<CloudPoint> StaticMap::cloud(std::size_t max_points) {
+  follow_corrections();
+  std::vector<CloudPoint> points;
+  for (const Voxel& voxel : map_.voxels()) {
+    if (believed(voxel)) points.push_back({voxel.p_world, voxel.bgr, voxel.weight});
+  }
+  double cell_m = map_.voxel_m();
+  points = merge_by_cell(points, cell_m);
+  while (points.size() > max_points) points = merge_by_cell(points, cell_m *= 1.5);
+  return points;
+}
+
+bool StaticMap::confirms(const Eigen::Vector3f& p_world) const {
+  const auto step_m = static_cast<float>(map_.voxel_m());
+  for (int i = 0; i < 27; ++i) {
+    const Eigen::Vector3f shift(static_cast<float>(i % 3 - 1), static_cast<float>(i / 3 % 3 - 1),
+                                static_cast<float>(i / 9 - 1));
+    const Voxel* voxel = map_.at(p_world + step_m * shift);
+    if (voxel != nullptr && believed(*voxel)) return true;
+  }
+  return false;
+}
+
+void StaticMap::clear() {
+  map_.clear();
+  keyframes_.clear();
+}
+
+}  // namespace rtd::dense

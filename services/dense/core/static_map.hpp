@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "services/dense/core/dense_config.hpp"
+#include "services/dense/core/depth_view.hpp"
+#include "services/dense/core/keyframe_poses.hpp"
+#include "services/dense/core/point_cloud.hpp"
+#include "services/dense/core/voxel_map.hpp"
+
+namespace rtd::dense {
+
+/// What one frame did to the map.
+struct FusionReport {
+  enum class Outcome { kFused, kBadPose, kBadImage };
+  Outcome outcome = Outcome::kFused;
+  std::uint64_t fused = 0;    ///< points that went in
+  std::uint64_t masked = 0;   ///< points left out because they move, may move or could not be judged
+  std::uint64_t refused = 0;  ///< points that found no room
+  std::uint64_t carved = 0;   ///< voxels that vanished because they were seen through
+};
+
+/// The dense static map: depth images without what moves, fused into voxels; what later turns out to be empty space
+/// vanishes. Points hang on slam's keyframes and move with them. docs/theory/dense_map.md. Deterministic in the order
+/// of calls, never throws for the content of a frame. One thread.
+class StaticMap {
+ public:
+  explicit StaticMap(const DenseConfig& config);
+
+  void hear(const msg::KeyframeEvent& event);
+  /// Carves, then fuses. `mask` as it came from the filter; T_world_camera in slam's world as of the events heard.
+  FusionReport integrate(const vision::RgbdImage& image, const DynamicMask& mask,
+                         const Eigen::Isometry3d& T_world_camera);
+  /// Forgets everything, e.g. when slam has begun a new map.
+  void clear();
+
+  /// What is believed, after the corrections heard so far; in cells of the voxel size or, to keep to `max_points`,
+  /// larger ones.
+  std::vector<CloudPoint> cloud(std::size_t max_points = SIZE_MAX);
+  /// A believed voxel lies within one cell of the point.
+  bool confirms(const Eigen::Vector3f& p_world) const;
+  std::size_t voxels() const { return map_.voxels().size(); }
+  bool full() const { return map_.full(); }
+  const KeyframePoses& keyframes() const { return keyframes_; }
+
+ private:
+  void follow_corrections();
+  std::uint64_t carve(const DepthView& view, const Eigen::Isometry3f& T_camera_world);
+  void fuse(const DepthView& view, const Eigen::Isometry3f& T_world_camera, FusionReport& report);
+  bool believed(const Voxel& voxel) const;
+  float sigma_m(float depth_m) const { return static_cast<float>(config_.noise.sigma_m(static_cast<double>(depth_m))); }
+
+  DenseConfig config_;
+  VoxelMap map_;
+  KeyframePoses keyframes_;
+  PixelTable table_;
+  std::uint32_t frame_ = 0;
+};
+
+}  // namespace rtd::dense

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/msg/ros.hpp"
+#include "services/dense/core/dynamic_mask.hpp"
+#include "services/dense/core/point_cloud.hpp"
+
+namespace rtd::dense {
+
+/// The filter's picture of what moves; empty when it is none (encoding, size or length wrong).
+std::optional<DynamicMask> from_message(const msg::Image& message);
+
+/// x y z and rgb (packed as usual in ROS), all float32.
+msg::PointCloud2 make_cloud(const std::vector<CloudPoint>& points, std::int64_t stamp_ns, const std::string& map_frame);
+
+}  // namespace rtd::dense

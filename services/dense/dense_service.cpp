@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/dense/dense_service.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "common/msg/transform_eigen.hpp"
+#include "common/service/monotonic_clock.hpp"
+#include "common/vision/frame_view.hpp"
+#include "services/dense/dense_messages.hpp"
+
+namespace rtd::dense {
+namespace {
+
+constexpr std::chrono::milliseconds kStatePeriod{50};
+constexpr std::int64_t kMaskPatienceNs = 3'000'000'000;  // for a filter that knows nothing of masks
+
+}  // namespace
+
+void DenseService::add_options(CLI::App& app, Config& config) {
+  app.add_option("--out", config.out_dir, "Folder for static_map.ply (dense.out)");
+  app.add_flag("--background", config.background, "Also write background.png (dense.background)");
+}
+
+DenseService::DenseService(const Config& config, service::Runtime& runtime)
+    : config_(config),
+      runtime_(runtime),
+      map_(config.core),
+      background_(config.core.fusion, static_cast<std::size_t>(config.background_views)),
+      joiner_(std::make_shared<FrameJoiner>(
+          FrameJoiner::Options{static_cast<std::uint64_t>(config.every), !config.without_masks})),
+      cloud_writer_(runtime.bus.writer(bus::topics::kDensePoints)) {
+  runtime.stop.on_stop([joiner = joiner_] { joiner->close(); });
+  keyframe_reader_ = runtime.bus.reader<msg::KeyframeEvent>(bus::topics::kKeyframes,
+                                                            [this](const auto& event) { joiner_->put(*event); });
+  tracking_reader_ = runtime.bus.reader<msg::TrackingResult>(bus::topics::kTracking,
+                                                             [this](const auto& result) { joiner_->put(*result); });
+  mask_reader_ =
+      runtime.bus.reader<msg::Image>(bus::topics::kDynamicMask, [this](const auto& message) { take_mask(*message); });
+  frame_reader_ = runtime.bus.reader<msg::RgbdFrame>(
+      bus::topics::kFrame, [this](std::shared_ptr<const msg::RgbdFrame> frame) { joiner_->put(std::move(frame)); });
+}
+
+service::ExitCode DenseService::run() {
+  while (!runtime_.stop.stop_requested()) {
+    report_state();
+    if (const auto joined = joiner_->take(kStatePeriod)) integrate(*joined);
+    publish_cloud();
+  }
+  finish();
+  return write_files();
+}
+
+void DenseService::take_mask(const msg::Image& message) {
+  if (auto mask = from_message(message)) joiner_->put(msg::to_ns(message.header.stamp), std::move(*mask));
+}
+
+void DenseService::integrate(const JoinedFrame& joined) {
+  hear(joined.words);
+  if (const std::string cause = vision::defect(*joined.frame); !cause.empty()) {
+    ++totals_.defective;
+    if (defect_log_.pass()) SPDLOG_WARN("event=frame_defective frame={} cause=\"{}\"", joined.result.seq, cause);
+    return;
+  }
+  const vision::RgbdImage image = vision::view_image(*joined.frame);
+  const DynamicMask mask = joined.mask.value_or(all_static());
+  const Eigen::Isometry3d T_world_camera = msg::to_isometry(joined.result.T_world_camera);
+  const FusionReport report = map_.integrate(image, mask, T_world_camera);
+  if (report.outcome != FusionReport::Outcome::kFused) {
+    ++totals_.defective;
+    if (defect_log_.pass()) {
+      SPDLOG_WARN("event=frame_not_fused frame={} cause=\"{}\"", joined.result.seq,
+                  report.outcome == FusionReport::Outcome::kBadPose ? "pose is not finite" : "image or mask unusable");
+    }
+    return;
+  }
+  if (config_.background) background_.remember(image, mask, T_world_camera, map_.keyframes());
+  newest_stamp_ns_ = joined.result.stamp_ns;
+  count(report);
+}
+
+void DenseService::hear(const std::vector<KeyframeWord>& words) {
+  for (const KeyframeWord& word : words) {
+    if (word.new_map) {
+      SPDLOG_WARN("event=map_begun_anew voxels_forgotten={} cause=\"slam was started anew\"", map_.voxels());
+      map_.clear();
+      background_.clear();
+    }
+    map_.hear(word.event);
+  }
+}
+
+void DenseService::count(const FusionReport& report) {
+  ++totals_.frames;
+  totals_.points += report.fused;
+  totals_.masked += report.masked;
+  totals_.refused += report.refused;
+  totals_.carved += report.carved;
+  if (map_.full() && !full_said_) {
+    full_said_ = true;
+    SPDLOG_WARN(
+        "event=map_full voxels={} effect=\"only known surfaces are refined\" fix=\"dense.fusion.max_voxels or "
+        "a larger dense.fusion.voxel_m\"",
+        map_.voxels());
+  }
+}
+
+/// Costs nothing unless somebody listens.
+void DenseService::publish_cloud() {
+  const std::int64_t now_ns = service::monotonic_ns();
+  const bool due = now_ns - published_ns_ >= std::int64_t{config_.publish_period_ms} * 1'000'000;
+  if (!due || totals_.frames == 0 || cloud_writer_.matched() == 0) return;
+  published_ns_ = now_ns;
+  const auto points = map_.cloud(static_cast<std::size_t>(config_.publish_max_points));
+  cloud_writer_.write(make_cloud(points, newest_stamp_ns_, config_.map_frame));
+}
+
+/// What has come is worked off, and slam's last corrections are followed.
+void DenseService::finish() {
+  joiner_->close();
+  while (const auto joined = joiner_->take(std::chrono::milliseconds(0))) integrate(*joined);
+  hear(joiner_->take_words());
+  report_state();
+  const JoinCounters joins = joiner_->counters();
+  SPDLOG_INFO(
+      "event=summary frames={} voxels={} points_fused={} points_masked={} points_refused={} voxels_carved={} "
+      "without_image={} without_mask={} not_tracked={} defective={}",
+      totals_.frames, map_.voxels(), totals_.points, totals_.masked, totals_.refused, totals_.carved,
+      joins.without_image, joins.without_mask, joins.not_tracked, totals_.defective);
+}
+
+/// An older filter sends no masks: that must not keep the camera waiting.
+bool DenseService::ready() {
+  const bool heard = frame_reader_.matched() > 0 && tracking_reader_.matched() > 0 && keyframe_reader_.matched() > 0;
+  const std::int64_t now_ns = service::monotonic_ns();
+  if (!heard) heard_ns_ = now_ns;
+  return heard && (mask_reader_.matched() > 0 || now_ns - heard_ns_ > kMaskPatienceNs);
+}
+
+/// Why the service does less than it should; empty when it does not.
+std::string DenseService::trouble() {
+  const JoinCounters joins = joiner_->counters();
+  if (joins.without_mask > 0 && mask_reader_.matched() == 0) {
+    if (mask_log_.pass()) SPDLOG_WARN("event=no_masks frames={} fix=\"a newer rtd-filter\"", joins.without_mask);
+    return "no masks from the filter: nothing is fused (dense.without_masks: true fuses all)";
+  }
+  if (map_.full()) return "map full: only known surfaces are refined (dense.fusion.max_voxels)";
+  return {};
+}
+
+void DenseService::report_state() {
+  const JoinCounters joins = joiner_->counters();
+  service::Heartbeat& heartbeat = runtime_.heartbeat;
+  heartbeat.set_metric("frames", static_cast<double>(totals_.frames));
+  heartbeat.set_metric("frames_without_image", static_cast<double>(joins.without_image));
+  heartbeat.set_metric("frames_without_mask", static_cast<double>(joins.without_mask));
+  heartbeat.set_metric("frames_not_tracked", static_cast<double>(joins.not_tracked));
+  heartbeat.set_metric("frames_defective", static_cast<double>(totals_.defective));
+  heartbeat.set_metric("voxels", static_cast<double>(map_.voxels()));
+  heartbeat.set_metric("voxels_carved", static_cast<double>(totals_.carved));
+  heartbeat.set_metric("points_without_room", static_cast<double>(totals_.refused));
+  const std::string message = trouble();
+  if (!message.empty()) return heartbeat.set_state(msg::ServiceState::kDegraded, message);
+  if (totals_.frames > 0) return heartbeat.set_state(msg::ServiceState::kRunning);
+  const bool all = ready();
+  heartbeat.set_state(all ? msg::ServiceState::kReady : msg::ServiceState::kStarting,
+                      all ? "" : "waits for a camera, a filter and slam");
+}
+
+service::ExitCode DenseService::write_files() {
+  if (config_.out_dir.empty()) return service::kOk;
+  const std::filesystem::path folder = config_.out_dir;
+  std::error_code ignored;  // an existing folder is fine, an impossible one shows when the files are written
+  std::filesystem::create_directories(folder, ignored);
+  const bool written = write_cloud((folder / "static_map.ply").string()) &&
+                       (!config_.background || write_background((folder / "background.png").string()));
+  return written ? service::kOk : service::kRunFailed;
+}
+
+bool DenseService::write_cloud(const std::string& path) {
+  const std::vector<CloudPoint> points = map_.cloud();
+  std::ofstream file(path, std::ios::binary);
+  write_ply(file, points);
+  file.close();
+  if (file) {
+    SPDLOG_INFO("event=file_written path={} points={}", path, points.size());
+  } else {
+    SPDLOG_ERROR("event=file_not_written path={} fix=\"check the folder and the free space\"", path);
+  }
+  return static_cast<bool>(file);
+}
+
+/// Nothing is written when no frame was fused.
+bool DenseService::write_background(const std::string& path) {
+  const cv::Mat picture = background_.paint(map_);
+  if (picture.empty()) return true;
+  bool written = false;
+  try {
+    written = cv::imwrite(path, picture);
+  } catch (const cv::Exception&) {  // said below
+  }
+  if (written) {
+    SPDLOG_INFO("event=file_written path={} views={}", path, background_.views());
+  } else {
+    SPDLOG_ERROR("event=file_not_written path={} fix=\"check the folder and the free space\"", path);
+  }
+  return written;
+}
+
+}  // namespace rtd::dense

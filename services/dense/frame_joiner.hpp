@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "common/msg/rgbd_frame.hpp"
+#include "common/msg/tracking.hpp"
+#include "services/dense/core/dynamic_mask.hpp"
+
+namespace rtd::dense {
+
+/// A word of slam about its keyframes; the first one of a slam process that was started anew says so.
+struct KeyframeWord {
+  msg::KeyframeEvent event;
+  bool new_map = false;
+};
+
+/// Everything about one frame that is to be fused.
+struct JoinedFrame {
+  std::shared_ptr<const msg::RgbdFrame> frame;
+  std::optional<DynamicMask> mask;  ///< empty: the filter said nothing
+  msg::TrackingResult result{};
+  std::vector<KeyframeWord> words;  ///< those that slam said up to this frame, in its order
+};
+
+/// What became of the frames that slam answered.
+struct JoinCounters {
+  std::uint64_t joined = 0;
+  std::uint64_t passed_over = 0;  ///< neither every n-th nor a keyframe
+  std::uint64_t not_tracked = 0;
+  std::uint64_t without_image = 0;  ///< it had gone before its turn, or never came
+  std::uint64_t without_mask = 0;
+};
+
+/// Joins images, masks and poses by the stamp of the frame. Filled by bus threads, none of which ever waits; emptied by
+/// the worker. Bounded: 12 images, 64 masks, 256 poses; the oldest go first. Thread-safe.
+class FrameJoiner {
+ public:
+  struct Options {
+    std::uint64_t every = 5;
+    bool needs_masks = true;
+  };
+  explicit FrameJoiner(const Options& options) : options_(options) {}
+
+  void put(std::shared_ptr<const msg::RgbdFrame> frame);
+  void put(std::int64_t stamp_ns, DynamicMask mask);
+  void put(const msg::TrackingResult& result);
+  void put(const msg::KeyframeEvent& event);
+  /// The next frame to fuse, in slam's order; waits for one.
+  std::optional<JoinedFrame> take(std::chrono::milliseconds timeout);
+  /// Nothing more comes: what waits for a missing part is given up.
+  void close();
+  /// All words not given out with a frame.
+  std::vector<KeyframeWord> take_words();
+  JoinCounters counters() const;
+
+ private:
+  enum class Verdict { kReady, kWait, kDone };
+  struct StampedMask {
+    std::int64_t stamp_ns = 0;
+    DynamicMask mask;
+  };
+  std::optional<JoinedFrame> take_locked();
+  Verdict judge(const msg::TrackingResult& result);
+  bool wanted(const msg::TrackingResult& result) const;
+  JoinedFrame join(const msg::TrackingResult& result);
+  void forget(std::int64_t stamp_ns);
+
+  const Options options_;
+  mutable std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::deque<std::shared_ptr<const msg::RgbdFrame>> frames_;
+  std::deque<StampedMask> masks_;
+  std::deque<msg::TrackingResult> results_;
+  std::deque<KeyframeWord> words_;
+  std::deque<std::uint64_t> keyframe_seqs_;
+  std::uint64_t words_heard_ = 0;  ///< words 0 .. n-1 have been heard or will never be
+  std::optional<std::int64_t> last_stamp_ns_;
+  JoinCounters counters_;
+  bool closed_ = false;
+};
+
+}  // namespace rtd::dense

@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/dense/dense_service.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <future>
+
+#include "common/bus/bus_factory.hpp"
+#include "common/geometry/ply.hpp"
+#include "tests/support/inbox.hpp"
+#include "tests/unit/dense/wall_scene.hpp"
+
+namespace rtd::dense {
+namespace {
+
+using test::WallScene;
+using test_support::Inbox;
+using testing::HasSubstr;
+
+constexpr std::uint32_t kFirstDomain = 200;  // in-process domains of this binary, one per test
+const cv::Rect kPerson{60, 30, 40, 80};
+
+/// A camera, a filter and a slam around one dense service that runs in a thread.
+class DenseServiceTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    static std::uint32_t domain = kFirstDomain;
+    bus::BusOptions options;
+    options.vendor = "inprocess";
+    options.domain = domain++;
+    bus_ = bus::connect(options);
+    frames_ = bus_->writer(bus::topics::kFrame);
+    results_ = bus_->writer(bus::topics::kTracking);
+    events_ = bus_->writer(bus::topics::kKeyframes);
+    status_ = bus_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](auto m) { states_.take(std::move(m)); });
+    config_.every = 1;
+    config_.core = WallScene::config();
+    folder_ = std::filesystem::temp_directory_path() /
+              (std::string("rtd_dense_service_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+  }
+  void TearDown() override {
+    stop();
+    std::filesystem::remove_all(folder_);
+  }
+  void with_filter() { masks_ = bus_->writer(bus::topics::kDynamicMask); }
+  void start() {
+    running_ = std::async(std::launch::async, [this] {
+      service::Heartbeat heartbeat(*bus_, "dense", stop_);
+      service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kLockstep};
+      return DenseService(config_, runtime).run();
+    });
+    ASSERT_TRUE(wait_state(msg::ServiceState::kReady)) << "dense did not become ready";
+  }
+  service::ExitCode stop() {
+    stop_.request_stop();
+    return running_.valid() ? running_.get() : service::kOk;
+  }
+  bool wait_state(msg::ServiceState state, const std::string& text = {}) {
+    return states_.wait([&](const auto& all) {
+      return !all.empty() && all.back()->state == state && all.back()->message.find(text) != std::string::npos;
+    });
+  }
+  bool wait_metric(const std::string& name, double value) {
+    return states_.wait([&](const auto& all) {
+      return !all.empty() && std::any_of(all.back()->metrics.begin(), all.back()->metrics.end(),
+                                         [&](const msg::Metric& m) { return m.name == name && m.value >= value; });
+    });
+  }
+  /// One frame with the person in it, its mask (when there is a filter) and its pose.
+  void send(std::uint64_t seq) {
+    const vision::RgbdImage image = scene_.render(kPerson);
+    const auto frame = std::make_unique<msg::RgbdFrame>();
+    *frame = {};
+    frame->seq = seq;
+    frame->stamp_ns = static_cast<std::int64_t>(seq) * 33'333'333;
+    const auto& p = image.camera.parameters();
+    frame->intrinsics = {p.fx, p.fy, p.cx, p.cy};
+    frame->depth_scale_m = image.depth_scale_m;
+    frame->width = WallScene::kWidth;
+    frame->height = WallScene::kHeight;
+    std::memcpy(frame->color_bgr.data(), image.color_bgr.data, image.color_bgr.total() * 3);
+    std::memcpy(frame->depth.data(), image.depth.data, image.depth.total() * 2);
+    frames_.write(*frame);
+    if (masks_) send_mask(frame->stamp_ns);
+    msg::TrackingResult result{};
+    result.seq = seq;
+    result.stamp_ns = frame->stamp_ns;
+    result.state = msg::TrackingState::kOk;
+    result.T_world_camera.rotation_xyzw = {0, 0, 0, 1};
+    results_.write(result);
+  }
+  void send_mask(std::int64_t stamp_ns) {
+    const DynamicMask mask = WallScene::mask(kPerson);
+    msg::Image message;
+    message.header.stamp = msg::to_time(stamp_ns);
+    message.width = message.step = static_cast<std::uint32_t>(mask.columns);
+    message.height = static_cast<std::uint32_t>(mask.rows);
+    message.encoding = "mono8";
+    message.data = mask.cells;
+    masks_.write(message);
+  }
+  void send_and_wait(std::uint64_t count) {
+    for (std::uint64_t seq = 0; seq < count; ++seq) {
+      send(seq);
+      ASSERT_TRUE(wait_metric("frames", static_cast<double>(seq + 1)));
+    }
+  }
+
+  WallScene scene_;
+  ServiceConfig config_;
+  std::filesystem::path folder_;
+  service::StopToken stop_;
+  std::shared_ptr<bus::Bus> bus_;
+  Inbox<msg::ServiceStatus> states_;
+  bus::Writer<msg::RgbdFrame> frames_;
+  bus::Writer<msg::TrackingResult> results_;
+  bus::Writer<msg::KeyframeEvent> events_;
+  bus::Writer<msg::Image> masks_;
+  bus::Reader<msg::ServiceStatus> status_;
+  std::future<service::ExitCode> running_;
+};
+
+float depth_of_nearest(const msg::PointCloud2& cloud) {
+  float nearest_m = 100, z = 0;
+  for (std::size_t i = 0; i < cloud.width; ++i) {
+    std::memcpy(&z, cloud.data.data() + i * cloud.point_step + 8, 4);
+    nearest_m = std::min(nearest_m, z);
+  }
+  return nearest_m;
+}
+
+TEST_F(DenseServiceTest, publishes_the_wall_without_the_person_and_writes_it) {
+  Inbox<msg::PointCloud2> clouds;
+  const auto reader =
+      bus_->reader<msg::PointCloud2>(bus::topics::kDensePoints, [&](auto cloud) { clouds.take(std::move(cloud)); });
+  config_.publish_period_ms = 100;
+  config_.out_dir = (folder_ / "run").string();
+  config_.background = true;
+  with_filter();
+  start();
+  send_and_wait(3);
+  ASSERT_TRUE(clouds.wait([](const auto& all) { return !all.empty() && all.back()->width > 5000; }));
+  EXPECT_EQ(clouds.all().back()->header.frame_id, "map");
+  EXPECT_GT(depth_of_nearest(*clouds.all().back()), 2.8F);
+  EXPECT_EQ(stop(), service::kOk);
+  std::ifstream file(folder_ / "run" / "static_map.ply", std::ios::binary);
+  EXPECT_GT(geometry::ply_vertices(file).value_or(0), 5000U);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "run" / "background.png"));
+}
+
+TEST_F(DenseServiceTest, fuses_nothing_without_masks_and_says_so) {
+  start();
+  for (std::uint64_t seq = 0; seq < 10; ++seq) send(seq);
+  ASSERT_TRUE(wait_state(msg::ServiceState::kDegraded, "no masks"));
+  EXPECT_TRUE(wait_metric("frames_without_mask", 5));
+  EXPECT_FALSE(wait_metric("frames", 1)) << "fused without a mask";
+}
+
+TEST_F(DenseServiceTest, fuses_everything_without_masks_when_told) {
+  config_.without_masks = true;
+  start();
+  for (std::uint64_t seq = 0; seq < 10; ++seq) send(seq);
+  EXPECT_TRUE(wait_metric("frames", 5));
+}
+
+TEST_F(DenseServiceTest, works_off_what_has_come_before_it_ends) {
+  config_.out_dir = folder_.string();
+  with_filter();
+  start();
+  for (std::uint64_t seq = 0; seq < 8; ++seq) send(seq);
+  EXPECT_EQ(stop(), service::kOk);
+  std::ifstream file(folder_ / "static_map.ply", std::ios::binary);
+  EXPECT_GT(geometry::ply_vertices(file).value_or(0), 5000U);
+}
+
+TEST_F(DenseServiceTest, never_holds_up_a_camera_that_is_faster) {
+  with_filter();
+  start();
+  for (std::uint64_t seq = 0; seq < 60; ++seq) send(seq);
+  ASSERT_TRUE(wait_metric("frames", 5)) << "newest wins, and nobody waited";
+}
+
+TEST_F(DenseServiceTest, says_that_its_map_is_full) {
+  config_.core.fusion.max_voxels = 1000;
+  with_filter();
+  start();
+  send(0);
+  EXPECT_TRUE(wait_state(msg::ServiceState::kDegraded, "map full"));
+}
+
+TEST_F(DenseServiceTest, fails_when_the_file_cannot_be_written) {
+  std::filesystem::create_directories(folder_);
+  std::ofstream(folder_ / "file") << "not a folder";
+  config_.out_dir = (folder_ / "file").string();
+  with_filter();
+  start();
+  EXPECT_EQ(stop(), service::kRunFailed);
+}
+
+TEST(DenseConfig, is_bound_completely_and_refuses_what_is_out_of_range) {
+  ServiceConfig config;
+  service::ConfigBinder binder;
+  binder.section("dense", config);
+  binder.set("dense.fusion.voxel_m=0.05");
+  EXPECT_DOUBLE_EQ(config.core.fusion.voxel_m, 0.05);
+  EXPECT_THROW(binder.set("dense.fusion.voxel_m=0"), service::ConfigError);
+  EXPECT_THROW(binder.set("dense.every=0"), service::ConfigError);
+  EXPECT_THAT([&] { binder.set("dense.carving.margn_m=1"); },
+              testing::ThrowsMessage<service::ConfigError>(HasSubstr("margin_m")));
+}
+
+}  // namespace
+}  // namespace rtd::dense

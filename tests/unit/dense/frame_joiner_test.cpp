@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/dense/frame_joiner.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rtd::dense {
+namespace {
+
+constexpr std::chrono::milliseconds kNow{0};
+
+std::int64_t stamp(std::uint64_t seq) {
+  return static_cast<std::int64_t>(seq) * 1000 + 5;
+}
+
+class FrameJoinerTest : public testing::Test {
+ protected:
+  void image(std::uint64_t seq) {
+    auto frame = std::make_shared<msg::RgbdFrame>();
+    frame->seq = seq;
+    frame->stamp_ns = stamp(seq);
+    joiner_.put(std::shared_ptr<const msg::RgbdFrame>(frame));
+  }
+  void mask(std::uint64_t seq) { joiner_.put(stamp(seq), all_static()); }
+  void pose(std::uint64_t seq, std::uint64_t events = 0, msg::TrackingState state = msg::TrackingState::kOk) {
+    msg::TrackingResult result{};
+    result.seq = seq;
+    result.stamp_ns = stamp(seq);
+    result.event_count = events;
+    result.state = state;
+    joiner_.put(result);
+  }
+  void event(std::uint64_t index, std::uint64_t frame_seq = 0) {
+    msg::KeyframeEvent event{};
+    event.event_index = index;
+    event.frame_seq = frame_seq;
+    joiner_.put(event);
+  }
+  /// The seq of the next frame, -1 when none is ready.
+  std::int64_t next() {
+    const auto joined = joiner_.take(kNow);
+    return joined ? static_cast<std::int64_t>(joined->result.seq) : -1;
+  }
+
+  FrameJoiner joiner_{{.every = 2, .needs_masks = true}};
+};
+
+TEST_F(FrameJoinerTest, gives_a_frame_when_all_three_parts_are_there_in_any_order) {
+  pose(0);
+  EXPECT_EQ(next(), -1);
+  image(0);
+  EXPECT_EQ(next(), -1);
+  mask(0);
+  EXPECT_EQ(next(), 0);
+  EXPECT_EQ(next(), -1) << "once";
+  pose(0);
+  EXPECT_EQ(next(), -1) << "a repeated answer";
+}
+
+TEST_F(FrameJoinerTest, takes_every_second_frame_and_keyframes) {
+  event(0, 3);
+  for (std::uint64_t seq = 1; seq < 5; ++seq) image(seq), mask(seq), pose(seq, 1);
+  EXPECT_EQ(next(), 2);
+  EXPECT_EQ(next(), 3) << "a keyframe";
+  EXPECT_EQ(next(), 4);
+  EXPECT_EQ(joiner_.counters().passed_over, 1U);
+}
+
+TEST_F(FrameJoinerTest, waits_for_the_words_that_slam_said_before) {
+  image(0), mask(0), pose(0, 2);
+  event(0);
+  EXPECT_EQ(next(), -1);
+  event(1);
+  event(2);
+  const auto joined = joiner_.take(kNow);
+  ASSERT_TRUE(joined);
+  EXPECT_EQ(joined->words.size(), 2U) << "the third came after the frame";
+  EXPECT_EQ(joiner_.take_words().size(), 1U);
+}
+
+TEST_F(FrameJoinerTest, gives_up_a_frame_whose_mask_does_not_come) {
+  for (std::uint64_t seq = 2; seq < 14; ++seq) image(seq), pose(seq);
+  mask(8);
+  EXPECT_EQ(next(), 8);
+  EXPECT_EQ(joiner_.counters().without_mask, 3U);
+}
+
+TEST_F(FrameJoinerTest, does_without_masks_when_told) {
+  FrameJoiner joiner({.every = 1, .needs_masks = false});
+  auto frame = std::make_shared<msg::RgbdFrame>();
+  joiner.put(std::shared_ptr<const msg::RgbdFrame>(frame));
+  msg::TrackingResult result{};
+  result.state = msg::TrackingState::kOk;
+  joiner.put(result);
+  joiner.close();
+  const auto joined = joiner.take(kNow);
+  ASSERT_TRUE(joined);
+  EXPECT_FALSE(joined->mask);
+}
+
+TEST_F(FrameJoinerTest, counts_frames_without_pose) {
+  image(0), mask(0), pose(0, 0, msg::TrackingState::kLost);
+  EXPECT_EQ(next(), -1);
+  EXPECT_EQ(joiner_.counters().not_tracked, 1U);
+}
+
+TEST_F(FrameJoinerTest, keeps_the_newest_images_when_nobody_takes_them) {
+  for (std::uint64_t seq = 0; seq < 400; ++seq) image(seq), mask(seq), pose(seq);
+  std::int64_t first = next(), last = first;
+  for (std::int64_t seq = first; seq >= 0; seq = next()) last = seq;
+  EXPECT_GE(first, 388);
+  EXPECT_EQ(last, 398);
+  const JoinCounters counters = joiner_.counters();
+  EXPECT_GE(counters.without_image, 120U) << "every one that was lost is counted";
+}
+
+TEST_F(FrameJoinerTest, takes_stamps_that_go_back) {
+  for (const std::uint64_t seq : {100U, 102U, 2U, 4U}) image(seq), mask(seq), pose(seq);
+  for (const std::int64_t seq : {100, 102, 2, 4}) EXPECT_EQ(next(), seq);
+}
+
+TEST_F(FrameJoinerTest, tells_that_slam_was_started_anew) {
+  for (std::uint64_t i = 0; i < 5; ++i) event(i, i);
+  image(0), mask(0), pose(0, 5);
+  EXPECT_EQ(next(), 0);
+  event(0, 10);
+  image(10), mask(10), pose(10, 1);
+  const auto joined = joiner_.take(kNow);
+  ASSERT_TRUE(joined);
+  ASSERT_EQ(joined->words.size(), 1U);
+  EXPECT_TRUE(joined->words[0].new_map);
+}
+
+TEST_F(FrameJoinerTest, ends_a_wait_when_closed) {
+  pose(0);
+  joiner_.close();
+  EXPECT_FALSE(joiner_.take(std::chrono::hours(1)));
+  EXPECT_EQ(joiner_.counters().without_image, 1U);
+}
+
+}  // namespace
+}  // namespace rtd::dense
