@@ -33,7 +33,7 @@ std::unique_ptr<FrameSource> open_source(const std::string& uri) {
 }
 
 bool consumes_frames(const std::string& service) {
-  return service == "filter" || service == "detector";
+  return service == "filter" || service == "detector" || service == "dense";
 }
 
 }  // namespace

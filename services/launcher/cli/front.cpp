@@ -50,6 +50,7 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--model", options.model,
                       "Detector weights, ONNX (default: RTD_MODEL_DIR, then the user's cache)");
   command->add_option("--frames", options.frames, "End after so many frames");
+  command->add_flag("--dense", options.dense, "Also fuse a dense static map: static_map.ply");
   command->add_flag("--quiet", options.quiet, "Only warnings and errors");
 }
 

@@ -39,6 +39,8 @@ struct RunRecord {
   std::string source, pace, filter_mode, dds, detector;  ///< as given; detector: model name or "off (reason)"
   std::string groundtruth_path;   ///< TUM format; empty = none
   std::string trajectory_path;    ///< trajectory.txt written by slam (final poses)
+  std::string static_map_path;    ///< static_map.ply written by dense; empty = none
+  std::uint64_t static_map_points = 0;
   std::uint64_t frames_in = 0;       ///< frames the source delivered
   std::uint64_t frames_dropped = 0;  ///< frames in without a TrackingResult
   std::map<std::string, double> drops;  ///< by place, e.g. "camera.late", "filter.queue"

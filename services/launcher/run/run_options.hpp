@@ -27,6 +27,7 @@ struct RunOptions {
   std::string detector = "auto";       ///< "auto": when weights are found and the filter mode needs them; "off"
   std::string model;                   ///< ONNX file; empty: search
   std::string out_dir;
+  bool dense = false;  ///< also fuse a dense static map
   bool quiet = false;
   std::uint64_t frames = 0;  ///< end after so many frames; 0 = all
 };

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/geometry/ply.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/launcher/core/run/process_usage.hpp"
 
@@ -44,6 +45,11 @@ ProcessUsage own_usage() {
 double span_s(const std::vector<FrameRecord>& frames) {
   if (frames.empty()) return 0;
   return static_cast<double>(frames.back().tracking.finished_ns - frames.front().tracking.published_ns) * 1e-9;
+}
+
+std::string begins_anew(const std::string& service) {
+  if (service == "slam") return ": map and trajectory.txt begin anew";
+  return service == "dense" ? ": static_map.ply begins anew" : "";
 }
 
 std::string existing(const std::string& path) {
@@ -125,7 +131,7 @@ void RunSession::on_event(const SupervisorEvent& event) {
       return;
     case Kind::kRestarted:
       usage_.add_restart(event.service);
-      return note(event.text + (event.service == "slam" ? ": map and trajectory.txt begin anew" : ""));
+      return note(event.text + begins_anew(event.service));
     case Kind::kEnded:
       usage_.add_exit(event.service, event.exit);
       if (!event.exit.clean()) note(event.text);
@@ -178,6 +184,9 @@ RunRecord RunSession::record() const {
   record.detector = setup_.detector_note;
   record.groundtruth_path = existing(setup_.groundtruth_path());
   record.trajectory_path = existing(setup_.out_dir + "/trajectory.txt");
+  record.static_map_path = existing(setup_.out_dir + "/static_map.ply");
+  if (std::ifstream map(record.static_map_path); map)
+    record.static_map_points = geometry::ply_vertices(map).value_or(0);
   collector_.fill(record);
   record.events = events_;
   record.duration_s = span_s(record.frames);

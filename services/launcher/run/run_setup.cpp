@@ -22,7 +22,7 @@ using service::ConfigError;
 namespace {
 
 /// In realtime nobody waits for the detector, so it takes the processor time that the pose does not need.
-constexpr int kRealtimeDetectorNiceness = 10;
+constexpr int kRealtimeDetectorNiceness = 10, kDenseNiceness = 15;
 
 void check_sections(const std::vector<std::string>& overrides) {
   const std::vector<std::string>& sections = service::config_sections();
@@ -147,6 +147,7 @@ RunSetup prepare_run(const RunOptions& options) {
   setup.overrides = options.overrides;
   setup.source = complete_uri(options.source);
   setup.frame_limit = options.frames;
+  setup.dense = options.dense;
   setup.total_frames = count_frames(setup.source, options.frames);
   choose_detector(options, setup);
   setup.out_dir = options.out_dir;
@@ -158,7 +159,7 @@ void clear_out_dir(const RunSetup& setup) {
   const fs::path out_dir = setup.out_dir;
   std::error_code error;
   for (const char* left : {"logs", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply",
-                           "groundtruth.txt", "report.json", "report.html"}) {
+                           "static_map.ply", "background.png", "groundtruth.txt", "report.json", "report.html"}) {
     if (!error) fs::remove_all(out_dir / left, error);
   }
   if (!error) fs::create_directories(out_dir / "logs", error);
@@ -172,14 +173,18 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
   if (setup.frame_limit > 0) camera.insert(camera.end(), {"--frames", std::to_string(setup.frame_limit)});
   if (setup.model_path.empty()) {
     filter.insert(filter.end(), {"--set", "filter.detector=off"});
-    camera.insert(camera.end(), {"--wait-for", "filter,slam"});
+    camera.insert(camera.end(), {"--wait-for", setup.dense ? "filter,slam,dense" : "filter,slam"});
   } else {
     plans.push_back(plan(setup, "detector", ServiceRole::kOptional, {"--set", "detector.model=" + setup.model_path}));
     if (setup.pace == "realtime") plans.back().niceness = kRealtimeDetectorNiceness;
-    camera.insert(camera.end(), {"--wait-for", "filter,slam,detector"});
+    camera.insert(camera.end(), {"--wait-for", setup.dense ? "filter,slam,detector,dense" : "filter,slam,detector"});
   }
   plans.push_back(plan(setup, "filter", ServiceRole::kEssential, filter));
   plans.push_back(plan(setup, "slam", ServiceRole::kEssential, {"--out", setup.out_dir}));
+  if (setup.dense) {  // nobody waits for it, so it takes the processor time that the others leave
+    plans.push_back(plan(setup, "dense", ServiceRole::kOptional, {"--out", setup.out_dir}));
+    plans.back().niceness = kDenseNiceness;
+  }
   plans.push_back(plan(setup, "camera", ServiceRole::kSource, camera));
   return plans;
 }

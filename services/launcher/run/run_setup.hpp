@@ -22,6 +22,7 @@ struct RunSetup {
   std::string model_path;      ///< empty: no detector in this run
   std::string detector_note;   ///< model file name, or "off (why)"
   std::string weights_advice;  ///< the filter mode wants a detector, but there are no weights: where to get them
+  bool dense = false;          ///< rtd-dense runs too
   std::uint64_t frame_limit = 0;
   std::string config_file;
   std::vector<std::string> overrides;

@@ -53,6 +53,9 @@ std::string run_summary_text(const RunRecord& record, const RunSummary& summary,
   text += row("latency", fmt::format("p50 {}, p99 {}", number(summary.latency_ms.p50, "{:.1f}", " ms"),
                                      number(summary.latency_ms.p99, "{:.1f}", " ms")));
   text += row("map", fmt::format("{} keyframes, {} landmarks", summary.keyframes, summary.landmarks));
+  if (!record.static_map_path.empty()) {
+    text += row("static map", fmt::format("{} points, {}", record.static_map_points, record.static_map_path));
+  }
   text += row("CPU time", usage(record));
   for (const std::string& note : summary.notes) text += row("note", note);
   text += row("report", out_dir + "/report.html");

@@ -182,6 +182,10 @@ std::string events_section(const RunRecord& record, const RunSummary& summary) {
   return html::section("Events", "", html::list(lines));
 }
 
+std::string static_map_note(const RunRecord& record) {
+  return record.static_map_path.empty() ? std::string() : fmt::format("{} points", record.static_map_points);
+}
+
 std::string header_badges(const RunRecord& record, const RunSummary& summary) {
   return "<div style=\"margin:-8px 0 18px\">" +
          html::badges({{"filter", record.filter_mode},
@@ -190,6 +194,7 @@ std::string header_badges(const RunRecord& record, const RunSummary& summary) {
                        {"dds", record.dds},
                        {"keyframes", fmt::format("{}", summary.keyframes)},
                        {"landmarks", fmt::format("{}", summary.landmarks)},
+                       {"static map", static_map_note(record)},
                        {"version", summary.version}}) +
          "</div>\n";
 }

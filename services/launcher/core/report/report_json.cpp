@@ -97,6 +97,9 @@ Json report_json(const RunRecord& record, const RunSummary& summary) {
   report["features"] = {{"kept_mean", number_or_null(summary.kept_mean)},
                         {"removed_mean", number_or_null(summary.removed_mean)}};
   report["map"] = {{"keyframes", summary.keyframes}, {"landmarks", summary.landmarks}};
+  report["static_map"] = record.static_map_path.empty()
+                             ? Json(nullptr)
+                             : Json({{"path", record.static_map_path}, {"points", record.static_map_points}});
   report["lost_spans"] = lost_json(summary);
   report["drops"] = drops_json(record);
   report["events"] = record.events;
