@@ -71,6 +71,8 @@ class Filtered final : public FrontEnd {
     for (std::size_t i = 1; i < kNames.size(); ++i)
       output.stage_ms[kNames[i]] = static_cast<double>(result.stage_ms[i]);
     output.features = std::move(result.features);
+    output.cells = result.cells;
+    output.motion = std::move(result.motion);
     return output;
   }
   void listen(const slam::SlamOutput& output) override {

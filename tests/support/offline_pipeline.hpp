@@ -13,6 +13,7 @@
 #include "common/msg/tracking.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/frame_source.hpp"
+#include "services/filter/core/dynamic_filter.hpp"
 #include "services/launcher/core/evaluation/trajectory.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/removal_quality.hpp"
@@ -24,6 +25,8 @@ namespace rtd::test_support {
 struct FrontEndOutput {
   std::vector<msg::Feature> features;
   std::map<std::string, double> stage_ms;  ///< by name, e.g. "detector", "filter.extract"
+  filter::GridShape cells;                 ///< shape of `motion`; 0x0 when nobody judged
+  std::vector<filter::CellMotion> motion;  ///< what the filter says of each cell
 };
 
 /// What turns an image into features, and listens to what slam says of them.
