@@ -118,6 +118,21 @@ void bind_published(ConfigBinder& binder, EpipolarConfig& epipolar, PaperConfig&
   binder.field("paper.keyframes", paper.keyframes, {1, 16}, "mode rtd-paper: keyframes asked");
 }
 
+void bind_tracks(ConfigBinder& binder, BoxTrackConfig& c) {
+  binder.field("tracks.detection_noise", c.noise.detection, {0.001, 1.0}, "of a detected edge, box sizes");
+  binder.field("tracks.acceleration", c.noise.acceleration, {0.01, 100.0}, "of an object, box sizes / s^2");
+  binder.field("tracks.flow_noise", c.noise.flow, {0.0001, 1.0}, "of a shift by optical flow, box sizes");
+  binder.field("tracks.first_velocity", c.noise.first_velocity, {0.01, 100.0}, "of a box seen once, box sizes / s");
+  binder.field("tracks.min_overlap", c.min_overlap, {0.0, 1.0}, "of a track and a detection, less: not the same");
+  binder.field("tracks.max_match_cost", c.max_match_cost, {0.1, 2.0}, "1 - overlap, class and depth; more: another");
+  binder.field("tracks.confirm_hits", c.confirm_hits, {1, 100}, "seen less often: ended by the first answer without");
+  binder.field("tracks.survive_misses_s", c.survive_misses_s, {0.0, 60.0}, "before answers without it are believed");
+  binder.field("tracks.silence_s", c.silence_s, {0.0, 60.0}, "without any answer it is carried so long");
+  binder.field("tracks.fast_roll_deg_s", c.fast_roll_deg_s, {1.0, 1000.0}, "faster: answers without it do not count");
+  binder.field("tracks.roll_patience_s", c.roll_patience_s, {0.0, 60.0}, "but not for longer than this");
+  binder.field("tracks.unwatched_s", c.unwatched_s, {0.0, 60.0}, "nobody looks for so long: geometry only");
+}
+
 }  // namespace
 
 std::vector<std::string> mode_names() {
@@ -131,8 +146,6 @@ void ServiceConfig::bind(ConfigBinder& binder) {
   binder.choice("detector", detector, {"auto", "off"}, "auto: use a detector that is heard");
   binder.field("detections_timeout_ms", detections_timeout_ms, {1, 600000}, "asap, lockstep: longest wait for boxes");
   binder.field("feedback_timeout_ms", feedback_timeout_ms, {1, 600000}, "lockstep: longest wait for slam");
-  binder.field("carry_max_ms", carry_max_ms, {0, 60000}, "realtime: older boxes are not used");
-  binder.field("carry_growth_per_s", carry_growth_per_s, {0.0, 10.0}, "realtime: growth of a carried box");
   bind_techniques(binder, core.techniques);
   bind_orb(binder, core.orb);
   bind_surfaces(binder, core.clusters, core.masks);
@@ -141,6 +154,7 @@ void ServiceConfig::bind(ConfigBinder& binder) {
   bind_belief(binder, core.belief);
   bind_fusion(binder, core.fusion);
   bind_published(binder, core.epipolar, core.paper);
+  bind_tracks(binder, core.tracks);
   binder.field("motion_levels", core.motion_levels, "class -> high, medium, low, none; over the built-in table");
 }
 

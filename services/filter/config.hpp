@@ -20,8 +20,6 @@ struct ServiceConfig {
   std::string detector = "auto";     ///< auto: use one that is heard; off: never wait, never use
   int detections_timeout_ms = 5000;  ///< asap, lockstep: longest wait for the boxes of one frame
   int feedback_timeout_ms = 3000;    ///< lockstep: longest wait for slam's result of the previous frame
-  int carry_max_ms = 500;            ///< realtime: older boxes are not used
-  double carry_growth_per_s = 0.6;   ///< realtime: a carried box grows by this share of its size per second of age
 
   void bind(service::ConfigBinder& binder);
   /// `core` with the mode as its enum.

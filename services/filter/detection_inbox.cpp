@@ -19,16 +19,21 @@ bool usable(const vision::Detection& box) {
 
 }  // namespace
 
-void DetectionInbox::put(StampedDetections detections) {
+void DetectionInbox::put(DetectorAnswer answer) {
   {
     const std::lock_guard lock(mutex_);
-    by_stamp_[detections.stamp_ns] = std::move(detections.detections);
-    while (by_stamp_.size() > kMaxStamps) by_stamp_.erase(by_stamp_.begin());
+    arrivals_.push_back(answer.stamp_ns);
+    by_stamp_[answer.stamp_ns] = std::move(answer.detections);
+    while (arrivals_.size() > kMaxStamps) {
+      const std::int64_t first = arrivals_.front();
+      arrivals_.pop_front();
+      if (std::find(arrivals_.begin(), arrivals_.end(), first) == arrivals_.end()) by_stamp_.erase(first);
+    }
   }
   arrived_.notify_all();
 }
 
-std::optional<StampedDetections> DetectionInbox::wait_for(std::int64_t stamp_ns, const std::function<bool()>& give_up) {
+bool DetectionInbox::wait_for(std::int64_t stamp_ns, const std::function<bool()>& give_up) {
   std::unique_lock lock(mutex_);
   while (!closed_ && !by_stamp_.contains(stamp_ns)) {
     arrived_.wait_for(lock, kAskPeriod);
@@ -38,25 +43,22 @@ std::optional<StampedDetections> DetectionInbox::wait_for(std::int64_t stamp_ns,
     lock.lock();
     if (enough) break;
   }
-  const auto found = by_stamp_.find(stamp_ns);
-  if (found == by_stamp_.end()) return std::nullopt;
-  StampedDetections result{stamp_ns, found->second};
-  by_stamp_.erase(by_stamp_.begin(), found);
-  return result;
+  return by_stamp_.contains(stamp_ns);
 }
 
-std::optional<StampedDetections> DetectionInbox::newest(std::int64_t stamp_ns, std::int64_t max_age_ns) const {
+std::vector<DetectorAnswer> DetectionInbox::take_until(std::int64_t stamp_ns) {
   const std::lock_guard lock(mutex_);
-  auto after = by_stamp_.upper_bound(stamp_ns);
-  if (after == by_stamp_.begin()) return std::nullopt;
-  --after;
-  if (stamp_ns - after->first > max_age_ns) return std::nullopt;
-  return StampedDetections{after->first, after->second};
+  const auto end = by_stamp_.upper_bound(stamp_ns);
+  std::vector<DetectorAnswer> taken;
+  for (auto it = by_stamp_.begin(); it != end; ++it) taken.push_back({it->first, std::move(it->second)});
+  by_stamp_.erase(by_stamp_.begin(), end);
+  return taken;
 }
 
 void DetectionInbox::clear() {
   const std::lock_guard lock(mutex_);
   by_stamp_.clear();
+  arrivals_.clear();
 }
 
 void DetectionInbox::close() {
@@ -67,20 +69,8 @@ void DetectionInbox::close() {
   arrived_.notify_all();
 }
 
-std::vector<vision::Detection> carry(const StampedDetections& old, std::int64_t stamp_ns, double growth_per_s) {
-  const auto growth = static_cast<float>(growth_per_s * static_cast<double>(stamp_ns - old.stamp_ns) * 1e-9);
-  std::vector<vision::Detection> carried = old.detections;
-  for (vision::Detection& box : carried) {
-    box.x_px -= 0.5F * growth * box.width_px;
-    box.y_px -= 0.5F * growth * box.height_px;
-    box.width_px *= 1.0F + growth;
-    box.height_px *= 1.0F + growth;
-  }
-  return carried;
-}
-
-StampedDetections from_message(const msg::Detection2DArray& message) {
-  StampedDetections result{msg::to_ns(message.header.stamp), {}};
+DetectorAnswer from_message(const msg::Detection2DArray& message) {
+  DetectorAnswer result{msg::to_ns(message.header.stamp), {}};
   for (const msg::Detection2D& detection : message.detections) {
     if (detection.results.empty()) continue;
     const auto best =

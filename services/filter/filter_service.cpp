@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/filter_service.hpp"
 
+#include <algorithm>
 #include <opencv2/core/utility.hpp>
 
 #include "common/service/monotonic_clock.hpp"
@@ -79,13 +80,13 @@ void FilterService::answer(const msg::RgbdFrame& frame) {
   const vision::RgbdImage image = view_image(frame);
   std::vector<msg::Feature> features = filter_.extract(image);
   const std::int64_t waiting_since_ns = service::monotonic_ns();
-  const PairedDetections paired = detections_of(frame);
+  const DetectorWord word = hear_detector(frame);
   listen_to_slam();
   const std::int64_t waited_ns = service::monotonic_ns() - waiting_since_ns;
 
-  FilterResult result = filter_.judge(image, std::move(features), word_of(frame.stamp_ns, paired.detections));
+  FilterResult result = filter_.judge(image, std::move(features), word);
   result.stage_ms[msg::kStageWaitDetections] = static_cast<float>(static_cast<double>(waited_ns) * 1e-6);
-  fill_message(frame, result, paired.use, *message_);
+  fill_message(frame, result, use_of(word, result, frame.stamp_ns), *message_);
   publish_mask(frame, result);
   writer_.write(*message_);
   ++answered_;
@@ -169,31 +170,34 @@ void FilterService::listen_to_slam() {
   for (const msg::TrackingResult& result : words.results) filter_.on_tracking(result);
 }
 
-FilterService::PairedDetections FilterService::detections_of(const msg::RgbdFrame& frame) {
-  const bool looks_at_boxes = config_.mode == "semantic" || config_.mode == "rtd";
+/// Realtime: what has come so far. Asap and lockstep: waits for the answer to this very frame.
+DetectorWord FilterService::hear_detector(const msg::RgbdFrame& frame) {
+  const bool looks_at_boxes = config_.mode != "off" && config_.mode != "geometry";
   if (!looks_at_boxes || config_.detector == "off") return {};
-  if (runtime_.pace != service::Pace::kRealtime) return wait_for_detections(frame);
-  const auto newest = detections_->newest(frame.stamp_ns, std::int64_t{config_.carry_max_ms} * 1'000'000);
-  if (!newest) return {std::nullopt, detector_gone_ ? msg::DetectionUse::kDetectorGone : msg::DetectionUse::kNone};
-  if (newest->stamp_ns == frame.stamp_ns) return {newest->detections, msg::DetectionUse::kExact};
-  return {carry(*newest, frame.stamp_ns, config_.carry_growth_per_s), msg::DetectionUse::kCarried};
+  if (runtime_.pace != service::Pace::kRealtime) wait_for_detections(frame);
+  return {detector_seen_ && !detector_gone_, detections_->take_until(frame.stamp_ns)};
 }
 
-FilterService::PairedDetections FilterService::wait_for_detections(const msg::RgbdFrame& frame) {
-  if (!detector_seen_) return {};
-  if (detector_gone_) return {std::nullopt, msg::DetectionUse::kDetectorGone};
+void FilterService::wait_for_detections(const msg::RgbdFrame& frame) {
+  if (!detector_seen_ || detector_gone_) return;
   const std::int64_t since_ns = service::monotonic_ns();
   const auto give_up = [&] {
     const std::int64_t waited_ns = service::monotonic_ns() - since_ns;
     return waited_ns > std::int64_t{config_.detections_timeout_ms} * 1'000'000 ||
            (waited_ns > kPatienceNs && !runtime_.heartbeat.alive("detector"));
   };
-  auto exact = detections_->wait_for(frame.stamp_ns, give_up);
-  if (exact) return {std::move(exact->detections), msg::DetectionUse::kExact};
-  if (runtime_.stop.stop_requested()) return {};
+  if (detections_->wait_for(frame.stamp_ns, give_up) || runtime_.stop.stop_requested()) return;
   ++unpaired_;
   if (wait_log_.pass()) SPDLOG_WARN("event=no_detections frame={} total={}", frame.seq, unpaired_);
-  return {std::nullopt, msg::DetectionUse::kDetectorGone};
+}
+
+msg::DetectionUse FilterService::use_of(const DetectorWord& word, const FilterResult& result,
+                                        std::int64_t stamp_ns) const {
+  if (!word.answers.empty() && word.answers.back().stamp_ns == stamp_ns) return msg::DetectionUse::kExact;
+  const bool carried = std::any_of(result.objects.begin(), result.objects.end(),
+                                   [](const SceneObject& object) { return object.carried; });
+  if (carried) return msg::DetectionUse::kCarried;
+  return detector_gone_ ? msg::DetectionUse::kDetectorGone : msg::DetectionUse::kNone;
 }
 
 void FilterService::watch_detector() {

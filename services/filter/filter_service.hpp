@@ -39,10 +39,6 @@ class FilterService {
 
  private:
   using Frames = concurrency::BoundedQueue<std::shared_ptr<const msg::RgbdFrame>>;
-  struct PairedDetections {
-    Detections detections;
-    msg::DetectionUse use = msg::DetectionUse::kNone;
-  };
 
   void answer(const msg::RgbdFrame& frame);
   bool accept(const msg::RgbdFrame& frame);
@@ -52,8 +48,9 @@ class FilterService {
   bool detector_heard() const;
   bool foreign(const msg::RgbdFrame& frame);
   void listen_to_slam();
-  PairedDetections detections_of(const msg::RgbdFrame& frame);
-  PairedDetections wait_for_detections(const msg::RgbdFrame& frame);
+  DetectorWord hear_detector(const msg::RgbdFrame& frame);
+  void wait_for_detections(const msg::RgbdFrame& frame);
+  msg::DetectionUse use_of(const DetectorWord& word, const FilterResult& result, std::int64_t stamp_ns) const;
   void watch_detector();
   void count(const FilterResult& result);
   void report_state();

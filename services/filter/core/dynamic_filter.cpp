@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "common/geometry/se3.hpp"
@@ -107,7 +106,7 @@ DynamicFilter::DynamicFilter(const FilterConfig& config, std::function<std::int6
                                                : MotionLevels(config.motion_levels).all_high()),
       extractor_(config.orb),
       sampler_(config.orb.min_depth_m, config.orb.max_depth_m),
-      box_tracks_(config.tracks),
+      follower_(config_),
       published_(make_published_mode(config_)) {}
 
 std::vector<msg::Feature> DynamicFilter::extract(const vision::RgbdImage& image) {
@@ -130,8 +129,9 @@ void DynamicFilter::find_what_may_move(const DetectorWord& word, Scene& scene, F
   if (!uses_semantics(config_.mode)) return;
   StageClock clock(now_ns_);
   scene.watched = word.watching;
-  const std::vector<ObjectBox> boxes = boxes_now(word, scene);
+  const std::vector<ObjectBox> boxes = follower_.follow(word, scene.image, scene.grid, views_);
   result.objects = find_objects(boxes, levels_, scene.image.camera, scene.grid, scene.clusters, config_.masks);
+  follower_.learn_depths(result.objects, scene.grid);
   for (const SceneObject& object : result.objects) {
     if (object.level != MotionLevel::kHigh || object.flat) continue;
     for (const int cell : object.cells) scene.may_move[static_cast<std::size_t>(cell)] = 1;
@@ -140,53 +140,6 @@ void DynamicFilter::find_what_may_move(const DetectorWord& word, Scene& scene, F
   trust_known_surfaces(scene);
   scene.may_move = dilate(scene.grid.shape, scene.may_move, config_.masks.dilate_cells);
   result.stage_ms[msg::kStageMasks] = clock.lap_ms();
-}
-
-/// Every box of this frame: seen by the detector, or carried by its track.
-std::vector<ObjectBox> DynamicFilter::boxes_now(const DetectorWord& word, const Scene& scene) {
-  if (config_.techniques.box_tracks) return follow_boxes(word, scene);
-  std::vector<ObjectBox> boxes;
-  for (const DetectorAnswer& answer : word.answers) {
-    if (answer.stamp_ns != scene.image.stamp_ns) continue;
-    for (const vision::Detection& d : usable_detections(answer.detections, levels_))
-      boxes.push_back({d, -1, 0, false, 0});
-  }
-  return boxes;
-}
-
-std::vector<ObjectBox> DynamicFilter::follow_boxes(const DetectorWord& word, const Scene& scene) {
-  const std::int64_t now_ns = scene.image.stamp_ns;
-  if (word.watching) watched_ns_ = now_ns;
-  if (static_cast<double>(now_ns - watched_ns_) > 1e9 * config_.tracks.unwatched_s) box_tracks_.clear();
-  const auto& camera = scene.image.camera;
-  const double fast_rad_s = config_.tracks.fast_roll_deg_s * std::numbers::pi / 180;
-  const bool rolling = config_.techniques.roll_distrust && std::abs(roll_rate_rad_s()) > fast_rad_s;
-  box_tracks_.begin_frame({now_ns, rolling, static_cast<double>(camera.parameters().width),
-                           static_cast<double>(camera.parameters().height)});
-  const auto depth_of = [&](std::int64_t stamp_ns, const vision::Detection& box) {
-    if (stamp_ns == now_ns) return depth_in_box(box, camera, scene.grid);
-    const View* view = views_.at(stamp_ns);
-    return view == nullptr ? 0.0 : depth_in_box(box, camera, view->grid);
-  };
-  for (const DetectorAnswer& answer : word.answers) {
-    box_tracks_.take({answer.stamp_ns, usable_detections(answer.detections, levels_)}, depth_of);
-  }
-  std::vector<ObjectBox> boxes;
-  for (const TrackedBox& box : box_tracks_.boxes()) {
-    if (box.carried) continue;
-    boxes.push_back({box.detection, box.id, box.age_s, box.carried, box.depth_m});
-  }
-  return boxes;
-}
-
-/// How fast the camera turned about its optical axis, from the last two poses.
-double DynamicFilter::roll_rate_rad_s() const {
-  const View* before = views_.second_newest();
-  if (before == nullptr) return 0;
-  const double dt_s = 1e-9 * static_cast<double>(views_.newest().stamp_ns - before->stamp_ns);
-  if (dt_s <= 0) return 0;
-  const Eigen::Matrix3d turn = before->T_world_camera.linear().transpose() * views_.newest().T_world_camera.linear();
-  return std::atan2(turn(1, 0), turn(0, 0)) / dt_s;
 }
 
 CellBeliefs DynamicFilter::recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const {
@@ -326,7 +279,7 @@ void DynamicFilter::reset() {
   views_.clear();
   memory_.clear();
   beliefs_.clear();
-  box_tracks_.clear();
+  follower_.clear();
   if (published_ != nullptr) published_->reset();
   something_masked_ = true;
 }

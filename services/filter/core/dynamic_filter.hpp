@@ -22,7 +22,7 @@
 #include "services/filter/core/motion_levels.hpp"
 #include "services/filter/core/object_masks.hpp"
 #include "services/filter/core/orb_extractor.hpp"
-#include "services/filter/core/tracks/box_tracks.hpp"
+#include "services/filter/core/tracks/object_follower.hpp"
 #include "services/filter/core/view_store.hpp"
 
 namespace rtd::filter {
@@ -79,9 +79,6 @@ class DynamicFilter {
   struct Geometry;  // pose and evidence
   Scene look_at(const vision::RgbdImage& image);
   void find_what_may_move(const DetectorWord& word, Scene& scene, FilterResult& result);
-  std::vector<ObjectBox> boxes_now(const DetectorWord& word, const Scene& scene);
-  std::vector<ObjectBox> follow_boxes(const DetectorWord& word, const Scene& scene);
-  double roll_rate_rad_s() const;
   void judge_as_published(const Scene& scene, FilterResult& result);
   CellBeliefs recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const;
   void trust_known_surfaces(Scene& scene) const;
@@ -98,8 +95,7 @@ class DynamicFilter {
   ViewStore views_;
   DynamicMemory memory_;
   SurfaceBeliefs beliefs_;
-  BoxTracks box_tracks_;
-  std::int64_t watched_ns_ = 0;               ///< stamp of the last frame for which somebody looked
+  ObjectFollower follower_;
   std::unique_ptr<PublishedMode> published_;  ///< somebody else's rule in place of ours; null in our own modes
   bool something_masked_ = true;              ///< in the last frame; the first is treated as if
   float extract_ms_ = 0;

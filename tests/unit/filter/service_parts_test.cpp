@@ -27,7 +27,7 @@ TEST(DetectionMessage, becomes_boxes_with_their_corner) {
   msg::Detection2DArray message;
   message.header.stamp = msg::to_time(1'234'567'890);
   message.detections = {box("person", 0.8, 100, 200, 40, 60)};
-  const StampedDetections boxes = from_message(message);
+  const DetectorAnswer boxes = from_message(message);
   EXPECT_EQ(boxes.stamp_ns, 1'234'567'890);
   ASSERT_EQ(boxes.detections.size(), 1U);
   EXPECT_FLOAT_EQ(boxes.detections[0].x_px, 80);
@@ -42,26 +42,9 @@ TEST(DetectionMessage, loses_what_makes_no_sense) {
   EXPECT_TRUE(from_message(message).detections.empty());
   message.detections.assign(10'000, box("person", 0.5, 100, 100, 10, 10));
   message.detections[9'999].results[0].hypothesis.score = 0.9;
-  const StampedDetections boxes = from_message(message);
+  const DetectorAnswer boxes = from_message(message);
   EXPECT_LE(boxes.detections.size(), 1000U);
   EXPECT_FLOAT_EQ(boxes.detections[0].score, 0.9F) << "the best are kept";
-}
-
-TEST(DetectionInbox, gives_the_boxes_of_exactly_the_frame) {
-  DetectionInbox inbox;
-  for (std::int64_t stamp_ns : {10, 20, 30}) inbox.put({stamp_ns, {{"person", static_cast<float>(stamp_ns)}}});
-  const auto never = [] { return true; };
-  EXPECT_FLOAT_EQ(inbox.wait_for(20, never)->detections[0].score, 20);
-  EXPECT_FALSE(inbox.wait_for(25, never).has_value());
-  EXPECT_EQ(inbox.newest(29, 100)->stamp_ns, 20);
-  EXPECT_FALSE(inbox.newest(1000, 100).has_value()) << "too old";
-  EXPECT_FALSE(inbox.newest(5, 100).has_value()) << "from the future";
-}
-
-TEST(DetectionInbox, grows_boxes_that_it_carries) {
-  const auto carried = carry({0, {{"person", 0.9F, 100, 100, 50, 80}}}, 100'000'000, 1.0);
-  EXPECT_FLOAT_EQ(carried[0].width_px, 55);
-  EXPECT_FLOAT_EQ(carried[0].x_px + 0.5F * carried[0].width_px, 125) << "the centre stays";
 }
 
 TEST(SlamFeedback, is_complete_with_the_result_and_all_events_before_it) {
