@@ -36,7 +36,7 @@ struct BoxNoise {
 };
 
 /// Kalman filter of a box: centre and size with constant velocity, the four axes independent of each other
-/// (docs/theory/dynamic_points.md Eq. (6)-(8)). Measured by detections (position) and by optical flow (velocity).
+/// (docs/theory/dynamic_points.md Eq. (9)-(11)). Measured by detections (position) and by optical flow (velocity).
 class BoxKalman {
  public:
   BoxKalman(const Box& first, const BoxNoise& noise);
