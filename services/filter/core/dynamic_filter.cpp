@@ -31,9 +31,6 @@ struct DynamicFilter::Geometry {
 
 namespace {
 
-bool uses_semantics(FilterMode mode) {
-  return mode != FilterMode::kOff && mode != FilterMode::kGeometry;
-}
 bool uses_geometry(FilterMode mode) {
   return mode == FilterMode::kGeometry || mode == FilterMode::kRtd;
 }
@@ -126,7 +123,7 @@ DynamicFilter::Scene DynamicFilter::look_at(const vision::RgbdImage& image) {
 }
 
 void DynamicFilter::find_what_may_move(const DetectorWord& word, Scene& scene, FilterResult& result) {
-  if (!uses_semantics(config_.mode)) return;
+  if (!looks_at_boxes(config_.mode)) return;
   StageClock clock(now_ns_);
   scene.watched = word.watching;
   const std::vector<ObjectBox> boxes = follower_.follow(word, scene.image, scene.grid, views_);

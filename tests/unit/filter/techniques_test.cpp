@@ -167,6 +167,13 @@ TEST(ModeTable, gives_every_mode_a_name_and_rtd_everything) {
   }
 }
 
+TEST(ModeTable, knows_who_needs_the_detector) {
+  for (const ModeEntry& entry : all_modes()) {
+    const bool blind = entry.mode == FilterMode::kOff || entry.mode == FilterMode::kGeometry;
+    EXPECT_NE(looks_at_boxes(entry.mode), blind) << entry.name;
+  }
+}
+
 TEST(ModeTable, lets_a_mode_use_only_what_is_its_own_and_not_switched_off) {
   const FilterConfig config = effective_config(config_of(FilterMode::kGeometry, {&Techniques::feature_votes}));
   EXPECT_FALSE(config.techniques.motion_levels) << "not part of the mode";

@@ -46,6 +46,10 @@ const ModeEntry& entry_of(FilterMode mode) {
   return *std::find_if(table().begin(), table().end(), [mode](const ModeEntry& entry) { return entry.mode == mode; });
 }
 
+bool looks_at_boxes(FilterMode mode) {
+  return mode != FilterMode::kOff && mode != FilterMode::kGeometry;
+}
+
 FilterConfig effective_config(FilterConfig config) {
   config.techniques = in_common(config.techniques, entry_of(config.mode).techniques);
   return with_techniques_applied(std::move(config));

@@ -19,6 +19,9 @@ struct ModeEntry {
 std::span<const ModeEntry> all_modes();
 const ModeEntry& entry_of(FilterMode mode);
 
+/// Detections change what the mode says.
+bool looks_at_boxes(FilterMode mode);
+
 /// The configuration that the algorithms work with: the techniques that belong to the mode and are not switched off,
 /// and what that means for the numbers.
 FilterConfig effective_config(FilterConfig config);
