@@ -7,13 +7,13 @@
 #include <functional>
 
 #include "services/filter/core/dynamic_filter.hpp"
+#include "services/launcher/core/removal/removal_quality.hpp"
 #include "tests/support/evaluation_clip.hpp"
-#include "tests/support/removal_quality.hpp"
 
 namespace rtd::test_support {
 
 /// How well a filter told moving from static features on a clip with true masks.
-struct FilterQuality : RemovalQuality {
+struct FilterQuality : eval::RemovalQuality {
   std::size_t frames = 0;
   double max_pose_error_m = 0;                        ///< of the filter's own pose estimate, no slam around it
   std::array<double, msg::kFilterStages> stage_ms{};  ///< means

@@ -15,8 +15,8 @@
 #include "services/camera/core/frame_source.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
 #include "services/launcher/core/evaluation/trajectory.hpp"
+#include "services/launcher/core/removal/removal_quality.hpp"
 #include "services/slam/core/slam_system.hpp"
-#include "tests/support/removal_quality.hpp"
 #include "tests/support/simulated_detector.hpp"
 
 namespace rtd::test_support {
@@ -68,7 +68,7 @@ struct OfflineReport {
   double ate_rmse_m = 0;                                ///< NaN without ground truth
   double rpe_trans_rmse_m = 0, rpe_rot_rmse_deg = 0;    ///< per second
   double coverage = 0;                                  ///< tracked / frames
-  RemovalQuality removal;                               ///< after the first second; of sources with masks
+  eval::RemovalQuality removal;                         ///< after the first second; of sources with masks
   std::map<std::string, std::vector<double>> stage_ms;  ///< per frame, by name
 };
 OfflineReport run_offline(const OfflineOptions& options);

@@ -10,6 +10,7 @@
 
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
+#include "services/launcher/ablate/ablate_command.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/eval/eval_command.hpp"
@@ -20,11 +21,12 @@
 namespace rtd::launcher {
 namespace {
 
-const std::vector<std::string> kCommands = {"run", "demo", "eval", "eval-detector", "doctor", "version", "help"};
+const std::vector<std::string> kCommands = {"run", "demo", "ablate", "eval", "eval-detector", "doctor", "version", "help"};
 
 struct Requests {
   RunOptions run;
   DemoOptions demo;
+  AblateOptions ablate;
   EvalOptions eval;
   EvalDetectorOptions eval_detector;
 };
@@ -87,6 +89,7 @@ int become_service(const std::string& name, const std::vector<std::string>& argu
 int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("run")) return run(requests.run).code;
   if (app.got_subcommand("demo")) return demo(requests.demo);
+  if (app.got_subcommand("ablate")) return ablate(requests.ablate);
   if (app.got_subcommand("eval")) return run_eval(requests.eval, std::cout, std::cerr);
   if (app.got_subcommand("eval-detector")) return run_eval_detector(requests.eval_detector, std::cout, std::cerr);
   if (app.got_subcommand("doctor")) return doctor(std::cout);
@@ -111,6 +114,7 @@ int front(int argc, char** argv) {
   CLI::App app{"RTD-SLAM: camera pose and static map from RGB-D images in which things move", "rtd"};
   add_run_command(app, requests.run);
   add_demo_command(app, requests.demo);
+  add_ablate_command(app, requests.ablate);
   add_eval_command(app, requests.eval);
   add_eval_detector_command(app, requests.eval_detector);
   app.add_subcommand("doctor", "Check this host: shared memory, sockets, services, weights, data");

@@ -5,11 +5,13 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
+#include "services/launcher/core/removal/removal_quality.hpp"
 
 namespace rtd::launcher {
 
@@ -34,6 +36,13 @@ struct ProcessUsage {
   int restarts = 0;
 };
 
+/// Removed features against the true moving pixels, over a run and without its first second: until then there is
+/// little to compare with.
+struct RunRemoval {
+  std::size_t frames = 0;  ///< whose true moving pixels are known
+  eval::RemovalQuality all, settled;
+};
+
 /// Everything that `rtd run` observed, before it becomes report.json and report.html.
 struct RunRecord {
   std::string source, pace, filter_mode, dds, detector;  ///< as given; detector: model name or "off (reason)"
@@ -49,6 +58,7 @@ struct RunRecord {
   std::map<std::string, ProcessUsage> processes;
   std::vector<std::string> events;   ///< restarts, degraded modes, warnings, in order
   double duration_s = 0;
+  std::optional<RunRemoval> removal;  ///< of sources that know what moves
 };
 
 }  // namespace rtd::launcher

@@ -25,7 +25,7 @@ std::vector<std::uint8_t> encode_jpeg(const msg::RgbdFrame& frame) {
 }  // namespace
 
 Collector::Collector(bus::Bus& bus, const Options& options)
-    : samples_(options.samples, options.total), total_(options.total) {
+    : samples_(options.samples, options.total), total_(options.total), keep_features_(options.keep_features) {
   encoder_ = std::thread([this] { encode_samples(); });
   tracking_ = bus.reader<msg::TrackingResult>(bus::topics::kTracking, [this](const auto& result) {
     const std::lock_guard lock(mutex_);
@@ -35,6 +35,9 @@ Collector::Collector(bus::Bus& bus, const Options& options)
     const std::lock_guard lock(mutex_);
     builder_.add(*features);
     samples_.add_features(*features);
+    if (keep_features_ && judged_.size() < kMaxJudgedFrames) {
+      judged_.try_emplace(features->stamp_ns, eval::judged({features->features.data(), features->count}));
+    }
   });
   status_ = bus.reader<msg::ServiceStatus>(bus::topics::kStatus, [this](const auto& status) {
     const std::lock_guard lock(mutex_);
@@ -78,6 +81,13 @@ std::optional<std::string> Collector::take_notice() {
 bool Collector::tracked_any() const {
   const std::lock_guard lock(mutex_);
   return builder_.tracked_any();
+}
+
+std::vector<JudgedFrame> Collector::judged_frames() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<JudgedFrame> frames;
+  for (const auto& [stamp_ns, features] : judged_) frames.push_back({stamp_ns, features});
+  return frames;
 }
 
 void Collector::fill(RunRecord& record) const {

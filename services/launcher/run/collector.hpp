@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -10,6 +11,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
+#include "services/launcher/core/removal/true_masks.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/sample_keeper.hpp"
 
@@ -20,7 +22,8 @@ class Collector {
  public:
   struct Options {
     std::uint64_t samples = 12;
-    std::uint64_t total = 0;  ///< frames expected, 0 = unknown
+    std::uint64_t total = 0;     ///< frames expected, 0 = unknown
+    bool keep_features = false;  ///< for judged_frames()
   };
 
   Collector(bus::Bus& bus, const Options& options);
@@ -35,6 +38,10 @@ class Collector {
   /// Writes what was heard (frames, counters, samples) into the record.
   void fill(RunRecord& record) const;
 
+  /// The features of the first kMaxJudgedFrames frames, in order of time; none unless asked for in the options.
+  std::vector<JudgedFrame> judged_frames() const;
+  static constexpr std::size_t kMaxJudgedFrames = 5000;  ///< about 15 kB each
+
  private:
   void encode_samples();
 
@@ -42,6 +49,8 @@ class Collector {
   RecordBuilder builder_;
   SampleKeeper samples_;
   std::uint64_t total_;
+  bool keep_features_;
+  std::map<std::int64_t, std::vector<eval::JudgedFeature>> judged_;  ///< by stamp
   concurrency::BoundedQueue<std::shared_ptr<const msg::RgbdFrame>> pictures_{2, concurrency::Overflow::kDropOldest};
   std::thread encoder_;
   bus::Reader<msg::TrackingResult> tracking_;

@@ -63,7 +63,8 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, InterruptSignals& s
       signals_(signals),
       terminal_(terminal),
       logs_(setup.out_dir + "/logs", terminal),
-      collector_(bus, {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames}),
+      collector_(
+          bus, {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames, has_true_masks(setup.source)}),
       host_([this](const std::string& service, const std::string& line) { logs_.add(service, line); }),
       supervisor_(host_, setup.launcher.supervisor(), [this](const SupervisorEvent& event) { on_event(event); }),
       own_cpu_before_s_(own_usage().cpu_s) {}
@@ -189,6 +190,11 @@ RunRecord RunSession::record() const {
     record.static_map_points = geometry::ply_vertices(map).value_or(0);
   collector_.fill(record);
   record.events = events_;
+  try {
+    record.removal = judge_removal(setup_.source, collector_.judged_frames());
+  } catch (const std::exception& error) {
+    record.events.push_back(std::string("masks unusable: ") + error.what());
+  }
   record.duration_s = span_s(record.frames);
   record.processes = usage_.usage();
   record.processes["launcher"] = own_usage();

@@ -75,11 +75,6 @@ std::string choose_filter_mode(const RunOptions& options) {
   return mode;
 }
 
-/// A bare folder is taken as a TUM sequence.
-std::string complete_uri(const std::string& source) {
-  return source.find(':') == std::string::npos && fs::is_directory(source) ? "tum:" + source : source;
-}
-
 std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
   const std::uint64_t frames = camera::make_source(uri)->info().frames;
   if (limit == 0) return frames;
@@ -137,6 +132,10 @@ ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole rol
 }
 
 }  // namespace
+
+std::string complete_uri(const std::string& source) {
+  return source.find(':') == std::string::npos && fs::is_directory(source) ? "tum:" + source : source;
+}
 
 RunSetup prepare_run(const RunOptions& options) {
   RunSetup setup;

@@ -34,6 +34,9 @@ struct RunSetup {
 /// is created). Throws service::ConfigError or camera::SourceError.
 RunSetup prepare_run(const RunOptions& options);
 
+/// A bare folder is taken as a TUM sequence.
+std::string complete_uri(const std::string& source);
+
 /// Removes what an earlier run left in the output folder. Throws service::ConfigError.
 void clear_out_dir(const RunSetup& setup);
 

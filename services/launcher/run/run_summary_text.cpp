@@ -30,6 +30,12 @@ std::string lost_places(const RunRecord& record) {
   return text.empty() ? text : text + ")";
 }
 
+std::string removal(const RunRemoval& removal) {
+  const auto percent = [](double share) { return number(100 * share, "{:.1f}", " %"); };
+  return "precision " + percent(removal.all.precision()) + ", recall " + percent(removal.all.recall()) +
+         "  (after 1 s: " + percent(removal.settled.precision()) + ", " + percent(removal.settled.recall()) + ")";
+}
+
 std::string usage(const RunRecord& record) {
   std::string text;
   double total_mb = 0;
@@ -49,6 +55,7 @@ std::string run_summary_text(const RunRecord& record, const RunSummary& summary,
                                     summary.frames_tracked, record.frames_dropped, lost_places(record)));
   text += row("coverage", number(100 * summary.coverage, "{:.1f}", " %"));
   text += row("ATE rmse", both_ates(summary));
+  if (record.removal) text += row("removed", removal(*record.removal));
   text += row("speed", number(summary.fps, "{:.1f}", " frames/s"));
   text += row("latency", fmt::format("p50 {}, p99 {}", number(summary.latency_ms.p50, "{:.1f}", " ms"),
                                      number(summary.latency_ms.p99, "{:.1f}", " ms")));

@@ -48,7 +48,7 @@ void print_json(const rtd::test_support::OfflineReport& report) {
   for (const auto& point : rtd::eval::ate(report.trajectory, report.groundtruth).points) {
     lost_m = std::max(lost_m, point.error_m);
   }
-  const rtd::test_support::RemovalQuality& removal = report.removal;
+  const rtd::eval::RemovalQuality& removal = report.removal;
   const bool masks = removal.removed_rightly + removal.kept_wrongly > 0;
   const bool removes = removal.removed_rightly + removal.removed_wrongly > 0;
   const auto ms = [&](const char* stage) {

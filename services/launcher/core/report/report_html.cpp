@@ -114,11 +114,22 @@ std::string error_section(const RunSummary& summary, const RunTime& time) {
                        svg.str());
 }
 
+std::string removal_note(const RunRecord& record) {
+  if (!record.removal) return "";
+  const auto words = [](const eval::RemovalQuality& quality) {
+    return percent_text(quality.precision()) + " of the removed points were on something that moved, " +
+           percent_text(quality.recall()) + " of the points there were removed";
+  };
+  return " Against the source's true moving pixels (grown by 3 px): " + words(record.removal->all) +
+         "; after the first second: " + words(record.removal->settled) + ".";
+}
+
 std::string features_section(const RunRecord& record, const RunSummary& summary) {
   if (record.frames.empty()) return "";
-  return html::section("Static and dynamic points",
-                       "Removed points were judged to lie on something that moves; tracking never uses them.",
-                       points_chart(record, summary));
+  return html::section(
+      "Static and dynamic points",
+      "Removed points were judged to lie on something that moves; tracking never uses them." + removal_note(record),
+      points_chart(record, summary));
 }
 
 std::string latency_section(const RunRecord& record, const RunSummary& summary) {

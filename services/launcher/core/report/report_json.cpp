@@ -74,6 +74,23 @@ Json drops_json(const RunRecord& record) {
   return drops;
 }
 
+Json quality_json(const eval::RemovalQuality& quality) {
+  return {{"precision", number_or_null(quality.precision())},
+          {"recall", number_or_null(quality.recall())},
+          {"removed_rightly", quality.removed_rightly},
+          {"removed_wrongly", quality.removed_wrongly},
+          {"kept_rightly", quality.kept_rightly},
+          {"kept_wrongly", quality.kept_wrongly}};
+}
+
+Json removal_json(const RunRecord& record) {
+  if (!record.removal) return nullptr;
+  Json removal = quality_json(record.removal->all);
+  removal["frames"] = record.removal->frames;
+  removal["after_first_second"] = quality_json(record.removal->settled);
+  return removal;
+}
+
 }  // namespace
 
 Json report_json(const RunRecord& record, const RunSummary& summary) {
@@ -96,6 +113,7 @@ Json report_json(const RunRecord& record, const RunSummary& summary) {
   report["frames_per_s"] = number_or_null(summary.fps);
   report["features"] = {{"kept_mean", number_or_null(summary.kept_mean)},
                         {"removed_mean", number_or_null(summary.removed_mean)}};
+  report["removal"] = removal_json(record);
   report["map"] = {{"keyframes", summary.keyframes}, {"landmarks", summary.landmarks}};
   report["static_map"] = record.static_map_path.empty()
                              ? Json(nullptr)

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/core/removal/true_masks.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+
+#include "services/camera/core/source_factory.hpp"
+#include "services/launcher/core/evaluation/trajectory.hpp"
+
+namespace rtd::launcher {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr char kTum[] = "tum:", kSynthetic[] = "synthetic:";
+constexpr std::int64_t kSettledNs = 1'000'000'000;
+
+bool is_synthetic(const std::string& uri) {
+  return uri.rfind(kSynthetic, 0) == 0;
+}
+
+fs::path mask_folder(const std::string& uri) {
+  if (uri.rfind(kTum, 0) != 0) return {};
+  const std::string folder = uri.substr(sizeof kTum - 1);
+  return fs::path(folder.substr(0, folder.find('?'))) / "mask";
+}
+
+/// Gives the mask of a stamp; empty optional = unknown. Asked in order of time.
+using MaskOf = std::function<std::optional<cv::Mat>(std::int64_t stamp_ns)>;
+
+MaskOf masks_of_folder(const fs::path& folder) {
+  std::map<std::int64_t, std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    try {
+      files[eval::parse_stamp_ns(entry.path().stem().string())] = entry.path().string();
+    } catch (const std::invalid_argument&) {
+      continue;  // not named by a stamp: belongs to nobody
+    }
+  }
+  return [files](std::int64_t stamp_ns) -> std::optional<cv::Mat> {
+    const auto found = files.find(stamp_ns);
+    if (found == files.end()) return std::nullopt;
+    const cv::Mat mask = cv::imread(found->second, cv::IMREAD_GRAYSCALE);
+    if (mask.empty()) return std::nullopt;
+    return mask;
+  };
+}
+
+/// Plays the scene again: the same options give the same bits.
+MaskOf masks_of_scene(const std::string& uri) {
+  const std::shared_ptr<camera::FrameSource> source = camera::make_source(uri);
+  return [source](std::int64_t stamp_ns) -> std::optional<cv::Mat> {
+    source->pass_over(stamp_ns);
+    const auto frame = source->next();
+    if (!frame || frame->image.stamp_ns != stamp_ns) return std::nullopt;
+    return frame->dynamic_mask;
+  };
+}
+
+}  // namespace
+
+bool has_true_masks(const std::string& source_uri) {
+  std::error_code error;
+  const fs::path folder = mask_folder(source_uri);
+  return is_synthetic(source_uri) || (!folder.empty() && fs::is_directory(folder, error));
+}
+
+std::optional<RunRemoval> judge_removal(const std::string& source_uri, const std::vector<JudgedFrame>& frames) {
+  if (frames.empty() || !has_true_masks(source_uri)) return std::nullopt;
+  const MaskOf mask_of =
+      is_synthetic(source_uri) ? masks_of_scene(source_uri) : masks_of_folder(mask_folder(source_uri));
+  RunRemoval removal;
+  for (const JudgedFrame& frame : frames) {
+    const std::optional<cv::Mat> mask = mask_of(frame.stamp_ns);
+    if (!mask) continue;
+    ++removal.frames;
+    removal.all.count(frame.features, *mask);
+    if (frame.stamp_ns - frames.front().stamp_ns >= kSettledNs) removal.settled.count(frame.features, *mask);
+  }
+  if (removal.frames == 0) return std::nullopt;
+  return removal;
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/launcher/core/removal/removal_quality.hpp"
+#include "services/launcher/core/run_record.hpp"
+
+namespace rtd::launcher {
+
+/// The features of one frame of a run, without what the removal is not judged by: 12 bytes each.
+struct JudgedFrame {
+  std::int64_t stamp_ns = 0;
+  std::vector<eval::JudgedFeature> features;
+};
+
+/// The source knows which pixels move: a TUM folder with mask/ (named by the stamps of the colour images), or a
+/// synthetic scene.
+bool has_true_masks(const std::string& source_uri);
+
+/// Compares a run with the true masks of its source; empty when that has none. `frames` in order of time. Frames
+/// without a mask of their stamp are left out. Reading them again is done behind the run, not during it.
+std::optional<RunRemoval> judge_removal(const std::string& source_uri, const std::vector<JudgedFrame>& frames);
+
+}  // namespace rtd::launcher
