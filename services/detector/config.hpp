@@ -25,7 +25,7 @@ struct ServiceConfig {
   int workers = 2;                       ///< pace asap: images worked on side by side
   double max_rate_hz = 0;                ///< realtime pace only; 0 = as fast as it goes
   std::vector<std::string> class_names;  ///< empty: those in the model file, else COCO's 80
-  std::string derotate = "on";           ///< "on": detect on the image turned upright by the tracked roll
+  std::string derotate = "off";          ///< "on": detect on the image turned upright by the tracked roll
   double derotate_min_deg = RollConfig{}.min_roll_rad / kRadPerDeg;
   int roll_timeout_ms = 2000;                      ///< pace lockstep: longest wait for the pose of the image before
   double first_roll_deg = 0, first_pitch_deg = 0;  ///< of the first camera: where gravity points

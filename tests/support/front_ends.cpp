@@ -112,7 +112,9 @@ std::unique_ptr<FrontEnd> make_front_end(const FrontEndOptions& options) {
   }
   const filter::FilterConfig config = filter_config(options);
   const bool looks = options.mode != "geometry" && options.detector.kind != "off";
-  return std::make_unique<Filtered>(config, looks ? make_look(options.detector) : Look{}, options.detector);
+  DetectorOptions paced = options.detector;
+  if (paced.derotate) paced.roll = std::make_shared<detector::CameraRoll>(*paced.derotate);
+  return std::make_unique<Filtered>(config, looks ? make_look(paced) : Look{}, paced);
 }
 
 }  // namespace rtd::test_support

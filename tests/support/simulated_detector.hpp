@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,9 @@ struct DetectorOptions {
   int max_lies = 8;            ///< lying: boxes of one image
   /// real: least score
   double confidence = detector::DecodeConfig{}.confidence_threshold;
-  std::shared_ptr<detector::CameraRoll> roll;  ///< real: detects on the image turned upright by it; none = as it is
+  /// real: on the image turned upright, as rtd-detector does; none = as it is
+  std::optional<detector::RollConfig> derotate;
+  std::shared_ptr<detector::CameraRoll> roll;  ///< of the run, made from `derotate`
 };
 
 /// The boxes that a detector finds in one frame.

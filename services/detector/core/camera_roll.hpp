@@ -16,7 +16,7 @@ struct RollConfig {
   /// Direction of gravity in the frame of slam's poses, which is that of the first camera: the default means that the
   /// first image was upright.
   Eigen::Vector3d down_world = Eigen::Vector3d::UnitY();
-  double min_roll_rad = 35 * kRadPerDeg;  ///< smaller ones are taken as 0: people are found all the same
+  double min_roll_rad = 25 * kRadPerDeg;  ///< smaller ones are taken as 0: people are found all the same
 };
 
 /// Gravity in the frame of a first camera that was itself rolled (as CameraRoll counts) and looked down by a pitch.

@@ -89,8 +89,7 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
   app.add_option_function<double>(
       "--derotate",
       [&detector](double min_deg) {
-        const double min_rad = min_deg * rtd::detector::kRadPerDeg;
-        detector.roll = std::make_shared<rtd::detector::CameraRoll>(rtd::detector::RollConfig{.min_roll_rad = min_rad});
+        detector.derotate = rtd::detector::RollConfig{.min_roll_rad = min_deg * rtd::detector::kRadPerDeg};
       },
       "real: on the image turned upright, from this roll on (degrees)");
   app.add_option_function<std::vector<std::string>>(
