@@ -12,7 +12,7 @@ struct FusionConfig {
   int max_voxels = 1'500'000;      ///< about 90 bytes each; when reached, no new ones are made
   int stride_px = 2;               ///< every so many-th column and row is fused
   double min_depth_m = 0.3;        ///< nearer readings count as not measured
-  double max_depth_m = 4.0;        ///< farther readings are too noisy to draw a surface
+  double max_depth_m = 6.0;        ///< farther readings are too noisy to draw a surface
   double gate_sigmas = 3.0;        ///< a point joins the surface along its ray within so many standard deviations
   double max_weight = 100.0;       ///< of a voxel, in points seen at 1 m: bounds how long the past counts
   double edge_m = 0.04;            ///< a depth step to a neighbouring pixel that makes a reading a mixed one ...

@@ -22,7 +22,7 @@ using service::ConfigError;
 namespace {
 
 /// In realtime nobody waits for the detector, so it takes the processor time that the pose does not need.
-constexpr int kRealtimeDetectorNiceness = 10, kDenseNiceness = 15;
+constexpr int kRealtimeNiceness = 10;
 
 void check_sections(const std::vector<std::string>& overrides) {
   const std::vector<std::string>& sections = service::config_sections();
@@ -175,14 +175,14 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
     camera.insert(camera.end(), {"--wait-for", setup.dense ? "filter,slam,dense" : "filter,slam"});
   } else {
     plans.push_back(plan(setup, "detector", ServiceRole::kOptional, {"--set", "detector.model=" + setup.model_path}));
-    if (setup.pace == "realtime") plans.back().niceness = kRealtimeDetectorNiceness;
+    if (setup.pace == "realtime") plans.back().niceness = kRealtimeNiceness;
     camera.insert(camera.end(), {"--wait-for", setup.dense ? "filter,slam,detector,dense" : "filter,slam,detector"});
   }
   plans.push_back(plan(setup, "filter", ServiceRole::kEssential, filter));
   plans.push_back(plan(setup, "slam", ServiceRole::kEssential, {"--out", setup.out_dir}));
-  if (setup.dense) {  // nobody waits for it, so it takes the processor time that the others leave
+  if (setup.dense) {
     plans.push_back(plan(setup, "dense", ServiceRole::kOptional, {"--out", setup.out_dir}));
-    plans.back().niceness = kDenseNiceness;
+    if (setup.pace == "realtime") plans.back().niceness = kRealtimeNiceness;
   }
   plans.push_back(plan(setup, "camera", ServiceRole::kSource, camera));
   return plans;

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   app.add_option("--filter", options.front_end.filter_settings, "filter.KEY=VALUE");
   app.add_option("--every", options.every, "every so many-th frame");
   app.add_option("--voxel", map.fusion.voxel_m, "m");
+  app.add_option("--max-depth", map.fusion.max_depth_m, "m");
   app.add_option("--grow", map.fusion.mask_grow_cells, "cells");
   app.add_option("--carve-frames", map.carving.frames, "a large number switches carving off");
   app.add_option("--carve-margin", map.carving.margin_m, "m");
@@ -32,7 +33,7 @@ int main(int argc, char** argv) {
   const rtd::test_support::DenseReport report = rtd::test_support::run_dense(options);
   const rtd::test_support::GhostReport& ghosts = report.ghosts;
   std::printf(
-      "frames %zu  integrated %zu  points %zu of %zu voxels  fused %llu  masked %llu  carved %llu  %.1f ms each\n",
+      "frames %zu  integrated %zu  points %zu of %zu voxels  fused %llu  masked %llu  carved %llu  %.1f ms CPU each\n",
       report.frames, report.integrated, report.cloud.size(), report.voxels,
       static_cast<unsigned long long>(report.fused), static_cast<unsigned long long>(report.masked),
       static_cast<unsigned long long>(report.carved), report.integrate_ms);

@@ -27,7 +27,7 @@ struct DenseReport {
   GhostReport ghosts;
   std::size_t frames = 0, integrated = 0, voxels = 0;
   std::uint64_t fused = 0, masked = 0, carved = 0;
-  double integrate_ms = 0;  ///< mean
+  double integrate_ms = 0;  ///< mean CPU time of a fused frame
 };
 
 /// Filter, slam and static map on one source in one thread: what a lockstep run with rtd-dense computes when it keeps
