@@ -145,5 +145,31 @@ TEST_F(EndToEndTest, the_demo_needs_no_data_and_shows_both_runs_on_one_page) {
   for (const char* mode : {"off", "rtd"}) EXPECT_TRUE(fs::exists(out_ + "/" + mode + "/report.html")) << mode;
 }
 
+TEST_F(EndToEndTest, an_ablation_compares_variants_keeps_its_runs_and_refuses_unknown_techniques) {
+  std::vector<std::string> ablate = {"ablate",  "--source",     "synthetic:office?frames=8",
+                                     "--modes", "off,geometry", "--without",
+                                     "none",    "--detector",   "off",
+                                     "--out",   out_,           "--domain",
+                                     "118"};
+  ASSERT_EQ(rtd_.run(ablate), 0) << rtd_.output();
+  EXPECT_THAT(rtd_.output(),
+              AllOf(HasSubstr("[ 1/2] office, off: ATE"), HasSubstr("geometry"), HasSubstr("precision")));
+  const nlohmann::json json = nlohmann::json::parse(text_of(out_ + "/ablation.json"));
+  ASSERT_EQ(json["sources"][0]["rows"].size(), 2U);
+  EXPECT_GT(json["sources"][0]["rows"][1]["ate_rmse_m"]["median"], 0.0);
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_THAT(text_of(out_ + "/ablation.html"), HasSubstr("<svg"));
+  EXPECT_THAT(text_of(out_ + "/ablation.md"), HasSubstr("| geometry |"));
+
+  RtdCommand again, wrong;
+  ablate.emplace_back("--resume");
+  EXPECT_EQ(again.run(ablate), 0);
+  EXPECT_THAT(again.output(), HasSubstr("office, geometry: ATE")) << again.output();
+  EXPECT_THAT(again.output(), HasSubstr("(kept)"));
+  EXPECT_EQ(wrong.run({"ablate", "--source", "synthetic:office?frames=8", "--without", "depth_chek", "--out", out_}),
+            2);
+  EXPECT_THAT(wrong.output(), HasSubstr("did you mean 'depth_check'?"));
+}
+
 }  // namespace
 }  // namespace rtd::launcher
