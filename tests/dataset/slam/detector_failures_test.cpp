@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+/// The clips with a detector that is slow, late, gone or lying; emulated by the stamps, so that runs repeat.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "tests/support/offline_pipeline.hpp"
+
+namespace rtd::test_support {
+namespace {
+
+/// Options for a clip below RTD_DATA_DIR; no source when it is not there.
+OfflineOptions clip(const std::string& name, const std::string& mode) {
+  OfflineOptions options;
+  options.front_end.mode = mode;
+  const char* folder = std::getenv("RTD_DATA_DIR");
+  if (folder == nullptr || !std::filesystem::exists(std::filesystem::path(folder) / name)) return options;
+  options.source = "tum:" + (std::filesystem::path(folder) / name).string();
+  return options;
+}
+
+struct SlowClip {
+  const char* name;
+  double full_rate_ate_m;  ///< asked of a detector that answers every frame
+};
+void PrintTo(const SlowClip& slow, std::ostream* out) {
+  *out << slow.name;
+}
+
+class SlowDetector : public ::testing::TestWithParam<SlowClip> {
+ protected:
+  static void expect_poses_hardly_change(OfflineOptions options) {
+    if (options.source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no " << GetParam().name;
+    if (std::getenv("RTD_MODEL_DIR") == nullptr) GTEST_SKIP() << "RTD_MODEL_DIR is not set";
+    const OfflineReport report = run_offline(options);
+    EXPECT_LE(report.ate_rmse_m, 1.5 * GetParam().full_rate_ate_m);
+    EXPECT_GE(report.coverage, 1.0);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Clips, SlowDetector,
+                         ::testing::Values(SlowClip{"walk_xyz", 0.0048}, SlowClip{"walk_rpy", 0.0080},
+                                           SlowClip{"walk_box", 0.0030}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+TEST_P(SlowDetector, at_5_hz_and_80_ms_late_hardly_changes_the_poses) {
+  OfflineOptions options = clip(GetParam().name, "rtd");
+  options.front_end.detector.rate_hz = 5;
+  options.front_end.detector.delay_ms = 80;
+  expect_poses_hardly_change(options);
+}
+
+TEST_P(SlowDetector, gone_for_a_second_hardly_changes_the_poses) {
+  OfflineOptions options = clip(GetParam().name, "rtd");
+  options.front_end.detector.outages = {{1.5, 2.5}};
+  expect_poses_hardly_change(options);
+}
+
+TEST(LyingDetector, does_not_lead_the_camera_astray) {
+  OfflineOptions lying = clip("fr1_xyz", "rtd");
+  if (lying.source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no fr1_xyz";
+  lying.front_end.detector.kind = "lying";
+  const double off_ate_m = run_offline(clip("fr1_xyz", "off")).ate_rmse_m;
+  for (const std::uint64_t seed : {1U, 2U}) {
+    lying.front_end.detector.seed = seed;
+    const OfflineReport report = run_offline(lying);
+    EXPECT_LE(report.ate_rmse_m, 1.5 * off_ate_m) << "seed " << seed;
+    EXPECT_GE(report.coverage, 1.0) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace rtd::test_support

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+/// The whole system on rendered scenes that are not the clips: few seeds here, many in deploy/stress.py.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include "tests/support/offline_pipeline.hpp"
+
+namespace rtd::test_support {
+namespace {
+
+/// A detector that knows people and chairs, in mode rtd.
+OfflineOptions rtd_on(const std::string& source) {
+  OfflineOptions options;
+  options.source = "synthetic:" + source;
+  options.front_end.mode = "rtd";
+  options.front_end.detector.kind = "truth";
+  return options;
+}
+
+struct SceneDemand {
+  const char* name;
+  const char* source;
+  double max_ate_m, min_coverage, min_precision, min_recall;
+};
+void PrintTo(const SceneDemand& demand, std::ostream* out) {
+  *out << demand.name;
+}
+
+class SyntheticScene : public ::testing::TestWithParam<SceneDemand> {};
+
+TEST_P(SyntheticScene, is_tracked_through) {
+  const OfflineReport report = run_offline(rtd_on(GetParam().source));
+  EXPECT_LE(report.ate_rmse_m, GetParam().max_ate_m);
+  EXPECT_GE(report.coverage, GetParam().min_coverage);
+  EXPECT_GE(report.removal.precision(), GetParam().min_precision);
+  EXPECT_GE(report.removal.recall(), GetParam().min_recall);
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, SyntheticScene,
+                         ::testing::Values(SceneDemand{"crowd", "crowd?frames=120&seed=2", 0.03, 0.98, 0.75, 0.95},
+                                           SceneDemand{"fill", "fill?frames=240&seed=3", 0.05, 0.8, 0.85, 0.9},
+                                           SceneDemand{"approach", "approach?frames=120&seed=2", 0.02, 1.0, 0.9, 0.85},
+                                           SceneDemand{"flicker", "flicker?frames=120&seed=2", 0.015, 1.0, 0.8, 0.9}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+cv::Rect trunk_of(const cv::Rect& person) {
+  return {person.x + person.width * 3 / 10, person.y + person.height / 4, person.width * 2 / 5, person.height * 7 / 20};
+}
+
+/// The share of the features on the trunk of the person that a frame uses; -1 where too little is seen. Fidgeting arms
+/// before a trunk at rest do not count.
+double used_share(const cv::Rect& trunk, const cv::Mat& moving, const std::vector<msg::Feature>& features) {
+  const bool at_rest = cv::countNonZero(moving(trunk)) < 0.9 * trunk.area();
+  int kept = 0, all = 0;
+  for (const msg::Feature& feature : features) {
+    const cv::Point at(static_cast<int>(feature.u_raw_px), static_cast<int>(feature.v_raw_px));
+    if (!trunk.contains(at) || (at_rest && moving.at<std::uint8_t>(at) != 0)) continue;
+    ++all;
+    kept += (feature.flags & msg::kFeatureRemoved) == 0 ? 1 : 0;
+  }
+  constexpr int kFewest = 8;
+  return all < kFewest ? -1 : static_cast<double>(kept) / all;
+}
+
+/// Per frame, the used share of the person's trunk.
+std::vector<double> used_of_person(OfflineOptions options) {
+  std::vector<double> used;
+  options.on_features = [&](const camera::SourceFrame& frame, const std::vector<msg::Feature>& features) {
+    used.push_back(-1);
+    cv::Mat grown;
+    cv::dilate(frame.dynamic_mask, grown, cv::getStructuringElement(cv::MORPH_RECT, {13, 13}));
+    for (const camera::SourceObject& object : frame.objects) {
+      if (object.class_name == "person") used.back() = used_share(trunk_of(object.box_px), grown, features);
+    }
+  };
+  run_offline(options);
+  return used;
+}
+
+/// The first frame in [begin, end) from which on at least (or at most) this share of the person is used for a third of
+/// a second, over the frames that see it; `end` when there is none.
+int first_frame(const std::vector<double>& used, int begin, int end, bool at_least, double share) {
+  constexpr int kHolds = 10;
+  for (int i = begin; i < end; ++i) {
+    const auto from = used.begin() + i, to = used.begin() + std::min(i + kHolds, end);
+    if (std::all_of(from, to, [&](double u) { return u < 0 || (at_least ? u >= share : u <= share); })) return i;
+  }
+  return end;
+}
+
+void print_timeline(const std::vector<double>& used) {
+  constexpr std::size_t kPerMark = 15;
+  std::printf("used share of the person, two marks a second:");
+  for (std::size_t i = 0; i + kPerMark <= used.size(); i += kPerMark) {
+    double sum = 0;
+    int seen = 0;
+    for (std::size_t j = i; j < i + kPerMark; ++j) {
+      if (used[j] >= 0) sum += used[j], ++seen;
+    }
+    seen == 0 ? std::printf(" -") : std::printf(" %.1f", sum / seen);
+  }
+  std::printf("\n");
+}
+
+class SittingPerson : public ::testing::TestWithParam<int> {};
+
+TEST_P(SittingPerson, is_used_within_two_seconds_and_dropped_when_it_rises) {
+  constexpr int kFps = 30, kRises = 10 * kFps, kFrames = 11 * kFps;
+  constexpr int kUnseen = 4;  // frames until the trunk has come up by 3 cm: people rise smoothly
+  const std::string source = "sitting?frames=" + std::to_string(kFrames) + "&seed=" + std::to_string(GetParam());
+  const std::vector<double> used = used_of_person(rtd_on(source));
+  print_timeline(used);
+  EXPECT_LE(first_frame(used, 0, kRises, true, 0.5), 2 * kFps);
+  EXPECT_LE(first_frame(used, kRises, kFrames, false, 0.2), kRises + kUnseen + 3);
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, SittingPerson, ::testing::Values(1, 2));
+
+}  // namespace
+}  // namespace rtd::test_support
