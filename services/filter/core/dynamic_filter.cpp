@@ -169,6 +169,10 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
   std::vector<std::uint8_t> avoid = dilate(scene.grid.shape, recall(T_world_predicted), 1);
   for (std::size_t cell = 0; cell < cells; ++cell) avoid[cell] = std::max(avoid[cell], scene.may_move[cell]);
 
+  if (!views_.spans(scene.image.stamp_ns, kMinSettledAgeNs)) {  // too early to tell movers from the camera's motion
+    const CellMask suspects = free_standing(scene.grid, scene.clusters, config_.masks);
+    for (std::size_t cell = 0; cell < cells; ++cell) avoid[cell] = std::max(avoid[cell], suspects[cell]);
+  }
   const auto& p = scene.image.camera.parameters();
   const vision::FeatureGrid feature_grid(result.features, p.width, p.height);
   std::vector<char> excluded = on_cells(result.features, scene.grid.shape, avoid);

@@ -11,7 +11,7 @@
 namespace rtd::filter {
 namespace {
 
-constexpr std::int64_t kNearAgeNs = 100'000'000, kMinSettledAgeNs = 90'000'000;
+constexpr std::int64_t kNearAgeNs = 100'000'000;
 constexpr std::int64_t kOldAgeNs = 500'000'000;
 constexpr double kKeypointSigmaPx = 0.7;  // at octave 0
 constexpr double kRefineWindowPx = 8.0;

@@ -21,6 +21,9 @@ struct EgoMotion {
   FeatureVotes votes;  ///< of the features found again in the view 0.1 s ago, movers included
 };
 
+/// A pose found over less time may have followed a mover.
+inline constexpr std::int64_t kMinSettledAgeNs = 90'000'000;
+
 /// What the estimate starts from.
 struct EgoMotionInput {
   SearchableFeatures current;

@@ -122,7 +122,18 @@ std::vector<int> collect_cells(const ClusterInBox& object, const std::vector<Clu
   return cells;
 }
 
-/// Share of the outline beyond which the scene lies clearly farther. Looks a few cells outwards, past the blurred edge.
+/// Everything in the box: all that can be said where nothing was measured.
+std::vector<int> all_cells(const CellBox& box, const GridShape& shape) {
+  std::vector<int> cells;
+  for (int row = box.top; row < box.bottom; ++row) {
+    for (int column = box.left; column < box.right; ++column) cells.push_back(shape.index(column, row));
+  }
+  return cells;
+}
+
+}  // namespace
+
+/// Looks a few cells outwards, past the blurred edge.
 double outline_step_share(const std::vector<int>& cells, const DepthGrid& grid, double min_step_m) {
   constexpr int kReachCells = 3;
   const GridShape& shape = grid.shape;
@@ -148,16 +159,30 @@ double outline_step_share(const std::vector<int>& cells, const DepthGrid& grid, 
   return steps + flats == 0 ? 1.0 : static_cast<double>(steps) / (steps + flats);
 }
 
-/// Everything in the box: all that can be said where nothing was measured.
-std::vector<int> all_cells(const CellBox& box, const GridShape& shape) {
-  std::vector<int> cells;
-  for (int row = box.top; row < box.bottom; ++row) {
-    for (int column = box.left; column < box.right; ++column) cells.push_back(shape.index(column, row));
+CellMask free_standing(const DepthGrid& grid, const DepthClusters& clusters, const MaskConfig& config) {
+  constexpr double kMaxShare = 0.4, kMinOutline = 0.6;  // of the image in all; of the outline
+  std::vector<std::vector<int>> surfaces(clusters.cells.size());
+  for (int cell = 0; cell < grid.shape.size(); ++cell) {
+    const std::int32_t label = clusters.label[static_cast<std::size_t>(cell)];
+    if (label >= 0) surfaces[static_cast<std::size_t>(label)].push_back(cell);
   }
-  return cells;
+  std::erase_if(surfaces, [&](const std::vector<int>& cells) {
+    return cells.empty() || outline_step_share(cells, grid, config.min_outline_step_m) < kMinOutline;
+  });
+  const auto middle_m = [&](const std::vector<int>& cells) {
+    return grid.depth_m[static_cast<std::size_t>(cells[cells.size() / 2])];
+  };
+  std::stable_sort(surfaces.begin(), surfaces.end(),
+                   [&](const auto& a, const auto& b) { return middle_m(a) < middle_m(b); });
+  CellMask mask(clusters.label.size(), 0);
+  std::size_t taken = 0;
+  for (const std::vector<int>& cells : surfaces) {
+    taken += cells.size();
+    if (static_cast<double>(taken) > kMaxShare * grid.shape.size()) break;
+    for (const int cell : cells) mask[static_cast<std::size_t>(cell)] = 1;
+  }
+  return mask;
 }
-
-}  // namespace
 
 std::vector<vision::Detection> usable_detections(const std::vector<vision::Detection>& detections,
                                                  const MotionLevels& levels) {

@@ -8,6 +8,7 @@
 
 #include "common/geometry/camera_model.hpp"
 #include "common/vision/detection.hpp"
+#include "services/filter/core/cell_masks.hpp"
 #include "services/filter/core/depth_clusters.hpp"
 #include "services/filter/core/depth_grid.hpp"
 #include "services/filter/core/filter_config.hpp"
@@ -50,6 +51,12 @@ std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const
                                       const geometry::CameraModel& camera, const DepthGrid& grid,
                                       const DepthClusters& clusters, const MaskConfig& config);
 inline constexpr std::size_t kMaxObjects = 64;
+
+/// Share of the outline of some cells beyond which the scene lies farther by `min_step_m`; 1 where nothing is known.
+double outline_step_share(const std::vector<int>& cells, const DepthGrid& grid, double min_step_m);
+/// Cells of surfaces that stand out from what surrounds them on most sides, the nearest first, up to 40 % of the image:
+/// what can be carried about. Before there is any evidence they are not trusted with the camera's pose.
+CellMask free_standing(const DepthGrid& grid, const DepthClusters& clusters, const MaskConfig& config);
 
 /// The clusters with each object that is not flat as a cluster of its own: what it touches is then judged without it.
 DepthClusters separate_objects(DepthClusters clusters, const std::vector<SceneObject>& objects);

@@ -44,6 +44,10 @@ class ViewStore {
   const View& newest() const { return recent_.back(); }
   /// The view before the newest one; null when there is none.
   const View* second_newest() const { return recent_.size() < 2 ? nullptr : &recent_[recent_.size() - 2]; }
+  /// There is a view that is at least so old.
+  bool spans(std::int64_t now_ns, std::int64_t age_ns) const {
+    return !recent_.empty() && now_ns - recent_.front().stamp_ns >= age_ns;
+  }
   /// The recent view with this stamp; null when there is none.
   const View* at(std::int64_t stamp_ns) const;
   /// The settled recent view whose age is nearest to the wanted one. Precondition: not empty.

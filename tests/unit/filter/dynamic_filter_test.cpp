@@ -51,6 +51,15 @@ TEST(DynamicFilter, removes_a_mover_of_no_class_and_keeps_the_room) {
   }
 }
 
+TEST(DynamicFilter, is_not_carried_along_in_the_second_frame) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kGeometry);
+  filter.apply(scene.render(0, 0, -0.1), std::nullopt);
+  const FilterResult result = filter.apply(scene.render(1, kCameraStepM, -0.1 + kBlockStepM), std::nullopt);
+  EXPECT_NEAR(result.T_world_camera.translation().x(), kCameraStepM, 0.006) << "m";
+  EXPECT_GE(removed_share(result, MovingScene::block(kCameraStepM, -0.1 + kBlockStepM), true), 0.9);
+}
+
 TEST(DynamicFilter, does_not_believe_a_mover_that_pauses_for_half_a_second) {
   const MovingScene scene;
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
