@@ -6,6 +6,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <optional>
+
+#include "common/vision/general_loss.hpp"
 
 namespace rtd::vision {
 namespace {
@@ -29,8 +32,8 @@ class PoseCost {
   enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 6 };
 
   PoseCost(const RgbdProjection& camera, const Eigen::Isometry3d& T_camera_world, const PoseOptimizerOptions& options,
-           bool robust)
-      : camera_(camera), T_camera_world_(T_camera_world), options_(options), robust_(robust) {}
+           bool robust, const std::optional<GeneralLoss>& loss)
+      : camera_(camera), T_camera_world_(T_camera_world), options_(options), robust_(robust), loss_(loss) {}
 
   void add(const PoseObservation& observation) { active_.push_back(&observation); }
   std::size_t size() const { return active_.size(); }
@@ -74,6 +77,11 @@ class PoseCost {
   /// Eq. (3): r = sqrt(w rho/s) e, J = sqrt(w) rho' / sqrt(rho/s) de/dx.
   Scaling robust_scaling(const PoseObservation& observation, double s) const {
     const double root_weight = std::sqrt(observation.weight), limit = chi2_limit(options_, observation);
+    if (loss_) {
+      constexpr double kTiny = 1e-9;  // rho(s) / s goes to 1
+      const double root_ratio = s < kTiny ? 1.0 : std::sqrt(loss_->rho(s) / s);
+      return {root_weight * root_ratio, root_weight * loss_->rho_slope(s) / root_ratio};
+    }
     if (!robust_ || s <= limit) return {root_weight, root_weight};
     const double root_s = std::sqrt(s), delta = std::sqrt(limit);
     const double root_ratio = std::sqrt((2 * delta * root_s - limit) / s);
@@ -84,6 +92,7 @@ class PoseCost {
   Eigen::Isometry3d T_camera_world_;
   PoseOptimizerOptions options_;
   bool robust_;
+  std::optional<GeneralLoss> loss_;  ///< instead of Huber's, in every round
   std::vector<const PoseObservation*> active_;
 };
 
@@ -92,6 +101,19 @@ double chi2(const RgbdProjection& camera, const Eigen::Isometry3d& T_camera_worl
   const Eigen::Vector3d p_camera = T_camera_world * observation.p_world;
   if (p_camera.z() < kMinProjectionDepth_m) return std::numeric_limits<double>::infinity();
   return (rgbd_residual(camera, p_camera, observation.measured) / observation.sigma_px).squaredNorm();
+}
+
+/// The loss that suits the residuals of all observations, outliers too, at this pose.
+GeneralLoss fit_loss(const RgbdProjection& camera, const std::vector<PoseObservation>& observations,
+                     const Eigen::Isometry3d& T_camera_world) {
+  constexpr double kMaxChi2 = 600;  // farther ones tell nothing of the shape
+  std::vector<SquaredResidual> residuals;
+  residuals.reserve(observations.size());
+  for (const PoseObservation& observation : observations) {
+    const double value = chi2(camera, T_camera_world, observation);
+    if (value < kMaxChi2) residuals.push_back({value, observation.measured.dimension()});
+  }
+  return fit_general_loss(residuals, {});
 }
 
 void classify(const RgbdProjection& camera, const std::vector<PoseObservation>& observations,
@@ -163,7 +185,10 @@ PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vecto
   Eigen::Isometry3d T_camera_world = T_world_camera_initial.inverse();
 
   for (int round = 0; round < options.rounds; ++round) {
-    PoseCost cost(camera, T_camera_world, options, round < options.robust_rounds);
+    std::optional<GeneralLoss> loss;
+    // The start may be far off: its residuals are not those of the noise, and Huber's loss pulls from afar.
+    if (options.kernel == RobustKernel::kAdaptive && round > 0) loss = fit_loss(camera, observations, T_camera_world);
+    PoseCost cost(camera, T_camera_world, options, round < options.robust_rounds, loss);
     for (std::size_t i = 0; i < observations.size(); ++i) {
       if (result.inlier[i] != 0) cost.add(observations[i]);
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
 #include "common/geometry/se3.hpp"
@@ -18,10 +19,16 @@ struct PoseObservation {
   double weight = 1.0;    ///< [0, 1] factor on the squared residual: the static probability
 };
 
+enum class RobustKernel : std::uint8_t {
+  kHuber,     ///< threshold max_chi2_*, whatever the residuals are like
+  kAdaptive,  ///< from the second round on, scale and shape fitted to its residuals: general_loss.hpp
+};
+
 struct PoseOptimizerOptions {
-  int rounds = 4;                 ///< optimise, then sort inliers from outliers
-  int robust_rounds = 2;          ///< rounds with the Huber loss; the later ones trust the inliers
-  int max_iterations = 10;        ///< of each round
+  RobustKernel kernel = RobustKernel::kHuber;
+  int rounds = 4;           ///< optimise, then sort inliers from outliers
+  int robust_rounds = 2;    ///< rounds with the Huber loss; the later ones trust the inliers (adaptive: none does)
+  int max_iterations = 10;  ///< of each round
   double max_chi2_pixel = 5.991;  ///< 95 % of chi2 with 2 degrees of freedom: observations without depth
   double max_chi2_rgbd = 7.815;   ///< 3 degrees of freedom: observations with depth
   int min_inliers = 6;            ///< fewer end the optimisation as failed

@@ -66,6 +66,27 @@ TEST(PoseOptimizer, ignores_gross_outliers) {
   EXPECT_GE(result.inliers, 118);
 }
 
+TEST(PoseOptimizer, adaptive_kernel_withstands_heavy_tails_better_than_huber) {
+  double error_huber_m = 0, error_adaptive_m = 0;
+  for (std::uint64_t trial = 0; trial < 40; ++trial) {
+    Scene scene = make_scene(150, 0.5, 300 + trial);
+    std::mt19937_64 random(trial);
+    std::uniform_real_distribution<double> shift(0.5, 4);
+    for (std::size_t i = 0; i < 45; ++i) scene.observations[i].measured.pixel.x() += shift(random);  // 30 %, one-sided
+    PoseOptimizerOptions adaptive;
+    adaptive.kernel = RobustKernel::kAdaptive;
+    const auto start = disturbed(scene.T_world_camera);
+    const auto error_m = [&](const PoseOptimizerOptions& options) {
+      const auto result = optimize_pose(kCamera, scene.observations, start, options);
+      EXPECT_TRUE(result.success);
+      return (result.T_world_camera.translation() - scene.T_world_camera.translation()).norm();
+    };
+    error_huber_m += error_m({});
+    error_adaptive_m += error_m(adaptive);
+  }
+  EXPECT_LT(error_adaptive_m, 0.9 * error_huber_m);
+}
+
 TEST(PoseOptimizer, zero_weight_takes_an_observation_out) {
   Scene scene = make_scene(60, 0.0);
   for (std::size_t i = 0; i < 20; ++i) {
