@@ -35,6 +35,27 @@ void bind_tracker(ConfigBinder& binder, TrackerConfig& c) {
   binder.field("tracker.recovery_keyframes", c.recovery_keyframes, {0, 100}, "keyframes tried per frame while lost");
 }
 
+void bind_prediction(ConfigBinder& binder, PredictionConfig& c) {
+  binder.field("prediction.max_hold_s", c.max_hold_s, {0.0, 2.0}, "a pose is predicted so long, then tracking is lost");
+  binder.field("prediction.velocity_decay_s", c.velocity_decay_s, {0.05, 100.0},
+               "time constant of the fading velocity");
+  binder.field("prediction.acceleration_m_s2", c.acceleration_m_s2, {0.0, 100.0},
+               "standard deviation that the covariance of a prediction grows by");
+  binder.field("prediction.acceleration_rad_s2", c.acceleration_rad_s2, {0.0, 100.0}, "the same for the rotation");
+  binder.field("prediction.min_weak_inliers", c.min_weak_inliers, {6, 500},
+               "landmarks of a pose that is better than a prediction");
+}
+
+void bind_belief(ConfigBinder& binder, BeliefConfig& c) {
+  binder.field("belief.found", c.found, {0.0, 5.0}, "log odds for a landmark that is found where it should be");
+  binder.field("belief.rejected", c.rejected, {0.0, 5.0},
+               "against one that does not fit a pose that its neighbours fit");
+  binder.field("belief.removed", c.removed, {0.0, 5.0}, "against one that the filter takes for dynamic");
+  binder.field("belief.seen_through", c.seen_through, {0.0, 5.0}, "against one behind which depth is measured");
+  binder.field("belief.max_log_odds", c.max_log_odds, {2.0, 20.0}, "bound of what is believed");
+  binder.field("belief.min_probability", c.min_probability, {0.0, 0.5}, "landmarks below leave the map");
+}
+
 void bind_keyframe(ConfigBinder& binder, KeyframeConfig& c) {
   binder.field("keyframe.max_gap_frames", c.max_gap_frames, {1, 10000},
                "a changed view is a keyframe at least so often");
@@ -70,6 +91,8 @@ void ServiceConfig::bind(ConfigBinder& binder) {
   bind_techniques(binder, core.techniques);
   bind_sensor(binder, core.sensor);
   bind_tracker(binder, core.tracker);
+  bind_prediction(binder, core.prediction);
+  bind_belief(binder, core.belief);
   bind_keyframe(binder, core.keyframe);
   bind_mapper(binder, core.mapper);
   binder.field("out", out_dir, "folder for trajectory.txt, keyframes.txt and map.ply; empty: none");

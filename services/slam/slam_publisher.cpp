@@ -28,19 +28,22 @@ SlamPublisher::~SlamPublisher() {
 void SlamPublisher::publish(const SlamOutput& output) {
   for (const msg::KeyframeEvent& event : output.events) keyframes_.write(event);
   tracking_.write(output.result);
-  if (output.result.state == msg::TrackingState::kOk) {
-    publish_pose(output.result);
-  } else {
+  const bool measured = output.result.state == msg::TrackingState::kOk;
+  // From a predicted pose to a measured one the estimate may step: that is no velocity.
+  if (measured && previous_ && previous_->state != msg::TrackingState::kOk) previous_.reset();
+  if (!msg::has_pose(output.result.state)) {
     previous_.reset();
+    return;
   }
+  odometry_.write(make_odometry(output.result, previous_, names_));
+  tf_.write(make_tf(output.result, names_));
+  previous_ = output.result;
+  if (measured) publish_pose(output.result);
 }
 
 void SlamPublisher::publish_pose(const msg::TrackingResult& result) {
   msg::PoseStamped pose = make_pose(result, names_);
-  odometry_.write(make_odometry(result, previous_, names_));
   pose_.write(pose);
-  tf_.write(make_tf(result, names_));
-  previous_ = result;
   newest_stamp_ns_ = result.stamp_ns;
   poses_.push_back(std::move(pose));
   while (poses_.size() > static_cast<std::size_t>(config_.path_length)) poses_.pop_front();

@@ -122,7 +122,10 @@ void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
     SPDLOG_INFO("event=map_started frame={} landmarks={}", result.seq, result.landmarks);
   } else if (tracked && !was_tracked) {
     SPDLOG_INFO("event=tracking_recovered frame={} inliers={}", result.seq, result.inliers);
-  } else if (!tracked && was_tracked && counters_.frames > 1) {
+  } else if (result.state == msg::TrackingState::kPredicted && was_tracked) {
+    SPDLOG_WARN("event=tracking_predicted frame={} inliers={} cause=\"{}\"", result.seq, result.inliers,
+                output.problem);
+  } else if (!tracked && msg::has_pose(previous) && result.state != previous && counters_.frames > 1) {
     SPDLOG_WARN("event=tracking_lost frame={} inliers={} cause=\"{}\"", result.seq, result.inliers, output.problem);
   } else if (!output.problem.empty() && problem_log_.pass()) {
     SPDLOG_WARN("event=not_tracked frame={} state=\"{}\" cause=\"{}\"", result.seq, to_string(result.state),

@@ -50,6 +50,7 @@ FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& conf
     msg::Feature feature = message.features[i];
     if ((feature.flags & msg::kFeatureRemoved) != 0) {
       ++input.removed;
+      if (usable(feature)) frame->removed.push_back(feature);
     } else if (!usable(feature)) {
       ++input.invalid;
     } else {
@@ -58,6 +59,7 @@ FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& conf
     }
   }
   frame->grid = vision::FeatureGrid(frame->features, frame->width_px, frame->height_px);
+  frame->removed_grid = vision::FeatureGrid(frame->removed, frame->width_px, frame->height_px);
   input.frame = std::move(frame);
   return input;
 }

@@ -27,6 +27,9 @@ struct Frame {
   int width_px = 0, height_px = 0;
   std::vector<msg::Feature> features;  ///< usable ones only; depth_m is 0 where not measured or beyond max_depth_m
   vision::FeatureGrid grid;
+  std::vector<msg::Feature>
+      removed;  ///< judged dynamic by the filter: never tracked, they only speak against landmarks
+  vision::FeatureGrid removed_grid;
 
   bool contains(const Eigen::Vector2d& pixel) const {
     return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < width_px && pixel.y() < height_px;

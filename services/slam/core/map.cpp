@@ -6,6 +6,7 @@
 #include <array>
 
 #include "common/vision/hamming.hpp"
+#include "services/slam/core/landmark_statistics.hpp"
 #include "services/slam/core/scale_pyramid.hpp"
 
 namespace rtd::slam {
@@ -45,6 +46,12 @@ LandmarkId Map::add_landmark(const Eigen::Vector3d& p_world, Observation observa
   landmark.reference = landmark.first_keyframe = observation.keyframe;
   landmarks_.emplace(id, std::move(landmark));
   add_observation(id, observation);
+  if (probability_rule_ == ProbabilityRule::kBelief) {
+    Landmark& added = landmarks_.at(id);
+    added.log_odds =
+        initial_log_odds(keyframes_.at(observation.keyframe).frame->features[observation.feature].static_probability);
+    added.static_probability = to_probability(added.log_odds);
+  }
   return id;
 }
 
@@ -89,6 +96,10 @@ void Map::replace_landmark(LandmarkId lost_id, LandmarkId kept_id) {
   Landmark& kept = landmarks_.at(kept_id);
   kept.visible += lost.visible;
   kept.found += lost.found;
+  if (probability_rule_ == ProbabilityRule::kBelief && lost.log_odds < kept.log_odds) {
+    kept.log_odds = lost.log_odds;  // the doubt stays
+    kept.static_probability = lost.static_probability;
+  }
   refresh_landmark(kept_id);
 }
 
@@ -146,7 +157,9 @@ void Map::refresh_appearance(Landmark& landmark) {
     probability_sum += feature.static_probability;
     if (count < descriptors.size()) descriptors[count++] = &feature.descriptor;
   }
-  landmark.static_probability = probability_sum / static_cast<double>(landmark.observations.size());
+  if (probability_rule_ == ProbabilityRule::kMeanOfObservations) {
+    landmark.static_probability = probability_sum / static_cast<double>(landmark.observations.size());
+  }
   int best_median = std::numeric_limits<int>::max();
   for (std::size_t i = 0; i < count; ++i) {
     std::array<int, kMaxComparedDescriptors> distances{};

@@ -31,7 +31,8 @@ struct Landmark {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< p_world, m
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< mean viewing direction, camera -> landmark, world frame
   double min_distance_m = 0, max_distance_m = 0;       ///< from where the pyramid can show it
-  double static_probability = 1.0;                     ///< mean over its observations
+  double static_probability = 1.0;                     ///< by the map's ProbabilityRule
+  double log_odds = 0.0;                               ///< of the same, with ProbabilityRule::kBelief
   msg::Descriptor descriptor{};                        ///< the observation that is nearest to all others
   KeyframeId reference = kNoKeyframe;                  ///< keyframe that scale is measured from
   KeyframeId first_keyframe = kNoKeyframe;             ///< keyframe that made it
@@ -55,12 +56,19 @@ struct RemovedKeyframe {
   Eigen::Isometry3d T_parent_camera = Eigen::Isometry3d::Identity();
 };
 
+/// Where a landmark's static probability comes from.
+enum class ProbabilityRule : std::uint8_t {
+  kMeanOfObservations,  ///< of the features that it was seen as
+  kBelief,              ///< the first observation, then what tracking gathers (landmark_statistics.hpp)
+};
+
 /// Keyframes, landmarks and who sees what. One writer (the mapper), no locks: readers get LocalMap snapshots.
 ///
 /// Invariants, checked by check_invariants(): an observation is known to both its keyframe and its landmark; every
 /// landmark has at least one; `covisible` counts exactly the landmarks in common and is symmetric; parents are older.
 class Map {
  public:
+  explicit Map(ProbabilityRule rule = ProbabilityRule::kMeanOfObservations) : probability_rule_(rule) {}
   /// Ids count up from 0 and are never reused. `parent` may be kNoKeyframe for the first.
   KeyframeId add_keyframe(FramePtr frame, const Eigen::Isometry3d& T_world_camera, KeyframeId parent);
   /// A landmark first seen as `observation`.
@@ -100,6 +108,7 @@ class Map {
   std::string check_invariants() const;
 
  private:
+  ProbabilityRule probability_rule_;
   void change_covisibility(const Landmark& landmark, KeyframeId keyframe, int change);
   void refresh_appearance(Landmark& landmark);
 

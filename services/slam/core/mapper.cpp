@@ -9,6 +9,10 @@
 
 namespace rtd::slam {
 
+Mapper::Mapper(const SlamConfig& config)
+    : config_(config),
+      map_(config.techniques.landmark_belief ? ProbabilityRule::kBelief : ProbabilityRule::kMeanOfObservations) {}
+
 KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<bool()>& interrupted) {
   const auto busy = [&] { return interrupted && interrupted(); };
   count_statistics(proposal.statistics);
@@ -47,6 +51,10 @@ void Mapper::count_statistics(const std::vector<LandmarkStatistics>& statistics)
     if (landmark == nullptr) continue;
     landmark->visible += entry.visible;
     landmark->found += entry.found;
+    if (!config_.techniques.landmark_belief) continue;
+    landmark->log_odds += bounded_change(landmark->log_odds, entry.log_odds, config_.belief.max_log_odds);
+    landmark->static_probability = to_probability(landmark->log_odds);
+    if (landmark->static_probability < config_.belief.min_probability) map_.remove_landmark(entry.landmark);
   }
 }
 

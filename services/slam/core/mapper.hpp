@@ -8,16 +8,11 @@
 #include <vector>
 
 #include "services/slam/core/culling.hpp"
+#include "services/slam/core/landmark_statistics.hpp"
 #include "services/slam/core/local_map.hpp"
 #include "services/slam/core/map.hpp"
 
 namespace rtd::slam {
-
-/// How often tracking expected and found a landmark since the last keyframe.
-struct LandmarkStatistics {
-  LandmarkId landmark = kNoLandmark;
-  std::uint32_t visible = 0, found = 0;
-};
 
 /// A frame that is to become a keyframe. Its pose hangs on its reference keyframe, because the map may have moved
 /// since it was tracked.
@@ -43,7 +38,7 @@ struct KeyframeChange {
 /// neighbourhood. The only writer of the map; one thread at a time.
 class Mapper {
  public:
-  explicit Mapper(const SlamConfig& config) : config_(config) {}
+  explicit Mapper(const SlamConfig& config);
 
   /// Takes a keyframe into the map. `interrupted` (another keyframe waits) shortens the work.
   KeyframeId insert(const KeyframeProposal& proposal, const std::function<bool()>& interrupted = {});

@@ -8,9 +8,9 @@ namespace rtd::slam {
 
 /// One switch for each technique beyond ORB-SLAM2's tracking and mapping, so that its worth can be measured.
 struct Techniques {
-  bool landmark_belief = true;  ///< landmarks bear a static probability over time; off: the mean of their observations
-  bool adaptive_kernel = true;  ///< robust loss fitted to the residuals; off: Huber with a fixed threshold
-  bool prediction = true;       ///< a short, marked prediction when nothing static is in view; off: lost at once
+  bool landmark_belief = false;  ///< landmarks bear a static probability over time; off: the mean of their observations
+  bool adaptive_kernel = true;   ///< robust loss fitted to the residuals; off: Huber with a fixed threshold
+  bool prediction = true;        ///< a short, marked prediction when nothing static is in view; off: lost at once
 };
 
 /// The camera and its features, as SLAM weighs them.
@@ -30,15 +30,34 @@ struct TrackerConfig {
   int recovery_keyframes = 3;      ///< keyframes tried in each frame while lost
 };
 
+/// What is said of the pose while nothing static is in view: docs/theory/tracking.md, "Prediction".
+struct PredictionConfig {
+  double max_hold_s = 0.5;           ///< after the last measured pose; then tracking is lost
+  double velocity_decay_s = 0.5;     ///< the velocity fades with this time constant
+  double acceleration_m_s2 = 1.0;    ///< standard deviation of what a hand does meanwhile
+  double acceleration_rad_s2 = 3.0;  ///< the same for its rotation
+  int min_weak_inliers = 12;         ///< landmarks of a pose too weak to count as tracked but better than none
+};
+
+/// What a frame says of a landmark's static probability, as log odds: docs/theory/tracking.md, "Belief".
+struct BeliefConfig {
+  double found = 0.4;            ///< found where it should be by a feature that is surely static; -0.4: surely dynamic
+  double rejected = 0.5;         ///< against it: matched, but does not fit a pose that its neighbours fit
+  double removed = 1.5;          ///< against it: the filter removed what looks like it
+  double seen_through = 0.5;     ///< against it: not found, and the depth measured there lies behind it
+  double max_log_odds = 4.0;     ///< bound: how long the past counts
+  double min_probability = 0.1;  ///< below: it leaves the map
+};
+
 /// When a frame becomes a keyframe: docs/theory/tracking.md, "Keyframes".
 struct KeyframeConfig {
-  int max_gap_frames = 30;        ///< a keyframe at least so often
-  int min_gap_frames = 0;         ///< and not more often
-  double reference_ratio = 0.75;  ///< tracked / reference landmarks below which the view is new
-  double weak_ratio = 0.25;       ///< below: insert although the mapper is busy
-  int min_close_tracked = 100;    ///< fewer close landmarks tracked ...
-  int min_close_untracked = 70;   ///< ... and more close features that could become landmarks: insert
-  int min_inliers = 15;           ///< fewer: a keyframe would rather harm
+  int max_gap_frames = 30;       ///< a keyframe at least so often
+  int min_gap_frames = 0;        ///< and not more often
+  double reference_ratio = 0.9;  ///< tracked / reference landmarks below which the view is new
+  double weak_ratio = 0.25;      ///< below: insert although the mapper is busy
+  int min_close_tracked = 100;   ///< fewer close landmarks tracked ...
+  int min_close_untracked = 70;  ///< ... and more close features that could become landmarks: insert
+  int min_inliers = 15;          ///< fewer: a keyframe would rather harm
 };
 
 struct MapperConfig {
@@ -57,6 +76,8 @@ struct SlamConfig {
   Techniques techniques;
   SensorConfig sensor;
   TrackerConfig tracker;
+  PredictionConfig prediction;
+  BeliefConfig belief;
   KeyframeConfig keyframe;
   MapperConfig mapper;
 };

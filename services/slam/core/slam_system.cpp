@@ -94,8 +94,9 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   const LocalMapPtr map = mapping_.snapshot();
   TrackOutcome outcome = tracker_.track(input.frame, *map);
   if (outcome.state != msg::TrackingState::kOk) {
-    output.problem = "lost: " + std::to_string(outcome.inliers) + " of " + std::to_string(config_.tracker.min_inliers) +
-                     " landmarks that a pose needs";
+    const bool predicted = outcome.state == msg::TrackingState::kPredicted;
+    output.problem = (predicted ? "predicted: " : "lost: ") + std::to_string(outcome.inliers) + " of " +
+                     std::to_string(config_.tracker.min_inliers) + " landmarks that a pose needs";
     return outcome;
   }
   frames_.push_back(

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "services/slam/core/landmark_belief.hpp"
+
 namespace rtd::slam {
 namespace {
 
@@ -59,7 +61,7 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMap& map) {
   outcome.stage_ms[msg::kStageMatch] = to_ms(matched_ns - start_ns - guess.optimizer_ns);
   outcome.stage_ms[msg::kStagePose] = to_ms(guess.optimizer_ns);
   if (!guess.success) {
-    reject(outcome);
+    reject(outcome, *frame, {});
     return outcome;
   }
   const LocalMapTracking tracking = track_local_map(*frame, map, guess, context());
@@ -69,14 +71,14 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMap& map) {
   if (acceptable(tracking.guess)) {
     accept(outcome, std::move(frame), map, tracking);
   } else {
-    reject(outcome);
+    reject(outcome, *frame, tracking.guess);
   }
   return outcome;
 }
 
 void Tracker::forget_motion() {
-  velocity_per_s_.reset();
-  if (state_ == msg::TrackingState::kOk) state_ = msg::TrackingState::kRecentlyLost;
+  motion_.reset();
+  if (msg::has_pose(state_)) state_ = msg::TrackingState::kRecentlyLost;
 }
 
 /// The map may have moved under the last frame, and the last frame may have become a keyframe with new landmarks.
@@ -94,11 +96,24 @@ void Tracker::adopt(const LocalMap& map) {
   }
 }
 
-/// Constant velocity, docs/theory/tracking.md Eq. (7).
+/// Where to look: constant velocity, docs/theory/tracking.md Eq. (7); fading once frames have failed.
 Eigen::Isometry3d Tracker::predict(const Frame& frame) const {
+  if (const auto held = state_ == msg::TrackingState::kPredicted ? hold(frame) : std::nullopt) {
+    return held->T_world_camera;
+  }
   const double gap_s = seconds_between(*last_.frame, frame);
-  if (!velocity_per_s_ || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return last_.T_world_camera;
-  return last_.T_world_camera * geometry::se3_exp(gap_s * *velocity_per_s_);
+  if (!motion_ || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return last_.T_world_camera;
+  return last_.T_world_camera * geometry::se3_exp(gap_s * motion_->velocity_per_s);
+}
+
+/// The pose that may be claimed though nothing was measured; empty when too long ago.
+std::optional<PredictedPose> Tracker::hold(const Frame& frame) const {
+  const double gap_s = seconds_between(*last_.frame, frame);
+  const bool recent = gap_s > 0 && gap_s <= config_.prediction.max_hold_s;
+  if (!config_.techniques.prediction || !motion_ || !msg::has_pose(state_) || !recent) return std::nullopt;
+  CameraMotion motion = *motion_;
+  motion.T_world_camera = last_.T_world_camera;
+  return predict_motion(motion, gap_s, config_.prediction);
 }
 
 PoseGuess Tracker::find_pose(const Frame& frame, const LocalMap& map) {
@@ -110,7 +125,7 @@ PoseGuess Tracker::find_pose(const Frame& frame, const LocalMap& map) {
       if (guess.success) return guess;
     }
   }
-  return state_ == msg::TrackingState::kOk ? PoseGuess{} : recover(frame, map);
+  return msg::has_pose(state_) ? PoseGuess{} : recover(frame, map);
 }
 
 /// Tries a few keyframes of the window in each frame, going round. Place recognition will choose them once it exists.
@@ -126,16 +141,18 @@ PoseGuess Tracker::recover(const Frame& frame, const LocalMap& map) {
 
 bool Tracker::acceptable(const PoseGuess& guess) const {
   // After a loss a wrong place is the greater danger.
-  const double strictness = state_ == msg::TrackingState::kOk ? 1.0 : 1.5;
+  const double strictness = msg::has_pose(state_) ? 1.0 : 1.5;
   return guess.success && guess.inliers >= strictness * config_.tracker.min_inliers;
 }
 
 void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking) {
   const double gap_s = seconds_between(*last_.frame, *frame);
-  const bool continuous = state_ == msg::TrackingState::kOk && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
-  velocity_per_s_.reset();
+  const bool continuous = msg::has_pose(state_) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
+  motion_.reset();
   if (continuous) {
-    velocity_per_s_ = geometry::se3_log(last_.T_world_camera.inverse() * tracking.guess.T_world_camera) / gap_s;
+    const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * tracking.guess.T_world_camera;
+    motion_ = CameraMotion{tracking.guess.T_world_camera, geometry::se3_log(T_last_camera) / gap_s, gap_s,
+                           tracking.guess.covariance};
   }
   last_.frame = std::move(frame);
   last_.T_world_camera = tracking.guess.T_world_camera;
@@ -145,7 +162,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMap& map,
   }
   if (map.find_keyframe(last_.reference) == nullptr) last_.reference = map.keyframes.front().id;
   last_.T_reference_camera = map.find_keyframe(last_.reference)->T_world_camera.inverse() * last_.T_world_camera;
-  count(tracking);
+  count(*last_.frame, map, tracking);
   inliers_ = tracking.guess.inliers;
   failed_frames_ = 0;
   ++frames_since_keyframe_;
@@ -154,15 +171,30 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMap& map,
   outcome.covariance = tracking.guess.covariance;
 }
 
-void Tracker::reject(TrackOutcome& outcome) {
+/// Too little was found: predicts for a moment, or says lost. A pose from few landmarks that agrees with the
+/// prediction is better than the prediction alone.
+void Tracker::reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess& weak) {
+  constexpr double kMaxDistance2 = 16.8;  // 99 % of chi2 with 6 degrees of freedom
+  if (auto claimed = hold(frame)) {
+    const PredictedPose measured{weak.T_world_camera, weak.covariance};
+    const bool usable = weak.success && weak.inliers >= config_.prediction.min_weak_inliers;
+    if (usable && measured.covariance.trace() < claimed->covariance.trace() &&
+        pose_distance2(*claimed, measured) < kMaxDistance2) {
+      claimed = measured;
+    }
+    outcome.tracked.T_world_camera = claimed->T_world_camera;
+    outcome.covariance = claimed->covariance;
+    outcome.state = state_ = msg::TrackingState::kPredicted;
+    return;
+  }
   ++failed_frames_;
-  velocity_per_s_.reset();
+  motion_.reset();
   state_ = failed_frames_ > config_.tracker.recently_lost_frames ? msg::TrackingState::kLost
                                                                  : msg::TrackingState::kRecentlyLost;
   outcome.state = state_;
 }
 
-void Tracker::count(const LocalMapTracking& tracking) {
+void Tracker::count(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking) {
   const auto entry = [&](LandmarkId id) -> LandmarkStatistics& {
     LandmarkStatistics& statistics = statistics_[id];
     statistics.landmark = id;
@@ -171,6 +203,13 @@ void Tracker::count(const LocalMapTracking& tracking) {
   for (const LandmarkId id : tracking.visible) ++entry(id).visible;
   for (const LandmarkId id : tracking.guess.landmarks) {
     if (id != kNoLandmark) ++entry(id).found;
+  }
+  if (!config_.techniques.landmark_belief) return;
+  for (const LandmarkEvidence& evidence : judge_landmarks(frame, map, tracking, config_.belief)) {
+    const LocalLandmark* landmark = map.find_landmark(evidence.landmark);
+    if (landmark == nullptr) continue;
+    double& change = entry(evidence.landmark).log_odds;
+    change = bounded_change(landmark->log_odds, change + evidence.log_odds, config_.belief.max_log_odds);
   }
 }
 

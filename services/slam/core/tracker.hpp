@@ -10,6 +10,7 @@
 #include "common/msg/tracking.hpp"
 #include "services/slam/core/keyframe_policy.hpp"
 #include "services/slam/core/mapper.hpp"
+#include "services/slam/core/motion_prediction.hpp"
 #include "services/slam/core/tracking_steps.hpp"
 
 namespace rtd::slam {
@@ -17,7 +18,7 @@ namespace rtd::slam {
 /// What tracking says of one frame.
 struct TrackOutcome {
   msg::TrackingState state = msg::TrackingState::kInitializing;
-  TrackedFrame tracked;  ///< pose valid in state kOk only
+  TrackedFrame tracked;  ///< in state kPredicted the pose only
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
   int inliers = 0;
   std::array<float, msg::kSlamStages> stage_ms{};
@@ -43,26 +44,27 @@ class Tracker {
   KeyframeProposal propose_keyframe();
 
  private:
-  TrackingContext context() const { return {config_, now_ns_}; }
+  TrackingContext context() const { return {config_, now_ns_, statistics_}; }
   void adopt(const LocalMap& map);
   Eigen::Isometry3d predict(const Frame& frame) const;
   PoseGuess find_pose(const Frame& frame, const LocalMap& map);
   PoseGuess recover(const Frame& frame, const LocalMap& map);
   bool acceptable(const PoseGuess& guess) const;
   void accept(TrackOutcome& outcome, FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking);
-  void reject(TrackOutcome& outcome);
-  void count(const LocalMapTracking& tracking);
+  void reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess& weak);
+  std::optional<PredictedPose> hold(const Frame& frame) const;
+  void count(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking);
 
   SlamConfig config_;
   Clock now_ns_;
   msg::TrackingState state_ = msg::TrackingState::kInitializing;
   TrackedFrame last_;
-  std::optional<geometry::Vector6d> velocity_per_s_;  ///< twist of the camera in its own frame
+  std::optional<CameraMotion> motion_;  ///< at the last tracked frame, whose pose the map may have moved since
   int inliers_ = 0;
   int frames_since_keyframe_ = 0;
   int failed_frames_ = 0;
   std::size_t next_recovery_ = 0;
-  std::unordered_map<LandmarkId, LandmarkStatistics> statistics_;
+  StatisticsById statistics_;
 };
 
 /// The keyframe of the window that sees most of these landmarks; kNoKeyframe when none does.

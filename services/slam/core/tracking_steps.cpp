@@ -12,13 +12,15 @@
 namespace rtd::slam {
 namespace {
 
-/// A feature of the frame with the world point it is taken for.
-struct Association {
-  std::uint32_t feature = 0;
-  LandmarkId landmark = kNoLandmark;  ///< kNoLandmark: a temporary point
-  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
-  double static_probability = 1.0;
-};
+/// A landmark as the world point of a feature, believed as much as the frames since the last keyframe let us.
+Association associate(std::uint32_t feature, const LocalLandmark& landmark, const TrackingContext& context) {
+  double probability = landmark.static_probability;
+  const auto news = context.statistics.find(landmark.id);
+  if (context.config.techniques.landmark_belief && news != context.statistics.end()) {
+    probability = to_probability(landmark.log_odds + news->second.log_odds);
+  }
+  return {feature, landmark.id, landmark.position, probability};
+}
 
 vision::PoseObservation make_observation(const Frame& frame, const Association& association) {
   const msg::Feature& feature = frame.features[association.feature];
@@ -27,13 +29,16 @@ vision::PoseObservation make_observation(const Frame& frame, const Association& 
 }
 
 PoseGuess optimize(const Frame& frame, const std::vector<Association>& associations,
-                   const Eigen::Isometry3d& T_world_camera_initial, const Clock& now_ns) {
-  const std::int64_t start_ns = now_ns();
+                   const Eigen::Isometry3d& T_world_camera_initial, const TrackingContext& context) {
+  const std::int64_t start_ns = context.now_ns();
   std::vector<vision::PoseObservation> observations;
   observations.reserve(associations.size());
   for (const Association& association : associations) observations.push_back(make_observation(frame, association));
-  const auto optimized = vision::optimize_pose(frame.camera, observations, T_world_camera_initial);
-  PoseGuess guess{optimized.success, optimized.T_world_camera, {}, 0, now_ns() - start_ns, optimized.covariance};
+  vision::PoseOptimizerOptions options;
+  if (context.config.techniques.adaptive_kernel) options.kernel = vision::RobustKernel::kAdaptive;
+  const auto optimized = vision::optimize_pose(frame.camera, observations, T_world_camera_initial, options);
+  PoseGuess guess{optimized.success,           optimized.T_world_camera, {}, 0,
+                  context.now_ns() - start_ns, optimized.covariance};
   guess.landmarks.assign(frame.features.size(), kNoLandmark);
   for (std::size_t i = 0; i < associations.size(); ++i) {
     if (optimized.inlier[i] == 0 || associations[i].landmark == kNoLandmark) continue;
@@ -44,7 +49,7 @@ PoseGuess optimize(const Frame& frame, const std::vector<Association>& associati
 }
 
 /// Landmarks of the last frame, and its close features without one at the depth that was measured there.
-std::vector<Association> points_of(const TrackedFrame& last, const LocalMap& map, double close_depth_m) {
+std::vector<Association> points_of(const TrackedFrame& last, const LocalMap& map, const TrackingContext& context) {
   std::vector<Association> points;
   std::vector<LandmarkId> known(last.landmarks.size(), kNoLandmark);
   for (std::uint32_t i = 0; i < last.landmarks.size(); ++i) {
@@ -52,9 +57,9 @@ std::vector<Association> points_of(const TrackedFrame& last, const LocalMap& map
     const LocalLandmark* landmark = map.find_landmark(last.landmarks[i]);
     if (landmark == nullptr) continue;
     known[i] = landmark->id;
-    points.push_back({i, landmark->id, landmark->position, landmark->static_probability});
+    points.push_back(associate(i, *landmark, context));
   }
-  for (const std::uint32_t i : select_close_features(*last.frame, known, close_depth_m)) {
+  for (const std::uint32_t i : select_close_features(*last.frame, known, context.config.sensor.close_depth_m)) {
     points.push_back(
         {i, kNoLandmark, last.T_world_camera * last.frame->unproject(i), last.frame->features[i].static_probability});
   }
@@ -99,7 +104,7 @@ PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const L
                            const Eigen::Isometry3d& T_world_camera_predicted, const TrackingContext& context) {
   const SlamConfig& config = context.config;
   constexpr int kMinLandmarks = 10;
-  const std::vector<Association> points = points_of(last, map, config.sensor.close_depth_m);
+  const std::vector<Association> points = points_of(last, map, context);
   const MatchRules rules{100, 1.0, RotationCheck::kOn};
   std::vector<Match> matches;
   for (const double widening : {1.0, 2.0}) {
@@ -114,7 +119,7 @@ PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const L
     associations.push_back(points[match.tag]);
     associations.back().feature = match.feature;
   }
-  PoseGuess guess = optimize(frame, associations, T_world_camera_predicted, context.now_ns);
+  PoseGuess guess = optimize(frame, associations, T_world_camera_predicted, context);
   guess.success = guess.success && guess.inliers >= kMinLandmarks;
   return guess;
 }
@@ -132,14 +137,14 @@ PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, cons
   std::vector<vision::PoseObservation> observations;
   for (const Match& match : matches) {
     const LocalLandmark& landmark = *map.find_landmark(keyframe.landmarks[match.tag]);
-    associations.push_back({match.feature, landmark.id, landmark.position, landmark.static_probability});
+    associations.push_back(associate(match.feature, landmark, context));
     observations.push_back(make_observation(frame, associations.back()));
   }
   PoseRansacOptions options;
   options.seed = frame.seq;
   const auto coarse = estimate_pose_ransac(frame.camera, observations, options);
   PoseGuess guess =
-      optimize(frame, associations, coarse.success ? coarse.T_world_camera : keyframe.T_world_camera, context.now_ns);
+      optimize(frame, associations, coarse.success ? coarse.T_world_camera : keyframe.T_world_camera, context);
   guess.success = guess.success && guess.inliers >= kMinInliers;
   return guess;
 }
@@ -158,7 +163,7 @@ LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const 
     if (landmark == nullptr) continue;
     taken[i] = 1;
     known.push_back(landmark->id);
-    associations.push_back({i, landmark->id, landmark->position, landmark->static_probability});
+    associations.push_back(associate(i, *landmark, context));
   }
   result.visible = known;
   std::sort(known.begin(), known.end());
@@ -178,9 +183,12 @@ LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const 
   }
   for (const Match& match : match_projected(frame, search, taken, {100, 0.8, RotationCheck::kOff})) {
     const LocalLandmark& landmark = map.landmarks[match.tag];
-    associations.push_back({match.feature, landmark.id, landmark.position, landmark.static_probability});
+    associations.push_back(associate(match.feature, landmark, context));
   }
-  result.guess = optimize(frame, associations, guess.T_world_camera, context.now_ns);
+  result.guess = optimize(frame, associations, guess.T_world_camera, context);
+  for (const Association& association : associations) {
+    if (result.guess.landmarks[association.feature] == kNoLandmark) result.rejected.push_back(association);
+  }
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/vision/pose_optimizer.hpp"
+#include "services/slam/core/landmark_statistics.hpp"
 #include "services/slam/core/local_map.hpp"
 
 namespace rtd::slam {
@@ -31,10 +32,19 @@ struct PoseGuess {
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
 };
 
+/// A feature of the frame with the world point it is taken for.
+struct Association {
+  std::uint32_t feature = 0;
+  LandmarkId landmark = kNoLandmark;  ///< kNoLandmark: a temporary point
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
+  double static_probability = 1.0;
+};
+
 /// What the steps need beside frame and map.
 struct TrackingContext {
   const SlamConfig& config;
   const Clock& now_ns;
+  const StatisticsById& statistics;
 };
 
 /// Frame to frame: looks for the landmarks of the last frame, and for its close features as temporary points, around
@@ -50,7 +60,8 @@ PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, cons
 /// the pose with all of them.
 struct LocalMapTracking {
   PoseGuess guess;
-  std::vector<LandmarkId> visible;  ///< landmarks that should be seen from the pose
+  std::vector<LandmarkId> visible;    ///< landmarks that should be seen from the pose
+  std::vector<Association> rejected;  ///< matched, but the pose does not agree
 };
 LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const PoseGuess& guess,
                                  const TrackingContext& context);

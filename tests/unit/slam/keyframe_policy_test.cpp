@@ -32,10 +32,10 @@ TEST(KeyframePolicy, leaves_a_well_known_view_alone) {
 
 TEST(KeyframePolicy, inserts_when_the_view_is_new) {
   KeyframeSituation s = steady();
-  s.inliers = 220;
+  s.inliers = 268;
   EXPECT_TRUE(inserts(s));
-  s.inliers = 226;
-  EXPECT_FALSE(inserts(s)) << "0.75 of the reference is still tracked";
+  s.inliers = 272;
+  EXPECT_FALSE(inserts(s)) << "0.9 of the reference is still tracked";
 }
 
 TEST(KeyframePolicy, inserts_when_close_points_run_out) {

@@ -112,6 +112,7 @@ TEST(SlamSystem, says_lost_without_features_and_finds_back) {
   const FeatureWorld world({});
   SlamConfig config;
   config.tracker.recently_lost_frames = 5;
+  config.techniques.prediction = false;
   SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);
   std::uint64_t seq = 0;
   for (; seq < 20; ++seq) slam.process(*view(world, seq));
