@@ -140,7 +140,9 @@ void BoxTracks::miss(Track& track, std::size_t step, const TrackedFrame& frame) 
   if (visible_share(track.steps[step].state.box(), frame) < kMostlyVisible) return;
   ++track.misses;
   const double unseen_s = seconds(frame.stamp_ns - track.last_hit_ns - track.distrusted_ns);
-  track.dead = track.hits < config_.confirm_hits || (track.misses >= 2 && unseen_s > config_.survive_misses_s);
+  const double known_s = seconds(track.last_hit_ns - track.first_ns);
+  const double survive_s = std::min(config_.survive_misses_s, known_s);
+  track.dead = track.hits < config_.confirm_hits || (track.misses >= 2 && unseen_s > survive_s);
 }
 
 void BoxTracks::give_birth(const DetectorAnswer& answer, std::size_t detection, std::size_t frame, double depth_m) {

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <random>
+
 namespace rtd::filter {
 namespace {
 
@@ -72,6 +74,42 @@ TEST_F(BoxTracksTest, survive_misses_and_move_on) {
   ASSERT_THAT(boxes, SizeIs(1));
   EXPECT_TRUE(boxes[0].carried);
   EXPECT_NEAR(x_px(), 100 + 4 * 16, 6) << "px";
+}
+
+TEST_F(BoxTracksTest, survive_no_longer_than_they_have_been_seen) {
+  walk(0, 3, 0);
+  denial(4, 5);
+  EXPECT_THAT(tracks_.boxes(), SizeIs(1)) << "two misses after 0.1 s";
+  denial(6, 8);
+  EXPECT_THAT(tracks_.boxes(), IsEmpty());
+}
+
+TEST_F(BoxTracksTest, survive_one_miss_however_short_they_have_been_seen) {
+  walk(0, 1, 0);
+  denial(2, 2);
+  EXPECT_THAT(tracks_.boxes(), SizeIs(1));
+}
+
+TEST_F(BoxTracksTest, do_not_pile_up_when_a_detector_lies) {
+  std::minstd_rand random(1);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  constexpr int kFrames = 300, kLies = 3;
+  std::size_t carried = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    frame(i);
+    std::vector<vision::Detection> lies;
+    for (int k = 0; k < kLies; ++k) {
+      const double width_px = between(20, 380), height_px = between(15, 430);
+      lies.push_back({"person", 0.5F, static_cast<float>(between(0, 640 - width_px)),
+                      static_cast<float>(between(0, 480 - height_px)), static_cast<float>(width_px),
+                      static_cast<float>(height_px)});
+    }
+    answer(i, lies);
+    for (const TrackedBox& box : tracks_.boxes()) carried += box.carried ? 1 : 0;
+  }
+  EXPECT_LE(static_cast<double>(carried) / kFrames, 2.0);
 }
 
 TEST_F(BoxTracksTest, believe_answers_that_keep_saying_nobody) {
