@@ -80,7 +80,9 @@ FilterResult DynamicFilter::judge(const vision::RgbdImage& image, std::vector<ms
   FilterResult result;
   result.features = std::move(features);
   if (config_.mode != FilterMode::kOff) {
-    Scene scene = look_at(image);             // depth cells and surfaces
+    StageClock clock(now_ns_);
+    Scene scene = look_at(image);  // depth cells and surfaces
+    result.stage_ms[msg::kStageMasks] = clock.lap_ms();
     find_what_may_move(word, scene, result);  // rules 1, 2, 5: motion levels, boxes to masks, tracks
     if (published_ != nullptr) {
       judge_as_published(scene, result);
@@ -136,7 +138,7 @@ void DynamicFilter::find_what_may_move(const DetectorWord& word, Scene& scene, F
   scene.clusters = separate_objects(std::move(scene.clusters), result.objects);
   trust_known_surfaces(scene);
   scene.may_move = dilate(scene.grid.shape, scene.may_move, config_.masks.dilate_cells);
-  result.stage_ms[msg::kStageMasks] = clock.lap_ms();
+  result.stage_ms[msg::kStageMasks] += clock.lap_ms();
 }
 
 CellBeliefs DynamicFilter::recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const {
