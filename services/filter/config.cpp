@@ -71,6 +71,10 @@ void bind_geometry(ConfigBinder& binder, GeometryConfig& c) {
                "so many times more features at their place than displaced: at rest");
   binder.field("geometry.min_moving_features", c.min_moving_features, {1, 2048}, "before a surface is judged by them");
   binder.field("geometry.min_moving_share", c.min_moving_share, {0.05, 1.0}, "of its features displaced: it moves");
+  binder.field("geometry.min_creeping_features", c.min_creeping_features, {1, 2048},
+               "the same over a second, for slow movers");
+  binder.field("geometry.min_creeping_share", c.min_creeping_share, {0.05, 1.0},
+               "of its features displaced over a second: it moves");
   binder.field("geometry.max_static_chi2", c.max_static_chi2, {0.1, 100.0}, "a feature displaced less is at its place");
   binder.field("geometry.min_moving_chi2", c.min_moving_chi2, {0.1, 1000.0}, "one displaced more has moved");
   binder.field("geometry.memory_frames", c.memory_frames, {0, 255}, "a dynamic surface is remembered so long");

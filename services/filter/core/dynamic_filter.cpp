@@ -31,6 +31,11 @@ struct DynamicFilter::Geometry {
 
 namespace {
 
+/// How far to look back for slow movers: in every third frame, what is slow can wait.
+std::int64_t look_back_ns(std::uint64_t seq) {
+  return seq % 3 == 0 ? 1'500'000'000 : 0;
+}
+
 bool uses_geometry(FilterMode mode) {
   return mode == FilterMode::kGeometry || mode == FilterMode::kRtd;
 }
@@ -188,8 +193,11 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
                              scene.clusters,
                              views_,
                              scene.image.stamp_ns,
-                             T_world_predicted};
+                             T_world_predicted,
+                             look_back_ns(scene.image.seq)};
   geometry.ego = estimate_ego_motion(input, config_.ego_motion, config_.geometry);
+  // Who has a class of a high level has his own rules (belief): a second later he may have stopped again.
+  geometry.ego.slow_votes = without_votes_on(scene.may_move, std::move(geometry.ego.slow_votes), scene.clusters);
   result.T_world_camera = geometry.ego.T_world_camera;
   result.pose_reliable = geometry.ego.reliable;
   result.stage_ms[msg::kStageEgoMotion] = clock.lap_ms();
@@ -200,8 +208,8 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
     geometry.evidence = check_depth(scene.grid, sampler_.rays(), {scene.image.stamp_ns, geometry.ego.T_world_camera},
                                     views, scene.image.camera, config_.geometry);
   }
-  geometry.regions =
-      find_dynamic_regions(scene.clusters, geometry.evidence, geometry.ego.votes, remembered, config_.geometry);
+  geometry.regions = find_dynamic_regions(scene.clusters, geometry.evidence,
+                                          {geometry.ego.votes, geometry.ego.slow_votes}, remembered, config_.geometry);
   geometry.regions.trusted = geometry.regions.trusted && geometry.ego.reliable;
   result.dynamic_clusters = static_cast<std::uint32_t>(geometry.regions.clusters);
   result.stage_ms[msg::kStageDepthCheck] = clock.lap_ms();

@@ -3,6 +3,7 @@
 #include "services/filter/core/dynamic_regions.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace rtd::filter {
 namespace {
@@ -39,21 +40,28 @@ std::uint8_t one_less(std::uint8_t frames) {
   return frames > 0 ? static_cast<std::uint8_t>(frames - 1) : frames;
 }
 
+int vote_count(const std::vector<int>& per_cluster, std::size_t cluster) {
+  return cluster < per_cluster.size() ? per_cluster[cluster] : 0;
+}
+
 /// Depth and features both say that it rests: what was believed of it was wrong, or is over.
-bool rests(const ClusterEvidence& cluster, const FeatureVotes& votes, std::size_t index, const GeometryConfig& config) {
-  return cluster.stated >= config.min_cluster_statements && cluster.violating == 0 && index < votes.resting.size() &&
-         votes.resting[index] >= config.min_moving_features &&
-         votes.resting[index] >= config.min_resting_ratio * votes.moving[index];
+bool rests(const ClusterEvidence& cluster, const MotionVotes& votes, std::size_t index, const GeometryConfig& config) {
+  const auto at_place = [&](const FeatureVotes& cast) {
+    return vote_count(cast.resting, index) >= config.min_resting_ratio * vote_count(cast.moving, index);
+  };
+  return cluster.stated >= config.min_cluster_statements && cluster.violating == 0 &&
+         vote_count(votes.quick.resting, index) >= config.min_moving_features && at_place(votes.quick) &&
+         at_place(votes.slow);
 }
 
 /// Per cluster: how long it is believed to be dynamic, 0 = it is not.
 std::vector<std::uint8_t> judge_clusters(const DepthClusters& clusters, const DepthEvidence& evidence,
-                                         const FeatureVotes& votes, const CellMask& remembered,
+                                         const MotionVotes& votes, const CellMask& remembered,
                                          const GeometryConfig& config) {
   const std::vector<ClusterEvidence> gathered = gather(clusters, evidence, remembered);
   std::vector<std::uint8_t> frames_left(gathered.size(), 0);
   for (std::size_t i = 0; i < gathered.size(); ++i) {
-    if (violates(gathered[i], config) || votes.cluster_moves(i, config)) {
+    if (violates(gathered[i], config) || votes.quick.cluster_moves(i, config) || votes.slow.cluster_creeps(i, config)) {
       frames_left[i] = static_cast<std::uint8_t>(config.memory_frames);
     } else if (gathered[i].remembered >= kMinRememberedShare * clusters.cells[i]) {
       const int fewer = rests(gathered[i], votes, i, config) ? kForgetFaster : 1;
@@ -63,20 +71,37 @@ std::vector<std::uint8_t> judge_clusters(const DepthClusters& clusters, const De
   return frames_left;
 }
 
+struct VotesOnCells {
+  std::vector<int> resting, moving;  ///< per cell
+  std::pair<int, int> sum(const std::vector<int>& region) const {
+    std::pair<int, int> total{0, 0};
+    for (const int cell : region) {
+      total.first += resting[static_cast<std::size_t>(cell)];
+      total.second += moving[static_cast<std::size_t>(cell)];
+    }
+    return total;
+  }
+};
+
+VotesOnCells on_cells(const FeatureVotes& votes, std::size_t cells) {
+  VotesOnCells on{std::vector<int>(cells, 0), std::vector<int>(cells, 0)};
+  for (const FeatureVote& vote : votes.votes)
+    ++(vote.moving ? on.moving : on.resting)[static_cast<std::size_t>(vote.cell)];
+  return on;
+}
+
 /// Large parts that have lasted and whose features are at their place: the floor on which a walker stands belongs to
 /// his depth cluster but not to him. The inside of a slow mover lasts too, but its features have moved.
-CellMask resting_parts(const DepthClusters& clusters, const DepthEvidence& evidence, const FeatureVotes& votes,
+CellMask resting_parts(const DepthClusters& clusters, const DepthEvidence& evidence, const MotionVotes& votes,
                        const GeometryConfig& config) {
-  std::vector<int> resting(clusters.label.size(), 0), moving(clusters.label.size(), 0);
-  for (const FeatureVote& vote : votes.votes) ++(vote.moving ? moving : resting)[static_cast<std::size_t>(vote.cell)];
+  const VotesOnCells quick = on_cells(votes.quick, clusters.label.size()),
+                     slow = on_cells(votes.slow, clusters.label.size());
   const auto rests = [&](const std::vector<int>& region) {
     if (static_cast<int>(region.size()) < config.min_resting_cells) return false;
-    int at_place = 0, displaced = 0;
-    for (const int cell : region) {
-      at_place += resting[static_cast<std::size_t>(cell)];
-      displaced += moving[static_cast<std::size_t>(cell)];
-    }
-    return at_place >= config.min_moving_features && at_place >= config.min_resting_ratio * displaced;
+    const auto [at_place, displaced] = quick.sum(region);
+    const auto [long_at_place, long_displaced] = slow.sum(region);
+    return at_place >= config.min_moving_features && at_place >= config.min_resting_ratio * displaced &&
+           long_at_place >= config.min_resting_ratio * long_displaced;
   };
   return keep_regions(clusters.shape, compact(clusters.shape, evidence.lasting), rests);
 }
@@ -84,7 +109,7 @@ CellMask resting_parts(const DepthClusters& clusters, const DepthEvidence& evide
 }  // namespace
 
 DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEvidence& evidence,
-                                    const FeatureVotes& votes, const CellMask& remembered,
+                                    const MotionVotes& votes, const CellMask& remembered,
                                     const GeometryConfig& config) {
   const auto loose_memory = static_cast<std::uint8_t>(config.loose_memory_frames);
   const std::vector<std::uint8_t> of_cluster = judge_clusters(clusters, evidence, votes, remembered, config);

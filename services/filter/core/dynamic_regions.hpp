@@ -16,12 +16,17 @@ struct DynamicRegions {
   int clusters = 0;      ///< depth clusters that are dynamic as a whole
 };
 
+/// Displaced features, over 0.1 s and, in some frames, over a second or more.
+struct MotionVotes {
+  const FeatureVotes& quick;
+  const FeatureVotes& slow;
+};
+
 /// Judges whole depth clusters (share of violating cells, votes of displaced features, or what was remembered of them)
 /// and, inside clusters that are not dynamic, compact groups of violating or remembered cells. Parts of a dynamic
 /// cluster that demonstrably rest are left out. docs/theory/dynamic_points.md section 4.
 /// `remembered`: frames_left of the last frame, brought to this one.
 DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEvidence& evidence,
-                                    const FeatureVotes& votes, const CellMask& remembered,
-                                    const GeometryConfig& config);
+                                    const MotionVotes& votes, const CellMask& remembered, const GeometryConfig& config);
 
 }  // namespace rtd::filter

@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/ego_motion.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
+#include "services/filter/core/slow_votes.hpp"
 #include "services/filter/core/static_consensus.hpp"
 
 namespace rtd::filter {
@@ -13,41 +10,7 @@ namespace {
 
 constexpr std::int64_t kNearAgeNs = 100'000'000;
 constexpr std::int64_t kOldAgeNs = 500'000'000;
-constexpr double kKeypointSigmaPx = 0.7;  // at octave 0
 constexpr double kRefineWindowPx = 8.0;
-
-double octave_scale(int octave) {
-  return std::pow(1.2, octave);
-}
-
-PointSighting to_sighting(const FeatureMatch& match, const EgoMotionInput& input) {
-  const msg::Feature& f = input.current.features[match.current];
-  const double sigma_px = std::numbers::sqrt2 * kKeypointSigmaPx * octave_scale(f.octave);  // both ends are uncertain
-  return {match.p_world, {f.u_px, f.v_px}, f.depth_m, sigma_px, input.cluster_of[match.current]};
-}
-
-/// The matches that may take part in the pose, every n-th of them, so that not more than `limit` remain.
-std::vector<FeatureMatch> usable(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input,
-                                 const std::vector<char>& moving_cluster, std::size_t limit) {
-  std::vector<FeatureMatch> kept;
-  for (const FeatureMatch& match : matches) {
-    const int cluster = input.cluster_of[match.current];
-    if (!match.reference_static || input.excluded[match.current] != 0) continue;
-    if (cluster >= 0 && moving_cluster[static_cast<std::size_t>(cluster)] != 0) continue;
-    kept.push_back(match);
-  }
-  if (kept.size() <= limit) return kept;
-  std::vector<FeatureMatch> thinned;
-  for (std::size_t i = 0; i < limit; ++i) thinned.push_back(kept[i * kept.size() / limit]);
-  return thinned;
-}
-
-std::vector<PointSighting> to_sightings(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input) {
-  std::vector<PointSighting> sightings;
-  sightings.reserve(matches.size());
-  for (const FeatureMatch& match : matches) sightings.push_back(to_sighting(match, input));
-  return sightings;
-}
 
 /// Matches with the view 0.1 s ago and, when they are few, with the previous one.
 std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& near, const EgoMotionConfig& config) {
@@ -98,6 +61,7 @@ EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig
   ego.T_world_camera = refined.T_world_camera;
   ego.inliers = refined.inliers;
   ego.votes = count_votes(all_near, camera, refined.T_world_camera, input.clusters, geometry);
+  if (input.look_back_ns > 0) ego.slow_votes = count_slow_votes(input, refined.T_world_camera, config, geometry);
   return ego;
 }
 

@@ -5,9 +5,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "services/filter/core/depth_clusters.hpp"
 #include "services/filter/core/feature_votes.hpp"
-#include "services/filter/core/guided_matching.hpp"
+#include "services/filter/core/sightings.hpp"
 
 namespace rtd::filter {
 
@@ -18,22 +17,12 @@ struct EgoMotion {
   bool reliable = false;  ///< otherwise the pose is only the prediction and geometry makes no statement
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   int inliers = 0;
-  FeatureVotes votes;  ///< of the features found again in the view 0.1 s ago, movers included
+  FeatureVotes votes;       ///< of the features found again in the view 0.1 s ago, movers included
+  FeatureVotes slow_votes;  ///< and in one of up to 1.5 s ago; none in most frames
 };
 
 /// A pose found over less time may have followed a mover.
 inline constexpr std::int64_t kMinSettledAgeNs = 90'000'000;
-
-/// What the estimate starts from.
-struct EgoMotionInput {
-  SearchableFeatures current;
-  const std::vector<char>& excluded;   ///< per feature, 1 = on something that may move: not used for the pose
-  const std::vector<int>& cluster_of;  ///< per feature, depth cluster or -1
-  const DepthClusters& clusters;
-  const ViewStore& views;  ///< not empty
-  std::int64_t stamp_ns;
-  Eigen::Isometry3d T_world_camera_predicted;
-};
 
 /// Pose of the current frame from what stands still: features matched with the view 0.1 s ago (one frame
 /// is too short: on distant walls a shift nearly looks like a rotation, and one motion explains walls and mover), the

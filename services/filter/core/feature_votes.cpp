@@ -10,6 +10,12 @@ bool FeatureVotes::cluster_moves(std::size_t cluster, const GeometryConfig& conf
   return moving[cluster] >= config.min_moving_features && moving[cluster] >= config.min_moving_share * cast;
 }
 
+bool FeatureVotes::cluster_creeps(std::size_t cluster, const GeometryConfig& config) const {
+  if (cluster >= moving.size()) return false;
+  const int cast = resting[cluster] + moving[cluster];
+  return moving[cluster] >= config.min_creeping_features && moving[cluster] >= config.min_creeping_share * cast;
+}
+
 FeatureVotes count_votes(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
                          const Eigen::Isometry3d& T_world_camera, const DepthClusters& clusters,
                          const GeometryConfig& config) {
@@ -22,6 +28,18 @@ FeatureVotes count_votes(const std::vector<PointSighting>& sightings, const geom
     votes.votes.push_back({clusters.shape.nearest_cell(sighting.pixel.x(), sighting.pixel.y()), moving});
     if (sighting.cluster >= 0) ++(moving ? votes.moving : votes.resting)[static_cast<std::size_t>(sighting.cluster)];
   }
+  return votes;
+}
+
+FeatureVotes without_votes_on(const std::vector<std::uint8_t>& cells, FeatureVotes votes,
+                              const DepthClusters& clusters) {
+  std::erase_if(votes.votes, [&](const FeatureVote& vote) {
+    const auto cell = static_cast<std::size_t>(vote.cell);
+    if (cells[cell] == 0) return false;
+    if (clusters.label[cell] >= 0)
+      --(vote.moving ? votes.moving : votes.resting)[static_cast<std::size_t>(clusters.label[cell])];
+    return true;
+  });
   return votes;
 }
 

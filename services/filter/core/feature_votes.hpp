@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "services/filter/core/depth_clusters.hpp"
@@ -22,9 +23,15 @@ struct FeatureVotes {
   std::vector<int> resting, moving;  ///< per cluster
   /// Enough of the cluster's features are displaced.
   bool cluster_moves(std::size_t cluster, const GeometryConfig& config) const;
+  /// The same for displacements over a second, which need no crowd: few features, but nearly all of them.
+  bool cluster_creeps(std::size_t cluster, const GeometryConfig& config) const;
 };
 FeatureVotes count_votes(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
                          const Eigen::Isometry3d& T_world_camera, const DepthClusters& clusters,
                          const GeometryConfig& config);
+
+/// The votes that were not cast on these cells. `cells`: per cell, 1 = left out.
+FeatureVotes without_votes_on(const std::vector<std::uint8_t>& cells, FeatureVotes votes,
+                              const DepthClusters& clusters);
 
 }  // namespace rtd::filter

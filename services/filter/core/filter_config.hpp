@@ -93,6 +93,8 @@ struct GeometryConfig {
   double min_violated_share = 0.2;  ///< share of violating cells that makes a cluster dynamic
   int min_moving_features = 12;     ///< features off their place before a cluster is judged by them
   double min_moving_share = 0.6;
+  int min_creeping_features = 6;  ///< the same, displaced over a second
+  double min_creeping_share = 0.7;
   double max_static_chi2 = 6.0;     ///< squared normalised displacement up to which a feature counts as at its place
   double min_moving_chi2 = 16.0;    ///< and from which as moving
   int memory_frames = 30;           ///< a dynamic surface is remembered this long after the last evidence

@@ -48,8 +48,9 @@ std::vector<FeatureMatch> make_unique(std::vector<FeatureMatch> matches, std::si
 
 std::vector<FeatureMatch> match_by_projection(const View& reference, const SearchableFeatures& current,
                                               const Eigen::Isometry3d& T_world_camera, double window_px,
-                                              const EgoMotionConfig& config) {
+                                              const EgoMotionConfig& config, double reach_m) {
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  const double reach_px_m = reach_m * current.camera.parameters().fx;
   std::vector<FeatureMatch> matches;
   for (std::uint32_t i = 0; i < reference.features.size(); ++i) {
     const msg::Feature& feature = reference.features[i];
@@ -61,7 +62,8 @@ std::vector<FeatureMatch> match_by_projection(const View& reference, const Searc
     const Eigen::Vector2d pixel = current.camera.project(p_camera);
     if (!current.camera.contains(pixel)) continue;
     const vision::SearchWindow window{static_cast<float>(pixel.x()), static_cast<float>(pixel.y()),
-                                      static_cast<float>(window_px), feature.octave - 1, feature.octave + 1};
+                                      static_cast<float>(window_px + reach_px_m / p_camera.z()), feature.octave - 1,
+                                      feature.octave + 1};
     const Best best = nearest_descriptor(feature, current, window);
     if (best.hamming > config.max_hamming || best.hamming > config.max_ratio * best.second) continue;
     matches.push_back({best.index, i, best.hamming, (feature.flags & msg::kFeatureRemoved) == 0, p_world});

@@ -11,6 +11,7 @@
 namespace rtd::filter {
 namespace {
 
+constexpr std::int64_t kPastStepNs = 250'000'000;
 constexpr double kNewWorldM = 0.25, kNewWorldRad = 0.25;  // slam and we differ by more: another world
 constexpr double kNearM = 0.8, kSameWayRad = 0.5;         // a keyframe worth comparing with
 constexpr std::array<std::int64_t, 4> kAgesNs{100'000'000, 270'000'000, 550'000'000, 1'000'000'000};
@@ -23,11 +24,21 @@ auto find_seq(std::deque<View>& views, std::uint64_t seq) {
 
 void ViewStore::add(View view) {
   recent_.push_back(std::move(view));
-  if (recent_.size() > kMaxRecent) recent_.pop_front();
+  if (recent_.size() > kMaxRecent) retire_oldest();
+}
+
+void ViewStore::retire_oldest() {
+  View& oldest = recent_.front();
+  if (oldest.settled && (past_.empty() || oldest.stamp_ns - past_.back().stamp_ns >= kPastStepNs)) {
+    past_.push_back(std::move(oldest));
+    if (past_.size() > kMaxPast) past_.pop_front();
+  }
+  recent_.pop_front();
 }
 
 void ViewStore::clear() {
   recent_.clear();
+  past_.clear();
   keyframes_.clear();
 }
 
@@ -44,6 +55,7 @@ bool ViewStore::correct(std::uint64_t seq, const Eigen::Isometry3d& T_world_came
   if (T_camera_change.translation().norm() < kNewWorldM && geometry::rotation_angle_rad(T_camera_change) < kNewWorldRad)
     return true;
   recent_.erase(recent_.begin(), found);
+  past_.clear();
   keyframes_.clear();
   return false;
 }
@@ -75,6 +87,15 @@ const View& ViewStore::of_age(std::int64_t now_ns, std::int64_t age_ns) const {
     if (a.settled != b.settled) return a.settled;
     return std::abs(now_ns - age_ns - a.stamp_ns) < std::abs(now_ns - age_ns - b.stamp_ns);
   });
+}
+
+const View& ViewStore::long_ago(std::int64_t now_ns, std::int64_t age_ns) const {
+  const auto off_by = [&](const View& view) { return std::abs(now_ns - age_ns - view.stamp_ns); };
+  const View* best = &of_age(now_ns, age_ns);
+  for (const View& view : past_) {
+    if (off_by(view) < off_by(*best)) best = &view;
+  }
+  return *best;
 }
 
 std::vector<const View*> ViewStore::references(std::int64_t now_ns, const Eigen::Isometry3d& T_world_camera,

@@ -25,7 +25,8 @@ struct View {
   std::vector<msg::Feature> features;  ///< judged ones
 };
 
-/// The views of the last second and of the last keyframes, bounded in number (about 0.4 MB each), with their poses.
+/// The views of the last second, some of the two seconds before and those of the last keyframes, bounded in number
+/// (about 0.4 MB each), with their poses.
 ///
 /// Poses are those of our own quick estimate until slam says better; then the later ones follow. When slam's word is
 /// far from ours, its map has started anew or it has relocalised: older views are dropped, they lie in another world.
@@ -52,19 +53,25 @@ class ViewStore {
   const View* at(std::int64_t stamp_ns) const;
   /// The settled recent view whose age is nearest to the wanted one. Precondition: not empty.
   const View& of_age(std::int64_t now_ns, std::int64_t age_ns) const;
+  /// The settled view whose age is nearest to the wanted one, also from before the recent ones. Precondition: not
+  /// empty.
+  const View& long_ago(std::int64_t now_ns, std::int64_t age_ns) const;
   /// Up to `count` views to compare a camera at this pose with: recent ones of graded ages, then keyframes older than
   /// those whose camera stood near and looked the same way.
   std::vector<const View*> references(std::int64_t now_ns, const Eigen::Isometry3d& T_world_camera,
                                       std::size_t count) const;
   /// Up to `count` of the keyframes whose camera stood near and looked the same way, nearest first; recent ones too.
   std::vector<const View*> near_keyframes(const Eigen::Isometry3d& T_world_camera, std::size_t count) const;
-  std::size_t size() const { return recent_.size() + keyframes_.size(); }
+  std::size_t size() const { return recent_.size() + past_.size() + keyframes_.size(); }
 
   static constexpr std::size_t kMaxRecent = 32;
+  static constexpr std::size_t kMaxPast = 8;
   static constexpr std::size_t kMaxKeyframes = 16;
 
  private:
+  void retire_oldest();
   std::deque<View> recent_;     ///< by seq
+  std::deque<View> past_;       ///< by seq, settled ones from before the recent ones, a quarter of a second apart
   std::deque<View> keyframes_;  ///< by seq
 };
 

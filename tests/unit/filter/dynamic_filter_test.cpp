@@ -51,6 +51,19 @@ TEST(DynamicFilter, removes_a_mover_of_no_class_and_keeps_the_room) {
   }
 }
 
+TEST(DynamicFilter, removes_a_mover_of_three_centimetres_a_second) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kGeometry);
+  for (std::uint64_t i = 0; i < 75; ++i) {
+    const double camera_x = 0.003 * static_cast<double>(i), block_x = 0.001 * static_cast<double>(i);
+    const FilterResult result = filter.apply(scene.render(i, camera_x, block_x), std::nullopt);
+    const cv::Rect block = MovingScene::block(camera_x, block_x);
+    EXPECT_LE(removed_share(result, block, false), 0.05) << "frame " << i;
+    if (i < 60) continue;  // 2 s
+    EXPECT_GE(removed_share(result, block, true), 0.9) << "frame " << i;
+  }
+}
+
 TEST(DynamicFilter, is_not_carried_along_in_the_second_frame) {
   const MovingScene scene;
   DynamicFilter filter = make_filter(FilterMode::kGeometry);

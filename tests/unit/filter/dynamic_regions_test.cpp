@@ -40,7 +40,9 @@ class DynamicRegionsTest : public ::testing::Test {
       if (area[cell] != 0) clusters_.label[cell] = label;
     }
   }
-  DynamicRegions judge() const { return find_dynamic_regions(clusters_, evidence_, votes_, remembered_, config_); }
+  DynamicRegions judge() const {
+    return find_dynamic_regions(clusters_, evidence_, {votes_, slow_votes_}, remembered_, config_);
+  }
   void vote(const cv::Point& pixel, bool moving) {
     const int cell = kShape.cell_at(pixel.x, pixel.y);
     votes_.votes.push_back({cell, moving});
@@ -52,6 +54,7 @@ class DynamicRegionsTest : public ::testing::Test {
   DepthClusters clusters_;
   DepthEvidence evidence_ = DepthEvidence::none(kCells);
   FeatureVotes votes_;
+  FeatureVotes slow_votes_;
   CellMask remembered_ = CellMask(kCells, 0);
 };
 
@@ -67,6 +70,16 @@ TEST_F(DynamicRegionsTest, takes_the_whole_cluster_when_a_part_of_it_violates) {
 TEST_F(DynamicRegionsTest, takes_the_cluster_whose_features_are_displaced) {
   for (int i = 0; i < config_.min_moving_features; ++i) vote({250 + 8 * i, 200}, true);
   EXPECT_EQ(count_in(kShape, judge().frames_left, kBlock), cells_in(kBlock));
+}
+
+TEST_F(DynamicRegionsTest, takes_the_cluster_that_is_displaced_over_a_second_only) {
+  slow_votes_ = votes_;
+  const auto block = static_cast<std::size_t>(clusters_.label[static_cast<std::size_t>(kShape.cell_at(300, 200))]);
+  for (int i = 0; i < 20; ++i) vote({250, 170 + 5 * i}, false);
+  slow_votes_.moving[block] = config_.min_creeping_features;
+  EXPECT_EQ(count_in(kShape, judge().frames_left, kBlock), cells_in(kBlock));
+  slow_votes_.resting[block] = config_.min_creeping_features;
+  EXPECT_EQ(judge().clusters, 0);
 }
 
 TEST_F(DynamicRegionsTest, leaves_a_cluster_with_a_few_displaced_features_alone) {

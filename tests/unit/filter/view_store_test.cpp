@@ -31,7 +31,21 @@ TEST(ViewStore, is_bounded) {
     store.add(view(seq));
     store.mark_keyframe(seq, at(0));
   }
-  EXPECT_EQ(store.size(), ViewStore::kMaxRecent + ViewStore::kMaxKeyframes);
+  EXPECT_EQ(store.size(), ViewStore::kMaxRecent + ViewStore::kMaxPast + ViewStore::kMaxKeyframes);
+}
+
+TEST(ViewStore, keeps_a_view_from_longer_ago_than_the_recent_ones) {
+  ViewStore store;
+  for (std::uint64_t seq = 0; seq < 120; ++seq) store.add(view(seq));
+  EXPECT_NEAR(1e-9 * static_cast<double>(stamp(120) - store.long_ago(stamp(120), 1'500'000'000).stamp_ns), 1.5, 0.15);
+  EXPECT_EQ(store.long_ago(stamp(120), 500'000'000).seq, 105U);
+}
+
+TEST(ViewStore, forgets_what_is_long_ago_when_the_map_starts_anew) {
+  ViewStore store;
+  for (std::uint64_t seq = 0; seq < 120; ++seq) store.add(view(seq));
+  EXPECT_FALSE(store.correct(110, at(1.0)));
+  EXPECT_EQ(store.long_ago(stamp(120), 3'000'000'000).seq, 110U);
 }
 
 TEST(ViewStore, lets_later_views_follow_a_correction) {

@@ -45,7 +45,9 @@ FilterConfig with_techniques_applied(FilterConfig config) {
   if (!on.depth_masks) config.masks.whole_boxes = true;
   if (!on.flat_objects) config.masks.min_outline_share = 0;  // no outline is flat enough
   if (!on.depth_check) config.geometry.max_views = 0;        // nobody to ask
-  if (!on.feature_votes) config.geometry.min_moving_features = std::numeric_limits<int>::max();
+  if (!on.feature_votes) {
+    config.geometry.min_moving_features = config.geometry.min_creeping_features = std::numeric_limits<int>::max();
+  }
   if (!on.noise_aware_tau) {
     config.geometry.tau_floor_m = kPaperTauM;
     config.geometry.tau_sigmas = 0;
