@@ -34,7 +34,7 @@ struct Techniques {
   bool depth_check = true;      ///< the multi-view check of range images
   bool feature_votes = true;    ///< displaced features vote for their surface
   bool noise_aware_tau = true;  ///< off: the paper's 0.4 m at every depth
-  bool mover_tracks = true;     ///< movers are followed and masked before there is new evidence; off: each frame alone
+  bool mover_memory = true;     ///< what moved stays masked for a second; off: it must be seen moving in each frame
   bool surface_poses = true;    ///< surfaces propose the camera's motion; off: all features together only
   // Rule 4: one probability
   bool belief = true;           ///< static probability gathered over time; off: from this frame alone

@@ -85,6 +85,24 @@ TEST(Techniques, depth_check_and_feature_votes_each_find_a_mover_alone) {
   EXPECT_EQ(removed_of_mover({&Techniques::depth_check, &Techniques::feature_votes}), 0.0);
 }
 
+/// Frames for which geometry still removes features after a mover has stopped.
+int frames_masked_after_stop(std::initializer_list<bool Techniques::*> off) {
+  constexpr std::uint64_t kMoving = 15, kAfter = 60;
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kGeometry, off);
+  int masked = 0;
+  for (std::uint64_t i = 0; i < kMoving + kAfter; ++i) {
+    const double block_x = -0.25 + 0.03 * static_cast<double>(std::min(i, kMoving));
+    const FilterResult result = filter.apply(scene.render(i, 0, block_x), std::nullopt);
+    if (i >= kMoving && result.removed > 0) ++masked;
+  }
+  return masked;
+}
+
+TEST(Techniques, mover_memory_off_takes_back_sooner_what_has_stopped) {
+  EXPECT_LT(frames_masked_after_stop({&Techniques::mover_memory}), frames_masked_after_stop({}));
+}
+
 TEST(Techniques, noise_aware_tau_off_misses_somebody_a_step_before_the_wall) {
   const cv::Rect block(240, 160, 120, 160);
   vision::RgbdImage now = test::wall_image(3.0);

@@ -27,7 +27,7 @@ const std::vector<ModeEntry>& table() {
       {FilterMode::kSemantic, "semantic",
        only({&T::motion_levels, &T::depth_masks, &T::box_tracks, &T::mask_flow, &T::roll_distrust, &T::more_features})},
       {FilterMode::kGeometry, "geometry",
-       only({&T::depth_check, &T::feature_votes, &T::noise_aware_tau, &T::mover_tracks, &T::surface_poses, &T::belief,
+       only({&T::depth_check, &T::feature_votes, &T::noise_aware_tau, &T::mover_memory, &T::surface_poses, &T::belief,
              &T::feature_weights, &T::more_features, &T::keep_doubtful})},
       {FilterMode::kEpipolar, "epipolar", only({&T::motion_levels, &T::depth_masks})},
       {FilterMode::kRtdPaper, "rtd-paper", only({&T::motion_levels})},

@@ -16,7 +16,7 @@ constexpr NamedTechnique kAll[] = {
     {"depth_check", &Techniques::depth_check, "no multi-view check of range images"},
     {"feature_votes", &Techniques::feature_votes, "displaced features do not vote"},
     {"noise_aware_tau", &Techniques::noise_aware_tau, "the paper's 0.4 m at every depth"},
-    {"mover_tracks", &Techniques::mover_tracks, "movers are found anew in each frame"},
+    {"mover_memory", &Techniques::mover_memory, "movers are found anew in each frame"},
     {"surface_poses", &Techniques::surface_poses, "surfaces do not propose the camera's motion"},
     {"belief", &Techniques::belief, "static probability from one frame alone"},
     {"resting_objects", &Techniques::resting_objects, "high classes are never used"},
@@ -52,6 +52,7 @@ FilterConfig with_techniques_applied(FilterConfig config) {
     config.geometry.tau_floor_m = kPaperTauM;
     config.geometry.tau_sigmas = 0;
   }
+  if (!on.mover_memory) config.geometry.memory_frames = config.geometry.loose_memory_frames = 1;  // this frame itself
   if (!on.surface_poses) config.ego_motion.max_proposals = 0;
   if (!on.more_features) config.fusion.boost = 1;
   if (!on.keep_doubtful) config.fusion.min_static_features = 0;
