@@ -3,12 +3,13 @@
 #include "services/dense/dense_messages.hpp"
 
 #include <array>
-#include <cstring>
+#include <bit>
+
+#include "common/msg/point_cloud.hpp"
 
 namespace rtd::dense {
 namespace {
 
-constexpr std::uint8_t kFloat32 = 7;  // sensor_msgs/PointField
 constexpr std::uint32_t kMaxSide = 4096;
 
 }  // namespace
@@ -28,22 +29,13 @@ std::optional<DynamicMask> from_message(const msg::Image& message) {
 
 msg::PointCloud2 make_cloud(const std::vector<CloudPoint>& points, std::int64_t stamp_ns,
                             const std::string& map_frame) {
-  msg::PointCloud2 cloud;
-  cloud.header = {msg::to_time(stamp_ns), map_frame};
-  cloud.height = 1;
-  cloud.width = static_cast<std::uint32_t>(points.size());
-  cloud.fields = {{"x", 0, kFloat32, 1}, {"y", 4, kFloat32, 1}, {"z", 8, kFloat32, 1}, {"rgb", 12, kFloat32, 1}};
-  cloud.point_step = 16;
-  cloud.row_step = cloud.point_step * cloud.width;
-  cloud.data.resize(cloud.row_step);
-  std::uint8_t* slot = cloud.data.data();
+  std::vector<msg::CloudSlot> slots;
+  slots.reserve(points.size());
   for (const CloudPoint& point : points) {
     const std::array<std::uint8_t, 4> bgra{to_byte(point.bgr[0]), to_byte(point.bgr[1]), to_byte(point.bgr[2]), 0};
-    std::memcpy(slot, point.p_world.data(), 12);
-    std::memcpy(slot + 12, bgra.data(), 4);
-    slot += cloud.point_step;
+    slots.push_back({point.p_world.x(), point.p_world.y(), point.p_world.z(), std::bit_cast<float>(bgra)});
   }
-  return cloud;
+  return msg::make_cloud(slots, "rgb", stamp_ns, map_frame);
 }
 
 }  // namespace rtd::dense

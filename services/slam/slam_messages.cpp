@@ -3,16 +3,15 @@
 #include "services/slam/slam_messages.hpp"
 
 #include <Eigen/Geometry>
-#include <cstring>
 
 #include "common/geometry/se3.hpp"
+#include "common/msg/point_cloud.hpp"
 #include "common/msg/transform_eigen.hpp"
 
 namespace rtd::slam {
 namespace {
 
 constexpr double kNsPerS = 1e9;
-constexpr std::uint8_t kFloat32 = 7;  // sensor_msgs/PointField
 
 using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
@@ -67,22 +66,11 @@ msg::Odometry make_odometry(const msg::TrackingResult& result, const std::option
 }
 
 msg::PointCloud2 make_cloud(const std::vector<MapPoint>& points, std::int64_t stamp_ns, const std::string& map_frame) {
-  msg::PointCloud2 cloud;
-  cloud.header = {msg::to_time(stamp_ns), map_frame};
-  cloud.height = 1;
-  cloud.width = static_cast<std::uint32_t>(points.size());
-  cloud.fields = {{"x", 0, kFloat32, 1}, {"y", 4, kFloat32, 1}, {"z", 8, kFloat32, 1}, {"intensity", 12, kFloat32, 1}};
-  cloud.point_step = 16;
-  cloud.row_step = cloud.point_step * cloud.width;
-  cloud.data.resize(cloud.row_step);
-  std::uint8_t* slot = cloud.data.data();
-  for (const MapPoint& point : points) {
-    const std::array<float, 4> values{point.position.x(), point.position.y(), point.position.z(),
-                                      point.static_probability};
-    std::memcpy(slot, values.data(), sizeof(values));
-    slot += sizeof(values);
-  }
-  return cloud;
+  std::vector<msg::CloudSlot> slots;
+  slots.reserve(points.size());
+  for (const MapPoint& point : points)
+    slots.push_back({point.position.x(), point.position.y(), point.position.z(), point.static_probability});
+  return msg::make_cloud(slots, "intensity", stamp_ns, map_frame);
 }
 
 msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const SlamCounters& counters,

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/filter/core/belief/log_odds.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
@@ -155,7 +154,7 @@ CellBeliefs DynamicFilter::recall_beliefs(const Scene& scene, const Eigen::Isome
 /// What has been seen at rest for long takes part in the pose and in later checks, whatever its class.
 void DynamicFilter::trust_known_surfaces(Scene& scene) const {
   if (views_.empty() || !config_.techniques.belief || !config_.techniques.resting_objects) return;
-  const CellBeliefs beliefs = recall_beliefs(scene, predict_pose());
+  const CellBeliefs beliefs = recall_beliefs(scene, views_.predict_pose());
   const float enough = log_odds(config_.belief.min_used_probability);
   for (std::size_t cell = 0; cell < beliefs.size(); ++cell) {
     if (is_known(beliefs[cell]) && beliefs[cell] >= enough) scene.may_move[cell] = 0;
@@ -169,7 +168,7 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
   if (views_.empty() || !uses_geometry(config_.mode)) return geometry;
 
   StageClock clock(now_ns_);
-  const Eigen::Isometry3d T_world_predicted = predict_pose();
+  const Eigen::Isometry3d T_world_predicted = views_.predict_pose();
   const auto recall = [&](const Eigen::Isometry3d& T_world_camera) {
     return memory_.recall(scene.grid, scene.image.camera, T_world_camera.inverse() * views_.newest().T_world_camera);
   };
@@ -261,13 +260,6 @@ void DynamicFilter::remember(Scene scene, const Geometry& geometry, FilterResult
   view.grid = std::move(scene.grid);
   view.features = result.features;
   views_.add(std::move(view));
-}
-
-Eigen::Isometry3d DynamicFilter::predict_pose() const {
-  const View* before = views_.second_newest();
-  const Eigen::Isometry3d& T_world_newest = views_.newest().T_world_camera;
-  if (before == nullptr) return T_world_newest;
-  return geometry::normalized(T_world_newest * before->T_world_camera.inverse() * T_world_newest);
 }
 
 void DynamicFilter::on_tracking(const msg::TrackingResult& result) {

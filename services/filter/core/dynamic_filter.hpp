@@ -85,7 +85,6 @@ class DynamicFilter {
   Geometry find_what_moves(const Scene& scene, FilterResult& result);
   void weigh(const Scene& scene, const Geometry& geometry, FilterResult& result);
   void remember(Scene scene, const Geometry& geometry, FilterResult& result);
-  Eigen::Isometry3d predict_pose() const;
 
   FilterConfig config_;
   std::function<std::int64_t()> now_ns_;

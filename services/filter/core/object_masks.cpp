@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "services/filter/core/median.hpp"
+
 namespace rtd::filter {
 namespace {
 
@@ -65,9 +67,7 @@ std::vector<ClusterInBox> clusters_in(const CellBox& box, const DepthGrid& grid,
     std::vector<float> depths;
     depths.reserve(cells.size());
     for (const int cell : cells) depths.push_back(grid.depth_m[static_cast<std::size_t>(cell)]);
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    found.push_back({static_cast<std::int32_t>(label), std::move(cells), *middle});
+    found.push_back({static_cast<std::int32_t>(label), std::move(cells), median(std::move(depths))});
   }
   return found;
 }

@@ -10,17 +10,16 @@ namespace {
 
 constexpr double kKeypointSigmaPx = 0.7;  // at octave 0
 
-double octave_scale(int octave) {
-  return std::pow(1.2, octave);
-}
-
 PointSighting to_sighting(const FeatureMatch& match, const EgoMotionInput& input) {
   const msg::Feature& f = input.current.features[match.current];
-  const double sigma_px = std::numbers::sqrt2 * kKeypointSigmaPx * octave_scale(f.octave);
-  return {match.p_world, {f.u_px, f.v_px}, f.depth_m, sigma_px, input.cluster_of[match.current]};
+  return {match.p_world, {f.u_px, f.v_px}, f.depth_m, displacement_sigma_px(f.octave), input.cluster_of[match.current]};
 }
 
 }  // namespace
+
+double displacement_sigma_px(int octave) {
+  return std::numbers::sqrt2 * kKeypointSigmaPx * std::pow(1.2, octave);
+}
 
 std::vector<FeatureMatch> usable(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input,
                                  const std::vector<char>& moving_cluster, std::size_t limit) {

@@ -29,6 +29,9 @@ struct EgoMotionInput {
 std::vector<FeatureMatch> usable(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input,
                                  const std::vector<char>& moving_cluster, std::size_t limit);
 
+/// Standard deviation of the displacement of a keypoint between two views: both ends are uncertain.
+double displacement_sigma_px(int octave);
+
 /// Matches as points of the world that are measured again; both ends of a displacement are uncertain.
 std::vector<PointSighting> to_sightings(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input);
 

@@ -129,4 +129,11 @@ std::vector<const View*> ViewStore::near_keyframes(const Eigen::Isometry3d& T_wo
   return chosen;
 }
 
+Eigen::Isometry3d ViewStore::predict_pose() const {
+  const View* before = second_newest();
+  const Eigen::Isometry3d& T_world_newest = newest().T_world_camera;
+  if (before == nullptr) return T_world_newest;
+  return geometry::normalized(T_world_newest * before->T_world_camera.inverse() * T_world_newest);
+}
+
 }  // namespace rtd::filter

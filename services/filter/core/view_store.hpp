@@ -51,6 +51,8 @@ class ViewStore {
   }
   /// The recent view with this stamp; null when there is none.
   const View* at(std::int64_t stamp_ns) const;
+  /// Constant velocity: the pose at which the camera would be in the next frame. Precondition: not empty.
+  Eigen::Isometry3d predict_pose() const;
   /// The settled recent view whose age is nearest to the wanted one. Precondition: not empty.
   const View& of_age(std::int64_t now_ns, std::int64_t age_ns) const;
   /// The settled view whose age is nearest to the wanted one, also from before the recent ones. Precondition: not

@@ -28,7 +28,7 @@ Eigen::Vector3d Frame::unproject(std::size_t feature) const {
   return {(f.u_px - camera.cx) / camera.fx * f.depth_m, (f.v_px - camera.cy) / camera.fy * f.depth_m, f.depth_m};
 }
 
-FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config) {
+FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config, RemovedFeatures removed) {
   FrameInput input;
   if (!usable_intrinsics(message)) {
     input.error = "intrinsics are zero or not finite";
@@ -50,7 +50,7 @@ FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& conf
     msg::Feature feature = message.features[i];
     if ((feature.flags & msg::kFeatureRemoved) != 0) {
       ++input.removed;
-      if (usable(feature)) frame->removed.push_back(feature);
+      if (removed == RemovedFeatures::kKeep && usable(feature)) frame->removed.push_back(feature);
     } else if (!usable(feature)) {
       ++input.invalid;
     } else {
@@ -59,7 +59,8 @@ FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& conf
     }
   }
   frame->grid = vision::FeatureGrid(frame->features, frame->width_px, frame->height_px);
-  frame->removed_grid = vision::FeatureGrid(frame->removed, frame->width_px, frame->height_px);
+  if (removed == RemovedFeatures::kKeep)
+    frame->removed_grid = vision::FeatureGrid(frame->removed, frame->width_px, frame->height_px);
   input.frame = std::move(frame);
   return input;
 }

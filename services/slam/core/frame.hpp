@@ -28,7 +28,7 @@ struct Frame {
   std::vector<msg::Feature> features;  ///< usable ones only; depth_m is 0 where not measured or beyond max_depth_m
   vision::FeatureGrid grid;
   std::vector<msg::Feature>
-      removed;  ///< judged dynamic by the filter: never tracked, they only speak against landmarks
+      removed;  ///< judged dynamic by the filter: never tracked, they only speak against landmarks; may be dropped
   vision::FeatureGrid removed_grid;
 
   bool contains(const Eigen::Vector2d& pixel) const {
@@ -42,6 +42,9 @@ struct Frame {
 };
 using FramePtr = std::shared_ptr<const Frame>;
 
+/// Whether a frame keeps the features that the filter removed: only the landmark belief asks for them.
+enum class RemovedFeatures { kDrop, kKeep };
+
 /// What make_frame() did with the message.
 struct FrameInput {
   FramePtr frame;             ///< null when the message as a whole is unusable
@@ -51,6 +54,7 @@ struct FrameInput {
 };
 
 /// Takes the usable features out of a message. Data from outside: never throws for its content.
-FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config);
+FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config,
+                      RemovedFeatures removed = RemovedFeatures::kDrop);
 
 }  // namespace rtd::slam

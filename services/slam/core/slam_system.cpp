@@ -38,7 +38,8 @@ SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
   const std::int64_t start_ns = now_ns_();
   SlamOutput output;
   watch_source(message);
-  const FrameInput input = make_frame(message, config_.sensor);
+  const FrameInput input = make_frame(
+      message, config_.sensor, config_.techniques.landmark_belief ? RemovedFeatures::kKeep : RemovedFeatures::kDrop);
   output.invalid_features = input.invalid;
   const TrackOutcome outcome = mapping_.snapshot() == nullptr ? initialize(input, output) : track(input, output);
   collect_events(output);

@@ -7,11 +7,9 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <future>
 
-#include "common/bus/bus_factory.hpp"
 #include "common/geometry/ply.hpp"
-#include "tests/support/inbox.hpp"
+#include "tests/support/service_fixture.hpp"
 #include "tests/unit/dense/wall_scene.hpp"
 
 namespace rtd::dense {
@@ -19,57 +17,26 @@ namespace {
 
 using test::WallScene;
 using test_support::Inbox;
+using test_support::ServiceFixture;
 using testing::HasSubstr;
 
-constexpr std::uint32_t kFirstDomain = 200;  // in-process domains of this binary, one per test
 const cv::Rect kPerson{60, 30, 40, 80};
 
 /// A camera, a filter and a slam around one dense service that runs in a thread.
-class DenseServiceTest : public testing::Test {
+class DenseServiceTest : public ServiceFixture<DenseService> {
  protected:
   void SetUp() override {
-    static std::uint32_t domain = kFirstDomain;
-    bus::BusOptions options;
-    options.vendor = "inprocess";
-    options.domain = domain++;
-    bus_ = bus::connect(options);
     frames_ = bus_->writer(bus::topics::kFrame);
     results_ = bus_->writer(bus::topics::kTracking);
     events_ = bus_->writer(bus::topics::kKeyframes);
-    status_ = bus_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](auto m) { states_.take(std::move(m)); });
     config_.every = 1;
     config_.core = WallScene::config();
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("rtd_dense_service_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(folder_);
-  }
-  void TearDown() override {
-    stop();
-    std::filesystem::remove_all(folder_);
   }
   void with_filter() { masks_ = bus_->writer(bus::topics::kDynamicMask); }
-  void start() {
-    running_ = std::async(std::launch::async, [this] {
-      service::Heartbeat heartbeat(*bus_, "dense", stop_);
-      service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kLockstep};
-      return DenseService(config_, runtime).run();
-    });
-    ASSERT_TRUE(wait_state(msg::ServiceState::kReady)) << "dense did not become ready";
-  }
-  service::ExitCode stop() {
-    stop_.request_stop();
-    return running_.valid() ? running_.get() : service::kOk;
-  }
-  bool wait_state(msg::ServiceState state, const std::string& text = {}) {
-    return states_.wait([&](const auto& all) {
-      return !all.empty() && all.back()->state == state && all.back()->message.find(text) != std::string::npos;
-    });
-  }
-  bool wait_metric(const std::string& name, double value) {
-    return states_.wait([&](const auto& all) {
-      return !all.empty() && std::any_of(all.back()->metrics.begin(), all.back()->metrics.end(),
-                                         [&](const msg::Metric& m) { return m.name == name && m.value >= value; });
-    });
+  void start() { ServiceFixture::start(service::Pace::kLockstep); }
+  bool wait_at_least(const std::string& name, double value) {
+    return states_.wait(
+        [&](const auto& all) { return !all.empty() && metric(*all.back(), name).value_or(-1) >= value; });
   }
   /// One frame with the person in it, its mask (when there is a filter) and its pose.
   void send(std::uint64_t seq) {
@@ -107,22 +74,15 @@ class DenseServiceTest : public testing::Test {
   void send_and_wait(std::uint64_t count) {
     for (std::uint64_t seq = 0; seq < count; ++seq) {
       send(seq);
-      ASSERT_TRUE(wait_metric("frames", static_cast<double>(seq + 1)));
+      ASSERT_TRUE(wait_at_least("frames", static_cast<double>(seq + 1)));
     }
   }
 
   WallScene scene_;
-  ServiceConfig config_;
-  std::filesystem::path folder_;
-  service::StopToken stop_;
-  std::shared_ptr<bus::Bus> bus_;
-  Inbox<msg::ServiceStatus> states_;
   bus::Writer<msg::RgbdFrame> frames_;
   bus::Writer<msg::TrackingResult> results_;
   bus::Writer<msg::KeyframeEvent> events_;
   bus::Writer<msg::Image> masks_;
-  bus::Reader<msg::ServiceStatus> status_;
-  std::future<service::ExitCode> running_;
 };
 
 float depth_of_nearest(const msg::PointCloud2& cloud) {
@@ -136,8 +96,7 @@ float depth_of_nearest(const msg::PointCloud2& cloud) {
 
 TEST_F(DenseServiceTest, publishes_the_wall_without_the_person_and_writes_it) {
   Inbox<msg::PointCloud2> clouds;
-  const auto reader =
-      bus_->reader<msg::PointCloud2>(bus::topics::kDensePoints, [&](auto cloud) { clouds.take(std::move(cloud)); });
+  hear(bus::topics::kDensePoints, clouds);
   config_.publish_period_ms = 100;
   config_.out_dir = (folder_ / "run").string();
   config_.background = true;
@@ -157,7 +116,7 @@ TEST_F(DenseServiceTest, fuses_nothing_without_masks_and_says_so) {
   start();
   for (std::uint64_t seq = 0; seq < 10; ++seq) send(seq);
   ASSERT_TRUE(wait_state(msg::ServiceState::kDegraded, "no masks"));
-  EXPECT_TRUE(wait_metric("frames_without_mask", 5));
+  EXPECT_TRUE(wait_at_least("frames_without_mask", 5));
   const auto last = states_.all().back();
   for (const msg::Metric& metric : last->metrics) EXPECT_TRUE(metric.name != "frames" || metric.value == 0);
 }
@@ -166,7 +125,7 @@ TEST_F(DenseServiceTest, fuses_everything_without_masks_when_told) {
   config_.without_masks = true;
   start();
   for (std::uint64_t seq = 0; seq < 10; ++seq) send(seq);
-  EXPECT_TRUE(wait_metric("frames", 5));
+  EXPECT_TRUE(wait_at_least("frames", 5));
 }
 
 TEST_F(DenseServiceTest, works_off_what_has_come_before_it_ends) {
@@ -174,7 +133,7 @@ TEST_F(DenseServiceTest, works_off_what_has_come_before_it_ends) {
   with_filter();
   start();
   for (std::uint64_t seq = 0; seq < 8; ++seq) send(seq);
-  ASSERT_TRUE(wait_metric("frames", 2));  // seen twice: given out
+  ASSERT_TRUE(wait_at_least("frames", 2));  // seen twice: given out
   EXPECT_EQ(stop(), service::kOk);
   std::ifstream file(folder_ / "static_map.ply", std::ios::binary);
   EXPECT_GT(geometry::ply_vertices(file).value_or(0), 5000U);
@@ -184,7 +143,7 @@ TEST_F(DenseServiceTest, never_holds_up_a_camera_that_is_faster) {
   with_filter();
   start();
   for (std::uint64_t seq = 0; seq < 60; ++seq) send(seq);
-  ASSERT_TRUE(wait_metric("frames", 5)) << "newest wins, and nobody waited";
+  ASSERT_TRUE(wait_at_least("frames", 5)) << "newest wins, and nobody waited";
 }
 
 TEST_F(DenseServiceTest, says_that_its_map_is_full) {

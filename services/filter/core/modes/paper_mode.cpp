@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/modes/paper_mode.hpp"
 
-#include <cmath>
-#include <numbers>
-
-#include "common/geometry/se3.hpp"
 #include "services/filter/core/guided_matching.hpp"
 #include "services/filter/core/modes/keypoint_depth_check.hpp"
+#include "services/filter/core/sightings.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -55,46 +52,38 @@ PublishedVerdict PaperMode::judge(const PublishedInput& input, std::vector<msg::
     moved = check_keypoint_depths(input.image, input.shape, pose.T_world_camera,
                                   views_.near_keyframes(pose.T_world_camera, count), config_);
   }
+  const auto known_of = [&](std::size_t i) {
+    return CellKnowledge{high[i] != 0, medium[i] != 0, low[i] != 0, moved[i] != 0};
+  };
+  CellMask removed(high.size());
+  for (std::size_t i = 0; i < removed.size(); ++i) removed[i] = removed_by_the_paper(known_of(i)) ? 1 : 0;
   for (msg::Feature& feature : features) {
     const auto i = static_cast<std::size_t>(input.shape.nearest_cell(feature.u_px, feature.v_px));
-    const CellKnowledge cell{high[i] != 0, medium[i] != 0, low[i] != 0, moved[i] != 0};
-    feature.flags = flags_of(cell);
-    mark(feature, removed_by_the_paper(cell));
+    feature.flags = flags_of(known_of(i));
+    mark(feature, removed[i] != 0);
   }
   views_.add(view_of(input, pose.T_world_camera, features));
-  CellMask removed(high.size());
-  for (std::size_t i = 0; i < removed.size(); ++i)
-    removed[i] = removed_by_the_paper({high[i] != 0, medium[i] != 0, low[i] != 0, moved[i] != 0}) ? 1 : 0;
   return {std::move(removed), pose.success, pose.T_world_camera};
 }
 
 /// Against the frame before, as ORB-SLAM2's motion model does, with what lies outside high boxes.
 RefinedPose PaperMode::find_pose(const PublishedInput& input, const std::vector<msg::Feature>& features,
                                  const CellMask& high) const {
-  constexpr double kSigmaPx = 0.7, kScale = 1.2;
   if (views_.empty()) return {};
   const auto& p = input.image.camera.parameters();
   const vision::FeatureGrid grid(features, p.width, p.height);
-  const Eigen::Isometry3d T_world_predicted = predict_pose();
+  const Eigen::Isometry3d T_world_predicted = views_.predict_pose();
   std::vector<PointSighting> sightings;
   for (const FeatureMatch& match : match_by_projection(views_.newest(), {features, grid, input.image.camera},
                                                        T_world_predicted, ego_motion_.window_px, ego_motion_)) {
     const msg::Feature& f = features[match.current];
     if (!match.reference_static || high[static_cast<std::size_t>(input.shape.nearest_cell(f.u_px, f.v_px))] != 0)
       continue;
-    const double sigma_px = std::numbers::sqrt2 * kSigmaPx * std::pow(kScale, f.octave);
-    sightings.push_back({match.p_world, {f.u_px, f.v_px}, f.depth_m, sigma_px, -1});
+    sightings.push_back({match.p_world, {f.u_px, f.v_px}, f.depth_m, displacement_sigma_px(f.octave), -1});
   }
   const RefinedPose refined = refine_pose(sightings, input.image.camera, T_world_predicted, ego_motion_.min_inliers);
   if (!refined.success) return {false, T_world_predicted, 0};
   return refined;
-}
-
-Eigen::Isometry3d PaperMode::predict_pose() const {
-  const View* before = views_.second_newest();
-  const Eigen::Isometry3d& T_world_newest = views_.newest().T_world_camera;
-  if (before == nullptr) return T_world_newest;
-  return geometry::normalized(T_world_newest * before->T_world_camera.inverse() * T_world_newest);
 }
 
 }  // namespace rtd::filter

@@ -32,7 +32,6 @@ class PaperMode final : public PublishedMode {
  private:
   RefinedPose find_pose(const PublishedInput& input, const std::vector<msg::Feature>& features,
                         const CellMask& high) const;
-  Eigen::Isometry3d predict_pose() const;
 
   PaperConfig config_;
   EgoMotionConfig ego_motion_;

@@ -7,6 +7,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
+#include "services/filter/core/median.hpp"
+
 namespace rtd::filter {
 namespace {
 
@@ -14,12 +16,6 @@ constexpr float kReduction = 2;  // half resolution: a quarter of the time, and 
 constexpr int kMaxLevel = 2;     // with the window: finds shifts of some 60 px of the full image
 const cv::Size kWindow{11, 11};
 constexpr float kMaxReturnPx = 1.0F;  // forward and backward again, at half resolution
-
-float median(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 const std::vector<cv::Mat>& pyramid_of(const cv::Mat& grey, std::vector<cv::Mat>& pyramid) {
   if (pyramid.empty()) cv::buildOpticalFlowPyramid(grey, pyramid, kWindow, kMaxLevel, false);

@@ -6,17 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "services/filter/core/median.hpp"
+
 namespace rtd::filter {
 namespace {
 
 constexpr std::size_t kMaxPoints = 14;  // of one object
-
-float median(std::vector<float> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Features of a view inside a box at about the object's depth: corners that the optical flow can follow.
 std::vector<cv::Point2f> points_on(const View& view, const Box& box, double depth_m, double tolerance_m) {
