@@ -18,7 +18,8 @@ struct DynamicFilter::Scene {
   const vision::RgbdImage& image;
   DepthGrid grid;
   DepthClusters clusters;
-  std::vector<std::uint8_t> may_move;  ///< per cell, 1 = on an object of a high level
+  std::vector<std::uint8_t> may_move;  ///< per cell, 1 = on an object of a high level that is not known to rest
+  std::vector<std::uint8_t> high;      ///< per cell, 1 = on an object of a high level, known to rest or not
   bool watched = false;                ///< somebody has looked for objects in this frame
 };
 
@@ -47,6 +48,21 @@ std::vector<char> on_cells(const std::vector<msg::Feature>& features, const Grid
     on[i] = cells[static_cast<std::size_t>(shape.nearest_cell(features[i].u_px, features[i].v_px))] != 0 ? 1 : 0;
   }
   return on;
+}
+
+CellMask united(CellMask a, const CellMask& b) {
+  std::transform(a.begin(), a.end(), b.begin(), a.begin(), [](auto x, auto y) { return std::max(x, y); });
+  return a;
+}
+
+/// Per feature: does it lie on the first of these areas that leaves at least half of the features, or else on `least`?
+std::vector<char> first_that_leaves_half(const std::vector<msg::Feature>& features, const GridShape& shape,
+                                         const std::vector<CellMask>& areas, const CellMask& least) {
+  for (const CellMask& area : areas) {
+    std::vector<char> on = on_cells(features, shape, area);
+    if (2 * std::count(on.begin(), on.end(), 1) <= static_cast<std::ptrdiff_t>(on.size())) return on;
+  }
+  return on_cells(features, shape, least);
 }
 
 /// `spoken`: cells that are not dynamic were found to be at rest.
@@ -125,7 +141,12 @@ DynamicFilter::Scene DynamicFilter::look_at(const vision::RgbdImage& image) {
   DepthGrid grid = sampler_.sample(image);
   DepthClusters clusters = find_depth_clusters(grid, config_.clusters);
   const auto cells = static_cast<std::size_t>(grid.shape.size());
-  return {image, std::move(grid), std::move(clusters), std::vector<std::uint8_t>(cells, 0), false};
+  return {image,
+          std::move(grid),
+          std::move(clusters),
+          std::vector<std::uint8_t>(cells, 0),
+          std::vector<std::uint8_t>(cells, 0),
+          false};
 }
 
 void DynamicFilter::find_what_may_move(const DetectorWord& word, Scene& scene, FilterResult& result) {
@@ -139,6 +160,7 @@ void DynamicFilter::find_what_may_move(const DetectorWord& word, Scene& scene, F
     if (object.level != MotionLevel::kHigh || object.flat) continue;
     for (const int cell : object.cells) scene.may_move[static_cast<std::size_t>(cell)] = 1;
   }
+  scene.high = dilate(scene.grid.shape, scene.may_move, config_.masks.dilate_cells);
   scene.clusters = separate_objects(std::move(scene.clusters), result.objects);
   trust_known_surfaces(scene);
   scene.may_move = dilate(scene.grid.shape, scene.may_move, config_.masks.dilate_cells);
@@ -172,19 +194,16 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
   const auto recall = [&](const Eigen::Isometry3d& T_world_camera) {
     return memory_.recall(scene.grid, scene.image.camera, T_world_camera.inverse() * views_.newest().T_world_camera);
   };
-  std::vector<std::uint8_t> avoid = dilate(scene.grid.shape, recall(T_world_predicted), 1);
-  for (std::size_t cell = 0; cell < cells; ++cell) avoid[cell] = std::max(avoid[cell], scene.may_move[cell]);
+  CellMask avoid = united(dilate(scene.grid.shape, recall(T_world_predicted), 1), scene.may_move);
 
   if (!views_.spans(scene.image.stamp_ns, kMinSettledAgeNs)) {  // too early to tell movers from the camera's motion
-    const CellMask suspects = free_standing(scene.grid, scene.clusters, config_.masks);
-    for (std::size_t cell = 0; cell < cells; ++cell) avoid[cell] = std::max(avoid[cell], suspects[cell]);
+    avoid = united(std::move(avoid), free_standing(scene.grid, scene.clusters, config_.masks));
   }
   const auto& p = scene.image.camera.parameters();
   const vision::FeatureGrid feature_grid(result.features, p.width, p.height);
-  std::vector<char> excluded = on_cells(result.features, scene.grid.shape, avoid);
-  if (2 * std::count(excluded.begin(), excluded.end(), 1) > static_cast<std::ptrdiff_t>(excluded.size())) {
-    excluded = on_cells(result.features, scene.grid.shape, scene.may_move);  // memory must not blind us
-  }
+  // People at rest too, so that one who rises does not take the pose along; but neither they nor memory may blind us.
+  const std::vector<char> excluded =
+      first_that_leaves_half(result.features, scene.grid.shape, {united(avoid, scene.high), avoid}, scene.may_move);
   const std::vector<int> cluster_of = clusters_of(result.features, scene.clusters);
   const EgoMotionInput input{{result.features, feature_grid, scene.image.camera},
                              excluded,
