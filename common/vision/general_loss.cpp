@@ -25,7 +25,7 @@ double log_partition(double shape, int dimension) {
   double sum = 0;
   for (int i = 0; i <= kSteps; ++i) {
     const double r = step * i, weight = i == 0 || i == kSteps ? 1 : (i % 2 == 1 ? 4 : 2);
-    sum += weight * std::pow(r, dimension - 1) * std::exp(-0.5 * loss.rho(r * r));
+    sum += weight * std::pow(r, dimension - 1) * std::exp(-0.5 * loss(r * r).rho);
   }
   return std::log(sum * step / 3);
 }
@@ -54,20 +54,24 @@ double median_scale2(std::span<const SquaredResidual> residuals) {
   return std::clamp(*middle, kMinScale2, kMaxScale2);
 }
 
-}  // namespace
+constexpr double kNearly = 1e-9;
 
-double GeneralLoss::rho(double s) const {
-  constexpr double kNearly = 1e-9;
-  const double x = s / scale2;
-  if (std::abs(shape - 2) < kNearly) return s;
-  if (std::abs(shape) < kNearly) return scale2 * 2 * std::log1p(x / 2);
-  const double b = std::abs(shape - 2);
-  return scale2 * 2 * b / shape * (std::pow(x / b + 1, shape / 2) - 1);
+/// base^(shape / 2); most of the time goes here, and the shapes that are fitted need square roots only.
+double power(double base, double shape) {
+  if (shape == 1.0) return std::sqrt(base);
+  if (shape == 0.5) return std::sqrt(std::sqrt(base));
+  if (shape == 1.5) return std::sqrt(base) * std::sqrt(std::sqrt(base));
+  return std::pow(base, shape / 2);
 }
 
-double GeneralLoss::rho_slope(double s) const {
-  const double b = std::max(std::abs(shape - 2), 1e-9);
-  return shape > 2 - 1e-9 ? 1.0 : std::pow(s / scale2 / b + 1, shape / 2 - 1);
+}  // namespace
+
+LossValue GeneralLoss::operator()(double s) const {
+  const double b = std::abs(shape - 2), x = s / scale2;
+  if (b < kNearly) return {s, 1.0};
+  if (std::abs(shape) < kNearly) return {scale2 * 2 * std::log1p(x / 2), 1.0 / (x / 2 + 1)};
+  const double base = x / b + 1, raised = power(base, shape);
+  return {scale2 * 2 * b / shape * (raised - 1), raised / base};
 }
 
 GeneralLoss fit_general_loss(std::span<const SquaredResidual> residuals, const GeneralLoss& fallback) {
@@ -81,7 +85,7 @@ GeneralLoss fit_general_loss(std::span<const SquaredResidual> residuals, const G
     double cost = 0;
     for (const SquaredResidual& r : residuals) {
       const double s = std::min(r.chi2 / scale2, kMaxNorm * kMaxNorm);
-      cost += 0.5 * unit.rho(s) + (r.dimension == 2 ? partitions()[i].pixel : partitions()[i].rgbd);
+      cost += 0.5 * unit(s).rho + (r.dimension == 2 ? partitions()[i].pixel : partitions()[i].rgbd);
     }
     if (cost >= least) continue;
     least = cost;

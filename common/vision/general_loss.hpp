@@ -6,6 +6,10 @@
 
 namespace rtd::vision {
 
+struct LossValue {
+  double rho = 0, slope = 0;  ///< slope: d rho / d s
+};
+
 /// Barron's general robust loss in the squared norm s of a residual ("A General and Adaptive Robust Loss Function",
 /// CVPR 2019, Eq. (13), in s and scaled so that it begins as s itself), docs/theory/tracking.md Eq. (8). `shape` 2 is
 /// least squares, 1 pseudo-Huber, 0 Cauchy, -2 Geman-McClure.
@@ -13,8 +17,7 @@ struct GeneralLoss {
   double shape = 1.0;
   double scale2 = 1.0;  ///< variance of the residuals in units of the one that they were divided by
 
-  double rho(double s) const;
-  double rho_slope(double s) const;  ///< d rho / d s
+  LossValue operator()(double s) const;
 };
 
 /// One residual: its squared norm and how many numbers it has (2: pixel, 3: pixel and depth).

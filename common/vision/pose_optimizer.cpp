@@ -46,6 +46,7 @@ class PoseCost {
     const Eigen::Vector3d phi = x.tail<3>();
     const Eigen::Matrix3d R = geometry::so3_exp(phi) * T_camera_world_.linear();
     const Eigen::Vector3d t = T_camera_world_.translation() + x.head<3>();
+    const Eigen::Matrix3d left_jacobian = geometry::so3_left_jacobian(phi);
     Eigen::Map<Eigen::VectorXd> r(residuals, NumResiduals());
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 6>> J(jacobian, jacobian != nullptr ? NumResiduals() : 0, 6);
     for (std::size_t i = 0; i < active_.size(); ++i) {
@@ -62,7 +63,7 @@ class PoseCost {
       r.segment<3>(row) = scaling.residual * whitened;
       if (jacobian != nullptr) {
         J.middleRows<3>(row) = scaling.jacobian / observation.sigma_px *
-                               pose_jacobian(camera_, p_rotated, p_camera, phi, observation.measured);
+                               pose_jacobian(camera_, p_rotated, p_camera, left_jacobian, observation.measured);
       }
     }
     return true;
@@ -79,8 +80,9 @@ class PoseCost {
     const double root_weight = std::sqrt(observation.weight), limit = chi2_limit(options_, observation);
     if (loss_) {
       constexpr double kTiny = 1e-9;  // rho(s) / s goes to 1
-      const double root_ratio = s < kTiny ? 1.0 : std::sqrt(loss_->rho(s) / s);
-      return {root_weight * root_ratio, root_weight * loss_->rho_slope(s) / root_ratio};
+      const LossValue loss = (*loss_)(s);
+      const double root_ratio = s < kTiny ? 1.0 : std::sqrt(loss.rho / s);
+      return {root_weight * root_ratio, root_weight * loss.slope / root_ratio};
     }
     if (!robust_ || s <= limit) return {root_weight, root_weight};
     const double root_s = std::sqrt(s), delta = std::sqrt(limit);
@@ -140,7 +142,7 @@ Matrix6d hessian(const RgbdProjection& camera, const std::vector<PoseObservation
     const PoseObservation& observation = observations[i];
     const Eigen::Vector3d p_rotated = T_camera_world.linear() * observation.p_world;
     const Matrix36d J = pose_jacobian(camera, p_rotated, p_rotated + T_camera_world.translation(),
-                                      Eigen::Vector3d::Zero(), observation.measured);
+                                      Eigen::Matrix3d::Identity(), observation.measured);
     H += observation.weight / (observation.sigma_px * observation.sigma_px) * J.transpose() * J;
   }
   return H;
@@ -167,11 +169,11 @@ bool world_covariance(const Matrix6d& H, const Eigen::Isometry3d& T_camera_world
 }  // namespace
 
 Matrix36d pose_jacobian(const RgbdProjection& camera, const Eigen::Vector3d& p_rotated, const Eigen::Vector3d& p_camera,
-                        const Eigen::Vector3d& phi, const RgbdMeasurement& measured) {
+                        const Eigen::Matrix3d& left_jacobian, const RgbdMeasurement& measured) {
   const Eigen::Matrix3d d_residual = rgbd_jacobian(camera, p_camera, measured);
   Matrix36d J;
   J.leftCols<3>() = d_residual;
-  J.rightCols<3>() = -d_residual * geometry::skew(p_rotated) * geometry::so3_left_jacobian(phi);
+  J.rightCols<3>() = -d_residual * geometry::skew(p_rotated) * left_jacobian;
   return J;
 }
 

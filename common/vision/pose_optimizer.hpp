@@ -54,9 +54,10 @@ PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vecto
                                   const PoseOptimizerOptions& options = {});
 
 /// The 3x6 derivative of rgbd_residual with respect to [rho; phi] in p_camera = exp(phi) R p_world + t + rho, given
-/// `p_rotated` = exp(phi) R p_world, p_camera and phi. docs/theory/tracking.md Eq. (2). Public for its test.
+/// `p_rotated` = exp(phi) R p_world, p_camera and so3_left_jacobian(phi), the same for all points of a camera.
+/// docs/theory/tracking.md Eq. (2).
 Eigen::Matrix<double, 3, 6> pose_jacobian(const RgbdProjection& camera, const Eigen::Vector3d& p_rotated,
-                                          const Eigen::Vector3d& p_camera, const Eigen::Vector3d& phi,
+                                          const Eigen::Vector3d& p_camera, const Eigen::Matrix3d& left_jacobian,
                                           const RgbdMeasurement& measured);
 
 }  // namespace rtd::vision

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/cell_masks.hpp"
 
-#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <utility>
 
 namespace rtd::filter {
 namespace {
@@ -30,25 +31,24 @@ std::vector<int> take_region(const GridShape& shape, CellMask& open, int start) 
 
 }  // namespace
 
-CellMask dilate(const GridShape& shape, const CellMask& cells, int radius) {
-  CellMask wide(cells), result(cells);
-  for (int row = 0; row < shape.rows; ++row) {
-    for (int column = 0; column < shape.columns; ++column) {
-      std::uint8_t& value = wide[static_cast<std::size_t>(shape.index(column, row))];
-      for (int x = std::max(0, column - radius); x <= std::min(shape.columns - 1, column + radius); ++x) {
-        value = std::max(value, cells[static_cast<std::size_t>(shape.index(x, row))]);
-      }
-    }
-  }
-  for (int row = 0; row < shape.rows; ++row) {
-    for (int column = 0; column < shape.columns; ++column) {
-      std::uint8_t& value = result[static_cast<std::size_t>(shape.index(column, row))];
-      for (int y = std::max(0, row - radius); y <= std::min(shape.rows - 1, row + radius); ++y) {
-        value = std::max(value, wide[static_cast<std::size_t>(shape.index(column, y))]);
-      }
-    }
-  }
-  return result;
+template <typename T>
+std::vector<T> largest_near(const GridShape& shape, std::vector<T> values, int radius) {
+  cv::Mat image(shape.rows, shape.columns, cv::DataType<T>::type, values.data());
+  cv::dilate(image, image, cv::Mat::ones(2 * radius + 1, 2 * radius + 1, CV_8U));
+  return values;
+}
+template std::vector<std::uint8_t> largest_near(const GridShape&, std::vector<std::uint8_t>, int);
+template std::vector<std::int16_t> largest_near(const GridShape&, std::vector<std::int16_t>, int);
+template std::vector<float> largest_near(const GridShape&, std::vector<float>, int);
+
+std::vector<float> smallest_near(const GridShape& shape, std::vector<float> values, int radius) {
+  cv::Mat image(shape.rows, shape.columns, CV_32F, values.data());
+  cv::erode(image, image, cv::Mat::ones(2 * radius + 1, 2 * radius + 1, CV_8U));
+  return values;
+}
+
+CellMask dilate(const GridShape& shape, CellMask cells, int radius) {
+  return largest_near(shape, std::move(cells), radius);
 }
 
 CellMask compact(const GridShape& shape, const CellMask& cells) {

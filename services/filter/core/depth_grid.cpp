@@ -5,6 +5,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "services/filter/core/cell_masks.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -13,32 +17,26 @@ bool same(const geometry::CameraModel::Parameters& a, const geometry::CameraMode
   return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy && a.distortion == b.distortion;
 }
 
-/// Smallest and largest measured depth of each cell's samples, before the neighbours are looked at.
-struct CellRange {
-  std::vector<float> near_m, far_m;
-};
+constexpr float kUnmeasuredNear = std::numeric_limits<float>::max();
+
+/// Per cell: are enough of its 3x3 neighbourhood measured?
+std::vector<std::uint8_t> well_surrounded(const DepthGrid& grid) {
+  std::vector<std::uint8_t> count(grid.depth_m.size());
+  std::transform(grid.depth_m.begin(), grid.depth_m.end(), count.begin(),
+                 [](float depth_m) { return static_cast<std::uint8_t>(depth_m > 0 ? 1 : 0); });
+  cv::Mat image(grid.shape.rows, grid.shape.columns, CV_8U, count.data());
+  cv::boxFilter(image, image, CV_8U, {3, 3}, {-1, -1}, false, cv::BORDER_CONSTANT);
+  for (std::uint8_t& cell : count) cell = cell >= DepthGrid::kMinNeighbours ? 1 : 0;
+  return count;
+}
 
 /// Spreads the range of each cell over its 3x3 neighbourhood.
-void widen_ranges(const CellRange& range, DepthGrid& grid) {
-  const GridShape& shape = grid.shape;
-  for (int row = 0; row < shape.rows; ++row) {
-    for (int column = 0; column < shape.columns; ++column) {
-      float near_m = std::numeric_limits<float>::max(), far_m = 0;
-      int measured = 0;
-      for (int y = std::max(0, row - 1); y <= std::min(shape.rows - 1, row + 1); ++y) {
-        for (int x = std::max(0, column - 1); x <= std::min(shape.columns - 1, column + 1); ++x) {
-          const auto i = static_cast<std::size_t>(shape.index(x, y));
-          if (range.far_m[i] <= 0) continue;
-          near_m = std::min(near_m, range.near_m[i]);
-          far_m = std::max(far_m, range.far_m[i]);
-          ++measured;
-        }
-      }
-      const auto i = static_cast<std::size_t>(shape.index(column, row));
-      const bool enough = measured >= DepthGrid::kMinNeighbours;
-      grid.near_m[i] = enough ? near_m : 0.0F;
-      grid.far_m[i] = enough ? far_m : 0.0F;
-    }
+void widen_ranges(DepthGrid& grid) {
+  const std::vector<std::uint8_t> enough = well_surrounded(grid);
+  grid.near_m = smallest_near(grid.shape, std::move(grid.near_m), 1);
+  grid.far_m = largest_near(grid.shape, std::move(grid.far_m), 1);
+  for (std::size_t i = 0; i < enough.size(); ++i) {
+    if (enough[i] == 0) grid.near_m[i] = grid.far_m[i] = 0;
   }
 }
 
@@ -70,8 +68,8 @@ void DepthGridSampler::fit(const vision::RgbdImage& image) {
 DepthGrid DepthGridSampler::sample(const vision::RgbdImage& image) {
   fit(image);
   const auto cells = static_cast<std::size_t>(shape_.size());
-  DepthGrid grid{shape_, std::vector<float>(cells), std::vector<float>(cells), std::vector<float>(cells)};
-  CellRange range{std::vector<float>(cells), std::vector<float>(cells)};
+  DepthGrid grid{shape_, std::vector<float>(cells), std::vector<float>(cells, kUnmeasuredNear),
+                 std::vector<float>(cells)};
   const auto scale_m = static_cast<float>(image.depth_scale_m);
   const auto min_m = static_cast<float>(min_depth_m_), max_m = static_cast<float>(max_depth_m_);
   const cv::Mat depth = image.depth.isContinuous() ? image.depth : image.depth.clone();
@@ -89,10 +87,10 @@ DepthGrid DepthGridSampler::sample(const vision::RgbdImage& image) {
     }
     if (2 * count < kSamples) continue;  // half of the samples must be measured
     grid.depth_m[cell] = values[(count - 1) / 2];
-    range.near_m[cell] = values[0];
-    range.far_m[cell] = values[count - 1];
+    grid.near_m[cell] = values[0];
+    grid.far_m[cell] = values[count - 1];
   }
-  widen_ranges(range, grid);
+  widen_ranges(grid);
   return grid;
 }
 

@@ -176,6 +176,7 @@ CellBeliefs DynamicFilter::recall_beliefs(const Scene& scene, const Eigen::Isome
 /// What has been seen at rest for long takes part in the pose and in later checks, whatever its class.
 void DynamicFilter::trust_known_surfaces(Scene& scene) const {
   if (views_.empty() || !config_.techniques.belief || !config_.techniques.resting_objects) return;
+  if (std::none_of(scene.may_move.begin(), scene.may_move.end(), [](int cell) { return cell != 0; })) return;
   const CellBeliefs beliefs = recall_beliefs(scene, views_.predict_pose());
   const float enough = log_odds(config_.belief.min_used_probability);
   for (std::size_t cell = 0; cell < beliefs.size(); ++cell) {

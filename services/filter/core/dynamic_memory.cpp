@@ -23,17 +23,18 @@ std::vector<std::uint8_t> DynamicMemory::recall(const DepthGrid& grid, const geo
   const Eigen::Matrix3f rotation = T_current_last.linear().cast<float>();
   const Eigen::Vector3f translation = T_current_last.translation().cast<float>();
   const auto& p = camera.parameters();
+  const auto fx = static_cast<float>(p.fx), fy = static_cast<float>(p.fy);
+  const auto cx = static_cast<float>(p.cx), cy = static_cast<float>(p.cy);
   std::vector<std::uint8_t> frames_left(static_cast<std::size_t>(grid.shape.size()), 0);
   for (const Point& point : points_) {
     const Eigen::Vector3f p_current = rotation * point.p_camera + translation;
     if (p_current.z() < kMinDepthM) continue;
-    const double u_px = p.fx * p_current.x() / p_current.z() + p.cx, v_px = p.fy * p_current.y() / p_current.z() + p.cy;
-    for (const double shift_px :
-         {-0.5 * kCellPx, 0.5 * kCellPx}) {  // two by two cells: no holes when things come nearer
-      for (const double drop_px : {-0.5 * kCellPx, 0.5 * kCellPx}) {
-        const int cell = grid.shape.cell_at(u_px + shift_px, v_px + drop_px);
-        if (cell < 0) continue;
-        const auto i = static_cast<std::size_t>(cell);
+    // Two by two cells: no holes when things come nearer.
+    const auto left = static_cast<int>(std::floor((fx * p_current.x() / p_current.z() + cx) / kCellPx - 0.5F));
+    const auto top = static_cast<int>(std::floor((fy * p_current.y() / p_current.z() + cy) / kCellPx - 0.5F));
+    for (int row = std::max(top, 0); row <= std::min(top + 1, grid.shape.rows - 1); ++row) {
+      for (int column = std::max(left, 0); column <= std::min(left + 1, grid.shape.columns - 1); ++column) {
+        const auto i = static_cast<std::size_t>(grid.shape.index(column, row));
         if (std::abs(grid.depth_m[i] - p_current.z()) < kOwnDepthM)
           frames_left[i] = std::max(frames_left[i], point.frames_left);
       }

@@ -94,31 +94,37 @@ const ClusterInBox* cluster_at_depth(const std::vector<ClusterInBox>& inside, do
   return largest;
 }
 
-/// The object's own cluster (all of it when it lies mostly in the box) and the parts of it that a depth step cut off.
-std::vector<int> collect_cells(const ClusterInBox& object, const std::vector<ClusterInBox>& inside,
+/// How much of a cluster belongs to an object.
+enum class Share : std::uint8_t { kNothing, kNearItsDepth, kAll };
+
+/// Per cluster: all of it when it lies mostly in the box; of one that has grown together with the background only what
+/// is near the object's depth.
+std::vector<Share> shares_of(const ClusterInBox& object, const std::vector<ClusterInBox>& inside,
+                             const DepthClusters& clusters, const MaskConfig& config) {
+  std::vector<Share> shares(clusters.cells.size(), Share::kNothing);
+  for (const ClusterInBox& cluster : inside) {
+    const auto label = static_cast<std::size_t>(cluster.label);
+    const bool contained = static_cast<double>(cluster.cells.size()) / clusters.cells[label] >= config.min_contained;
+    const bool cut_off = contained && std::abs(cluster.median_m - object.median_m) <= config.max_object_depth_m;
+    if (cluster.label != object.label && !cut_off) continue;
+    shares[label] = contained ? Share::kAll : Share::kNearItsDepth;
+  }
+  return shares;
+}
+
+/// The object's own cluster and the parts of it that a depth step cut off, in ascending order.
+std::vector<int> collect_cells(const ClusterInBox& object, const CellBox& box, const std::vector<Share>& shares,
                                const DepthGrid& grid, const DepthClusters& clusters, const MaskConfig& config) {
-  const auto contained = [&](const ClusterInBox& cluster) {
-    return static_cast<double>(cluster.cells.size()) / clusters.cells[static_cast<std::size_t>(cluster.label)];
+  const auto near_object = [&](int cell) {
+    return box.contains(cell % grid.shape.columns, cell / grid.shape.columns) &&
+           std::abs(grid.depth_m[static_cast<std::size_t>(cell)] - object.median_m) <= config.max_object_depth_m;
   };
   std::vector<int> cells;
-  for (const ClusterInBox& cluster : inside) {
-    const bool own = cluster.label == object.label;
-    if (!own && (std::abs(cluster.median_m - object.median_m) > config.max_object_depth_m ||
-                 contained(cluster) < config.min_contained)) {
-      continue;
-    }
-    if (contained(cluster) >= config.min_contained) {
-      for (int cell = 0; cell < grid.shape.size(); ++cell) {
-        if (clusters.label[static_cast<std::size_t>(cell)] == cluster.label) cells.push_back(cell);
-      }
-      continue;
-    }
-    for (const int cell : cluster.cells) {  // grown together with the background: only what is near the object's depth
-      const float z = grid.depth_m[static_cast<std::size_t>(cell)];
-      if (std::abs(z - object.median_m) <= config.max_object_depth_m) cells.push_back(cell);
-    }
+  for (int cell = 0; cell < grid.shape.size(); ++cell) {
+    const std::int32_t label = clusters.label[static_cast<std::size_t>(cell)];
+    const Share share = label < 0 ? Share::kNothing : shares[static_cast<std::size_t>(label)];
+    if (share == Share::kAll || (share == Share::kNearItsDepth && near_object(cell))) cells.push_back(cell);
   }
-  std::sort(cells.begin(), cells.end());
   return cells;
 }
 
@@ -232,7 +238,8 @@ std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const
     const ClusterInBox* cluster = depth_known ? cluster_at_depth(inside, from.depth_m, config.max_object_depth_m)
                                               : object_cluster(inside, config.min_share);
     if (cluster != nullptr) {
-      object.cells = collect_cells(*cluster, inside, grid, clusters, config);
+      object.cells =
+          collect_cells(*cluster, *box, shares_of(*cluster, inside, clusters, config), grid, clusters, config);
       object.flat = outline_step_share(object.cells, grid, config.min_outline_step_m) < config.min_outline_share;
     } else if (from.carried && !config.whole_boxes) {
       continue;

@@ -3,6 +3,7 @@
 #include "services/filter/core/static_probability.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "services/filter/core/belief/log_odds.hpp"
 
@@ -26,41 +27,30 @@ msg::FeatureFlag mask_flag(MotionLevel level) {
 /// The object on each cell, dilated, -1 = none. Where masks overlap the higher level wins: a monitor behind a person is
 /// left to geometry, the person is not.
 std::vector<std::int16_t> paint_objects(const FrameKnowledge& known, int dilate_cells) {
-  const GridShape& shape = known.shape;
-  std::vector<std::int16_t> painted(static_cast<std::size_t>(shape.size()), -1);
-  const auto paint_around = [&](int cell, std::int16_t object) {
-    const int column = cell % shape.columns, row = cell / shape.columns;
-    for (int y = std::max(0, row - dilate_cells); y <= std::min(shape.rows - 1, row + dilate_cells); ++y) {
-      for (int x = std::max(0, column - dilate_cells); x <= std::min(shape.columns - 1, column + dilate_cells); ++x) {
-        painted[static_cast<std::size_t>(shape.index(x, y))] = object;
-      }
-    }
-  };
+  std::vector<std::int16_t> order;  // objects in ascending order of level
+  std::vector<std::int16_t> rank(static_cast<std::size_t>(known.shape.size()), -1);
   for (const MotionLevel level : {MotionLevel::kLow, MotionLevel::kMedium, MotionLevel::kHigh}) {
     for (std::size_t k = 0; k < known.objects.size(); ++k) {
       if (known.objects[k].level != level) continue;
-      for (const int cell : known.objects[k].cells) paint_around(cell, static_cast<std::int16_t>(k));
+      for (const int cell : known.objects[k].cells)
+        rank[static_cast<std::size_t>(cell)] = static_cast<std::int16_t>(order.size());
+      order.push_back(static_cast<std::int16_t>(k));
     }
   }
+  std::vector<std::int16_t> painted = largest_near(known.shape, std::move(rank), dilate_cells);
+  for (std::int16_t& object : painted) object = object < 0 ? object : order[static_cast<std::size_t>(object)];
   return painted;
 }
 
 /// The beliefs with those in objects that may not be used spread around them: the outline of a mask is not exact.
 CellBeliefs grow_doubt(const FrameKnowledge& known, int cells) {
-  CellBeliefs grown(known.beliefs);
-  const GridShape& shape = known.shape;
-  for (int row = 0; row < shape.rows; ++row) {
-    for (int column = 0; column < shape.columns; ++column) {
-      const auto cell = static_cast<std::size_t>(shape.index(column, row));
-      const float belief = known.beliefs[cell];
-      if (known.object_on[cell] < 0 || belief >= 0) continue;
-      for (int y = std::max(0, row - cells); y <= std::min(shape.rows - 1, row + cells); ++y) {
-        for (int x = std::max(0, column - cells); x <= std::min(shape.columns - 1, column + cells); ++x) {
-          float& near = grown[static_cast<std::size_t>(shape.index(x, y))];
-          near = std::min(near, belief);
-        }
-      }
-    }
+  CellBeliefs doubt(known.beliefs.size(), 0);
+  for (std::size_t cell = 0; cell < doubt.size(); ++cell) {
+    if (known.object_on[cell] >= 0) doubt[cell] = std::min(known.beliefs[cell], 0.0F);
+  }
+  CellBeliefs grown = smallest_near(known.shape, std::move(doubt), cells);
+  for (std::size_t cell = 0; cell < grown.size(); ++cell) {
+    grown[cell] = grown[cell] < 0 ? std::min(known.beliefs[cell], grown[cell]) : known.beliefs[cell];
   }
   return grown;
 }

@@ -183,7 +183,8 @@ void evaluate_bundle_residual(const vision::RgbdProjection& camera, const Eigen:
   const Eigen::Vector3d residual = whitening * vision::rgbd_residual(camera, p_camera, observation.measured);
   Eigen::Map<Eigen::VectorXd>(residuals, dimension) = residual.head(dimension);
   if (jacobian_pose != nullptr) {
-    const Eigen::Matrix<double, 3, 6> J = vision::pose_jacobian(camera, p_rotated, p_camera, phi, observation.measured);
+    const Eigen::Matrix<double, 3, 6> J =
+        vision::pose_jacobian(camera, p_rotated, p_camera, geometry::so3_left_jacobian(phi), observation.measured);
     Eigen::Map<RowMajor36>(jacobian_pose, dimension, 6) = whitening * J.topRows(dimension);
   }
   if (jacobian_point != nullptr) {

@@ -27,12 +27,12 @@ std::vector<SquaredResidual> make_residuals(double sigma, double outlier_share) 
 }
 
 TEST(GeneralLoss, begins_as_the_square_and_slope_is_its_derivative) {
-  for (const double shape : {2.0, 1.0, 0.0, -2.0}) {
+  for (const double shape : {2.0, 1.5, 1.0, 0.5, 0.0, -2.0}) {
     const GeneralLoss loss{shape, 0.6};
-    EXPECT_NEAR(loss.rho(1e-4), 1e-4, 1e-7) << shape;
+    EXPECT_NEAR(loss(1e-4).rho, 1e-4, 1e-7) << shape;
     for (const double s : {0.1, 2.0, 50.0}) {
       const double step = 1e-5 * s;
-      EXPECT_NEAR(loss.rho_slope(s), (loss.rho(s + step) - loss.rho(s - step)) / (2 * step), 1e-6) << shape;
+      EXPECT_NEAR(loss(s).slope, (loss(s + step).rho - loss(s - step).rho) / (2 * step), 1e-6) << shape;
     }
   }
 }

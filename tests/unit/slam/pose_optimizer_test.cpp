@@ -150,7 +150,8 @@ TEST(PoseJacobian, agrees_with_central_differences) {
     return rgbd_residual(kCamera, p_camera, measured);
   };
   const Eigen::Vector3d p_rotated = geometry::so3_exp(x0.tail<3>()) * p_world;
-  const auto analytic = pose_jacobian(kCamera, p_rotated, p_rotated + t + x0.head<3>(), x0.tail<3>(), measured);
+  const auto analytic = pose_jacobian(kCamera, p_rotated, p_rotated + t + x0.head<3>(),
+                                      geometry::so3_left_jacobian(x0.tail<3>()), measured);
   constexpr double kStep = 1e-6;
   for (int i = 0; i < 6; ++i) {
     const geometry::Vector6d step = kStep * geometry::Vector6d::Unit(i);

@@ -183,7 +183,8 @@ void BoxTracks::carry(const MeasureCarry& measure) {
       Step& step = track.steps[i];
       if (step.flow_tried || step.seen) continue;
       const Step& before = track.steps[i - 1];
-      const auto carried = measure({before.stamp_ns, step.stamp_ns, before.state.box(), before.depth_m});
+      const auto carried =
+          measure({before.stamp_ns, step.stamp_ns, before.state.box(), before.depth_m, voted_class(track.votes)});
       step.flow_tried = true;
       step.depth_m = before.depth_m;
       if (!carried) continue;

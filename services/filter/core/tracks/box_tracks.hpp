@@ -37,6 +37,7 @@ struct CarryStep {
   std::int64_t from_ns = 0, to_ns = 0;
   Box box;             ///< in the image at from_ns
   double depth_m = 0;  ///< of the object there, 0 = unknown
+  const std::string& class_name;
 };
 struct CarriedBox {
   BoxFlow flow;

@@ -54,10 +54,10 @@ std::optional<BoxFlow> motion_of_points(const Box& box, const std::vector<cv::Po
 
 void MaskFlow::see(std::int64_t stamp_ns, const cv::Mat& color_bgr) {
   if (!images_.empty() && stamp_ns <= images_.back().stamp_ns) images_.clear();
-  cv::Mat small, grey;
-  cv::resize(color_bgr, small, {color_bgr.cols / 2, color_bgr.rows / 2}, 0, 0, cv::INTER_AREA);
-  cv::cvtColor(small, grey, cv::COLOR_BGR2GRAY);
-  images_.push_back({stamp_ns, std::move(grey), {}});
+  cv::Mat grey, small;
+  cv::cvtColor(color_bgr, grey, cv::COLOR_BGR2GRAY);
+  cv::resize(grey, small, {grey.cols / 2, grey.rows / 2}, 0, 0, cv::INTER_AREA);
+  images_.push_back({stamp_ns, std::move(small), {}});
   if (images_.size() > kMaxImages) images_.pop_front();
 }
 
@@ -80,7 +80,7 @@ std::optional<PointsMotion> MaskFlow::follow(std::int64_t from_ns, std::int64_t 
   std::vector<std::uint8_t> found, returned;
   cv::calcOpticalFlowPyrLK(before, after, start, there, found, cv::noArray(), kWindow, kMaxLevel, enough);
   back = start;
-  cv::calcOpticalFlowPyrLK(after, before, there, back, returned, cv::noArray(), kWindow, kMaxLevel, enough,
+  cv::calcOpticalFlowPyrLK(after, before, there, back, returned, cv::noArray(), kWindow, 0, enough,
                            cv::OPTFLOW_USE_INITIAL_FLOW);
   std::vector<cv::Point2f> good;
   PointsMotion motion;

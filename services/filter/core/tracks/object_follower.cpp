@@ -52,7 +52,8 @@ ObjectFollower::ObjectFollower(const FilterConfig& config)
       use_tracks_(config.techniques.box_tracks),
       use_flow_(config.techniques.mask_flow),
       distrust_roll_(config.techniques.roll_distrust),
-      levels_(config.motion_levels),
+      levels_(config.techniques.motion_levels ? MotionLevels(config.motion_levels)
+                                              : MotionLevels(config.motion_levels).all_high()),
       tracks_(config.tracks) {}
 
 std::vector<ObjectBox> ObjectFollower::follow(const DetectorWord& word, const vision::RgbdImage& image,
@@ -90,6 +91,7 @@ std::vector<ObjectBox> ObjectFollower::follow(const DetectorWord& word, const vi
 
 std::optional<CarriedBox> ObjectFollower::measure(const CarryStep& step, const vision::RgbdImage& image,
                                                   const DepthGrid& grid, const ViewStore& views) {
+  if (levels_.find(step.class_name) != MotionLevel::kHigh) return std::nullopt;  // geometry decides: not worth the time
   const View *from = views.at(step.from_ns), *to = views.at(step.to_ns);
   if (from == nullptr || (to == nullptr && step.to_ns != image.stamp_ns)) return std::nullopt;
   const auto points = points_on(*from, step.box, step.depth_m, masks_.max_object_depth_m);
