@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "common/mcap/records.hpp"
+
+namespace rtd::mcap {
+
+/// Where a reader gets its bytes. Const members may be called from several threads.
+class ByteSource {
+ public:
+  virtual ~ByteSource() = default;
+  virtual std::uint64_t size() const = 0;
+  /// Fills `into` from `offset`; fewer bytes than asked only at the end or where the disk cannot be read.
+  virtual std::size_t read(std::uint64_t offset, std::span<std::byte> into) const = 0;
+};
+
+/// Bytes that somebody else keeps alive.
+class MemorySource final : public ByteSource {
+ public:
+  explicit MemorySource(ByteView bytes) : bytes_(bytes) {}
+  std::uint64_t size() const override { return bytes_.size(); }
+  std::size_t read(std::uint64_t offset, std::span<std::byte> into) const override;
+
+ private:
+  ByteView bytes_;
+};
+
+/// A file, read with pread(2): a file that is cut while it is read gives short reads, where a mapping would give
+/// SIGBUS. Its size is that at the time of opening.
+class FileSource final : public ByteSource {
+ public:
+  /// Throws IoError (byte_sink.hpp) with path and reason.
+  explicit FileSource(const std::filesystem::path& path);
+  ~FileSource() override;
+  FileSource(const FileSource&) = delete;
+  FileSource& operator=(const FileSource&) = delete;
+
+  std::uint64_t size() const override { return size_; }
+  std::size_t read(std::uint64_t offset, std::span<std::byte> into) const override;
+  /// True while a FileSink of any process has it open: more may come.
+  bool being_written() const;
+
+ private:
+  int fd_ = -1;
+  std::uint64_t size_ = 0;
+};
+
+}  // namespace rtd::mcap

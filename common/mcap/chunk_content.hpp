@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "common/mcap/buffer.hpp"
+#include "common/mcap/problem.hpp"
+
+namespace rtd::mcap {
+
+/// What bounds a reader, whatever a file claims.
+struct ReaderOptions {
+  std::uint64_t max_record_bytes = 512 * 1024 * 1024;  ///< of a record, and of a chunk when uncompressed
+  std::uint64_t cache_bytes = 64 * 1024 * 1024;        ///< of uncompressed chunks that an IndexedReader keeps
+  std::size_t max_problems = 1000;                     ///< listed; more are counted
+  bool check_crcs = true;
+};
+
+/// The uncompressed records of a chunk, or why there are none.
+struct ChunkContent {
+  std::optional<ByteView> records;  ///< in the scratch buffer or in the chunk itself
+  ProblemKind fault{};
+  std::string what;
+};
+ChunkContent open_chunk(const Chunk& chunk, const ReaderOptions& options, Buffer& scratch);
+
+/// "0x" and eight digits.
+std::string hex(std::uint32_t value);
+
+/// One record inside a chunk or summary.
+struct InnerRecord {
+  Opcode opcode{};
+  std::uint64_t offset = 0;  ///< in the uncompressed chunk or summary
+  ByteView content;
+};
+
+/// Goes through records in memory: an uncompressed chunk, a summary.
+class RecordCursor {
+ public:
+  RecordCursor() = default;
+  explicit RecordCursor(ByteView records) : records_(records) {}
+
+  /// Empty at the end, and where a record is longer than what is left: then cut() is true.
+  std::optional<InnerRecord> next();
+  bool cut() const { return cut_; }
+  std::uint64_t position() const { return position_; }
+  std::uint64_t left() const { return records_.size() - position_; }
+
+ private:
+  ByteView records_;
+  std::uint64_t position_ = 0;
+  bool cut_ = false;
+};
+
+}  // namespace rtd::mcap

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/mcap/framing.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "common/mcap/compression.hpp"
+#include "common/mcap/decode.hpp"
+#include "common/mcap/encode.hpp"
+
+namespace rtd::mcap {
+namespace {
+
+struct RecordKind {
+  const char* name;
+  std::uint64_t least_length;  ///< of the content: all texts and maps empty
+};
+
+// By opcode, from 0x01 on.
+constexpr std::array<RecordKind, 15> kKinds{{{"Header", 8},
+                                             {"Footer", 20},
+                                             {"Schema", 14},
+                                             {"Channel", 16},
+                                             {"Message", 22},
+                                             {"Chunk", 40},
+                                             {"MessageIndex", 6},
+                                             {"ChunkIndex", 64},
+                                             {"Attachment", 36},
+                                             {"AttachmentIndex", 48},
+                                             {"Statistics", 46},
+                                             {"Metadata", 8},
+                                             {"MetadataIndex", 20},
+                                             {"SummaryOffset", 17},
+                                             {"DataEnd", 4}}};
+
+std::size_t number(Opcode opcode) {
+  return static_cast<std::size_t>(opcode);
+}
+
+bool is_magic(const SourceWindow& file, std::uint64_t offset) {
+  std::array<std::byte, kMagic.size()> bytes;
+  return file.size() - offset == bytes.size() && file.peek(offset, bytes) &&
+         std::ranges::equal(bytes, bytes_of(kMagic));
+}
+
+/// The lengths inside a chunk agree with that of the record.
+bool is_consistent_chunk(const SourceWindow& file, const Frame& frame) {
+  constexpr std::uint64_t kLongestName = 4;
+  std::array<std::byte, 40 + kLongestName> head{};
+  const auto read = static_cast<std::size_t>(std::min<std::uint64_t>(head.size(), frame.length));
+  if (!file.peek(frame.content(), std::span(head).first(read))) return false;
+  const auto name_length = load<std::uint32_t>(head.data() + 28);
+  if (name_length > kLongestName || 40 + name_length > frame.length) return false;
+  return load<std::uint64_t>(head.data() + 32 + name_length) == frame.length - 40 - name_length;
+}
+
+bool is_possible(const SourceWindow& file, const Frame& frame) {
+  if (!is_known(frame.opcode) || frame.length < kKinds[number(frame.opcode) - 1].least_length) return false;
+  const bool whole_chunk = frame.opcode == Opcode::kChunk && frame.fits(file.size());
+  return !whole_chunk || is_consistent_chunk(file, frame);
+}
+
+bool stands_alone(std::byte opcode, bool loose_messages) {
+  switch (static_cast<Opcode>(opcode)) {
+    case Opcode::kChunk:
+    case Opcode::kAttachment:
+    case Opcode::kMetadata:
+    case Opcode::kDataEnd:
+    case Opcode::kFooter:
+      return true;
+    case Opcode::kSchema:
+    case Opcode::kChannel:
+    case Opcode::kMessage:
+      return loose_messages;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+std::string name_of(Opcode opcode) {
+  if (is_known(opcode)) return kKinds[number(opcode) - 1].name;
+  constexpr const char* kDigits = "0123456789abcdef";
+  return std::string("record of type 0x") + kDigits[number(opcode) / 16] + kDigits[number(opcode) % 16];
+}
+
+bool is_known(Opcode opcode) {
+  return number(opcode) >= 1 && number(opcode) <= kKinds.size();
+}
+
+std::optional<Frame> frame_at(const SourceWindow& file, std::uint64_t offset) {
+  std::array<std::byte, kFrameBytes> bytes;
+  if (!file.peek(offset, bytes)) return std::nullopt;
+  return Frame{static_cast<Opcode>(bytes[0]), offset, load<std::uint64_t>(bytes.data() + 1)};
+}
+
+bool begins_record(const SourceWindow& file, std::uint64_t offset) {
+  for (int record = 0; record < 2; ++record) {
+    if (offset == file.size() || is_magic(file, offset)) return true;
+    const std::optional<Frame> frame = frame_at(file, offset);
+    if (!frame) return record > 0;
+    if (!is_possible(file, *frame)) return false;
+    if (!frame->fits(file.size())) return record > 0;
+    offset = frame->end();
+  }
+  return true;
+}
+
+std::optional<std::uint64_t> find_record(SourceWindow& file, std::uint64_t from, bool loose_messages) {
+  constexpr std::uint64_t kBlock = 64 * 1024;
+  while (from < file.size() && file.size() - from >= kFrameBytes) {
+    const std::optional<ByteView> block = file.view(from, std::min(kBlock, file.size() - from));
+    if (!block) return std::nullopt;
+    const std::size_t places = block->size() - kFrameBytes + 1;
+    for (std::size_t i = 0; i < places; ++i) {
+      if (!stands_alone((*block)[i], loose_messages)) continue;
+      const bool fits = load<std::uint64_t>(block->data() + i + 1) <= file.size() - from - i - kFrameBytes;
+      if (fits && begins_record(file, from + i)) return from + i;
+    }
+    from += places;
+  }
+  return std::nullopt;
+}
+
+}  // namespace rtd::mcap

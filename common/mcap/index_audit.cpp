@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/mcap/index_audit.hpp"
+
+#include <algorithm>
+
+namespace rtd::mcap {
+namespace {
+
+using Found = std::optional<std::string>;
+
+Found differs(const std::string& field, std::uint64_t says, std::uint64_t is) {
+  if (says == is) return std::nullopt;
+  return field + " is " + std::to_string(is) + ", the record says " + std::to_string(says);
+}
+
+Found first_of(std::initializer_list<Found> found) {
+  for (const Found& one : found)
+    if (one) return one;
+  return std::nullopt;
+}
+
+Found check_place(const std::set<std::pair<std::uint64_t, std::uint64_t>>& seen, std::uint64_t offset,
+                  std::uint64_t length, const std::string& kind) {
+  if (seen.contains({offset, length})) return std::nullopt;
+  return "no " + kind + " of " + std::to_string(length) + " bytes stands at offset " + std::to_string(offset);
+}
+
+}  // namespace
+
+void IndexAudit::begin_chunk(std::uint64_t offset, std::uint64_t length, const Chunk& chunk) {
+  ChunkIndex& index = chunks_[offset];
+  index.chunk_start_offset = offset;
+  index.chunk_length = length;
+  index.message_start_time = chunk.message_start_time;
+  index.message_end_time = chunk.message_end_time;
+  index.compression = chunk.compression;
+  index.compressed_size = chunk.records.size();
+  index.uncompressed_size = chunk.uncompressed_size;
+  open_chunk_ = offset;
+  messages_.clear();
+}
+
+void IndexAudit::message_in_chunk(const Message& message, std::uint64_t offset_in_chunk) {
+  ++message_count_;
+  messages_.push_back({offset_in_chunk, message.log_time, message.channel_id});
+}
+
+Found IndexAudit::end_chunk() {
+  if (!open_chunk_ || messages_.empty()) return std::nullopt;
+  const ChunkIndex& index = chunks_.at(*open_chunk_);
+  const auto [first, last] = std::ranges::minmax_element(messages_, {}, &SeenMessage::log_time);
+  return first_of({differs("the first log_time in it", index.message_start_time, first->log_time),
+                   differs("the last log_time in it", index.message_end_time, last->log_time)});
+}
+
+void IndexAudit::summary_record(Opcode opcode, std::uint64_t offset, std::uint64_t length) {
+  const auto [group, added] = groups_.try_emplace(opcode, SeenGroup{offset, 0});
+  group->second.length += length;
+}
+
+Found IndexAudit::check(std::uint64_t offset, std::uint64_t length, const MessageIndex& index) {
+  if (!open_chunk_) return std::nullopt;
+  ChunkIndex& chunk = chunks_.at(*open_chunk_);
+  chunk.message_index_offsets.emplace(index.channel_id, offset);
+  chunk.message_index_length += length;
+  if (messages_.empty()) return std::nullopt;
+  for (const auto& [log_time, in_chunk] : index.records) {
+    const auto seen = std::ranges::lower_bound(messages_, in_chunk, {}, &SeenMessage::offset);
+    if (seen == messages_.end() || seen->offset != in_chunk || seen->log_time != log_time ||
+        seen->channel_id != index.channel_id)
+      return "no message of channel " + std::to_string(index.channel_id) + " and log_time " + std::to_string(log_time) +
+             " stands at " + std::to_string(in_chunk) + " in the chunk";
+  }
+  const auto count = std::ranges::count(messages_, index.channel_id, &SeenMessage::channel_id);
+  return differs("the number of messages of its channel", index.records.size(), static_cast<std::uint64_t>(count));
+}
+
+Found IndexAudit::check(const ChunkIndex& index) const {
+  const auto seen = chunks_.find(index.chunk_start_offset);
+  if (seen == chunks_.end()) return "no chunk stands at offset " + std::to_string(index.chunk_start_offset);
+  const ChunkIndex& chunk = seen->second;
+  if (chunk.compression != index.compression)
+    return "the compression is \"" + chunk.compression + "\", the record says \"" + index.compression + '"';
+  if (!index.message_index_offsets.empty() && chunk.message_index_offsets != index.message_index_offsets)
+    return "the offsets of the message indexes are others";
+  return first_of({differs("the length of the chunk", index.chunk_length, chunk.chunk_length),
+                   differs("message_start_time", index.message_start_time, chunk.message_start_time),
+                   differs("message_end_time", index.message_end_time, chunk.message_end_time),
+                   differs("the length of the message indexes", index.message_index_length, chunk.message_index_length),
+                   differs("the compressed size", index.compressed_size, chunk.compressed_size),
+                   differs("the uncompressed size", index.uncompressed_size, chunk.uncompressed_size)});
+}
+
+Found IndexAudit::check(const AttachmentIndex& index) const {
+  return check_place(attachments_, index.offset, index.length, "attachment");
+}
+
+Found IndexAudit::check(const MetadataIndex& index) const {
+  return check_place(metadata_, index.offset, index.length, "metadata");
+}
+
+Found IndexAudit::check(const SummaryOffset& group) const {
+  const auto seen = groups_.find(group.group_opcode);
+  if (seen == groups_.end()) return "the summary has no such group";
+  return first_of({differs("the start of the group", group.group_start, seen->second.start),
+                   differs("the length of the group", group.group_length, seen->second.length)});
+}
+
+Found IndexAudit::check(const Statistics& statistics) const {
+  return first_of({differs("the number of messages", statistics.message_count, message_count_),
+                   differs("the number of chunks", statistics.chunk_count, chunks_.size()),
+                   differs("the number of attachments", statistics.attachment_count, attachments_.size()),
+                   differs("the number of metadata records", statistics.metadata_count, metadata_.size())});
+}
+
+}  // namespace rtd::mcap

@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/dataset/mcap/conformance_case.hpp"
+
+#include <cstdlib>
+#include <fstream>
+
+#include "common/mcap/indexed_reader.hpp"
+#include "common/mcap/stream_reader.hpp"
+
+namespace rtd::mcap {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The fields of a JSON record, by name.
+Json fields_of(const Json& record) {
+  Json fields = Json::object();
+  for (const Json& field : record.at("fields")) fields[field.at(0).get<std::string>()] = field.at(1);
+  return fields;
+}
+
+std::uint64_t number(const Json& fields, const char* name) {
+  return std::stoull(fields.at(name).get<std::string>());
+}
+
+std::string text(const Json& fields, const char* name) {
+  return fields.at(name).get<std::string>();
+}
+
+std::string data_of(const Json& fields) {
+  std::string data;
+  for (const Json& byte : fields.at("data")) data.push_back(static_cast<char>(std::stoi(byte.get<std::string>())));
+  return data;
+}
+
+void write_record(Writer& writer, const std::string& type, const Json& fields) {
+  if (type == "Schema") {
+    writer.write(Schema{static_cast<SchemaId>(number(fields, "id")), text(fields, "name"), text(fields, "encoding"),
+                        data_of(fields)});
+  } else if (type == "Channel") {
+    writer.write(Channel{static_cast<ChannelId>(number(fields, "id")),
+                         static_cast<SchemaId>(number(fields, "schema_id")), text(fields, "topic"),
+                         text(fields, "message_encoding"), fields.at("metadata")});
+  } else if (type == "Message") {
+    const std::string data = data_of(fields);
+    writer.write(Message{static_cast<ChannelId>(number(fields, "channel_id")),
+                         static_cast<std::uint32_t>(number(fields, "sequence")), number(fields, "log_time"),
+                         number(fields, "publish_time"), bytes_of(data)});
+  } else if (type == "Attachment") {
+    const std::string data = data_of(fields);
+    writer.write(Attachment{number(fields, "log_time"), number(fields, "create_time"), text(fields, "name"),
+                            text(fields, "media_type"), bytes_of(data), 0});
+  } else if (type == "Metadata") {
+    writer.write(Metadata{text(fields, "name"), fields.at("metadata")});
+  }
+}
+
+/// Collects fields as the JSON has them: sorted by name, numbers as text.
+class Fields {
+ public:
+  void operator()(const char* name, std::uint64_t value) { add(name, std::to_string(value)); }
+  void operator()(const char* name, const std::string& value) { add(name, value); }
+  void operator()(const char* name, const std::map<std::string, std::string>& value) {
+    add(name, value.empty() ? Json::object() : Json(value));
+  }
+  void operator()(const char* name, const std::map<ChannelId, std::uint64_t>& value) {
+    Json map = Json::object();
+    for (const auto& [key, count] : value) map[std::to_string(key)] = std::to_string(count);
+    add(name, map);
+  }
+  void operator()(const char* name, ByteView data) {
+    Json list = Json::array();
+    for (const std::byte byte : data) list.push_back(std::to_string(std::to_integer<int>(byte)));
+    add(name, list);
+  }
+  Json record(const char* type) const {
+    Json fields = Json::array();
+    for (const auto& [name, value] : fields_) fields.push_back({name, value});
+    return {{"type", type}, {"fields", fields}};
+  }
+
+ private:
+  void add(const char* name, Json value) { fields_[name] = std::move(value); }
+  std::map<std::string, Json> fields_;
+};
+
+struct ToJson {
+  Fields f;
+
+  Json operator()(const Header& r) { return f("library", r.library), f("profile", r.profile), f.record("Header"); }
+  Json operator()(const Footer& r) {
+    f("summary_crc", r.summary_crc), f("summary_offset_start", r.summary_offset_start);
+    return f("summary_start", r.summary_start), f.record("Footer");
+  }
+  Json operator()(const Schema& r) {
+    f("data", bytes_of(r.data)), f("encoding", r.encoding), f("id", r.id), f("name", r.name);
+    return f.record("Schema");
+  }
+  Json operator()(const Channel& r) {
+    f("id", r.id), f("message_encoding", r.message_encoding), f("metadata", r.metadata), f("schema_id", r.schema_id);
+    return f("topic", r.topic), f.record("Channel");
+  }
+  Json operator()(const Message& r) {
+    f("channel_id", r.channel_id), f("data", r.data), f("log_time", r.log_time), f("publish_time", r.publish_time);
+    return f("sequence", r.sequence), f.record("Message");
+  }
+  Json operator()(const Chunk&) { return nullptr; }
+  Json operator()(const MessageIndex&) { return nullptr; }
+  Json operator()(const ChunkIndex& r) {
+    f("chunk_length", r.chunk_length), f("chunk_start_offset", r.chunk_start_offset);
+    f("compressed_size", r.compressed_size), f("compression", r.compression);
+    f("message_end_time", r.message_end_time), f("message_index_length", r.message_index_length);
+    f("message_index_offsets", r.message_index_offsets), f("message_start_time", r.message_start_time);
+    return f("uncompressed_size", r.uncompressed_size), f.record("ChunkIndex");
+  }
+  Json operator()(const Attachment& r) {
+    f("create_time", r.create_time), f("data", r.data), f("log_time", r.log_time), f("media_type", r.media_type);
+    return f("name", r.name), f.record("Attachment");
+  }
+  Json operator()(const AttachmentIndex& r) {
+    f("create_time", r.create_time), f("data_size", r.data_size), f("length", r.length), f("log_time", r.log_time);
+    f("media_type", r.media_type), f("name", r.name);
+    return f("offset", r.offset), f.record("AttachmentIndex");
+  }
+  Json operator()(const Statistics& r) {
+    f("attachment_count", r.attachment_count), f("channel_count", r.channel_count);
+    f("channel_message_counts", r.channel_message_counts), f("chunk_count", r.chunk_count);
+    f("message_count", r.message_count), f("message_end_time", r.message_end_time);
+    f("message_start_time", r.message_start_time), f("metadata_count", r.metadata_count);
+    return f("schema_count", r.schema_count), f.record("Statistics");
+  }
+  Json operator()(const Metadata& r) { return f("metadata", r.metadata), f("name", r.name), f.record("Metadata"); }
+  Json operator()(const MetadataIndex& r) {
+    return f("length", r.length), f("name", r.name), f("offset", r.offset), f.record("MetadataIndex");
+  }
+  Json operator()(const SummaryOffset& r) {
+    f("group_length", r.group_length), f("group_opcode", static_cast<std::uint64_t>(r.group_opcode));
+    return f("group_start", r.group_start), f.record("SummaryOffset");
+  }
+  Json operator()(const DataEnd& r) { return f("data_section_crc", r.data_section_crc), f.record("DataEnd"); }
+};
+
+}  // namespace
+
+std::vector<ConformanceCase> conformance_cases() {
+  std::vector<ConformanceCase> cases;
+  const char* const root = std::getenv("RTD_DATA_DIR");
+  const std::filesystem::path folder = std::filesystem::path(root == nullptr ? "" : root) / "mcap_conformance";
+  if (root == nullptr || !std::filesystem::is_directory(folder)) return cases;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".json") continue;
+    const Json json = Json::parse(std::ifstream(entry.path()));
+    std::filesystem::path mcap = entry.path();
+    cases.push_back({entry.path().stem(), mcap.replace_extension(".mcap"), json.at("records"),
+                     json.at("meta").at("variant").at("features")});
+  }
+  return cases;
+}
+
+Bytes write_case(const ConformanceCase& test) {
+  const auto has = [&](const char* feature) { return test.features.contains(feature); };
+  WriterOptions options;
+  options.use_chunks = has("ch");
+  options.use_message_index = has("mx");
+  options.use_statistics = has("st");
+  options.use_repeated_schemas = has("rsh");
+  options.use_repeated_channels = has("rch");
+  options.use_attachment_index = has("ax");
+  options.use_metadata_index = has("mdx");
+  options.use_chunk_index = has("chx");
+  options.use_summary_offset = has("sum");
+  options.add_extra_data_to_records = has("pad");
+  const Json header = fields_of(test.records.at(0));
+  options.profile = text(header, "profile");
+  options.library = text(header, "library");
+  MemorySink sink;
+  Writer writer(sink, options);
+  for (const Json& record : test.records) {
+    if (record.at("type") == "DataEnd") break;
+    write_record(writer, record.at("type"), fields_of(record));
+  }
+  writer.close();
+  return sink.bytes();
+}
+
+Json read_case(ByteView file, std::string& problems) {
+  const MemorySource source(file);
+  StreamReader reader(source);
+  Json records = Json::array();
+  while (const Record* record = reader.next()) {
+    Json json = std::visit(ToJson{}, *record);
+    if (!json.is_null()) records.push_back(std::move(json));
+  }
+  for (const Problem& problem : reader.problems().listed()) problems += to_string(problem) + '\n';
+  return records;
+}
+
+Json read_case_by_index(ByteView file) {
+  const MemorySource source(file);
+  IndexedReader reader(source);
+  MessageCursor cursor = reader.messages();
+  Json messages = Json::array();
+  while (const Message* message = cursor.next()) messages.push_back(ToJson{}(*message));
+  return messages;
+}
+
+Json messages_by_time(const ConformanceCase& test) {
+  std::multimap<std::uint64_t, Json> sorted;
+  for (const Json& record : test.records)
+    if (record.at("type") == "Message") sorted.emplace(number(fields_of(record), "log_time"), record);
+  Json messages = Json::array();
+  for (const auto& [log_time, record] : sorted) messages.push_back(record);
+  return messages;
+}
+
+}  // namespace rtd::mcap

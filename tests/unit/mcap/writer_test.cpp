@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+
+#include "tests/unit/mcap/sample_file.hpp"
+
+namespace rtd::mcap {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A sink that is full after `room` bytes, until it is given more.
+class SmallSink final : public ByteSink {
+ public:
+  explicit SmallSink(std::uint64_t room) : room_(room) {}
+  void append(std::initializer_list<ByteView> parts) override {
+    std::uint64_t size = 0;
+    for (const ByteView part : parts) size += part.size();
+    if (memory_.position() + size > room_) throw IoError(ENOSPC, "sink");
+    memory_.append(parts);
+  }
+  std::uint64_t position() const override { return memory_.position(); }
+  std::uint64_t sync() override { return memory_.sync(); }
+  const Bytes& bytes() const { return memory_.bytes(); }
+  void give_room() { room_ = 1 << 30; }
+
+ private:
+  MemorySink memory_;
+  std::uint64_t room_;
+};
+
+TEST(Writer, refuses_what_the_format_does_not_allow) {
+  MemorySink sink;
+  Writer writer(sink);
+  EXPECT_THROW(writer.write(Message{7}), std::invalid_argument);
+  EXPECT_THROW(writer.write(Channel{1, 9, "/a", "cdr"}), std::invalid_argument);
+  EXPECT_THROW(writer.write(Schema{0, "a", "b", "c"}), std::invalid_argument);
+  EXPECT_THROW(writer.write(Schema{1, "a", "", "c"}), std::invalid_argument);
+  writer.write(Schema{1, "a", "b", "c"});
+  writer.write(Schema{1, "a", "b", "c"});
+  EXPECT_THROW(writer.write(Schema{1, "other", "b", "c"}), std::invalid_argument);
+  writer.close();
+  writer.close();
+  EXPECT_THROW(writer.write(Metadata{}), std::invalid_argument);
+  EXPECT_THROW(Writer(sink, {}), std::invalid_argument);
+  EXPECT_THAT(stream(sink.bytes()).problems, IsEmpty());
+}
+
+TEST(Writer, gives_free_ids) {
+  MemorySink sink;
+  Writer writer(sink);
+  writer.write(Schema{2, "taken", "ros2msg", "x"});
+  EXPECT_EQ(writer.add(Schema{0, "a", "ros2msg", "x"}), 1);
+  EXPECT_EQ(writer.add(Schema{0, "b", "ros2msg", "x"}), 3);
+  EXPECT_EQ(writer.add(Channel{0, 3, "/b", "cdr"}), 1);
+}
+
+TEST(Writer, ends_a_chunk_whenever_it_is_told_to) {
+  MemorySink sink;
+  Writer writer(sink);
+  const auto messages = sample_messages(3, 100);
+  write_all(writer, messages);
+  EXPECT_EQ(writer.written().messages, 0U);
+  EXPECT_EQ(writer.open_chunk_messages(), 3U);
+  writer.end_chunk();
+  EXPECT_EQ(writer.written().messages, 3U);
+  EXPECT_EQ(writer.written().offset, sink.position());
+  EXPECT_EQ(writer.open_chunk_bytes(), 0U);
+  EXPECT_EQ(stream(sink.bytes()).messages, messages);
+}
+
+TEST(Writer, goes_on_after_a_full_disk_without_loss_or_repetition) {
+  const auto messages = sample_messages(200, 100);
+  SmallSink sink(5000);
+  WriterOptions options;
+  options.chunk_size = 2000;
+  Writer writer(sink, options);
+  write_all(writer, {});
+  int refusals = 0;
+  for (const StoredMessage& message : messages) {
+    const ChannelId channel = message.topic == "/pose" ? 1 : 2;
+    const Message record{channel, message.sequence, message.log_time, message.publish_time, bytes_of(message.data)};
+    try {
+      writer.write(record);
+    } catch (const IoError& error) {
+      ++refusals;
+      EXPECT_EQ(error.code().value(), ENOSPC);
+      EXPECT_EQ(writer.written().offset, sink.position());
+      sink.give_room();
+      writer.write(record);
+    }
+  }
+  writer.close();
+  EXPECT_EQ(refusals, 1);
+  const ReadBack result = stream(sink.bytes());
+  EXPECT_EQ(result.messages, messages);
+  EXPECT_THAT(result.problems, IsEmpty()) << texts(result.problems);
+}
+
+TEST(Writer, splits_into_files_that_each_stand_alone) {
+  const auto messages = sample_messages(30, 50);
+  MemorySink first, second;
+  Writer writer(first);
+  write_all(writer, {messages.begin(), messages.begin() + 20});
+  writer.split(second);
+  write_all(writer, {});  // the ids of the first file are still known: these are two more channels
+  for (std::size_t i = 20; i < 30; ++i)
+    writer.write(Message{static_cast<ChannelId>(messages[i].topic == "/pose" ? 1 : 2), messages[i].sequence,
+                         messages[i].log_time, messages[i].publish_time, bytes_of(messages[i].data)});
+  writer.close();
+  ReadBack both = stream(first.bytes());
+  const ReadBack rest = stream(second.bytes());
+  EXPECT_THAT(both.problems, IsEmpty()) << texts(both.problems);
+  EXPECT_THAT(rest.problems, IsEmpty()) << texts(rest.problems);
+  both.messages.insert(both.messages.end(), rest.messages.begin(), rest.messages.end());
+  EXPECT_EQ(both.messages, messages);
+}
+
+TEST(Writer, self_contained_chunks_survive_the_loss_of_the_first) {
+  WriterOptions options;
+  options.chunk_size = 400;
+  for (const bool self_contained : {false, true}) {
+    options.self_contained_chunks = self_contained;
+    Bytes file = file_of(sample_messages(60, 50), options);
+    file[200] ^= std::byte{1};  // in the first chunk, which has the channels
+    file.resize(file.size() / 2);
+    const std::size_t read = stream(file).messages.size();
+    EXPECT_EQ(read > 20, self_contained) << read;
+  }
+}
+
+class FileSinkTest : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path folder_ =
+      std::filesystem::path(::testing::TempDir()) / ("mcap_sink" + std::to_string(getpid()));
+  std::filesystem::path path_ = folder_ / "a.mcap";
+};
+
+std::string reason_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const IoError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(FileSinkTest, round_trip_and_durable_position) {
+  const auto messages = sample_messages(50, 5000);
+  FileSink sink(path_);
+  Writer writer(sink);
+  write_all(writer, messages);
+  writer.end_chunk();
+  EXPECT_EQ(sink.sync(), writer.written().offset);
+  EXPECT_EQ(std::filesystem::file_size(path_), writer.written().offset);
+  EXPECT_TRUE(FileSource(path_).being_written());
+  writer.close();
+  const FileSource source(path_);
+  StreamReader reader(source);
+  std::size_t count = 0;
+  while (const Record* record = reader.next()) count += std::holds_alternative<Message>(*record);
+  EXPECT_EQ(count, messages.size());
+  EXPECT_THAT(reader.problems().listed(), IsEmpty());
+}
+
+TEST_F(FileSinkTest, says_why_it_cannot_write) {
+  { FileSink sink(path_); }
+  EXPECT_FALSE(FileSource(path_).being_written());
+  EXPECT_THAT(reason_of([&] { FileSink sink(path_); }), HasSubstr("exists already"));
+  FileSink open(path_, IfExists::kReplace);
+  EXPECT_THAT(reason_of([&] { FileSink sink(path_, IfExists::kReplace); }), HasSubstr("another process is writing it"));
+  EXPECT_THAT(reason_of([&] { FileSink sink(folder_ / "no" / "a.mcap"); }), HasSubstr("no such folder"));
+  EXPECT_THAT(reason_of([&] { FileSink sink("/proc/a.mcap"); }), HasSubstr("/proc/a.mcap"));
+  EXPECT_THAT(reason_of([&] { FileSource source(folder_ / "none.mcap"); }), HasSubstr("none.mcap"));
+  EXPECT_THAT(reason_of([&] { FileSource source(folder_); }), HasSubstr("directory"));
+}
+
+/// Files of this process cannot grow beyond `bytes` while it lives: a disk that is full in the middle of a record.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+TEST_F(FileSinkTest, full_disk_leaves_whole_records) {
+  FileSink sink(path_);
+  Writer writer(sink);
+  const auto messages = sample_messages(10, 5000);
+  write_all(writer, messages);
+  {
+    const FileSizeLimit limit(20000);
+    EXPECT_THAT(reason_of([&] { writer.end_chunk(); }), HasSubstr(path_.string()));
+    EXPECT_EQ(std::filesystem::file_size(path_), writer.written().offset);
+  }
+  writer.close();
+  const FileSource source(path_);
+  EXPECT_EQ(IndexedReader(source).summary().statistics->message_count, messages.size());
+  EXPECT_FALSE(IndexedReader(source).summary().scanned);
+}
+
+}  // namespace
+}  // namespace rtd::mcap
