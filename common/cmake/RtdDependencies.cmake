@@ -15,6 +15,7 @@ find_package(tinyxml2 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(zstd REQUIRED)
 find_library(RTD_LZ4_LIBRARY lz4 REQUIRED)  # Debian's package has no CMake file
+find_package(BZip2 REQUIRED)
 if(RTD_BUILD_TESTS)
   find_package(GTest REQUIRED)
 endif()

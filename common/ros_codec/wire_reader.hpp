@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "common/ros_codec/byte_cursor.hpp"
+#include "common/ros_codec/wire.hpp"
+
+namespace rtd::ros {
+
+/// Reads messages of wire.hpp. Never allocates more than the bytes it is given could hold. Throws WireError.
+template <Wire kFormat>
+class WireReader {
+ public:
+  static constexpr Wire kWire = kFormat;
+
+  explicit WireReader(Bytes bytes) : cursor_(kFormat == Wire::kCdr ? body(bytes) : bytes) {}
+
+  template <class... Fields>
+  void operator()(Fields&... values) {
+    (read(values), ...);
+  }
+
+ private:
+  static Bytes body(Bytes bytes) {
+    constexpr std::size_t kHeaderBytes = 4;
+    ByteCursor cursor(bytes);
+    const Bytes header = cursor.take(kHeaderBytes);
+    if (header[0] != 0 || header[1] != 1) {
+      throw WireError("encapsulation " + std::to_string(header[0]) + " " + std::to_string(header[1]) +
+                      " is not plain little-endian CDR (0 1)");
+    }
+    return bytes.subspan(kHeaderBytes);
+  }
+
+  void align(std::size_t size) {
+    if constexpr (kFormat == Wire::kCdr) cursor_.take((size - cursor_.position() % size) % size);
+  }
+
+  template <class T>
+  void read(T& value) {
+    if constexpr (std::is_same_v<T, bool>) {
+      value = cursor_.read<std::uint8_t>() != 0;
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      align(sizeof(T));
+      value = cursor_.read<T>();
+    } else {
+      fields(*this, value);
+    }
+  }
+
+  std::size_t read_count() {
+    std::uint32_t count = 0;
+    read(count);
+    return count;
+  }
+
+  void read(std::string& text) {
+    const std::size_t length = read_count();
+    const Bytes bytes = cursor_.take(length);
+    const bool ended = kFormat == Wire::kCdr && length > 0 && bytes.back() == 0;
+    text = to_text(bytes.first(ended ? length - 1 : length));
+  }
+
+  template <class T, std::size_t kSize>
+  void read(std::array<T, kSize>& values) {
+    for (T& value : values) read(value);
+  }
+
+  template <class T>
+  void read(std::vector<T>& values) {
+    const std::size_t count = read_count();
+    if constexpr (std::is_arithmetic_v<T>) {
+      if (count > 0) align(sizeof(T));
+      const Bytes bytes = cursor_.take(count * sizeof(T));
+      values.resize(count);
+      if (count > 0) std::memcpy(values.data(), bytes.data(), bytes.size());
+    } else {
+      values.clear();
+      for (std::size_t i = 0; i < count; ++i) read(values.emplace_back());  // ends by WireError when count lies
+    }
+  }
+
+  ByteCursor cursor_;
+};
+
+/// The message that the bytes hold; bytes behind it are ignored, as DDS pads. Throws WireError.
+template <class Message>
+Message decode(Wire wire, Bytes bytes) {
+  Message message;
+  if (wire == Wire::kRos1) {
+    WireReader<Wire::kRos1> reader(bytes);
+    reader(message);
+  } else {
+    WireReader<Wire::kCdr> reader(bytes);
+    reader(message);
+  }
+  return message;
+}
+
+}  // namespace rtd::ros

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/rosbag1/bag_file.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace rtd::rosbag1 {
+namespace {
+
+constexpr std::string_view kMagic = "#ROSBAG V";
+constexpr std::string_view kVersionLine = "#ROSBAG V2.0\n";
+constexpr std::uint64_t kMaxHeaderBytes = 1U << 20U;
+constexpr std::uint64_t kLengthBytes = 4;
+
+}  // namespace
+
+BagFile::BagFile(std::filesystem::path path) : path_(std::move(path)) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path_, error)) throw BagError(path_.string() + " is a folder, not a bag file");
+  stream_.open(path_, std::ios::binary | std::ios::ate);
+  if (!stream_) throw BagError(path_.string() + " cannot be read: does it exist, may you read it?");
+  size_ = static_cast<std::uint64_t>(std::max<std::streamoff>(stream_.tellg(), 0));
+  const std::vector<std::uint8_t> start = read(0, std::min<std::uint64_t>(size_, kVersionLine.size()));
+  const std::string line(start.begin(), start.end());
+  if (line == kVersionLine) {
+    first_record_ = kVersionLine.size();
+    return;
+  }
+  if (line.rfind(kMagic, 0) != 0) throw BagError(path_.string() + " is no ROS bag: it does not begin with #ROSBAG");
+  throw BagError(path_.string() + " is a bag of version " +
+                 line.substr(kMagic.size(), line.find('\n') - kMagic.size()) +
+                 ", only 2.0 can be read; convert it with: rosbag fix OLD.bag NEW.bag");
+}
+
+RecordPlace BagFile::record_at(std::uint64_t position) {
+  const auto length_at = [this](std::uint64_t at) {
+    const std::vector<std::uint8_t> bytes = read(at, kLengthBytes);
+    return std::uint64_t{ros::ByteCursor(bytes).read<std::uint32_t>()};
+  };
+  RecordPlace place;
+  const std::uint64_t header_bytes = length_at(position);
+  if (header_bytes > kMaxHeaderBytes) {
+    throw error_at(position, "a record's header claims " + std::to_string(header_bytes) + " bytes");
+  }
+  place.header = read(position + kLengthBytes, header_bytes);
+  place.data_bytes = length_at(position + kLengthBytes + header_bytes);
+  place.data_begin = position + 2 * kLengthBytes + header_bytes;
+  if (place.end() > size_) {
+    throw error_at(position, "a record claims " + std::to_string(place.data_bytes) + " bytes, the file has " +
+                                 std::to_string(size_ - place.data_begin) + " more");
+  }
+  return place;
+}
+
+std::vector<std::uint8_t> BagFile::read(std::uint64_t position, std::uint64_t bytes) {
+  if (bytes > kMaxChunkBytes) throw error_at(position, std::to_string(bytes) + " bytes in one piece are too many");
+  if (position > size_ || bytes > size_ - position) throw error_at(position, "the file ends in the middle of a record");
+  std::vector<std::uint8_t> content(bytes);
+  stream_.clear();
+  stream_.seekg(static_cast<std::streamoff>(position));
+  stream_.read(reinterpret_cast<char*>(content.data()), static_cast<std::streamsize>(bytes));
+  if (!stream_) throw error_at(position, "reading fails");
+  return content;
+}
+
+BagError BagFile::error_at(std::uint64_t position, const std::string& cause) const {
+  return BagError(path_.string() + ", byte " + std::to_string(position) + ": " + cause);
+}
+
+}  // namespace rtd::rosbag1

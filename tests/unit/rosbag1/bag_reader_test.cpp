@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/rosbag1/bag_reader.hpp"
+
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+#include "tests/support/rosbag1/bag_writer.hpp"
+
+namespace rtd::rosbag1 {
+namespace {
+
+using test::bag_record;
+using test::BagWriter;
+using test::little_endian;
+using test::TemporaryFile;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+const std::vector<std::string> kBoth = {"/a", "/b"};
+
+std::vector<std::uint8_t> payload(int seed, std::size_t size = 5000) {
+  std::vector<std::uint8_t> bytes(size);
+  std::iota(bytes.begin(), bytes.end(), static_cast<std::uint8_t>(seed));
+  return bytes;
+}
+
+/// Three chunks of two topics; the second message of /a is recorded late: it stands in the second chunk but is older.
+BagWriter three_chunks(const std::string& compression) {
+  BagWriter bag(compression);
+  const auto a = bag.connection("/a", "std_msgs/A"), b = bag.connection("/b", "std_msgs/B");
+  bag.message(a, 1 * kSecond, payload(1));
+  bag.message(b, 3 * kSecond, payload(3));
+  bag.end_chunk();
+  bag.message(a, 2 * kSecond, payload(2));
+  bag.end_chunk();
+  bag.message(b, 4 * kSecond, payload(4));
+  return bag;
+}
+
+/// The first bytes of the messages, in the order given; what cannot be read is -1.
+std::vector<int> play(BagReader& reader, const std::vector<std::string>& topics = kBoth) {
+  std::vector<int> firsts;
+  for (const MessagePlace& place : reader.messages(topics)) {
+    try {
+      const Bytes bytes = reader.read(place);
+      const std::vector<std::uint8_t> expected = payload(bytes[0]);
+      firsts.push_back(std::equal(bytes.begin(), bytes.end(), expected.begin(), expected.end()) ? bytes[0] : -2);
+    } catch (const BagError&) {
+      firsts.push_back(-1);
+    }
+  }
+  return firsts;
+}
+
+class Compressions : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(All, Compressions, testing::Values("none", "bz2", "lz4"));
+
+TEST_P(Compressions, GivesMessagesInTheOrderOfTheirTimes) {
+  const TemporaryFile file("x.bag", three_chunks(GetParam()).closed());
+  BagReader reader(file.path());
+  EXPECT_THAT(play(reader), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(play(reader, {"/b"}), ElementsAre(3, 4));
+  EXPECT_THAT(reader.damages(), IsEmpty());
+  EXPECT_TRUE(reader.indexed());
+  ASSERT_THAT(reader.topics(), SizeIs(2));
+  EXPECT_EQ(reader.topics()[1].name, "/b");
+  EXPECT_EQ(reader.topics()[1].type, "std_msgs/B");
+  EXPECT_EQ(reader.topics()[1].messages, 2U);
+}
+
+TEST_P(Compressions, ReadsABagThatWasNeverClosed) {
+  const TemporaryFile file("x.bag", three_chunks(GetParam()).killed());
+  BagReader reader(file.path());
+  EXPECT_THAT(play(reader), ElementsAre(1, 2, 3, 4));
+  EXPECT_FALSE(reader.indexed());
+}
+
+TEST_P(Compressions, CutAnywhereGivesTheWholeChunksBeforeTheCut) {
+  const std::string whole = three_chunks(GetParam()).closed();
+  std::size_t most = 0;
+  for (std::size_t size = 0; size<whole.size(); size += whole.size()> 10000 ? 37 : 7) {
+    const TemporaryFile file("x.bag", whole.substr(0, size));
+    try {
+      BagReader reader(file.path());
+      const std::vector<int> read = play(reader);
+      EXPECT_THAT(read, testing::Each(testing::Gt(0))) << "cut at " << size;
+      EXPECT_GE(read.size(), most) << "cut at " << size;
+      most = read.size();
+    } catch (const BagError&) {
+      EXPECT_LT(size, 4200U) << "only the version line and the bag header are indispensable";
+    }
+  }
+  EXPECT_EQ(most, 4U);
+}
+
+TEST_P(Compressions, AChunkThatClaims4GbIsRefusedWithoutTakingTheMemory) {
+  std::string bytes = three_chunks(GetParam()).closed();
+  const std::size_t size_field = bytes.find("size=");
+  for (const std::uint64_t claim : {0xFFFFFFFFULL, 200ULL << 20U}) {
+    bytes.replace(size_field + 5, 4, little_endian(claim, 4));
+    const TemporaryFile file("x.bag", bytes);
+    BagReader reader(file.path());
+    EXPECT_THAT(play(reader), ElementsAre(-1, 2, -1, 4));
+  }
+}
+
+TEST_P(Compressions, NoByteFlippedCrashesTheReader) {
+  const std::string sound = three_chunks(GetParam()).closed();
+  std::uint32_t random = 1;
+  for (int i = 0; i < 600; ++i) {
+    std::string bytes = sound;
+    for (int flips = 0; flips < 3; ++flips) {
+      random = random * 1664525U + 1013904223U;
+      const std::size_t span = i % 2 == 0 ? bytes.size() : 400;  // half of them into the first chunk's head
+      bytes[(i % 2 == 0 ? 0 : 4100) + (random >> 8U) % (span - 20)] ^= static_cast<char>(1U << (random >> 29U));
+    }
+    const TemporaryFile file("x.bag", bytes);
+    try {
+      BagReader reader(file.path());
+      play(reader);
+    } catch (const BagError&) {
+    }
+  }
+}
+
+TEST(BagReader, RefusesWhatIsNoBagOfVersion2) {
+  const auto open = [](const std::string& bytes) { BagReader reader(TemporaryFile("x.bag", bytes).path()); };
+  EXPECT_THAT([] { BagReader("/nowhere/x.bag"); }, ThrowsMessage<BagError>(HasSubstr("cannot be read")));
+  EXPECT_THAT([] { BagReader("/"); }, ThrowsMessage<BagError>(HasSubstr("is a folder")));
+  EXPECT_THAT([&] { open(""); }, ThrowsMessage<BagError>(HasSubstr("is no ROS bag")));
+  EXPECT_THAT([&] { open("\x89MCAP0\r\n and more of it"); }, ThrowsMessage<BagError>(HasSubstr("is no ROS bag")));
+  EXPECT_THAT([&] { open("#ROSBAG V1.2\nabc"); },
+              ThrowsMessage<BagError>(AllOf(HasSubstr("version 1.2"), HasSubstr("rosbag fix"))));
+  EXPECT_THAT([&] { open(BagWriter::kVersion); }, ThrowsMessage<BagError>(HasSubstr("ends in the middle")));
+  EXPECT_THAT(
+      [&] {
+        open(BagWriter::kVersion + BagWriter::bag_header(0, {{"encryptor", "rosbag/AesCbcEncryptor"}}));
+      },
+      ThrowsMessage<BagError>(AllOf(HasSubstr("encrypted"), HasSubstr("rosbag decrypt"))));
+}
+
+TEST(BagReader, NamesAnUnknownCompression) {
+  const TemporaryFile file("x.bag", three_chunks("zstd").closed());
+  BagReader reader(file.path());
+  EXPECT_THAT([&] { reader.read(reader.messages({"/a"})[0]); },
+              ThrowsMessage<BagError>(AllOf(HasSubstr("'zstd'"), HasSubstr("none, bz2, lz4"))));
+}
+
+TEST(BagReader, AMessageLongerThanItsChunkIsLostAlone) {
+  std::string bytes = three_chunks("none").closed();
+  const std::size_t length = bytes.find(little_endian(5000, 4) + '\x01' + '\x02');
+  bytes.replace(length, 4, little_endian(50000, 4));
+  const TemporaryFile file("x.bag", bytes);
+  BagReader reader(file.path());
+  EXPECT_THAT(play(reader), ElementsAre(-1, 2, 3, 4));
+  EXPECT_THAT([&] { reader.read(reader.messages({"/a"})[0]); },
+              ThrowsMessage<BagError>(AllOf(HasSubstr("50000 bytes are claimed"), HasSubstr("are left"))));
+}
+
+TEST(BagReader, AnIndexThatLiesIsNoticed) {
+  std::string bytes = three_chunks("none").closed();
+  const std::size_t index = bytes.find("op=\x04");
+  const std::size_t offset = bytes.find(little_endian(1, 4) + little_endian(0, 4), index) + 8;
+  bytes.replace(offset, 4, little_endian(7, 4));
+  const TemporaryFile file("x.bag", bytes);
+  BagReader reader(file.path());
+  EXPECT_THAT(play(reader), ElementsAre(-1, 2, 3, 4));
+}
+
+TEST(BagReader, AChunkWhoseIndexIsDamagedIsSearched) {
+  std::string bytes = three_chunks("lz4").closed();
+  bytes.replace(bytes.find(little_endian(10, 4) + "count=") + 10, 4, little_endian(7, 4));
+  const TemporaryFile file("x.bag", bytes);
+  BagReader reader(file.path());
+  EXPECT_THAT(play(reader), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(reader.damages(), Contains(HasSubstr("index of 7 messages")));
+}
+
+}  // namespace
+}  // namespace rtd::rosbag1
