@@ -56,21 +56,13 @@ std::pair<std::string, double> parse_entry(const TextLine& line, const std::stri
   return {key, *value};
 }
 
-void check_frame_type(double width, double height, const std::string& origin) {
-  if (width <= msg::kMaxFrameWidth && height <= msg::kMaxFrameHeight) return;
-  std::ostringstream message;
-  message << origin << ": " << width << " x " << height << " px, but a frame carries at most " << msg::kMaxFrameWidth
-          << " x " << msg::kMaxFrameHeight << " px; scale the images down and fx fy cx cy with them";
-  throw SourceError(message.str());
-}
-
 Calibration from_values(std::map<std::string, double>& values, const std::string& origin) {
   for (const auto& [key, rule] : key_rules()) {
     if (rule.needed && values.count(key) == 0) {
       throw SourceError(origin + ": key '" + key + "' is missing; keys: " + kAllowedKeys);
     }
   }
-  check_frame_type(values["width"], values["height"], origin);
+  check_frame_size(values["width"], values["height"], origin);
   geometry::CameraModel::Parameters parameters;
   parameters.fx = values["fx"], parameters.fy = values["fy"], parameters.cx = values["cx"],
   parameters.cy = values["cy"];
@@ -98,6 +90,14 @@ std::optional<int> family_in(const std::string& name) {
 }
 
 }  // namespace
+
+void check_frame_size(double width, double height, const std::string& origin) {
+  if (width <= msg::kMaxFrameWidth && height <= msg::kMaxFrameHeight) return;
+  std::ostringstream message;
+  message << origin << ": " << width << " x " << height << " px, but a frame carries at most " << msg::kMaxFrameWidth
+          << " x " << msg::kMaxFrameHeight << " px; scale the images down and fx fy cx cy with them";
+  throw SourceError(message.str());
+}
 
 Calibration parse_calibration(const std::string& text, const std::string& origin) {
   std::map<std::string, double> values;

@@ -22,6 +22,9 @@ struct Calibration {
 /// the frame type's.
 Calibration parse_calibration(const std::string& text, const std::string& origin);
 
+/// Throws SourceError naming `origin` for images larger than the frame type.
+void check_frame_size(double width_px, double height_px, const std::string& origin);
+
 /// Calibration of a TUM-layout folder: its calibration.yaml, else the TUM family in its path (freiburg1 or fr1, ...;
 /// the values of config/cameras/, compiled in). Throws SourceError that says what to write.
 Calibration load_calibration(const std::filesystem::path& folder);

@@ -24,6 +24,8 @@ const char* to_string(SkipReason reason) {
       return "depth_not_16_bit";
     case SkipReason::kSizeMismatch:
       return "size_mismatch";
+    case SkipReason::kDamagedRecord:
+      return "damaged_record";
   }
   return "unknown";
 }

@@ -30,8 +30,9 @@ enum class SkipReason {
   kDepthUnreadable,  ///< missing, truncated or not an image
   kDepthNot16Bit,    ///< 8-bit, float or several channels
   kSizeMismatch,     ///< colour, depth and calibration do not have one size
+  kDamagedRecord,    ///< a piece of a recording that cannot be read
 };
-inline constexpr std::size_t kSkipReasons = 8;
+inline constexpr std::size_t kSkipReasons = 9;
 
 /// "color_unreadable": for counters and logs.
 const char* to_string(SkipReason reason);

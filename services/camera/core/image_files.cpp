@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
@@ -14,50 +13,47 @@
 namespace rtd::camera {
 namespace {
 
-using Bytes = std::vector<char>;
+using Bytes = std::span<const std::uint8_t>;
 
-std::optional<Bytes> read_bytes(const std::filesystem::path& file) {
+std::optional<std::vector<std::uint8_t>> read_bytes(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
   if (!stream) return std::nullopt;
-  Bytes bytes(static_cast<std::size_t>(std::max<std::streamoff>(stream.tellg(), 0)));
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::max<std::streamoff>(stream.tellg(), 0)));
   stream.seekg(0);
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!stream && !bytes.empty()) return std::nullopt;
   return bytes;
 }
 
-bool starts_with(const Bytes& bytes, std::string_view magic) {
-  return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
+std::string_view to_view(Bytes bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// The end mark of PNG (IEND chunk) or JPEG (EOI) stands near the end of the file; other formats are left to the
 /// decoder.
-bool complete(const Bytes& bytes) {
+bool complete(Bytes bytes) {
   constexpr std::size_t kTrailer = 256;  // some writers pad
-  const std::string_view tail(bytes.data() + bytes.size() - std::min(kTrailer, bytes.size()),
-                              std::min(kTrailer, bytes.size()));
-  if (starts_with(bytes, "\x89PNG")) return tail.find("IEND\xAE\x42\x60\x82") != std::string_view::npos;
-  if (starts_with(bytes, "\xFF\xD8")) return tail.rfind("\xFF\xD9") != std::string_view::npos;
+  const std::string_view tail = to_view(bytes.last(std::min(kTrailer, bytes.size())));
+  if (to_view(bytes).starts_with("\x89PNG")) return tail.find("IEND\xAE\x42\x60\x82") != std::string_view::npos;
+  if (to_view(bytes).starts_with("\xFF\xD8")) return tail.rfind("\xFF\xD9") != std::string_view::npos;
   return true;
 }
 
-ImageRead refuse(SkipReason reason, const std::filesystem::path& file, const std::string& cause) {
-  return {{}, SkippedInput{reason, file.string() + ": " + cause}};
+ImageRead refuse(SkipReason reason, const std::string& name, const std::string& cause) {
+  return {{}, SkippedInput{reason, name + ": " + cause}};
 }
 
-ImageRead decode(const std::filesystem::path& file, int flags, SkipReason unreadable) {
-  std::optional<Bytes> bytes = read_bytes(file);
-  if (!bytes) return refuse(unreadable, file, "cannot be read");
-  if (bytes->empty()) return refuse(unreadable, file, "is empty");
-  if (!complete(*bytes)) return refuse(unreadable, file, "is truncated");
+ImageRead decode(Bytes bytes, const std::string& name, int flags, SkipReason unreadable) {
+  if (bytes.empty()) return refuse(unreadable, name, "is empty");
+  if (!complete(bytes)) return refuse(unreadable, name, "is truncated");
   ImageRead result;
   try {
-    const cv::Mat encoded(1, static_cast<int>(bytes->size()), CV_8UC1, bytes->data());
+    const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
     result.image = cv::imdecode(encoded, flags);
   } catch (const cv::Exception&) {
     result.image.release();
   }
-  if (result.image.empty()) return refuse(unreadable, file, "is no image that can be decoded");
+  if (result.image.empty()) return refuse(unreadable, name, "is no image that can be decoded");
   return result;
 }
 
@@ -68,6 +64,8 @@ std::string pixel_type_name(const cv::Mat& image) {
          (image.channels() == 1 ? " channel" : " channels");
 }
 
+}  // namespace
+
 void drop_saturated(cv::Mat& depth) {
   for (int row = 0; row < depth.rows; ++row) {
     auto* pixels = depth.ptr<std::uint16_t>(row);
@@ -75,22 +73,32 @@ void drop_saturated(cv::Mat& depth) {
   }
 }
 
-}  // namespace
-
-ImageRead read_color(const std::filesystem::path& file) {
-  return decode(file, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, SkipReason::kColorUnreadable);
+ImageRead decode_color(Bytes encoded, const std::string& name) {
+  return decode(encoded, name, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, SkipReason::kColorUnreadable);
 }
 
-ImageRead read_depth(const std::filesystem::path& file) {
-  ImageRead result = decode(file, cv::IMREAD_UNCHANGED, SkipReason::kDepthUnreadable);
+ImageRead decode_depth(Bytes encoded, const std::string& name) {
+  ImageRead result = decode(encoded, name, cv::IMREAD_UNCHANGED, SkipReason::kDepthUnreadable);
   if (result.problem) return result;
   if (result.image.type() != CV_16UC1) {
     return refuse(
-        SkipReason::kDepthNot16Bit, file,
+        SkipReason::kDepthNot16Bit, name,
         "depth is " + pixel_type_name(result.image) + ", needed is a 16-bit, 1-channel PNG (0 = no measurement)");
   }
   drop_saturated(result.image);
   return result;
+}
+
+ImageRead read_color(const std::filesystem::path& file) {
+  const auto bytes = read_bytes(file);
+  return bytes ? decode_color(*bytes, file.string())
+               : refuse(SkipReason::kColorUnreadable, file.string(), "cannot be read");
+}
+
+ImageRead read_depth(const std::filesystem::path& file) {
+  const auto bytes = read_bytes(file);
+  return bytes ? decode_depth(*bytes, file.string())
+               : refuse(SkipReason::kDepthUnreadable, file.string(), "cannot be read");
 }
 
 }  // namespace rtd::camera

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <span>
+#include <string>
 
 #include "services/camera/core/frame_source.hpp"
 
@@ -21,5 +23,12 @@ ImageRead read_color(const std::filesystem::path& file);
 
 /// 16-bit PNG as CV_16UC1. 65535 (saturated) becomes 0, "no measurement". Other pixel types are refused by name.
 ImageRead read_depth(const std::filesystem::path& file);
+
+/// The same from memory; `name` is for messages.
+ImageRead decode_color(std::span<const std::uint8_t> encoded, const std::string& name);
+ImageRead decode_depth(std::span<const std::uint8_t> encoded, const std::string& name);
+
+/// 65535 -> 0 in a CV_16UC1 image.
+void drop_saturated(cv::Mat& depth);
 
 }  // namespace rtd::camera

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/source_factory.hpp"
 
+#include "services/camera/core/recording/bag_recording.hpp"
+#include "services/camera/core/recording/recording_source.hpp"
 #include "services/camera/core/source_uri.hpp"
 #include "services/camera/core/synthetic/synthetic_source.hpp"
 #include "services/camera/core/tum_source.hpp"
@@ -22,13 +24,37 @@ std::unique_ptr<FrameSource> make_tum_source(const SourceUri& uri) {
   return std::make_unique<TumSource>(uri.text, uri.path, options);
 }
 
+RecordingOptions recording_options(const SourceUri& uri) {
+  if (uri.path.empty()) throw SourceError("source '" + uri.text + "' needs a file: " + uri.scheme + ":FILE");
+  RecordingOptions options;
+  const std::map<std::string, std::string*> known = {{"color", &options.topics.color},
+                                                     {"depth", &options.topics.depth},
+                                                     {"info", &options.topics.info},
+                                                     {"calibration", &options.calibration_file}};
+  for (const auto& [key, value] : uri.parameters) {
+    const auto found = known.find(key);
+    if (found == known.end()) {
+      throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; " + uri.scheme +
+                        ": knows color, depth, info, calibration");
+    }
+    *found->second = value;
+  }
+  return options;
+}
+
+std::unique_ptr<FrameSource> make_bag_source(const SourceUri& uri) {
+  const RecordingOptions options = recording_options(uri);
+  return std::make_unique<RecordingSource>(uri.text, open_bag(uri.path), options);
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> make_source(const std::string& text) {
   const SourceUri uri = parse_source_uri(text);
   if (uri.scheme == "tum") return make_tum_source(uri);
   if (uri.scheme == "synthetic") return std::make_unique<SyntheticSource>(uri.text, parse_synthetic_options(uri));
-  throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme + "'; known: tum, synthetic");
+  if (uri.scheme == "bag") return make_bag_source(uri);
+  throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme + "'; known: bag, synthetic, tum");
 }
 
 }  // namespace rtd::camera

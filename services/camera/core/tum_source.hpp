@@ -8,12 +8,10 @@
 
 #include "services/camera/core/calibration.hpp"
 #include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/skip_log.hpp"
 #include "services/camera/core/tum_lists.hpp"
 
 namespace rtd::camera {
-
-/// Ground truth is given this far beyond the first and last frame, so that an evaluator can interpolate.
-inline constexpr std::int64_t kGroundtruthMarginNs = 500'000'000;
 
 /// A folder in TUM's layout. Opening reads the lists, the calibration, the ground truth and the first good frame.
 class TumSource final : public FrameSource {
@@ -27,26 +25,23 @@ class TumSource final : public FrameSource {
   std::optional<SourceFrame> next() override;
   std::uint64_t pass_over(std::int64_t stamp_ns) override;
   const SourceInfo& info() const override { return info_; }
-  const SourceCounters& counters() const override { return counters_; }
+  const SourceCounters& counters() const override { return skips_.counters(); }
   std::vector<StampedPose> groundtruth() const override { return groundtruth_; }
-  std::vector<SkippedInput> take_skipped() override;
+  std::vector<SkippedInput> take_skipped() override { return skips_.take(); }
 
  private:
   std::optional<SourceFrame> read_next();
   std::optional<SourceFrame> read_pair(const FilePair& pair);
   std::optional<SkippedInput> check_sizes(const FilePair& pair, const cv::Mat& color, const cv::Mat& depth) const;
   cv::Mat read_mask(const FilePair& pair) const;
-  void skip(SkippedInput input);
-  std::string summary_of_skips() const;
 
   std::filesystem::path folder_;
   Options options_;
   SourceInfo info_;
-  SourceCounters counters_;
+  SkipLog skips_;
   std::vector<FilePair> pairs_;
   std::size_t next_pair_ = 0;
   std::vector<StampedPose> groundtruth_;
-  std::vector<SkippedInput> skipped_;
   std::optional<SourceFrame> first_;  ///< read while opening
 };
 

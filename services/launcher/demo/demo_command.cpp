@@ -61,6 +61,7 @@ void tell_comparison(const RunResult& off, const RunResult& with, const std::str
             << "\n  both trajectories: " << page << "\n\n  next:\n"
             << "    rtd run --source tum:FOLDER --out DIR                     your own TUM RGB-D sequence, at its "
                "recorded pace\n"
+            << "    rtd run --source bag:FILE --out DIR                       a ROS 1 bag\n"
             << "    rtd run --source 'synthetic:office?frames=0' --out DIR    no data at all, endless: Ctrl-C\n"
             << "    rtd demo --dataset fr3_walking_xyz                        a real sequence with people (download)\n"
             << "    rtd eval DIR/trajectory.txt GROUNDTRUTH                   judge any trajectory\n";

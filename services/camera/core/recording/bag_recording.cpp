@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/recording/bag_recording.hpp"
+
+#include <utility>
+
+#include "common/rosbag1/bag_reader.hpp"
+#include "services/camera/core/frame_source.hpp"
+
+namespace rtd::camera {
+namespace {
+
+class BagRecording final : public Recording {
+ public:
+  explicit BagRecording(const std::filesystem::path& file) : name_(file.string()), reader_(file) {
+    for (const rosbag1::Topic& topic : reader_.topics()) topics_.push_back({topic.name, topic.type, topic.messages});
+    damages_ = reader_.damages();
+  }
+
+  const std::string& name() const override { return name_; }
+  const std::vector<RecordedTopic>& topics() const override { return topics_; }
+
+  std::optional<RecordedMessage> first(const std::string& topic) override {
+    for (const rosbag1::MessagePlace& place : reader_.messages({topic})) {
+      if (std::optional<RecordedMessage> message = read(place)) return message;
+    }
+    return std::nullopt;
+  }
+
+  TopicSpan span(const std::string& topic) override {
+    const std::vector<rosbag1::MessagePlace> places = reader_.messages({topic});
+    return places.empty() ? TopicSpan{} : TopicSpan{places.front().time_ns, places.back().time_ns};
+  }
+
+  void play(const std::vector<std::string>& topics) override {
+    playing_ = reader_.messages(topics);
+    next_ = 0;
+  }
+
+  std::optional<RecordedMessage> next() override {
+    while (next_ < playing_.size()) {
+      if (std::optional<RecordedMessage> message = read(playing_[next_++])) return message;
+    }
+    return std::nullopt;
+  }
+
+  std::vector<std::string> take_damages() override { return std::exchange(damages_, {}); }
+
+ private:
+  std::optional<RecordedMessage> read(const rosbag1::MessagePlace& place) try {
+    const ros::Bytes bytes = reader_.read(place);
+    const std::string& topic = reader_.connections().at(place.connection).topic;
+    return RecordedMessage{topic, place.time_ns, ros::Wire::kRos1, {bytes.begin(), bytes.end()}};
+  } catch (const rosbag1::BagError& error) {
+    damages_.emplace_back(error.what());
+    return std::nullopt;
+  }
+
+  std::string name_;
+  rosbag1::BagReader reader_;
+  std::vector<RecordedTopic> topics_;
+  std::vector<rosbag1::MessagePlace> playing_;
+  std::size_t next_ = 0;
+  std::vector<std::string> damages_;
+};
+
+}  // namespace
+
+std::unique_ptr<Recording> open_bag(const std::filesystem::path& file) try {
+  return std::make_unique<BagRecording>(file);
+} catch (const rosbag1::BagError& error) {
+  throw SourceError(error.what());
+}
+
+}  // namespace rtd::camera

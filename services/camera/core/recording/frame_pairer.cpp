@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/recording/frame_pairer.hpp"
+
+#include <algorithm>
+
+#include "services/camera/core/tum_lists.hpp"
+
+namespace rtd::camera {
+namespace {
+
+std::vector<StampedFile> stamps_of(const std::deque<StampedMessage>& messages) {
+  std::vector<StampedFile> stamps;
+  for (const StampedMessage& message : messages) stamps.push_back({message.stamp_ns, {}});
+  return stamps;
+}
+
+std::string name_of(const StampedMessage& color) {
+  return color.message.topic + " at " + std::to_string(color.stamp_ns) + " ns";
+}
+
+}  // namespace
+
+void FramePairer::add_color(StampedMessage color, SkipLog& skips) {
+  newest_recorded_ns_ = std::max(newest_recorded_ns_, color.message.recorded_ns);
+  if (last_color_ns_ && color.stamp_ns == *last_color_ns_) {
+    return skips.add({SkipReason::kStampDoubled, name_of(color) + " has the stamp of the frame before"});
+  }
+  if (last_color_ns_ && color.stamp_ns < *last_color_ns_) {
+    return skips.add({SkipReason::kStampBackwards, name_of(color) + " is older than the frame before"});
+  }
+  last_color_ns_ = color.stamp_ns;
+  colors_.push_back(std::move(color));
+}
+
+void FramePairer::add_depth(StampedMessage depth) {
+  newest_recorded_ns_ = std::max(newest_recorded_ns_, depth.message.recorded_ns);
+  const auto place =
+      std::lower_bound(depths_.begin(), depths_.end(), depth.stamp_ns,
+                       [](const StampedMessage& other, std::int64_t stamp_ns) { return other.stamp_ns < stamp_ns; });
+  if (place != depths_.end() && place->stamp_ns == depth.stamp_ns) return;
+  depths_.insert(place, std::move(depth));
+  if (depths_.size() > kMaxPending) depths_.pop_front();
+}
+
+bool FramePairer::decided() const {
+  return finished_ || colors_.size() > kMaxPending ||
+         newest_recorded_ns_ - colors_.front().message.recorded_ns >= kLookaheadNs;
+}
+
+std::optional<std::size_t> FramePairer::partner_of_front() const {
+  const int partner = associate(stamps_of(colors_), stamps_of(depths_)).front();
+  return partner < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(partner));
+}
+
+std::optional<FramePairer::Pair> FramePairer::next(SkipLog& skips) {
+  while (!colors_.empty() && decided()) {
+    const std::optional<std::size_t> partner = partner_of_front();
+    StampedMessage color = std::move(colors_.front());
+    colors_.pop_front();
+    if (!partner) {
+      skips.add({SkipReason::kNoDepthPartner, name_of(color) + " has no depth image within 0.02 s"});
+      continue;
+    }
+    const auto place = depths_.begin() + static_cast<std::ptrdiff_t>(*partner);
+    Pair pair{std::move(color), std::move(*place)};
+    depths_.erase(place);
+    return pair;
+  }
+  return std::nullopt;
+}
+
+}  // namespace rtd::camera

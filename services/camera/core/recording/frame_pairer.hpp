@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "services/camera/core/recording/recording.hpp"
+#include "services/camera/core/skip_log.hpp"
+
+namespace rtd::camera {
+
+/// A message and the stamp in its header.
+struct StampedMessage {
+  std::int64_t stamp_ns = 0;
+  RecordedMessage message;
+};
+
+/// Pairs colour with depth images of a stream as the lists of a TUM folder are paired (associate()): closest first,
+/// within 0.02 s, each depth image once. It decides on a colour image when everything recorded within kLookaheadNs
+/// after it has been seen, and so holds a few frames only.
+class FramePairer {
+ public:
+  static constexpr std::int64_t kLookaheadNs = 300'000'000;
+  static constexpr std::size_t kMaxPending = 64;
+
+  struct Pair {
+    StampedMessage color, depth;
+  };
+
+  /// A colour image that is not newer than the one before is left out and counted.
+  void add_color(StampedMessage color, SkipLog& skips);
+  void add_depth(StampedMessage depth);
+  /// Nothing more comes: what is left is decided.
+  void finish() { finished_ = true; }
+  /// The next pair; empty when more must be seen first. Colour without depth is left out and counted.
+  std::optional<Pair> next(SkipLog& skips);
+
+ private:
+  bool decided() const;
+  std::optional<std::size_t> partner_of_front() const;
+
+  std::deque<StampedMessage> colors_, depths_;  ///< by stamp
+  std::optional<std::int64_t> last_color_ns_;
+  std::int64_t newest_recorded_ns_ = 0;
+  bool finished_ = false;
+};
+
+}  // namespace rtd::camera

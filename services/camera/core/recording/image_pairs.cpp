@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/recording/image_pairs.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "common/ros_codec/wire_reader.hpp"
+#include "services/camera/core/calibration.hpp"
+#include "services/camera/core/recording/camera_info.hpp"
+#include "services/camera/core/recording/ros_images.hpp"
+#include "services/camera/core/source_parts.hpp"
+
+namespace rtd::camera {
+namespace {
+
+std::string read_text(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) throw SourceError("calibration " + file + " cannot be read");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+double rate_of(const TopicSpan& span, std::uint64_t messages) {
+  constexpr double kDefaultHz = 30, kMinHz = 0.1, kMaxHz = 1000;
+  if (messages < 2 || span.last_ns <= span.first_ns) return kDefaultHz;
+  const double rate_hz = static_cast<double>(messages - 1) * 1e9 / static_cast<double>(span.last_ns - span.first_ns);
+  return std::clamp(rate_hz, kMinHz, kMaxHz);
+}
+
+RecordedMessage first_of(Recording& recording, const std::string& topic) {
+  std::optional<RecordedMessage> message = recording.first(topic);
+  if (message) return std::move(*message);
+  std::string cause = "none of its messages can be read";
+  if (const auto damages = recording.take_damages(); !damages.empty()) cause += ": " + damages.front();
+  throw SourceError(recording.name() + ", topic " + topic + ": " + cause);
+}
+
+}  // namespace
+
+ImagePairs::ImagePairs(Recording& recording, const RecordingOptions& options)
+    : recording_(recording), topics_(choose_topics(recording, options.topics)) {
+  color_type_ = type_of(topics_.color);
+  depth_type_ = type_of(topics_.depth);
+  for (const RecordedTopic& topic : recording.topics()) {
+    if (topic.name == topics_.color) info_.frames = topic.messages;
+  }
+  info_.fps = rate_of(recording.span(topics_.color), info_.frames);
+  try {
+    look_at_first_images();
+    load_calibration(options);
+  } catch (const ros::WireError& error) {
+    throw SourceError(recording.name() + ": a first message is damaged: " + error.what());
+  }
+  check_frame_size(info_.camera.parameters().width, info_.camera.parameters().height, recording.name());
+  std::vector<std::string> playing = transform_topics(recording);
+  playing.insert(playing.end(), {topics_.color, topics_.depth});
+  recording.play(playing);
+}
+
+void ImagePairs::look_at_first_images() {
+  const RecordedMessage color = first_of(recording_, topics_.color), depth = first_of(recording_, topics_.depth);
+  camera_frame_ = ros::decode<msg::Header>(color.wire, color.bytes).frame_id;
+  info_.depth_scale_m = depth_unit_m(depth, depth_type_);
+}
+
+void ImagePairs::load_calibration(const RecordingOptions& options) {
+  if (!options.calibration_file.empty()) {
+    const Calibration own = parse_calibration(read_text(options.calibration_file), options.calibration_file);
+    info_.camera = own.camera;
+    info_.depth_scale_m = own.depth_scale_m;
+    return;
+  }
+  if (topics_.info.empty()) {
+    throw SourceError(recording_.name() + ": no sensor_msgs/CameraInfo beside " + topics_.color +
+                      "; name it (?info=TOPIC) or give ?calibration=FILE; its topics are:\n" + list_topics(recording_));
+  }
+  const RecordedMessage message = first_of(recording_, topics_.info);
+  info_.camera = to_camera_model(ros::decode<msg::CameraInfo>(message.wire, message.bytes), topics_.color,
+                                 recording_.name() + ", topic " + topics_.info);
+}
+
+const std::string& ImagePairs::type_of(const std::string& topic) const {
+  const auto& all = recording_.topics();
+  return std::find_if(all.begin(), all.end(), [&](const RecordedTopic& other) { return other.name == topic; })->type;
+}
+
+std::optional<std::int64_t> ImagePairs::advance(SkipLog& skips) {
+  while (!(pair_ = pairer_.next(skips))) {
+    std::optional<RecordedMessage> message = recording_.next();
+    if (message) {
+      take(std::move(*message), skips);
+      continue;
+    }
+    pairer_.finish();
+    pair_ = pairer_.next(skips);
+    break;
+  }
+  if (!pair_) return std::nullopt;
+  last_ns_ = pair_->color.stamp_ns;
+  if (!first_ns_) first_ns_ = last_ns_;
+  return last_ns_;
+}
+
+void ImagePairs::take(RecordedMessage message, SkipLog& skips) try {
+  const bool is_color = message.topic == topics_.color;
+  if (!is_color && message.topic != topics_.depth) {
+    return transforms_.add(ros::decode<msg::TFMessage>(message.wire, message.bytes));
+  }
+  const std::int64_t stamp_ns = msg::to_ns(ros::decode<msg::Header>(message.wire, message.bytes).stamp);
+  StampedMessage stamped{stamp_ns, std::move(message)};
+  is_color ? pairer_.add_color(std::move(stamped), skips) : pairer_.add_depth(std::move(stamped));
+} catch (const ros::WireError& error) {
+  skips.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
+}
+
+std::optional<SourceFrame> ImagePairs::decode(SkipLog& skips) {
+  const FramePairer::Pair pair = *std::exchange(pair_, std::nullopt);
+  ImageRead color = decode_color(pair.color.message, color_type_);
+  if (color.problem) return skips.add(*color.problem), std::nullopt;
+  ImageRead depth = decode_depth(pair.depth.message, depth_type_);
+  if (depth.problem) return skips.add(*depth.problem), std::nullopt;
+  const auto mismatch = size_mismatch(name_of(pair.color.message), color.image, depth.image, info_.camera);
+  if (mismatch) return skips.add(*mismatch), std::nullopt;
+  return to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info_);
+}
+
+std::vector<StampedPose> ImagePairs::groundtruth() const {
+  if (!first_ns_) return {};
+  return poses_of_span(transforms_.world_poses(camera_frame_), *first_ns_, last_ns_);
+}
+
+}  // namespace rtd::camera

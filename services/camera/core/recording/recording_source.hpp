@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/recording/recording.hpp"
+#include "services/camera/core/recording/topic_choice.hpp"
+#include "services/camera/core/skip_log.hpp"
+
+namespace rtd::camera {
+
+/// What the frames of a recording are made of.
+class FrameAssembly {
+ public:
+  virtual ~FrameAssembly() = default;
+  virtual const SourceInfo& info() const = 0;
+  /// Goes to the next frame and gives its stamp; empty at the end.
+  virtual std::optional<std::int64_t> advance(SkipLog& skips) = 0;
+  /// Decodes the frame gone to; empty when it cannot be used.
+  virtual std::optional<SourceFrame> decode(SkipLog& skips) = 0;
+  virtual std::vector<StampedPose> groundtruth() const = 0;
+};
+
+/// What the user may say about a recording.
+struct RecordingOptions {
+  ImageTopics topics;
+  std::string calibration_file;  ///< replaces the recording's calibration and depth unit
+};
+
+/// Plays a recording. Opening reads the first good frame. Throws SourceError: topics, calibration, no good frame.
+class RecordingSource final : public FrameSource {
+ public:
+  RecordingSource(std::string uri, std::unique_ptr<Recording> recording, const RecordingOptions& options);
+
+  std::optional<SourceFrame> next() override;
+  std::uint64_t pass_over(std::int64_t stamp_ns) override;
+  const SourceInfo& info() const override { return info_; }
+  const SourceCounters& counters() const override { return skips_.counters(); }
+  /// Of what was played so far.
+  std::vector<StampedPose> groundtruth() const override { return frames_->groundtruth(); }
+  std::vector<SkippedInput> take_skipped() override { return skips_.take(); }
+
+ private:
+  std::optional<SourceFrame> read_next();
+  void take_damages();
+
+  SourceInfo info_;
+  SkipLog skips_;
+  std::unique_ptr<Recording> recording_;
+  std::unique_ptr<FrameAssembly> frames_;
+  std::optional<std::int64_t> gone_to_;  ///< stamp of the frame that frames_ stands on, not decoded yet
+  std::optional<SourceFrame> first_;     ///< read while opening
+};
+
+}  // namespace rtd::camera

@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/recording/topic_choice.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "services/camera/core/frame_source.hpp"
+
+namespace rtd::camera {
+namespace {
+
+using Topics = std::vector<RecordedTopic>;
+using Fits = bool (*)(const RecordedTopic&);
+
+/// Raw images before compressed ones; depth must be registered to the colour image.
+constexpr std::array kColorNames = {"/camera/rgb/image_color",
+                                    "/camera/rgb/image_rect_color",
+                                    "/camera/color/image_raw",
+                                    "/camera/rgb/image_raw",
+                                    "/camera/color/image_raw/compressed",
+                                    "/camera/rgb/image_color/compressed",
+                                    "/camera/rgb/image_rect_color/compressed",
+                                    "/camera/rgb/image_raw/compressed"};
+constexpr std::array kDepthNames = {"/camera/aligned_depth_to_color/image_raw",
+                                    "/camera/depth_registered/hw_registered/image_rect_raw",
+                                    "/camera/depth_registered/image",
+                                    "/camera/depth_registered/image_raw",
+                                    "/camera/depth/image",
+                                    "/camera/aligned_depth_to_color/image_raw/compressedDepth",
+                                    "/camera/depth_registered/image_raw/compressedDepth",
+                                    "/camera/depth/image/compressedDepth"};
+
+bool is_image(const RecordedTopic& topic) {
+  return topic.type == "sensor_msgs/Image" || topic.type == "sensor_msgs/CompressedImage";
+}
+bool is_depth(const RecordedTopic& topic) {
+  return is_image(topic) && topic.name.find("depth") != std::string::npos;
+}
+bool is_color(const RecordedTopic& topic) {
+  const auto has = [&topic](const char* word) { return topic.name.find(word) != std::string::npos; };
+  return is_image(topic) && !has("depth") && !has("/ir") && !has("infra") && !has("mask");
+}
+bool is_info(const RecordedTopic& topic) {
+  return topic.type == "sensor_msgs/CameraInfo";
+}
+
+SourceError error(const Recording& recording, const std::string& cause) {
+  return SourceError(recording.name() + ": " + cause + "; its topics are:\n" + list_topics(recording));
+}
+
+Topics fitting(const Recording& recording, Fits fits) {
+  Topics chosen;
+  for (const RecordedTopic& topic : recording.topics()) {
+    if (topic.messages > 0 && fits(topic)) chosen.push_back(topic);
+  }
+  return chosen;
+}
+
+bool contains(const Topics& topics, const std::string& name) {
+  return std::any_of(topics.begin(), topics.end(), [&name](const RecordedTopic& topic) { return topic.name == name; });
+}
+
+std::string check_named(const Recording& recording, const std::string& key, const std::string& name, Fits fits) {
+  const Topics& all = recording.topics();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const RecordedTopic& topic) { return topic.name == name; });
+  if (found == all.end()) throw error(recording, "has no topic " + name + " (" + key + "=)");
+  if (!fits(*found)) throw error(recording, key + "=" + name + " is of type " + found->type + ", which does not fit");
+  if (found->messages == 0) throw error(recording, "topic " + name + " (" + key + "=) has no messages");
+  return name;
+}
+
+template <class Names>
+std::string choose_image(const Recording& recording, const std::string& key, Fits fits, const Names& names) {
+  const Topics candidates = fitting(recording, fits);
+  for (const char* name : names) {
+    if (contains(candidates, name)) return name;
+  }
+  if (candidates.size() == 1) return candidates.front().name;
+  if (candidates.empty())
+    throw error(recording, "has no " + key + " images that can be used (name a topic: ?" + key + "=TOPIC)");
+  throw error(recording, "has several topics that could be " + key + ", name one: ?" + key + "=TOPIC");
+}
+
+/// The calibration stands beside the image: /camera/rgb/image_color, /camera/rgb/camera_info.
+std::string choose_info(const Recording& recording, std::string color) {
+  const Topics candidates = fitting(recording, is_info);
+  for (std::size_t slash = color.rfind('/'); slash != std::string::npos; slash = color.rfind('/')) {
+    color.resize(slash);
+    if (contains(candidates, color + "/camera_info")) return color + "/camera_info";
+  }
+  return candidates.size() == 1 ? candidates.front().name : std::string();
+}
+
+}  // namespace
+
+ImageTopics choose_topics(const Recording& recording, const ImageTopics& named) {
+  ImageTopics topics;
+  topics.color = named.color.empty() ? choose_image(recording, "color", is_color, kColorNames)
+                                     : check_named(recording, "color", named.color, is_image);
+  topics.depth = named.depth.empty() ? choose_image(recording, "depth", is_depth, kDepthNames)
+                                     : check_named(recording, "depth", named.depth, is_image);
+  topics.info =
+      named.info.empty() ? choose_info(recording, topics.color) : check_named(recording, "info", named.info, is_info);
+  return topics;
+}
+
+std::vector<std::string> transform_topics(const Recording& recording) {
+  std::vector<std::string> names;
+  for (const RecordedTopic& topic : recording.topics()) {
+    if (topic.type == "tf/tfMessage" || topic.type == "tf2_msgs/TFMessage") names.push_back(topic.name);
+  }
+  return names;
+}
+
+std::string list_topics(const Recording& recording) {
+  std::string text;
+  for (const RecordedTopic& topic : recording.topics()) {
+    text += "  " + topic.name + " (" + topic.type + ", " + std::to_string(topic.messages) + " messages)\n";
+  }
+  if (text.empty()) return "  none";
+  text.pop_back();
+  return text;
+}
+
+}  // namespace rtd::camera

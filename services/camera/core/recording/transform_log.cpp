@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/recording/transform_log.hpp"
+
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+namespace rtd::camera {
+namespace {
+
+constexpr const char* kWorld = "world";
+
+/// tf of old wrote frames with a slash in front.
+std::string bare(const std::string& frame) {
+  return frame.substr(frame.rfind('/', 0) == 0 ? 1 : 0);
+}
+
+/// Empty for what is no rotation or not finite.
+std::optional<Eigen::Isometry3d> to_isometry(const msg::RosTransform& transform) {
+  const auto& [t, q] = transform;
+  const Eigen::Quaterniond rotation(q.w, q.x, q.y, q.z);
+  const Eigen::Vector3d translation(t.x, t.y, t.z);
+  if (!translation.allFinite() || !(std::abs(rotation.norm() - 1.0) < 0.05)) return std::nullopt;
+  Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();
+  T_parent_child.linear() = rotation.normalized().toRotationMatrix();
+  T_parent_child.translation() = translation;
+  return T_parent_child;
+}
+
+}  // namespace
+
+void TransformLog::add(const msg::TFMessage& message) {
+  for (const msg::TransformStamped& transform : message.transforms) {
+    const std::optional<Eigen::Isometry3d> T_parent_child = to_isometry(transform.transform);
+    if (!T_parent_child) continue;
+    Link& link = links_[bare(transform.child_frame_id)];
+    link.parent = bare(transform.header.frame_id);
+    link.T_parent_child.insert_or_assign(msg::to_ns(transform.header.stamp), *T_parent_child);
+  }
+}
+
+Eigen::Isometry3d TransformLog::Link::at(std::int64_t stamp_ns) const {
+  const auto after = T_parent_child.lower_bound(stamp_ns);
+  if (after == T_parent_child.begin()) return after->second;
+  const auto before = std::prev(after);
+  const bool later = after != T_parent_child.end() && after->first - stamp_ns < stamp_ns - before->first;
+  return later ? after->second : before->second;
+}
+
+std::vector<StampedPose> TransformLog::world_poses(const std::string& camera_frame) const {
+  std::vector<const Link*> chain;  // from the camera up
+  for (auto link = links_.find(bare(camera_frame)); link != links_.end(); link = links_.find(link->second.parent)) {
+    chain.push_back(&link->second);
+    if (link->second.parent == kWorld || chain.size() > links_.size()) break;  // a ring has no end
+  }
+  if (chain.empty() || chain.back()->parent != kWorld) return {};
+  std::vector<StampedPose> poses;
+  for (const auto& [stamp_ns, T_world_child] : chain.back()->T_parent_child) {
+    Eigen::Isometry3d T_child_camera = Eigen::Isometry3d::Identity();
+    for (std::size_t i = 0; i + 1 < chain.size(); ++i) T_child_camera = chain[i]->at(stamp_ns) * T_child_camera;
+    poses.push_back({stamp_ns, T_world_child * T_child_camera});
+  }
+  return poses;
+}
+
+}  // namespace rtd::camera

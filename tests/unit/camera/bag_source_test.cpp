@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "services/camera/core/source_factory.hpp"
+#include "tests/unit/camera/image_bag.hpp"
+#include "tests/unit/camera/sequence_folder.hpp"
+
+namespace rtd::camera {
+namespace {
+
+using test::ImageBag;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
+
+struct Played {
+  std::vector<SourceFrame> frames;
+  SourceCounters counters;
+  std::vector<SkippedInput> skipped;
+};
+
+Played play(const std::string& uri) {
+  const auto source = make_source(uri);
+  Played played;
+  while (auto frame = source->next()) played.frames.push_back(std::move(*frame));
+  played.counters = source->counters();
+  played.skipped = source->take_skipped();
+  return played;
+}
+
+testing::AssertionResult refuses(const std::string& uri, const std::vector<std::string>& words) {
+  try {
+    make_source(uri);
+  } catch (const SourceError& error) {
+    for (const std::string& word : words) {
+      if (std::string(error.what()).find(word) == std::string::npos) {
+        return testing::AssertionFailure() << "no '" << word << "' in: " << error.what();
+      }
+    }
+    return testing::AssertionSuccess();
+  }
+  return testing::AssertionFailure() << "was opened";
+}
+
+TEST(BagSource, PlaysPairsWithTheStampsOfTheirHeaders) {
+  ImageBag bag;
+  bag.three_frames();
+  const std::string uri = bag.uri();
+  const auto source = make_source(uri);
+  EXPECT_EQ(source->info().uri, uri);
+  EXPECT_EQ(source->info().frames, 3U);
+  EXPECT_NEAR(source->info().fps, 10, 1e-9);
+  const Played played = play(uri);
+  ASSERT_THAT(played.frames, SizeIs(3));
+  const vision::RgbdImage& image = played.frames[1].image;
+  EXPECT_EQ(image.seq, 1U);
+  EXPECT_EQ(image.stamp_ns, 1'100'000'000);
+  EXPECT_EQ(image.color_bgr.at<cv::Vec3b>(3, 4), cv::Vec3b(100, 101, 102));
+  EXPECT_EQ(image.depth.at<std::uint16_t>(3, 4), 1500);
+  EXPECT_DOUBLE_EQ(image.depth_scale_m, 0.001);
+  EXPECT_DOUBLE_EQ(image.camera.parameters().fy, 31);
+  EXPECT_THAT(played.skipped, IsEmpty());
+}
+
+TEST(BagSource, PassesOverOldFramesWhichKeepTheirSeq) {
+  ImageBag bag;
+  bag.three_frames();
+  const auto source = make_source(bag.uri());
+  EXPECT_EQ(source->pass_over(1'150'000'000), 2U);
+  EXPECT_EQ(source->pass_over(1'150'000'000), 0U);
+  const auto frame = source->next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->image.stamp_ns, 1'200'000'000);
+  EXPECT_EQ(frame->image.seq, 2U);
+  EXPECT_FALSE(source->next());
+}
+
+TEST(BagSource, DepthThatIsNoMeasurementBecomesZero) {
+  ImageBag bag;
+  bag.add_info();
+  cv::Mat depth_m(ImageBag::kHeight, ImageBag::kWidth, CV_32FC1, cv::Scalar(1.5));
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const std::array<float, 6> bad = {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity, -1, 13.2F, 1e30F};
+  std::copy(bad.begin(), bad.end(), depth_m.ptr<float>(2));
+  bag.add_color(1);
+  bag.add_depth(1, depth_m, "32FC1");
+  bag.add_color(2);
+  bag.add_depth(2, cv::Mat(depth_m.size(), CV_32FC1, cv::Scalar(bad[0])), "32FC1");
+  const Played played = play(bag.uri());
+  ASSERT_THAT(played.frames, SizeIs(2));
+  EXPECT_EQ(cv::countNonZero(played.frames[0].image.depth), ImageBag::kHeight * ImageBag::kWidth - 6);
+  EXPECT_EQ(played.frames[0].image.depth.at<std::uint16_t>(2, 6), 7500);
+  EXPECT_DOUBLE_EQ(played.frames[0].image.depth_scale_m, 1.0 / 5000);
+  EXPECT_EQ(played.counters.frames_without_depth, 1U);
+}
+
+TEST(BagSource, LeavesOutColourWithoutDepthAndStampsThatDoNotGrow) {
+  ImageBag bag;
+  bag.three_frames();
+  bag.add_color(1.3);
+  for (const double stamp_s : {1.2, 1.3}) {
+    bag.add(ImageBag::kColor, "sensor_msgs/Image", ImageBag::image(ImageBag::color(), "bgr8", stamp_s), 1.35);
+  }
+  bag.add_color(1.4);
+  bag.add_depth(1.4);
+  const Played played = play(bag.uri());
+  ASSERT_THAT(played.frames, SizeIs(4));
+  EXPECT_EQ(played.frames[3].image.seq, 3U) << "no gap in seq";
+  EXPECT_EQ(played.counters.of(SkipReason::kNoDepthPartner), 1U);
+  EXPECT_EQ(played.counters.of(SkipReason::kStampBackwards), 1U);
+  EXPECT_EQ(played.counters.of(SkipReason::kStampDoubled), 1U);
+}
+
+TEST(BagSource, RefusesABagWhoseColourNeverHasDepth) {
+  ImageBag bag;
+  bag.add_info();
+  bag.add_color(1);
+  bag.add_depth(2);
+  EXPECT_TRUE(refuses(bag.uri(), {"no usable frame", "1 x no_depth_partner", "no depth image within 0.02 s"}));
+}
+
+TEST(BagSource, NamesTheTopicsThereAreWhenOneIsMissing) {
+  ImageBag bag;
+  bag.add_info();
+  bag.add_color(1);
+  bag.add("/imu", "sensor_msgs/Imu", msg::Header{}, 1);
+  const std::string uri = bag.uri();
+  EXPECT_TRUE(refuses(uri, {"no depth images", "/imu (sensor_msgs/Imu, 1 messages)", ImageBag::kColor}));
+  EXPECT_TRUE(refuses(uri + "?depth=/d", {"no topic /d", "/imu"}));
+  EXPECT_TRUE(refuses(uri + "?depth=/imu", {"depth=/imu is of type sensor_msgs/Imu"}));
+}
+
+TEST(BagSource, AsksWhichWhenSeveralTopicsFit) {
+  ImageBag two;
+  two.add_info();
+  for (const char* topic : {"/left/image", "/right/image"}) {
+    two.add(topic, "sensor_msgs/Image", ImageBag::image(ImageBag::color(), "bgr8", 1), 1);
+  }
+  two.add_depth(1);
+  const std::string uri = two.uri();
+  EXPECT_TRUE(refuses(uri, {"several topics that could be color", "?color=TOPIC", "/left/image", "/right/image"}));
+  EXPECT_THAT(play(uri + "?color=/right/image").frames, SizeIs(1));
+}
+
+TEST(BagSource, NamesAnEncodingThatCannotBeRead) {
+  ImageBag bayer;
+  bayer.add_info();
+  bayer.add_color(1, cv::Mat(ImageBag::kHeight, ImageBag::kWidth, CV_8UC1), "bayer_grbg8");
+  bayer.add_depth(1);
+  EXPECT_TRUE(refuses(bayer.uri(), {"'bayer_grbg8'", "rgb8, bgr8", ImageBag::kColor}));
+  ImageBag bag;
+  bag.add_info();
+  bag.add_color(1);
+  bag.add_depth(1, cv::Mat(ImageBag::kHeight, ImageBag::kWidth, CV_64FC1, cv::Scalar(1)), "64FC1");
+  EXPECT_TRUE(refuses(bag.uri(), {"'64FC1'", "16UC1 (mm)", "32FC1 (m)", ImageBag::kDepth}));
+}
+
+TEST(BagSource, LeavesOutFramesOfOtherSizesAndShortMessages) {
+  ImageBag bag;
+  bag.three_frames();
+  bag.add_color(1.3, cv::Mat(10, 10, CV_8UC3, cv::Scalar(1, 2, 3)));
+  bag.add_depth(1.3);
+  msg::Image lying = ImageBag::image(ImageBag::color(), "bgr8", 1.4);
+  lying.height = 4'000'000'000;
+  bag.add(ImageBag::kColor, "sensor_msgs/Image", lying, 1.4);
+  bag.add_depth(1.4);
+  bag.add(ImageBag::kColor, "sensor_msgs/Image", msg::Time{1, 2}, 1.5);
+  const Played played = play(bag.uri());
+  EXPECT_THAT(played.frames, SizeIs(3));
+  EXPECT_EQ(played.counters.of(SkipReason::kSizeMismatch), 1U);
+  EXPECT_EQ(played.counters.of(SkipReason::kColorUnreadable), 1U);
+  EXPECT_EQ(played.counters.of(SkipReason::kDamagedRecord), 1U);
+  EXPECT_THAT(played.skipped[1].detail, HasSubstr("10 x 10"));
+}
+
+TEST(BagSource, RefusesFramesLargerThanTheFrameType) {
+  ImageBag bag;
+  msg::CameraInfo info = ImageBag::camera_info();
+  info.width = 1280, info.height = 720;
+  bag.add_info(info);
+  bag.add_color(1);
+  bag.add_depth(1);
+  EXPECT_TRUE(refuses(bag.uri(), {"1280 x 720", "at most 640 x 480"}));
+}
+
+TEST(BagSource, NeedsACalibrationItUnderstands) {
+  const auto with = [](msg::CameraInfo info) {
+    ImageBag bag;
+    bag.add_info(info);
+    bag.add_color(1);
+    bag.add_depth(1);
+    return refuses(bag.uri(), {"?calibration=FILE", ImageBag::kInfo});
+  };
+  EXPECT_TRUE(with(ImageBag::camera_info(0)));
+  EXPECT_TRUE(with(ImageBag::camera_info(std::numeric_limits<double>::quiet_NaN())));
+  msg::CameraInfo fisheye = ImageBag::camera_info();
+  fisheye.distortion_model = "equidistant", fisheye.d = {0.1, 0, 0, 0};
+  EXPECT_TRUE(with(fisheye));
+  msg::CameraInfo rational = ImageBag::camera_info();
+  rational.distortion_model = "rational_polynomial", rational.d = {0.1, 0, 0, 0, 0, 0.2, 0, 0};
+  EXPECT_TRUE(with(rational));
+}
+
+TEST(BagSource, TakesACalibrationOfItsOwn) {
+  ImageBag bag;
+  bag.add_color(1);
+  bag.add_depth(1);
+  const std::string uri = bag.uri();
+  EXPECT_TRUE(refuses(uri, {"no sensor_msgs/CameraInfo", "?calibration=FILE"}));
+  const rtd::test::TemporaryFile file("c.yaml", test::SequenceFolder::calibration(32, 24));
+  const auto source = make_source(uri + "?calibration=" + file.path().string());
+  EXPECT_DOUBLE_EQ(source->info().camera.parameters().fx, 52);
+  EXPECT_DOUBLE_EQ(source->info().depth_scale_m, 1.0 / 5000);
+}
+
+TEST(BagSource, RectifiedImagesHaveTheProjectionsCamera) {
+  msg::CameraInfo info = ImageBag::camera_info();
+  info.d = {0.1, 0.2, 0, 0, 0};
+  info.p = {28, 0, 14, 0, 0, 29, 11, 0, 0, 0, 1, 0};
+  ImageBag bag;
+  bag.add_info(info);
+  bag.add("/camera/rgb/image_rect_color", "sensor_msgs/Image", ImageBag::image(ImageBag::color(), "rgb8", 1), 1);
+  bag.add_depth(1);
+  const auto camera = make_source(bag.uri())->info().camera;
+  EXPECT_DOUBLE_EQ(camera.parameters().fx, 28);
+  EXPECT_DOUBLE_EQ(camera.parameters().cy, 11);
+  EXPECT_FALSE(camera.distorted());
+}
+
+TEST(BagSource, GivesTheTruthOfAWorldOnly) {
+  const auto bag_with = [](const char* root, const char* child) {
+    auto bag = std::make_unique<ImageBag>();
+    bag->three_frames();
+    for (const double stamp_s : {0.4, 0.6, 1.1, 1.9}) {
+      msg::TransformStamped transform;
+      transform.header = {msg::to_time(static_cast<std::int64_t>(stamp_s * 1e9)), root};
+      transform.child_frame_id = child;
+      transform.transform.translation.x = stamp_s;
+      bag->add("/tf", "tf/tfMessage", msg::TFMessage{{transform}}, stamp_s);
+    }
+    return bag;
+  };
+  const auto truth = [](ImageBag& bag) {
+    const auto source = make_source(bag.uri());
+    while (source->next()) continue;
+    return source->groundtruth();
+  };
+  const auto poses = truth(*bag_with("/world", "/kinect"));
+  ASSERT_THAT(poses, SizeIs(2)) << "of the span of the frames and half a second around it";
+  EXPECT_EQ(poses[1].stamp_ns, 1'100'000'000);
+  EXPECT_DOUBLE_EQ(poses[1].T_world_camera.translation().x(), 1.1);
+  EXPECT_THAT(truth(*bag_with("/odom", "/kinect")), IsEmpty());
+  EXPECT_THAT(truth(*bag_with("/world", "/robot")), IsEmpty());
+  EXPECT_THAT(truth(*bag_with("/kinect", "/kinect")), IsEmpty()) << "a ring";
+}
+
+TEST(BagSource, PlaysWhatIsLeftOfADamagedBagAndTells) {
+  ImageBag bag("none");
+  bag.three_frames();
+  const std::string whole = bag.bytes();
+  const Played cut = play(bag.uri_of(whole.substr(0, whole.size() / 2)));
+  EXPECT_THAT(cut.frames, SizeIs(1));
+  EXPECT_EQ(cut.counters.of(SkipReason::kDamagedRecord), 1U);
+  EXPECT_THAT(cut.skipped[0].detail, HasSubstr("what follows is lost"));
+}
+
+TEST(BagSource, SaysWhatItKnows) {
+  EXPECT_TRUE(refuses("bag:", {"needs a file", "bag:FILE"}));
+  EXPECT_TRUE(refuses("bag:x?colour=/a", {"unknown parameter 'colour'", "color, depth, info, calibration"}));
+  EXPECT_TRUE(refuses("bag:/nowhere.bag", {"/nowhere.bag cannot be read"}));
+}
+
+}  // namespace
+}  // namespace rtd::camera

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/recording/frame_pairer.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <random>
+
+#include "services/camera/core/tum_lists.hpp"
+
+namespace rtd::camera {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+StampedMessage at(std::int64_t stamp_ns, std::int64_t recorded_ns) {
+  return {stamp_ns, {"/topic", recorded_ns, ros::Wire::kRos1, {}}};
+}
+
+/// Two cameras at 30 Hz that drift against each other, shake and lose images.
+std::vector<StampedFile> shaky_stamps(std::mt19937& random, double period_ms) {
+  std::uniform_real_distribution<double> shake_ms(-6, 6);
+  std::vector<StampedFile> stamps;
+  for (int i = 0; i < 1500; ++i) {
+    if (random() % 10 == 0) continue;
+    stamps.push_back({static_cast<std::int64_t>((period_ms * i + shake_ms(random)) * kMs), {}});
+  }
+  return stamps;
+}
+
+TEST(FramePairer, PairsAStreamAsTheListsOfAFolderArePaired) {
+  std::mt19937 random(5);
+  const std::vector<StampedFile> colors = shaky_stamps(random, 33.3), depths = shaky_stamps(random, 33.4);
+  const std::vector<int> expected = associate(colors, depths);
+
+  struct Event {
+    std::int64_t recorded_ns;
+    bool color;
+    std::int64_t stamp_ns;
+  };
+  std::vector<Event> events;
+  for (const StampedFile& color : colors) events.push_back({color.stamp_ns + 10 * kMs, true, color.stamp_ns});
+  for (const StampedFile& depth : depths) events.push_back({depth.stamp_ns + 80 * kMs, false, depth.stamp_ns});
+  std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.recorded_ns < b.recorded_ns; });
+
+  FramePairer pairer;
+  SkipLog skips;
+  std::vector<std::pair<std::int64_t, std::int64_t>> pairs, expected_pairs;
+  const auto take_decided = [&] {
+    while (const auto pair = pairer.next(skips)) pairs.emplace_back(pair->color.stamp_ns, pair->depth.stamp_ns);
+  };
+  for (const Event& event : events) {
+    event.color ? pairer.add_color(at(event.stamp_ns, event.recorded_ns), skips)
+                : pairer.add_depth(at(event.stamp_ns, event.recorded_ns));
+    take_decided();
+  }
+  pairer.finish();
+  take_decided();
+
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    if (expected[i] < 0) continue;
+    expected_pairs.emplace_back(colors[i].stamp_ns, depths[static_cast<std::size_t>(expected[i])].stamp_ns);
+  }
+  EXPECT_EQ(pairs, expected_pairs);
+  EXPECT_EQ(skips.counters().of(SkipReason::kNoDepthPartner), colors.size() - expected_pairs.size());
+}
+
+TEST(FramePairer, HoldsAFewFramesOnlyWhenDepthNeverComes) {
+  FramePairer pairer;
+  SkipLog skips;
+  for (int i = 0; i < 1000; ++i) {
+    pairer.add_color(at(i * kMs, 0), skips);
+    EXPECT_FALSE(pairer.next(skips));
+  }
+  EXPECT_GE(skips.counters().of(SkipReason::kNoDepthPartner), 1000 - FramePairer::kMaxPending);
+}
+
+TEST(FramePairer, GivesADepthImageOnce) {
+  FramePairer pairer;
+  SkipLog skips;
+  pairer.add_color(at(100 * kMs, 100 * kMs), skips);
+  pairer.add_depth(at(108 * kMs, 108 * kMs));
+  pairer.add_color(at(110 * kMs, 110 * kMs), skips);
+  EXPECT_FALSE(pairer.next(skips)) << "more may come";
+  pairer.finish();
+  const auto pair = pairer.next(skips);
+  ASSERT_TRUE(pair);
+  EXPECT_EQ(pair->color.stamp_ns, 110 * kMs) << "the closer one";
+  EXPECT_FALSE(pairer.next(skips));
+  EXPECT_EQ(skips.counters().of(SkipReason::kNoDepthPartner), 1U);
+}
+
+}  // namespace
+}  // namespace rtd::camera
