@@ -4,34 +4,21 @@
 
 #include <limits>
 
-#include "services/camera/core/source_factory.hpp"
 #include "tests/unit/camera/image_bag.hpp"
+#include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"
 
 namespace rtd::camera {
 namespace {
 
 using test::ImageBag;
+using test::play_all;
+using test::Played;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
-
-struct Played {
-  std::vector<SourceFrame> frames;
-  SourceCounters counters;
-  std::vector<SkippedInput> skipped;
-};
-
-Played play(const std::string& uri) {
-  const auto source = make_source(uri);
-  Played played;
-  while (auto frame = source->next()) played.frames.push_back(std::move(*frame));
-  played.counters = source->counters();
-  played.skipped = source->take_skipped();
-  return played;
-}
 
 testing::AssertionResult refuses(const std::string& uri, const std::vector<std::string>& words) {
   try {
@@ -55,7 +42,7 @@ TEST(BagSource, PlaysPairsWithTheStampsOfTheirHeaders) {
   EXPECT_EQ(source->info().uri, uri);
   EXPECT_EQ(source->info().frames, 3U);
   EXPECT_NEAR(source->info().fps, 10, 1e-9);
-  const Played played = play(uri);
+  const Played played = play_all(uri);
   ASSERT_THAT(played.frames, SizeIs(3));
   const vision::RgbdImage& image = played.frames[1].image;
   EXPECT_EQ(image.seq, 1U);
@@ -91,7 +78,7 @@ TEST(BagSource, DepthThatIsNoMeasurementBecomesZero) {
   bag.add_depth(1, depth_m, "32FC1");
   bag.add_color(2);
   bag.add_depth(2, cv::Mat(depth_m.size(), CV_32FC1, cv::Scalar(bad[0])), "32FC1");
-  const Played played = play(bag.uri());
+  const Played played = play_all(bag.uri());
   ASSERT_THAT(played.frames, SizeIs(2));
   EXPECT_EQ(cv::countNonZero(played.frames[0].image.depth), ImageBag::kHeight * ImageBag::kWidth - 6);
   EXPECT_EQ(played.frames[0].image.depth.at<std::uint16_t>(2, 6), 7500);
@@ -108,7 +95,7 @@ TEST(BagSource, LeavesOutColourWithoutDepthAndStampsThatDoNotGrow) {
   }
   bag.add_color(1.4);
   bag.add_depth(1.4);
-  const Played played = play(bag.uri());
+  const Played played = play_all(bag.uri());
   ASSERT_THAT(played.frames, SizeIs(4));
   EXPECT_EQ(played.frames[3].image.seq, 3U) << "no gap in seq";
   EXPECT_EQ(played.counters.of(SkipReason::kNoDepthPartner), 1U);
@@ -144,7 +131,7 @@ TEST(BagSource, AsksWhichWhenSeveralTopicsFit) {
   two.add_depth(1);
   const std::string uri = two.uri();
   EXPECT_TRUE(refuses(uri, {"several topics that could be color", "?color=TOPIC", "/left/image", "/right/image"}));
-  EXPECT_THAT(play(uri + "?color=/right/image").frames, SizeIs(1));
+  EXPECT_THAT(play_all(uri + "?color=/right/image").frames, SizeIs(1));
 }
 
 TEST(BagSource, NamesAnEncodingThatCannotBeRead) {
@@ -170,7 +157,7 @@ TEST(BagSource, LeavesOutFramesOfOtherSizesAndShortMessages) {
   bag.add(ImageBag::kColor, "sensor_msgs/Image", lying, 1.4);
   bag.add_depth(1.4);
   bag.add(ImageBag::kColor, "sensor_msgs/Image", msg::Time{1, 2}, 1.5);
-  const Played played = play(bag.uri());
+  const Played played = play_all(bag.uri());
   EXPECT_THAT(played.frames, SizeIs(3));
   EXPECT_EQ(played.counters.of(SkipReason::kSizeMismatch), 1U);
   EXPECT_EQ(played.counters.of(SkipReason::kColorUnreadable), 1U);
@@ -263,7 +250,7 @@ TEST(BagSource, PlaysWhatIsLeftOfADamagedBagAndTells) {
   ImageBag bag("none");
   bag.three_frames();
   const std::string whole = bag.bytes();
-  const Played cut = play(bag.uri_of(whole.substr(0, whole.size() / 2)));
+  const Played cut = play_all(bag.uri_of(whole.substr(0, whole.size() / 2)));
   EXPECT_THAT(cut.frames, SizeIs(1));
   EXPECT_EQ(cut.counters.of(SkipReason::kDamagedRecord), 1U);
   EXPECT_THAT(cut.skipped[0].detail, HasSubstr("what follows is lost"));

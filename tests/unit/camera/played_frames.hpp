@@ -17,6 +17,21 @@ inline std::vector<SourceFrame> play(const std::string& uri) {
   return frames;
 }
 
+/// All that a source gives until its end.
+struct Played {
+  std::vector<SourceFrame> frames;
+  SourceCounters counters;
+  std::vector<SkippedInput> skipped;
+};
+inline Played play_all(const std::string& uri) {
+  const auto source = make_source(uri);
+  Played played;
+  while (auto frame = source->next()) played.frames.push_back(std::move(*frame));
+  played.counters = source->counters();
+  played.skipped = source->take_skipped();
+  return played;
+}
+
 inline bool same(const cv::Mat& a, const cv::Mat& b) {
   return a.size() == b.size() && cv::norm(a, b, cv::NORM_L1) == 0;
 }

@@ -4,12 +4,14 @@
 
 #include <gmock/gmock.h>
 
-#include "services/camera/core/source_factory.hpp"
+#include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"
 
 namespace rtd::camera {
 namespace {
 
+using test::play_all;
+using test::Played;
 using test::SequenceFolder;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -18,19 +20,8 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
 
-struct Played {
-  std::vector<SourceFrame> frames;
-  SourceCounters counters;
-  std::vector<SkippedInput> skipped;
-};
-
 Played play(const SequenceFolder& folder, const std::string& parameters = "") {
-  const auto source = make_source(folder.uri() + parameters);
-  Played played;
-  while (auto frame = source->next()) played.frames.push_back(std::move(*frame));
-  played.counters = source->counters();
-  played.skipped = source->take_skipped();
-  return played;
+  return play_all(folder.uri() + parameters);
 }
 
 TEST(TumSource, PlaysFramesInOrderWithCalibration) {
