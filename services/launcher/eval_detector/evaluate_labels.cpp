@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/service/progress.hpp"
 #include "services/filter/core/motion_levels.hpp"
 #include "services/launcher/eval_detector/evaluate.hpp"
 #include "services/launcher/eval_detector/image_folder.hpp"
 #include "services/launcher/eval_detector/label_folder.hpp"
-#include "services/launcher/eval_detector/progress.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -55,7 +55,7 @@ LabelledResults evaluate_labels(const EvalDetectorOptions& options, std::ostream
   std::vector<ModelUnderTest> models = load_models(options, kLeastScore);
   std::vector<std::vector<detector::EvaluatedImage>> evaluated(models.size());
   LabelledResults results{{}, labels.format(), options.wanted_recall, {}};
-  Progress progress(err, "images", images.size());
+  service::Progress progress(err, "images", images.size());
   for (const std::filesystem::path& path : images) {
     const cv::Mat image = cv::imread(path.string());
     if (image.empty()) {

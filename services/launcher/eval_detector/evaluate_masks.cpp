@@ -6,9 +6,9 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "common/service/progress.hpp"
 #include "services/launcher/eval_detector/evaluate.hpp"
 #include "services/launcher/eval_detector/image_folder.hpp"
-#include "services/launcher/eval_detector/progress.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -85,7 +85,7 @@ MaskResults evaluate_masks(const EvalDetectorOptions& options, std::ostream& err
   const std::vector<double> angles_deg = angles_of(options.roll);
   MaskResults results;
   results.models.resize(models.size());
-  Progress progress(err, "images", images.size());
+  service::Progress progress(err, "images", images.size());
   for (const std::filesystem::path& path : images) {
     const std::optional<MaskedImage> pair = read_pair(path, options, results.input);
     progress.advance();
