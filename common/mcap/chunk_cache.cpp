@@ -30,7 +30,7 @@ ChunkContent ChunkCache::load(const ChunkIndex& index, Entry& entry) {
   if (!record) return {{}, ProblemKind::kUnreadable, "the file cannot be read here"};
   const std::optional<Chunk> chunk = decode<Chunk>(record->subspan(kFrameBytes));
   if (!chunk) return {{}, ProblemKind::kDamagedRecord, "its fields do not fit"};
-  ChunkContent content = open_chunk(*chunk, options_, entry.buffer);
+  ChunkContent content = open_chunk(*chunk, options_, decompress_, entry.buffer);
   if (!content.records) return content;
   if (chunk->compression.empty()) {
     // Still in the window, which moves on.

@@ -28,6 +28,7 @@ class ChunkCache {
 
   SourceWindow& file_;
   const ReaderOptions& options_;
+  Decompressor decompress_;
   std::list<Entry> entries_;  ///< last used first
 };
 

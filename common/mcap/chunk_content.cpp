@@ -17,7 +17,7 @@ std::string hex(std::uint32_t value) {
   return text;
 }
 
-ChunkContent open_chunk(const Chunk& chunk, const ReaderOptions& options, Buffer& scratch) {
+ChunkContent open_chunk(const Chunk& chunk, const ReaderOptions& options, Decompressor& decompress, Buffer& scratch) {
   const std::optional<Compression> compression = compression_of(chunk.compression);
   if (!compression)
     return {{}, ProblemKind::kUnknownCompression, "its compression \"" + chunk.compression + "\" is not known"};

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "common/mcap/buffer.hpp"
+#include "common/mcap/compression.hpp"
 #include "common/mcap/problem.hpp"
 
 namespace rtd::mcap {
@@ -23,7 +23,7 @@ struct ChunkContent {
   ProblemKind fault{};
   std::string what;
 };
-ChunkContent open_chunk(const Chunk& chunk, const ReaderOptions& options, Buffer& scratch);
+ChunkContent open_chunk(const Chunk& chunk, const ReaderOptions& options, Decompressor& decompress, Buffer& scratch);
 
 /// "0x" and eight digits.
 std::string hex(std::uint32_t value);

@@ -11,17 +11,6 @@
 namespace rtd::mcap {
 namespace {
 
-struct FreeLz4 {
-  void operator()(LZ4F_dctx* context) const { LZ4F_freeDecompressionContext(context); }
-};
-using Lz4Context = std::unique_ptr<LZ4F_dctx, FreeLz4>;
-
-Lz4Context lz4_context() {
-  LZ4F_dctx* context = nullptr;
-  if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0) throw std::bad_alloc();
-  return Lz4Context(context);
-}
-
 std::size_t checked_lz4(std::size_t result) {
   if (LZ4F_isError(result) != 0) throw std::runtime_error(std::string("lz4: ") + LZ4F_getErrorName(result));
   return result;
@@ -46,9 +35,24 @@ ByteView compress_zstd(int level, ByteView data, Buffer& out) {
   return to.first(checked_zstd(ZSTD_compress(to.data(), to.size(), data.data(), data.size(), level)));
 }
 
+struct FreeLz4 {
+  void operator()(LZ4F_dctx* context) const { LZ4F_freeDecompressionContext(context); }
+};
+struct FreeZstd {
+  void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
+};
+using Lz4Context = std::unique_ptr<LZ4F_dctx, FreeLz4>;
+using ZstdContext = std::unique_ptr<ZSTD_DCtx, FreeZstd>;
+
+Lz4Context lz4_context() {
+  LZ4F_dctx* context = nullptr;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0) throw std::bad_alloc();
+  return Lz4Context(context);
+}
+
 /// Bytes written into `to`; more input than output is an error.
-std::size_t decompress_lz4(ByteView data, std::span<std::byte> to) {
-  const Lz4Context context = lz4_context();
+std::size_t decompress_lz4(LZ4F_dctx* context, ByteView data, std::span<std::byte> to) {
+  LZ4F_resetDecompressionContext(context);
   LZ4F_decompressOptions_t options{};
   options.stableDst = 1;
   std::size_t done = 0;
@@ -56,17 +60,13 @@ std::size_t decompress_lz4(ByteView data, std::span<std::byte> to) {
   while (!data.empty() && hint != 0) {
     std::size_t written = to.size() - done;
     std::size_t read = data.size();
-    hint = checked_lz4(LZ4F_decompress(context.get(), to.data() + done, &written, data.data(), &read, &options));
+    hint = checked_lz4(LZ4F_decompress(context, to.data() + done, &written, data.data(), &read, &options));
     done += written;
     data = data.subspan(read);
     if (read == 0 && written == 0) throw std::runtime_error("lz4: holds more than the chunk says");
   }
   if (hint != 0) throw std::runtime_error("lz4: the frame is not complete");
   return done;
-}
-
-std::size_t decompress_zstd(ByteView data, std::span<std::byte> to) {
-  return checked_zstd(ZSTD_decompress(to.data(), to.size(), data.data(), data.size()));
 }
 
 }  // namespace
@@ -103,22 +103,39 @@ std::uint64_t largest_uncompressed_size(Compression compression, std::uint64_t c
   return compressed_size > most ? std::numeric_limits<std::uint64_t>::max() : compressed_size * ratio;
 }
 
-std::optional<ByteView> decompress(Compression compression, ByteView data, std::uint64_t size, Buffer& out,
-                                   std::string& reason) {
-  std::size_t done = data.size();
+struct Decompressor::Contexts {
+  Lz4Context lz4;
+  ZstdContext zstd;
+
+  std::size_t decompress(Compression compression, ByteView data, std::span<std::byte> to) {
+    if (compression == Compression::kLz4) {
+      if (!lz4) lz4 = lz4_context();
+      return decompress_lz4(lz4.get(), data, to);
+    }
+    if (!zstd) zstd.reset(ZSTD_createDCtx());
+    if (!zstd) throw std::bad_alloc();
+    return checked_zstd(ZSTD_decompressDCtx(zstd.get(), to.data(), to.size(), data.data(), data.size()));
+  }
+};
+
+Decompressor::Decompressor() : contexts_(std::make_unique<Contexts>()) {}
+Decompressor::~Decompressor() = default;
+Decompressor::Decompressor(Decompressor&&) noexcept = default;
+
+std::optional<ByteView> Decompressor::operator()(Compression compression, ByteView data, std::uint64_t size,
+                                                 Buffer& out, std::string& reason) {
   ByteView result = data;
   try {
     if (compression != Compression::kNone) {
       const std::span<std::byte> to = out.reset(size);
-      done = compression == Compression::kLz4 ? decompress_lz4(data, to) : decompress_zstd(data, to);
-      result = to.first(done);
+      result = to.first(contexts_->decompress(compression, data, to));
     }
   } catch (const std::runtime_error& error) {
     reason = error.what();
     return std::nullopt;
   }
-  if (done == size) return result;
-  reason = "it holds " + std::to_string(done) + " bytes, not the " + std::to_string(size) + " that it says";
+  if (result.size() == size) return result;
+  reason = "it holds " + std::to_string(result.size()) + " bytes, not the " + std::to_string(size) + " that it says";
   return std::nullopt;
 }
 

@@ -22,9 +22,21 @@ ByteView compress(Compression compression, int level, ByteView data, Buffer& out
 /// Most bytes that `compressed_size` bytes can become, from how the formats code a run: what claims more is a lie.
 std::uint64_t largest_uncompressed_size(Compression compression, std::uint64_t compressed_size);
 
-/// The `size` bytes that `data` decompresses to, in `out` (kNone: `data` itself); empty with `reason` set when it is
-/// damaged or becomes another size. The caller has checked `size`: it is allocated.
-std::optional<ByteView> decompress(Compression compression, ByteView data, std::uint64_t size, Buffer& out,
-                                   std::string& reason);
+/// Keeps the libraries' working memory from one chunk to the next. For one thread.
+class Decompressor {
+ public:
+  Decompressor();
+  ~Decompressor();
+  Decompressor(Decompressor&&) noexcept;
+
+  /// The `size` bytes that `data` decompresses to, in `out` (kNone: `data` itself); empty with `reason` set when it is
+  /// damaged or becomes another size. The caller has checked `size`: it is allocated.
+  std::optional<ByteView> operator()(Compression compression, ByteView data, std::uint64_t size, Buffer& out,
+                                     std::string& reason);
+
+ private:
+  struct Contexts;
+  std::unique_ptr<Contexts> contexts_;
+};
 
 }  // namespace rtd::mcap

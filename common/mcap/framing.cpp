@@ -56,7 +56,13 @@ bool is_consistent_chunk(const SourceWindow& file, const Frame& frame) {
 }
 
 bool is_possible(const SourceWindow& file, const Frame& frame) {
-  if (!is_known(frame.opcode) || frame.length < kKinds[number(frame.opcode) - 1].least_length) return false;
+  constexpr std::uint64_t kLongest = std::uint64_t{1} << 32;
+  if (!is_known(frame.opcode) || frame.length > kLongest) return false;
+  const std::uint64_t least = kKinds[number(frame.opcode) - 1].least_length;
+  // A Footer never grows; a DataEnd may, but hardly by much.
+  const std::uint64_t most =
+      frame.opcode == Opcode::kFooter ? least : (frame.opcode == Opcode::kDataEnd ? 64 : kLongest);
+  if (frame.length < least || frame.length > most) return false;
   const bool whole_chunk = frame.opcode == Opcode::kChunk && frame.fits(file.size());
   return !whole_chunk || is_consistent_chunk(file, frame);
 }

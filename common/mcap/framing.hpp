@@ -27,7 +27,7 @@ bool is_known(Opcode opcode);
 std::optional<Frame> frame_at(const SourceWindow& file, std::uint64_t offset);
 
 /// True at the end of the file, at the closing magic and where two records in a row have a known type and a length that
-/// is possible; the second may be cut by the end of the file. Random bytes pass with less than 1e-9.
+/// is possible (below 4 GiB); the second may be cut by the end of the file. Random bytes pass with less than 1e-9.
 bool begins_record(const SourceWindow& file, std::uint64_t offset);
 
 /// The first place at or behind `from` that begins a record which can stand alone: Chunk, Attachment, Metadata,

@@ -13,9 +13,8 @@ namespace rtd::mcap {
 bool StreamReader::check_chunk(const Frame& frame, const Chunk& chunk) {
   // Behind times, size, CRC, compression and the length of the records: 40 bytes and the name of the compression.
   const std::uint64_t records_offset = frame.content() + 40 + chunk.compression.size();
-  check_chunk_length(frame, chunk, records_offset + chunk.records.size());
   audit_.begin_chunk(frame.offset, frame.end() - frame.offset, chunk);
-  const ChunkContent content = open_chunk(chunk, options_, uncompressed_);
+  const ChunkContent content = open_chunk(chunk, options_, decompress_, uncompressed_);
   if (!content.records) {
     audit_.lose_content();
     report(content.fault, frame.offset, "Chunk: " + content.what, "its messages are left out", true);
@@ -33,25 +32,54 @@ bool StreamReader::check_chunk(const Frame& frame, const Chunk& chunk) {
   return true;
 }
 
-/// A chunk may have unknown fields behind its records; but where a record begins right there, its length is wrong.
-void StreamReader::check_chunk_length(const Frame& frame, const Chunk& chunk, std::uint64_t records_end) {
-  if (records_end == frame.end() || !begins_record(file_, records_end)) return;
+/// A record may have unknown fields behind those that are known; but where a record begins right there, its length is
+/// wrong, and would swallow what follows.
+void StreamReader::check_length(const Frame& frame, std::uint64_t fields_end) {
+  if (!begins_record(file_, fields_end)) return;
   report(ProblemKind::kDamagedRecord, frame.offset,
-         "Chunk: its length is " + std::to_string(frame.length) + ", but its " + std::to_string(chunk.records.size()) +
-             " bytes of records end " + std::to_string(frame.end() - records_end) + " bytes before",
-         "it is read on behind the records");
-  position_ = records_end;
+         name_of(frame.opcode) + ": it says " + std::to_string(frame.length) +
+             " bytes, but another record begins after " + std::to_string(fields_end - frame.content()),
+         "it is read on there");
+  position_ = fields_end;
 }
 
-void StreamReader::check_attachment(const Frame& frame, ByteView content, const Attachment& attachment) {
+/// Loose messages have no CRC of their own. One damaged bit makes a MessageIndex look like one: those are recognised by
+/// the length that a MessageIndex has where a Message has its sequence number.
+bool StreamReader::check_loose_message(const Frame& frame, ByteView content, const Message& message) {
+  constexpr std::uint64_t kIndexHead = 6;
+  const bool like_index = message.sequence + kIndexHead == content.size() && message.data.size() % 16 == 0;
+  if (data_end_ != 0 || (chunked_ && like_index)) {
+    report(ProblemKind::kMisplacedRecord, frame.offset,
+           data_end_ != 0 ? "Message: it stands behind the DataEnd" : "Message: it has the fields of a MessageIndex",
+           "it is left out", true);
+    return false;
+  }
+  if (!definitions_.accept(message, frame.offset)) return false;
+  audit_.message();
+  return true;
+}
+
+void StreamReader::check_statistics(const Frame& frame, const Statistics& statistics) {
+  const std::uint64_t seen = audit_.message_count();
+  if (seen < statistics.message_count)
+    report(ProblemKind::kIndexMismatch, frame.offset,
+           "Statistics: " + std::to_string(statistics.message_count) + " messages were written, " +
+               std::to_string(seen) + " are read",
+           std::to_string(statistics.message_count - seen) + " messages are lost", true);
+  else
+    check_index(frame, audit_.check(statistics));
+}
+
+bool StreamReader::check_attachment(const Frame& frame, ByteView content, const Attachment& attachment) {
   audit_.attachment(frame.offset, frame.end() - frame.offset);
-  if (!options_.check_crcs || attachment.crc == 0) return;
+  if (!options_.check_crcs || attachment.crc == 0) return true;
   const auto covered = static_cast<std::size_t>(attachment.data.data() - content.data()) + attachment.data.size();
   const std::uint32_t found = crc32(content.first(covered));
-  if (found != attachment.crc)
-    report(ProblemKind::kCrcMismatch, frame.offset,
-           "Attachment \"" + attachment.name + "\": the CRC is " + hex(found) + ", it says " + hex(attachment.crc),
-           "it is delivered as it is");
+  if (found == attachment.crc) return true;
+  report(ProblemKind::kCrcMismatch, frame.offset,
+         "Attachment \"" + attachment.name + "\": its CRC is " + hex(found) + ", it says " + hex(attachment.crc),
+         "it is left out", true);
+  return false;
 }
 
 void StreamReader::check_data_end(const Frame& frame, const DataEnd& end) {

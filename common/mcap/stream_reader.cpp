@@ -167,12 +167,15 @@ StreamReader::Step StreamReader::dispatch(const Frame& frame, ByteView content) 
 
 template <class R>
 StreamReader::Step StreamReader::read_as(const Frame& frame, ByteView content) {
-  std::optional<R> record = decode<R>(content);
-  if (!record) return damaged(frame, "its fields do not fit into its " + bytes_text(frame.length));
+  R record;
+  Decoder decoder(content);
+  layout(decoder, record);
+  if (!decoder.ok()) return damaged(frame, "its fields do not fit into its " + bytes_text(frame.length));
   location_ = {frame};
   position_ = frame.end();
-  if (!check(frame, content, *record)) return Step::kNothing;
-  record_ = std::move(*record);
+  if (decoder.left() > 0) check_length(frame, frame.end() - decoder.left());
+  if (!check(frame, content, record)) return Step::kNothing;
+  record_ = std::move(record);
   return Step::kRecord;
 }
 
@@ -182,18 +185,19 @@ bool StreamReader::check(const Frame& frame, ByteView content, const R& record) 
   if constexpr (std::is_same_v<R, Schema> || std::is_same_v<R, Channel>) {
     return definitions_.accept(record, frame.offset);
   } else if constexpr (std::is_same_v<R, Message>) {
-    if (!definitions_.accept(record, frame.offset)) return false;
-    audit_.message();
+    return check_loose_message(frame, content, record);
   } else if constexpr (std::is_same_v<R, Chunk>) {
     return check_chunk(frame, record);
   } else if constexpr (std::is_same_v<R, Attachment>) {
-    check_attachment(frame, content, record);
+    return check_attachment(frame, content, record);
   } else if constexpr (std::is_same_v<R, Metadata>) {
     audit_.metadata(frame.offset, frame.end() - frame.offset);
   } else if constexpr (std::is_same_v<R, DataEnd>) {
     check_data_end(frame, record);
   } else if constexpr (std::is_same_v<R, Footer>) {
     check_footer(frame, record);
+  } else if constexpr (std::is_same_v<R, Statistics>) {
+    check_statistics(frame, record);
   } else if constexpr (std::is_same_v<R, MessageIndex>) {
     check_index(frame, audit_.check(frame.offset, frame.end() - frame.offset, record));
   } else if constexpr (!std::is_same_v<R, Header>) {

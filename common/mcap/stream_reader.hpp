@@ -18,8 +18,9 @@ struct Location {
 
 /// Reads all records of a file in file order, opens the chunks, and checks everything that can be checked: lengths, all
 /// CRCs, definitions before use, indexes and statistics against what the file holds. Tolerant: whatever the bytes are,
-/// it delivers each record that is whole, goes on behind the damage and lists what was wrong. A chunk whose CRC is
-/// wrong is left out as a whole. Memory: one record or chunk, and an entry for each index entry. For one thread.
+/// it delivers each record that is whole, goes on behind the damage and lists what was wrong. A chunk or attachment
+/// whose CRC is wrong is left out as a whole. Memory: one record or chunk, and an entry for each index entry. For one
+/// thread.
 class StreamReader {
  public:
   /// `source` must outlive the reader.
@@ -62,8 +63,10 @@ class StreamReader {
   template <class R>
   bool check(const Frame& frame, ByteView content, const R& record);
   bool check_chunk(const Frame& frame, const Chunk& chunk);
-  void check_chunk_length(const Frame& frame, const Chunk& chunk, std::uint64_t records_end);
-  void check_attachment(const Frame& frame, ByteView content, const Attachment& attachment);
+  void check_length(const Frame& frame, std::uint64_t fields_end);
+  bool check_loose_message(const Frame& frame, ByteView content, const Message& message);
+  void check_statistics(const Frame& frame, const Statistics& statistics);
+  bool check_attachment(const Frame& frame, ByteView content, const Attachment& attachment);
   void check_data_end(const Frame& frame, const DataEnd& end);
   void check_footer(const Frame& frame, const Footer& footer);
   void check_closing_magic(const Frame& frame);
@@ -84,6 +87,7 @@ class StreamReader {
   Location location_;
   std::uint64_t position_ = 0;
   std::optional<RecordCursor> chunk_;
+  Decompressor decompress_;
   Buffer uncompressed_;
   std::uint32_t crc_ = 0;  ///< of [0, crc_end_)
   std::uint64_t crc_end_ = 0;
