@@ -3,8 +3,11 @@
 #include "common/bus/bus_factory.hpp"
 
 #include "common/bus/inprocess/inprocess_backend.hpp"
+#include "common/bus/inprocess/inprocess_raw_bus.hpp"
+#include "common/bus/raw_bus.hpp"
 #ifdef RTD_HAVE_FASTDDS
 #include "common/bus/fastdds/fastdds_backend.hpp"
+#include "common/bus/fastdds/fastdds_raw_bus.hpp"
 #endif
 
 namespace rtd::bus {
@@ -15,20 +18,36 @@ constexpr std::uint32_t kMaxDomain = 232;  // above it the RTPS port numbers lea
 struct Vendor {
   const char* name;
   std::shared_ptr<BusBackend> (*create)(const BusOptions&);
+  std::shared_ptr<RawBus> (*create_raw)(const BusOptions&);
 };
 
 /// A new vendor is a folder beside this file and one entry here.
 const Vendor kVendors[] = {
 #ifdef RTD_HAVE_FASTDDS
-    {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); }},
+    {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); },
+     [](const BusOptions& options) { return fastdds::create_raw_bus(options); }},
 #endif
-    {"inprocess", [](const BusOptions& options) { return inprocess::create_backend(options.domain); }},
+    {"inprocess", [](const BusOptions& options) { return inprocess::create_backend(options.domain); },
+     [](const BusOptions& options) { return inprocess::create_raw_bus(options.domain); }},
 };
 
 std::string join_names(const std::vector<std::string>& names) {
   std::string joined;
   for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
   return joined;
+}
+
+/// Throws BusError: no such vendor, or a domain out of range.
+const Vendor& vendor_of(const BusOptions& options) {
+  if (options.domain > kMaxDomain) {
+    throw BusError("domain " + std::to_string(options.domain) + " is out of range, allowed: 0.." +
+                   std::to_string(kMaxDomain) + " (--domain, ROS_DOMAIN_ID)");
+  }
+  for (const Vendor& vendor : kVendors) {
+    if (options.vendor == vendor.name) return vendor;
+  }
+  throw BusError("unknown bus '" + options.vendor + "', this build has: " + join_names(available_vendors()) +
+                 " (--dds, RTD_DDS)");
 }
 
 }  // namespace
@@ -40,15 +59,11 @@ std::vector<std::string> available_vendors() {
 }
 
 std::shared_ptr<Bus> connect(const BusOptions& options) {
-  if (options.domain > kMaxDomain) {
-    throw BusError("domain " + std::to_string(options.domain) + " is out of range, allowed: 0.." +
-                   std::to_string(kMaxDomain) + " (--domain, ROS_DOMAIN_ID)");
-  }
-  for (const Vendor& vendor : kVendors) {
-    if (options.vendor == vendor.name) return std::make_shared<Bus>(vendor.create(options));
-  }
-  throw BusError("unknown bus '" + options.vendor + "', this build has: " + join_names(available_vendors()) +
-                 " (--dds, RTD_DDS)");
+  return std::make_shared<Bus>(vendor_of(options).create(options));
+}
+
+std::shared_ptr<RawBus> connect_raw(const BusOptions& options) {
+  return vendor_of(options).create_raw(options);
 }
 
 }  // namespace rtd::bus

@@ -7,6 +7,7 @@
 #include "common/bus/fastdds/fastdds_reader.hpp"
 #include "common/bus/fastdds/fastdds_writer.hpp"
 #include "common/bus/fastdds/participant.hpp"
+#include "common/bus/fastdds/qos_mapping.hpp"
 #include "common/bus/host_checks.hpp"
 
 namespace rtd::bus::fastdds {
@@ -19,11 +20,15 @@ class FastddsBackend : public BusBackend {
   const std::string& vendor() const override { return vendor_; }
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                StatusCallbacks callbacks) override {
-    return std::make_unique<FastddsWriter>(participant_, id, topic, qos_settings(profile), std::move(callbacks));
+    auto codec = create_codec(id);
+    const auto qos = writer_qos(qos_settings(profile), codec->plain());
+    return std::make_unique<FastddsWriter>(participant_, std::move(codec), topic, qos, std::move(callbacks));
   }
   std::unique_ptr<ReaderBackend> create_reader(MessageId id, const std::string& topic, QosProfile profile,
                                                ErasedCallback on_message, StatusCallbacks callbacks) override {
-    return std::make_unique<FastddsReader>(participant_, id, topic, qos_settings(profile), std::move(on_message),
+    auto codec = create_codec(id);
+    const auto qos = reader_qos(qos_settings(profile), codec->plain());
+    return std::make_unique<FastddsReader>(participant_, std::move(codec), topic, qos, std::move(on_message),
                                            std::move(callbacks));
   }
 

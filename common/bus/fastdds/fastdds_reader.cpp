@@ -8,16 +8,16 @@
 
 namespace rtd::bus::fastdds {
 
-FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic,
-                             const QosSettings& settings, ErasedCallback on_message, StatusCallbacks callbacks)
+FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::unique_ptr<Codec> codec,
+                             const std::string& topic, const dds::DataReaderQos& qos, ErasedCallback on_message,
+                             StatusCallbacks callbacks)
     : participant_(std::move(participant)),
-      codec_(create_codec(id)),
-      depth_(settings.depth),
+      codec_(std::move(codec)),
+      depth_(qos.history().depth),
       on_message_(std::move(on_message)),
       callbacks_(std::move(callbacks)),
       thread_([this] { return handle_one(); }) {
-  reader_ = participant_->subscriber().create_datareader(participant_->topic(topic, *codec_),
-                                                         reader_qos(settings, codec_->plain()), this);
+  reader_ = participant_->subscriber().create_datareader(participant_->topic(topic, *codec_), qos, this);
   if (reader_ == nullptr) throw BusError("Fast DDS refused a reader on topic " + topic);
   thread_.wake();  // a sample may have come before reader_ was known
 }

@@ -11,7 +11,6 @@
 #include "common/bus/backend.hpp"
 #include "common/bus/callback_thread.hpp"
 #include "common/bus/fastdds/participant.hpp"
-#include "common/bus/qos_settings.hpp"
 
 namespace rtd::bus::fastdds {
 
@@ -19,8 +18,8 @@ namespace rtd::bus::fastdds {
 /// discovery nor other readers; what it cannot take in time, the keep-last history drops.
 class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
  public:
-  FastddsReader(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic,
-                const QosSettings& settings, ErasedCallback on_message, StatusCallbacks callbacks);
+  FastddsReader(std::shared_ptr<Participant> participant, std::unique_ptr<Codec> codec, const std::string& topic,
+                const dds::DataReaderQos& qos, ErasedCallback on_message, StatusCallbacks callbacks);
   ~FastddsReader() override;
   int matched() const override { return matched_; }
 

@@ -11,12 +11,11 @@ namespace rtd::bus::fastdds {
 
 using eprosima::fastrtps::types::ReturnCode_t;
 
-FastddsWriter::FastddsWriter(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic,
-                             const QosSettings& settings, StatusCallbacks callbacks)
-    : participant_(std::move(participant)), codec_(create_codec(id)), callbacks_(std::move(callbacks)) {
+FastddsWriter::FastddsWriter(std::shared_ptr<Participant> participant, std::unique_ptr<Codec> codec,
+                             const std::string& topic, const dds::DataWriterQos& qos, StatusCallbacks callbacks)
+    : participant_(std::move(participant)), codec_(std::move(codec)), callbacks_(std::move(callbacks)) {
   if (callbacks_.on_matched || callbacks_.on_incompatible_qos || callbacks_.on_deadline_missed) thread_.emplace();
-  writer_ = participant_->publisher().create_datawriter(participant_->topic(topic, *codec_),
-                                                        writer_qos(settings, codec_->plain()), this);
+  writer_ = participant_->publisher().create_datawriter(participant_->topic(topic, *codec_), qos, this);
   if (writer_ == nullptr) throw BusError("Fast DDS refused a writer on topic " + topic);
 }
 

@@ -13,7 +13,6 @@
 #include "common/bus/backend.hpp"
 #include "common/bus/callback_thread.hpp"
 #include "common/bus/fastdds/participant.hpp"
-#include "common/bus/qos_settings.hpp"
 
 namespace rtd::bus::fastdds {
 
@@ -22,8 +21,8 @@ namespace rtd::bus::fastdds {
 /// with 64-bit members may lie.
 class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
  public:
-  FastddsWriter(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic,
-                const QosSettings& settings, StatusCallbacks callbacks);
+  FastddsWriter(std::shared_ptr<Participant> participant, std::unique_ptr<Codec> codec, const std::string& topic,
+                const dds::DataWriterQos& qos, StatusCallbacks callbacks);
   ~FastddsWriter() override;
 
   bool write(const void* message) override;

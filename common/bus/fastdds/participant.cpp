@@ -87,12 +87,14 @@ dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostL
 }
 
 dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factory, const BusOptions& options,
-                                           const HostLimits& limits) {
+                                           const HostLimits& limits, dds::DomainParticipantListener* listener) {
   dds::DomainParticipantQos qos = participant_qos(options, limits);
   constexpr int kAttempts = 5;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {  // an id may be taken by another connection of this process
     qos.wire_protocol().participant_id = next_participant_id();
-    if (auto* participant = factory.create_participant(options.domain, qos)) return participant;
+    if (auto* participant = factory.create_participant(options.domain, qos, listener, dds::StatusMask::none())) {
+      return participant;
+    }
   }
   throw BusError(
       "Fast DDS refused to join domain " + std::to_string(options.domain) +
@@ -101,14 +103,15 @@ dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factor
 
 }  // namespace
 
-Participant::Participant(const BusOptions& options, const HostLimits& limits) {
+Participant::Participant(const BusOptions& options, const HostLimits& limits,
+                         dds::DomainParticipantListener* listener) {
   if (options.shm_segment_mib < kMinSegmentMib || options.shm_segment_mib > 1024) {
     throw BusError("shared-memory segment of " + std::to_string(options.shm_segment_mib) +
                    " MiB, allowed: " + std::to_string(kMinSegmentMib) + "..1024");
   }
   log_to_stderr_once();
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
-  participant_ = create_participant(*factory_, options, limits);
+  participant_ = create_participant(*factory_, options, limits, listener);
   publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
   subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
 }
@@ -126,7 +129,7 @@ dds::Topic* Participant::topic(const std::string& name, const Codec& codec) {
     if (known->get_type_name() == type.get_type_name()) return known;
     throw BusError("topic " + name + " has type " + known->get_type_name() + ", not " + type.get_type_name());
   }
-  type.register_type(participant_);
+  if (participant_->find_type(type.get_type_name()).empty()) type.register_type(participant_);
   dds::Topic* topic = participant_->create_topic(name, type.get_type_name(), dds::TOPIC_QOS_DEFAULT);
   if (topic == nullptr) throw BusError("Fast DDS refused topic " + name + " of type " + type.get_type_name());
   return topic;

@@ -4,6 +4,7 @@
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
@@ -22,7 +23,8 @@ namespace dds = eprosima::fastdds::dds;
 class Participant {
  public:
   /// Throws BusError when Fast DDS refuses.
-  Participant(const BusOptions& options, const HostLimits& limits);
+  /// `listener`, if any, hears of other participants' endpoints from the first one on.
+  Participant(const BusOptions& options, const HostLimits& limits, dds::DomainParticipantListener* listener = nullptr);
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
@@ -32,6 +34,9 @@ class Participant {
   /// The topic of that name, created when new; lives as long as the participant.
   /// Throws BusError when it exists with another type.
   dds::Topic* topic(const std::string& name, const Codec& codec);
+  /// No listener is called any more.
+  void silence() { participant_->set_listener(nullptr); }
+  const dds::DomainParticipant& vendor() const { return *participant_; }
 
  private:
   std::shared_ptr<dds::DomainParticipantFactory> factory_;  // keeps the vendor's singleton alive

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/raw_bus.hpp"
+
+#include <algorithm>
+
+#include "common/bus/sequence_gaps.hpp"
+
+namespace rtd::bus {
+
+std::string to_string(const WriterId& id) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : id) {
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 15];
+  }
+  return text;
+}
+
+std::optional<RawLoss> SequenceGaps::next(const WriterId& writer, std::int64_t sequence) {
+  const auto [known, is_first] = newest_.try_emplace(writer, sequence);
+  const std::int64_t expected = is_first ? sequence : known->second + 1;
+  known->second = std::max(known->second, sequence);
+  if (sequence <= expected) return std::nullopt;
+  return RawLoss{writer, expected, static_cast<std::uint64_t>(sequence - expected)};
+}
+
+}  // namespace rtd::bus

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus_factory.hpp"
+#include "common/bus/byte_block.hpp"
+
+/// Topics as bytes: whoever records, replays or inspects needs no type. Beside Bus, on a connection of its own.
+namespace rtd::bus {
+
+/// Identity of a writer in the domain (its GUID).
+using WriterId = std::array<std::uint8_t, 16>;
+std::string to_string(const WriterId& id);  ///< hexadecimal, e.g. "010f5b2a..."
+
+inline constexpr std::int64_t kUnlimitedNs = std::numeric_limits<std::int64_t>::max();
+
+/// What a writer promises, as it says so in discovery, or shall promise. Numbers of `Durability` and `Liveliness` grow
+/// with what they promise.
+struct RawQos {
+  enum class Durability { kVolatile, kTransientLocal, kTransient, kPersistent };
+  enum class Liveliness { kAutomatic, kManualByParticipant, kManualByTopic };
+  bool reliable = true;
+  Durability durability = Durability::kVolatile;
+  int depth = 0;  ///< keep-last history; 0: not known, for DDS does not announce it (a writer then keeps 10)
+  std::int64_t deadline_ns = kUnlimitedNs, lifespan_ns = kUnlimitedNs;
+  Liveliness liveliness = Liveliness::kAutomatic;
+  std::int64_t liveliness_lease_ns = kUnlimitedNs;
+  bool operator==(const RawQos&) const = default;
+};
+
+/// A topic by its DDS names: "rt/slam/odometry", "nav_msgs::msg::dds_::Odometry_".
+struct RawTopic {
+  std::string name, type;
+  bool keyed = false;  ///< all instances of a keyed topic count as one
+  bool operator==(const RawTopic&) const = default;
+};
+
+struct TopicWriter {
+  WriterId id{};
+  RawTopic topic;
+  RawQos qos;
+  bool own = false;            ///< belongs to this connection
+  bool shared_memory = false;  ///< its samples, of a fixed size, stay in its shared memory for those who read there
+};
+
+enum class WriterChange { kAppeared, kChanged, kGone };
+
+/// One sample as it came: 4 bytes of CDR header (byte order) and the fields.
+struct RawSample {
+  WriterId writer{};
+  std::int64_t sequence = 0;     ///< the writer counts its samples from 1
+  std::int64_t source_ns = 0;    ///< CLOCK_REALTIME of the writer; the reception where it says none
+  std::int64_t received_ns = 0;  ///< CLOCK_REALTIME here
+  std::shared_ptr<const ByteBlock> bytes;
+  std::span<const std::byte> cdr() const { return bytes->view(); }
+};
+
+/// Samples that a writer has sent and that will not come.
+struct RawLoss {
+  WriterId writer{};
+  std::int64_t first_sequence = 0;
+  std::uint64_t count = 0;
+};
+
+/// Run on a thread of the reader, one at a time: queue and return. Losses are told before the sample that revealed
+/// them.
+struct RawHandlers {
+  std::function<void(RawSample)> on_sample;
+  std::function<void(const RawLoss&)> on_lost;
+  StatusCallbacks status;  ///< on_samples_lost: what the transport counts, also before a next sample reveals it
+};
+
+struct RawReaderOptions {
+  bool reliable = true;          ///< asking for more than a writer offers is no match
+  bool transient_local = false;  ///< also what was written before
+  int depth = 64;                ///< samples that may wait for the thread; then the oldest go and count as lost
+  /// Takes the samples of a TopicWriter::shared_memory from there instead of having them sent. Spares the writer a
+  /// copy, but then the writer's own short history is all the time that there is.
+  bool in_place = false;
+};
+
+struct RawWriterOptions {
+  RawQos qos;
+  std::uint32_t fixed_bytes = 0;  ///< size of every sample with its CDR header: they stay in shared memory; 0: varies
+};
+
+class RawReader {
+ public:
+  virtual ~RawReader() = default;  ///< afterwards no handler runs
+  virtual int matched() const = 0;
+};
+
+class RawWriter {
+ public:
+  virtual ~RawWriter() = default;
+  /// Sends the bytes, CDR header included. `source_ns`: the time that readers get as the writer's; 0: now. Thread-safe.
+  virtual bool write(std::span<const std::byte> cdr, std::int64_t source_ns = 0) = 0;
+  virtual int matched() const = 0;
+  /// As Writer::wait_acknowledged.
+  virtual bool wait_acknowledged(int timeout_ms) = 0;
+};
+
+/// One connection of a process to the bytes of a domain. Readers and writers must not outlive it. Thread-safe.
+class RawBus {
+ public:
+  using Watcher = std::function<void(const TopicWriter&, WriterChange)>;
+
+  virtual ~RawBus() = default;
+  virtual const std::string& vendor() const = 0;
+  /// Writers known now. A writer is known before its first sample is delivered.
+  virtual std::vector<TopicWriter> writers() const = 0;
+  /// Tells of the writers known now, then of each change. One watcher, on a thread of the bus that may create and
+  /// destroy readers and writers. Empty ends it: afterwards it does not run.
+  virtual void watch(Watcher watcher) = 0;
+  /// Throws BusError: refused, or the topic is in use with another type.
+  virtual std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
+                                            RawHandlers handlers) = 0;
+  virtual std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options,
+                                            StatusCallbacks callbacks = {}) = 0;
+};
+
+/// As connect(). In process, raw endpoints meet raw endpoints only: typed messages have no bytes there.
+std::shared_ptr<RawBus> connect_raw(const BusOptions& options);
+
+}  // namespace rtd::bus
