@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+/// Names of DDS and of ROS 2 for one thing, both ways:
+///   rt/slam/odometry                 <-> /slam/odometry          (a ROS topic begins with a slash)
+///   rtd/frame                        <-> rtd/frame               (any other topic keeps its name)
+///   nav_msgs::msg::dds_::Odometry_   <-> nav_msgs/msg/Odometry
+///   KeyedSeq                         <-> KeyedSeq
+namespace rtd::ros2 {
+
+std::string ros_topic(const std::string& dds_topic);
+std::string dds_topic(const std::string& ros_topic);
+std::string ros_type(const std::string& dds_type);
+std::string dds_type(const std::string& ros_type);
+
+}  // namespace rtd::ros2
