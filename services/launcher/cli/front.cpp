@@ -16,12 +16,15 @@
 #include "services/launcher/eval/eval_command.hpp"
 #include "services/launcher/eval_detector/eval_detector_command.hpp"
 #include "services/launcher/process/executable.hpp"
+#include "services/launcher/recording/diff_command.hpp"
+#include "services/launcher/recording/info_command.hpp"
 #include "services/launcher/run/run_command.hpp"
 
 namespace rtd::launcher {
 namespace {
 
-const std::vector<std::string> kCommands = {"run", "demo", "ablate", "eval", "eval-detector", "doctor", "version", "help"};
+const std::vector<std::string> kCommands = {"run",  "demo", "ablate", "eval",    "eval-detector",
+                                            "info", "diff", "doctor", "version", "help"};
 
 struct Requests {
   RunOptions run;
@@ -29,11 +32,14 @@ struct Requests {
   AblateOptions ablate;
   EvalOptions eval;
   EvalDetectorOptions eval_detector;
+  InfoOptions info;
+  DiffRequest diff;
 };
 
 void add_run_command(CLI::App& app, RunOptions& options) {
   CLI::App* command = app.add_subcommand("run", "Run camera, detector, filter and slam on a source and report");
-  command->add_option("--source", options.source, "tum:FOLDER, bag:FILE or synthetic:NAME[?seed=..&frames=..]")->required();
+  command->add_option("--source", options.source, "tum:FOLDER, bag:FILE or synthetic:NAME[?seed=..&frames=..]")
+      ->required();
   command->add_option("--out", options.out_dir, "Folder for trajectory, map, logs and report")->required();
   command->add_option("--pace", options.pace, "realtime, asap or lockstep")
       ->check(CLI::IsMember({"realtime", "asap", "lockstep"}))
@@ -92,6 +98,8 @@ int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("ablate")) return ablate(requests.ablate);
   if (app.got_subcommand("eval")) return run_eval(requests.eval, std::cout, std::cerr);
   if (app.got_subcommand("eval-detector")) return run_eval_detector(requests.eval_detector, std::cout, std::cerr);
+  if (app.got_subcommand("info")) return run_info(requests.info, std::cout, std::cerr);
+  if (app.got_subcommand("diff")) return run_diff(requests.diff, std::cout, std::cerr);
   if (app.got_subcommand("doctor")) return doctor(std::cout);
   if (app.got_subcommand("version")) {
     std::cout << "rtd " << RTD_VERSION << '\n';
@@ -117,6 +125,8 @@ int front(int argc, char** argv) {
   add_ablate_command(app, requests.ablate);
   add_eval_command(app, requests.eval);
   add_eval_detector_command(app, requests.eval_detector);
+  add_info_command(app, requests.info);
+  add_diff_command(app, requests.diff);
   app.add_subcommand("doctor", "Check this host: shared memory, sockets, services, weights, data");
   app.add_subcommand("version", "Print the version");
   app.add_subcommand("help", "Print this text");

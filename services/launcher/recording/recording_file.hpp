@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "common/mcap/byte_source.hpp"
+
+namespace rtd::launcher {
+
+/// A file cannot be used as a recording; what() names it, the cause and the fix.
+class RecordingFileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Opens an MCAP file. Throws RecordingFileError: missing, unreadable, a folder, empty, another format. A file whose
+/// first bytes are damaged passes when a header follows.
+mcap::FileSource open_recording(const std::string& path);
+
+/// True when the file begins as an MCAP file does, or as one whose magic is damaged.
+bool looks_like_recording(const mcap::ByteSource& source);
+
+}  // namespace rtd::launcher
