@@ -64,6 +64,8 @@ void bind_geometry(ConfigBinder& binder, GeometryConfig& c) {
   binder.field("geometry.max_views", c.max_views, {1, 30}, "reference views per frame");
   binder.field("geometry.min_cluster_statements", c.min_cluster_statements, {1, 10000}, "before a cluster is judged");
   binder.field("geometry.min_violated_share", c.min_violated_share, {0.01, 1.0}, "that makes a cluster dynamic");
+  binder.field("geometry.max_unsettled_share", c.max_unsettled_share, {0.0, 1.0},
+               "of a surface seen through by recent views: it has not come to rest");
   binder.field("geometry.min_region_cells", c.min_region_cells, {1, 10000}, "smaller moving regions are noise");
   binder.field("geometry.min_resting_cells", c.min_resting_cells, {1, 100000},
                "a part of a moving surface may rest from this size");

@@ -30,6 +30,9 @@ MeasuredCells measured_cells(const DepthGrid& grid, const std::vector<Eigen::Vec
   return measured;
 }
 
+// What recent views say of a cell while they are asked
+constexpr std::uint8_t kSeenThere = 1, kSeenThrough = 2;
+
 /// The check against one reference view, in single precision: it runs over every cell.
 class ReferenceCheck {
  public:
@@ -37,6 +40,7 @@ class ReferenceCheck {
                  const GeometryConfig& config)
       : view_(view),
         old_(pose.stamp_ns - view.stamp_ns >= kOldNs),
+        recent_(pose.stamp_ns - view.stamp_ns <= kRecentNs),
         fx_(static_cast<float>(camera.parameters().fx)),
         fy_(static_cast<float>(camera.parameters().fy)),
         cx_(static_cast<float>(camera.parameters().cx)),
@@ -69,7 +73,7 @@ class ReferenceCheck {
 
  private:
   static constexpr float kMinDepthM = 0.1F;
-  static constexpr std::int64_t kOldNs = 400'000'000;
+  static constexpr std::int64_t kOldNs = 400'000'000, kRecentNs = 700'000'000;
 
   /// One cell of the current frame with the cell `i` of the view on which it falls.
   void compare(const Eigen::Array3f& turned, std::size_t i, std::size_t cell, DepthEvidence& evidence) const {
@@ -79,9 +83,11 @@ class ReferenceCheck {
     const float tau = tolerance_m(z);
     if (near_m > z + tau) {
       ++evidence.violated[cell];
+      if (recent_) evidence.settled[cell] = kSeenThrough;
     } else if (far_m > z - tau) {
       if (view_.dynamic[i] == 0) ++evidence.consistent[cell];
       if (old_) ++evidence.lasting[cell];
+      if (old_ && recent_ && evidence.settled[cell] == 0) evidence.settled[cell] = kSeenThere;
     }
   }
 
@@ -98,7 +104,7 @@ class ReferenceCheck {
   }
 
   const View& view_;
-  bool old_;
+  bool old_, recent_;
   float fx_, fy_, cx_, cy_, min_cosine_;
   float tau_floor_m_, tau_sigmas_, sigma_offset_m_, sigma_factor_per_m_;
   float never_oblique_m_ = 0;  ///< beyond this distance no ray is oblique
@@ -122,7 +128,9 @@ DepthEvidence check_depth(const DepthGrid& grid, const std::vector<Eigen::Vector
   }
   const std::size_t needed = references.size() >= kManyViews ? 2 : 1;
   for (std::size_t cell = 0; cell < cells; ++cell) {  // from counts to statements
-    evidence.lasting[cell] = evidence.lasting[cell] > 0 && evidence.violated[cell] == 0 ? 1 : 0;
+    const bool seen_through = evidence.violated[cell] > 0;
+    evidence.lasting[cell] = evidence.lasting[cell] > 0 && !seen_through ? 1 : 0;
+    evidence.settled[cell] = evidence.settled[cell] == kSeenThere && seen_through ? 1 : 0;
     evidence.violated[cell] = evidence.violated[cell] >= needed ? 1 : 0;
   }
   return evidence;

@@ -18,9 +18,11 @@ struct DepthEvidence {
                                          ///< are four or more to ask
   std::vector<std::uint8_t> consistent;  ///< number of views that saw the surface there too
   std::vector<std::uint8_t> lasting;     ///< 1 = views of at least 0.4 s ago saw it there, and none saw through it
+  std::vector<std::uint8_t> settled;     ///< 1 = violated, but only by views from before 0.7 s ago; one of 0.4 to 0.7 s
+                                         ///< ago saw it there
   static DepthEvidence none(std::size_t cells) {
     const std::vector<std::uint8_t> zero(cells, 0);
-    return {zero, zero, zero};
+    return {zero, zero, zero, zero};
   }
 };
 

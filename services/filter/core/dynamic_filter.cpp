@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "common/msg/transform_eigen.hpp"
+#include "services/filter/core/arrivals.hpp"
 #include "services/filter/core/belief/log_odds.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
 #include "services/filter/core/stage_clock.hpp"
@@ -226,6 +227,8 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
                                          static_cast<std::size_t>(config_.geometry.max_views));
     geometry.evidence = check_depth(scene.grid, sampler_.rays(), {scene.image.stamp_ns, geometry.ego.T_world_camera},
                                     views, scene.image.camera, config_.geometry);
+    geometry.evidence = accept_arrivals(std::move(geometry.evidence), scene.clusters, geometry.ego.votes,
+                                        geometry.ego.old_votes, config_.geometry);
   }
   geometry.regions = find_dynamic_regions(scene.clusters, geometry.evidence,
                                           {geometry.ego.votes, geometry.ego.slow_votes}, remembered, config_.geometry);

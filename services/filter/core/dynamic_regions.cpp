@@ -13,6 +13,7 @@ constexpr int kForgetFaster = 4;  // frames of memory that one frame at rest cos
 
 /// The counts by which a cluster is judged.
 struct ClusterEvidence {
+  int seen = 0;  ///< stated, or there a while ago, whatever was thought of it then
   int stated = 0, violating = 0, remembered = 0;
   std::uint8_t frames_left = 0;
 };
@@ -25,6 +26,7 @@ std::vector<ClusterEvidence> gather(const DepthClusters& clusters, const DepthEv
     ClusterEvidence& cluster = gathered[static_cast<std::size_t>(clusters.label[cell])];
     cluster.violating += evidence.violated[cell] > 0 ? 1 : 0;
     cluster.stated += evidence.violated[cell] > 0 || evidence.consistent[cell] > 0 ? 1 : 0;
+    cluster.seen += evidence.violated[cell] > 0 || evidence.consistent[cell] > 0 || evidence.lasting[cell] > 0 ? 1 : 0;
     cluster.remembered += remembered[cell] > 0 ? 1 : 0;
     cluster.frames_left = std::max(cluster.frames_left, remembered[cell]);
   }
@@ -49,8 +51,8 @@ bool rests(const ClusterEvidence& cluster, const MotionVotes& votes, std::size_t
   const auto at_place = [&](const FeatureVotes& cast) {
     return vote_count(cast.resting, index) >= config.min_resting_ratio * vote_count(cast.moving, index);
   };
-  return cluster.stated >= config.min_cluster_statements && cluster.violating == 0 &&
-         vote_count(votes.quick.resting, index) >= config.min_moving_features && at_place(votes.quick) &&
+  return cluster.seen >= config.min_cluster_statements &&
+         cluster.violating <= config.max_unsettled_share * cluster.seen && votes.quick.cluster_rests(index, config) &&
          at_place(votes.slow);
 }
 
@@ -121,7 +123,7 @@ DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEv
     const std::int32_t label = clusters.label[cell];
     const std::uint8_t frames_left = label < 0 ? std::uint8_t{0} : of_cluster[static_cast<std::size_t>(label)];
     if (frames_left > 0) {  // resting parts are not taken in, but what has moved is let go slowly
-      regions.frames_left[cell] = resting[cell] == 0 ? frames_left : one_less(remembered[cell]);
+      regions.frames_left[cell] = resting[cell] == 0 ? frames_left : std::min(frames_left, one_less(remembered[cell]));
     } else {
       loose[cell] = evidence.violated[cell] > 0 ? loose_memory : std::min(loose_memory, one_less(remembered[cell]));
     }

@@ -61,6 +61,8 @@ EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig
   ego.T_world_camera = refined.T_world_camera;
   ego.inliers = refined.inliers;
   ego.votes = count_votes(all_near, camera, refined.T_world_camera, input.clusters, geometry);
+  ego.old_votes =
+      count_votes(to_sightings(old_matches, input), camera, refined.T_world_camera, input.clusters, geometry);
   if (input.look_back_ns > 0) ego.slow_votes = count_slow_votes(input, refined.T_world_camera, config, geometry);
   return ego;
 }

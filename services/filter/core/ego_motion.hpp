@@ -18,6 +18,7 @@ struct EgoMotion {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   int inliers = 0;
   FeatureVotes votes;       ///< of the features found again in the view 0.1 s ago, movers included
+  FeatureVotes old_votes;   ///< and in the view 0.5 s ago, near their place
   FeatureVotes slow_votes;  ///< and in one of up to 1.5 s ago; none in most frames
 };
 

@@ -10,6 +10,11 @@ bool FeatureVotes::cluster_moves(std::size_t cluster, const GeometryConfig& conf
   return moving[cluster] >= config.min_moving_features && moving[cluster] >= config.min_moving_share * cast;
 }
 
+bool FeatureVotes::cluster_rests(std::size_t cluster, const GeometryConfig& config) const {
+  return cluster < resting.size() && resting[cluster] >= config.min_moving_features &&
+         resting[cluster] >= config.min_resting_ratio * moving[cluster];
+}
+
 bool FeatureVotes::cluster_creeps(std::size_t cluster, const GeometryConfig& config) const {
   if (cluster >= moving.size()) return false;
   const int cast = resting[cluster] + moving[cluster];

@@ -23,6 +23,8 @@ struct FeatureVotes {
   std::vector<int> resting, moving;  ///< per cluster
   /// Enough of the cluster's features are displaced.
   bool cluster_moves(std::size_t cluster, const GeometryConfig& config) const;
+  /// Enough of the cluster's features are at their place, and hardly one is not.
+  bool cluster_rests(std::size_t cluster, const GeometryConfig& config) const;
   /// The same for displacements over a second, which need no crowd: few features, but nearly all of them.
   bool cluster_creeps(std::size_t cluster, const GeometryConfig& config) const;
 };

@@ -90,6 +90,7 @@ struct GeometryConfig {
   int min_cluster_statements = 30;  ///< cells with a statement before a cluster is judged
   int min_resting_cells = 400;      ///< parts of a dynamic cluster of at least this size may turn out to rest
   double min_resting_ratio = 5.0;   ///< ... if this many times more of their features are at their place than not
+  double max_unsettled_share = 0.05;  ///< of a surface seen through by recent views: more, and it has not come to rest
   double min_violated_share = 0.2;  ///< share of violating cells that makes a cluster dynamic
   int min_moving_features = 12;     ///< features off their place before a cluster is judged by them
   double min_moving_share = 0.6;

@@ -103,6 +103,18 @@ TEST(DepthCheck, wants_two_of_four_views_to_agree) {
   EXPECT_EQ(count(check(with_block(kBlock), references).violated), cells_in(kBlock));
 }
 
+TEST(DepthCheck, tells_what_has_come_and_stayed_from_what_comes) {
+  std::vector<View> references{view_of(with_block(kBlock), 0.1), view_of(with_block(kBlock), 0.5),
+                               view_of(wall_image(3.0), 1.0), view_of(wall_image(3.0), 30.0)};
+  EXPECT_EQ(count(check(with_block(kBlock), references).settled),
+            count(check(with_block(kBlock), references).violated));
+  EXPECT_EQ(count(check(with_block(kBlock), references).violated), cells_in(kBlock));
+  references[0] = view_of(wall_image(3.0), 0.1);
+  EXPECT_EQ(count(check(with_block(kBlock), references).settled), 0) << "it was not there just now";
+  references[0] = references[1] = view_of(with_block(kBlock), 0.1);
+  EXPECT_EQ(count(check(with_block(kBlock), references).settled), 0) << "it has not been there for long";
+}
+
 TEST(DepthCheck, takes_nothing_dynamic_as_a_witness_of_rest) {
   View reference = view_of(with_block(kBlock));
   reference.dynamic.assign(reference.dynamic.size(), 1);
