@@ -62,7 +62,6 @@ void Writer::begin() {
 void Writer::write(const Schema& schema) {
   require_open();
   require(schema.id != 0, "schema \"" + schema.name + "\" has the id 0, which means \"no schema\"; use 1 to 65535");
-  require(!schema.encoding.empty() || schema.data.empty(), "schema \"" + schema.name + "\" has data but no encoding");
   if (!is_new(schemas_, schema, "schema")) return;
   define(schema);
   schemas_.emplace(schema.id, schema);

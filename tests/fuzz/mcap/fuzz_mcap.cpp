@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+/// Feeds changed MCAP files to the readers: fuzz_mcap [inputs] [seed]. What must hold for every input: no crash, no
+/// sanitizer report, bounded memory, and what recover() makes of it reads back without a problem. Exit code 1 and the
+/// input in fuzz_mcap_failed.mcap otherwise. The preset asan-ubsan gives it its teeth.
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include "common/mcap/recover.hpp"
+#include "tests/fuzz/mcap/allocation_watch.hpp"
+#include "tests/fuzz/mcap/mutation.hpp"
+#include "tests/unit/mcap/sample_file.hpp"
+
+#if defined(__SANITIZE_ADDRESS__)
+extern "C" const char* __ubsan_default_options();
+extern "C" const char* __ubsan_default_options() {
+  return "halt_on_error=1:print_stacktrace=1";
+}
+#endif
+
+namespace rtd::mcap {
+namespace {
+
+// The limit of the reader, twice (a record and what it becomes), the cache, LZ4's blocks of 4 MiB, and change.
+constexpr std::uint64_t kMaxRecord = 1 << 20, kCache = 1 << 20;
+constexpr std::size_t kMostAllocated = 2 * kMaxRecord + kCache + (9 << 20);
+
+std::vector<Bytes> seeds() {
+  std::vector<Bytes> files;
+  for (const Compression compression : {Compression::kNone, Compression::kLz4, Compression::kZstd}) {
+    for (const bool chunks : {true, false}) {
+      WriterOptions options;
+      options.compression = compression;
+      options.use_chunks = chunks;
+      options.chunk_size = 300;
+      options.add_extra_data_to_records = compression == Compression::kLz4;
+      MemorySink sink;
+      Writer writer(sink, options);
+      write_all(writer, sample_messages(12, 20));
+      writer.write(Attachment{1, 2, "a.yaml", "text/yaml", bytes_of("fx: 1"), 0});
+      writer.write(Metadata{"m", {{"key", "value"}}});
+      writer.close();
+      files.push_back(sink.bytes());
+    }
+  }
+  return files;
+}
+
+/// Every byte that is delivered is read.
+std::uint64_t touch(ByteView data) {
+  std::uint64_t sum = 0;
+  for (const std::byte byte : data) sum += std::to_integer<std::uint64_t>(byte);
+  return sum;
+}
+
+std::uint64_t read_by_index(const ByteSource& source, const ReaderOptions& options) {
+  IndexedReader reader(source, options);
+  std::uint64_t sum = 0;
+  MessageCursor cursor = reader.messages({2, 100, [](const Channel& channel) { return channel.topic != "/pose"; }});
+  while (const Message* message = cursor.next()) sum += touch(message->data);
+  for (const AttachmentIndex& index : reader.summary().attachment_indexes)
+    if (const auto attachment = reader.attachment(index)) sum += touch(attachment->data);
+  for (const MetadataIndex& index : reader.summary().metadata_indexes) sum += reader.metadata(index) ? 1 : 0;
+  return sum;
+}
+
+/// Why the input is a failure; empty when it is none.
+std::string try_input(const Bytes& file, bool check_crcs, std::uint64_t& sum) {
+  ReaderOptions options{kMaxRecord, kCache, 50, check_crcs};
+  const MemorySource source(file);
+  sum += read_by_index(source, options);
+  MemorySink sink;
+  RecoverOptions recovery;
+  recovery.reader = options;
+  sum += recover(source, sink, recovery).recovered.message_count;
+  const ReadBack again = stream(sink.bytes());
+  for (const StoredMessage& message : again.messages) sum += touch(bytes_of(message.data));
+  if (!again.problems.empty()) return "the recovered file has problems: " + texts(again.problems);
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated)
+    return "it made the readers hold " + std::to_string(peak) + " bytes";
+  return "";
+}
+
+int fuzz(std::uint64_t inputs, std::uint64_t seed) {
+  const std::vector<Bytes> files = seeds();
+  std::mt19937_64 random(seed);
+  std::uint64_t sum = 0;
+  testing::watch_allocations();
+  for (std::uint64_t i = 0; i < inputs; ++i) {
+    const Bytes input = mutate(files[random() % files.size()], files[random() % files.size()], random);
+    testing::peak_allocation();
+    const std::string failure = try_input(input, random() % 2 == 0, sum);
+    if (failure.empty()) continue;
+    std::ofstream("fuzz_mcap_failed.mcap", std::ios::binary)
+        .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
+    std::fprintf(stderr, "input %llu of seed %llu: %s\n", static_cast<unsigned long long>(i),
+                 static_cast<unsigned long long>(seed), failure.c_str());
+    return 1;
+  }
+  std::printf("%llu inputs, all well (sum of all bytes read %llu)\n", static_cast<unsigned long long>(inputs),
+              static_cast<unsigned long long>(sum));
+  return 0;
+}
+
+}  // namespace
+}  // namespace rtd::mcap
+
+int main(int argc, char** argv) {
+  const std::uint64_t inputs = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 5000;
+  return rtd::mcap::fuzz(inputs, argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1);
+}
