@@ -98,6 +98,9 @@ void bind_belief(ConfigBinder& binder, BeliefConfig& c) {
   binder.field("belief.min_moving_cells", c.min_moving_cells, {0.01, 1.0}, "share dynamic: the object moves");
   binder.field("belief.min_moving_votes", c.min_moving_votes, {1, 2048}, "or so many of its features displaced");
   binder.field("belief.min_moving_votes_share", c.min_moving_votes_share, {0.01, 1.0}, "... and this share of them");
+  binder.field("belief.drift_sigmas", c.drift_sigmas, {0.5, 1000.0},
+               "or their median shift so many standard deviations");
+  binder.field("belief.drift_floor_px", c.drift_floor_px, {0.0, 100.0}, "of which the pose has this much, px");
   binder.field("belief.max_dynamic_cells", c.max_dynamic_cells, {0.0, 1.0}, "share dynamic: less, it may rest");
   binder.field("belief.min_lasting_cells", c.min_lasting_cells, {0.0, 1.0}, "... this share there 0.4 s ago");
   binder.field("belief.min_resting_votes", c.min_resting_votes, {0, 2048}, "... so many features at their place");

@@ -27,10 +27,14 @@ FeatureVotes count_votes(const std::vector<PointSighting>& sightings, const geom
   FeatureVotes votes{{}, std::vector<int>(clusters.cells.size(), 0), std::vector<int>(clusters.cells.size(), 0)};
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   for (const PointSighting& sighting : sightings) {
-    const double chi2 = displacement_chi2(sighting, camera, T_camera_world);
+    const auto shift_px = displacement_px(sighting, camera, T_camera_world);
+    if (!shift_px) continue;
+    const int cell = clusters.shape.nearest_cell(sighting.pixel.x(), sighting.pixel.y());
+    votes.shifts.push_back({cell, static_cast<float>(shift_px->x()), static_cast<float>(shift_px->y())});
+    const double chi2 = shift_px->squaredNorm() / (sighting.sigma_px * sighting.sigma_px);
     const bool moving = chi2 > config.min_moving_chi2;
     if (!moving && chi2 >= config.max_static_chi2) continue;
-    votes.votes.push_back({clusters.shape.nearest_cell(sighting.pixel.x(), sighting.pixel.y()), moving});
+    votes.votes.push_back({cell, moving});
     if (sighting.cluster >= 0) ++(moving ? votes.moving : votes.resting)[static_cast<std::size_t>(sighting.cluster)];
   }
   return votes;

@@ -87,12 +87,12 @@ struct GeometryConfig {
   double max_view_angle_deg = 30.0;  ///< larger angle between the two viewing rays: no statement (paper section III-A)
   int max_views = 6;                 ///< reference views per frame
   int min_region_cells = 40;  ///< smaller regions are thin structures that depth cameras see now and then, not movers
-  int min_cluster_statements = 30;  ///< cells with a statement before a cluster is judged
-  int min_resting_cells = 400;      ///< parts of a dynamic cluster of at least this size may turn out to rest
-  double min_resting_ratio = 5.0;   ///< ... if this many times more of their features are at their place than not
+  int min_cluster_statements = 30;    ///< cells with a statement before a cluster is judged
+  int min_resting_cells = 400;        ///< parts of a dynamic cluster of at least this size may turn out to rest
+  double min_resting_ratio = 5.0;     ///< ... if this many times more of their features are at their place than not
   double max_unsettled_share = 0.05;  ///< of a surface seen through by recent views: more, and it has not come to rest
-  double min_violated_share = 0.2;  ///< share of violating cells that makes a cluster dynamic
-  int min_moving_features = 12;     ///< features off their place before a cluster is judged by them
+  double min_violated_share = 0.2;    ///< share of violating cells that makes a cluster dynamic
+  int min_moving_features = 12;       ///< features off their place before a cluster is judged by them
   double min_moving_share = 0.6;
   int min_creeping_features = 6;  ///< the same, displaced over a second
   double min_creeping_share = 0.7;
@@ -120,6 +120,8 @@ struct BeliefConfig {
   double min_moving_cells = 0.2;         ///< share of its cells dynamic: it moves
   int min_moving_votes = 8;              ///< or so many features displaced
   double min_moving_votes_share = 0.35;  ///< ... and this share of those found again
+  double drift_sigmas = 4.0;             ///< or the median shift of its features so many standard deviations
+  double drift_floor_px = 0.5;           ///< ... of which this much is the pose's
   double max_dynamic_cells = 0.05;       ///< it rests: hardly a cell dynamic (a share)
   double min_lasting_cells = 0.3;        ///< ... this share of its cells there 0.4 s ago
   int min_resting_votes = 12;            ///< ... and so many features at their place

@@ -57,12 +57,18 @@ std::vector<std::vector<PointSighting>> proposing_groups(const std::vector<Point
 
 }  // namespace
 
+std::optional<Eigen::Vector2d> displacement_px(const PointSighting& s, const geometry::CameraModel& camera,
+                                               const Eigen::Isometry3d& T_camera_world) {
+  const Eigen::Vector3d p_camera = T_camera_world * s.p_world;
+  if (p_camera.z() < vision::kMinProjectionDepth_m) return std::nullopt;
+  return s.pixel - camera.project(p_camera);
+}
+
 double displacement_chi2(const PointSighting& s, const geometry::CameraModel& camera,
                          const Eigen::Isometry3d& T_camera_world) {
   constexpr double kBehindCamera = 1e6;
-  const Eigen::Vector3d p_camera = T_camera_world * s.p_world;
-  if (p_camera.z() < vision::kMinProjectionDepth_m) return kBehindCamera;
-  return (camera.project(p_camera) - s.pixel).squaredNorm() / (s.sigma_px * s.sigma_px);
+  const auto displacement = displacement_px(s, camera, T_camera_world);
+  return displacement ? displacement->squaredNorm() / (s.sigma_px * s.sigma_px) : kBehindCamera;
 }
 
 RefinedPose refine_pose(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,

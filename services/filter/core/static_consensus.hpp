@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "common/geometry/camera_model.hpp"
@@ -18,6 +19,10 @@ struct PointSighting {
   double sigma_px = 1;                                ///< of the displacement between the two sightings
   int cluster = -1;                                   ///< depth cluster it lies on
 };
+
+/// Where it was seen, from where the point would be seen at rest; nothing when that lies behind the camera.
+std::optional<Eigen::Vector2d> displacement_px(const PointSighting& sighting, const geometry::CameraModel& camera,
+                                               const Eigen::Isometry3d& T_camera_world);
 
 /// Squared displacement in the image in units of sigma: about chi2 with 2 degrees of freedom for a point at rest.
 double displacement_chi2(const PointSighting& sighting, const geometry::CameraModel& camera,

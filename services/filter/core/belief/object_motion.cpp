@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/belief/object_motion.hpp"
 
+#include "services/filter/core/belief/object_drift.hpp"
+
 namespace rtd::filter {
 namespace {
 
@@ -30,6 +32,8 @@ ObjectMotion judge(const SceneObject& object, const MotionEvidence& evidence, co
   const auto cells = static_cast<double>(object.cells.size());
   if (dynamic >= config.min_moving_cells * cells) return ObjectMotion::kMoving;
   if (moving >= config.min_moving_votes && moving >= config.min_moving_votes_share * (moving + resting))
+    return ObjectMotion::kMoving;
+  if (object.level == MotionLevel::kHigh && drifts(drift_of(object.cells, evidence.votes, votes.moving.size()), config))
     return ObjectMotion::kMoving;
   const bool features_rest = resting >= config.min_resting_votes && resting >= config.min_resting_ratio * moving;
   if (dynamic <= config.max_dynamic_cells * cells && lasting >= config.min_lasting_cells * cells && features_rest)
