@@ -67,6 +67,7 @@ class FileSink final : public ByteSink {
 
   std::filesystem::path path_;
   int fd_ = -1;
+  bool broken_ = false;
   std::atomic<std::uint64_t> position_{0};
   std::atomic<bool> folder_synced_{false};
 };

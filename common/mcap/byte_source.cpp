@@ -21,7 +21,8 @@ std::size_t MemorySource::read(std::uint64_t offset, std::span<std::byte> into) 
   return found.size();
 }
 
-FileSource::FileSource(const std::filesystem::path& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+FileSource::FileSource(const std::filesystem::path& path)
+    : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   struct stat status {};
   int error_number = 0;
   if (fd_ < 0 || ::fstat(fd_, &status) != 0)

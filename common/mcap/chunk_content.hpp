@@ -11,9 +11,9 @@ namespace rtd::mcap {
 
 /// What bounds a reader, whatever a file claims.
 struct ReaderOptions {
-  std::uint64_t max_record_bytes = 512 * 1024 * 1024;  ///< of a record, and of a chunk when uncompressed
-  std::uint64_t cache_bytes = 64 * 1024 * 1024;        ///< of uncompressed chunks that an IndexedReader keeps
-  std::size_t max_problems = 1000;                     ///< listed; more are counted
+  std::uint64_t max_record_bytes = 1 << 29;  ///< of a record, and of a chunk when uncompressed
+  std::uint64_t cache_bytes = 1 << 26;       ///< of uncompressed chunks that an IndexedReader keeps
+  std::size_t max_problems = 1000;           ///< listed; more are counted
   bool check_crcs = true;
 };
 

@@ -89,10 +89,11 @@ void FileSink::append(std::initializer_list<ByteView> parts) {
     vectors[count++] = {const_cast<std::byte*>(part.data()), part.size()};
     size += part.size();
   }
+  if (broken_) fail(path_, EIO);
   const std::uint64_t start = position();
   if (const int error_number = write_all(fd_, std::span(vectors).first(count)); error_number != 0) {
-    // Back to the last whole record; where even that fails, readers report the cut record.
-    if (::ftruncate(fd_, static_cast<off_t>(start)) == 0) ::lseek(fd_, static_cast<off_t>(start), SEEK_SET);
+    // Back to the last whole record. Where even that fails the file stays cut, and nothing must come behind the cut.
+    broken_ = ::ftruncate(fd_, static_cast<off_t>(start)) != 0 || ::lseek(fd_, static_cast<off_t>(start), SEEK_SET) < 0;
     fail(path_, error_number);
   }
   position_.store(start + size, std::memory_order_release);

@@ -115,7 +115,7 @@ bool begins_record(const SourceWindow& file, std::uint64_t offset) {
 }
 
 std::optional<std::uint64_t> find_record(SourceWindow& file, std::uint64_t from, bool loose_messages) {
-  constexpr std::uint64_t kBlock = 64 * 1024;
+  constexpr std::uint64_t kBlock = 1 << 16;
   while (from < file.size() && file.size() - from >= kFrameBytes) {
     const std::optional<ByteView> block = file.view(from, std::min(kBlock, file.size() - from));
     if (!block) return std::nullopt;

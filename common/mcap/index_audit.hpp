@@ -14,7 +14,7 @@ namespace rtd::mcap {
 class IndexAudit {
  public:
   void begin_chunk(std::uint64_t offset, std::uint64_t length, const Chunk& chunk);
-  void lose_content() { messages_.clear(); }  ///< of the last chunk: its message indexes are then not checked
+  void lose_content() { forget_messages(); }  ///< of the last chunk: its message indexes are then not checked
   void lose_chunk() { open_chunk_.reset(); }  ///< what follows belongs to a chunk that was not seen
   void message() { ++message_count_; }
   void message_in_chunk(const Message& message, std::uint64_t offset_in_chunk);
@@ -33,6 +33,7 @@ class IndexAudit {
   std::uint64_t message_count() const { return message_count_; }
 
  private:
+  void forget_messages();
   struct SeenMessage {
     std::uint64_t offset = 0;
     Timestamp log_time = 0;
@@ -45,6 +46,7 @@ class IndexAudit {
   std::map<std::uint64_t, ChunkIndex> chunks_;  ///< as their index should be, by offset
   std::optional<std::uint64_t> open_chunk_;     ///< offset of the last one
   std::vector<SeenMessage> messages_;           ///< of that one, by offset
+  std::map<ChannelId, std::uint64_t> counts_;   ///< of these, by channel
   std::set<std::pair<std::uint64_t, std::uint64_t>> attachments_, metadata_;
   std::map<Opcode, SeenGroup> groups_;
   std::uint64_t message_count_ = 0;

@@ -75,7 +75,7 @@ std::vector<IndexedReader::Ref> IndexedReader::refs_in(const ChunkIndex& index, 
     }
   }
   if (records.cut()) report(index, ProblemKind::kDamagedRecord, "a record in it is longer than the rest of the chunk");
-  std::ranges::sort(refs);
+  std::sort(refs.begin(), refs.end());
   return refs;
 }
 
@@ -83,7 +83,7 @@ std::vector<IndexedReader::Ref> IndexedReader::loose_refs(const MessageQuery& qu
   std::vector<Ref> refs;
   for (const LooseMessage& loose : summary_.loose_messages)
     if (selects(query, loose.channel_id, loose.log_time)) refs.push_back({loose.log_time, loose.offset});
-  std::ranges::sort(refs);
+  std::sort(refs.begin(), refs.end());
   return refs;
 }
 

@@ -47,7 +47,9 @@ class IndexedReader {
   struct Ref {
     Timestamp log_time = 0;
     std::uint64_t offset = 0;  ///< of the record: in the uncompressed chunk, or in the file for a loose message
-    auto operator<=>(const Ref&) const = default;
+    bool operator<(const Ref& other) const {
+      return log_time != other.log_time ? log_time < other.log_time : offset < other.offset;
+    }
   };
 
   std::vector<Ref> refs_in(const ChunkIndex& index, const MessageQuery& query);

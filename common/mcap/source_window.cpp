@@ -11,7 +11,7 @@ std::optional<ByteView> SourceWindow::view(std::uint64_t offset, std::uint64_t l
   const bool inside =
       offset >= start_ && offset - start_ <= bytes_.size() && length <= bytes_.size() - (offset - start_);
   if (!inside) {
-    constexpr std::uint64_t kReadAhead = 64 * 1024;
+    constexpr std::uint64_t kReadAhead = 1 << 16;
     const std::span<std::byte> into = buffer_.reset(std::min(std::max(length, kReadAhead), size() - offset));
     bytes_ = into.first(source_.read(offset, into));
     start_ = offset;

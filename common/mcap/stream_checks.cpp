@@ -113,7 +113,7 @@ void StreamReader::check_footer(const Frame& frame, const Footer& footer) {
   std::uint32_t found = 0;
   std::uint64_t at = has_summary ? footer.summary_start : frame.offset;
   while (at < crc_field) {
-    constexpr std::uint64_t kBlock = 64 * 1024;
+    constexpr std::uint64_t kBlock = 1 << 16;
     const std::optional<ByteView> bytes = file_.view(at, std::min(kBlock, crc_field - at));
     if (!bytes) break;
     found = crc32(*bytes, found);

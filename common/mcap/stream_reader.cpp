@@ -43,12 +43,15 @@ const Record* StreamReader::next() {
 }
 
 bool StreamReader::begin() {
+  const std::optional<Frame> header = frame_at(file_, kMagic.size());
   const std::optional<ByteView> magic = file_.view(0, kMagic.size());
   if (magic && std::ranges::equal(*magic, bytes_of(kMagic))) {
     position_ = kMagic.size();
+    if (header && header->opcode != Opcode::kHeader)
+      report(ProblemKind::kMisplacedRecord, position_, "the first record is no Header",
+             "profile and library are not known");
     return true;
   }
-  const std::optional<Frame> header = frame_at(file_, kMagic.size());
   const bool goes_on = header && header->opcode == Opcode::kHeader && begins_record(file_, kMagic.size());
   report(ProblemKind::kNotMcap, 0, "the file does not begin with the MCAP magic",
          goes_on ? "a Header follows all the same: it is read on" : "nothing is read: this is not an MCAP file",
@@ -200,7 +203,11 @@ bool StreamReader::check(const Frame& frame, ByteView content, const R& record) 
     check_statistics(frame, record);
   } else if constexpr (std::is_same_v<R, MessageIndex>) {
     check_index(frame, audit_.check(frame.offset, frame.end() - frame.offset, record));
-  } else if constexpr (!std::is_same_v<R, Header>) {
+  } else if constexpr (std::is_same_v<R, Header>) {
+    if (frame.offset != kMagic.size())
+      report(ProblemKind::kMisplacedRecord, frame.offset, "Header: it is not the first record",
+             "it is delivered as it is");
+  } else {
     check_index(frame, audit_.check(record));
   }
   return true;
@@ -254,7 +261,7 @@ void StreamReader::end_chunk() {
 }
 
 void StreamReader::extend_crc(std::uint64_t end) {
-  constexpr std::uint64_t kBlock = 64 * 1024;
+  constexpr std::uint64_t kBlock = 1 << 16;
   while (options_.check_crcs && data_end_ == 0 && crc_end_ < end) {
     const std::uint64_t count = std::min(kBlock, end - crc_end_);
     // An unreadable place is reported where its record is read.

@@ -105,7 +105,7 @@ Check check_chunks(const SourceWindow& file, Summary& summary, std::uint64_t dat
   std::ranges::sort(summary.chunk_indexes, {}, &ChunkIndex::chunk_start_offset);
   std::uint64_t from = kMagic.size();
   for (const ChunkIndex& index : summary.chunk_indexes) {
-    if (const Check check = check_chunk(file, index, from, data_end)) return check;
+    if (Check check = check_chunk(file, index, from, data_end)) return check;
     from = index.chunk_start_offset + index.chunk_length;
     for (const auto& [channel, offset] : index.message_index_offsets)
       if (!summary.channels.contains(channel))
@@ -122,6 +122,9 @@ Check check_complete(const Summary& summary, std::uint64_t offset) {
   const bool has_chunks = !summary.chunk_indexes.empty();
   if (!summary.statistics && !has_chunks) return incomplete("has neither statistics nor chunk indexes");
   if (has_chunks && summary.channels.empty()) return incomplete("has no channels");
+  for (const auto& [id, channel] : summary.channels)
+    if (channel.schema_id != 0 && !summary.schemas.contains(channel.schema_id))
+      return incomplete("does not have all schemas");
   if (!summary.statistics) return std::nullopt;
   const Statistics& statistics = *summary.statistics;
   if (statistics.chunk_count != summary.chunk_indexes.size())

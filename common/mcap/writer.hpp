@@ -15,8 +15,8 @@ struct WriterOptions {
   std::string profile;               ///< e.g. "ros2"
   std::string library = "rtd-slam";  ///< who wrote it, free text
   Compression compression = Compression::kNone;
-  int compression_level = 0;               ///< 0: the library's default
-  std::uint64_t chunk_size = 1024 * 1024;  ///< bytes before compression; a longer message has a chunk for itself
+  int compression_level = 0;           ///< 0: the library's default
+  std::uint64_t chunk_size = 1 << 20;  ///< bytes before compression; a longer message has a chunk for itself
   /// Repeats the schemas and channels that a chunk uses inside it: a chunk can then be read when all others are lost.
   bool self_contained_chunks = false;
 

@@ -196,12 +196,14 @@ Json read_case(ByteView file, std::string& problems) {
   return records;
 }
 
-Json read_case_by_index(ByteView file) {
+Json read_case_by_index(ByteView file, std::string& problems) {
   const MemorySource source(file);
   IndexedReader reader(source);
   MessageCursor cursor = reader.messages();
   Json messages = Json::array();
   while (const Message* message = cursor.next()) messages.push_back(ToJson{}(*message));
+  for (const Problem& problem : reader.problems().listed())
+    if (problem.kind != ProblemKind::kNoSummary) problems += to_string(problem) + '\n';
   return messages;
 }
 

@@ -31,8 +31,9 @@ Bytes write_case(const ConformanceCase& test);
 /// The records that our streaming reader delivers, as the JSON has them; problems go to `problems`.
 nlohmann::json read_case(ByteView file, std::string& problems);
 
-/// The messages that our indexed reader delivers, and those of the data section of the case by log_time.
-nlohmann::json read_case_by_index(ByteView file);
+/// The messages that our indexed reader delivers (problems other than a missing or partial summary go to `problems`),
+/// and those of the data section of the case by log_time.
+nlohmann::json read_case_by_index(ByteView file, std::string& problems);
 nlohmann::json messages_by_time(const ConformanceCase& test);
 
 }  // namespace rtd::mcap

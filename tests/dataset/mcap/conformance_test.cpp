@@ -76,8 +76,11 @@ TEST_F(Conformance, reads_every_file_as_the_set_says) {
 }
 
 TEST_F(Conformance, finds_the_messages_of_every_file_by_time) {
-  for (const ConformanceCase& test : cases())
-    EXPECT_EQ(read_case_by_index(write_case(test)), messages_by_time(test)) << test.name;
+  for (const ConformanceCase& test : cases()) {
+    std::string problems;
+    EXPECT_EQ(read_case_by_index(write_case(test), problems), messages_by_time(test)) << test.name;
+    EXPECT_EQ(problems, "") << test.name;
+  }
 }
 
 }  // namespace
