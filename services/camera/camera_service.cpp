@@ -39,7 +39,8 @@ bool consumes_frames(const std::string& service) {
 }  // namespace
 
 void CameraService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--source", config.source, "tum:FOLDER, bag:FILE or synthetic:SCENE[?key=value&...] (camera.source)");
+  app.add_option("--source", config.source,
+                 "tum:FOLDER, bag:FILE, mcap:FILE or synthetic:SCENE[?key=value&...] (camera.source)");
   app.add_option("--frames", config.frames, "Play at most N frames, 0 = all (camera.frames)")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--wait-for", config.wait_for,

@@ -28,7 +28,8 @@ int window_of(const ServiceConfig& config, service::Pace pace) {
 }  // namespace
 
 void ServiceConfig::bind(service::ConfigBinder& binder) {
-  binder.field("source", source, "where frames come from: tum:FOLDER, bag:FILE or synthetic:SCENE[?key=value&...]");
+  binder.field("source", source,
+               "where frames come from: tum:FOLDER, bag:FILE, mcap:FILE or synthetic:SCENE[?key=value&...]");
   binder.field("frames", frames, {0, 1e9}, "play at most this many frames, 0 = all");
   binder.field("jpeg_quality", jpeg_quality, {1, 100}, "of the compressed topic, encoded only while somebody listens");
   binder.field("asap_window", asap_window, {1, 3}, "frames without a result at a time, pace asap");

@@ -9,11 +9,10 @@
 #include <utility>
 
 #include "common/service/monotonic_clock.hpp"
+#include "services/camera/core/recording/camera_info.hpp"
 
 namespace rtd::camera {
 namespace {
-
-constexpr const char* kFrameId = "camera_color_optical_frame";
 
 std::uint64_t random_id() {
   std::random_device device;
@@ -31,20 +30,6 @@ void copy_packed(const cv::Mat& image, Array& target) {
 }
 
 }  // namespace
-
-msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns) {
-  const auto& p = camera.parameters();
-  msg::CameraInfo info;
-  info.header = {msg::to_time(stamp_ns), kFrameId};
-  info.width = static_cast<std::uint32_t>(p.width);
-  info.height = static_cast<std::uint32_t>(p.height);
-  info.distortion_model = "plumb_bob";
-  info.d.assign(p.distortion.begin(), p.distortion.end());
-  info.k = {p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1};
-  info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  info.p = {p.fx, 0, p.cx, 0, 0, p.fy, p.cy, 0, 0, 0, 1, 0};
-  return info;
-}
 
 void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::int64_t published_ns,
                 msg::RgbdFrame& frame) {
@@ -89,7 +74,7 @@ bool FramePublisher::publish_raw(const vision::RgbdImage& image) {
 
 void FramePublisher::publish_jpeg(const vision::RgbdImage& image) {
   msg::CompressedImage message;
-  message.header = {msg::to_time(image.stamp_ns), kFrameId};
+  message.header = {msg::to_time(image.stamp_ns), kCameraFrame};
   message.format = "bgr8; jpeg compressed bgr8";
   if (!cv::imencode(".jpg", image.color_bgr, message.data, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality_})) return;
   ++jpegs_encoded_;

@@ -10,9 +10,6 @@
 
 namespace rtd::camera {
 
-/// The camera_info message of a camera, ROS conventions.
-msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns);
-
 /// Fills every field of a loaned frame.
 void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::int64_t published_ns,
                 msg::RgbdFrame& frame);

@@ -3,6 +3,7 @@
 #include "services/camera/core/source_factory.hpp"
 
 #include "services/camera/core/recording/bag_recording.hpp"
+#include "services/camera/core/recording/mcap_recording.hpp"
 #include "services/camera/core/recording/recording_source.hpp"
 #include "services/camera/core/source_uri.hpp"
 #include "services/camera/core/synthetic/synthetic_source.hpp"
@@ -42,9 +43,10 @@ RecordingOptions recording_options(const SourceUri& uri) {
   return options;
 }
 
-std::unique_ptr<FrameSource> make_bag_source(const SourceUri& uri) {
+std::unique_ptr<FrameSource> make_recording_source(const SourceUri& uri) {
   const RecordingOptions options = recording_options(uri);
-  return std::make_unique<RecordingSource>(uri.text, open_bag(uri.path), options);
+  auto recording = uri.scheme == "bag" ? open_bag(uri.path) : open_mcap(uri.path);
+  return std::make_unique<RecordingSource>(uri.text, std::move(recording), options);
 }
 
 }  // namespace
@@ -53,8 +55,8 @@ std::unique_ptr<FrameSource> make_source(const std::string& text) {
   const SourceUri uri = parse_source_uri(text);
   if (uri.scheme == "tum") return make_tum_source(uri);
   if (uri.scheme == "synthetic") return std::make_unique<SyntheticSource>(uri.text, parse_synthetic_options(uri));
-  if (uri.scheme == "bag") return make_bag_source(uri);
-  throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme + "'; known: bag, synthetic, tum");
+  if (uri.scheme == "bag" || uri.scheme == "mcap") return make_recording_source(uri);
+  throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme + "'; known: bag, mcap, synthetic, tum");
 }
 
 }  // namespace rtd::camera

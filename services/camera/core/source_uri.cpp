@@ -12,7 +12,7 @@ SourceUri parse_source_uri(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos || colon == 0) {
     throw SourceError("source '" + text +
-                      "' has no scheme; write tum:FOLDER, bag:FILE or synthetic:NAME[?key=value&...]");
+                      "' has no scheme; write tum:FOLDER, bag:FILE, mcap:FILE or synthetic:NAME[?key=value&...]");
   }
   SourceUri uri{text, text.substr(0, colon), text.substr(colon + 1), {}};
   const std::size_t question = uri.path.find('?');

@@ -39,7 +39,7 @@ void prepare(const fs::path& folder) {
     throw SourceError(folder.string() + " holds a sequence already; name a new folder or remove it");
   }
   std::error_code error;
-  for (const char* name : {"rgb", "depth", "mask"}) {
+  for (const char* name : {"rgb", "depth"}) {
     fs::create_directories(folder / name, error);
     if (error) throw SourceError("cannot make " + (folder / name).string() + ": " + error.message());
   }
@@ -57,10 +57,15 @@ struct Lists {
 
 }  // namespace
 
-std::uint64_t export_tum(FrameSource& source, const fs::path& folder, std::uint64_t max_frames) {
+void check_end(const FrameSource& source, std::uint64_t max_frames) {
   if (source.info().frames == 0 && max_frames == 0) {
     throw SourceError("source " + source.info().uri + " is endless: limit it with --frames N");
   }
+}
+
+std::uint64_t export_tum(FrameSource& source, const fs::path& folder, std::uint64_t max_frames,
+                         const OnFrame& on_frame) {
+  check_end(source, max_frames);
   prepare(folder);
   Lists lists;
   std::uint64_t frames = 0;
@@ -70,9 +75,13 @@ std::uint64_t export_tum(FrameSource& source, const fs::path& folder, std::uint6
     const std::string stamp = stamp_text(frame->image.stamp_ns), file = stamp + ".png";
     write_png(folder / "rgb" / file, frame->image.color_bgr);
     write_png(folder / "depth" / file, frame->image.depth);
-    if (!frame->dynamic_mask.empty()) write_png(folder / "mask" / file, frame->dynamic_mask);
+    if (!frame->dynamic_mask.empty()) {
+      fs::create_directory(folder / "mask");
+      write_png(folder / "mask" / file, frame->dynamic_mask);
+    }
     lists.add(stamp, file);
     ++frames;
+    if (on_frame) on_frame(frames);
   }
   write_text(folder / "rgb.txt", lists.rgb);
   write_text(folder / "depth.txt", lists.depth);

@@ -11,6 +11,7 @@
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/launcher/ablate/ablate_command.hpp"
+#include "services/launcher/convert/convert_command.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/eval/eval_command.hpp"
@@ -23,13 +24,14 @@
 namespace rtd::launcher {
 namespace {
 
-const std::vector<std::string> kCommands = {"run",  "demo", "ablate", "eval",    "eval-detector",
+const std::vector<std::string> kCommands = {"run",  "demo", "ablate", "convert", "eval", "eval-detector",
                                             "info", "diff", "doctor", "version", "help"};
 
 struct Requests {
   RunOptions run;
   DemoOptions demo;
   AblateOptions ablate;
+  ConvertOptions convert;
   EvalOptions eval;
   EvalDetectorOptions eval_detector;
   InfoOptions info;
@@ -38,7 +40,8 @@ struct Requests {
 
 void add_run_command(CLI::App& app, RunOptions& options) {
   CLI::App* command = app.add_subcommand("run", "Run camera, detector, filter and slam on a source and report");
-  command->add_option("--source", options.source, "tum:FOLDER, bag:FILE or synthetic:NAME[?seed=..&frames=..]")
+  command
+      ->add_option("--source", options.source, "tum:FOLDER, bag:FILE, mcap:FILE or synthetic:NAME[?seed=..&frames=..]")
       ->required();
   command->add_option("--out", options.out_dir, "Folder for trajectory, map, logs and report")->required();
   command->add_option("--pace", options.pace, "realtime, asap or lockstep")
@@ -96,6 +99,7 @@ int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("run")) return run(requests.run).code;
   if (app.got_subcommand("demo")) return demo(requests.demo);
   if (app.got_subcommand("ablate")) return ablate(requests.ablate);
+  if (app.got_subcommand("convert")) return run_convert(requests.convert, std::cout, std::cerr);
   if (app.got_subcommand("eval")) return run_eval(requests.eval, std::cout, std::cerr);
   if (app.got_subcommand("eval-detector")) return run_eval_detector(requests.eval_detector, std::cout, std::cerr);
   if (app.got_subcommand("info")) return run_info(requests.info, std::cout, std::cerr);
@@ -123,6 +127,7 @@ int front(int argc, char** argv) {
   add_run_command(app, requests.run);
   add_demo_command(app, requests.demo);
   add_ablate_command(app, requests.ablate);
+  add_convert_command(app, requests.convert);
   add_eval_command(app, requests.eval);
   add_eval_detector_command(app, requests.eval_detector);
   add_info_command(app, requests.info);

@@ -134,7 +134,12 @@ ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole rol
 }  // namespace
 
 std::string complete_uri(const std::string& source) {
-  return source.find(':') == std::string::npos && fs::is_directory(source) ? "tum:" + source : source;
+  if (source.find(':') != std::string::npos) return source;
+  if (fs::is_directory(source)) return "tum:" + source;
+  for (const std::string scheme : {"bag", "mcap"}) {
+    if (fs::path(source).extension() == "." + scheme) return scheme + ":" + source;
+  }
+  return source;
 }
 
 RunSetup prepare_run(const RunOptions& options) {

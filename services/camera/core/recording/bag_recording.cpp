@@ -27,9 +27,12 @@ class BagRecording final : public Recording {
     return std::nullopt;
   }
 
-  TopicSpan span(const std::string& topic) override {
-    const std::vector<rosbag1::MessagePlace> places = reader_.messages({topic});
-    return places.empty() ? TopicSpan{} : TopicSpan{places.front().time_ns, places.back().time_ns};
+  std::vector<std::int64_t> first_times_ns(const std::string& topic, std::size_t most) override {
+    std::vector<std::int64_t> times_ns;
+    for (const rosbag1::MessagePlace& place : reader_.messages({topic})) {
+      if (times_ns.size() < most) times_ns.push_back(place.time_ns);
+    }
+    return times_ns;
   }
 
   void play(const std::vector<std::string>& topics) override {

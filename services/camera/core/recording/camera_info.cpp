@@ -27,6 +27,20 @@ void take_distortion(const msg::CameraInfo& info, const std::string& origin, std
 
 }  // namespace
 
+msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns) {
+  const auto& p = camera.parameters();
+  msg::CameraInfo info;
+  info.header = {msg::to_time(stamp_ns), kCameraFrame};
+  info.width = static_cast<std::uint32_t>(p.width);
+  info.height = static_cast<std::uint32_t>(p.height);
+  info.distortion_model = "plumb_bob";
+  info.d.assign(p.distortion.begin(), p.distortion.end());
+  info.k = {p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1};
+  info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  info.p = {p.fx, 0, p.cx, 0, 0, p.fy, p.cy, 0, 0, 0, 1, 0};
+  return info;
+}
+
 geometry::CameraModel to_camera_model(const msg::CameraInfo& info, const std::string& color_topic,
                                       const std::string& origin) {
   geometry::CameraModel::Parameters p;

@@ -25,13 +25,13 @@ cv::Mat from_inverse(const cv::Mat& pixels, float a, float b) {
 
 }  // namespace
 
-cv::Mat quantize_depth(const cv::Mat& depth_m) {
+cv::Mat quantize_depth(const cv::Mat& depth_m, double unit_m) {
   cv::Mat depth(depth_m.size(), CV_16UC1);
   for (int row = 0; row < depth.rows; ++row) {
     const auto* from = depth_m.ptr<float>(row);
     auto* to = depth.ptr<std::uint16_t>(row);
     for (int column = 0; column < depth.cols; ++column) {
-      const double units = std::round(from[column] / kFloatDepthUnitM);
+      const double units = std::round(from[column] / unit_m);
       to[column] = units >= 0 && units <= kMaxUnits ? static_cast<std::uint16_t>(units) : 0;  // NaN compares false
     }
   }
@@ -42,7 +42,7 @@ bool is_compressed_depth(const msg::CompressedImage& image) {
   return image.format.find("compressedDepth") != std::string::npos;
 }
 
-ImageRead decode_compressed_depth(const msg::CompressedImage& image, const std::string& name) {
+ImageRead decode_compressed_depth(const msg::CompressedImage& image, const std::string& name, double float_unit_m) {
   if (image.format.find("rvl") != std::string::npos || image.format.find("RVL") != std::string::npos) {
     throw SourceError(name + " is encoded as '" + image.format + "', readable: compressedDepth with PNG");
   }
@@ -51,7 +51,7 @@ ImageRead decode_compressed_depth(const msg::CompressedImage& image, const std::
   const auto a = cursor.read<float>(), b = cursor.read<float>();
   ImageRead result = decode_depth(cursor.take(cursor.remaining()), name);
   if (!result.problem && image.format.rfind("32FC1", 0) == 0) {
-    result.image = quantize_depth(from_inverse(result.image, a, b));
+    result.image = quantize_depth(from_inverse(result.image, a, b), float_unit_m);
   }
   return result;
 }

@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/recording/image_pairs.hpp"
 
-#include <algorithm>
 #include <fstream>
 #include <iterator>
 
 #include "common/ros_codec/wire_reader.hpp"
 #include "services/camera/core/calibration.hpp"
 #include "services/camera/core/recording/camera_info.hpp"
+#include "services/camera/core/recording/compressed_depth.hpp"
 #include "services/camera/core/recording/ros_images.hpp"
 #include "services/camera/core/source_parts.hpp"
+#include "services/camera/core/text_fields.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -21,33 +22,22 @@ std::string read_text(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-double rate_of(const TopicSpan& span, std::uint64_t messages) {
-  constexpr double kDefaultHz = 30, kMinHz = 0.1, kMaxHz = 1000;
-  if (messages < 2 || span.last_ns <= span.first_ns) return kDefaultHz;
-  const double rate_hz = static_cast<double>(messages - 1) * 1e9 / static_cast<double>(span.last_ns - span.first_ns);
-  return std::clamp(rate_hz, kMinHz, kMaxHz);
-}
-
-RecordedMessage first_of(Recording& recording, const std::string& topic) {
-  std::optional<RecordedMessage> message = recording.first(topic);
-  if (message) return std::move(*message);
-  std::string cause = "none of its messages can be read";
-  if (const auto damages = recording.take_damages(); !damages.empty()) cause += ": " + damages.front();
-  throw SourceError(recording.name() + ", topic " + topic + ": " + cause);
+double float_unit_of(const RecordedTopic& depth) {
+  const auto factor = depth.metadata.find(kDepthFactor);
+  const std::optional<double> value = factor == depth.metadata.end() ? std::nullopt : parse_number(factor->second);
+  return value && *value >= 1 && *value <= 1e6 ? 1.0 / *value : kFloatDepthUnitM;
 }
 
 }  // namespace
 
 ImagePairs::ImagePairs(Recording& recording, const RecordingOptions& options)
     : recording_(recording), topics_(choose_topics(recording, options.topics)) {
-  color_type_ = type_of(topics_.color);
-  depth_type_ = type_of(topics_.depth);
-  for (const RecordedTopic& topic : recording.topics()) {
-    if (topic.name == topics_.color) info_.frames = topic.messages;
-  }
-  info_.fps = rate_of(recording.span(topics_.color), info_.frames);
+  color_type_ = topic_named(recording, topics_.color)->type;
+  depth_type_ = topic_named(recording, topics_.depth)->type;
+  float_unit_m_ = float_unit_of(*topic_named(recording, topics_.depth));
+  describe_rate(recording, topics_.color, info_);
   try {
-    look_at_first_images();
+    look_at_first_images(!options.topics.depth.empty());
     load_calibration(options);
   } catch (const ros::WireError& error) {
     throw SourceError(recording.name() + ": a first message is damaged: " + error.what());
@@ -58,10 +48,15 @@ ImagePairs::ImagePairs(Recording& recording, const RecordingOptions& options)
   recording.play(playing);
 }
 
-void ImagePairs::look_at_first_images() {
+void ImagePairs::look_at_first_images(bool depth_named) {
   const RecordedMessage color = first_of(recording_, topics_.color), depth = first_of(recording_, topics_.depth);
   camera_frame_ = ros::decode<msg::Header>(color.wire, color.bytes).frame_id;
-  info_.depth_scale_m = depth_unit_m(depth, depth_type_);
+  info_.depth_scale_m = depth_unit_m(depth, depth_type_, float_unit_m_);
+  const std::string depth_frame = ros::decode<msg::Header>(depth.wire, depth.bytes).frame_id;
+  if (depth_named || depth_frame == camera_frame_ || named_as_registered(topics_.depth)) return;
+  throw SourceError(recording_.name() + ": " + topics_.depth + " is in frame '" + depth_frame + "', " + topics_.color +
+                    " in '" + camera_frame_ +
+                    "': depth must be registered to colour; when it is, name it: ?depth=" + topics_.depth);
 }
 
 void ImagePairs::load_calibration(const RecordingOptions& options) {
@@ -78,11 +73,6 @@ void ImagePairs::load_calibration(const RecordingOptions& options) {
   const RecordedMessage message = first_of(recording_, topics_.info);
   info_.camera = to_camera_model(ros::decode<msg::CameraInfo>(message.wire, message.bytes), topics_.color,
                                  recording_.name() + ", topic " + topics_.info);
-}
-
-const std::string& ImagePairs::type_of(const std::string& topic) const {
-  const auto& all = recording_.topics();
-  return std::find_if(all.begin(), all.end(), [&](const RecordedTopic& other) { return other.name == topic; })->type;
 }
 
 std::optional<std::int64_t> ImagePairs::advance(SkipLog& skips) {
@@ -118,7 +108,7 @@ std::optional<SourceFrame> ImagePairs::decode(SkipLog& skips) {
   const FramePairer::Pair pair = *std::exchange(pair_, std::nullopt);
   ImageRead color = decode_color(pair.color.message, color_type_);
   if (color.problem) return skips.add(*color.problem), std::nullopt;
-  ImageRead depth = decode_depth(pair.depth.message, depth_type_);
+  ImageRead depth = decode_depth(pair.depth.message, depth_type_, float_unit_m_);
   if (depth.problem) return skips.add(*depth.problem), std::nullopt;
   const auto mismatch = size_mismatch(name_of(pair.color.message), color.image, depth.image, info_.camera);
   if (mismatch) return skips.add(*mismatch), std::nullopt;

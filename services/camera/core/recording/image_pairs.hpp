@@ -8,6 +8,9 @@
 
 namespace rtd::camera {
 
+/// Metadata of the depth topic's channel in an MCAP file that we wrote: the units of a metre in the source's images.
+inline constexpr const char* kDepthFactor = "depth_factor";
+
 /// Frames from two topics of ROS images, one of their calibration and, where the recording has them, transforms.
 class ImagePairs final : public FrameAssembly {
  public:
@@ -21,13 +24,13 @@ class ImagePairs final : public FrameAssembly {
 
  private:
   void load_calibration(const RecordingOptions& options);
-  void look_at_first_images();
-  const std::string& type_of(const std::string& topic) const;
+  void look_at_first_images(bool depth_named);
   void take(RecordedMessage message, SkipLog& skips);
 
   Recording& recording_;
   ImageTopics topics_;
   std::string color_type_, depth_type_, camera_frame_;
+  double float_unit_m_;  ///< of depth in floats
   SourceInfo info_;
   FramePairer pairer_;
   TransformLog transforms_;

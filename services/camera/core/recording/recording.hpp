@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,11 +12,15 @@
 
 namespace rtd::camera {
 
-/// A topic of a recording; the type without ROS 2's "/msg": "sensor_msgs/Image".
+/// A topic of a recording.
 struct RecordedTopic {
-  std::string name, type;
+  std::string name, type;  ///< plain_type()
   std::uint64_t messages = 0;
+  std::map<std::string, std::string> metadata;  ///< MCAP: of the channel
 };
+
+/// "sensor_msgs/msg/Image" (ROS 2), "sensor_msgs::msg::dds_::Image_" (DDS) -> "sensor_msgs/Image" (ROS 1).
+std::string plain_type(std::string type);
 
 /// A message of a recording, not yet decoded.
 struct RecordedMessage {
@@ -23,11 +28,6 @@ struct RecordedMessage {
   std::int64_t recorded_ns = 0;
   ros::Wire wire = ros::Wire::kRos1;
   std::vector<std::uint8_t> bytes;
-};
-
-/// The first and last time of a topic.
-struct TopicSpan {
-  std::int64_t first_ns = 0, last_ns = 0;
 };
 
 /// A file with messages of many topics, whatever its format. Throws SourceError when the file cannot be used; damaged
@@ -39,12 +39,16 @@ class Recording {
   virtual const std::vector<RecordedTopic>& topics() const = 0;
   /// Empty when the topic has no message that can be read.
   virtual std::optional<RecordedMessage> first(const std::string& topic) = 0;
-  virtual TopicSpan span(const std::string& topic) = 0;
+  /// When its first messages were recorded, at most so many.
+  virtual std::vector<std::int64_t> first_times_ns(const std::string& topic, std::size_t most) = 0;
   /// Begins to play these topics: next() gives their messages in the order of recording.
   virtual void play(const std::vector<std::string>& topics) = 0;
   virtual std::optional<RecordedMessage> next() = 0;
   /// What was found damaged since the last call, one line each.
   virtual std::vector<std::string> take_damages() = 0;
 };
+
+/// The first message of a topic. Throws SourceError when there is none that can be read.
+RecordedMessage first_of(Recording& recording, const std::string& topic);
 
 }  // namespace rtd::camera

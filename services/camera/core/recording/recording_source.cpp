@@ -2,14 +2,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/recording/recording_source.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "services/camera/core/recording/image_pairs.hpp"
+#include "services/camera/core/recording/own_frames.hpp"
 
 namespace rtd::camera {
+namespace {
+
+std::unique_ptr<FrameAssembly> assemble(Recording& recording, const RecordingOptions& options) {
+  const bool named = !options.topics.color.empty() || !options.topics.depth.empty();
+  if (!named && !OwnFrames::topic_of(recording).empty()) return std::make_unique<OwnFrames>(recording);
+  return std::make_unique<ImagePairs>(recording, options);
+}
+
+}  // namespace
+
+void describe_rate(Recording& recording, const std::string& topic, SourceInfo& info) {
+  constexpr std::size_t kTimes = 16;  // each may have to be unpacked
+  constexpr double kMinHz = 0.1, kMaxHz = 1000;
+  info.frames = topic_named(recording, topic)->messages;
+  const std::vector<std::int64_t> times_ns = recording.first_times_ns(topic, kTimes);
+  std::vector<std::int64_t> periods_ns;
+  for (std::size_t i = 1; i < times_ns.size(); ++i) periods_ns.push_back(times_ns[i] - times_ns[i - 1]);
+  std::sort(periods_ns.begin(), periods_ns.end());
+  if (periods_ns.empty()) return;
+  const auto median_ns = static_cast<double>(periods_ns[periods_ns.size() / 2]);
+  if (median_ns > 0) info.fps = std::clamp(1e9 / median_ns, kMinHz, kMaxHz);
+}
 
 RecordingSource::RecordingSource(std::string uri, std::unique_ptr<Recording> recording, const RecordingOptions& options)
-    : recording_(std::move(recording)), frames_(std::make_unique<ImagePairs>(*recording_, options)) {
+    : recording_(std::move(recording)), frames_(assemble(*recording_, options)) {
   info_ = frames_->info();
   info_.uri = std::move(uri);
   first_ = read_next();

@@ -23,6 +23,9 @@ class FrameAssembly {
   virtual std::vector<StampedPose> groundtruth() const = 0;
 };
 
+/// Fills in how many frames a topic promises and their nominal rate, the median of the first.
+void describe_rate(Recording& recording, const std::string& topic, SourceInfo& info);
+
 /// What the user may say about a recording.
 struct RecordingOptions {
   ImageTopics topics;

@@ -68,19 +68,19 @@ int depth_type(const RecordedMessage& message, const msg::Image& image) {
   return type->second;
 }
 
-ImageRead raw_depth(const RecordedMessage& message) {
+ImageRead raw_depth(const RecordedMessage& message, double float_unit_m) {
   auto image = ros::decode<msg::Image>(message.wire, message.bytes);
   const int type = depth_type(message, image);
   const cv::Mat pixels = view_of(image, type);
-  ImageRead result{type == CV_32FC1 ? quantize_depth(pixels) : pixels.clone(), {}};
+  ImageRead result{type == CV_32FC1 ? quantize_depth(pixels, float_unit_m) : pixels.clone(), {}};
   drop_saturated(result.image);
   return result;
 }
 
-ImageRead compressed_depth(const RecordedMessage& message) {
+ImageRead compressed_depth(const RecordedMessage& message, double float_unit_m) {
   const auto image = ros::decode<msg::CompressedImage>(message.wire, message.bytes);
   if (!is_compressed_depth(image)) return decode_depth(image.data, name_of(message));
-  return decode_compressed_depth(image, name_of(message));
+  return decode_compressed_depth(image, name_of(message), float_unit_m);
 }
 
 }  // namespace
@@ -97,19 +97,20 @@ ImageRead decode_color(const RecordedMessage& message, const std::string& type) 
   return refuse(SkipReason::kColorUnreadable, message, error.what());
 }
 
-ImageRead decode_depth(const RecordedMessage& message, const std::string& type) try {
-  return type == kCompressed ? compressed_depth(message) : raw_depth(message);
+ImageRead decode_depth(const RecordedMessage& message, const std::string& type, double float_unit_m) try {
+  return type == kCompressed ? compressed_depth(message, float_unit_m) : raw_depth(message, float_unit_m);
 } catch (const ros::WireError& error) {
   return refuse(SkipReason::kDepthUnreadable, message, error.what());
 }
 
-double depth_unit_m(const RecordedMessage& message, const std::string& type) {
+double depth_unit_m(const RecordedMessage& message, const std::string& type, double float_unit_m) {
+  bool floats = false;
   if (type == kCompressed) {
-    const auto image = ros::decode<msg::CompressedImage>(message.wire, message.bytes);
-    return image.format.rfind("32FC1", 0) == 0 ? kFloatDepthUnitM : kMillimetre;
+    floats = ros::decode<msg::CompressedImage>(message.wire, message.bytes).format.starts_with("32FC1");
+  } else {
+    floats = depth_type(message, ros::decode<msg::Image>(message.wire, message.bytes)) == CV_32FC1;
   }
-  return depth_type(message, ros::decode<msg::Image>(message.wire, message.bytes)) == CV_32FC1 ? kFloatDepthUnitM
-                                                                                               : kMillimetre;
+  return floats ? float_unit_m : kMillimetre;
 }
 
 }  // namespace rtd::camera

@@ -15,11 +15,11 @@ std::string name_of(const RecordedMessage& message);
 ImageRead decode_color(const RecordedMessage& message, const std::string& type);
 
 /// sensor_msgs/Image (16UC1, mono16, 32FC1) or CompressedImage (16-bit PNG, compressedDepth) as CV_16UC1, 0 = no
-/// measurement: NaN, infinity, saturation, nothing in front of the camera. Floats become units of 1/5000 m; beyond 13.1
-/// m there is no measurement. Throws SourceError as above.
-ImageRead decode_depth(const RecordedMessage& message, const std::string& type);
+/// measurement: NaN, infinity, saturation, nothing in front of the camera. Floats become units of float_unit_m; what
+/// does not fit is no measurement. Throws SourceError as above.
+ImageRead decode_depth(const RecordedMessage& message, const std::string& type, double float_unit_m);
 
 /// Metres of a unit of what decode_depth() makes of such a message. Throws SourceError and ros::WireError.
-double depth_unit_m(const RecordedMessage& message, const std::string& type);
+double depth_unit_m(const RecordedMessage& message, const std::string& type, double float_unit_m);
 
 }  // namespace rtd::camera

@@ -13,23 +13,24 @@ namespace {
 using Topics = std::vector<RecordedTopic>;
 using Fits = bool (*)(const RecordedTopic&);
 
-/// Raw images before compressed ones; depth must be registered to the colour image.
-constexpr std::array kColorNames = {"/camera/rgb/image_color",
-                                    "/camera/rgb/image_rect_color",
-                                    "/camera/color/image_raw",
-                                    "/camera/rgb/image_raw",
-                                    "/camera/color/image_raw/compressed",
-                                    "/camera/rgb/image_color/compressed",
-                                    "/camera/rgb/image_rect_color/compressed",
-                                    "/camera/rgb/image_raw/compressed"};
-constexpr std::array kDepthNames = {"/camera/aligned_depth_to_color/image_raw",
-                                    "/camera/depth_registered/hw_registered/image_rect_raw",
-                                    "/camera/depth_registered/image",
-                                    "/camera/depth_registered/image_raw",
-                                    "/camera/depth/image",
-                                    "/camera/aligned_depth_to_color/image_raw/compressedDepth",
-                                    "/camera/depth_registered/image_raw/compressedDepth",
-                                    "/camera/depth/image/compressedDepth"};
+/// How known drivers name them, behind the camera's own name. Raw images before compressed ones; depth must be
+/// registered to the colour image.
+constexpr std::array kColorNames = {"/rgb/image_color",
+                                    "/rgb/image_rect_color",
+                                    "/color/image_raw",
+                                    "/rgb/image_raw",
+                                    "/color/image_raw/compressed",
+                                    "/rgb/image_color/compressed",
+                                    "/rgb/image_rect_color/compressed",
+                                    "/rgb/image_raw/compressed"};
+constexpr std::array kDepthNames = {"/aligned_depth_to_color/image_raw",
+                                    "/depth_registered/hw_registered/image_rect_raw",
+                                    "/depth_registered/image",
+                                    "/depth_registered/image_raw",
+                                    "/depth/image",
+                                    "/aligned_depth_to_color/image_raw/compressedDepth",
+                                    "/depth_registered/image_raw/compressedDepth",
+                                    "/depth/image/compressedDepth"};
 
 bool is_image(const RecordedTopic& topic) {
   return topic.type == "sensor_msgs/Image" || topic.type == "sensor_msgs/CompressedImage";
@@ -62,25 +63,30 @@ bool contains(const Topics& topics, const std::string& name) {
 }
 
 std::string check_named(const Recording& recording, const std::string& key, const std::string& name, Fits fits) {
-  const Topics& all = recording.topics();
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const RecordedTopic& topic) { return topic.name == name; });
-  if (found == all.end()) throw error(recording, "has no topic " + name + " (" + key + "=)");
-  if (!fits(*found)) throw error(recording, key + "=" + name + " is of type " + found->type + ", which does not fit");
-  if (found->messages == 0) throw error(recording, "topic " + name + " (" + key + "=) has no messages");
+  const RecordedTopic* topic = topic_named(recording, name);
+  if (topic == nullptr) throw error(recording, "has no topic " + name + " (" + key + "=)");
+  if (!fits(*topic)) throw error(recording, key + "=" + name + " is of type " + topic->type + ", which does not fit");
+  if (topic->messages == 0) throw error(recording, "topic " + name + " (" + key + "=) has no messages");
   return name;
+}
+
+/// One topic of these; several are for the user to tell apart.
+std::string only(const Recording& recording, const std::string& key, const Topics& candidates) {
+  if (candidates.size() == 1) return candidates.front().name;
+  const std::string fix = "name it: ?" + key + "=TOPIC";
+  if (candidates.empty()) throw error(recording, "has no " + key + " images that can be told by name; " + fix);
+  throw error(recording, "has several topics that could be " + key + "; " + fix);
 }
 
 template <class Names>
 std::string choose_image(const Recording& recording, const std::string& key, Fits fits, const Names& names) {
   const Topics candidates = fitting(recording, fits);
   for (const char* name : names) {
-    if (contains(candidates, name)) return name;
+    Topics known = candidates;
+    std::erase_if(known, [name](const RecordedTopic& topic) { return !topic.name.ends_with(name); });
+    if (!known.empty()) return only(recording, key, known);
   }
-  if (candidates.size() == 1) return candidates.front().name;
-  if (candidates.empty())
-    throw error(recording, "has no " + key + " images that can be used (name a topic: ?" + key + "=TOPIC)");
-  throw error(recording, "has several topics that could be " + key + ", name one: ?" + key + "=TOPIC");
+  return only(recording, key, candidates);
 }
 
 /// The calibration stands beside the image: /camera/rgb/image_color, /camera/rgb/camera_info.
@@ -104,6 +110,18 @@ ImageTopics choose_topics(const Recording& recording, const ImageTopics& named) 
   topics.info =
       named.info.empty() ? choose_info(recording, topics.color) : check_named(recording, "info", named.info, is_info);
   return topics;
+}
+
+bool named_as_registered(const std::string& depth_topic) {
+  return std::any_of(kDepthNames.begin(), kDepthNames.end(),
+                     [&](const char* name) { return depth_topic.ends_with(name); });
+}
+
+const RecordedTopic* topic_named(const Recording& recording, const std::string& name) {
+  const Topics& all = recording.topics();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const RecordedTopic& topic) { return topic.name == name; });
+  return found == all.end() ? nullptr : &*found;
 }
 
 std::vector<std::string> transform_topics(const Recording& recording) {

@@ -20,6 +20,12 @@ struct ImageTopics {
 /// topics there are.
 ImageTopics choose_topics(const Recording& recording, const ImageTopics& named);
 
+/// Whether the name is one that drivers give to depth registered to colour only.
+bool named_as_registered(const std::string& depth_topic);
+
+/// Null when there is none of this name.
+const RecordedTopic* topic_named(const Recording& recording, const std::string& name);
+
 /// The topics of type tf.
 std::vector<std::string> transform_topics(const Recording& recording);
 

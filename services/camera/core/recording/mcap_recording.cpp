@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/recording/mcap_recording.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "common/mcap/byte_sink.hpp"
+#include "common/mcap/byte_source.hpp"
+#include "common/mcap/indexed_reader.hpp"
+#include "services/camera/core/frame_source.hpp"
+
+namespace rtd::camera {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<ros::Wire> wire_of(const mcap::Channel& channel) {
+  if (channel.message_encoding == "cdr") return ros::Wire::kCdr;
+  if (channel.message_encoding == "ros1") return ros::Wire::kRos1;
+  return std::nullopt;
+}
+
+class McapRecording final : public Recording {
+ public:
+  explicit McapRecording(const fs::path& file) : name_(file.string()), source_(file), reader_(source_) {
+    const mcap::Summary& summary = reader_.summary();
+    if (summary.channels.empty()) throw SourceError(name_ + " has no messages" + first_problem());
+    const auto counts = message_counts();
+    for (const auto& [id, channel] : summary.channels) {
+      const auto schema = summary.schemas.find(channel.schema_id);
+      if (!wire_of(channel) || schema == summary.schemas.end()) continue;
+      add_topic({channel.topic, plain_type(schema->second.name), counts.count(id) != 0 ? counts.at(id) : 0,
+                 channel.metadata});
+    }
+  }
+
+  const std::string& name() const override { return name_; }
+  const std::vector<RecordedTopic>& topics() const override { return topics_; }
+
+  std::optional<RecordedMessage> first(const std::string& topic) override {
+    mcap::MessageCursor cursor = messages({topic});
+    const mcap::Message* message = cursor.next();
+    if (message == nullptr) return std::nullopt;
+    return to_message(cursor, *message);
+  }
+
+  std::vector<std::int64_t> first_times_ns(const std::string& topic, std::size_t most) override {
+    std::vector<std::int64_t> times_ns;
+    mcap::MessageCursor cursor = messages({topic});
+    while (times_ns.size() < most) {
+      const mcap::Message* message = cursor.next();
+      if (message == nullptr) break;
+      times_ns.push_back(static_cast<std::int64_t>(message->log_time));
+    }
+    return times_ns;
+  }
+
+  void play(const std::vector<std::string>& topics) override { playing_.emplace(messages(topics)); }
+
+  std::optional<RecordedMessage> next() override {
+    const mcap::Message* message = playing_ ? playing_->next() : nullptr;
+    if (message == nullptr) return std::nullopt;
+    return to_message(*playing_, *message);
+  }
+
+  std::vector<std::string> take_damages() override {
+    std::vector<std::string> damages;
+    const auto& problems = reader_.problems().listed();
+    for (; told_ < problems.size(); ++told_) damages.push_back(name_ + ", " + mcap::to_string(problems[told_]));
+    return damages;
+  }
+
+ private:
+  static RecordedMessage to_message(const mcap::MessageCursor& cursor, const mcap::Message& message) {
+    RecordedMessage recorded{
+        cursor.channel().topic, static_cast<std::int64_t>(message.log_time), *wire_of(cursor.channel()), {}};
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(message.data.data());
+    recorded.bytes.assign(bytes, bytes + message.data.size());
+    return recorded;
+  }
+
+  mcap::MessageCursor messages(const std::vector<std::string>& topics) {
+    mcap::MessageQuery query;
+    query.wanted = [topics](const mcap::Channel& channel) {
+      return wire_of(channel) && std::find(topics.begin(), topics.end(), channel.topic) != topics.end();
+    };
+    return reader_.messages(std::move(query));
+  }
+
+  std::map<mcap::ChannelId, std::uint64_t> message_counts() {
+    if (const auto& statistics = reader_.summary().statistics) return statistics->channel_message_counts;
+    std::map<mcap::ChannelId, std::uint64_t> counts;  // statistics may be left out
+    mcap::MessageCursor cursor = reader_.messages();
+    while (const mcap::Message* message = cursor.next()) ++counts[message->channel_id];
+    return counts;
+  }
+
+  void add_topic(RecordedTopic topic) {
+    const auto same = std::find_if(topics_.begin(), topics_.end(),
+                                   [&](const RecordedTopic& other) { return other.name == topic.name; });
+    if (same == topics_.end()) {
+      topics_.push_back(std::move(topic));
+    } else {
+      same->messages += topic.messages;  // several publishers
+    }
+  }
+
+  std::string first_problem() const {
+    const auto& problems = reader_.problems().listed();
+    return problems.empty() ? std::string() : ": " + mcap::to_string(problems.front());
+  }
+
+  std::string name_;
+  mcap::FileSource source_;
+  mcap::IndexedReader reader_;
+  std::vector<RecordedTopic> topics_;
+  std::optional<mcap::MessageCursor> playing_;
+  std::size_t told_ = 0;
+};
+
+/// rosbag2 makes a folder with the file in it.
+fs::path file_of(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return path;
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) {
+    if (entry.path().extension() == ".mcap") files.push_back(entry.path());
+  }
+  if (files.size() == 1) return files.front();
+  throw SourceError(path.string() + " is a folder with " + std::to_string(files.size()) +
+                    " MCAP files; name one: mcap:FILE");
+}
+
+}  // namespace
+
+std::unique_ptr<Recording> open_mcap(const fs::path& file) try {
+  return std::make_unique<McapRecording>(file_of(file));
+} catch (const mcap::IoError& error) {
+  throw SourceError(error.what());
+}
+
+}  // namespace rtd::camera

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/recording/own_frames.hpp"
+
+#include <cstring>
+#include <utility>
+
+#include "common/ros_codec/byte_cursor.hpp"
+#include "common/vision/frame_view.hpp"
+#include "services/camera/core/recording/ros_images.hpp"
+#include "services/camera/core/source_parts.hpp"
+
+namespace rtd::camera {
+namespace {
+
+/// The frame behind the 4-byte header of CDR. Throws ros::WireError: too short, a size or calibration that cannot be.
+std::unique_ptr<msg::RgbdFrame> to_frame_message(const RecordedMessage& message) {
+  ros::ByteCursor cursor(message.bytes);
+  cursor.take(4);
+  auto frame = std::make_unique<msg::RgbdFrame>();
+  std::memcpy(frame.get(), cursor.take(sizeof(msg::RgbdFrame)).data(), sizeof(msg::RgbdFrame));
+  if (const std::string defect = vision::defect(*frame); !defect.empty()) throw ros::WireError(defect);
+  return frame;
+}
+
+}  // namespace
+
+std::string OwnFrames::topic_of(const Recording& recording) {
+  for (const RecordedTopic& topic : recording.topics()) {
+    if (topic.type == "rtd_msgs/RgbdFrame" && topic.messages > 0) return topic.name;
+  }
+  return {};
+}
+
+OwnFrames::OwnFrames(Recording& recording) : recording_(recording) {
+  const std::string topic = topic_of(recording);
+  const RecordedMessage first = first_of(recording, topic);
+  try {
+    const auto frame = to_frame_message(first);
+    const vision::RgbdImage image = vision::view_image(*frame);
+    info_.camera = image.camera;
+    info_.depth_scale_m = image.depth_scale_m;
+    source_id_ = frame->source_id;
+  } catch (const ros::WireError& error) {
+    throw SourceError(recording.name() + ": the first frame of " + topic + " is damaged: " + error.what());
+  }
+  describe_rate(recording, topic, info_);
+  recording.play({topic});
+}
+
+std::optional<std::int64_t> OwnFrames::advance(SkipLog& skips) {
+  while (const std::optional<RecordedMessage> message = recording_.next()) {
+    if (take(*message, skips)) return last_ns_ = frame_->stamp_ns;
+  }
+  return std::nullopt;
+}
+
+bool OwnFrames::take(const RecordedMessage& message, SkipLog& skips) try {
+  frame_ = to_frame_message(message);
+  const auto leave_out = [&](SkipReason reason, const char* cause) {
+    skips.add({reason, name_of(message) + " " + cause});
+    return false;
+  };
+  if (frame_->source_id != source_id_) return leave_out(SkipReason::kDamagedRecord, "comes from another camera");
+  if (last_ns_ && frame_->stamp_ns == *last_ns_) return leave_out(SkipReason::kStampDoubled, "was sent again");
+  if (last_ns_ && frame_->stamp_ns < *last_ns_) return leave_out(SkipReason::kStampBackwards, "is older than the last");
+  return true;
+} catch (const ros::WireError& error) {
+  skips.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
+  return false;
+}
+
+std::optional<SourceFrame> OwnFrames::decode(SkipLog& skips) {
+  const vision::RgbdImage image = vision::view_image(*frame_);
+  if (const auto mismatch = size_mismatch("frame", image.color_bgr, image.depth, info_.camera)) {
+    return skips.add(*mismatch), std::nullopt;
+  }
+  return to_frame(image.stamp_ns, image.color_bgr.clone(), image.depth.clone(), info_);
+}
+
+}  // namespace rtd::camera
