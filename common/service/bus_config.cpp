@@ -32,7 +32,7 @@ bus::BusOptions to_bus_options(const BusConfig& config, const std::string& parti
 
 const std::vector<std::string>& config_sections() {
   static const std::vector<std::string> kSections = {"bus",  "camera", "detector", "filter",
-                                                     "slam", "dense",  "launcher"};
+                                                     "slam", "dense",  "record",   "launcher"};
   return kSections;
 }
 

@@ -83,7 +83,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   std::string duplicate;
   {
     Heartbeat heartbeat(*bus, definition.name, stop);
-    Runtime runtime{*bus, heartbeat, stop, pace};
+    Runtime runtime{*bus, heartbeat, stop, pace, options};
     SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}", bus->vendor(), bus_config.domain, to_string(pace),
                 getpid());
     code = definition.run(runtime);

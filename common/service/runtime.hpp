@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/bus_factory.hpp"
 #include "common/service/pace.hpp"
 #include "common/service/stop_token.hpp"
 
@@ -63,6 +64,7 @@ struct Runtime {
   Heartbeat& heartbeat;
   StopToken& stop;
   Pace pace;
+  bus::BusOptions bus_options;  ///< of `bus`, for a service that needs a further connection
 };
 
 }  // namespace rtd::service

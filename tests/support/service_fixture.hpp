@@ -24,7 +24,7 @@ namespace rtd::test_support {
 template <class Service>
 class ServiceFixture : public ::testing::Test {
  protected:
-  ServiceFixture() : folder_(folder_of_test()), bus_(bus::connect(next_domain())) {
+  ServiceFixture() : folder_(folder_of_test()), bus_options_(next_domain()), bus_(bus::connect(bus_options_)) {
     std::filesystem::remove_all(folder_);
     statuses_writer_ = bus_->writer(bus::topics::kStatus);
     statuses_reader_ = bus_->template reader<msg::ServiceStatus>(
@@ -42,7 +42,7 @@ class ServiceFixture : public ::testing::Test {
   void launch(service::Pace pace) {
     running_ = std::async(std::launch::async, [this, pace] {
       service::Heartbeat heartbeat(*bus_, Service::kName, stop_);
-      service::Runtime runtime{*bus_, heartbeat, stop_, pace};
+      service::Runtime runtime{*bus_, heartbeat, stop_, pace, bus_options_};
       return Service(config_, runtime).run();
     });
   }
@@ -51,6 +51,8 @@ class ServiceFixture : public ::testing::Test {
     launch(pace);
     ASSERT_TRUE(wait_state(msg::ServiceState::kReady)) << "not ready: " << Service::kName;
   }
+  /// Its exit code when it ends by itself.
+  service::ExitCode running_code() { return running_.get(); }
   /// Its exit code; kOk when it does not run (any more).
   service::ExitCode stop() {
     stop_.request_stop();
@@ -91,6 +93,7 @@ class ServiceFixture : public ::testing::Test {
   typename Service::Config config_;
   const std::filesystem::path folder_;  ///< not there yet; removed after the test
   service::StopToken stop_;
+  const bus::BusOptions bus_options_;
   const std::shared_ptr<bus::Bus> bus_;
   Inbox<msg::ServiceStatus> states_;  ///< heartbeats of the service
 

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/recorder/core/output_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <regex>
+
+namespace rtd::recorder {
+
+namespace fs = std::filesystem;
+
+OutputFiles::OutputFiles(const std::string& output, bool split) {
+  const fs::path path = output.ends_with('/') ? fs::path(output).parent_path() : fs::path(output);
+  const bool is_file = path.extension() == ".mcap";
+  folder_ = is_file ? path.parent_path() : path;
+  if (folder_.empty()) folder_ = ".";
+  stem_ = is_file ? path.stem() : path.filename();
+  numbered_ = split || !is_file;
+}
+
+fs::path OutputFiles::file(std::size_t number) const {
+  return folder_ / (numbered_ ? fmt::format("{}_{}.mcap", stem_, number) : stem_ + ".mcap");
+}
+
+bool OutputFiles::is_ours(const std::string& file_name) const {
+  if (!numbered_) return file_name == stem_ + ".mcap";
+  const std::string head = stem_ + '_', tail = ".mcap";
+  if (file_name.size() <= head.size() + tail.size() || !file_name.starts_with(head) || !file_name.ends_with(tail)) {
+    return false;
+  }
+  const std::string number = file_name.substr(head.size(), file_name.size() - head.size() - tail.size());
+  return std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+std::vector<fs::path> OutputFiles::existing() const {
+  std::vector<fs::path> files;
+  std::error_code ignored;  // a folder that cannot be read cannot be written either: said then
+  for (const auto& entry : fs::directory_iterator(folder_, ignored)) {
+    if (is_ours(entry.path().filename())) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+bool OutputFiles::owns_metadata() const {
+  static const std::regex kFile(R"(^ *- ([^ ]+\.mcap)$)");
+  std::ifstream file(metadata());
+  for (std::string line; std::getline(file, line);) {
+    std::smatch match;
+    if (std::regex_match(line, match, kFile) && !is_ours(match[1])) return false;
+  }
+  return true;
+}
+
+}  // namespace rtd::recorder

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "common/bus/raw_bus.hpp"
+#include "common/ros2/type_definition.hpp"
+
+namespace rtd::recorder {
+
+struct TopicCounts {
+  std::uint64_t written = 0, written_bytes = 0;  ///< in the file or its open chunk
+  std::uint64_t acknowledged = 0;                ///< on disk
+  std::uint64_t lost_in_transit = 0;             ///< a writer sent them and they did not come
+  std::uint64_t lost_in_queue = 0;               ///< the disk was too slow
+  std::uint64_t lost() const { return lost_in_transit + lost_in_queue; }
+};
+
+struct RecordedTopic {
+  std::string dds_name, dds_type;
+  std::string name;  ///< as the recording has it: /slam/odometry, rtd/frame
+  ros2::TypeDefinition type;
+  std::vector<bus::RawQos> offered;  ///< each kind of QoS once
+  TopicCounts counts;
+};
+
+/// The topics of a recording and what became of their messages. A topic is its index, which never changes. Thread-safe.
+class TopicBook {
+ public:
+  std::size_t find_or_add(const std::string& dds_name, const std::string& dds_type);
+  void add_offer(std::size_t topic, const bus::RawQos& qos);
+
+  void count_written(std::size_t topic, std::uint64_t bytes);
+  void count_acknowledged(const std::vector<std::uint64_t>& per_topic);
+  void count_lost_in_transit(std::size_t topic, std::uint64_t messages);
+  /// What the transport says to have lost in all: some of it may never be revealed by a later message.
+  void at_least_lost_in_transit(std::size_t topic, std::uint64_t messages);
+  void count_lost_in_queue(std::size_t topic);
+
+  RecordedTopic topic(std::size_t index) const;
+  std::vector<RecordedTopic> topics() const;
+  TopicCounts totals() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<RecordedTopic> topics_;
+};
+
+}  // namespace rtd::recorder

@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/recorder/recorder_service.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "common/bus/raw_bus.hpp"
+#include "common/service/log.hpp"
+#include "common/service/monotonic_clock.hpp"
+#include "services/recorder/core/bag_metadata.hpp"
+
+namespace rtd::recorder {
+namespace {
+
+namespace fs = std::filesystem;
+using service::ConfigError;
+
+constexpr std::chrono::milliseconds kPatience{20};  // for a message, so that a waiting chunk is ended in time
+constexpr std::int64_t kReportPeriodNs = 200'000'000, kProgressPeriodNs = 1'000'000'000, kLogPeriodNs = 10'000'000'000;
+constexpr std::uint64_t kMib = 1024 * 1024;
+
+std::string output_of(const ServiceConfig& config) {
+  if (!config.output.empty()) return config.output;
+  return fmt::format("rtd_{:%Y_%m_%d-%H_%M_%S}", fmt::localtime(std::time(nullptr)));
+}
+
+SplitPolicy split_of(const ServiceConfig& config) {
+  if (config.split.empty()) return {};
+  if (const auto policy = parse_split(config.split)) return *policy;
+  throw ConfigError("--split " + config.split + ": a size or a time is needed, e.g. 500MB, 1GB, 2GiB, 60s, 5min, 1h");
+}
+
+RecordingOptions options_of(const ServiceConfig& config) {
+  RecordingOptions options;
+  options.compression = mcap::compression_of(config.compression == "none" ? "" : config.compression).value();
+  options.chunk_bytes = static_cast<std::uint64_t>(config.chunk_kib) * 1024;
+  options.chunk_age_ns = std::int64_t{config.chunk_ms} * 1'000'000;
+  options.split = split_of(config);
+  return options;
+}
+
+/// Makes room for the recording; ConfigError when there is none.
+void prepare(const OutputFiles& files, bool force) {
+  const auto earlier = files.existing();
+  if (!earlier.empty() && !force) {
+    throw ConfigError(earlier.front().string() +
+                      " exists already: give another name with -o or replace it with --force");
+  }
+  std::error_code error;
+  fs::create_directories(files.folder(), error);
+  if (error)
+    throw ConfigError("folder " + files.folder().string() + ": " + error.message() + "; choose another with -o");
+  // What is written anew is replaced by its sink, which sees whether another recorder has it.
+  for (const fs::path& file : earlier) {
+    if (file != files.file(0)) fs::remove(file, error);
+  }
+}
+
+}  // namespace
+
+void RecorderService::add_options(CLI::App& app, Config& config) {
+  app.add_option("--topics", config.topics, "Patterns of DDS or ROS 2 names: 'rtd/*' /slam/odometry (default: all)");
+  app.add_option("-o,--output", config.output, "FILE.mcap, or a folder as rosbag2 has it (default: rtd_DATE-TIME)");
+  app.add_option("--split", config.split, "A new file after so much: 500MB, 1GB, 60s, 5min");
+  app.add_option("--compress", config.compression, "none, lz4 or zstd (default none)")
+      ->check(CLI::IsMember({"none", "lz4", "zstd"}));
+  app.add_flag("--force", config.force, "Replace an earlier recording");
+  app.add_flag("--json", config.json, "Final report as JSON on stdout");
+  app.footer(
+      "rtd record recover FILE    makes what is whole in a damaged or unfinished recording a well-formed one\n"
+      "Exit code 3: recorded, but something was lost; the report, the log and the file say what.");
+}
+
+RecorderService::RecorderService(const Config& config, service::Runtime& runtime)
+    : config_(config),
+      runtime_(runtime),
+      files_(output_of(config), split_of(config).on()),
+      queue_(static_cast<std::uint64_t>(config.queue_mib) * kMib),
+      interactive_(isatty(STDERR_FILENO) == 1) {
+  prepare(files_, config_.force);
+  const auto open = [this](std::size_t number) { return open_sink(number); };
+  sync_.emplace(std::chrono::milliseconds(config_.sync_pause_ms));
+  try {
+    recording_.emplace(options_of(config_), open, book_, *sync_);
+  } catch (const mcap::IoError& error) {
+    throw ConfigError(error.what());
+  }
+}
+
+std::shared_ptr<mcap::ByteSink> RecorderService::open_sink(std::size_t number) const {
+  const auto if_exists = config_.force ? mcap::IfExists::kReplace : mcap::IfExists::kFail;
+  auto sink = std::make_shared<mcap::FileSink>(files_.file(number), if_exists);
+  SPDLOG_INFO("event=file_begun path={}", files_.file(number).string());
+  return sink;
+}
+
+service::ExitCode RecorderService::run() {
+  started_ns_ = progress_ns_ = service::monotonic_ns();
+  bus::BusOptions options = runtime_.bus_options;
+  options.participant_name = "rtd-record-topics";
+  bus_ = bus::connect_raw(options);
+  readers_.emplace(*bus_, TopicFilter(config_.topics), config_.in_place, book_, queue_);
+  record();
+  return conclude();
+}
+
+/// A disk that refuses ends the recording; what was written until then stays.
+void RecorderService::record() {
+  try {
+    record_until_stopped();
+  } catch (const mcap::IoError& error) {
+    failure_ = error.what();
+  }
+  readers_->stop();
+  try {
+    finish();
+  } catch (const mcap::IoError& error) {
+    if (failure_.empty()) failure_ = error.what();
+    SPDLOG_ERROR("event=file_without_summary cause=\"{}\" fix=\"rtd record recover {}\"", error.what(),
+                 files_.file(recording_->files().size() - 1).string());
+  }
+  sync_->finish();
+  if (failure_.empty()) failure_ = sync_->failure();
+}
+
+void RecorderService::record_until_stopped() {
+  while (!runtime_.stop.stop_requested() && failure_.empty()) {
+    const auto message = queue_.pop_for(kPatience);
+    const std::int64_t now_ns = service::monotonic_ns();
+    if (message) recording_->write(*message, now_ns);
+    recording_->tick(now_ns);
+    if (now_ns - reported_ns_ >= kReportPeriodNs) report_state(now_ns);
+  }
+}
+
+void RecorderService::finish() {
+  queue_.close();
+  const std::int64_t now_ns = service::monotonic_ns();
+  while (const auto message = queue_.pop_for(std::chrono::milliseconds(0))) recording_->write(*message, now_ns);
+  recording_->finish({loss_metadata(book_.topics())});
+}
+
+void RecorderService::report_state(std::int64_t now_ns) {
+  reported_ns_ = now_ns;
+  const Acknowledged acknowledged = sync_->acknowledged();
+  book_.count_acknowledged(acknowledged.messages);
+  const TopicCounts totals = book_.totals();
+  publish_metrics(acknowledged, totals);
+  say_state(totals);
+  if (now_ns - progress_ns_ >= (interactive_ ? kProgressPeriodNs : kLogPeriodNs)) show_progress(now_ns, totals);
+  if (failure_.empty()) failure_ = sync_->failure();
+  watch_disk();
+}
+
+void RecorderService::publish_metrics(const Acknowledged& acknowledged, const TopicCounts& totals) {
+  service::Heartbeat& heartbeat = runtime_.heartbeat;
+  heartbeat.set_metric("messages", static_cast<double>(totals.written));
+  heartbeat.set_metric("bytes", static_cast<double>(recording_->bytes()));
+  heartbeat.set_metric("lost_in_transit", static_cast<double>(totals.lost_in_transit));
+  heartbeat.set_metric("lost_in_queue", static_cast<double>(totals.lost_in_queue));
+  heartbeat.set_metric("queue_bytes", static_cast<double>(queue_.bytes()));
+  heartbeat.set_metric("acknowledged", static_cast<double>(totals.acknowledged));
+  heartbeat.set_metric("acknowledged_bytes", static_cast<double>(acknowledged.bytes));
+  for (const RecordedTopic& topic : book_.topics()) {
+    heartbeat.set_metric("acknowledged:" + topic.name, static_cast<double>(topic.counts.acknowledged));
+  }
+}
+
+void RecorderService::say_state(const TopicCounts& totals) {
+  if (totals.lost() > 0) {
+    return runtime_.heartbeat.set_state(msg::ServiceState::kDegraded, fmt::format("{} messages lost", totals.lost()));
+  }
+  if (totals.written > 0) return runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
+  const bool any = readers_->any();
+  if (!any && !waiting_said_) {
+    waiting_said_ = true;
+    SPDLOG_INFO("event=waiting cause=\"nobody writes a topic that matches {}\"", fmt::join(config_.topics, " "));
+  }
+  runtime_.heartbeat.set_state(msg::ServiceState::kReady, any ? "" : "no topic matches yet");
+}
+
+void RecorderService::show_progress(std::int64_t now_ns, const TopicCounts& totals) {
+  ProgressFacts facts;
+  facts.elapsed_s = static_cast<double>(now_ns - started_ns_) * 1e-9;
+  facts.file_bytes = recording_->bytes();
+  facts.bytes_per_s =
+      static_cast<double>(facts.file_bytes - progress_bytes_) / (static_cast<double>(now_ns - progress_ns_) * 1e-9);
+  facts.totals = totals;
+  facts.free_bytes = free_bytes_;
+  progress_ns_ = now_ns;
+  progress_bytes_ = facts.file_bytes;
+  if (interactive_) {
+    std::cerr << "\r\x1b[K" << progress_text(facts) << '\r' << std::flush;  // a log line overwrites it
+  } else {
+    SPDLOG_INFO("event=progress {}", progress_text(facts));
+  }
+}
+
+/// Ends while there is room for the summary.
+void RecorderService::watch_disk() {
+  std::error_code error;
+  const fs::space_info space = fs::space(files_.folder(), error);
+  if (error) return;
+  free_bytes_ = space.available;
+  const std::uint64_t least = static_cast<std::uint64_t>(config_.min_free_mib) * kMib;
+  if (free_bytes_ < least && failure_.empty()) {
+    failure_ = fmt::format("the disk is nearly full: {} MiB are left and record.min_free_mib is {}", free_bytes_ / kMib,
+                           config_.min_free_mib);
+  }
+}
+
+service::ExitCode RecorderService::conclude() {
+  const Acknowledged acknowledged = sync_->acknowledged();
+  book_.count_acknowledged(acknowledged.messages);
+  RecordingReport report;
+  report.folder = files_.folder();
+  report.files = recording_->files();
+  report.topics = book_.topics();
+  report.acknowledged_bytes = acknowledged.bytes;
+  report.duration_s = static_cast<double>(service::monotonic_ns() - started_ns_) * 1e-9;
+  report.failure = failure_;
+  for (std::size_t i = 0; i < report.files.size(); ++i) report.names.push_back(files_.file(i).filename());
+  if (files_.owns_metadata()) {
+    std::ofstream(files_.metadata()) << bag_metadata_text(report.names, report.files, report.topics);
+  } else {
+    SPDLOG_WARN(
+        "event=metadata_not_written path={} cause=\"it describes another recording in this folder\" "
+        "fix=\"a folder for each: -o NAME without .mcap\"",
+        files_.metadata().string());
+  }
+  if (interactive_) std::cerr << "\r\x1b[K";
+  for (const RecordedTopic& topic : report.topics) {
+    SPDLOG_INFO("event=topic topic={} messages={} lost_in_transit={} lost_in_queue={}", topic.name,
+                topic.counts.written, topic.counts.lost_in_transit, topic.counts.lost_in_queue);
+  }
+  if (!failure_.empty()) SPDLOG_ERROR("event=ended_early cause=\"{}\"", failure_);
+  const TopicCounts totals = book_.totals();
+  SPDLOG_INFO("event=summary files={} messages={} acknowledged={} bytes={} lost={}", report.files.size(),
+              totals.written, totals.acknowledged, recording_->bytes(), totals.lost());
+  if (config_.json) std::cout << report_json(report) << '\n';
+  return report.partial() ? service::kPartialLoss : service::kOk;
+}
+
+}  // namespace rtd::recorder

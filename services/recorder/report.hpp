@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "services/recorder/core/recording.hpp"
+
+namespace rtd::recorder {
+
+/// What a recording came to.
+struct RecordingReport {
+  std::vector<std::string> names;  ///< of the files, in the folder
+  std::string folder;
+  std::vector<FileSummary> files;
+  std::vector<RecordedTopic> topics;
+  std::uint64_t acknowledged_bytes = 0;
+  double duration_s = 0;
+  std::string failure;  ///< why it ended early; empty: it was asked to
+  bool partial() const;
+};
+
+std::string report_json(const RecordingReport& report);
+
+/// What the file itself says of its losses.
+mcap::Metadata loss_metadata(const std::vector<RecordedTopic>& topics);
+
+/// One line for a terminal, rewritten while it goes on.
+struct ProgressFacts {
+  double elapsed_s = 0, bytes_per_s = 0;
+  TopicCounts totals;
+  std::uint64_t file_bytes = 0, free_bytes = 0;
+};
+std::string progress_text(const ProgressFacts& facts);
+
+}  // namespace rtd::recorder

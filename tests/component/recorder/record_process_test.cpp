@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// rtd-record beside publishers over Fast DDS, as people use it.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <thread>
+
+#include "common/bus/raw_bus.hpp"
+#include "tests/component/bus/patterns.hpp"
+#include "tests/component/recorder/recorded_file.hpp"
+#include "tests/component/recorder/recorder_process.hpp"
+
+namespace rtd::recorder {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::byte>;
+
+template <class T>
+Bytes cdr_of(const T& plain) {
+  Bytes bytes(4 + sizeof(T), std::byte{0});
+  bytes[1] = std::byte{1};
+  std::memcpy(bytes.data() + 4, &plain, sizeof(T));
+  return bytes;
+}
+
+/// A multiple of 4, to which RTPS pads the samples that it sends.
+Bytes some_bytes(std::uint32_t number, std::size_t size) {
+  Bytes bytes(size, static_cast<std::byte>(number % 251));
+  bytes[0] = bytes[2] = bytes[3] = std::byte{0};
+  bytes[1] = std::byte{1};
+  return bytes;
+}
+
+template <class... Writer>
+void wait_heard(const Writer&... writers) {
+  for (int i = 0; i < 10'000 && ((writers.matched() == 0) || ...); ++i) std::this_thread::sleep_for(1ms);
+  ASSERT_TRUE(((writers.matched() > 0) && ...));
+  std::this_thread::sleep_for(200ms);  // the other side matches too
+}
+
+class RecordProcess : public ::testing::Test {
+ protected:
+  RecordProcess() : folder_(fs::temp_directory_path() / ("rtd_record_process_" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    options_.domain = test_domain();
+    options_.participant_name = "record-test";
+  }
+  ~RecordProcess() override { fs::remove_all(folder_); }
+
+  const fs::path folder_;
+  bus::BusOptions options_;
+};
+
+TEST_F(RecordProcess, four_topics_with_raw_frames_are_complete_to_the_byte) {
+  constexpr std::uint32_t kMessages = 60;
+  const auto typed = bus::connect(options_);
+  const auto raw = bus::connect_raw(options_);
+  auto frames = typed->writer(bus::topics::kFrame);
+  auto tracking = typed->writer(bus::topics::kTracking);
+  const auto odometry = raw->writer({"rt/slam/odometry", "nav_msgs::msg::dds_::Odometry_"}, {});
+  const auto unknown = raw->writer({"rt/laser", "vendor_msgs::msg::dds_::Laser_"}, {});
+  RecorderProcess recorder(test_domain(), {"-o", folder_ / "run.mcap"});
+  wait_heard(frames, tracking, *odometry, *unknown);
+
+  std::map<std::string, std::vector<Bytes>> sent;
+  auto frame = std::make_unique<msg::RgbdFrame>();
+  for (std::uint32_t i = 0; i < kMessages; ++i) {
+    bus::fill_frame(*frame, i);
+    msg::TrackingResult result{};
+    result.seq = i;
+    sent["rtd/frame"].push_back(cdr_of(*frame));
+    sent["rtd/tracking"].push_back(cdr_of(result));
+    sent["/slam/odometry"].push_back(some_bytes(i, 700));
+    sent["/laser"].push_back(some_bytes(i, 20'000 + 4 * i));
+    ASSERT_TRUE(frames.write(*frame));
+    ASSERT_TRUE(tracking.write(result));
+    ASSERT_TRUE(odometry->write(sent["/slam/odometry"].back()));
+    ASSERT_TRUE(unknown->write(sent["/laser"].back()));
+    std::this_thread::sleep_for(20ms);
+  }
+  std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(recorder.end_by(SIGINT), 0);
+
+  const RecordedFile file = read_recording(folder_ / "run.mcap");
+  EXPECT_TRUE(file.has_summary);
+  EXPECT_EQ(file.problems, 0U);
+  for (const auto& [topic, messages] : sent) {
+    ASSERT_TRUE(file.topics.contains(topic)) << topic;
+    const std::vector<ReadMessage>& recorded = file.topics.at(topic);
+    ASSERT_EQ(recorded.size(), messages.size()) << topic;
+    for (std::size_t i = 0; i < messages.size(); ++i) {
+      ASSERT_TRUE(recorded[i].cdr == messages[i]) << topic << " message " << i;
+      ASSERT_GE(recorded[i].log_time, recorded[i].publish_time);
+    }
+  }
+}
+
+TEST_F(RecordProcess, parts_of_a_split_recording_are_complete_and_compressed) {
+  constexpr std::uint32_t kMessages = 300;
+  const auto raw = bus::connect_raw(options_);
+  const auto writer = raw->writer({"rt/laser", "vendor_msgs::msg::dds_::Laser_"}, {});
+  RecorderProcess recorder(test_domain(), {"-o", folder_ / "bag", "--split", "60kB", "--compress", "zstd", "--topics",
+                                           "/laser", "--set", "record.chunk_kib=32"});
+  wait_heard(*writer);
+  for (std::uint32_t i = 0; i < kMessages; ++i) {
+    Bytes message(3000);
+    for (std::size_t j = 4; j < message.size(); ++j) message[j] = static_cast<std::byte>((j * j + i * 31) >> 3);
+    ASSERT_TRUE(writer->write(message));
+    std::this_thread::sleep_for(1ms);
+  }
+  std::this_thread::sleep_for(200ms);
+  EXPECT_EQ(recorder.end_by(SIGTERM), 0);
+
+  std::uint32_t next = 1;
+  std::size_t part = 0;
+  for (; fs::exists(folder_ / "bag" / ("bag_" + std::to_string(part) + ".mcap")); ++part) {
+    const RecordedFile file = read_recording(folder_ / "bag" / ("bag_" + std::to_string(part) + ".mcap"));
+    EXPECT_TRUE(file.has_summary);
+    for (const ReadMessage& message : file.topics.at("/laser")) EXPECT_EQ(message.sequence, next++);
+  }
+  EXPECT_EQ(next, kMessages + 1);
+  EXPECT_GT(part, 2U);
+  EXPECT_TRUE(fs::exists(folder_ / "bag" / "metadata.yaml"));
+}
+
+TEST_F(RecordProcess, wrong_output_is_exit_code_2) {
+  EXPECT_EQ(RecorderProcess(test_domain(), {"-o", "/proc/x.mcap"}).wait(), 2);
+  EXPECT_EQ(RecorderProcess(test_domain(), {"-o", folder_ / "y.mcap", "--split", "often"}).wait(), 2);
+  EXPECT_EQ(RecorderProcess(test_domain(), {"-o", folder_ / "y.mcap", "--compress", "rar"}).wait(), 2);
+  RecorderProcess first(test_domain(), {"-o", folder_ / "z.mcap"});
+  for (int i = 0; i < 5000 && !fs::exists(folder_ / "z.mcap"); ++i) std::this_thread::sleep_for(1ms);
+  EXPECT_EQ(RecorderProcess(test_domain() + 1, {"-o", folder_ / "z.mcap", "--force"}).wait(), 2);
+  EXPECT_EQ(first.end_by(SIGINT), 0);
+}
+
+}  // namespace
+}  // namespace rtd::recorder

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/recorder/recorder_service.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "common/bus/raw_bus.hpp"
+#include "tests/component/recorder/recorded_file.hpp"
+#include "tests/support/service_fixture.hpp"
+
+namespace rtd::recorder {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::vector<std::byte> cdr(std::uint8_t content, std::size_t size = 32) {
+  std::vector<std::byte> bytes(size, std::byte{content});
+  bytes[0] = bytes[2] = bytes[3] = std::byte{0};
+  bytes[1] = std::byte{1};
+  return bytes;
+}
+
+class RecorderTest : public test_support::ServiceFixture<RecorderService> {
+ protected:
+  RecorderTest() : raw_(bus::connect_raw(bus_options_)) {
+    std::filesystem::create_directories(folder_);
+    config_.output = folder_ / "run.mcap";
+  }
+  std::unique_ptr<bus::RawWriter> writer(const std::string& topic, const std::string& type, bus::RawQos qos = {}) {
+    return raw_->writer({topic, type}, {qos});
+  }
+  static void wait_heard(const bus::RawWriter& writer, int readers = 1) {
+    for (int i = 0; i < 5000 && writer.matched() < readers; ++i) std::this_thread::sleep_for(1ms);
+    ASSERT_EQ(writer.matched(), readers);
+  }
+
+  const std::shared_ptr<bus::RawBus> raw_;
+};
+
+TEST_F(RecorderTest, records_known_and_unknown_types_byte_by_byte) {
+  start(service::Pace::kRealtime);
+  const auto pose = writer("rt/slam/pose", "geometry_msgs::msg::dds_::PoseStamped_");
+  const auto thing = writer("some/thing", "Thing");
+  wait_heard(*pose);
+  wait_heard(*thing);
+  for (std::uint8_t i = 0; i < 20; ++i) {
+    pose->write(cdr(i), 1000 + i);
+    thing->write(cdr(i, 100'000), 2000 + i);
+  }
+  ASSERT_TRUE(wait_metric("acknowledged", 40));
+  ASSERT_TRUE(wait_metric("acknowledged:/slam/pose", 20));
+  EXPECT_EQ(stop(), service::kOk);
+
+  const RecordedFile file = read_recording(config_.output);
+  EXPECT_TRUE(file.has_summary);
+  EXPECT_EQ(file.problems, 0U);
+  ASSERT_EQ(file.topics.at("/slam/pose").size(), 20U);
+  ASSERT_EQ(file.topics.at("some/thing").size(), 20U);
+  EXPECT_EQ(file.type_of.at("/slam/pose"), "geometry_msgs/msg/PoseStamped");
+  EXPECT_EQ(file.type_of.at("some/thing"), "Thing");
+  for (std::uint8_t i = 0; i < 20; ++i) {
+    const ReadMessage& message = file.topics.at("/slam/pose")[i];
+    EXPECT_EQ(message.cdr, cdr(i));
+    EXPECT_EQ(message.publish_time, 1000U + i);
+    EXPECT_EQ(message.sequence, i + 1U);
+    EXPECT_EQ(file.topics.at("some/thing")[i].cdr, cdr(i, 100'000));
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "metadata.yaml"));
+}
+
+TEST_F(RecorderTest, records_only_what_matches_and_says_that_it_waits) {
+  config_.topics = {"/slam/*"};
+  launch(service::Pace::kRealtime);
+  ASSERT_TRUE(wait_state(msg::ServiceState::kReady, "no topic matches yet"));
+  const auto other = writer("rt/tf", "tf2_msgs::msg::dds_::TFMessage_");
+  const auto pose = writer("rt/slam/pose", "geometry_msgs::msg::dds_::PoseStamped_");
+  wait_heard(*pose);
+  EXPECT_EQ(other->matched(), 0);
+  pose->write(cdr(1));
+  ASSERT_TRUE(wait_state(msg::ServiceState::kRunning));
+}
+
+TEST_F(RecorderTest, a_latched_message_from_before_is_recorded) {
+  bus::RawQos latched;
+  latched.durability = bus::RawQos::Durability::kTransientLocal;
+  latched.depth = 1;
+  const auto info = writer("rt/camera_info", "sensor_msgs::msg::dds_::CameraInfo_", latched);
+  info->write(cdr(9));
+  launch(service::Pace::kRealtime);
+  ASSERT_TRUE(wait_metric("acknowledged:/camera_info", 1));
+}
+
+TEST_F(RecorderTest, writers_that_offer_different_things_are_each_recorded_once) {
+  start(service::Pace::kRealtime);
+  bus::RawQos modest;
+  modest.reliable = false;
+  const auto reliable = writer("rt/imu", "Imu");
+  const auto best_effort = writer("rt/imu", "Imu", modest);
+  wait_heard(*reliable, 2);
+  wait_heard(*best_effort);
+  for (std::uint8_t i = 0; i < 10; ++i) {
+    reliable->write(cdr(i));
+    best_effort->write(cdr(100 + i));
+  }
+  ASSERT_TRUE(wait_metric("acknowledged:/imu", 20));
+  EXPECT_EQ(stop(), service::kOk);
+  EXPECT_EQ(read_recording(config_.output).topics.at("/imu").size(), 20U);
+}
+
+TEST_F(RecorderTest, what_has_no_room_is_counted_named_and_makes_the_exit_code_3) {
+  config_.queue_mib = 1;
+  start(service::Pace::kRealtime);
+  const auto thing = writer("some/thing", "Thing");
+  const auto pose = writer("rt/slam/pose", "Pose");
+  wait_heard(*thing);
+  wait_heard(*pose);
+  thing->write(cdr(1, 2'000'000));  // never fits
+  pose->write(cdr(2));
+  ASSERT_TRUE(wait_metric("lost_in_queue", 1));
+  ASSERT_TRUE(wait_state(msg::ServiceState::kDegraded, "1 messages lost"));
+  EXPECT_EQ(stop(), service::kPartialLoss);
+
+  const RecordedFile file = read_recording(config_.output);
+  EXPECT_TRUE(file.topics.at("some/thing").empty());
+  EXPECT_EQ(file.topics.at("/slam/pose").size(), 1U);
+  const mcap::FileSource source(config_.output);
+  mcap::IndexedReader reader(source);
+  ASSERT_EQ(reader.summary().metadata_indexes.size(), 1U);
+  const auto losses = reader.metadata(reader.summary().metadata_indexes[0]);
+  EXPECT_EQ(losses->metadata.at("some/thing"), "in_transit=0 in_queue=1");
+}
+
+TEST_F(RecorderTest, an_earlier_recording_is_replaced_only_by_force) {
+  { std::ofstream(config_.output) << "earlier"; }
+  launch(service::Pace::kRealtime);
+  EXPECT_THROW(stop(), service::ConfigError);
+  EXPECT_EQ(std::filesystem::file_size(config_.output), 7U);
+}
+
+TEST_F(RecorderTest, refuses_a_file_that_another_recorder_writes) {
+  config_.force = true;
+  const mcap::FileSink other(config_.output);
+  launch(service::Pace::kRealtime);
+  EXPECT_THROW(stop(), service::ConfigError);
+}
+
+TEST_F(RecorderTest, refuses_a_folder_that_it_cannot_make_and_a_split_that_is_none) {
+  { std::ofstream(folder_ / "file") << ""; }
+  config_.output = folder_ / "file" / "run";
+  launch(service::Pace::kRealtime);
+  EXPECT_THROW(stop(), service::ConfigError);
+  config_.output = folder_ / "run.mcap";
+  config_.split = "often";
+  launch(service::Pace::kRealtime);
+  EXPECT_THROW(stop(), service::ConfigError);
+}
+
+TEST_F(RecorderTest, ends_in_good_order_before_the_disk_is_full) {
+  config_.min_free_mib = 1'000'000;  // more than there is
+  launch(service::Pace::kRealtime);
+  EXPECT_EQ(running_code(), service::kPartialLoss);
+  EXPECT_TRUE(read_recording(config_.output).has_summary);
+}
+
+}  // namespace
+}  // namespace rtd::recorder

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/recorder/core/topic_filter.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rtd::recorder {
+namespace {
+
+TEST(TopicFilter, a_star_crosses_slashes) {
+  const TopicFilter slam({"rt/slam/*"});
+  EXPECT_TRUE(slam.wants("rt/slam/odometry"));
+  EXPECT_TRUE(slam.wants("rt/slam/debug/points"));
+  EXPECT_FALSE(slam.wants("rt/tf"));
+  EXPECT_TRUE(TopicFilter({"*"}).wants("rtd/frame"));
+}
+
+TEST(TopicFilter, takes_names_of_ros_too) {
+  const TopicFilter filter({"/slam/odometry", "/camera/*"});
+  EXPECT_TRUE(filter.wants("rt/slam/odometry"));
+  EXPECT_TRUE(filter.wants("rt/camera/color/camera_info"));
+  EXPECT_FALSE(filter.wants("rt/slam/odometry2"));
+  EXPECT_FALSE(filter.wants("rtd/frame"));
+}
+
+TEST(TopicFilter, knows_the_other_signs_of_a_shell) {
+  EXPECT_TRUE(TopicFilter({"rtd/[fk]*"}).wants("rtd/keyframes"));
+  EXPECT_FALSE(TopicFilter({"rtd/[fk]*"}).wants("rtd/status"));
+  EXPECT_TRUE(TopicFilter({"rt/camera?/image"}).wants("rt/camera2/image"));
+  EXPECT_FALSE(TopicFilter({}).wants("rt/tf"));
+}
+
+}  // namespace
+}  // namespace rtd::recorder
