@@ -31,8 +31,8 @@ bus::BusOptions to_bus_options(const BusConfig& config, const std::string& parti
 }
 
 const std::vector<std::string>& config_sections() {
-  static const std::vector<std::string> kSections = {"bus",  "camera", "detector", "filter",
-                                                     "slam", "dense",  "record",   "launcher"};
+  static const std::vector<std::string> kSections = {"bus",   "camera", "detector", "filter",  "slam",
+                                                     "dense", "record", "replay",   "launcher"};
   return kSections;
 }
 

@@ -27,7 +27,7 @@ constexpr std::array kOtherFormats = {
 };
 
 std::string first_bytes(const mcap::ByteSource& source) {
-  std::array<std::byte, 16> bytes{};
+  std::array<std::byte, 24> bytes{};
   const std::size_t count = source.read(0, bytes);
   return {reinterpret_cast<const char*>(bytes.data()), count};
 }

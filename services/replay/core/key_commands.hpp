@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rtd::replay {
+
+/// What the person at the keyboard wants.
+enum class Command { kTogglePause, kStep, kFaster, kSlower, kBack, kForward, kStop };
+
+/// Turns the bytes of a terminal into commands, also where an escape sequence comes in pieces. The keys of rosbag2:
+/// space, right arrow (or s), up, down; and b, f (10 s back, forward), q.
+class KeyCommands {
+ public:
+  std::optional<Command> next(char byte);
+
+ private:
+  std::string pending_;  ///< an escape sequence so far
+};
+
+}  // namespace rtd::replay

@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/replay/core/player.hpp"
+
+#include <algorithm>
+
+namespace rtd::replay {
+namespace {
+
+constexpr std::int64_t kShowEveryNs = 200'000'000;
+constexpr std::int64_t kSeekStepNs = 10'000'000'000;
+constexpr double kRateStep = 1.1, kLowestRate = 0.01, kHighestRate = 1000;
+
+}  // namespace
+
+Player::Player(MessageFeed& feed, PlayerHost& host, const PlayerOptions& options)
+    : feed_(feed),
+      host_(host),
+      options_(options),
+      schedule_(options.rate),
+      pacer_(options.pacer, [&host] { return host.now_ns(); }),
+      jump_to_(options.start_ns),
+      last_recorded_ns_(options.start_ns) {}
+
+PlayOutcome Player::run() {
+  if (options_.paused) schedule_.pause(host_.now_ns());
+  while (!outcome_) {
+    handle_events(host_.now_ns());
+    if (outcome_) break;
+    if (!head_) take_head();
+    if (head_) {
+      play_head();
+    } else {
+      end_of_feed();
+    }
+  }
+  host_.show(state());
+  return *outcome_;
+}
+
+/// The time that a disk takes to get at a new place is not played.
+void Player::take_head() {
+  head_ = feed_.next();
+  if (jump_to_) schedule_.jump(*jump_to_, host_.now_ns());
+  jump_to_.reset();
+}
+
+/// Sends the next message, or waits for what has to come before it.
+void Player::play_head() {
+  const std::int64_t now_ns = host_.now_ns();
+  tick_clock(now_ns);
+  std::int64_t latest_ns = now_ns + kShowEveryNs;
+  if (options_.clock_period_ns > 0) latest_ns = std::min(latest_ns, next_tick_ns_);
+  if (schedule_.paused() && steps_ == 0) return wait_until(latest_ns);
+  const std::int64_t due_ns = by_time() && steps_ == 0 ? schedule_.due_ns(head_->log_ns) : now_ns;
+  if (due_ns > now_ns) return wait_until(std::min(due_ns, latest_ns));
+  if (may_go(*head_)) send_head(due_ns);
+}
+
+/// False while a paced message waits for its turn; then the time until something changes has passed.
+bool Player::may_go(const PlayedMessage& message) {
+  if (!by_answers() || !host_.paced_seq(message)) return true;
+  return follow(pacer_.next(message.log_ns));
+}
+
+bool Player::follow(const camera::PaceDecision& decision) {
+  switch (decision.action) {
+    case camera::PaceAction::kWait:
+      wait_until(host_.now_ns() + std::min(decision.wait_ns, kShowEveryNs));
+      return false;
+    case camera::PaceAction::kResend:
+      resend();
+      return false;
+    case camera::PaceAction::kGiveUp:
+      outcome_ = PlayOutcome::kUnanswered;
+      return false;
+    default:
+      return true;
+  }
+}
+
+void Player::send_head(std::int64_t due_ns) {
+  host_.send(*head_);
+  ++sent_;
+  if (by_time() && !schedule_.paused()) timing_.add(due_ns, host_.now_ns());
+  last_recorded_ns_ = head_->log_ns;
+  if (steps_ > 0) {
+    --steps_;
+    schedule_.jump(head_->log_ns, host_.now_ns());
+  }
+  if (by_answers()) {
+    const std::optional<std::uint64_t> seq = host_.paced_seq(*head_);
+    if (seq) pacer_.sent(*seq);
+    if (seq || !unanswered_.empty()) unanswered_.push_back(*head_);
+  }
+  head_.reset();
+  host_.show(state());
+}
+
+/// Behind the last message: the answers that are missing, then the first message again or the end.
+void Player::end_of_feed() {
+  if (by_answers() && !pacer_.in_flight().empty() && !follow(pacer_.drain())) return;
+  if (options_.loop && sent_ > 0) return seek(options_.start_ns);
+  outcome_ = PlayOutcome::kEnded;
+}
+
+void Player::wait_until(std::int64_t deadline_ns) {
+  host_.show(state());
+  handle_events(deadline_ns);
+}
+
+void Player::handle_events(std::int64_t deadline_ns) {
+  std::optional<Event> event = host_.wait_until(deadline_ns);
+  while (event) {
+    if (const auto* answer = std::get_if<Answer>(&*event)) {
+      answered(answer->seq.value_or(oldest_in_flight()));
+    } else {
+      handle(std::get<Command>(*event));
+    }
+    event = host_.wait_until(host_.now_ns());
+  }
+}
+
+void Player::handle(Command command) {
+  switch (command) {
+    case Command::kTogglePause:
+      return toggle_pause();
+    case Command::kStep:
+      if (schedule_.paused()) ++steps_;
+      return;
+    case Command::kFaster:
+      return change_rate(kRateStep);
+    case Command::kSlower:
+      return change_rate(1 / kRateStep);
+    case Command::kBack:
+      return seek(state().recorded_ns - kSeekStepNs);
+    case Command::kForward:
+      return seek(state().recorded_ns + kSeekStepNs);
+    case Command::kStop:
+      outcome_ = PlayOutcome::kStopped;
+      return;
+  }
+}
+
+void Player::toggle_pause() {
+  if (schedule_.paused()) {
+    schedule_.resume(host_.now_ns());
+  } else {
+    schedule_.pause(host_.now_ns());
+  }
+  timing_.interrupt();
+  host_.show(state());
+}
+
+void Player::change_rate(double factor) {
+  if (!by_time()) return;
+  schedule_.set_rate(std::clamp(schedule_.rate() * factor, kLowestRate, kHighestRate), host_.now_ns());
+  timing_.interrupt();
+  host_.show(state());
+}
+
+void Player::seek(std::int64_t recorded_ns) {
+  const std::int64_t target_ns = std::clamp(recorded_ns, options_.start_ns, options_.end_ns);
+  feed_.seek(target_ns);
+  head_.reset();
+  last_recorded_ns_ = target_ns;
+  jump_to_ = target_ns;
+  timing_.interrupt();
+}
+
+/// 0 when nothing is: then nothing is answered.
+std::uint64_t Player::oldest_in_flight() const {
+  return pacer_.in_flight().empty() ? 0 : pacer_.in_flight().front();
+}
+
+void Player::answered(std::uint64_t seq) {
+  pacer_.answered(seq);
+  const auto is_waited_for = [this](const PlayedMessage& message) {
+    const std::optional<std::uint64_t> paced = host_.paced_seq(message);
+    return paced && std::ranges::count(pacer_.in_flight(), *paced) > 0;
+  };
+  while (!unanswered_.empty() && !is_waited_for(unanswered_.front())) unanswered_.pop_front();
+}
+
+void Player::resend() {
+  for (const PlayedMessage& message : unanswered_) host_.send(message);
+  pacer_.resent();
+}
+
+void Player::tick_clock(std::int64_t now_ns) {
+  if (options_.clock_period_ns == 0 || now_ns < next_tick_ns_) return;
+  host_.send_clock(state().recorded_ns);
+  next_tick_ns_ += options_.clock_period_ns;
+  if (next_tick_ns_ <= now_ns) next_tick_ns_ = now_ns + options_.clock_period_ns;
+}
+
+PlayState Player::state() const {
+  const std::int64_t recorded_ns = by_time() ? schedule_.recorded_ns(host_.now_ns()) : last_recorded_ns_;
+  return {std::clamp(recorded_ns, options_.start_ns, options_.end_ns), schedule_.rate(), schedule_.paused(), sent_};
+}
+
+}  // namespace rtd::replay

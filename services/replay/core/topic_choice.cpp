@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/replay/core/topic_choice.hpp"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/ros2/names.hpp"
+#include "services/replay/core/replay_error.hpp"
+
+namespace rtd::replay {
+namespace {
+
+constexpr char kHeartbeats[] = "rtd/status";
+
+bool meets(const std::string& pattern, const std::string& topic) {
+  return fnmatch(pattern.c_str(), topic.c_str(), 0) == 0 ||
+         fnmatch(pattern.c_str(), ros2::dds_topic(topic).c_str(), 0) == 0 ||
+         fnmatch(pattern.c_str(), ros2::ros_topic(topic).c_str(), 0) == 0;
+}
+
+bool meets_any(const std::vector<std::string>& patterns, const std::string& topic) {
+  return std::ranges::any_of(patterns, [&](const std::string& pattern) { return meets(pattern, topic); });
+}
+
+std::string topic_name(const std::string& name, const std::string& whole) {
+  if (name.empty() || name.find_first_of(" \t\n*?") != std::string::npos)
+    throw ReplayError("--remap " + whole + ": '" + name +
+                      "' is no topic name; write old:=new, e.g. /slam/pose:=/old/pose");
+  return ros2::dds_topic(name);
+}
+
+}  // namespace
+
+TopicChoice::TopicChoice(std::vector<std::string> wanted, std::vector<std::string> excluded)
+    : wanted_(std::move(wanted)), excluded_(std::move(excluded)) {}
+
+bool TopicChoice::wants(const std::string& topic) const {
+  if (meets_any(excluded_, topic)) return false;
+  return wanted_.empty() ? topic != kHeartbeats : meets_any(wanted_, topic);
+}
+
+std::vector<std::string> TopicChoice::unmet(const std::vector<std::string>& topics) const {
+  std::vector<std::string> unmet;
+  for (const std::string& pattern : wanted_)
+    if (std::ranges::none_of(topics, [&](const std::string& topic) { return meets(pattern, topic); }))
+      unmet.push_back(pattern);
+  return unmet;
+}
+
+std::map<std::string, std::string> parse_remaps(const std::vector<std::string>& texts) {
+  std::map<std::string, std::string> remaps;
+  for (const std::string& text : texts) {
+    const std::size_t sign = text.find(":=");
+    if (sign == std::string::npos)
+      throw ReplayError("--remap " + text + ": write old:=new, e.g. /slam/pose:=/old/pose");
+    const std::string from = topic_name(text.substr(0, sign), text), to = topic_name(text.substr(sign + 2), text);
+    if (!remaps.emplace(from, to).second) throw ReplayError("--remap " + text + ": " + from + " is renamed twice");
+  }
+  return remaps;
+}
+
+}  // namespace rtd::replay

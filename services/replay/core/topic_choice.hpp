@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rtd::replay {
+
+/// Which topics of a recording are played. Patterns are those of a shell ("/slam/*") and meet the name in the recording
+/// as well as the DDS name ("/slam/pose", "rt/slam/pose").
+class TopicChoice {
+ public:
+  /// No pattern in `wanted`: all but those of `excluded` and rtd/status, whose replay would make living services end as
+  /// duplicates of the recorded ones.
+  TopicChoice(std::vector<std::string> wanted, std::vector<std::string> excluded);
+
+  bool wants(const std::string& topic) const;
+  /// The patterns that meet none of these topics.
+  std::vector<std::string> unmet(const std::vector<std::string>& topics) const;
+
+ private:
+  std::vector<std::string> wanted_, excluded_;
+};
+
+/// New names by old ones, both as DDS has them, from "old:=new" in either spelling. Throws ReplayError: no ":=", an
+/// empty name, white space in one, two new names for one topic.
+std::map<std::string, std::string> parse_remaps(const std::vector<std::string>& texts);
+
+}  // namespace rtd::replay

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/replay/outputs.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "common/msg/rgbd_frame.hpp"
+#include "common/ros2/names.hpp"
+#include "common/ros2/offered_qos.hpp"
+#include "common/service/monotonic_clock.hpp"
+#include "services/replay/core/replay_error.hpp"
+
+namespace rtd::replay {
+namespace {
+
+constexpr std::size_t kCdrHeaderBytes = 4;
+constexpr std::size_t kPublishedAt = kCdrHeaderBytes + 16;  // behind seq and stamp_ns
+constexpr char kFrameType[] = "rtd_msgs::msg::dds_::RgbdFrame_";
+constexpr char kFeaturesType[] = "rtd_msgs::msg::dds_::FeatureFrame_";
+constexpr char kTrackingType[] = "rtd_msgs::msg::dds_::TrackingResult_";
+// Kept for readers that are late. DDS does not announce the depth of a writer, so a recording seldom knows it.
+constexpr int kFrameDepth = 8, kLatchedDepth = 10, kUsualDepth = 64;
+constexpr int kSlowReaderMs = 2000;
+
+/// As recorded, but a sample of the past has not expired.
+bus::RawQos qos_of(const mcap::Channel& channel) {
+  const auto text = channel.metadata.find("offered_qos_profiles");
+  std::vector<bus::RawQos> offered;
+  if (text != channel.metadata.end()) offered = ros2::parse_offered_qos(text->second);
+  bus::RawQos qos = offered.empty() ? bus::RawQos{} : offered.front();
+  qos.lifespan_ns = bus::kUnlimitedNs;
+  if (qos.depth <= 0) qos.depth = qos.durability == bus::RawQos::Durability::kVolatile ? kUsualDepth : kLatchedDepth;
+  return qos;
+}
+
+std::string type_of(const mcap::Channel& channel, const mcap::Summary& summary) {
+  const auto schema = summary.schemas.find(channel.schema_id);
+  if (schema == summary.schemas.end() || schema->second.name.empty())
+    throw ReplayError("topic " + channel.topic + " has no type in the recording: leave it out with --exclude " +
+                      channel.topic);
+  return ros2::dds_type(schema->second.name);
+}
+
+}  // namespace
+
+Outputs::Outputs(bus::RawBus& bus, const std::vector<const mcap::Channel*>& channels, const mcap::Summary& summary,
+                 OutputOptions options)
+    : bus_(bus), options_(std::move(options)) {
+  for (const mcap::Channel* channel : channels) {
+    Output output = make_output(*channel, summary);
+    const auto [known, is_new] = outputs_.try_emplace(output.topic.name, std::move(output));
+    if (!is_new && known->second.topic.type != ros2::dds_type(type_of(*channel, summary)))
+      throw ReplayError("topic " + known->first + " has two types in the recording or by --remap: " +
+                        known->second.topic.type + " and " + type_of(*channel, summary) + "; leave one out");
+    by_channel_[channel->id] = &known->second;
+  }
+  for (auto& [topic, output] : outputs_) output.writer = bus_.writer(output.topic, output.options);
+}
+
+Output Outputs::make_output(const mcap::Channel& channel, const mcap::Summary& summary) const {
+  Output output;
+  output.topic.name = ros2::dds_topic(channel.topic);
+  if (const auto renamed = options_.remaps.find(output.topic.name); renamed != options_.remaps.end())
+    output.topic.name = renamed->second;
+  output.topic.type = type_of(channel, summary);
+  output.options.qos = qos_of(channel);
+  const bool frames = output.topic.type == kFrameType;
+  output.carries_published = frames || output.topic.type == kFeaturesType;
+  output.carries_seq = output.carries_published || output.topic.type == kTrackingType;
+  if (frames) {
+    output.options.qos.depth = kFrameDepth;
+    output.options.fixed_bytes = kCdrHeaderBytes + sizeof(msg::RgbdFrame);
+  }
+  return output;
+}
+
+void Outputs::send(const PlayedMessage& message) {
+  Output& output = *by_channel_.at(message.channel);
+  std::span<const std::byte> cdr = *message.cdr;
+  if (options_.restamp && output.carries_published && cdr.size() >= kPublishedAt + sizeof(std::int64_t)) {
+    restamped_.assign(cdr.begin(), cdr.end());
+    const std::int64_t now_ns = service::monotonic_ns();
+    std::memcpy(restamped_.data() + kPublishedAt, &now_ns, sizeof(now_ns));
+    cdr = restamped_;
+  }
+  // One less than the history, so that what is acknowledged is never overtaken by what is not.
+  if (options_.wait_for_readers &&
+      ++output.since_acknowledged + 1 >= static_cast<std::uint64_t>(output.options.qos.depth)) {
+    output.writer->wait_acknowledged(kSlowReaderMs);
+    output.since_acknowledged = 0;
+  }
+  if (output.writer->write(cdr, message.publish_ns)) {
+    ++output.sent;
+  } else {
+    ++output.refused;
+  }
+}
+
+void Outputs::send_clock(std::int64_t recorded_ns) {
+  if (!clock_) clock_ = bus_.writer({"rt/clock", "rosgraph_msgs::msg::dds_::Clock_"}, {});
+  constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+  const auto sec = static_cast<std::int32_t>(recorded_ns / kNsPerSecond);
+  const auto nanosec = static_cast<std::uint32_t>(recorded_ns % kNsPerSecond);
+  std::array<std::byte, 12> cdr{std::byte{0}, std::byte{1}};
+  std::memcpy(cdr.data() + 4, &sec, sizeof(sec));
+  std::memcpy(cdr.data() + 8, &nanosec, sizeof(nanosec));
+  clock_->write(cdr);
+}
+
+std::vector<const Output*> Outputs::all() const {
+  std::vector<const Output*> all;
+  for (const auto& [topic, output] : outputs_) all.push_back(&output);
+  return all;
+}
+
+std::vector<std::string> Outputs::unread() const {
+  std::vector<std::string> unread;
+  for (const auto& [topic, output] : outputs_)
+    if (output.options.qos.reliable && output.writer->matched() == 0) unread.push_back(topic);
+  return unread;
+}
+
+void Outputs::wait_acknowledged(int timeout_ms) {
+  for (auto& [topic, output] : outputs_)
+    if (output.options.qos.reliable) output.writer->wait_acknowledged(timeout_ms);
+}
+
+}  // namespace rtd::replay

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/bus/raw_bus.hpp"
+#include "common/mcap/summary.hpp"
+#include "services/replay/core/message_feed.hpp"
+
+namespace rtd::replay {
+
+struct OutputOptions {
+  std::map<std::string, std::string> remaps;  ///< by DDS name
+  bool restamp = false;                       ///< published_ns of our frames and features becomes now
+  bool wait_for_readers = false;              ///< never overtake a reliable reader: nobody paces the messages
+};
+
+/// A topic of the recording on the bus.
+struct Output {
+  bus::RawTopic topic;
+  bus::RawWriterOptions options;
+  bool carries_seq = false;        ///< one of our types that begin with the number of the frame
+  bool carries_published = false;  ///< ... and have published_ns behind the stamp
+  std::uint64_t sent = 0, refused = 0, since_acknowledged = 0;
+  std::unique_ptr<bus::RawWriter> writer;
+};
+
+/// The writers of a replay, with types and QoS as recorded.
+class Outputs {
+ public:
+  /// A writer for each topic among `channels`. Throws BusError; ReplayError: two types on one topic.
+  Outputs(bus::RawBus& bus, const std::vector<const mcap::Channel*>& channels, const mcap::Summary& summary,
+          OutputOptions options);
+
+  void send(const PlayedMessage& message);
+  void send_clock(std::int64_t recorded_ns);
+  const Output& of(mcap::ChannelId channel) const { return *by_channel_.at(channel); }
+  std::vector<const Output*> all() const;
+  /// Reliable topics that nobody reads yet.
+  std::vector<std::string> unread() const;
+  /// Waits until every reliable reader has everything.
+  void wait_acknowledged(int timeout_ms);
+
+ private:
+  Output make_output(const mcap::Channel& channel, const mcap::Summary& summary) const;
+
+  bus::RawBus& bus_;
+  const OutputOptions options_;
+  std::map<std::string, Output> outputs_;  ///< by topic
+  std::map<mcap::ChannelId, Output*> by_channel_;
+  std::unique_ptr<bus::RawWriter> clock_;
+  std::vector<std::byte> restamped_;
+};
+
+}  // namespace rtd::replay

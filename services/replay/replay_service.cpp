@@ -1,0 +1,289 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/replay/replay_service.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/prctl.h>
+
+#include <algorithm>
+#include <iostream>
+#include <limits>
+#include <set>
+
+#include "common/mcap/byte_sink.hpp"
+#include "common/mcap/decode.hpp"
+#include "common/ros2/names.hpp"
+#include "common/service/log.hpp"
+#include "common/service/monotonic_clock.hpp"
+#include "services/replay/core/replay_error.hpp"
+#include "services/replay/core/topic_choice.hpp"
+#include "services/replay/keyboard.hpp"
+#include "services/replay/replay_report.hpp"
+
+namespace rtd::replay {
+namespace {
+
+constexpr std::int64_t kNsPerSecond = 1'000'000'000, kMetricsEveryNs = kNsPerSecond;
+constexpr std::chrono::milliseconds kLook{20};
+constexpr std::chrono::milliseconds kSettle{200};    // a reader that has matched here may not have matched us yet
+constexpr std::chrono::milliseconds kFarewell{300};  // the last heartbeats reach everybody
+constexpr int kLastAcknowledgementMs = 2000;
+constexpr char kTrackingTopic[] = "rtd/tracking";
+
+std::int64_t to_ns(double seconds) {
+  return static_cast<std::int64_t>(seconds * 1e9);
+}
+
+/// Times beyond 2262 are a lie of the file.
+std::int64_t signed_time(mcap::Timestamp time) {
+  return static_cast<std::int64_t>(std::min<mcap::Timestamp>(time, std::numeric_limits<std::int64_t>::max()));
+}
+
+std::uint64_t seq_in(std::span<const std::byte> cdr) {
+  constexpr std::size_t kSeqAt = 4;
+  return cdr.size() >= kSeqAt + 8 ? mcap::load<std::uint64_t>(cdr.data() + kSeqAt) : 0;
+}
+
+}  // namespace
+
+void ReplayService::add_options(CLI::App& app, Config& config) {
+  app.add_option("file", config.file, "Recording (replay.file)");
+  app.add_option("-r,--rate", config.rate, "Speed, 1 = as recorded, 0 = as fast as possible (replay.rate)");
+  app.add_flag(
+      "--asap", [&config](std::int64_t) { config.rate = 0; }, "As fast as possible: --rate 0");
+  app.add_flag("-l,--loop", config.loop, "Begin again at the end (replay.loop)");
+  app.add_option("--start-offset", config.start_offset_s, "Begin so many seconds behind the first message");
+  app.add_option("--duration", config.duration_s, "Play so many seconds, 0 = to the end");
+  app.add_option("--topics", config.topics, "Only these topics or patterns, e.g. rtd/frame '/slam/*'")->delimiter(',');
+  app.add_option("--exclude", config.exclude, "Not these topics or patterns")->delimiter(',');
+  app.add_option("-m,--remap", config.remap, "Rename topics: old:=new");
+  app.add_option("--clock", config.clock_hz, "Publish /clock at this rate (without a number: 40 Hz)")
+      ->expected(0, 1)
+      ->default_str("40");
+  app.add_flag("-p,--pause,--start-paused", config.pause, "Begin paused (space goes on)");
+  app.add_option("--read-ahead", config.read_ahead_mb, "Megabytes read before they are due (replay.read_ahead_mb)");
+  app.add_option("--lockstep", config.lockstep,
+                 "The next frame only behind a message of this topic, e.g. rtd/tracking");
+  app.add_option("--paced-topic", config.paced_topic, "What waits for it (default rtd/frame, else rtd/features)");
+  app.add_option("--wait-for", config.wait_for, "Services that must be ready first, e.g. filter,slam")->delimiter(',');
+  app.add_option("--wait-readers", config.wait_readers_s, "Longest wait for readers of reliable topics [s]");
+  app.add_option("--stand-in", config.stand_in, "Services for which heartbeats are sent, e.g. detector")
+      ->delimiter(',');
+  app.add_flag("--restamp", config.restamp, "published_ns of our frames and features becomes the time of the replay");
+  app.add_flag("--json", config.json, "Print a report in JSON at the end");
+  app.footer(
+      "Keys: space pause, right arrow or s next message (paused), up and down arrow rate, b and f 10 s back and "
+      "forward, q end.\nExit code: 0 done, 1 nobody answers (--lockstep), 2 the recording or an option cannot be used, "
+      "3 the recording is damaged: played is what can be read");
+}
+
+ReplayService::ReplayService(const Config& config, service::Runtime& runtime)
+    : config_(config), runtime_(runtime), window_(window_of(config, runtime.pace)), inbox_(std::make_shared<Inbox>()) {
+  validate(config_);
+  if (window_ > 0 && config_.lockstep.empty()) config_.lockstep = kTrackingTopic;
+  try {
+    open();
+  } catch (const ReplayError& error) {
+    throw service::ConfigError(error.what());
+  } catch (const mcap::IoError& error) {
+    throw service::ConfigError(error.what());
+  }
+  runtime_.heartbeat.on_status([inbox = inbox_](const auto&) {});
+  runtime_.stop.on_stop([inbox = inbox_] { inbox->post(Command::kStop); });
+}
+
+ReplayService::~ReplayService() {
+  runtime_.heartbeat.on_status({});
+}
+
+void ReplayService::open() {
+  source_ = std::make_unique<mcap::FileSource>(config_.file);
+  reader_ = std::make_unique<mcap::IndexedReader>(*source_);
+  for (const mcap::Problem& problem : reader_->problems().listed())
+    if (problem.kind == mcap::ProblemKind::kNotMcap && problem.data_lost)
+      throw ReplayError(config_.file + ": this is no MCAP file; 'rtd info' says more");
+  choose_topics();
+  choose_span();
+  bus::BusOptions options;
+  bus_ = bus::connect_raw(runtime_.bus_options);
+  outputs_ = std::make_unique<Outputs>(
+      *bus_, channels_, reader_->summary(),
+      OutputOptions{parse_remaps(config_.remap), config_.restamp, window_ == 0 && config_.rate == 0});
+  if (window_ > 0) choose_paced_topic();
+}
+
+void ReplayService::choose_topics() {
+  std::vector<std::string> exclude = config_.exclude;
+  if (!config_.lockstep.empty()) exclude.push_back(config_.lockstep);  // it would answer itself
+  const TopicChoice choice(config_.topics, exclude);
+  std::vector<std::string> known;
+  for (const auto& [id, channel] : reader_->summary().channels) {
+    known.push_back(channel.topic);
+    if (choice.wants(channel.topic)) channels_.push_back(&channel);
+  }
+  const std::string listed = known.empty() ? "no topics" : fmt::format("{}", fmt::join(known, ", "));
+  if (const std::vector<std::string> unmet = choice.unmet(known); !unmet.empty())
+    throw ReplayError(fmt::format("--topics {}: not in {}; it has {}", fmt::join(unmet, ", "), config_.file, listed));
+  if (channels_.empty()) throw ReplayError(fmt::format("{}: nothing to play; it has {}", config_.file, listed));
+}
+
+void ReplayService::choose_span() {
+  const mcap::Summary& summary = reader_->summary();
+  if (!summary.statistics || summary.statistics->message_count == 0)
+    throw ReplayError(config_.file + ": it holds no messages");
+  first_ns_ = signed_time(summary.statistics->message_start_time);
+  const std::int64_t last_ns = signed_time(summary.statistics->message_end_time);
+  start_ns_ = first_ns_ + to_ns(config_.start_offset_s);
+  if (start_ns_ > last_ns)
+    throw ReplayError(fmt::format("--start-offset {}: the recording is {:.3f} s long", config_.start_offset_s,
+                                  static_cast<double>(last_ns - first_ns_) * 1e-9));
+  end_ns_ = config_.duration_s > 0 ? std::min(last_ns, start_ns_ + to_ns(config_.duration_s)) : last_ns;
+}
+
+void ReplayService::choose_paced_topic() {
+  const std::vector<std::string> candidates = config_.paced_topic.empty()
+                                                  ? std::vector<std::string>{"rtd/frame", "rtd/features"}
+                                                  : std::vector<std::string>{ros2::dds_topic(config_.paced_topic)};
+  for (const std::string& candidate : candidates)
+    for (const Output* output : outputs_->all())
+      if (paced_ == nullptr && output->topic.name == candidate) paced_ = output;
+  if (paced_ == nullptr)
+    throw ReplayError(
+        fmt::format("--lockstep {}: {} is not among the topics that are played; name one with --paced-topic",
+                    config_.lockstep, fmt::join(candidates, " or ")));
+}
+
+service::ExitCode ReplayService::run() {
+  prctl(PR_SET_TIMERSLACK, 1000UL);  // ns; 50 us by default
+  SPDLOG_INFO("event=recording_opened file={} topics={} messages={} duration_s={:.3f} summary={}", config_.file,
+              channels_.size(), reader_->summary().statistics->message_count,
+              static_cast<double>(end_ns_ - start_ns_) * 1e-9, !reader_->summary().scanned);
+  if (source_->being_written()) SPDLOG_WARN("event=being_written cause=\"played is what is in the file now\"");
+  for (const std::string& service : config_.stand_in) {
+    stand_ins_.push_back(std::make_unique<service::Heartbeat>(runtime_.bus, service, runtime_.stop));
+    stand_ins_.back()->set_state(msg::ServiceState::kRunning, "played by rtd-replay");
+  }
+  // Slam is ready only when somebody listens to its answers.
+  if (!listen_for_answers() || !wait_for_services() || !wait_for_readers())
+    return runtime_.stop.stop_requested() ? service::kOk : service::kRunFailed;
+  runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
+  return play();
+}
+
+bool ReplayService::wait_for_services() {
+  const std::int64_t deadline_ns = now_ns() + to_ns(config_.start_timeout_s);
+  while (true) {
+    std::vector<std::string> absent;
+    for (const std::string& name : config_.wait_for)
+      if (name != "none" && !runtime_.heartbeat.ready(name)) absent.push_back(name);
+    if (absent.empty()) return true;
+    if (now_ns() > deadline_ns) {
+      fail(fmt::format("not ready within {:g} s: {}; start them, or leave them out with --wait-for",
+                       config_.start_timeout_s, fmt::join(absent, ", ")));
+      return false;
+    }
+    runtime_.heartbeat.set_state(msg::ServiceState::kReady, fmt::format("waits for {}", fmt::join(absent, ", ")));
+    if (runtime_.stop.wait_for(kLook)) return false;
+  }
+}
+
+bool ReplayService::listen_for_answers() {
+  if (window_ == 0) return true;
+  const std::string topic = ros2::dds_topic(config_.lockstep);
+  const std::int64_t deadline_ns = now_ns() + to_ns(config_.start_timeout_s);
+  while (now_ns() <= deadline_ns) {
+    for (const bus::TopicWriter& writer : bus_->writers()) {
+      if (writer.own || writer.topic.name != topic) continue;
+      bus::RawHandlers handlers;
+      const bool numbered = paced_->carries_seq && writer.topic.type == "rtd_msgs::msg::dds_::TrackingResult_";
+      handlers.on_sample = [inbox = inbox_, numbered](const bus::RawSample& sample) {
+        inbox->post(Answer{numbered ? std::optional(seq_in(sample.cdr())) : std::nullopt});
+      };
+      answers_ = bus_->reader(writer.topic, {.reliable = writer.qos.reliable}, std::move(handlers));
+      return true;
+    }
+    if (runtime_.stop.wait_for(kLook)) return false;
+  }
+  fail(fmt::format("nobody publishes {} within {:g} s: start who answers, or leave out --lockstep", topic,
+                   config_.start_timeout_s));
+  return false;
+}
+
+/// A volatile topic reaches only who is there: reliable topics wait a moment for their readers.
+bool ReplayService::wait_for_readers() {
+  const std::int64_t deadline_ns = now_ns() + to_ns(config_.wait_readers_s);
+  while ((!outputs_->unread().empty() || (answers_ && answers_->matched() == 0)) && now_ns() < deadline_ns)
+    if (runtime_.stop.wait_for(kLook)) return false;
+  const std::vector<std::string> unread = outputs_->unread();
+  if (!unread.empty())
+    SPDLOG_INFO("event=without_readers topics={} waited_s={:g}", fmt::join(unread, ","), config_.wait_readers_s);
+  return !runtime_.stop.wait_for(kSettle);
+}
+
+service::ExitCode ReplayService::play() {
+  line_ = std::make_unique<StatusLine>(start_ns_, end_ns_);
+  const Keyboard keyboard([inbox = inbox_](Command command) { inbox->post(command); });
+  std::set<mcap::ChannelId> wanted;
+  for (const mcap::Channel* channel : channels_) wanted.insert(channel->id);
+  MessageFeed feed(*reader_,
+                   {.read_ahead_bytes = static_cast<std::uint64_t>(config_.read_ahead_mb) * 1'000'000,
+                    .start_ns = start_ns_,
+                    .end_ns = end_ns_,
+                    .wanted = [wanted](const mcap::Channel& channel) { return wanted.contains(channel.id); }});
+  PlayerOptions options{
+      .rate = config_.rate, .paused = config_.pause, .loop = config_.loop, .start_ns = start_ns_, .end_ns = end_ns_};
+  options.pacer.window = window_;
+  options.pacer.resend_after_ns = std::int64_t{config_.resend_after_ms} * 1'000'000;
+  options.pacer.result_timeout_ns = to_ns(config_.result_timeout_s);
+  if (config_.clock_hz > 0) options.clock_period_ns = to_ns(1 / config_.clock_hz);
+  Player player(feed, *this, options);
+  const PlayOutcome outcome = player.run();
+  line_.reset();
+  return finish(player, outcome);
+}
+
+service::ExitCode ReplayService::finish(const Player& player, PlayOutcome outcome) {
+  if (outcome == PlayOutcome::kEnded) outputs_->wait_acknowledged(kLastAcknowledgementMs);
+  const Report report = report_of(player, *outputs_, config_.file, outcome, reader_->problems());
+  SPDLOG_INFO("event=summary {}", log_text(report));
+  if (config_.json) std::cout << to_json(report).dump(2) << std::endl;
+  tell_problems();
+  if (outcome == PlayOutcome::kUnanswered)
+    return fail(fmt::format("no message of {} for number {} of {} within {:g} s: are its publishers alive?",
+                            config_.lockstep, player.unanswered_seq(), paced_->topic.name, config_.result_timeout_s));
+  runtime_.heartbeat.set_state(msg::ServiceState::kFinished);
+  if (outcome == PlayOutcome::kEnded) runtime_.stop.wait_for(kFarewell);
+  return reader_->problems().data_lost() ? service::kPartialLoss : service::kOk;
+}
+
+void ReplayService::tell_problems() const {
+  for (const mcap::Problem& problem : reader_->problems().listed())
+    SPDLOG_WARN("event=recording_damaged kind={} cause=\"{}\"", mcap::name_of(problem.kind), mcap::to_string(problem));
+}
+
+service::ExitCode ReplayService::fail(const std::string& message) {
+  SPDLOG_ERROR("event=failed cause=\"{}\"", message);
+  runtime_.heartbeat.set_state(msg::ServiceState::kFailed, message);
+  return service::kRunFailed;
+}
+
+std::int64_t ReplayService::now_ns() {
+  return service::monotonic_ns();
+}
+
+std::optional<std::uint64_t> ReplayService::paced_seq(const PlayedMessage& message) {
+  if (paced_ == nullptr || &outputs_->of(message.channel) != paced_) return std::nullopt;
+  return paced_->carries_seq ? seq_in(*message.cdr) : static_cast<std::uint64_t>(message.log_ns);
+}
+
+void ReplayService::show(const PlayState& state) {
+  const std::int64_t time_ns = now_ns();
+  if (line_) line_->show(state, time_ns);
+  if (time_ns < next_metrics_ns_) return;
+  next_metrics_ns_ = time_ns + kMetricsEveryNs;
+  runtime_.heartbeat.set_metric("messages_sent", static_cast<double>(state.sent));
+  runtime_.heartbeat.set_metric("position_s", static_cast<double>(state.recorded_ns - first_ns_) * 1e-9);
+}
+
+}  // namespace rtd::replay

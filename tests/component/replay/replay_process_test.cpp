@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// rtd-replay as a user runs it, over Fast DDS: recording, replay, recording.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/bus/bus_factory.hpp"
+#include "common/msg/rgbd_frame.hpp"
+#include "tests/component/launcher/rtd_command.hpp"
+#include "tests/component/replay/raw_recording.hpp"
+
+namespace rtd::replay {
+namespace {
+
+constexpr std::int64_t kMillisecond = 1'000'000, kEpoch = 1'700'000'000'000'000'000;
+
+class ReplayProcessTest : public testing::Test {
+ protected:
+  ReplayProcessTest() {
+    options_.domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
+    options_.participant_name = "replay-test";
+    raw_ = bus::connect_raw(options_);
+  }
+  std::vector<std::string> arguments(const std::vector<std::string>& more) const {
+    std::vector<std::string> all = {file_.path(), "--domain", std::to_string(options_.domain), "--json"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  /// The JSON among what the process printed.
+  nlohmann::json report() const {
+    const std::string& output = replay_.output();
+    const std::size_t begin = output.find("{\n"), end = output.rfind("\n}");
+    return nlohmann::json::parse(output.substr(begin, end + 2 - begin));
+  }
+  /// Raw frames at 30 Hz, boxes of changing size behind each, poses at 100 Hz. Sizes are multiples of 4, as all that
+  /// was recorded from a wire: there RTPS fills up to that.
+  static std::vector<Piece> camera_like(std::uint64_t frames) {
+    std::vector<Piece> pieces;
+    for (std::uint64_t i = 0; i < frames; ++i) {
+      const std::int64_t time_ns = kEpoch + static_cast<std::int64_t>(i) * 33'333'333;
+      pieces.push_back({"rtd/frame", time_ns, time_ns - 2 * kMillisecond, cdr_of(i, sizeof(msg::RgbdFrame))});
+      pieces.push_back({"rt/boxes", time_ns + kMillisecond, time_ns, cdr_of(i, 20 + 12 * i)});
+      for (std::int64_t k = 0; k < 3; ++k)
+        pieces.push_back({"rt/pose", time_ns + (2 + 10 * k) * kMillisecond, time_ns + k, cdr_of(3 * i + k, 100)});
+    }
+    return pieces;
+  }
+
+  TemporaryFile file_{"process.mcap"};
+  bus::BusOptions options_;
+  std::shared_ptr<bus::RawBus> raw_;
+  launcher::RtdCommand replay_{RTD_REPLAY};
+};
+
+TEST_F(ReplayProcessTest, record_replay_record_keeps_bytes_order_and_publish_times) {
+  const std::vector<Piece> recorded = camera_like(45);
+  write_recording(file_.path(), recorded);
+  Recorder recorder(*raw_);
+  ASSERT_EQ(replay_.run(arguments({})), 0) << replay_.output();
+  const std::vector<Piece> again = recorder.wait(recorded.size());
+  for (const char* topic : {"rtd/frame", "rt/boxes", "rt/pose"}) expect_same(recorded, again, topic);
+  const nlohmann::json json = report();
+  EXPECT_EQ(json["sent"], recorded.size());
+  EXPECT_EQ(json["refused"], 0);
+  EXPECT_EQ(json["timing_error_ms"]["messages"], recorded.size() - 1);
+  EXPECT_LT(json["timing_error_ms"]["p50"], 2.0) << "loose: the host may be busy";
+  RecordProperty("timing_error_p99_ms", json["timing_error_ms"]["p99"].dump());
+}
+
+TEST_F(ReplayProcessTest, as_fast_as_possible_keeps_everything_too) {
+  const std::vector<Piece> recorded = camera_like(60);
+  write_recording(file_.path(), recorded);
+  Recorder recorder(*raw_);
+  ASSERT_EQ(replay_.run(arguments({"--rate", "0"})), 0) << replay_.output();
+  const std::vector<Piece> again = recorder.wait(recorded.size());
+  for (const char* topic : {"rtd/frame", "rt/boxes", "rt/pose"}) expect_same(recorded, again, topic);
+}
+
+TEST_F(ReplayProcessTest, ctrl_c_ends_an_endless_replay) {
+  write_recording(file_.path(), camera_like(3));
+  replay_.start(arguments({"--loop", "--clock"}));
+  Recorder recorder(*raw_);
+  EXPECT_GT(recorder.wait(30).size(), 15U);
+  replay_.interrupt();
+  EXPECT_EQ(replay_.wait(), 0) << replay_.output();
+  EXPECT_EQ(report()["outcome"], "stopped");
+  EXPECT_FALSE(of_topic(recorder.wait(0), "rt/clock").empty());
+}
+
+TEST_F(ReplayProcessTest, wrong_use_is_exit_code_2_with_the_reason) {
+  EXPECT_EQ(replay_.run({"/nonexistent/x.mcap", "--domain", "99"}), 2);
+  EXPECT_THAT(replay_.output(), testing::HasSubstr("/nonexistent/x.mcap"));
+}
+
+}  // namespace
+}  // namespace rtd::replay

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/replay/replay_service.hpp"
+
+#include <gmock/gmock.h>
+
+#include <future>
+
+#include "tests/component/replay/raw_recording.hpp"
+
+namespace rtd::replay {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr std::int64_t kMillisecond = 1'000'000, kEpoch = 1'700'000'000'000'000'000;
+
+/// A replay in a thread, on an in-process bus of its own.
+class ReplayServiceTest : public testing::Test {
+ protected:
+  ReplayServiceTest() {
+    static std::uint32_t domain = 150;
+    options_.vendor = "inprocess";
+    options_.domain = domain++;
+    raw_ = bus::connect_raw(options_);
+    bus_ = bus::connect(options_);
+    config_.file = file_.path();
+  }
+  ~ReplayServiceTest() override {
+    stop_.request_stop();
+    if (running_.valid()) running_.get();
+  }
+
+  void record(const std::vector<Piece>& pieces) { write_recording(file_.path(), pieces); }
+  void start(service::Pace pace = service::Pace::kRealtime) {
+    running_ = std::async(std::launch::async, [this, pace] {
+      service::Heartbeat heartbeat(*bus_, ReplayService::kName, stop_);
+      service::Runtime runtime{*bus_, heartbeat, stop_, pace, options_};
+      return ReplayService(config_, runtime).run();
+    });
+  }
+  service::ExitCode ended() { return running_.get(); }
+  /// Why the service does not start.
+  std::string refusal(service::Pace pace = service::Pace::kRealtime) {
+    start(pace);
+    try {
+      ended();
+    } catch (const service::ConfigError& error) {
+      return error.what();
+    }
+    return "it started";
+  }
+
+  /// 30 frames of 10 ms and 15 boxes between them.
+  static std::vector<Piece> frames_and_boxes() {
+    std::vector<Piece> pieces;
+    for (std::uint64_t i = 0; i < 30; ++i) {
+      const std::int64_t time_ns = kEpoch + static_cast<std::int64_t>(i) * 10 * kMillisecond;
+      pieces.push_back({"rtd/features", time_ns, time_ns - 300'000, cdr_of(i, 5000)});
+      if (i % 2 == 0) pieces.push_back({"rt/boxes", time_ns + kMillisecond, time_ns + 500'000, cdr_of(i, 17 + i)});
+    }
+    return pieces;
+  }
+
+  TemporaryFile file_{"service.mcap"};
+  bus::BusOptions options_;
+  ServiceConfig config_;
+  service::StopToken stop_;
+  std::shared_ptr<bus::RawBus> raw_;
+  std::shared_ptr<bus::Bus> bus_;
+  std::future<service::ExitCode> running_;
+};
+
+TEST_F(ReplayServiceTest, a_recording_of_the_replay_has_the_same_bytes_order_and_publish_times) {
+  const std::vector<Piece> recorded = frames_and_boxes();
+  record(recorded);
+  Recorder recorder(*raw_);
+  start();
+  const std::vector<Piece> again = recorder.wait(recorded.size());
+  EXPECT_EQ(ended(), service::kOk);
+  for (const char* topic : {"rtd/features", "rt/boxes"}) expect_same(recorded, again, topic);
+  const double lasted_ms = static_cast<double>(again.back().log_ns - again.front().log_ns) / kMillisecond;
+  EXPECT_NEAR(lasted_ms, 290, 60) << "as long as recorded";
+}
+
+TEST_F(ReplayServiceTest, as_fast_as_possible_loses_nothing) {
+  const std::vector<Piece> recorded = frames_and_boxes();
+  record(recorded);
+  config_.rate = 0;
+  Recorder recorder(*raw_);
+  start();
+  const std::vector<Piece> again = recorder.wait(recorded.size());
+  EXPECT_EQ(ended(), service::kOk);
+  for (const char* topic : {"rtd/features", "rt/boxes"}) expect_same(recorded, again, topic);
+}
+
+TEST_F(ReplayServiceTest, plays_the_chosen_topics_under_new_names_from_the_chosen_time) {
+  record(frames_and_boxes());
+  config_.topics = {"/box*"};
+  config_.remap = {"/boxes:=/old/boxes"};
+  config_.start_offset_s = 0.1;
+  config_.duration_s = 0.05;
+  Recorder recorder(*raw_);
+  start();
+  EXPECT_EQ(ended(), service::kOk);
+  const std::vector<Piece> again = recorder.wait(3, std::chrono::seconds(1));
+  ASSERT_EQ(again.size(), 3U) << "101, 121 and 141 ms";
+  EXPECT_EQ(again[0].topic, "rt/old/boxes");
+  EXPECT_EQ(again[0].cdr, cdr_of(10, 27));
+}
+
+TEST_F(ReplayServiceTest, publishes_the_clock) {
+  record(frames_and_boxes());
+  config_.clock_hz = 100;
+  Recorder recorder(*raw_);
+  start();
+  EXPECT_EQ(ended(), service::kOk);
+  const std::vector<Piece> ticks = of_topic(recorder.wait(45, std::chrono::seconds(1)), "rt/clock");
+  ASSERT_GT(ticks.size(), 5U);
+  std::int32_t sec = 0;
+  std::memcpy(&sec, ticks.back().cdr.data() + 4, sizeof(sec));
+  EXPECT_EQ(sec, kEpoch / 1'000'000'000);
+}
+
+/// A consumer that answers each frame some time later, with our type.
+TEST_F(ReplayServiceTest, in_lockstep_each_frame_waits_for_the_answer_to_the_one_before) {
+  std::vector<Piece> recorded = frames_and_boxes();
+  recorded.push_back({"rtd/tracking", kEpoch + 400 * kMillisecond, kEpoch, cdr_of(0, 100)});
+  record(recorded);
+  const auto answers = raw_->writer({"rtd/tracking", "rtd_msgs::msg::dds_::TrackingResult_"}, {});
+  Recorder recorder(*raw_);  // hears the answers too
+  start(service::Pace::kLockstep);
+  std::size_t all = 0;
+  for (std::uint64_t seq = 0; seq < 30; ++seq) {
+    all += seq % 2 == 0 ? 2 : 1;  // boxes come with every second frame
+    const std::vector<Piece> came = of_topic(recorder.wait(all + seq), "rtd/features");
+    ASSERT_EQ(came.size(), seq + 1) << "not before the answer";
+    const std::string answer = cdr_of(seq, 100);
+    answers->write(std::as_bytes(std::span(answer)));
+  }
+  EXPECT_EQ(ended(), service::kOk);
+  EXPECT_EQ(of_topic(recorder.wait(75), "rt/boxes").size(), 15U);
+}
+
+TEST_F(ReplayServiceTest, says_who_does_not_answer) {
+  record(frames_and_boxes());
+  config_.start_timeout_s = 0.2;
+  start(service::Pace::kLockstep);
+  EXPECT_EQ(ended(), service::kRunFailed) << "nobody publishes rtd/tracking";
+}
+
+TEST_F(ReplayServiceTest, a_damaged_recording_is_played_as_far_as_it_can_be_read) {
+  record(frames_and_boxes());
+  std::filesystem::resize_file(file_.path(), std::filesystem::file_size(file_.path()) / 2);
+  Recorder recorder(*raw_);
+  config_.rate = 0;
+  start();
+  EXPECT_EQ(ended(), service::kPartialLoss);
+}
+
+TEST_F(ReplayServiceTest, names_what_is_wrong_with_the_recording) {
+  config_.file = "/nonexistent/x.mcap";
+  EXPECT_THAT(refusal(), HasSubstr("/nonexistent/x.mcap"));
+  config_.file = file_.path();
+  std::ofstream(file_.path()) << "this is no recording at all";
+  EXPECT_THAT(refusal(), HasSubstr("no MCAP file"));
+  record({});
+  EXPECT_THAT(refusal(), HasSubstr("no topics"));
+  config_.file.clear();
+  EXPECT_THAT(refusal(), HasSubstr("rtd replay FILE"));
+}
+
+TEST_F(ReplayServiceTest, names_the_option_that_is_wrong_and_what_there_is) {
+  record(frames_and_boxes());
+  const ServiceConfig good = config_;
+  const auto with = [&](const std::function<void(ServiceConfig&)>& change) {
+    config_ = good;
+    change(config_);
+    return refusal();
+  };
+  EXPECT_THAT(with([](auto& c) { c.topics = {"/slam/pose"}; }),
+              AllOf(HasSubstr("/slam/pose"), HasSubstr("/boxes"), HasSubstr("rtd/features")));
+  EXPECT_THAT(with([](auto& c) { c.rate = -1; }), AllOf(HasSubstr("--rate"), HasSubstr("-1")));
+  EXPECT_THAT(with([](auto& c) { c.rate = std::nan(""); }), HasSubstr("--rate nan"));
+  EXPECT_THAT(with([](auto& c) { c.start_offset_s = 99; }), HasSubstr("long"));
+  EXPECT_THAT(with([](auto& c) { c.start_offset_s = std::nan(""); }), HasSubstr("--start-offset"));
+  EXPECT_THAT(with([](auto& c) { c.remap = {"/a=/b"}; }), HasSubstr("old:=new"));
+  EXPECT_THAT(with([](auto& c) { c.remap = {"/boxes:=rtd/features"}; }), HasSubstr("two types"));
+  config_ = good;
+  config_.topics = {"/boxes"};
+  EXPECT_THAT(refusal(service::Pace::kLockstep), HasSubstr("rtd/frame or rtd/features"));
+}
+
+}  // namespace
+}  // namespace rtd::replay

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/replay/core/topic_choice.hpp"
+
+#include <gmock/gmock.h>
+
+#include "services/replay/core/replay_error.hpp"
+
+namespace rtd::replay {
+namespace {
+
+using testing::ElementsAre;
+using testing::Pair;
+
+TEST(TopicChoice, plays_all_but_the_heartbeats_unless_asked) {
+  EXPECT_TRUE(TopicChoice({}, {}).wants("rtd/frame"));
+  EXPECT_FALSE(TopicChoice({}, {}).wants("rtd/status"));
+  EXPECT_TRUE(TopicChoice({"rtd/status"}, {}).wants("rtd/status"));
+}
+
+TEST(TopicChoice, takes_patterns_on_either_spelling_of_a_name) {
+  const TopicChoice choice({"/slam/*", "rt/tf"}, {"*/path"});
+  EXPECT_TRUE(choice.wants("/slam/pose"));
+  EXPECT_TRUE(choice.wants("/tf"));
+  EXPECT_FALSE(choice.wants("/slam/path"));
+  EXPECT_FALSE(choice.wants("rtd/frame"));
+  EXPECT_TRUE(TopicChoice({"rt/slam/pose"}, {}).wants("/slam/pose"));
+}
+
+TEST(TopicChoice, names_the_patterns_that_meet_nothing) {
+  EXPECT_THAT(TopicChoice({"/slam/*", "rtd/farme"}, {}).unmet({"/slam/pose", "rtd/frame"}), ElementsAre("rtd/farme"));
+}
+
+TEST(Remap, takes_both_spellings) {
+  EXPECT_THAT(parse_remaps({"/slam/pose:=/old/pose", "rtd/frame:=rtd/frame2"}),
+              ElementsAre(Pair("rt/slam/pose", "rt/old/pose"), Pair("rtd/frame", "rtd/frame2")));
+}
+
+TEST(Remap, refuses_what_is_no_renaming) {
+  for (const char* wrong : {"/a", "/a:/b", ":=/b", "/a:=", "/a b:=/c", "/a*:=/b"})
+    EXPECT_THROW(parse_remaps({wrong}), ReplayError) << wrong;
+  EXPECT_THROW(parse_remaps({"/a:=/b", "rt/a:=/c"}), ReplayError);
+}
+
+}  // namespace
+}  // namespace rtd::replay
