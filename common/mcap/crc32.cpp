@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mcap/crc32.hpp"
 
+#include <libdeflate.h>
 #include <zlib.h>
 
 namespace rtd::mcap {
 
 std::uint32_t crc32(ByteView data, std::uint32_t crc) {
-  // zlib takes a null pointer for "give me the start value".
-  if (data.empty()) return crc;
-  return static_cast<std::uint32_t>(::crc32_z(crc, reinterpret_cast<const Bytef*>(data.data()), data.size()));
+  if (data.empty()) return crc;  // a null pointer asks libdeflate for the start value
+  return ::libdeflate_crc32(crc, data.data(), data.size());
 }
 
 std::uint32_t crc32_combine(std::uint32_t first, std::uint32_t second, std::uint64_t second_size) {
