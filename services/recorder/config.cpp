@@ -10,6 +10,7 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
   binder.field("split", split, "a new file after so much, e.g. 1GB or 60s; empty: one file");
   binder.choice("compression", compression, {"none", "lz4", "zstd"}, "of chunks");
   binder.field("force", force, "replace an earlier recording");
+  binder.field("beside", beside, "an earlier recording stays, this one gets the next free name: run.1.mcap");
   binder.field("json", json, "final report as JSON on stdout");
   binder.field("queue_mib", queue_mib, {1, 65536}, "what may wait for the disk; beyond it the newest is lost");
   binder.field("chunk_kib", chunk_kib, {1, 65536}, "a chunk is ended when it has so much");

@@ -16,6 +16,7 @@ struct ServiceConfig {
   std::string split;                     ///< "1GB", "60s", ...; empty: one file
   std::string compression = "none";      ///< of chunks
   bool force = false;                    ///< replace an earlier recording
+  bool beside = false;                   ///< an earlier recording stays, this one gets the next free name
   bool json = false;                     ///< the final report as JSON on stdout
   int queue_mib = 256;                   ///< what may wait for the disk
   int chunk_kib = 1024;                  ///< a chunk is ended when it has so much

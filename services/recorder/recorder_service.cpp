@@ -37,6 +37,12 @@ SplitPolicy split_of(const ServiceConfig& config) {
   throw ConfigError("--split " + config.split + ": a size or a time is needed, e.g. 500MB, 1GB, 2GiB, 60s, 5min, 1h");
 }
 
+OutputFiles files_of(const ServiceConfig& config) {
+  const std::string output = output_of(config);
+  const bool split = split_of(config).on();
+  return config.beside ? OutputFiles::free_beside(output, split) : OutputFiles(output, split);
+}
+
 RecordingOptions options_of(const ServiceConfig& config) {
   RecordingOptions options;
   options.compression = mcap::compression_of(config.compression == "none" ? "" : config.compression).value();
@@ -72,6 +78,7 @@ void RecorderService::add_options(CLI::App& app, Config& config) {
   app.add_option("--compress", config.compression, "none, lz4 or zstd (default none)")
       ->check(CLI::IsMember({"none", "lz4", "zstd"}));
   app.add_flag("--force", config.force, "Replace an earlier recording");
+  app.add_flag("--beside", config.beside, "Keep an earlier recording and take the next free name: run.1.mcap");
   app.add_flag("--json", config.json, "Final report as JSON on stdout");
   app.footer(
       "rtd record recover FILE    makes what is whole in a damaged or unfinished recording a well-formed one\n"
@@ -81,7 +88,7 @@ void RecorderService::add_options(CLI::App& app, Config& config) {
 RecorderService::RecorderService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
-      files_(output_of(config), split_of(config).on()),
+      files_(files_of(config)),
       queue_(static_cast<std::uint64_t>(config.queue_mib) * kMib),
       interactive_(isatty(STDERR_FILENO) == 1) {
   prepare(files_, config_.force);
@@ -177,6 +184,7 @@ void RecorderService::say_state(const TopicCounts& totals) {
   if (totals.lost() > 0) {
     return runtime_.heartbeat.set_state(msg::ServiceState::kDegraded, fmt::format("{} messages lost", totals.lost()));
   }
+  if (!readers_->settled()) return runtime_.heartbeat.set_state(msg::ServiceState::kStarting, "joins the topics");
   if (totals.written > 0) return runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
   const bool any = readers_->any();
   if (!any && !waiting_said_) {

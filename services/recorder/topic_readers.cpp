@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/recorder/topic_readers.hpp"
 
+#include <algorithm>
+
 #include "common/bus/backend.hpp"
 
 namespace rtd::recorder {
@@ -9,6 +11,10 @@ namespace {
 
 std::pair<bool, bool> offer_of(const bus::RawQos& qos) {
   return {qos.reliable, qos.durability != bus::RawQos::Durability::kVolatile};
+}
+
+std::string key_of(const bus::RawTopic& topic) {
+  return topic.name + ' ' + topic.type;
 }
 
 }  // namespace
@@ -29,12 +35,23 @@ bool TopicReaders::any() const {
   return !readers_.empty();
 }
 
+bool TopicReaders::settled() const {
+  const std::vector<bus::TopicWriter> writers = bus_.writers();
+  const std::lock_guard lock(mutex_);
+  return std::all_of(writers.begin(), writers.end(), [this](const bus::TopicWriter& writer) {
+    if (writer.own || !filter_.wants(writer.topic.name) || refused_.contains(key_of(writer.topic))) return true;
+    const auto reader = readers_.find({book_.find_or_add(writer.topic.name, writer.topic.type), offer_of(writer.qos)});
+    return reader != readers_.end() && reader->second->matched() > 0;
+  });
+}
+
 void TopicReaders::take_note(const bus::TopicWriter& writer, bus::WriterChange change) {
   if (change == bus::WriterChange::kGone || writer.own || !filter_.wants(writer.topic.name)) return;
   try {
     listen(writer);
   } catch (const bus::BusError& error) {
-    if (refused_.insert(writer.topic.name + writer.topic.type).second) {
+    const std::lock_guard lock(mutex_);
+    if (refused_.insert(key_of(writer.topic)).second) {
       SPDLOG_WARN("event=topic_not_recorded topic={} type={} cause=\"{}\"", writer.topic.name, writer.topic.type,
                   error.what());
     }

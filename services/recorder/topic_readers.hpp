@@ -30,6 +30,8 @@ class TopicReaders {
   /// Nothing is queued any more.
   void stop();
   bool any() const;
+  /// Every writer that is known has a reader of ours that knows it.
+  bool settled() const;
 
  private:
   /// What a writer offers: reliable, transient-local.

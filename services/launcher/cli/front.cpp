@@ -62,6 +62,7 @@ void add_run_command(CLI::App& app, RunOptions& options) {
                       "Detector weights, ONNX (default: RTD_MODEL_DIR, then the user's cache)");
   command->add_option("--frames", options.frames, "End after so many frames");
   command->add_flag("--dense", options.dense, "Also fuse a dense static map: static_map.ply");
+  command->add_option("--record", options.record, "Also record all topics: FILE.mcap, or a folder as rosbag2 has it");
   command->add_flag("--quiet", options.quiet, "Only warnings and errors");
 }
 

@@ -40,11 +40,11 @@ const char* to_string(Verdict verdict) {
 
 void check_services(Findings& findings) {
   std::string missing;
-  for (const char* service : {"camera", "detector", "filter", "slam", "dense"}) {
+  for (const char* service : {"camera", "detector", "filter", "slam", "dense", "record"}) {
     if (find_executable(std::string("rtd-") + service).empty()) missing += std::string(" rtd-") + service;
   }
   if (missing.empty()) {
-    findings.push_back({Verdict::kOk, "services: camera, detector, filter, slam and dense found"});
+    findings.push_back({Verdict::kOk, "services: camera, detector, filter, slam, dense and record found"});
   } else {
     findings.push_back(
         {Verdict::kFail, "services: missing" + missing + "; build all of them: cmake --build <build folder>"});

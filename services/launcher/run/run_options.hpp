@@ -28,6 +28,7 @@ struct RunOptions {
   std::string model;                   ///< ONNX file; empty: search
   std::string out_dir;
   bool dense = false;  ///< also fuse a dense static map
+  std::string record;  ///< also record all topics: FILE.mcap or a folder; empty = no
   bool quiet = false;
   std::uint64_t frames = 0;  ///< end after so many frames; 0 = all
 };

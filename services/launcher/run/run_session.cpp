@@ -49,6 +49,7 @@ double span_s(const std::vector<FrameRecord>& frames) {
 
 std::string begins_anew(const std::string& service) {
   if (service == "slam") return ": map and trajectory.txt begin anew";
+  if (service == "record") return ": it goes on in a file beside";
   return service == "dense" ? ": static_map.ply begins anew" : "";
 }
 

@@ -152,10 +152,12 @@ RunSetup prepare_run(const RunOptions& options) {
   setup.source = complete_uri(options.source);
   setup.frame_limit = options.frames;
   setup.dense = options.dense;
+  setup.record = options.record;
   setup.total_frames = count_frames(setup.source, options.frames);
   choose_detector(options, setup);
   setup.out_dir = options.out_dir;
   create_out_dir(setup.out_dir);
+  if (fs::exists(setup.record)) throw ConfigError("--record " + setup.record + " exists already: give another name");
   return setup;
 }
 
@@ -172,16 +174,21 @@ void clear_out_dir(const RunSetup& setup) {
 
 std::vector<ServicePlan> plan_services(const RunSetup& setup) {
   std::vector<ServicePlan> plans;
+  std::string wait_for = "filter,slam";
+  if (!setup.record.empty()) {
+    // Restarted it goes on in a file beside; the first time an earlier recording is refused.
+    plans.push_back(plan(setup, "record", ServiceRole::kOptional, {"-o", setup.record, "--beside"}));
+    wait_for += ",record";
+  }
   std::vector<std::string> filter = {"--set", "filter.mode=" + setup.filter_mode};
   std::vector<std::string> camera = {"--source", setup.source, "--groundtruth-out", setup.groundtruth_path()};
   if (setup.frame_limit > 0) camera.insert(camera.end(), {"--frames", std::to_string(setup.frame_limit)});
   if (setup.model_path.empty()) {
     filter.insert(filter.end(), {"--set", "filter.detector=off"});
-    camera.insert(camera.end(), {"--wait-for", setup.dense ? "filter,slam,dense" : "filter,slam"});
   } else {
     plans.push_back(plan(setup, "detector", ServiceRole::kOptional, {"--set", "detector.model=" + setup.model_path}));
     if (setup.pace == "realtime") plans.back().niceness = kRealtimeNiceness;
-    camera.insert(camera.end(), {"--wait-for", setup.dense ? "filter,slam,detector,dense" : "filter,slam,detector"});
+    wait_for += ",detector";
   }
   plans.push_back(plan(setup, "filter", ServiceRole::kEssential, filter));
   plans.push_back(plan(setup, "slam", ServiceRole::kEssential, {"--out", setup.out_dir}));
@@ -189,6 +196,8 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
     plans.push_back(plan(setup, "dense", ServiceRole::kOptional, {"--out", setup.out_dir}));
     if (setup.pace == "realtime") plans.back().niceness = kRealtimeNiceness;
   }
+  if (setup.dense) wait_for += ",dense";
+  camera.insert(camera.end(), {"--wait-for", wait_for});
   plans.push_back(plan(setup, "camera", ServiceRole::kSource, camera));
   return plans;
 }

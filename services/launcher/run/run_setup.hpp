@@ -23,6 +23,7 @@ struct RunSetup {
   std::string detector_note;   ///< model file name, or "off (why)"
   std::string weights_advice;  ///< the filter mode wants a detector, but there are no weights: where to get them
   bool dense = false;          ///< rtd-dense runs too
+  std::string record;          ///< what rtd-record writes; empty: it does not run
   std::uint64_t frame_limit = 0;
   std::string config_file;
   std::vector<std::string> overrides;

@@ -21,6 +21,15 @@ OutputFiles::OutputFiles(const std::string& output, bool split) {
   numbered_ = split || !is_file;
 }
 
+OutputFiles OutputFiles::free_beside(const std::string& output, bool split) {
+  OutputFiles files(output, split);
+  const std::string tail = fs::path(output).extension() == ".mcap" ? ".mcap" : "";
+  const fs::path folder = tail.empty() ? files.folder_.parent_path() : files.folder_;
+  const std::string base = folder / files.stem_;
+  for (int i = 1; !files.existing().empty(); ++i) files = OutputFiles(fmt::format("{}.{}{}", base, i, tail), split);
+  return files;
+}
+
 fs::path OutputFiles::file(std::size_t number) const {
   return folder_ / (numbered_ ? fmt::format("{}_{}.mcap", stem_, number) : stem_ + ".mcap");
 }

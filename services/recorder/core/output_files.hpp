@@ -14,6 +14,9 @@ class OutputFiles {
  public:
   OutputFiles(const std::string& output, bool split);
 
+  /// This output, or the first of run.1.mcap, run.2.mcap, ... that has no files yet.
+  static OutputFiles free_beside(const std::string& output, bool split);
+
   std::filesystem::path file(std::size_t number) const;
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path metadata() const { return folder_ / "metadata.yaml"; }

@@ -66,19 +66,21 @@ TEST_F(EndToEndTest, a_lockstep_run_tracks_every_frame_and_reports_every_key) {
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("30 in, "), HasSubstr("ATE rmse"), HasSubstr("report.html")));
 }
 
-TEST_F(EndToEndTest, a_dense_map_changes_nothing_of_the_run) {
+TEST_F(EndToEndTest, a_dense_map_and_a_recording_change_nothing_of_the_run) {
   const std::vector<std::string> lockstep = {"--pace", "lockstep", "--detector", "off"};
   ASSERT_EQ(rtd_.run(arguments(129, "synthetic:office?frames=30", lockstep)), 0) << rtd_.output();
   const std::string without = text_of(out_ + "/trajectory.txt");
   EXPECT_TRUE(report()["static_map"].is_null());
   RtdCommand dense;
   std::vector<std::string> command = arguments(129, "synthetic:office?frames=30", lockstep);
-  command.emplace_back("--dense");
+  command.insert(command.end(), {"--dense", "--record", scratch_ / "run.mcap"});
   ASSERT_EQ(dense.run(command), 0) << dense.output();
   EXPECT_EQ(text_of(out_ + "/trajectory.txt"), without) << "byte for byte";
   EXPECT_THAT(dense.output(), HasSubstr("static_map.ply"));
   EXPECT_GT(report()["static_map"]["points"], 5000);
   EXPECT_GT(report()["cpu_s"]["dense"], 0.0);
+  EXPECT_GT(fs::file_size(scratch_ / "run.mcap"), 30U * 640 * 480 * 5) << "with all raw frames";
+  EXPECT_THAT(text_of(out_ + "/logs/record.log"), HasSubstr("topic=rtd/frame messages=30 lost_in_transit=0"));
 }
 
 TEST_F(EndToEndTest, a_filter_killed_during_the_run_is_restarted_and_the_run_completes) {

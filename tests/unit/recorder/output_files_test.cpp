@@ -45,6 +45,16 @@ TEST_F(OutputFolder, finds_earlier_files_of_this_name_only) {
   EXPECT_THAT(OutputFiles(in("no/such/folder"), true).existing(), IsEmpty());
 }
 
+TEST_F(OutputFolder, finds_a_free_name_beside) {
+  EXPECT_EQ(OutputFiles::free_beside(in("run.mcap"), false).file(0), folder_ / "run.mcap");
+  put("run.mcap");
+  put("run.1.mcap");
+  EXPECT_EQ(OutputFiles::free_beside(in("run.mcap"), false).file(0), folder_ / "run.2.mcap");
+  fs::create_directories(folder_ / "bag");
+  put("bag/bag_0.mcap");
+  EXPECT_EQ(OutputFiles::free_beside(in("bag"), true).file(0), folder_ / "bag.1" / "bag.1_0.mcap");
+}
+
 TEST_F(OutputFolder, leaves_the_metadata_of_others_alone) {
   const OutputFiles files(in("run.mcap"), false);
   EXPECT_TRUE(files.owns_metadata());
