@@ -63,6 +63,12 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--frames", options.frames, "End after so many frames");
   command->add_flag("--dense", options.dense, "Also fuse a dense static map: static_map.ply");
   command->add_option("--record", options.record, "Also record all topics: FILE.mcap, or a folder as rosbag2 has it");
+  command
+      ->add_option(
+          "--replay-topics", options.replay_topics,
+          "With --source mcap:FILE: recorded detections or features in place of detector, or detector and filter")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"detections", "features"}));
   command->add_flag("--quiet", options.quiet, "Only warnings and errors");
 }
 

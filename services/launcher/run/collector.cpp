@@ -57,8 +57,8 @@ Collector::~Collector() {
   encoder_.join();
 }
 
-bool Collector::connected() const {
-  return tracking_.matched() > 0 && features_.matched() > 0;
+bool Collector::connected(bool with_filter) const {
+  return tracking_.matched() > 0 && (!with_filter || features_.matched() > 0);
 }
 
 std::string Collector::services_heard() const {

@@ -29,8 +29,8 @@ class Collector {
   Collector(bus::Bus& bus, const Options& options);
   ~Collector();
 
-  /// filter and slam are heard: from now on no frame is missed.
-  bool connected() const;
+  /// Slam is heard, and the filter where there is one: from now on no frame is missed.
+  bool connected(bool with_filter = true) const;
   std::string services_heard() const;
   LiveStatus live() const;
   std::optional<std::string> take_notice();

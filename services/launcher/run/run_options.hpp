@@ -27,8 +27,9 @@ struct RunOptions {
   std::string detector = "auto";       ///< "auto": when weights are found and the filter mode needs them; "off"
   std::string model;                   ///< ONNX file; empty: search
   std::string out_dir;
-  bool dense = false;  ///< also fuse a dense static map
-  std::string record;  ///< also record all topics: FILE.mcap or a folder; empty = no
+  bool dense = false;                      ///< also fuse a dense static map
+  std::string record;                      ///< also record all topics: FILE.mcap or a folder; empty = no
+  std::vector<std::string> replay_topics;  ///< "detections", "features": of a recording, in place of who makes them
   bool quiet = false;
   std::uint64_t frames = 0;  ///< end after so many frames; 0 = all
 };

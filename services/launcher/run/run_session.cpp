@@ -116,7 +116,8 @@ void RunSession::supervise(const ServicePlan& camera) {
 /// Who answers the first frame is heard here, so that no answer is missed. When somebody never comes, the camera names
 /// them.
 bool RunSession::camera_may_start(milliseconds time) const {
-  return collector_.connected() || time - started_ >= milliseconds(setup_.launcher.connect_timeout_ms);
+  return collector_.connected(!setup_.replay.features) ||
+         time - started_ >= milliseconds(setup_.launcher.connect_timeout_ms);
 }
 
 void RunSession::stop_when_decided(milliseconds time) {

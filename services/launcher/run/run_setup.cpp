@@ -3,6 +3,7 @@
 #include "services/launcher/run/run_setup.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -82,6 +83,10 @@ std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
 }
 
 void choose_detector(const RunOptions& options, RunSetup& setup) {
+  if (setup.replay) {
+    setup.detector_note = setup.replay.features ? "off (recorded features)" : "recorded boxes";
+    return;
+  }
   if (!needs_detector(setup.filter_mode)) {
     setup.detector_note = "off (filter mode " + setup.filter_mode + ")";
     return;
@@ -131,6 +136,21 @@ ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole rol
   return plan;
 }
 
+std::vector<std::string> filter_arguments(const RunSetup& setup) {
+  std::vector<std::string> arguments = {"--set", "filter.mode=" + setup.filter_mode};
+  if (setup.model_path.empty() && !setup.replay.detections)
+    arguments.insert(arguments.end(), {"--set", "filter.detector=off"});
+  return arguments;
+}
+
+std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vector<std::string>& wait_for) {
+  std::vector<std::string> arguments = {"--source",          setup.source,
+                                        "--wait-for",        fmt::format("{}", fmt::join(wait_for, ",")),
+                                        "--groundtruth-out", setup.groundtruth_path()};
+  if (setup.frame_limit > 0) arguments.insert(arguments.end(), {"--frames", std::to_string(setup.frame_limit)});
+  return arguments;
+}
+
 }  // namespace
 
 std::string complete_uri(const std::string& source) {
@@ -153,7 +173,8 @@ RunSetup prepare_run(const RunOptions& options) {
   setup.frame_limit = options.frames;
   setup.dense = options.dense;
   setup.record = options.record;
-  setup.total_frames = count_frames(setup.source, options.frames);
+  setup.replay = choose_replay(options, setup.source);
+  setup.total_frames = setup.replay ? setup.replay.frames : count_frames(setup.source, options.frames);
   choose_detector(options, setup);
   setup.out_dir = options.out_dir;
   create_out_dir(setup.out_dir);
@@ -174,31 +195,27 @@ void clear_out_dir(const RunSetup& setup) {
 
 std::vector<ServicePlan> plan_services(const RunSetup& setup) {
   std::vector<ServicePlan> plans;
-  std::string wait_for = "filter,slam";
+  const bool detector = !setup.model_path.empty(), filter = !setup.replay.features;
   if (!setup.record.empty()) {
     // Restarted it goes on in a file beside; the first time an earlier recording is refused.
     plans.push_back(plan(setup, "record", ServiceRole::kOptional, {"-o", setup.record, "--beside"}));
-    wait_for += ",record";
   }
-  std::vector<std::string> filter = {"--set", "filter.mode=" + setup.filter_mode};
-  std::vector<std::string> camera = {"--source", setup.source, "--groundtruth-out", setup.groundtruth_path()};
-  if (setup.frame_limit > 0) camera.insert(camera.end(), {"--frames", std::to_string(setup.frame_limit)});
-  if (setup.model_path.empty()) {
-    filter.insert(filter.end(), {"--set", "filter.detector=off"});
-  } else {
+  if (detector)
     plans.push_back(plan(setup, "detector", ServiceRole::kOptional, {"--set", "detector.model=" + setup.model_path}));
-    if (setup.pace == "realtime") plans.back().niceness = kRealtimeNiceness;
-    wait_for += ",detector";
-  }
-  plans.push_back(plan(setup, "filter", ServiceRole::kEssential, filter));
+  if (filter) plans.push_back(plan(setup, "filter", ServiceRole::kEssential, filter_arguments(setup)));
   plans.push_back(plan(setup, "slam", ServiceRole::kEssential, {"--out", setup.out_dir}));
-  if (setup.dense) {
-    plans.push_back(plan(setup, "dense", ServiceRole::kOptional, {"--out", setup.out_dir}));
-    if (setup.pace == "realtime") plans.back().niceness = kRealtimeNiceness;
+  if (setup.dense) plans.push_back(plan(setup, "dense", ServiceRole::kOptional, {"--out", setup.out_dir}));
+  std::vector<std::string> wait_for;
+  for (ServicePlan& service : plans) {
+    wait_for.push_back(service.name);
+    if (setup.pace == "realtime" && (service.name == "detector" || service.name == "dense"))
+      service.niceness = kRealtimeNiceness;
   }
-  if (setup.dense) wait_for += ",dense";
-  camera.insert(camera.end(), {"--wait-for", wait_for});
-  plans.push_back(plan(setup, "camera", ServiceRole::kSource, camera));
+  if (setup.replay) {
+    plans.push_back(plan(setup, "replay", ServiceRole::kSource, setup.replay.arguments(wait_for)));
+  } else {
+    plans.push_back(plan(setup, "camera", ServiceRole::kSource, camera_arguments(setup, wait_for)));
+  }
   return plans;
 }
 

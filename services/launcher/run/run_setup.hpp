@@ -8,6 +8,7 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "services/launcher/config.hpp"
+#include "services/launcher/run/replay_setup.hpp"
 #include "services/launcher/run/run_options.hpp"
 
 namespace rtd::launcher {
@@ -24,6 +25,7 @@ struct RunSetup {
   std::string weights_advice;  ///< the filter mode wants a detector, but there are no weights: where to get them
   bool dense = false;          ///< rtd-dense runs too
   std::string record;          ///< what rtd-record writes; empty: it does not run
+  ReplaySetup replay;
   std::uint64_t frame_limit = 0;
   std::string config_file;
   std::vector<std::string> overrides;
@@ -41,8 +43,8 @@ std::string complete_uri(const std::string& source);
 /// Removes what an earlier run left in the output folder. Throws service::ConfigError.
 void clear_out_dir(const RunSetup& setup);
 
-/// The services of the run in starting order, camera last. Throws service::ConfigError naming an executable that is
-/// missing.
+/// The services of the run in starting order, the camera or what stands in for it last. Throws service::ConfigError
+/// naming an executable that is missing.
 std::vector<ServicePlan> plan_services(const RunSetup& setup);
 
 }  // namespace rtd::launcher

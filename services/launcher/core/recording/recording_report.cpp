@@ -154,6 +154,12 @@ bool is_damage(const mcap::Problem& problem, bool being_written) {
 
 }  // namespace
 
+std::map<std::string, std::string> RecordingReport::losses() const {
+  constexpr char kLosses[] = "rtd:losses";
+  const auto found = std::ranges::find(metadata, kLosses, &mcap::Metadata::name);
+  return found == metadata.end() ? std::map<std::string, std::string>{} : found->metadata;
+}
+
 bool RecordingReport::damaged() const {
   return (data_lost && !being_written) ||
          std::ranges::any_of(problems, [this](const mcap::Problem& p) { return is_damage(p, being_written); });

@@ -40,6 +40,9 @@ struct RecordingReport {
   std::vector<mcap::AttachmentIndex> attachments;
   std::vector<mcap::Metadata> metadata;
   std::vector<mcap::Problem> problems;
+  /// What the recorder itself says: messages that it knows to be lost, by topic ("in_transit=3 in_queue=0") and
+  /// "total". Empty: it does not say.
+  std::map<std::string, std::string> losses() const;
   std::uint64_t problem_count = 0;  ///< those that repeat and those that are not listed counted too
   bool data_lost = false;           ///< something that the file held or should hold cannot be read
 

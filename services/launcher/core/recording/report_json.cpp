@@ -75,6 +75,7 @@ Json to_json(const RecordingReport& report, const std::string& name) {
                {"chunks", chunks_json(report)}};
   json["topics"] = Json::array();
   for (const ChannelReport& channel : report.channels) json["topics"].push_back(channel_json(channel));
+  json["losses"] = report.losses().empty() ? Json(nullptr) : Json(report.losses());
   json["metadata"] = Json::array();
   for (const mcap::Metadata& metadata : report.metadata)
     json["metadata"].push_back({{"name", metadata.name}, {"values", metadata.metadata}});

@@ -46,6 +46,7 @@ std::string summary_row(const RecordingReport& report) {
 std::string metadata_rows(const RecordingReport& report) {
   std::string text;
   for (const mcap::Metadata& metadata : report.metadata) {
+    if (metadata.metadata == report.losses()) continue;  // has rows of its own
     std::string values;
     for (const auto& [key, value] : metadata.metadata)
       values += fmt::format("{}{}={}", values.empty() ? "" : ", ", key, value);
@@ -56,6 +57,17 @@ std::string metadata_rows(const RecordingReport& report) {
   for (const mcap::AttachmentIndex& attachment : report.attachments)
     text += head_row("attachment", fmt::format("{} ({}), {}", attachment.name, attachment.media_type,
                                                bytes_text(attachment.data_size)));
+  return text;
+}
+
+/// Losses that the recorder knows of.
+std::string loss_rows(const RecordingReport& report) {
+  std::string text;
+  for (const auto& [topic, lost] : report.losses()) {
+    if (topic == "total") continue;
+    text += head_row("lost", topic + ": " + lost);
+  }
+  if (text.empty() && !report.losses().empty()) text = head_row("lost", "nothing, says the recorder");
   return text;
 }
 
@@ -117,7 +129,7 @@ std::string to_text(const RecordingReport& report, const std::string& name) {
   text += time_row(report);
   text += head_row("messages", fmt::format("{} on {} topics", report.messages, report.channels.size()));
   text += chunk_rows(report) + summary_row(report) + head_row("checksums", checksum_text(report));
-  return text + metadata_rows(report) + channel_table(report) +
+  return text + loss_rows(report) + metadata_rows(report) + channel_table(report) +
          problems_text(report.problems, report.problem_count, kShownProblems);
 }
 

@@ -119,7 +119,7 @@ std::optional<std::string> RecordBuilder::take_notice() {
 std::string RecordBuilder::services_heard() const {
   std::string text;
   for (const auto& [name, service] : services_) {
-    if (service.state == msg::ServiceState::kFinished) continue;
+    if (service.state == msg::ServiceState::kFinished || name == "record") continue;  // a recorder only listens
     text += (text.empty() ? "" : ", ") + name + " (pid " + std::to_string(service.pid) + ")";
   }
   return text;

@@ -33,7 +33,8 @@ class RecordBuilder {
   /// The newest message of a service that is degraded; told once each time it changes.
   std::optional<std::string> take_notice();
 
-  /// "filter (pid 42), slam (pid 43)": every service heard that has not said goodbye; empty when there is none.
+  /// "filter (pid 42), slam (pid 43)": every service heard that has not said goodbye; a recorder only
+  /// listens and does not count. Empty when there is none.
   std::string services_heard() const;
 
   /// Writes frames, frames_in, frames_dropped and drops.

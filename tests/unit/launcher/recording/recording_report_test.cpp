@@ -115,6 +115,15 @@ TEST(RecordingReport, the_end_that_a_file_being_written_does_not_have_is_no_dama
   EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("being written"));
 }
 
+TEST(RecordingReport, tells_what_the_recorder_knows_to_be_lost) {
+  RecordingReport report;
+  EXPECT_TRUE(report.losses().empty());
+  report.metadata.push_back({"rtd:losses", {{"total", "0"}}});
+  EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("nothing, says the recorder"));
+  report.metadata[0].metadata = {{"/pose", "in_transit=3 in_queue=0"}, {"total", "3"}};
+  EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("/pose: in_transit=3 in_queue=0"));
+}
+
 TEST(RecordingReport, json_has_what_the_text_has) {
   const nlohmann::json json = to_json(report_of(recording_of(messages_with_a_gap(), small_chunks())), "x.mcap");
   EXPECT_EQ(json["messages"], 19);

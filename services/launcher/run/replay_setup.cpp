@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/run/replay_setup.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include "common/bus/topics.hpp"
+#include "common/mcap/indexed_reader.hpp"
+#include "common/ros2/names.hpp"
+#include "common/service/config.hpp"
+#include "services/launcher/recording/recording_file.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using service::ConfigError;
+
+constexpr std::string_view kScheme = "mcap:";
+
+/// Messages by DDS name of the topic.
+std::map<std::string, std::uint64_t> counts_of(const std::string& file) {
+  try {
+    const mcap::FileSource source = open_recording(file);
+    const mcap::IndexedReader reader(source);
+    std::map<std::string, std::uint64_t> counts;
+    for (const auto& [id, channel] : reader.summary().channels) {
+      std::uint64_t messages = 0;
+      if (const auto& statistics = reader.summary().statistics)
+        if (const auto found = statistics->channel_message_counts.find(id);
+            found != statistics->channel_message_counts.end())
+          messages = found->second;
+      counts[ros2::dds_topic(channel.topic)] += messages;
+    }
+    return counts;
+  } catch (const RecordingFileError& error) {
+    throw ConfigError(error.what());
+  }
+}
+
+void choose_topics(ReplaySetup& replay, const std::map<std::string, std::uint64_t>& counts) {
+  using namespace bus::topics;
+  const auto has = [&](const std::string& topic) { return counts.contains(topic) && counts.at(topic) > 0; };
+  replay.topics = replay.features ? std::vector<std::string>{kFeatures.name}
+                                  : std::vector<std::string>{kFrame.name, kDetections.name};
+  for (const std::string& topic : replay.topics) {
+    if (has(topic)) continue;
+    std::vector<std::string> known;
+    for (const auto& [name, messages] : counts)
+      if (messages > 0) known.push_back(name);
+    throw ConfigError(fmt::format("--replay-topics: {} has no messages of {}; it has {}", replay.file, topic,
+                                  fmt::join(known, ", ")));
+  }
+  replay.frames = counts.at(replay.topics.front());
+  if (replay.features && has(kFrame.name)) replay.topics.emplace_back(kFrame.name);
+  if (has(kCameraInfo.name)) replay.topics.emplace_back(kCameraInfo.name);
+}
+
+}  // namespace
+
+std::vector<std::string> ReplaySetup::arguments(const std::vector<std::string>& wait_for) const {
+  std::vector<std::string> arguments = {
+      file, "--restamp", "--wait-for", fmt::format("{}", fmt::join(wait_for, ",")), "--paced-topic", topics.front()};
+  if (detections) arguments.insert(arguments.end(), {"--stand-in", "detector"});
+  arguments.emplace_back("--topics");
+  arguments.insert(arguments.end(), topics.begin(), topics.end());
+  return arguments;
+}
+
+ReplaySetup choose_replay(const RunOptions& options, const std::string& source) {
+  ReplaySetup replay;
+  if (options.replay_topics.empty()) return replay;
+  const auto asked = [&](const char* what) { return std::ranges::count(options.replay_topics, what) > 0; };
+  replay.features = asked("features");
+  replay.detections = asked("detections") && !replay.features;
+  if (!source.starts_with(kScheme))
+    throw ConfigError("--replay-topics needs a recording: --source mcap:FILE, not " + source);
+  if (options.frames > 0)
+    throw ConfigError(
+        "--frames does not go with --replay-topics: frames and what was made of them are played to the end");
+  if (options.dense && replay.features)
+    throw ConfigError("--dense does not go with --replay-topics features: its masks come from a living filter");
+  replay.file = source.substr(kScheme.size());
+  choose_topics(replay, counts_of(replay.file));
+  return replay;
+}
+
+}  // namespace rtd::launcher

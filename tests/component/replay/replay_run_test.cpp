@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A lockstep run that is recorded, and the same run from its recording: the real services over Fast DDS.
+#include <gmock/gmock.h>
+
+#include "tests/component/launcher/rtd_command.hpp"
+
+namespace rtd::replay {
+namespace {
+
+using launcher::RtdCommand;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class ReplayRunTest : public testing::Test {
+ protected:
+  std::vector<std::string> run(const std::string& source, const std::string& out,
+                               const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> all = {"run",   "--source", source,     "--out",      out,  "--domain",
+                                    domain_, "--pace",   "lockstep", "--detector", "off"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  const std::string domain_ = std::to_string(100 + getpid() % 100);
+  launcher::ScratchFolder scratch_;
+  const std::string file_ = scratch_ / "run.mcap";
+};
+
+TEST_F(ReplayRunTest, replaying_a_lockstep_run_gives_its_trajectory_byte_for_byte) {
+  RtdCommand recorder(RTD_RECORD), original, from_frames, from_features;
+  recorder.start({"--domain", domain_, "--topics", "rtd/frame", "rtd/features", "/camera/*", "-o", file_});
+  ASSERT_TRUE(recorder.wait_for("event=started")) << recorder.output();
+  ASSERT_EQ(original.run(run("synthetic:office?frames=15", scratch_ / "original")), 0) << original.output();
+  recorder.interrupt();
+  ASSERT_EQ(recorder.wait(), 0) << recorder.output();
+  const std::string trajectory = launcher::text_of(scratch_ / "original/trajectory.txt");
+  ASSERT_GT(std::count(trajectory.begin(), trajectory.end(), '\n'), 10);
+
+  ASSERT_EQ(from_frames.run(run("mcap:" + file_, scratch_ / "frames")), 0) << from_frames.output();
+  EXPECT_EQ(launcher::text_of(scratch_ / "frames/trajectory.txt"), trajectory) << "camera: the recording";
+  ASSERT_EQ(from_features.run(run("mcap:" + file_, scratch_ / "features", {"--replay-topics", "features"})), 0)
+      << from_features.output();
+  EXPECT_EQ(launcher::text_of(scratch_ / "features/trajectory.txt"), trajectory) << "camera and filter: the recording";
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "features/logs/filter.log"));
+
+  RtdCommand diff, missing;
+  EXPECT_EQ(diff.run({"diff", scratch_ / "original/trajectory.txt", scratch_ / "features/trajectory.txt"}), 0);
+  EXPECT_EQ(missing.run(run("mcap:" + file_, scratch_ / "boxes", {"--replay-topics", "detections"})), 2);
+  EXPECT_THAT(missing.output(), AllOf(HasSubstr("rt/detector/detections"), HasSubstr("rtd/features")));
+}
+
+TEST_F(ReplayRunTest, replayed_topics_need_a_recording) {
+  RtdCommand rtd;
+  EXPECT_EQ(rtd.run(run("synthetic:office", scratch_ / "out", {"--replay-topics", "features"})), 2);
+  EXPECT_THAT(rtd.output(), HasSubstr("--source mcap:FILE"));
+}
+
+}  // namespace
+}  // namespace rtd::replay
