@@ -7,12 +7,13 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: deploy/setup.sh [--check | --list | --models | --no-models]
+Usage: deploy/setup.sh [--check | --list | --models | --no-models | --viewers]
   (none)       install missing Debian packages, then fetch the detector weights when they are not there yet
   --check      only say what is missing; exit 1 when something is
   --list       print the Debian packages, one a line
   --models     only fetch and convert the detector weights
   --no-models  only install the packages
+  --viewers    also what the tests with other people's viewers need: node, Chromium, npm packages (500 MB)
 TEXT
 }
 
@@ -32,6 +33,12 @@ packages=(
   python3-rosbag python3-sensor-msgs
   curl ca-certificates
 )
+
+# Only for the tests with other people's viewers; a command that is there already needs no package.
+viewer_packages=()
+command -v node >/dev/null || viewer_packages+=(nodejs)
+command -v npm >/dev/null || viewer_packages+=(npm)
+command -v chromium >/dev/null || viewer_packages+=(chromium)
 
 missing_packages() {
   local package
@@ -85,6 +92,16 @@ fetch_models() {
   fi
 }
 
+install_viewers() {
+  local tools="$root/build/release/viewers"
+  packages+=("${viewer_packages[@]}")
+  install_packages
+  mkdir -p "$tools"
+  cp "$root/tests/interop/viewers/package.json" "$tools/"
+  npm --prefix "$tools" install --no-audit --no-fund --ignore-scripts
+  echo "setup: next: ./deploy/test.sh -R interop.viewer"
+}
+
 check() {
   local missing model status=0
   mapfile -t missing < <(missing_packages)
@@ -108,6 +125,7 @@ case "${1:-}" in
   --list) printf '%s\n' "${packages[@]}" ;;
   --models) fetch_models ;;
   --no-models) install_packages ;;
+  --viewers) install_viewers ;;
   --help | -h) usage ;;
   *)
     echo "setup: unknown option '$1'" >&2
