@@ -10,6 +10,7 @@
 #include "services/detector/core/coco_classes.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/model_locator.hpp"
+#include "tests/support/remembered_detections.hpp"
 
 namespace rtd::test_support {
 namespace {
@@ -89,7 +90,9 @@ Look real_look(const DetectorOptions& options) {
 }  // namespace
 
 Look make_look(const DetectorOptions& options) {
-  if (options.kind == "real") return real_look(options);
+  if (options.kind == "real")
+    return options.remembered_in.empty() ? real_look(options)
+                                         : remembered_look(real_look(options), options.remembered_in);
   if (options.kind == "truth") return [options](const auto& frame) { return see_truth(frame, options); };
   if (options.kind == "lying") return [options](const auto& frame) { return lie(frame, options); };
   throw std::invalid_argument("unknown detector '" + options.kind + "': real, truth, lying, off");

@@ -86,12 +86,15 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
   app.add_option("--detector-seed", detector.seed, "of truth and lying");
   app.add_option("--detector-missed", detector.missed_share, "truth: share of the boxes not found");
   app.add_option("--detector-confidence", detector.confidence, "real: least score");
-  app.add_option_function<double>(
+  CLI::Option* derotate = app.add_option_function<double>(
       "--derotate",
       [&detector](double min_deg) {
         detector.derotate = rtd::detector::RollConfig{.min_roll_rad = min_deg * rtd::detector::kRadPerDeg};
       },
       "real: on the image turned upright, from this roll on (degrees)");
+  app.add_option("--detections", detector.remembered_in,
+                 "real: file that remembers its answers for this source, so that the next run need not ask again")
+      ->excludes(derotate);
   app.add_option_function<std::vector<std::string>>(
       "--detector-outage",
       [&detector](const std::vector<std::string>& spans) {
