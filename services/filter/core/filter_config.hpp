@@ -33,6 +33,9 @@ struct Techniques {
   // Rule 3: what moves
   bool depth_check = true;      ///< the multi-view check of range images
   bool feature_votes = true;    ///< displaced features vote for their surface
+  bool look_back = true;        ///< very slow movers are looked for over a second
+  bool arrivals = true;         ///< what has come and stopped is taken in; off: old views go on condemning it
+  bool object_drift = true;     ///< the features of a person are judged together, by their median shift
   bool noise_aware_tau = true;  ///< off: the paper's 0.4 m at every depth
   bool mover_memory = true;     ///< what moved stays masked for a second; off: it must be seen moving in each frame
   bool surface_poses = true;    ///< surfaces propose the camera's motion; off: all features together only

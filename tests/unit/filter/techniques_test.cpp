@@ -8,6 +8,7 @@
 #include <random>
 #include <set>
 
+#include "services/filter/core/belief/object_drift.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
 #include "services/filter/core/static_consensus.hpp"
 #include "tests/unit/filter/grid_scenes.hpp"
@@ -101,6 +102,25 @@ int frames_masked_after_stop(std::initializer_list<bool Techniques::*> off) {
 
 TEST(Techniques, mover_memory_off_takes_back_sooner_what_has_stopped) {
   EXPECT_LT(frames_masked_after_stop({&Techniques::mover_memory}), frames_masked_after_stop({}));
+}
+
+TEST(Techniques, arrivals_off_takes_back_later_what_has_stopped) {
+  EXPECT_GT(frames_masked_after_stop({&Techniques::arrivals}), frames_masked_after_stop({}));
+}
+
+TEST(Techniques, look_back_off_leaves_what_creeps) {
+  const FeatureVotes votes{{}, {0}, {60}, {}};  // all features of the one cluster have moved
+  EXPECT_TRUE(votes.cluster_creeps(0, effective_config(config_of(FilterMode::kRtd, {})).geometry));
+  const FilterConfig without = config_of(FilterMode::kRtd, {&Techniques::look_back});
+  EXPECT_FALSE(votes.cluster_creeps(0, effective_config(without).geometry));
+}
+
+TEST(Techniques, object_drift_off_leaves_a_common_shift) {
+  ObjectDrift drift;
+  drift.features = 60, drift.shift_px = 20, drift.sigma_px = 0.2F;
+  EXPECT_TRUE(drifts(drift, effective_config(config_of(FilterMode::kRtd, {})).belief));
+  const FilterConfig without = config_of(FilterMode::kRtd, {&Techniques::object_drift});
+  EXPECT_FALSE(drifts(drift, effective_config(without).belief));
 }
 
 TEST(Techniques, noise_aware_tau_off_misses_somebody_a_step_before_the_wall) {

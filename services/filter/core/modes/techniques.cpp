@@ -15,6 +15,9 @@ constexpr NamedTechnique kAll[] = {
     {"flat_objects", &Techniques::flat_objects, "a poster of a person is a person"},
     {"depth_check", &Techniques::depth_check, "no multi-view check of range images"},
     {"feature_votes", &Techniques::feature_votes, "displaced features do not vote"},
+    {"look_back", &Techniques::look_back, "no look back over a second for very slow movers"},
+    {"arrivals", &Techniques::arrivals, "old views go on condemning what has come and stopped"},
+    {"object_drift", &Techniques::object_drift, "a person's features vote one by one"},
     {"noise_aware_tau", &Techniques::noise_aware_tau, "the paper's 0.4 m at every depth"},
     {"mover_memory", &Techniques::mover_memory, "movers are found anew in each frame"},
     {"surface_poses", &Techniques::surface_poses, "surfaces do not propose the camera's motion"},
@@ -48,6 +51,9 @@ FilterConfig with_techniques_applied(FilterConfig config) {
   if (!on.feature_votes) {
     config.geometry.min_moving_features = config.geometry.min_creeping_features = std::numeric_limits<int>::max();
   }
+  if (!on.look_back) config.geometry.min_creeping_features = std::numeric_limits<int>::max();
+  if (!on.arrivals) config.geometry.max_unsettled_share = -1;  // no share is small enough
+  if (!on.object_drift) config.belief.drift_sigmas = std::numeric_limits<double>::infinity();
   if (!on.noise_aware_tau) {
     config.geometry.tau_floor_m = kPaperTauM;
     config.geometry.tau_sigmas = 0;
