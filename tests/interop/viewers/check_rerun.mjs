@@ -46,7 +46,7 @@ const browser = await puppeteer.launch({
 try {
   const page = await browser.newPage();
   const complaints = [];
-  page.on("console", (line) => { if (/ERROR|failure/i.test(line.text())) complaints.push(line.text()); });
+  page.on("console", (line) => { if (/^\s*ERROR\b|^WebViewer failure/.test(line.text())) complaints.push(line.text().slice(0, 500)); });
   page.on("pageerror", (error) => complaints.push(String(error)));
   await page.setViewport({ width: 1280, height: 800 });
   await page.goto(`http://127.0.0.1:${server.address().port}/`);
