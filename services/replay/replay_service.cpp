@@ -13,6 +13,7 @@
 
 #include "common/mcap/byte_sink.hpp"
 #include "common/mcap/decode.hpp"
+#include "common/mcap/recording_path.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
@@ -48,7 +49,7 @@ std::uint64_t seq_in(std::span<const std::byte> cdr) {
 }  // namespace
 
 void ReplayService::add_options(CLI::App& app, Config& config) {
-  app.add_option("file", config.file, "Recording (replay.file)");
+  app.add_option("file", config.file, "Recording, or the folder with it (replay.file)");
   app.add_option("-r,--rate", config.rate, "Speed, 1 = as recorded, 0 = as fast as possible (replay.rate)");
   app.add_flag(
       "--asap", [&config](std::int64_t) { config.rate = 0; }, "As fast as possible: --rate 0");
@@ -89,24 +90,20 @@ ReplayService::ReplayService(const Config& config, service::Runtime& runtime)
   } catch (const mcap::IoError& error) {
     throw service::ConfigError(error.what());
   }
-  runtime_.heartbeat.on_status([inbox = inbox_](const auto&) {});
   runtime_.stop.on_stop([inbox = inbox_] { inbox->post(Command::kStop); });
 }
 
-ReplayService::~ReplayService() {
-  runtime_.heartbeat.on_status({});
-}
-
 void ReplayService::open() {
-  source_ = std::make_unique<mcap::FileSource>(config_.file);
+  source_ = std::make_unique<mcap::FileSource>(mcap::recording_path(config_.file));
   reader_ = std::make_unique<mcap::IndexedReader>(*source_);
   for (const mcap::Problem& problem : reader_->problems().listed())
     if (problem.kind == mcap::ProblemKind::kNotMcap && problem.data_lost)
       throw ReplayError(config_.file + ": this is no MCAP file; 'rtd info' says more");
   choose_topics();
   choose_span();
-  bus::BusOptions options;
-  bus_ = bus::connect_raw(runtime_.bus_options);
+  bus::BusOptions options = runtime_.bus_options;
+  options.participant_name = "rtd-replay-topics";
+  bus_ = bus::connect_raw(options);
   outputs_ = std::make_unique<Outputs>(
       *bus_, channels_, reader_->summary(),
       OutputOptions{parse_remaps(config_.remap), config_.restamp, window_ == 0 && config_.rate == 0});

@@ -27,7 +27,6 @@ class ReplayService final : public PlayerHost {
 
   /// Opens the recording and its topics; throws ConfigError when they cannot be used.
   ReplayService(const Config& config, service::Runtime& runtime);
-  ~ReplayService() override;
 
   service::ExitCode run();
 

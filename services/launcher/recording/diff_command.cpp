@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <ostream>
 
-#include "common/mcap/byte_sink.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"
 #include "services/launcher/core/recording/recording_diff.hpp"
@@ -15,14 +14,6 @@
 
 namespace rtd::launcher {
 namespace {
-
-bool is_recording(const std::string& path) {
-  try {
-    return looks_like_recording(mcap::FileSource(path));
-  } catch (const mcap::IoError& error) {
-    throw RecordingFileError(error.what());
-  }
-}
 
 recording::Contents read(const mcap::FileSource& source, const std::string& path, std::ostream& err) {
   service::Progress progress(err, "reading " + path, source.size());
@@ -94,7 +85,7 @@ CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
 
 int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
   try {
-    const bool a = is_recording(request.a), b = is_recording(request.b);
+    const bool a = looks_like_recording(request.a), b = looks_like_recording(request.b);
     if (a != b)
       throw RecordingFileError((a ? request.a : request.b) + " is a recording, " + (a ? request.b : request.a) +
                                " is not: compare two of a kind");

@@ -8,6 +8,7 @@
 
 #include "common/mcap/byte_sink.hpp"
 #include "common/mcap/framing.hpp"
+#include "common/mcap/recording_path.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -42,6 +43,14 @@ std::string explain(const mcap::ByteSource& source) {
 
 }  // namespace
 
+bool looks_like_recording(const std::string& path) {
+  try {
+    return looks_like_recording(mcap::FileSource(mcap::recording_path(path)));
+  } catch (const mcap::IoError& error) {
+    throw RecordingFileError(error.what());
+  }
+}
+
 bool looks_like_recording(const mcap::ByteSource& source) {
   if (first_bytes(source).starts_with(mcap::kMagic)) return true;
   const mcap::SourceWindow window(source);
@@ -50,12 +59,11 @@ bool looks_like_recording(const mcap::ByteSource& source) {
 }
 
 mcap::FileSource open_recording(const std::string& path) {
-  if (std::filesystem::is_directory(path))
-    throw RecordingFileError(path + ": this is a folder; name the .mcap file in it");
   try {
-    const mcap::FileSource source(path);
+    const std::filesystem::path file = mcap::recording_path(path);
+    const mcap::FileSource source(file);
     if (!looks_like_recording(source)) throw RecordingFileError(path + ": " + explain(source));
-    return mcap::FileSource(path);
+    return mcap::FileSource(file);
   } catch (const mcap::IoError& error) {
     throw RecordingFileError(error.what());
   }

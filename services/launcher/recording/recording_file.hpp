@@ -15,11 +15,13 @@ class RecordingFileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Opens an MCAP file. Throws RecordingFileError: missing, unreadable, a folder, empty, another format. A file whose
-/// first bytes are damaged passes when a header follows.
+/// Opens an MCAP file, or the only one of a folder. Throws RecordingFileError: missing, unreadable, empty, another
+/// format. A file whose first bytes are damaged passes when a header follows.
 mcap::FileSource open_recording(const std::string& path);
 
 /// True when the file begins as an MCAP file does, or as one whose magic is damaged.
 bool looks_like_recording(const mcap::ByteSource& source);
+/// The same of a file, or of the only recording in a folder. Throws RecordingFileError.
+bool looks_like_recording(const std::string& path);
 
 }  // namespace rtd::launcher

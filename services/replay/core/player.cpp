@@ -80,9 +80,9 @@ bool Player::follow(const camera::PaceDecision& decision) {
 }
 
 void Player::send_head(std::int64_t due_ns) {
+  if (by_time() && !schedule_.paused()) timing_.add(due_ns, host_.now_ns());
   host_.send(*head_);
   ++sent_;
-  if (by_time() && !schedule_.paused()) timing_.add(due_ns, host_.now_ns());
   last_recorded_ns_ = head_->log_ns;
   if (steps_ > 0) {
     --steps_;

@@ -26,13 +26,16 @@ constexpr std::uint64_t kFileBytes = 2'000'000'000, kFrameBytes = 1'536'124, kPe
 void write_file(const std::string& path) {
   rtd::mcap::FileSink sink(path);
   rtd::mcap::Writer writer(sink, {.profile = "ros2"});
-  const auto frames = writer.add(rtd::mcap::Channel{0, 0, "rtd/frame", "cdr", {}});
-  const auto poses = writer.add(rtd::mcap::Channel{0, 0, "/slam/pose", "cdr", {}});
+  const auto frame_type = writer.add(rtd::mcap::Schema{0, "rtd_msgs::msg::dds_::RgbdFrame_", "", ""});
+  const auto pose_type = writer.add(rtd::mcap::Schema{0, "geometry_msgs/msg/PoseStamped", "", ""});
+  const auto frames = writer.add(rtd::mcap::Channel{0, frame_type, "rtd/frame", "cdr", {}});
+  const auto poses = writer.add(rtd::mcap::Channel{0, pose_type, "/slam/pose", "cdr", {}});
   std::vector<std::byte> frame(kFrameBytes), pose(80);
+  frame[1] = pose[1] = std::byte{1};  // CDR, little endian
   rtd::service::Progress progress(std::cerr, "writing " + path, kFileBytes);
   for (std::uint64_t i = 0; sink.position() < kFileBytes; ++i) {
     const Timestamp time = 1'700'000'000'000'000'000 + i * kPeriodNs;
-    for (std::size_t k = 0; k < frame.size(); k += 64) frame[k] = static_cast<std::byte>(i * 7 + k);
+    for (std::size_t k = 4; k < frame.size(); k += 64) frame[k] = static_cast<std::byte>(i * 7 + k);
     writer.write({frames, static_cast<std::uint32_t>(i), time, time, frame});
     writer.write({poses, static_cast<std::uint32_t>(i), time + 1'000'000, time, pose});
     progress.reach(sink.position());

@@ -3,8 +3,12 @@
 //
 // rtd-replay as a user runs it, over Fast DDS: recording, replay, recording.
 #include <gmock/gmock.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <termios.h>
 
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "common/bus/bus_factory.hpp"
 #include "common/msg/rgbd_frame.hpp"
@@ -55,7 +59,7 @@ class ReplayProcessTest : public testing::Test {
 };
 
 TEST_F(ReplayProcessTest, record_replay_record_keeps_bytes_order_and_publish_times) {
-  const std::vector<Piece> recorded = camera_like(45);
+  const std::vector<Piece> recorded = camera_like(30);
   write_recording(file_.path(), recorded);
   Recorder recorder(*raw_);
   ASSERT_EQ(replay_.run(arguments({})), 0) << replay_.output();
@@ -70,7 +74,7 @@ TEST_F(ReplayProcessTest, record_replay_record_keeps_bytes_order_and_publish_tim
 }
 
 TEST_F(ReplayProcessTest, as_fast_as_possible_keeps_everything_too) {
-  const std::vector<Piece> recorded = camera_like(60);
+  const std::vector<Piece> recorded = camera_like(40);
   write_recording(file_.path(), recorded);
   Recorder recorder(*raw_);
   ASSERT_EQ(replay_.run(arguments({"--rate", "0"})), 0) << replay_.output();
@@ -87,6 +91,35 @@ TEST_F(ReplayProcessTest, ctrl_c_ends_an_endless_replay) {
   EXPECT_EQ(replay_.wait(), 0) << replay_.output();
   EXPECT_EQ(report()["outcome"], "stopped");
   EXPECT_FALSE(of_topic(recorder.wait(0), "rt/clock").empty());
+}
+
+/// On a terminal of its own: two steps and the end.
+TEST_F(ReplayProcessTest, keys_step_and_end_a_paused_replay_and_the_terminal_is_restored) {
+  write_recording(file_.path(), camera_like(3));
+  Recorder recorder(*raw_);
+  int terminal = -1;
+  const std::string domain = std::to_string(options_.domain);
+  const pid_t replay = forkpty(&terminal, nullptr, nullptr, nullptr);
+  if (replay == 0) {
+    execl(RTD_REPLAY, RTD_REPLAY, file_.path().c_str(), "--domain", domain.c_str(), "--pause", nullptr);
+    _exit(127);
+  }
+  termios before{}, during{}, after{};
+  tcgetattr(terminal, &before);
+  const auto raw_mode = [&] { return tcgetattr(terminal, &during) == 0 && (during.c_lflag & ICANON) == 0; };
+  for (int i = 0; i < 500 && !raw_mode(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_TRUE(raw_mode());
+  ASSERT_EQ(write(terminal, "s", 1), 1);
+  ASSERT_EQ(write(terminal, "\x1b[C", 3), 3);
+  EXPECT_EQ(recorder.wait(2).size(), 2U);
+  ASSERT_EQ(write(terminal, "q", 1), 1);
+  int status = -1;
+  for (int i = 0; i < 500 && waitpid(replay, &status, WNOHANG) == 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_EQ(tcgetattr(terminal, &after), 0);
+  EXPECT_EQ(after.c_lflag, before.c_lflag);
+  close(terminal);
 }
 
 TEST_F(ReplayProcessTest, wrong_use_is_exit_code_2_with_the_reason) {
