@@ -47,12 +47,16 @@ class MemorySink final : public ByteSink {
 
 enum class IfExists { kFail, kReplace };
 
+/// What becomes of the kernel's copy in memory of what is on disk. A recorder that drops it pushes nobody else's files
+/// out, and saves the processor the work of getting ever new pages.
+enum class Cached { kKeep, kDrop };
+
 /// A file, written with writev(2) from where the caller has the bytes: no copy of its own. It is locked (flock) while
 /// open, so that a second writer fails and a reader can tell that it grows (FileSource::being_written).
 class FileSink final : public ByteSink {
  public:
   /// Creates the file. Throws IoError: it exists (kFail), another process writes it, no such folder, read-only, ...
-  explicit FileSink(std::filesystem::path path, IfExists if_exists = IfExists::kFail);
+  explicit FileSink(std::filesystem::path path, IfExists if_exists = IfExists::kFail, Cached cached = Cached::kKeep);
   ~FileSink() override;  ///< closes, does not sync
   FileSink(const FileSink&) = delete;
   FileSink& operator=(const FileSink&) = delete;
@@ -66,6 +70,7 @@ class FileSink final : public ByteSink {
   void sync_folder();
 
   std::filesystem::path path_;
+  const Cached cached_;
   int fd_ = -1;
   bool broken_ = false;
   std::atomic<std::uint64_t> position_{0};

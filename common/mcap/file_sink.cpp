@@ -64,7 +64,8 @@ int write_all(int fd, std::span<iovec> parts) {
 
 }  // namespace
 
-FileSink::FileSink(std::filesystem::path path, IfExists if_exists) : path_(std::move(path)) {
+FileSink::FileSink(std::filesystem::path path, IfExists if_exists, Cached cached)
+    : path_(std::move(path)), cached_(cached) {
   const int exclusive = if_exists == IfExists::kFail ? O_EXCL : 0;
   fd_ = ::open(path_.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC | exclusive, 0644);
   if (fd_ < 0) fail(path_, errno);
@@ -102,6 +103,7 @@ void FileSink::append(std::initializer_list<ByteView> parts) {
 std::uint64_t FileSink::sync() {
   const std::uint64_t covered = position();
   if (::fdatasync(fd_) != 0) fail(path_, errno);
+  if (cached_ == Cached::kDrop) ::posix_fadvise(fd_, 0, static_cast<off_t>(covered), POSIX_FADV_DONTNEED);  // a wish
   if (!folder_synced_.load()) sync_folder();
   return covered;
 }

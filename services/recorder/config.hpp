@@ -21,7 +21,7 @@ struct ServiceConfig {
   int queue_mib = 256;                   ///< what may wait for the disk
   int chunk_kib = 1024;                  ///< a chunk is ended when it has so much
   int chunk_ms = 100;                    ///< or is so old
-  int sync_pause_ms = 20;                ///< between two syncs
+  int sync_pause_ms = 50;                ///< between two syncs
   int min_free_mib = 64;                 ///< with less space on the disk the recording ends in good order
   bool in_place = false;                 ///< takes images from the camera's shared memory instead of having them sent
 

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using service::ConfigError;
 
-constexpr std::chrono::milliseconds kPatience{20};  // for a message, so that a waiting chunk is ended in time
+constexpr std::chrono::milliseconds kPatience{20};  // for a chunk's worth of messages
 constexpr std::int64_t kReportPeriodNs = 200'000'000, kProgressPeriodNs = 1'000'000'000, kLogPeriodNs = 10'000'000'000;
 constexpr std::uint64_t kMib = 1024 * 1024;
 
@@ -103,7 +103,7 @@ RecorderService::RecorderService(const Config& config, service::Runtime& runtime
 
 std::shared_ptr<mcap::ByteSink> RecorderService::open_sink(std::size_t number) const {
   const auto if_exists = config_.force ? mcap::IfExists::kReplace : mcap::IfExists::kFail;
-  auto sink = std::make_shared<mcap::FileSink>(files_.file(number), if_exists);
+  auto sink = std::make_shared<mcap::FileSink>(files_.file(number), if_exists, mcap::Cached::kDrop);
   SPDLOG_INFO("event=file_begun path={}", files_.file(number).string());
   return sink;
 }
@@ -139,9 +139,9 @@ void RecorderService::record() {
 
 void RecorderService::record_until_stopped() {
   while (!runtime_.stop.stop_requested() && failure_.empty()) {
-    const auto message = queue_.pop_for(kPatience);
+    queue_.wait_for(kPatience);
+    while (const auto message = queue_.pop()) recording_->write(*message, service::monotonic_ns());
     const std::int64_t now_ns = service::monotonic_ns();
-    if (message) recording_->write(*message, now_ns);
     recording_->tick(now_ns);
     if (now_ns - reported_ns_ >= kReportPeriodNs) report_state(now_ns);
   }
@@ -150,7 +150,7 @@ void RecorderService::record_until_stopped() {
 void RecorderService::finish() {
   queue_.close();
   const std::int64_t now_ns = service::monotonic_ns();
-  while (const auto message = queue_.pop_for(std::chrono::milliseconds(0))) recording_->write(*message, now_ns);
+  while (const auto message = queue_.pop()) recording_->write(*message, now_ns);
   recording_->finish({loss_metadata(book_.topics())});
 }
 

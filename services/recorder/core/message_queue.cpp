@@ -9,19 +9,25 @@ namespace rtd::recorder {
 bool MessageQueue::push(QueuedMessage message) {
   const std::uint64_t size = message.bytes->view().size();
   const std::uint64_t room = size < kLargeMessage ? max_bytes_ : max_bytes_ - max_bytes_ / 8;
+  bool worth = false;
   {
     const std::lock_guard lock(mutex_);
     if (closed_ || bytes_ + size > room) return false;
+    worth = bytes_ < kWorth && bytes_ + size >= kWorth;
     bytes_ += size;
     messages_.push_back(std::move(message));
   }
-  ready_.notify_one();
+  if (worth) ready_.notify_one();
   return true;
 }
 
-std::optional<QueuedMessage> MessageQueue::pop_for(std::chrono::milliseconds timeout) {
+void MessageQueue::wait_for(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  ready_.wait_for(lock, timeout, [this] { return closed_ || !messages_.empty(); });
+  ready_.wait_for(lock, timeout, [this] { return closed_ || bytes_ >= kWorth; });
+}
+
+std::optional<QueuedMessage> MessageQueue::pop() {
+  const std::lock_guard lock(mutex_);
   if (messages_.empty()) return std::nullopt;
   std::optional<QueuedMessage> message(std::move(messages_.front()));
   messages_.pop_front();

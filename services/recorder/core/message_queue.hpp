@@ -29,13 +29,17 @@ class MessageQueue {
 
   /// False: no room (or closed).
   bool push(QueuedMessage message);
-  /// The oldest; empty when none came within the time, or closed and drained.
-  std::optional<QueuedMessage> pop_for(std::chrono::milliseconds timeout);
+  /// Until there is a good piece of work, the time is over or the queue is closed. To wake the writer for each message
+  /// would cost more than to write it.
+  void wait_for(std::chrono::milliseconds timeout);
+  /// The oldest, at once; empty when there is none.
+  std::optional<QueuedMessage> pop();
   void close();
   std::uint64_t bytes() const;
 
  private:
   static constexpr std::uint64_t kLargeMessage = 64 * 1024;
+  static constexpr std::uint64_t kWorth = 1024 * 1024;
 
   const std::uint64_t max_bytes_;
   mutable std::mutex mutex_;
