@@ -25,6 +25,7 @@ root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 packages=(
   build-essential cmake ninja-build
   libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
+  cyclonedds-dev cyclonedds-tools
   libopencv-dev libeigen3-dev libceres-dev
   libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libtinyxml2-dev
   zlib1g-dev libdeflate-dev libbz2-dev liblz4-dev libzstd-dev

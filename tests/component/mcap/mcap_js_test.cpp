@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 /// Our files in the MCAP project's own reader with its CRC checks, and its files in ours. Needs node and
-/// tests/component/mcap/install_mcap_js.sh; skips without.
+/// deploy/setup.sh --viewers; skips without.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -19,7 +19,7 @@ class McapJs : public ::testing::Test {
   void SetUp() override {
     if (rtd::testing::run_command("node --version").exit_code != 0) GTEST_SKIP() << "node is not installed";
     if (!std::filesystem::is_directory(std::filesystem::path(MCAP_JS_FOLDER) / "node_modules/@mcap/core"))
-      GTEST_SKIP() << "no @mcap/core in " << MCAP_JS_FOLDER << ": run tests/component/mcap/install_mcap_js.sh";
+      GTEST_SKIP() << "no @mcap/core in " << MCAP_JS_FOLDER << ": run deploy/setup.sh --viewers";
   }
   void TearDown() override { std::filesystem::remove(file_); }
 
