@@ -61,6 +61,7 @@ void bind_geometry(ConfigBinder& binder, GeometryConfig& c) {
   binder.field("geometry.tau_floor_m", c.tau_floor_m, {0.01, 2.0}, "smallest depth difference that says something");
   binder.field("geometry.tau_sigmas", c.tau_sigmas, {1.0, 50.0}, "and so many standard deviations");
   binder.field("geometry.max_view_angle_deg", c.max_view_angle_deg, {1.0, 90.0}, "larger angle: no statement");
+  binder.field("geometry.max_baseline_m", c.max_baseline_m, {0.01, 10.0}, "keyframes from farther away: not asked");
   binder.field("geometry.max_views", c.max_views, {1, 30}, "reference views per frame");
   binder.field("geometry.min_cluster_statements", c.min_cluster_statements, {1, 10000}, "before a cluster is judged");
   binder.field("geometry.min_violated_share", c.min_violated_share, {0.01, 1.0}, "that makes a cluster dynamic");
@@ -124,6 +125,8 @@ void bind_published(ConfigBinder& binder, EpipolarConfig& epipolar, PaperConfig&
   binder.field("paper.tau_m", paper.tau_m, {0.01, 2.0}, "mode rtd-paper: depth difference of a mover");
   binder.field("paper.max_view_angle_deg", paper.max_view_angle_deg, {1.0, 90.0},
                "mode rtd-paper: no statement beyond");
+  binder.field("paper.max_baseline_m", paper.max_baseline_m, {0.01, 10.0},
+               "mode rtd-paper: keyframes not asked beyond");
   binder.field("paper.keyframes", paper.keyframes, {1, 16}, "mode rtd-paper: keyframes asked");
 }
 
@@ -140,6 +143,16 @@ void bind_tracks(ConfigBinder& binder, BoxTrackConfig& c) {
   binder.field("tracks.fast_roll_deg_s", c.fast_roll_deg_s, {1.0, 1000.0}, "faster: answers without it do not count");
   binder.field("tracks.roll_patience_s", c.roll_patience_s, {0.0, 60.0}, "but not for longer than this");
   binder.field("tracks.unwatched_s", c.unwatched_s, {0.0, 60.0}, "nobody looks for so long: geometry only");
+}
+
+void bind_movers(ConfigBinder& binder, MoverTrackConfig& c) {
+  binder.field("movers.confirm_hits", c.confirm_hits, {1, 100}, "seen moving less often: no mover yet");
+  binder.field("movers.acceleration_m_s2", c.acceleration_m_s2, {0.01, 100.0}, "of a mover without a class");
+  binder.field("movers.expect_after_s", c.expect_after_s, {0.0, 60.0}, "unseen so long: masked where it is expected");
+  binder.field("movers.rest_s", c.rest_s, {0.0, 60.0}, "at rest so long: part of the world");
+  binder.field("movers.gone_s", c.gone_s, {0.0, 60.0}, "its place seen without it so long: gone");
+  binder.field("movers.max_unseen_s", c.max_unseen_s, {0.0, 60.0}, "unseen longer: it may be anywhere");
+  binder.field("movers.max_unseen_way_m", c.max_unseen_way_m, {0.0, 10.0}, "the same for its way meanwhile");
 }
 
 }  // namespace
@@ -162,6 +175,7 @@ void ServiceConfig::bind(ConfigBinder& binder) {
   bind_geometry(binder, core.geometry);
   bind_belief(binder, core.belief);
   bind_fusion(binder, core.fusion);
+  bind_movers(binder, core.movers);
   bind_published(binder, core.epipolar, core.paper);
   bind_tracks(binder, core.tracks);
   binder.field("motion_levels", core.motion_levels, "class -> high, medium, low, none; over the built-in table");

@@ -126,6 +126,7 @@ DynamicFilter::DynamicFilter(const FilterConfig& config, std::function<std::int6
                                                : MotionLevels(config.motion_levels).all_high()),
       extractor_(config.orb),
       sampler_(config.orb.min_depth_m, config.orb.max_depth_m),
+      movers_(config_.movers),
       follower_(config_),
       published_(make_published_mode(config_)) {}
 
@@ -185,6 +186,32 @@ void DynamicFilter::trust_known_surfaces(Scene& scene) const {
   }
 }
 
+/// Per cell: for how many frames it is still believed to move by what was seen before; 0 = not.
+CellMask DynamicFilter::recall_movers(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const {
+  constexpr std::uint8_t kExpectedFrames = 3;
+  CellMask remembered =
+      memory_.recall(scene.grid, scene.image.camera, T_world_camera.inverse() * views_.newest().T_world_camera);
+  if (!config_.techniques.mover_tracks) return remembered;
+  const CellMask expected =
+      movers_.expected({scene.grid, sampler_.rays(), scene.image.camera, {scene.image.stamp_ns, T_world_camera}});
+  for (std::size_t cell = 0; cell < expected.size(); ++cell) {
+    if (expected[cell] != 0 && scene.high[cell] == 0) remembered[cell] = std::max(remembered[cell], kExpectedFrames);
+  }
+  return remembered;
+}
+
+/// Surfaces that were seen moving in this very frame, but those with a class of a high level: they have box tracks.
+void DynamicFilter::follow_movers(const Scene& scene, const Geometry& geometry, FilterResult& result) {
+  if (!config_.techniques.mover_tracks || !geometry.regions.trusted) return;
+  const int fresh = config_.geometry.memory_frames;
+  CellMask moving(geometry.regions.frames_left);
+  for (std::size_t cell = 0; cell < moving.size(); ++cell)
+    moving[cell] = moving[cell] == fresh && scene.high[cell] == 0 ? 1 : 0;
+  movers_.update({scene.grid, sampler_.rays(), scene.image.camera, {scene.image.stamp_ns, result.T_world_camera}},
+                 scene.clusters, moving, geometry.ego.slow_votes);
+  result.movers = movers_.movers();
+}
+
 DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, FilterResult& result) {
   const auto cells = static_cast<std::size_t>(scene.grid.shape.size());
   const std::vector<std::uint8_t> nothing(cells, 0);
@@ -193,10 +220,7 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
 
   StageClock clock(now_ns_);
   const Eigen::Isometry3d T_world_predicted = views_.predict_pose();
-  const auto recall = [&](const Eigen::Isometry3d& T_world_camera) {
-    return memory_.recall(scene.grid, scene.image.camera, T_world_camera.inverse() * views_.newest().T_world_camera);
-  };
-  CellMask avoid = united(dilate(scene.grid.shape, recall(T_world_predicted), 1), scene.may_move);
+  CellMask avoid = united(dilate(scene.grid.shape, recall_movers(scene, T_world_predicted), 1), scene.may_move);
 
   if (!views_.spans(scene.image.stamp_ns, kMinSettledAgeNs)) {  // too early to tell movers from the camera's motion
     avoid = united(std::move(avoid), free_standing(scene.grid, scene.clusters, config_.masks));
@@ -221,10 +245,11 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
   result.T_world_camera = geometry.ego.T_world_camera;
   result.pose_reliable = geometry.ego.reliable;
   result.stage_ms[msg::kStageEgoMotion] = clock.lap_ms();
-  const std::vector<std::uint8_t> remembered = recall(geometry.ego.T_world_camera);
+  const CellMask remembered = recall_movers(scene, geometry.ego.T_world_camera);
   if (geometry.ego.reliable) {
-    const auto views = views_.references(scene.image.stamp_ns, geometry.ego.T_world_camera,
-                                         static_cast<std::size_t>(config_.geometry.max_views));
+    const auto views =
+        views_.references(scene.image.stamp_ns, geometry.ego.T_world_camera,
+                          {static_cast<std::size_t>(config_.geometry.max_views), config_.geometry.max_baseline_m});
     geometry.evidence = check_depth(scene.grid, sampler_.rays(), {scene.image.stamp_ns, geometry.ego.T_world_camera},
                                     views, scene.image.camera, config_.geometry);
     geometry.evidence = accept_arrivals(std::move(geometry.evidence), scene.clusters, geometry.ego.votes,
@@ -233,6 +258,7 @@ DynamicFilter::Geometry DynamicFilter::find_what_moves(const Scene& scene, Filte
   geometry.regions = find_dynamic_regions(scene.clusters, geometry.evidence,
                                           {geometry.ego.votes, geometry.ego.slow_votes}, remembered, config_.geometry);
   geometry.regions.trusted = geometry.regions.trusted && geometry.ego.reliable;
+  follow_movers(scene, geometry, result);
   result.dynamic_clusters = static_cast<std::uint32_t>(geometry.regions.clusters);
   result.stage_ms[msg::kStageDepthCheck] = clock.lap_ms();
   return geometry;
@@ -287,7 +313,7 @@ void DynamicFilter::remember(Scene scene, const Geometry& geometry, FilterResult
 
 void DynamicFilter::on_tracking(const msg::TrackingResult& result) {
   if (result.state != msg::TrackingState::kOk) return;
-  views_.correct(result.seq, msg::to_isometry(result.T_world_camera));
+  if (!views_.correct(result.seq, msg::to_isometry(result.T_world_camera))) movers_.clear();  // another world
   if (published_ != nullptr) published_->on_tracking(result.seq, msg::to_isometry(result.T_world_camera));
 }
 
@@ -304,6 +330,7 @@ void DynamicFilter::on_keyframe(const msg::KeyframeEvent& event) {
 void DynamicFilter::reset() {
   views_.clear();
   memory_.clear();
+  movers_.clear();
   beliefs_.clear();
   follower_.clear();
   if (published_ != nullptr) published_->reset();

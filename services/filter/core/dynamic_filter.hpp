@@ -22,6 +22,7 @@
 #include "services/filter/core/motion_levels.hpp"
 #include "services/filter/core/object_masks.hpp"
 #include "services/filter/core/orb_extractor.hpp"
+#include "services/filter/core/tracks/mover_tracks.hpp"
 #include "services/filter/core/tracks/object_follower.hpp"
 #include "services/filter/core/view_store.hpp"
 
@@ -38,6 +39,7 @@ enum class CellMotion : std::uint8_t {
 struct FilterResult {
   std::vector<msg::Feature> features;  ///< removed ones included and flagged
   std::vector<SceneObject> objects;
+  std::vector<Mover> movers;           ///< without a class, in view or expected to come back
   std::uint32_t removed = 0;           ///< features flagged as removed
   std::uint32_t dynamic_clusters = 0;  ///< depth clusters that geometry found moving, with or without a class
   bool pose_reliable = false;          ///< geometry had a pose and could speak
@@ -82,6 +84,8 @@ class DynamicFilter {
   void judge_as_published(const Scene& scene, FilterResult& result);
   CellBeliefs recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const;
   void trust_known_surfaces(Scene& scene) const;
+  CellMask recall_movers(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const;
+  void follow_movers(const Scene& scene, const Geometry& geometry, FilterResult& result);
   Geometry find_what_moves(const Scene& scene, FilterResult& result);
   void weigh(const Scene& scene, const Geometry& geometry, FilterResult& result);
   void remember(Scene scene, const Geometry& geometry, FilterResult& result);
@@ -93,6 +97,7 @@ class DynamicFilter {
   DepthGridSampler sampler_;
   ViewStore views_;
   DynamicMemory memory_;
+  MoverTracks movers_;
   SurfaceBeliefs beliefs_;
   ObjectFollower follower_;
   std::unique_ptr<PublishedMode> published_;  ///< somebody else's rule in place of ours; null in our own modes

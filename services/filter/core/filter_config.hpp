@@ -38,6 +38,7 @@ struct Techniques {
   bool object_drift = true;     ///< the features of a person are judged together, by their median shift
   bool noise_aware_tau = true;  ///< off: the paper's 0.4 m at every depth
   bool mover_memory = true;     ///< what moved stays masked for a second; off: it must be seen moving in each frame
+  bool mover_tracks = false;    ///< movers that were out of sight are known again; off: they are new
   bool surface_poses = true;    ///< surfaces propose the camera's motion; off: all features together only
   // Rule 4: one probability
   bool belief = true;           ///< static probability gathered over time; off: from this frame alone
@@ -88,6 +89,7 @@ struct GeometryConfig {
   double tau_floor_m = 0.08;         ///< smallest depth difference that says something (the paper: 0.4 m)
   double tau_sigmas = 5.0;           ///< and this many standard deviations of the depth difference
   double max_view_angle_deg = 30.0;  ///< larger angle between the two viewing rays: no statement (paper section III-A)
+  double max_baseline_m = 0.8;       ///< keyframes from farther away are not asked: they saw the other side of things
   int max_views = 6;                 ///< reference views per frame
   int min_region_cells = 40;  ///< smaller regions are thin structures that depth cameras see now and then, not movers
   int min_cluster_statements = 30;    ///< cells with a statement before a cluster is judged
@@ -152,6 +154,17 @@ struct BoxTrackConfig {
   double unwatched_s = 0.5;       ///< nobody looks for this long: geometry only
 };
 
+/// The life of tracks of movers without a class; docs/theory/dynamic_points.md section 4.
+struct MoverTrackConfig {
+  int confirm_hits = 5;            ///< seen moving less often: no mover yet
+  double acceleration_m_s2 = 0.5;  ///< of a mover
+  double expect_after_s = 1.0;     ///< since it was last seen moving; before that the memory says where it is
+  double rest_s = 1.5;             ///< seen at rest for so long: it has become part of the world
+  double gone_s = 0.5;             ///< its place seen without it for so long: it has gone
+  double max_unseen_s = 5.0;       ///< not seen moving for longer: it may be anywhere
+  double max_unseen_way_m = 0.5;   ///< the same for the way that it may have gone meanwhile
+};
+
 /// Mode `epipolar`, DS-SLAM's moving consistency check.
 struct EpipolarConfig {
   int max_corners = 1000;
@@ -167,6 +180,7 @@ struct EpipolarConfig {
 struct PaperConfig {
   double tau_m = 0.4;              ///< depth difference from which something has come
   double max_view_angle_deg = 30;  ///< larger angle between the two viewing rays: no statement
+  double max_baseline_m = 0.8;     ///< keyframes from farther away do not overlap
   int keyframes = 5;               ///< overlapping keyframes asked per frame
 };
 
@@ -182,6 +196,7 @@ struct FilterConfig {
   BeliefConfig belief;
   FusionConfig fusion;
   BoxTrackConfig tracks;
+  MoverTrackConfig movers;
   EpipolarConfig epipolar;
   PaperConfig paper;
   std::map<std::string, std::string>

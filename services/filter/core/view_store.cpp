@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kPastStepNs = 250'000'000;
 constexpr double kNewWorldM = 0.25, kNewWorldRad = 0.25;  // slam and we differ by more: another world
-constexpr double kNearM = 0.8, kSameWayRad = 0.5;         // a keyframe worth comparing with
+constexpr double kSameWayRad = 0.5;                       // a keyframe worth comparing with
 constexpr std::array<std::int64_t, 4> kAgesNs{100'000'000, 270'000'000, 550'000'000, 1'000'000'000};
 
 auto find_seq(std::deque<View>& views, std::uint64_t seq) {
@@ -99,32 +99,34 @@ const View& ViewStore::long_ago(std::int64_t now_ns, std::int64_t age_ns) const 
 }
 
 std::vector<const View*> ViewStore::references(std::int64_t now_ns, const Eigen::Isometry3d& T_world_camera,
-                                               std::size_t count) const {
+                                               const ReferenceLimits& limits) const {
   std::vector<const View*> chosen;
   if (recent_.empty()) return chosen;
   for (const std::int64_t age_ns : kAgesNs) {
     const View* view = &of_age(now_ns, age_ns);
-    if (chosen.size() < count && std::find(chosen.begin(), chosen.end(), view) == chosen.end()) chosen.push_back(view);
+    if (chosen.size() < limits.count && std::find(chosen.begin(), chosen.end(), view) == chosen.end())
+      chosen.push_back(view);
   }
-  for (const View* keyframe : near_keyframes(T_world_camera, kMaxKeyframes)) {
-    if (chosen.size() < count && keyframe->seq < recent_.front().seq) chosen.push_back(keyframe);
+  for (const View* keyframe : near_keyframes(T_world_camera, {kMaxKeyframes, limits.max_baseline_m})) {
+    if (chosen.size() < limits.count && keyframe->seq < recent_.front().seq) chosen.push_back(keyframe);
   }
   return chosen;
 }
 
-std::vector<const View*> ViewStore::near_keyframes(const Eigen::Isometry3d& T_world_camera, std::size_t count) const {
+std::vector<const View*> ViewStore::near_keyframes(const Eigen::Isometry3d& T_world_camera,
+                                                   const ReferenceLimits& limits) const {
   std::vector<std::pair<double, const View*>> near;
   for (const View& keyframe : keyframes_) {
     const Eigen::Isometry3d T_camera_keyframe = T_world_camera.inverse() * keyframe.T_world_camera;
     const double distance_m = T_camera_keyframe.translation().norm();
     const double angle_rad = geometry::rotation_angle_rad(T_camera_keyframe);
-    if (distance_m < kNearM && angle_rad < kSameWayRad)
-      near.emplace_back(distance_m / kNearM + angle_rad / kSameWayRad, &keyframe);
+    if (distance_m < limits.max_baseline_m && angle_rad < kSameWayRad)
+      near.emplace_back(distance_m / limits.max_baseline_m + angle_rad / kSameWayRad, &keyframe);
   }
   std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<const View*> chosen;
   for (const auto& [cost, keyframe] : near) {
-    if (chosen.size() < count) chosen.push_back(keyframe);
+    if (chosen.size() < limits.count) chosen.push_back(keyframe);
   }
   return chosen;
 }

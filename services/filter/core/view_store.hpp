@@ -25,6 +25,12 @@ struct View {
   std::vector<msg::Feature> features;  ///< judged ones
 };
 
+/// Which views are worth comparing with.
+struct ReferenceLimits {
+  std::size_t count = 6;
+  double max_baseline_m = 0.8;  ///< of a keyframe: from farther away it saw other sides of things
+};
+
 /// The views of the last second, some of the two seconds before and those of the last keyframes, bounded in number
 /// (about 0.4 MB each), with their poses.
 ///
@@ -61,9 +67,9 @@ class ViewStore {
   /// Up to `count` views to compare a camera at this pose with: recent ones of graded ages, then keyframes older than
   /// those whose camera stood near and looked the same way.
   std::vector<const View*> references(std::int64_t now_ns, const Eigen::Isometry3d& T_world_camera,
-                                      std::size_t count) const;
-  /// Up to `count` of the keyframes whose camera stood near and looked the same way, nearest first; recent ones too.
-  std::vector<const View*> near_keyframes(const Eigen::Isometry3d& T_world_camera, std::size_t count) const;
+                                      const ReferenceLimits& limits) const;
+  /// The keyframes whose camera stood near and looked the same way, nearest first; recent ones too.
+  std::vector<const View*> near_keyframes(const Eigen::Isometry3d& T_world_camera, const ReferenceLimits& limits) const;
   std::size_t size() const { return recent_.size() + past_.size() + keyframes_.size(); }
 
   static constexpr std::size_t kMaxRecent = 32;

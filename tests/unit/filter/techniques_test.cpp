@@ -123,6 +123,21 @@ TEST(Techniques, object_drift_off_leaves_a_common_shift) {
   EXPECT_FALSE(drifts(drift, effective_config(without).belief));
 }
 
+TEST(Techniques, mover_tracks_give_a_mover_an_identity) {
+  const MovingScene scene;
+  FilterConfig config = config_of(FilterMode::kGeometry, {});
+  for (const bool on : {false, true}) {
+    config.techniques.mover_tracks = on;
+    DynamicFilter filter(config, [] { return std::int64_t{0}; });
+    std::set<int> ids;
+    for (std::uint64_t i = 0; i < 20; ++i) {
+      const double block_x = -0.25 + 0.03 * static_cast<double>(i);
+      for (const Mover& mover : filter.apply(scene.render(i, 0, block_x), std::nullopt).movers) ids.insert(mover.id);
+    }
+    EXPECT_EQ(ids.size(), on ? 1U : 0U);
+  }
+}
+
 TEST(Techniques, noise_aware_tau_off_misses_somebody_a_step_before_the_wall) {
   const cv::Rect block(240, 160, 120, 160);
   vision::RgbdImage now = test::wall_image(3.0);

@@ -72,14 +72,14 @@ TEST(ViewStore, ignores_frames_that_it_does_not_have) {
   store.mark_keyframe(3, at(1));
   store.forget_keyframe(3);
   EXPECT_TRUE(store.empty());
-  EXPECT_TRUE(store.references(0, at(0), 6).empty());
+  EXPECT_TRUE(store.references(0, at(0), {6}).empty());
 }
 
 TEST(ViewStore, chooses_references_of_graded_ages) {
   ViewStore store;
   for (std::uint64_t seq = 0; seq < 32; ++seq) store.add(view(seq));
   std::vector<std::uint64_t> seqs;
-  for (const View* reference : store.references(stamp(32), at(0), 6)) seqs.push_back(reference->seq);
+  for (const View* reference : store.references(stamp(32), at(0), {6})) seqs.push_back(reference->seq);
   EXPECT_THAT(seqs, testing::ElementsAre(29, 24, 15, 2)) << "0.1, 0.27, 0.55 and 1 s ago at 33 ms";
 }
 
@@ -91,11 +91,23 @@ TEST(ViewStore, adds_keyframes_that_look_the_same_way_from_near) {
     if (seq == 5) store.mark_keyframe(5, at(3.0));  // too far away
     if (seq == 50) store.mark_keyframe(50, at(0));  // among the recent ones anyway
   }
-  const auto references = store.references(stamp(60), at(0), 6);
+  const auto references = store.references(stamp(60), at(0), {6});
   ASSERT_EQ(references.size(), 5U);
   EXPECT_EQ(references.back()->seq, 3U);
   store.forget_keyframe(3);
-  EXPECT_EQ(store.references(stamp(60), at(0), 6).size(), 4U);
+  EXPECT_EQ(store.references(stamp(60), at(0), {6}).size(), 4U);
+}
+
+TEST(ViewStore, asks_no_keyframe_from_beyond_the_largest_baseline) {
+  ViewStore store;
+  for (std::uint64_t seq = 0; seq < 60; ++seq) {
+    store.add(view(seq));
+    if (seq == 3) store.mark_keyframe(3, at(0.5));
+  }
+  for (const double max_baseline_m : {0.4, 0.6}) {
+    EXPECT_EQ(store.near_keyframes(at(0), {6, max_baseline_m}).size(), max_baseline_m < 0.5 ? 0U : 1U);
+    EXPECT_EQ(store.references(stamp(60), at(0), {6, max_baseline_m}).size(), max_baseline_m < 0.5 ? 4U : 5U);
+  }
 }
 
 TEST(ViewStore, prefers_settled_views) {

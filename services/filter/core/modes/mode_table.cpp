@@ -21,6 +21,12 @@ Techniques only(std::initializer_list<bool T::*> chosen) {
   return techniques;
 }
 
+Techniques everything() {
+  Techniques techniques;
+  for (const NamedTechnique& technique : all_techniques()) techniques.*technique.on = true;
+  return techniques;
+}
+
 const std::vector<ModeEntry>& table() {
   static const std::vector<ModeEntry> entries{
       {FilterMode::kOff, "off", only({})},
@@ -28,10 +34,11 @@ const std::vector<ModeEntry>& table() {
        only({&T::motion_levels, &T::depth_masks, &T::box_tracks, &T::mask_flow, &T::roll_distrust, &T::more_features})},
       {FilterMode::kGeometry, "geometry",
        only({&T::depth_check, &T::feature_votes, &T::look_back, &T::arrivals, &T::noise_aware_tau, &T::mover_memory,
-             &T::surface_poses, &T::belief, &T::feature_weights, &T::more_features, &T::keep_doubtful})},
+             &T::mover_tracks, &T::surface_poses, &T::belief, &T::feature_weights, &T::more_features,
+             &T::keep_doubtful})},
       {FilterMode::kEpipolar, "epipolar", only({&T::motion_levels, &T::depth_masks})},
       {FilterMode::kRtdPaper, "rtd-paper", only({&T::motion_levels})},
-      {FilterMode::kRtd, "rtd", Techniques{}},
+      {FilterMode::kRtd, "rtd", everything()},
   };
   return entries;
 }

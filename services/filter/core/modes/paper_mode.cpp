@@ -50,7 +50,7 @@ PublishedVerdict PaperMode::judge(const PublishedInput& input, std::vector<msg::
   if (pose.success) {
     const auto count = static_cast<std::size_t>(config_.keyframes);
     moved = check_keypoint_depths(input.image, input.shape, pose.T_world_camera,
-                                  views_.near_keyframes(pose.T_world_camera, count), config_);
+                                  views_.near_keyframes(pose.T_world_camera, {count, config_.max_baseline_m}), config_);
   }
   const auto known_of = [&](std::size_t i) {
     return CellKnowledge{high[i] != 0, medium[i] != 0, low[i] != 0, moved[i] != 0};

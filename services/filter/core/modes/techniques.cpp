@@ -20,6 +20,7 @@ constexpr NamedTechnique kAll[] = {
     {"object_drift", &Techniques::object_drift, "a person's features vote one by one"},
     {"noise_aware_tau", &Techniques::noise_aware_tau, "the paper's 0.4 m at every depth"},
     {"mover_memory", &Techniques::mover_memory, "movers are found anew in each frame"},
+    {"mover_tracks", &Techniques::mover_tracks, "movers that come back into view are new"},
     {"surface_poses", &Techniques::surface_poses, "surfaces do not propose the camera's motion"},
     {"belief", &Techniques::belief, "static probability from one frame alone"},
     {"resting_objects", &Techniques::resting_objects, "high classes are never used"},

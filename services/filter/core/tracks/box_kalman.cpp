@@ -41,27 +41,9 @@ double BoxKalman::unit_px(std::size_t axis) const {
   return std::max(kMinUnitPx, axes_[2 + axis % 2].state[0]);
 }
 
-/// Joseph form: stays symmetric and positive whatever the rounding.
-void BoxKalman::Axis::update(const Eigen::RowVector2d& observe, double measured, double sigma) {
-  const double variance = sigma * sigma;
-  const double innovation_variance = (observe * covariance * observe.transpose()).value() + variance;
-  const Eigen::Vector2d gain = covariance * observe.transpose() / innovation_variance;
-  state += gain * (measured - (observe * state).value());
-  const Eigen::Matrix2d kept = Eigen::Matrix2d::Identity() - gain * observe;
-  covariance = kept * covariance * kept.transpose() + variance * gain * gain.transpose();
-}
-
 void BoxKalman::predict(double dt_s) {
   if (dt_s <= 0) return;
-  Eigen::Matrix2d transition, noise;
-  transition << 1, dt_s, 0, 1;
-  noise << dt_s * dt_s * dt_s / 3, dt_s * dt_s / 2, dt_s * dt_s / 2, dt_s;  // white acceleration over dt
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const double acceleration = noise_.acceleration * unit_px(i);
-    axes_[i].state = transition * axes_[i].state;
-    axes_[i].covariance =
-        transition * axes_[i].covariance * transition.transpose() + acceleration * acceleration * noise;
-  }
+  for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].predict(dt_s, noise_.acceleration * unit_px(i));
   for (std::size_t i : {2, 3}) axes_[i].state[0] = std::max(1.0, axes_[i].state[0]);
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "common/vision/detection.hpp"
+#include "services/filter/core/tracks/axis_kalman.hpp"
 
 namespace rtd::filter {
 
@@ -51,16 +52,11 @@ class BoxKalman {
   double sigma_px(std::size_t axis) const;  ///< of centre x, y, width, height
 
  private:
-  struct Axis {
-    Eigen::Vector2d state = Eigen::Vector2d::Zero();  ///< px, px/s
-    Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-    void update(const Eigen::RowVector2d& observe, double measured, double sigma);
-  };
   /// The size that noise on this axis is measured in.
   double unit_px(std::size_t axis) const;
 
   BoxNoise noise_;
-  std::array<Axis, 4> axes_;  ///< centre x, y, width, height
+  std::array<AxisKalman, 4> axes_;  ///< centre x, y, width, height; px, px/s
 };
 
 }  // namespace rtd::filter
