@@ -38,7 +38,7 @@ struct Techniques {
   bool object_drift = true;     ///< the features of a person are judged together, by their median shift
   bool noise_aware_tau = true;  ///< off: the paper's 0.4 m at every depth
   bool mover_memory = true;     ///< what moved stays masked for a second; off: it must be seen moving in each frame
-  bool mover_tracks = false;    ///< movers that were out of sight are known again; off: they are new
+  bool mover_tracks = true;     ///< movers that were out of sight are known again; off: they are new
   bool surface_poses = true;    ///< surfaces propose the camera's motion; off: all features together only
   // Rule 4: one probability
   bool belief = true;           ///< static probability gathered over time; off: from this frame alone
