@@ -24,7 +24,9 @@ Json timing_json(const Timing& timing) {
 
 Json sequence_json(const std::optional<SequenceCount>& sequences) {
   if (!sequences || !sequences->numbered()) return nullptr;
-  return {{"missing", sequences->missing()}, {"gaps", sequences->gaps()}, {"restarts", sequences->restarts()}};
+  const std::optional<std::uint64_t> missing = sequences->missing();
+  return {
+      {"missing", missing ? Json(*missing) : Json()}, {"gaps", sequences->gaps()}, {"restarts", sequences->restarts()}};
 }
 
 Json channel_json(const ChannelReport& entry) {

@@ -73,7 +73,8 @@ std::string loss_rows(const RecordingReport& report) {
 
 std::string missing_text(const ChannelReport& channel) {
   if (!channel.sequences || !channel.sequences->numbered()) return "-";
-  return std::to_string(channel.sequences->missing());
+  const std::optional<std::uint64_t> missing = channel.sequences->missing();
+  return missing ? std::to_string(*missing) : "-";
 }
 
 std::string channel_row(const ChannelReport& channel, std::size_t topic_width, std::size_t type_width) {
@@ -96,8 +97,9 @@ std::string channel_table(const RecordingReport& report) {
       fmt::format("\n{:<{}} {:<{}} {:>8} {:>9} {:>10} {:>10} {:>5} {:>6} {:>9}\n", "topic", topic_width, "type",
                   type_width, "messages", "rate Hz", "median ms", "longest ms", "gaps", "lost", "size");
   for (const ChannelReport& channel : report.channels) text += channel_row(channel, topic_width, type_width);
-  return text + fmt::format("gaps: periods above {} medians; lost: numbers missing in the sequence{}\n", kGapPeriods,
-                            report.read_all ? "" : " (--check counts them)");
+  return text +
+         fmt::format("gaps: periods above {} medians; lost: numbers missing in the sequence, - where several wrote{}\n",
+                     kGapPeriods, report.read_all ? "" : " (--check counts them)");
 }
 
 }  // namespace

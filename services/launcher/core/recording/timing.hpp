@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/mcap/records.hpp"
@@ -30,7 +31,8 @@ Timing timing_of(std::vector<mcap::Timestamp> times_ns);
 class SequenceCount {
  public:
   void add(std::uint32_t sequence);
-  std::uint64_t missing() const { return missing_; }
+  /// Empty where numbers begin again: several writers, or one that was restarted, cannot be told apart.
+  std::optional<std::uint64_t> missing() const { return restarts_ > 0 ? std::nullopt : std::optional(missing_); }
   std::uint64_t gaps() const { return gaps_; }
   std::uint64_t restarts() const { return restarts_; }
   /// False when all numbers are 0: the recorder had none.
