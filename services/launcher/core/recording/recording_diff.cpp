@@ -3,12 +3,31 @@
 #include "services/launcher/core/recording/recording_diff.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/mcap/indexed_reader.hpp"
 #include "services/launcher/core/recording/payload_layout.hpp"
 
 namespace rtd::recording {
 namespace {
+
+/// The distances of neighbouring pairs in both recordings, compared.
+void compare_timing(TopicDiff& result, const TopicContents& a, const TopicContents& b, const MessagePairs& paired) {
+  const auto signed_gap = [](const Fingerprint& from, const Fingerprint& to) {
+    return static_cast<double>(static_cast<std::int64_t>(to.log_ns - from.log_ns));
+  };
+  std::vector<double> errors_ms;
+  for (std::size_t i = 1; i < paired.pairs.size(); ++i) {
+    const MessagePair &before = paired.pairs[i - 1], &pair = paired.pairs[i];
+    const double gap_a = signed_gap(a.messages[before.a], a.messages[pair.a]);
+    const double gap_b = signed_gap(b.messages[before.b], b.messages[pair.b]);
+    errors_ms.push_back(std::abs(gap_b - gap_a) * 1e-6);
+  }
+  if (errors_ms.empty()) return;
+  std::ranges::sort(errors_ms);
+  result.timing_p50_ms = errors_ms[errors_ms.size() / 2];
+  result.timing_p99_ms = errors_ms[errors_ms.size() * 99 / 100];
+}
 
 void compare(TopicDiff& result, const TopicContents& a, const TopicContents& b, const DiffOptions& options) {
   const MessagePairs paired = pair_messages(a, b);
@@ -17,6 +36,7 @@ void compare(TopicDiff& result, const TopicContents& a, const TopicContents& b, 
   result.only_b = paired.only_b.size();
   if (!paired.only_a.empty()) result.first_missing = paired.only_a.front();
   if (paired.only_a.empty() && !paired.only_b.empty()) result.first_missing = paired.only_b.front();
+  compare_timing(result, a, b, paired);
   std::size_t farthest_b = 0;
   for (const MessagePair& pair : paired.pairs) {
     const Fingerprint &x = a.messages[pair.a], &y = b.messages[pair.b];

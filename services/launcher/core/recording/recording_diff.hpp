@@ -27,9 +27,11 @@ struct TopicDiff {
   std::size_t messages_a = 0, messages_b = 0;
   PairedBy paired_by = PairedBy::kPosition;
   std::size_t only_a = 0, only_b = 0;
-  std::size_t payloads = 0;                  ///< pairs whose payloads differ
-  std::size_t run_fields_only = 0;           ///< of these, only in fields of the run
-  std::size_t stamps = 0;                    ///< pairs whose publish times differ
+  std::size_t payloads = 0;         ///< pairs whose payloads differ
+  std::size_t run_fields_only = 0;  ///< of these, only in fields of the run
+  std::size_t stamps = 0;           ///< pairs whose publish times differ
+  /// How far the time between two messages in a row, by log_time, is from that in the other recording; no difference.
+  double timing_p50_ms = 0, timing_p99_ms = 0;
   std::size_t out_of_order = 0;              ///< pairs that stand in another order
   std::optional<MessagePlace> first;         ///< the first payload that differs and counts
   std::optional<std::size_t> first_missing;  ///< position in A (or else in B) of the first without partner

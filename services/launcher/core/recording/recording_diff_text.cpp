@@ -25,9 +25,9 @@ std::string row(const TopicDiff& topic, const DiffOptions& options, std::size_t 
   const std::string payloads = topic.run_fields_only > 0
                                    ? fmt::format("{} ({} of the run)", topic.payloads, topic.run_fields_only)
                                    : std::to_string(topic.payloads);
-  return fmt::format("{:<{}} {:>8} {:>8} {:>8} {:>8} {:>18} {:>8} {:>8}  {}\n", topic.topic, width, topic.messages_a,
-                     topic.messages_b, topic.only_a, topic.only_b, payloads, topic.stamps, topic.out_of_order,
-                     verdict(topic, options));
+  return fmt::format("{:<{}} {:>8} {:>8} {:>8} {:>8} {:>18} {:>8} {:>8} {:>9.2f} {:>9.2f}  {}\n", topic.topic, width,
+                     topic.messages_a, topic.messages_b, topic.only_a, topic.only_b, payloads, topic.stamps,
+                     topic.out_of_order, topic.timing_p50_ms, topic.timing_p99_ms, verdict(topic, options));
 }
 
 std::string first_text(const TopicDiff& topic) {
@@ -61,11 +61,13 @@ Json first_json(const TopicDiff& topic) {
 std::string to_text(const RecordingDiff& diff) {
   std::size_t width = 5;
   for (const TopicDiff& topic : diff.topics) width = std::max(width, topic.topic.size());
-  std::string text = fmt::format("{:<{}} {:>8} {:>8} {:>8} {:>8} {:>18} {:>8} {:>8}\n", "topic", width, "in A", "in B",
-                                 "only A", "only B", "payloads differ", "stamps", "order");
+  std::string text =
+      fmt::format("{:<{}} {:>8} {:>8} {:>8} {:>8} {:>18} {:>8} {:>8} {:>9} {:>9}\n", "topic", width, "in A", "in B",
+                  "only A", "only B", "payloads differ", "stamps", "order", "dt p50 ms", "p99 ms");
   for (const TopicDiff& topic : diff.topics) text += row(topic, diff.options, width);
   for (const TopicDiff& topic : diff.topics) text += missing_text(topic) + first_text(topic);
-  return text + (diff.equal() ? "equal\n" : "");
+  return text + "dt: time between messages compared with the other recording, by log time; no difference\n" +
+         (diff.equal() ? "equal\n" : "");
 }
 
 Json to_json(const RecordingDiff& diff) {
@@ -84,6 +86,7 @@ Json to_json(const RecordingDiff& diff) {
                               {"of_these_run_fields_only", topic.run_fields_only},
                               {"publish_times_differ", topic.stamps},
                               {"out_of_order", topic.out_of_order},
+                              {"inter_message_error_ms", {{"p50", topic.timing_p50_ms}, {"p99", topic.timing_p99_ms}}},
                               {"first_missing", topic.first_missing ? Json(*topic.first_missing) : Json(nullptr)},
                               {"first_difference", first_json(topic)}});
   return json;

@@ -80,6 +80,19 @@ TEST(RecordingDiff, finds_another_order_and_other_stamps) {
   EXPECT_FALSE(compare(a, shifted).equal());
 }
 
+TEST(RecordingDiff, measures_how_well_the_times_between_messages_were_kept) {
+  const std::vector<SampleMessage> a = regular_messages("/pose", 11);
+  std::vector<SampleMessage> b = a;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    b[i].publish_ns = b[i].time_ns;
+    b[i].time_ns += 7'000'000'000 + (i == 10 ? 3'000'000 : 0);
+  }
+  const RecordingDiff result = compare(a, b);
+  EXPECT_EQ(result.topics[0].timing_p50_ms, 0);
+  EXPECT_EQ(result.topics[0].timing_p99_ms, 3);
+  EXPECT_TRUE(result.equal());
+}
+
 TEST(RecordingDiff, a_topic_on_one_side_is_a_difference) {
   std::vector<SampleMessage> a = regular_messages("/pose", 5), b = a;
   b.push_back({"/frame", 2'000'000'000, "x"});
