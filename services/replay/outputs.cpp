@@ -57,6 +57,19 @@ Outputs::Outputs(bus::RawBus& bus, const std::vector<const mcap::Channel*>& chan
     by_channel_[channel->id] = &known->second;
   }
   for (auto& [topic, output] : outputs_) output.writer = bus_.writer(output.topic, output.options);
+  if (!options_.frames_apart) return;
+  frame_thread_ = std::thread([this] {
+    while (const std::optional<PlayedMessage> frame = frames_.pop()) write(*by_channel_.at(frame->channel), *frame);
+  });
+}
+
+Outputs::~Outputs() {
+  finish();
+}
+
+void Outputs::finish() {
+  frames_.close();
+  if (frame_thread_.joinable()) frame_thread_.join();
 }
 
 Output Outputs::make_output(const mcap::Channel& channel, const mcap::Summary& summary) const {
@@ -78,12 +91,20 @@ Output Outputs::make_output(const mcap::Channel& channel, const mcap::Summary& s
 
 void Outputs::send(const PlayedMessage& message) {
   Output& output = *by_channel_.at(message.channel);
+  if (options_.frames_apart && output.options.fixed_bytes > 0) {
+    frames_.push(message);
+  } else {
+    write(output, message);
+  }
+}
+
+void Outputs::write(Output& output, const PlayedMessage& message) const {
   std::span<const std::byte> cdr = *message.cdr;
   if (options_.restamp && output.carries_published && cdr.size() >= kPublishedAt + sizeof(std::int64_t)) {
-    restamped_.assign(cdr.begin(), cdr.end());
+    output.restamped.assign(cdr.begin(), cdr.end());
     const std::int64_t now_ns = service::monotonic_ns();
-    std::memcpy(restamped_.data() + kPublishedAt, &now_ns, sizeof(now_ns));
-    cdr = restamped_;
+    std::memcpy(output.restamped.data() + kPublishedAt, &now_ns, sizeof(now_ns));
+    cdr = output.restamped;
   }
   // One less than the history, so that what is acknowledged is never overtaken by what is not.
   if (options_.wait_for_readers &&

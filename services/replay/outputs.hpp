@@ -5,9 +5,11 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "common/bus/raw_bus.hpp"
+#include "common/concurrency/bounded_queue.hpp"
 #include "common/mcap/summary.hpp"
 #include "services/replay/core/message_feed.hpp"
 
@@ -17,6 +19,7 @@ struct OutputOptions {
   std::map<std::string, std::string> remaps;  ///< by DDS name
   bool restamp = false;                       ///< published_ns of our frames and features becomes now
   bool wait_for_readers = false;              ///< never overtake a reliable reader: nobody paces the messages
+  bool frames_apart = false;  ///< frames are written by a thread of their own: a millisecond that nobody else waits for
 };
 
 /// A topic of the recording on the bus.
@@ -26,6 +29,7 @@ struct Output {
   bool carries_seq = false;        ///< one of our types that begin with the number of the frame
   bool carries_published = false;  ///< ... and have published_ns behind the stamp
   std::uint64_t sent = 0, refused = 0, since_acknowledged = 0;
+  std::vector<std::byte> restamped;
   std::unique_ptr<bus::RawWriter> writer;
 };
 
@@ -35,17 +39,26 @@ class Outputs {
   /// A writer for each topic among `channels`. Throws BusError; ReplayError: two types on one topic.
   Outputs(bus::RawBus& bus, const std::vector<const mcap::Channel*>& channels, const mcap::Summary& summary,
           OutputOptions options);
+  ~Outputs();
+  Outputs(const Outputs&) = delete;
+  Outputs& operator=(const Outputs&) = delete;
 
+  /// Messages of one topic stay in order.
   void send(const PlayedMessage& message);
   void send_clock(std::int64_t recorded_ns);
   const Output& of(mcap::ChannelId channel) const { return *by_channel_.at(channel); }
   std::vector<const Output*> all() const;
   /// Reliable topics that nobody reads yet.
   std::vector<std::string> unread() const;
+  /// Writes what waits; the counts are final then, nothing can be sent any more.
+  void finish();
   /// Waits until every reliable reader has everything.
   void wait_acknowledged(int timeout_ms);
 
  private:
+  static constexpr std::size_t kWaitingFrames = 4;
+
+  void write(Output& output, const PlayedMessage& message) const;
   Output make_output(const mcap::Channel& channel, const mcap::Summary& summary) const;
 
   bus::RawBus& bus_;
@@ -53,7 +66,8 @@ class Outputs {
   std::map<std::string, Output> outputs_;  ///< by topic
   std::map<mcap::ChannelId, Output*> by_channel_;
   std::unique_ptr<bus::RawWriter> clock_;
-  std::vector<std::byte> restamped_;
+  concurrency::BoundedQueue<PlayedMessage> frames_{kWaitingFrames, concurrency::Overflow::kBlock};
+  std::thread frame_thread_;
 };
 
 }  // namespace rtd::replay

@@ -104,9 +104,12 @@ void ReplayService::open() {
   bus::BusOptions options = runtime_.bus_options;
   options.participant_name = "rtd-replay-topics";
   bus_ = bus::connect_raw(options);
-  outputs_ = std::make_unique<Outputs>(
-      *bus_, channels_, reader_->summary(),
-      OutputOptions{parse_remaps(config_.remap), config_.restamp, window_ == 0 && config_.rate == 0});
+  const bool by_time = window_ == 0 && config_.rate > 0;
+  outputs_ = std::make_unique<Outputs>(*bus_, channels_, reader_->summary(),
+                                       OutputOptions{.remaps = parse_remaps(config_.remap),
+                                                     .restamp = config_.restamp,
+                                                     .wait_for_readers = window_ == 0 && !by_time,
+                                                     .frames_apart = by_time});
   if (window_ > 0) choose_paced_topic();
 }
 
@@ -241,6 +244,7 @@ service::ExitCode ReplayService::play() {
 }
 
 service::ExitCode ReplayService::finish(const Player& player, PlayOutcome outcome) {
+  outputs_->finish();
   if (outcome == PlayOutcome::kEnded) outputs_->wait_acknowledged(kLastAcknowledgementMs);
   const Report report = report_of(player, *outputs_, config_.file, outcome, reader_->problems());
   SPDLOG_INFO("event=summary {}", log_text(report));
