@@ -10,6 +10,7 @@
 #include "services/filter/core/arrivals.hpp"
 #include "services/filter/core/belief/log_odds.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
+#include "services/filter/core/slow_votes.hpp"
 #include "services/filter/core/stage_clock.hpp"
 #include "services/filter/core/static_probability.hpp"
 
@@ -32,9 +33,9 @@ struct DynamicFilter::Geometry {
 
 namespace {
 
-/// How far to look back for slow movers: in every third frame, what is slow can wait.
+/// How far to look back for slow movers.
 std::int64_t look_back_ns(std::uint64_t seq) {
-  return seq % 3 == 0 ? 1'500'000'000 : 0;
+  return seq % kFramesPerLookBack == 0 ? 1'500'000'000 : 0;
 }
 
 bool uses_geometry(FilterMode mode) {
@@ -300,10 +301,8 @@ void DynamicFilter::remember(Scene scene, const Geometry& geometry, FilterResult
   view.stamp_ns = scene.image.stamp_ns;
   view.T_world_camera = result.T_world_camera;
   view.settled = views_.empty() || geometry.ego.settled;
-  view.dynamic = dilate(scene.grid.shape, geometry.regions.frames_left, config_.masks.dilate_cells);
-  for (std::size_t cell = 0; cell < view.dynamic.size(); ++cell) {
-    view.dynamic[cell] = view.dynamic[cell] != 0 || scene.may_move[cell] != 0 ? 1 : 0;
-  }
+  view.dynamic =
+      united(dilate(scene.grid.shape, geometry.regions.frames_left, config_.masks.dilate_cells), scene.may_move);
   result.cells = scene.grid.shape;
   result.motion = cell_motion(view.dynamic, uses_geometry(config_.mode) ? geometry.regions.trusted : scene.watched);
   view.grid = std::move(scene.grid);

@@ -7,6 +7,9 @@
 
 namespace rtd::filter {
 
+/// Slow votes are counted in every so many-th frame: what is slow can wait.
+inline constexpr unsigned kFramesPerLookBack = 3;
+
 /// Votes of the features found again in a view up to 1.5 s old: what moves at a few cm/s stays within the noise over
 /// 0.1 s, but not over a second. The camera's motion since that view is found anew, by the agreement of the image, so
 /// that neither drift of the quick pose nor a map that follows the mover is taken for motion of the rest.

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <string>
 #include <vector>
@@ -9,13 +11,6 @@
 #include "services/camera/core/source_factory.hpp"
 
 namespace rtd::camera::test {
-
-inline std::vector<SourceFrame> play(const std::string& uri) {
-  const auto source = make_source(uri);
-  std::vector<SourceFrame> frames;
-  while (auto frame = source->next()) frames.push_back(std::move(*frame));
-  return frames;
-}
 
 /// All that a source gives until its end.
 struct Played {
@@ -30,6 +25,21 @@ inline Played play_all(const std::string& uri) {
   played.counters = source->counters();
   played.skipped = source->take_skipped();
   return played;
+}
+inline std::vector<SourceFrame> play(const std::string& uri) {
+  return play_all(uri).frames;
+}
+
+/// Of three frames at 1.0, 1.1 and 1.2 s: what is passed over keeps its seq.
+inline void expect_passes_over_two_of_three(const std::string& uri) {
+  const auto source = make_source(uri);
+  EXPECT_EQ(source->pass_over(1'150'000'000), 2U);
+  EXPECT_EQ(source->pass_over(1'150'000'000), 0U);
+  const auto frame = source->next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->image.stamp_ns, 1'200'000'000);
+  EXPECT_EQ(frame->image.seq, 2U);
+  EXPECT_FALSE(source->next());
 }
 
 inline bool same(const cv::Mat& a, const cv::Mat& b) {

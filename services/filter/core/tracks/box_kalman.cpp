@@ -20,6 +20,12 @@ Box box_of(const vision::Detection& d) {
           {d.width_px, d.height_px}};
 }
 
+double visible_share(const Box& box, const Eigen::Vector2d& image_px) {
+  const Eigen::Vector2d first = (box.centre_px - 0.5 * box.size_px).cwiseMax(0.0).cwiseMin(image_px);
+  const Eigen::Vector2d last = (box.centre_px + 0.5 * box.size_px).cwiseMax(0.0).cwiseMin(image_px);
+  return (last - first).prod() / std::max(1.0, box.area_px2());
+}
+
 double intersection_over_union(const Box& a, const Box& b) {
   const Eigen::Vector2d first = (a.centre_px - 0.5 * a.size_px).cwiseMax(b.centre_px - 0.5 * b.size_px);
   const Eigen::Vector2d last = (a.centre_px + 0.5 * a.size_px).cwiseMin(b.centre_px + 0.5 * b.size_px);

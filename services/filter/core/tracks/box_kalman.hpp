@@ -21,6 +21,8 @@ struct Box {
 Box box_of(const vision::Detection& detection);
 /// Shared area over joint area, 0..1.
 double intersection_over_union(const Box& a, const Box& b);
+/// Share of a box that lies inside an image of this size, 0..1.
+double visible_share(const Box& box, const Eigen::Vector2d& image_px);
 
 /// How a box moved from one image to the next.
 struct BoxFlow {

@@ -18,14 +18,6 @@ double seconds(std::int64_t ns) {
   return 1e-9 * static_cast<double>(ns);
 }
 
-/// Share of a box that lies inside the image.
-double visible_share(const Box& box, const TrackedFrame& frame) {
-  const Eigen::Vector2d image(frame.width_px, frame.height_px);
-  const Eigen::Vector2d first = (box.centre_px - 0.5 * box.size_px).cwiseMax(0.0).cwiseMin(image);
-  const Eigen::Vector2d last = (box.centre_px + 0.5 * box.size_px).cwiseMax(0.0).cwiseMin(image);
-  return (last - first).prod() / std::max(1.0, box.area_px2());
-}
-
 const std::string& voted_class(const std::map<std::string, double>& votes) {
   return std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; })
       ->first;
@@ -137,7 +129,7 @@ void BoxTracks::hit(Track& track, std::size_t step, const vision::Detection& det
 void BoxTracks::miss(Track& track, std::size_t step, const TrackedFrame& frame) const {
   constexpr double kMostlyVisible = 0.4;
   if (frame.rolling || frame.stamp_ns <= track.last_hit_ns) return;
-  if (visible_share(track.steps[step].state.box(), frame) < kMostlyVisible) return;
+  if (visible_share(track.steps[step].state.box(), frame.size_px()) < kMostlyVisible) return;
   ++track.misses;
   const double unseen_s = seconds(frame.stamp_ns - track.last_hit_ns - track.distrusted_ns);
   const double known_s = seconds(track.last_hit_ns - track.first_ns);
@@ -201,7 +193,8 @@ bool BoxTracks::expired(const Track& track) const {
   if (now.seen) return false;
   const auto patience_ns = static_cast<std::int64_t>(1e9 * config_.roll_patience_s);
   const std::int64_t unseen_ns = now.stamp_ns - track.last_hit_ns - std::min(track.distrusted_ns, patience_ns);
-  return seconds(unseen_ns) > config_.silence_s || visible_share(now.state.box(), frames_.back()) < kHardlyVisible;
+  return seconds(unseen_ns) > config_.silence_s ||
+         visible_share(now.state.box(), frames_.back().size_px()) < kHardlyVisible;
 }
 
 std::vector<TrackedBox> BoxTracks::boxes() {

@@ -21,6 +21,7 @@ struct TrackedFrame {
   std::int64_t stamp_ns = 0;
   bool rolling = false;  ///< the camera turns fast about its optical axis: detectors miss what they know
   double width_px = 0, height_px = 0;
+  Eigen::Vector2d size_px() const { return {width_px, height_px}; }
 };
 
 /// A track's box in the newest frame.

@@ -94,13 +94,6 @@ std::optional<Box> project(const Eigen::AlignedBox3d& box_world, const MoverFram
   return Box{image.center(), image.sizes()};
 }
 
-double visible_share(const Box& box_px, const geometry::CameraModel& camera) {
-  const auto& p = camera.parameters();
-  const Eigen::Vector2d first = (box_px.centre_px - 0.5 * box_px.size_px).cwiseMax(0.0);
-  const Eigen::Vector2d last = (box_px.centre_px + 0.5 * box_px.size_px).cwiseMin(Eigen::Vector2d(p.width, p.height));
-  return box_px.area_px2() > 0 ? (last - first).cwiseMax(0.0).prod() / box_px.area_px2() : 0.0;
-}
-
 BoxContent look_into(const Eigen::AlignedBox3d& box_world, const MoverFrame& frame) {
   BoxContent content;
   const std::optional<Box> box = project(box_world, frame);

@@ -33,8 +33,6 @@ std::vector<MoverSighting> sight_movers(const MoverFrame& frame, const DepthClus
 
 /// Image of a box in space, undistorted pixels; nothing when a corner is behind the camera.
 std::optional<Box> project(const Eigen::AlignedBox3d& box_world, const MoverFrame& frame);
-/// Share of a box that lies within the image.
-double visible_share(const Box& box_px, const geometry::CameraModel& camera);
 /// What is seen where a box in space is.
 struct BoxContent {
   std::vector<int> cells;  ///< whose points lie in the box, ascending

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "services/filter/core/slow_votes.hpp"
 #include "services/filter/core/tracks/assignment.hpp"
 
 namespace rtd::filter {
@@ -120,11 +121,12 @@ void MoverTracks::hit(Track& track, const MoverSighting& sighting) const {
 
 /// What is in sight is there or not, at rest or not.
 void MoverTracks::miss(Track& track, double elapsed_s, const MoverFrame& frame, const FeatureVotes& slow_votes) const {
-  constexpr double kMostlyVisible = 0.5, kMinFoundShare = 0.2, kFramesBetweenSlowVotes = 3, kRestingRatio = 5;
+  constexpr double kMostlyVisible = 0.5, kMinFoundShare = 0.2, kRestingRatio = 5;
   constexpr int kMinVotes = 6;
   const std::optional<Box> box = project(track.extent(0), frame);
   const double awaited = box ? box->area_px2() / (kCellPx * kCellPx) : 0.0;
-  const bool in_sight = box && visible_share(*box, frame.camera) > kMostlyVisible &&
+  const auto& image = frame.camera.parameters();
+  const bool in_sight = box && visible_share(*box, Eigen::Vector2d(image.width, image.height)) > kMostlyVisible &&
                         look_into(track.extent(0), frame).measured > kMostlyVisible * awaited;
   if (!in_sight) {
     track.out_of_sight = true;
@@ -136,7 +138,7 @@ void MoverTracks::miss(Track& track, double elapsed_s, const MoverFrame& frame, 
   for (const FeatureVote& vote : slow_votes.votes) {
     if (std::binary_search(content.cells.begin(), content.cells.end(), vote.cell)) ++(vote.moving ? moving : resting);
   }
-  if (resting >= kMinVotes && resting >= kRestingRatio * moving) track.rest_s += kFramesBetweenSlowVotes * elapsed_s;
+  if (resting >= kMinVotes && resting >= kRestingRatio * moving) track.rest_s += kFramesPerLookBack * elapsed_s;
 }
 
 bool MoverTracks::ended(const Track& track) const {
