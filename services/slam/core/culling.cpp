@@ -47,8 +47,8 @@ int RecentLandmarks::cull(Map& map, KeyframeId newest, double min_found_ratio) {
 }
 
 bool is_redundant_keyframe(const Map& map, KeyframeId id, double redundant_ratio, double close_depth_m) {
-  if (id == 0) return false;
   const Keyframe& keyframe = *map.find_keyframe(id);
+  if (keyframe.is_origin()) return false;
   int counted = 0, seen = 0;
   for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
     const msg::Feature& feature = keyframe.frame->features[i];

@@ -25,7 +25,7 @@ class RecentLandmarks {
 inline constexpr std::size_t kMaxRedundancyCandidates = 30;
 
 /// Whether nearly all (`redundant_ratio`) close landmarks of a keyframe are seen by at least three others at the same
-/// or a finer scale. Never true for the first keyframe.
+/// or a finer scale. Never true for the first keyframe of a map.
 bool is_redundant_keyframe(const Map& map, KeyframeId keyframe, double redundant_ratio, double close_depth_m);
 
 }  // namespace rtd::slam

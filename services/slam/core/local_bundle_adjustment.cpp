@@ -86,8 +86,9 @@ LocalProblem build(const Map& map, KeyframeId newest, const MapperConfig& config
       select_fixed(map, window, problem.landmarks, static_cast<std::size_t>(config.ba_fixed_keyframes));
   const KeyframeId oldest = *std::min_element(window.begin(), window.end());
   for (const KeyframeId id : window) {
-    // The first keyframe is the origin of the world; a window that nothing else holds is held by its oldest.
-    problem.add_keyframe(*map.find_keyframe(id), id == 0 || (fixed.empty() && id == oldest));
+    // The first keyframe of a map is its origin; a window that nothing else holds is held by its oldest.
+    const Keyframe& keyframe = *map.find_keyframe(id);
+    problem.add_keyframe(keyframe, keyframe.is_origin() || (fixed.empty() && id == oldest));
   }
   for (const KeyframeId id : fixed) problem.add_keyframe(*map.find_keyframe(id), true);
   problem.bundle.camera = map.find_keyframe(newest)->frame->camera;

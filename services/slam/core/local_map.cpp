@@ -56,7 +56,7 @@ const LocalKeyframe* LocalMap::find_keyframe(KeyframeId id) const {
 }
 
 int LocalMap::confirmed_landmarks(const LocalKeyframe& keyframe) const {
-  const int min_weight = map_keyframes <= 2 ? 2 : 3;
+  const int min_weight = component_keyframes <= 2 ? 2 : 3;
   return static_cast<int>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(), [&](LandmarkId id) {
     const LocalLandmark* landmark = id == kNoLandmark ? nullptr : find_landmark(id);
     return landmark != nullptr && landmark->observation_weight >= min_weight;
@@ -66,6 +66,8 @@ int LocalMap::confirmed_landmarks(const LocalKeyframe& keyframe) const {
 LocalMapPtr make_local_map(const Map& map, KeyframeId centre, std::uint64_t version, std::size_t max_keyframes) {
   auto local = std::make_shared<LocalMap>();
   local->version = version;
+  local->map = map.find_keyframe(centre)->map;
+  local->component_keyframes = map.keyframe_count(local->map);
   local->map_keyframes = map.keyframes().size();
   local->map_landmarks = map.landmark_count();
   std::vector<std::pair<LandmarkId, std::uint32_t>> seen;  // landmark, index of a keyframe that sees it

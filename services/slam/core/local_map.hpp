@@ -35,7 +35,9 @@ struct LocalMap {
   std::vector<LocalKeyframe> keyframes;              ///< the centre first, then by landmarks in common
   std::vector<LocalLandmark> landmarks;              ///< ordered by id
   std::vector<std::uint32_t> observers;              ///< indices into keyframes
-  std::size_t map_keyframes = 0, map_landmarks = 0;  ///< size of the whole map
+  MapId map = 0;                                     ///< component of the centre
+  std::size_t component_keyframes = 0;               ///< size of that component
+  std::size_t map_keyframes = 0, map_landmarks = 0;  ///< size of the whole map, all components
 
   const LocalLandmark* find_landmark(LandmarkId id) const;
   const LocalKeyframe* find_keyframe(KeyframeId id) const;

@@ -34,6 +34,14 @@ KeyframeId Map::add_keyframe(FramePtr frame, const Eigen::Isometry3d& T_world_ca
   keyframe.frame = std::move(frame);
   keyframe.T_world_camera = T_world_camera;
   keyframe.parent = parent;
+  if (keyframe.is_origin()) {
+    keyframe.map = next_map_++;
+  } else {
+    Keyframe& older = keyframes_.at(parent);
+    keyframe.map = older.map;
+    older.children.push_back(id);
+  }
+  ++component_sizes_[keyframe.map];
   keyframes_.emplace(id, std::move(keyframe));
   return id;
 }
@@ -108,12 +116,35 @@ void Map::remove_keyframe(KeyframeId id) {
   for (const LandmarkId landmark : std::vector<LandmarkId>(keyframe.landmarks)) {
     if (landmark != kNoLandmark) remove_observation(landmark, id);
   }
-  const Keyframe& parent = keyframes_.at(keyframe.parent);
+  Keyframe& parent = keyframes_.at(keyframe.parent);
   removed_[id] = {keyframe.parent, parent.T_world_camera.inverse() * keyframe.T_world_camera};
-  for (auto& [other_id, other] : keyframes_) {
-    if (other.parent == id) other.parent = keyframe.parent;
-  }
+  parent.children.erase(std::find(parent.children.begin(), parent.children.end(), id));
+  for (const KeyframeId child : keyframe.children) adopt_child(keyframe.parent, child);
+  --component_sizes_[keyframe.map];
   keyframes_.erase(id);
+}
+
+void Map::adopt_child(KeyframeId parent, KeyframeId child) {
+  keyframes_.at(child).parent = parent;
+  std::vector<KeyframeId>& children = keyframes_.at(parent).children;
+  children.insert(std::upper_bound(children.begin(), children.end(), child), child);
+}
+
+void Map::join_components(MapId joined, KeyframeId parent) {
+  const MapId map = keyframes_.at(parent).map;
+  if (map == joined) return;
+  for (auto& [id, keyframe] : keyframes_) {
+    if (keyframe.map != joined) continue;
+    keyframe.map = map;
+    if (keyframe.is_origin()) adopt_child(parent, id);
+  }
+  component_sizes_[map] += component_sizes_[joined];
+  component_sizes_.erase(joined);
+}
+
+std::size_t Map::keyframe_count(MapId map) const {
+  const auto it = component_sizes_.find(map);
+  return it == component_sizes_.end() ? 0 : it->second;
 }
 
 void Map::change_covisibility(const Landmark& landmark, KeyframeId keyframe, int change) {

@@ -17,6 +17,7 @@ namespace rtd::slam {
 
 using KeyframeId = std::uint32_t;
 using LandmarkId = std::uint64_t;
+using MapId = std::uint32_t;  ///< a component of the map: what one first keyframe grew to; 0 = the first
 inline constexpr KeyframeId kNoKeyframe = std::numeric_limits<KeyframeId>::max();
 inline constexpr LandmarkId kNoLandmark = std::numeric_limits<LandmarkId>::max();
 
@@ -47,7 +48,12 @@ struct Keyframe {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::vector<LandmarkId> landmarks;    ///< per feature, kNoLandmark where none
   std::map<KeyframeId, int> covisible;  ///< keyframe -> landmarks in common
-  KeyframeId parent = kNoKeyframe;      ///< older keyframe it was tracked from; none for the first
+  KeyframeId parent = kNoKeyframe;      ///< older keyframe it was tracked from; none for the first of its map
+  std::vector<KeyframeId> children;     ///< keyframes whose parent it is, ascending
+  MapId map = 0;                        ///< component that it belongs to
+
+  /// The first keyframe of its map: holds that map's frame, is never moved by adjustment nor culled.
+  bool is_origin() const { return parent == kNoKeyframe; }
 };
 
 /// Where a removed keyframe hangs now.
@@ -65,11 +71,12 @@ enum class ProbabilityRule : std::uint8_t {
 /// Keyframes, landmarks and who sees what. One writer (the mapper), no locks: readers get LocalMap snapshots.
 ///
 /// Invariants, checked by check_invariants(): an observation is known to both its keyframe and its landmark; every
-/// landmark has at least one; `covisible` counts exactly the landmarks in common and is symmetric; parents are older.
+/// landmark has at least one; `covisible` counts exactly the landmarks in common and is symmetric; parents are older,
+/// belong to the same component and know their children.
 class Map {
  public:
   explicit Map(ProbabilityRule rule = ProbabilityRule::kMeanOfObservations) : probability_rule_(rule) {}
-  /// Ids count up from 0 and are never reused. `parent` may be kNoKeyframe for the first.
+  /// Ids count up from 0 and are never reused. Without parent (kNoKeyframe) the keyframe starts a new component.
   KeyframeId add_keyframe(FramePtr frame, const Eigen::Isometry3d& T_world_camera, KeyframeId parent);
   /// A landmark first seen as `observation`.
   LandmarkId add_landmark(const Eigen::Vector3d& p_world, Observation observation);
@@ -80,8 +87,13 @@ class Map {
   void remove_landmark(LandmarkId landmark);
   /// `kept` takes over what `lost` has been; where a keyframe sees both, `kept` keeps its own observation.
   void replace_landmark(LandmarkId lost, LandmarkId kept);
-  /// Removes a keyframe other than the first; its children go to its parent, its pose stays known relative to it.
+  /// Removes a keyframe other than the first of its component; its children go to its parent, its pose stays known
+  /// relative to it.
   void remove_keyframe(KeyframeId keyframe);
+
+  /// Makes a component part of another: its first keyframe becomes a child of `parent`, an older keyframe of the other.
+  /// Moves nothing: poses and landmarks are the caller's.
+  void join_components(MapId joined, KeyframeId parent);
 
   /// Recomputes normal, distance range, descriptor and static probability from the observations.
   void refresh_landmark(LandmarkId landmark);
@@ -102,6 +114,7 @@ class Map {
 
   const std::map<KeyframeId, Keyframe>& keyframes() const { return keyframes_; }
   std::vector<LandmarkId> landmark_ids() const;  ///< ascending
+  std::size_t keyframe_count(MapId map) const;   ///< of one component; 0 when there is none (any more)
   std::size_t landmark_count() const { return landmarks_.size(); }
   bool empty() const { return keyframes_.empty(); }
   /// Empty when all invariants hold, else the first that does not. For tests.
@@ -109,12 +122,15 @@ class Map {
 
  private:
   ProbabilityRule probability_rule_;
+  void adopt_child(KeyframeId parent, KeyframeId child);
   void change_covisibility(const Landmark& landmark, KeyframeId keyframe, int change);
   void refresh_appearance(Landmark& landmark);
 
   std::map<KeyframeId, Keyframe> keyframes_;
   std::unordered_map<LandmarkId, Landmark> landmarks_;
   std::map<KeyframeId, RemovedKeyframe> removed_;
+  std::map<MapId, std::size_t> component_sizes_;  ///< keyframes
+  MapId next_map_ = 0;
   KeyframeId next_keyframe_ = 0;
   LandmarkId next_landmark_ = 0;
 };

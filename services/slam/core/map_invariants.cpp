@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <string>
 
 #include "services/slam/core/map.hpp"
@@ -23,10 +24,26 @@ std::string check_landmark(const Map& map, const Landmark& landmark) {
   return weight == landmark.observation_weight ? std::string{} : name + " miscounts its observations";
 }
 
+std::string check_family(const Map& map, const Keyframe& keyframe) {
+  if (!keyframe.is_origin()) {
+    const Keyframe* parent = map.find_keyframe(keyframe.parent);
+    if (parent == nullptr) return " lost its parent";
+    if (parent->id >= keyframe.id) return " has a younger parent";
+    if (parent->map != keyframe.map) return " belongs to another map than its parent";
+    if (!std::binary_search(parent->children.begin(), parent->children.end(), keyframe.id)) {
+      return " is unknown to its parent";
+    }
+  }
+  for (const KeyframeId id : keyframe.children) {
+    const Keyframe* child = map.find_keyframe(id);
+    if (child == nullptr || child->parent != keyframe.id) return " has a child that is not its own";
+  }
+  return {};
+}
+
 std::string check_keyframe(const Map& map, const Keyframe& keyframe) {
   const std::string name = "keyframe " + std::to_string(keyframe.id);
-  if (keyframe.parent != kNoKeyframe && keyframe.parent >= keyframe.id) return name + " has a younger parent";
-  if (keyframe.parent != kNoKeyframe && map.find_keyframe(keyframe.parent) == nullptr) return name + " lost its parent";
+  if (std::string error = check_family(map, keyframe); !error.empty()) return name + error;
   std::map<KeyframeId, int> shared;
   for (std::size_t feature = 0; feature < keyframe.landmarks.size(); ++feature) {
     if (keyframe.landmarks[feature] == kNoLandmark) continue;
@@ -51,10 +68,12 @@ std::string Map::check_invariants() const {
   for (const LandmarkId id : landmark_ids()) {
     if (std::string error = check_landmark(*this, *find_landmark(id)); !error.empty()) return error;
   }
+  std::map<MapId, std::size_t> sizes;
   for (const auto& [id, keyframe] : keyframes_) {
+    ++sizes[keyframe.map];
     if (std::string error = check_keyframe(*this, keyframe); !error.empty()) return error;
   }
-  return {};
+  return sizes == component_sizes_ ? std::string{} : "keyframes of a component are miscounted";
 }
 
 }  // namespace rtd::slam

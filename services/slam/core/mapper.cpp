@@ -20,7 +20,8 @@ KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<
   recent_.cull(map_, keyframe, config_.mapper.min_found_ratio);
   create_landmarks(keyframe);
   if (!busy()) fuse_landmarks(map_, keyframe, config_.mapper.neighbours);
-  if (!busy() && map_.keyframes().size() > 2) adjust_local_map(map_, keyframe, config_.mapper, interrupted);
+  if (!busy() && map_.keyframe_count(map_.find_keyframe(keyframe)->map) > 2)
+    adjust_local_map(map_, keyframe, config_.mapper, interrupted);
   cull_keyframes(keyframe);
   const Keyframe& created = *map_.find_keyframe(keyframe);
   announced_[keyframe] = created.T_world_camera;
@@ -59,8 +60,8 @@ void Mapper::count_statistics(const std::vector<LandmarkStatistics>& statistics)
 }
 
 void Mapper::create_landmarks(KeyframeId keyframe) {
-  // The first keyframe has nothing but its depth: all of it is used.
-  const bool first = map_.keyframes().size() == 1;
+  // The first keyframe of a map has nothing but its depth: all of it is used.
+  const bool first = map_.find_keyframe(keyframe)->is_origin();
   recent_.add(create_from_depth(map_, keyframe, first ? config_.sensor.max_depth_m : config_.sensor.close_depth_m));
   recent_.add(create_by_triangulation(map_, keyframe, config_.mapper.neighbours));
 }

@@ -18,7 +18,8 @@ namespace rtd::slam {
 /// since it was tracked.
 struct KeyframeProposal {
   FramePtr frame;
-  KeyframeId reference = kNoKeyframe;  ///< kNoKeyframe: the first keyframe, T_reference_camera is its world pose
+  KeyframeId reference =
+      kNoKeyframe;  ///< kNoKeyframe: the first keyframe of a new map, T_reference_camera is its world pose
   Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
   std::vector<LandmarkId> landmarks;  ///< per feature
   std::vector<LandmarkStatistics> statistics;

@@ -216,7 +216,7 @@ void Tracker::count(const Frame& frame, const LocalMap& map, const LocalMapTrack
 KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_idle) const {
   KeyframeSituation situation;
   situation.frames_since_keyframe = frames_since_keyframe_;
-  situation.map_keyframes = static_cast<int>(map.map_keyframes);
+  situation.map_keyframes = static_cast<int>(map.component_keyframes);
   situation.inliers = inliers_;
   situation.mapper_idle = mapper_idle;
   if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {

@@ -105,6 +105,32 @@ TEST(Map, chain_of_removed_keyframes_follows_the_survivor) {
   EXPECT_EQ(map.find_keyframe(3)->parent, 0U);
 }
 
+TEST(Map, keyframe_without_parent_starts_a_component) {
+  Map map = make_map();
+  const KeyframeId origin = map.add_keyframe(make_test_frame(30), shifted(9), kNoKeyframe);
+  const KeyframeId second = map.add_keyframe(make_test_frame(40), shifted(9.1), origin);
+  EXPECT_EQ(map.find_keyframe(2)->map, 0U);
+  EXPECT_EQ(map.find_keyframe(second)->map, 1U);
+  EXPECT_TRUE(map.find_keyframe(origin)->is_origin());
+  EXPECT_EQ(map.keyframe_count(0), 3U);
+  EXPECT_EQ(map.keyframe_count(1), 2U);
+  EXPECT_EQ(map.check_invariants(), "");
+}
+
+TEST(Map, joined_component_hangs_on_the_other) {
+  Map map = make_map();
+  const KeyframeId origin = map.add_keyframe(make_test_frame(30), shifted(9), kNoKeyframe);
+  map.add_keyframe(make_test_frame(40), shifted(9.1), origin);
+  map.join_components(1, 2);
+  EXPECT_EQ(map.find_keyframe(origin)->parent, 2U);
+  EXPECT_THAT(map.find_keyframe(2)->children, ElementsAre(origin));
+  EXPECT_EQ(map.keyframe_count(0), 5U);
+  EXPECT_EQ(map.keyframe_count(1), 0U);
+  EXPECT_EQ(map.check_invariants(), "");
+  map.remove_keyframe(origin);
+  EXPECT_EQ(map.check_invariants(), "") << "no longer a first keyframe: it may be culled";
+}
+
 TEST(Map, landmark_carries_mean_probability_and_typical_descriptor) {
   Map map;
   for (std::uint32_t k = 0; k < 3; ++k) {
