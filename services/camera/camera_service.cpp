@@ -59,7 +59,9 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
       pacer_(to_pacer_config(config, runtime.pace, source_->info().fps), service::monotonic_ns),
       results_(std::make_shared<Results>(kResultQueue, concurrency::Overflow::kDropOldest)),
       changes_(std::make_shared<concurrency::BoundedQueue<bool>>(1, concurrency::Overflow::kDropOldest)),
-      publisher_(runtime.bus, config.jpeg_quality, [changes = changes_] { changes->push(true); }),
+      publisher_(runtime.bus, config.jpeg_quality,
+                 realtime_ ? concurrency::Overflow::kDropOldest : concurrency::Overflow::kBlock,
+                 [changes = changes_] { changes->push(true); }),
       tracking_(runtime.bus.reader<msg::TrackingResult>(
           bus::topics::kTracking, [results = results_](const auto& result) { results->push(result->seq); })) {
   cv::setNumThreads(1);
@@ -258,6 +260,7 @@ void CameraService::report_counters() {
   set("frames_skipped", counters_.skipped_total());
   set("frames_without_depth", counters_.frames_without_depth);
   set("frames_refused", refused_);
+  set("jpegs_dropped", publisher_.jpegs().dropped());
   set("resends", pacer_.resends());
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <opencv2/imgcodecs.hpp>
 #include <random>
 #include <utility>
 
@@ -29,6 +28,12 @@ void copy_packed(const cv::Mat& image, Array& target) {
   std::memset(bytes, 0, sizeof(target) - used);
 }
 
+bus::StatusCallbacks on_match(const std::function<void()>& tell) {
+  bus::StatusCallbacks callbacks;
+  callbacks.on_matched = [tell](int) { tell(); };
+  return callbacks;
+}
+
 }  // namespace
 
 void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::int64_t published_ns,
@@ -47,18 +52,16 @@ void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::in
   copy_packed(image.depth, frame.depth);
 }
 
-FramePublisher::FramePublisher(bus::Bus& bus, int jpeg_quality, std::function<void()> on_matched)
-    : jpeg_quality_(jpeg_quality), source_id_(random_id()) {
-  bus::StatusCallbacks callbacks;
-  callbacks.on_matched = [on_matched = std::move(on_matched)](int) { on_matched(); };
-  frames_ = bus.writer(bus::topics::kFrame, callbacks);
-  jpegs_ = bus.writer(bus::topics::kColorJpeg, callbacks);
-  infos_ = bus.writer(bus::topics::kCameraInfo);
-}
+FramePublisher::FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Overflow jpeg_overflow,
+                               std::function<void()> on_matched)
+    : source_id_(random_id()),
+      frames_(bus.writer(bus::topics::kFrame, on_match(on_matched))),
+      infos_(bus.writer(bus::topics::kCameraInfo)),
+      jpegs_(bus.writer(bus::topics::kColorJpeg, on_match(on_matched)), jpeg_quality, jpeg_overflow) {}
 
 bool FramePublisher::publish(const vision::RgbdImage& image) {
   const bool taken = publish_raw(image);
-  if (jpegs_.matched() > 0) publish_jpeg(image);
+  jpegs_.offer(image.color_bgr, image.stamp_ns);
   if (!std::exchange(info_sent_, true) || infos_.matched() > 0) {
     infos_.write(to_camera_info(image.camera, image.stamp_ns));
   }
@@ -70,15 +73,6 @@ bool FramePublisher::publish_raw(const vision::RgbdImage& image) {
   if (frame.operator->() == nullptr) return false;
   fill_frame(image, source_id_, service::monotonic_ns(), *frame);
   return frames_.write(std::move(frame));
-}
-
-void FramePublisher::publish_jpeg(const vision::RgbdImage& image) {
-  msg::CompressedImage message;
-  message.header = {msg::to_time(image.stamp_ns), kCameraFrame};
-  message.format = "bgr8; jpeg compressed bgr8";
-  if (!cv::imencode(".jpg", image.color_bgr, message.data, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality_})) return;
-  ++jpegs_encoded_;
-  jpegs_.write(message);
 }
 
 }  // namespace rtd::camera

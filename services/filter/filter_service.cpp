@@ -87,14 +87,13 @@ void FilterService::answer(const msg::RgbdFrame& frame) {
   FilterResult result = filter_.judge(image, std::move(features), word);
   result.stage_ms[msg::kStageWaitDetections] = static_cast<float>(static_cast<double>(waited_ns) * 1e-6);
   fill_message(frame, result, use_of(word, result, frame.stamp_ns), *message_);
-  publish_mask(frame, result);
   writer_.write(*message_);
+  publish_mask(frame, result);
   ++answered_;
   count(result);
 }
 
-/// Before the features, so that whoever has slam's pose of a frame need not wait for its mask. Costs nothing unless
-/// somebody listens.
+/// After the features: slam's pose waits for them, not for the mask. Costs nothing unless somebody listens.
 void FilterService::publish_mask(const msg::RgbdFrame& frame, const FilterResult& result) {
   if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result));
 }

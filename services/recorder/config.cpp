@@ -17,6 +17,7 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
   binder.field("chunk_ms", chunk_ms, {1, 10000}, "or when its first message is so old");
   binder.field("sync_pause_ms", sync_pause_ms, {0, 10000}, "between two syncs");
   binder.field("min_free_mib", min_free_mib, {0, 1'000'000}, "with less space on the disk the recording ends");
+  binder.field("niceness", niceness, {0, 19}, "so much the recorder steps back behind those that it listens to");
   binder.field("in_place", in_place, "take images from the camera's shared memory instead of having them sent");
 }
 

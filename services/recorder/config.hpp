@@ -23,6 +23,7 @@ struct ServiceConfig {
   int chunk_ms = 100;                    ///< or is so old
   int sync_pause_ms = 50;                ///< between two syncs
   int min_free_mib = 64;                 ///< with less space on the disk the recording ends in good order
+  int niceness = 5;                      ///< so much the recorder steps back behind those that it listens to
   bool in_place = false;                 ///< takes images from the camera's shared memory instead of having them sent
 
   void bind(service::ConfigBinder& binder);

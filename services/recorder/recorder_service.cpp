@@ -12,6 +12,7 @@
 #include <iostream>
 
 #include "common/bus/raw_bus.hpp"
+#include "common/concurrency/thread_priority.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/recorder/core/bag_metadata.hpp"
@@ -109,6 +110,7 @@ std::shared_ptr<mcap::ByteSink> RecorderService::open_sink(std::size_t number) c
 }
 
 service::ExitCode RecorderService::run() {
+  concurrency::lower_thread_priority(config_.niceness);  // the threads of the bus inherit it
   started_ns_ = progress_ns_ = service::monotonic_ns();
   bus::BusOptions options = runtime_.bus_options;
   options.participant_name = "rtd-record-topics";

@@ -3,10 +3,10 @@
 #include "services/slam/slam_service.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <exception>
 
+#include "common/concurrency/thread_priority.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/slam/run_files.hpp"
 
@@ -26,11 +26,10 @@ MappingMode mapping_mode(service::Pace pace) {
   return pace == service::Pace::kLockstep ? MappingMode::kSynchronous : MappingMode::kThreaded;
 }
 
-/// The pose of the next frame is more urgent than the map. On Linux niceness belongs to the thread.
+/// The pose of the next frame is more urgent than the map.
 void yield_to_tracking() {
   constexpr int kNicer = 5;
-  const int own = getpriority(PRIO_PROCESS, 0);
-  setpriority(PRIO_PROCESS, 0, own + kNicer);
+  concurrency::lower_thread_priority(kNicer);
 }
 
 }  // namespace

@@ -199,6 +199,7 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
   if (!setup.record.empty()) {
     // Restarted it goes on in a file beside; the first time an earlier recording is refused.
     plans.push_back(plan(setup, "record", ServiceRole::kOptional, {"-o", setup.record, "--beside"}));
+    plans.back().ends_last = true;
   }
   if (detector)
     plans.push_back(plan(setup, "detector", ServiceRole::kOptional, {"--set", "detector.model=" + setup.model_path}));

@@ -235,12 +235,12 @@ TEST_F(CameraServiceTest, EncodesJpegWhileSomebodyListens) {
                                                         [&](const auto& message) { jpeg.set_value(*message); });
   const auto infos =
       bus_->reader<msg::CameraInfo>(bus::topics::kCameraInfo, [&](const auto& message) { info.set_value(*message); });
-  FramePublisher publisher(*bus_, 90, [] {});
+  FramePublisher publisher(*bus_, 90, concurrency::Overflow::kBlock, [] {});
   const auto frame = make_source(std::string(kTinyScene) + "1")->next();
   EXPECT_TRUE(publisher.publish(frame->image));
-  EXPECT_EQ(publisher.jpegs_encoded(), 1U);
   auto received = jpeg.get_future();
   ASSERT_EQ(received.wait_for(kPatience), std::future_status::ready);
+  EXPECT_EQ(publisher.jpegs().encoded(), 1U);
   const msg::CompressedImage image = received.get();
   EXPECT_EQ(msg::to_ns(image.header.stamp), frame->image.stamp_ns);
   EXPECT_THAT(image.format, HasSubstr("jpeg"));
@@ -251,10 +251,35 @@ TEST_F(CameraServiceTest, EncodesJpegWhileSomebodyListens) {
 }
 
 TEST_F(CameraServiceTest, DoesNotEncodeJpegForNobody) {
-  FramePublisher publisher(*bus_, 90, [] {});
+  FramePublisher publisher(*bus_, 90, concurrency::Overflow::kBlock, [] {});
   const auto frame = make_source(std::string(kTinyScene) + "1")->next();
   EXPECT_TRUE(publisher.publish(frame->image));
-  EXPECT_EQ(publisher.jpegs_encoded(), 0U);
+  EXPECT_EQ(publisher.jpegs().encoded(), 0U);
+}
+
+TEST_F(CameraServiceTest, EncodesEveryJpegWhenNothingMayBeDropped) {
+  std::atomic<int> received{0};
+  const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto&) { ++received; });
+  constexpr int kImages = 20;
+  {
+    JpegPublisher publisher(bus_->writer(bus::topics::kColorJpeg), 90, concurrency::Overflow::kBlock);
+    for (int i = 0; i < kImages; ++i) publisher.offer(cv::Mat(480, 640, CV_8UC3, cv::Scalar(i, i, i)), i);
+  }
+  EXPECT_EQ(received, kImages) << "what waits at the end is published too";
+}
+
+TEST_F(CameraServiceTest, CountsTheJpegsThatNewerOnesReplaced) {
+  std::atomic<std::uint64_t> received{0};
+  const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto&) { ++received; });
+  constexpr std::uint64_t kImages = 50;
+  std::uint64_t dropped = 0;
+  {
+    JpegPublisher publisher(bus_->writer(bus::topics::kColorJpeg), 90, concurrency::Overflow::kDropOldest);
+    for (std::uint64_t i = 0; i < kImages; ++i) publisher.offer(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(9)), 1);
+    dropped = publisher.dropped();
+  }
+  EXPECT_GT(dropped, 0U);
+  EXPECT_EQ(received, kImages - dropped);
 }
 
 TEST_F(CameraServiceTest, WaitsForThoseItWasToldTo) {

@@ -11,8 +11,10 @@ namespace rtd::launcher {
 namespace {
 
 using std::chrono::milliseconds;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 /// Processes that end when the test says so.
 class FakeHost : public ProcessHost {
@@ -202,6 +204,34 @@ TEST_F(SupervisorTest, a_second_stop_keeps_the_first_outcome_and_the_shorter_gra
   advance(milliseconds(100));
   EXPECT_THAT(host.killed, ElementsAre("slam"));
   EXPECT_EQ(supervisor.outcome(), RunOutcome::kComplete);
+}
+
+TEST_F(SupervisorTest, who_ends_last_is_asked_when_the_others_have_ended) {
+  supervisor.start({"record", {"rtd-record"}, ServiceRole::kOptional, 0, true}, now);
+  start_all();
+  host.deaf = {"slam", "record"};
+  supervisor.stop(now, milliseconds(1200), RunOutcome::kComplete);
+  EXPECT_THAT(host.terminated, ElementsAre("slam", "detector", "camera"));
+  advance(milliseconds(1000));
+  EXPECT_THAT(host.terminated, ElementsAre("slam", "detector", "camera")) << "slam still works";
+  host.end("slam", {});
+  advance(milliseconds(10));
+  EXPECT_THAT(host.terminated, ElementsAre("slam", "detector", "camera", "record"));
+  advance(milliseconds(1000));
+  EXPECT_THAT(host.killed, IsEmpty()) << "its own grace";
+  advance(milliseconds(250));
+  EXPECT_THAT(host.killed, ElementsAre("record"));
+  advance(milliseconds(10));
+  EXPECT_TRUE(supervisor.all_ended());
+}
+
+TEST_F(SupervisorTest, a_second_stop_asks_who_ends_last_too) {
+  supervisor.start({"record", {"rtd-record"}, ServiceRole::kOptional, 0, true}, now);
+  start_all();
+  host.deaf = {"slam"};
+  supervisor.stop(now, milliseconds(5000), RunOutcome::kInterrupted);
+  supervisor.stop(now, milliseconds(0), RunOutcome::kInterrupted);
+  EXPECT_THAT(host.terminated, Contains("record"));
 }
 
 TEST_F(SupervisorTest, a_missing_executable_is_told_to_the_caller) {

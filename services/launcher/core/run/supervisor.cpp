@@ -37,21 +37,37 @@ void Supervisor::update(Clock now) {
     } else if (child.state == State::kWaiting && now >= child.restart_at) {
       relaunch(child, now);
     }
-    if (stopping_ && child.state == State::kRunning && now >= kill_at_ && !child.killed) {
+    if (child.asked && child.state == State::kRunning && now >= child.kill_at && !child.killed) {
       child.killed = true;
       host_.kill(child.process);
     }
+  }
+  if (!stopping_ || !others_ended()) return;
+  for (Child& child : children_) {
+    if (!child.asked) ask_to_end(child, now + grace_);
   }
 }
 
 void Supervisor::stop(Clock now, Clock grace, RunOutcome why) {
   decide(why);
-  kill_at_ = stopping_ ? std::min(kill_at_, now + grace) : now + grace;
-  stopping_ = true;
+  const bool again = std::exchange(stopping_, true);
+  grace_ = grace;
   for (Child& child : children_) {
-    if (child.state == State::kRunning) host_.terminate(child.process);
-    if (child.state == State::kWaiting) child.state = State::kEnded;
+    const Clock kill_at = child.asked ? std::min(child.kill_at, now + grace) : now + grace;
+    if (again || !child.plan.ends_last || child.state != State::kRunning) ask_to_end(child, kill_at);
   }
+}
+
+void Supervisor::ask_to_end(Child& child, Clock kill_at) {
+  child.asked = true;
+  child.kill_at = kill_at;
+  if (child.state == State::kRunning) host_.terminate(child.process);
+  if (child.state == State::kWaiting) child.state = State::kEnded;
+}
+
+bool Supervisor::others_ended() const {
+  return std::all_of(children_.begin(), children_.end(),
+                     [](const Child& child) { return child.plan.ends_last || child.state == State::kEnded; });
 }
 
 bool Supervisor::all_ended() const {

@@ -23,7 +23,8 @@ struct ServicePlan {
   std::string name;
   std::vector<std::string> command;  ///< executable and arguments
   ServiceRole role = ServiceRole::kEssential;
-  int niceness = 0;  ///< see ProcessSpec
+  int niceness = 0;        ///< see ProcessSpec
+  bool ends_last = false;  ///< asked to end when all others have ended: a recorder hears their last words
 };
 
 struct SupervisorOptions {
@@ -63,7 +64,8 @@ class Supervisor {
   void start(const ServicePlan& plan, Clock now);
   /// Looks for deaths, restarts what is due, kills what did not end within the grace of stop(). Call it often.
   void update(Clock now);
-  /// Asks every service to end; those still there after `grace` are killed by update(). The first outcome stays.
+  /// Asks every service to end, those that end last when the others have; who is still there `grace` after it was
+  /// asked is killed by update(). The first outcome stays. A second stop is in a hurry: all are asked at once.
   void stop(Clock now, Clock grace, RunOutcome why);
 
   RunOutcome outcome() const { return outcome_; }
@@ -82,13 +84,16 @@ class Supervisor {
     State state = State::kEnded;
     int deaths_in_row = 0, restarts = 0;
     Clock started{}, restart_at{};
-    bool killed = false;
+    bool asked = false, killed = false;
+    Clock kill_at{};
   };
 
   void launch(Child& child, Clock now);
   void relaunch(Child& child, Clock now);
   void on_exit(Child& child, const ProcessExit& exit, Clock now);
   void on_death(Child& child, const ProcessExit& exit, Clock now);
+  void ask_to_end(Child& child, Clock kill_at);
+  bool others_ended() const;
   void decide(RunOutcome outcome);
   void report(SupervisorEvent::Kind kind, const Child& child, const std::string& text, const ProcessExit& exit = {});
 
@@ -98,7 +103,7 @@ class Supervisor {
   std::vector<Child> children_;
   RunOutcome outcome_ = RunOutcome::kRunning;
   bool stopping_ = false;
-  Clock kill_at_{};
+  Clock grace_{};
 };
 
 }  // namespace rtd::launcher
