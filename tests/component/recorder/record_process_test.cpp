@@ -3,6 +3,7 @@
 //
 // rtd-record beside publishers over Fast DDS, as people use it.
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 
 #include <chrono>
 #include <cstring>
@@ -128,6 +129,47 @@ TEST_F(RecordProcess, parts_of_a_split_recording_are_complete_and_compressed) {
   EXPECT_EQ(next, kMessages + 1);
   EXPECT_GT(part, 2U);
   EXPECT_TRUE(fs::exists(folder_ / "bag" / "metadata.yaml"));
+}
+
+/// A disk of a few megabytes.
+class SmallDisk {
+ public:
+  explicit SmallDisk(fs::path folder) : folder_(std::move(folder)) {
+    fs::create_directories(folder_);
+    mounted_ = mount("rtd_test", folder_.c_str(), "tmpfs", 0, "size=4m") == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) umount2(folder_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  bool mounted() const { return mounted_; }
+
+ private:
+  const fs::path folder_;
+  bool mounted_ = false;
+};
+
+TEST_F(RecordProcess, a_full_disk_ends_it_and_keeps_what_was_written) {
+  const SmallDisk disk(folder_ / "disk");
+  if (!disk.mounted()) GTEST_SKIP() << "needs root (or CAP_SYS_ADMIN) to mount a small disk";
+  const auto raw = bus::connect_raw(options_);
+  const auto writer = raw->writer({"rt/laser", "vendor_msgs::msg::dds_::Laser_"}, {});
+  RecorderProcess recorder(
+      test_domain(), {"-o", folder_ / "disk" / "run.mcap", "--topics", "/laser", "--set", "record.min_free_mib=0"});
+  wait_heard(*writer);
+  constexpr std::size_t kSize = 100'000, kDiskBytes = 4U << 20U;
+  std::uint32_t sent = 0;
+  for (; sent * kSize < 2 * kDiskBytes && writer->matched() > 0; ++sent) {
+    ASSERT_TRUE(writer->write(some_bytes(sent, kSize)));
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_EQ(recorder.wait(), 3) << "ended by itself, and says that something is missing";
+
+  const RecordedFile file = read_recording(folder_ / "disk" / "run.mcap");
+  const std::vector<ReadMessage>& recorded = file.topics.at("/laser");
+  EXPECT_GE(recorded.size() * kSize, kDiskBytes - (2U << 20U)) << "at most the last chunks are missing";
+  for (std::uint32_t i = 0; i < recorded.size(); ++i) ASSERT_TRUE(recorded[i].cdr == some_bytes(i, kSize)) << i;
 }
 
 TEST_F(RecordProcess, wrong_output_is_exit_code_2) {
