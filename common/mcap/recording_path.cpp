@@ -23,7 +23,8 @@ fs::path recording_path(const fs::path& path) {
   if (files.size() == 1) return files.front();
   if (files.empty()) throw IoError(EISDIR, path.string() + ": this folder holds no .mcap file");
   throw IoError(EISDIR, path.string() + ": this folder holds " + std::to_string(files.size()) +
-                            " .mcap files, name one of them, e.g. " + files.front().string());
+                            " .mcap files: name one of them, e.g. " + files.front().string() +
+                            ", or join them: rtd record join " + path.string() + " -o FILE");
 }
 
 }  // namespace rtd::mcap

@@ -83,6 +83,7 @@ void RecorderService::add_options(CLI::App& app, Config& config) {
   app.add_flag("--json", config.json, "Final report as JSON on stdout");
   app.footer(
       "rtd record recover FILE    makes what is whole in a damaged or unfinished recording a well-formed one\n"
+      "rtd record join FOLDER -o FILE   makes one recording of the parts of a split one\n"
       "Exit code 3: recorded, but something was lost; the report, the log and the file say what.");
 }
 

@@ -14,6 +14,7 @@
 #include "tests/component/bus/patterns.hpp"
 #include "tests/component/recorder/recorded_file.hpp"
 #include "tests/component/recorder/recorder_process.hpp"
+#include "tests/support/run_command.hpp"
 
 namespace rtd::recorder {
 namespace {
@@ -129,6 +130,13 @@ TEST_F(RecordProcess, parts_of_a_split_recording_are_complete_and_compressed) {
   EXPECT_EQ(next, kMessages + 1);
   EXPECT_GT(part, 2U);
   EXPECT_TRUE(fs::exists(folder_ / "bag" / "metadata.yaml"));
+
+  const auto command = testing::run_command(std::string(RTD_RECORD_PATH) + " join " + (folder_ / "bag").string() +
+                                            " -o " + (folder_ / "joined.mcap").string());
+  EXPECT_EQ(command.exit_code, 0) << command.output;
+  const RecordedFile joined = read_recording(folder_ / "joined.mcap");
+  ASSERT_EQ(joined.topics.at("/laser").size(), kMessages);
+  for (std::uint32_t i = 0; i < kMessages; ++i) ASSERT_EQ(joined.topics.at("/laser")[i].sequence, i + 1);
 }
 
 /// A disk of a few megabytes.
