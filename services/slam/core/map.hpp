@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "common/msg/features.hpp"
@@ -68,6 +69,17 @@ enum class ProbabilityRule : std::uint8_t {
   kBelief,              ///< the first observation, then what tracking gathers (landmark_statistics.hpp)
 };
 
+/// All of a map that cannot be computed anew: what a map file holds.
+struct MapContents {
+  ProbabilityRule probability_rule = ProbabilityRule::kMeanOfObservations;
+  std::vector<Keyframe> keyframes;                              ///< by id; without `covisible` and `children`
+  std::vector<Landmark> landmarks;                              ///< by id
+  std::vector<std::pair<KeyframeId, RemovedKeyframe>> removed;  ///< by id
+  KeyframeId next_keyframe = 0;                                 ///< ids from here on are free
+  LandmarkId next_landmark = 0;
+  MapId next_map = 0;
+};
+
 /// Keyframes, landmarks and who sees what. One writer (the mapper), no locks: readers get LocalMap snapshots.
 ///
 /// Invariants, checked by check_invariants(): an observation is known to both its keyframe and its landmark; every
@@ -76,6 +88,8 @@ enum class ProbabilityRule : std::uint8_t {
 class Map {
  public:
   explicit Map(ProbabilityRule rule = ProbabilityRule::kMeanOfObservations) : probability_rule_(rule) {}
+  /// A map as it was saved. The contents are sound: every cross reference holds (store/map_reader.hpp checks it).
+  explicit Map(MapContents contents);
   /// Ids count up from 0 and are never reused. Without parent (kNoKeyframe) the keyframe starts a new component.
   KeyframeId add_keyframe(FramePtr frame, const Eigen::Isometry3d& T_world_camera, KeyframeId parent);
   /// A landmark first seen as `observation`.
@@ -117,6 +131,11 @@ class Map {
   std::size_t keyframe_count(MapId map) const;   ///< of one component; 0 when there is none (any more)
   std::size_t landmark_count() const { return landmarks_.size(); }
   bool empty() const { return keyframes_.empty(); }
+  ProbabilityRule probability_rule() const { return probability_rule_; }
+  const std::map<KeyframeId, RemovedKeyframe>& removed_keyframes() const { return removed_; }
+  KeyframeId next_keyframe() const { return next_keyframe_; }
+  LandmarkId next_landmark() const { return next_landmark_; }
+  MapId next_map() const { return next_map_; }
   /// Empty when all invariants hold, else the first that does not. For tests.
   std::string check_invariants() const;
 
