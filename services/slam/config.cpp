@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/config.hpp"
 
+#include <fstream>
+
+#include "services/slam/core/place/vocabulary.hpp"
+
 namespace rtd::slam {
 namespace {
 
@@ -11,6 +15,7 @@ void bind_techniques(ConfigBinder& binder, Techniques& t) {
   binder.field("techniques.landmark_belief", t.landmark_belief, "off: landmarks weigh the mean of their observations");
   binder.field("techniques.adaptive_kernel", t.adaptive_kernel, "off: Huber's loss with a fixed threshold");
   binder.field("techniques.prediction", t.prediction, "off: lost at once when nothing static is in view");
+  binder.field("techniques.place_recognition", t.place_recognition, "off: found back only around the last pose");
 }
 
 void bind_sensor(ConfigBinder& binder, SensorConfig& c) {
@@ -85,7 +90,30 @@ void bind_mapper(ConfigBinder& binder, MapperConfig& c) {
   binder.field("mapper.correction_rad", c.correction_rad, {0.0, 1.0}, "the same for its rotation");
 }
 
+/// At most one byte more than a vocabulary may have: who names a video by mistake need not wait.
+std::vector<std::byte> read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw service::ConfigError("slam.place.vocabulary: cannot read '" + path +
+                               "'; leave it empty for the built-in one");
+  std::vector<std::byte> bytes(Vocabulary::kMaxBytes + 1);
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
+}
+
 }  // namespace
+
+SlamConfig with_vocabulary(const ServiceConfig& config) {
+  SlamConfig core = config.core;
+  if (config.vocabulary_file.empty()) return core;
+  try {
+    core.place.vocabulary = std::make_shared<const Vocabulary>(Vocabulary::parse(read_file(config.vocabulary_file)));
+  } catch (const VocabularyError& error) {
+    throw service::ConfigError("slam.place.vocabulary: '" + config.vocabulary_file + "': " + error.what());
+  }
+  return core;
+}
 
 void ServiceConfig::bind(ConfigBinder& binder) {
   bind_techniques(binder, core.techniques);
@@ -95,6 +123,7 @@ void ServiceConfig::bind(ConfigBinder& binder) {
   bind_belief(binder, core.belief);
   bind_keyframe(binder, core.keyframe);
   bind_mapper(binder, core.mapper);
+  binder.field("place.vocabulary", vocabulary_file, "file of rtd-train-vocabulary; empty: the built-in one");
   binder.field("out", out_dir, "folder for trajectory.txt, keyframes.txt and map.ply; empty: none");
   binder.field("map_frame", map_frame, "frame of all poses in the messages");
   binder.field("camera_frame", camera_frame, "child frame of the poses: optical");

@@ -11,8 +11,9 @@ namespace rtd::slam {
 
 /// Section `slam` of the configuration. The numbers of the core have their defaults in core/slam_config.hpp.
 struct ServiceConfig {
-  SlamConfig core;
-  std::string out_dir;  ///< trajectory, keyframes and map are written here at the end; empty = nowhere
+  SlamConfig core;              ///< but for place.vocabulary: with_vocabulary()
+  std::string vocabulary_file;  ///< empty: the built-in vocabulary
+  std::string out_dir;          ///< trajectory, keyframes and map are written here at the end; empty = nowhere
   std::string map_frame = "map";
   std::string camera_frame = "camera_color_optical_frame";
   int path_length = 2000;    ///< poses kept for rt/slam/path
@@ -21,5 +22,9 @@ struct ServiceConfig {
 
   void bind(service::ConfigBinder& binder);
 };
+
+/// The configuration of the core with the vocabulary of `vocabulary_file`. Throws service::ConfigError naming the file
+/// when it cannot be read or is damaged.
+SlamConfig with_vocabulary(const ServiceConfig& config);
 
 }  // namespace rtd::slam

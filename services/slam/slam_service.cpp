@@ -41,7 +41,7 @@ void SlamService::add_options(CLI::App& app, Config& config) {
 SlamService::SlamService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
-      slam_(config.core, mapping_mode(runtime.pace), service::monotonic_ns, yield_to_tracking),
+      slam_(with_vocabulary(config), mapping_mode(runtime.pace), service::monotonic_ns, yield_to_tracking),
       publisher_(config, runtime.bus, [this] { return slam_.map_points(); }),
       arrivals_(runtime.pace == service::Pace::kRealtime
                     ? std::make_shared<Arrivals>(kRealtimeQueue, concurrency::Overflow::kDropOldest)

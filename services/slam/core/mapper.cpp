@@ -6,12 +6,22 @@
 #include "services/slam/core/landmark_creation.hpp"
 #include "services/slam/core/landmark_fusion.hpp"
 #include "services/slam/core/local_bundle_adjustment.hpp"
+#include "services/slam/core/place/built_in_vocabulary.hpp"
 
 namespace rtd::slam {
+namespace {
+
+std::shared_ptr<const Vocabulary> choose_vocabulary(const SlamConfig& config) {
+  if (!config.techniques.place_recognition) return nullptr;
+  return config.place.vocabulary != nullptr ? config.place.vocabulary : built_in_vocabulary();
+}
+
+}  // namespace
 
 Mapper::Mapper(const SlamConfig& config)
     : config_(config),
-      map_(config.techniques.landmark_belief ? ProbabilityRule::kBelief : ProbabilityRule::kMeanOfObservations) {}
+      map_(config.techniques.landmark_belief ? ProbabilityRule::kBelief : ProbabilityRule::kMeanOfObservations),
+      vocabulary_(choose_vocabulary(config)) {}
 
 KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<bool()>& interrupted) {
   const auto busy = [&] { return interrupted && interrupted(); };
@@ -23,6 +33,7 @@ KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<
   if (!busy() && map_.keyframe_count(map_.find_keyframe(keyframe)->map) > 2)
     adjust_local_map(map_, keyframe, config_.mapper, interrupted);
   cull_keyframes(keyframe);
+  if (vocabulary_ != nullptr) places_.add(keyframe, vocabulary_->describe(proposal.frame->features));
   const Keyframe& created = *map_.find_keyframe(keyframe);
   announced_[keyframe] = created.T_world_camera;
   changes_.push_back(
@@ -73,6 +84,7 @@ void Mapper::cull_keyframes(KeyframeId newest) {
     changes_.push_back(
         {KeyframeChange::Kind::kRemoved, id, keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera});
     announced_.erase(id);
+    places_.remove(id);
     map_.remove_keyframe(id);
   }
 }

@@ -11,6 +11,8 @@
 #include "services/slam/core/landmark_statistics.hpp"
 #include "services/slam/core/local_map.hpp"
 #include "services/slam/core/map.hpp"
+#include "services/slam/core/place/keyframe_database.hpp"
+#include "services/slam/core/place/vocabulary.hpp"
 
 namespace rtd::slam {
 
@@ -48,6 +50,10 @@ class Mapper {
   /// Created, corrected and removed keyframes since the last call, in order.
   std::vector<KeyframeChange> take_changes();
   const Map& map() const { return map_; }
+  /// Words of all keyframes in the map; empty when place recognition is off.
+  const KeyframeDatabase& places() const { return places_; }
+  /// Null when place recognition is off.
+  const std::shared_ptr<const Vocabulary>& vocabulary() const { return vocabulary_; }
 
  private:
   KeyframeId add_keyframe(const KeyframeProposal& proposal);
@@ -58,6 +64,8 @@ class Mapper {
 
   SlamConfig config_;
   Map map_;
+  std::shared_ptr<const Vocabulary> vocabulary_;
+  KeyframeDatabase places_;
   RecentLandmarks recent_;
   std::map<KeyframeId, Eigen::Isometry3d> announced_;  ///< T_world_camera as last told
   std::vector<KeyframeChange> changes_;

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+
 namespace rtd::slam {
+
+class Vocabulary;
 
 /// Every number of the SLAM core with its default; bound to keys `slam.*` in services/slam/config.cpp.
 
@@ -11,6 +15,7 @@ struct Techniques {
   bool landmark_belief = false;  ///< landmarks bear a static probability over time; off: the mean of their observations
   bool adaptive_kernel = true;   ///< robust loss fitted to the residuals; off: Huber with a fixed threshold
   bool prediction = true;        ///< a short, marked prediction when nothing static is in view; off: lost at once
+  bool place_recognition = true;  ///< places are known again by their words; off: only around the last pose
 };
 
 /// The camera and its features, as SLAM weighs them.
@@ -72,6 +77,11 @@ struct MapperConfig {
   double correction_rad = 0.001;
 };
 
+/// How places are recognised: docs/theory/place_recognition.md.
+struct PlaceConfig {
+  std::shared_ptr<const Vocabulary> vocabulary;  ///< null: the one that was built in
+};
+
 struct SlamConfig {
   Techniques techniques;
   SensorConfig sensor;
@@ -80,6 +90,7 @@ struct SlamConfig {
   BeliefConfig belief;
   KeyframeConfig keyframe;
   MapperConfig mapper;
+  PlaceConfig place;
 };
 
 }  // namespace rtd::slam

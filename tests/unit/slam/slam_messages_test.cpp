@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <fstream>
 
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
@@ -81,6 +82,17 @@ TEST(Config, refuses_unknown_keys_and_values_out_of_range) {
               ThrowsMessage<service::ConfigError>(HasSubstr("min_inliers")));
   EXPECT_THAT([&] { binder.set("slam.mapper.redundant_ratio=1.5"); },
               ThrowsMessage<service::ConfigError>(HasSubstr("redundant_ratio")));
+}
+
+TEST(SlamConfig, refuses_a_vocabulary_that_is_missing_or_damaged) {
+  ServiceConfig config;
+  EXPECT_EQ(with_vocabulary(config).place.vocabulary, nullptr);  // the core takes the built-in one
+  config.vocabulary_file = testing::TempDir() + "rtd_no_such_file.vocabulary";
+  EXPECT_THAT([&] { with_vocabulary(config); },
+              ThrowsMessage<service::ConfigError>(HasSubstr("slam.place.vocabulary: cannot read")));
+  config.vocabulary_file = testing::TempDir() + "rtd_damaged.vocabulary";
+  std::ofstream(config.vocabulary_file) << "RTDVOC01 and then something else";
+  EXPECT_THAT([&] { with_vocabulary(config); }, ThrowsMessage<service::ConfigError>(HasSubstr("rtd-train-vocabulary")));
 }
 
 }  // namespace
