@@ -64,6 +64,9 @@ class FileSink final : public ByteSink {
   void append(std::initializer_list<ByteView> parts) override;
   std::uint64_t position() const override { return position_.load(std::memory_order_acquire); }
   std::uint64_t sync() override;
+  /// Makes everything durable and gives the file another name, in one step replacing what has it: after a crash there is
+  /// the one or the other, whole. Same file system. Throws IoError.
+  void replace(const std::filesystem::path& path);
   const std::filesystem::path& path() const { return path_; }
 
  private:

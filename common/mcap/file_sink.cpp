@@ -31,13 +31,15 @@ std::string reason(int error_number) {
       return "no permission to write in this folder";
     case ENOENT:
       return "there is no such folder";
+    case EFBIG:
+      return "the file may not become larger (ulimit -f, or the file system)";
     default:
       return "cannot write";
   }
 }
 
 [[noreturn]] void fail(const std::filesystem::path& path, int error_number) {
-  throw IoError(error_number, "MCAP file " + path.string() + ": " + reason(error_number));
+  throw IoError(error_number, path.string() + ": " + reason(error_number));
 }
 
 /// writev until all is out; the parts shrink from the front. Returns 0 or the errno.
@@ -106,6 +108,13 @@ std::uint64_t FileSink::sync() {
   if (cached_ == Cached::kDrop) ::posix_fadvise(fd_, 0, static_cast<off_t>(covered), POSIX_FADV_DONTNEED);  // a wish
   if (!folder_synced_.load()) sync_folder();
   return covered;
+}
+
+void FileSink::replace(const std::filesystem::path& path) {
+  sync();
+  if (::rename(path_.c_str(), path.c_str()) != 0) fail(path, errno);
+  path_ = path;
+  sync_folder();
 }
 
 /// The name of a new file lives in its folder, which fdatasync(2) of the file does not cover.

@@ -15,13 +15,13 @@ bool usable_intrinsics(const msg::FeatureFrame& message) {
   return std::isfinite(fx) && std::isfinite(fy) && std::isfinite(cx) && std::isfinite(cy) && fx > 1 && fy > 1;
 }
 
+}  // namespace
+
 bool usable(const msg::Feature& feature) {
   return std::isfinite(feature.u_px) && std::isfinite(feature.v_px) && std::isfinite(feature.angle_rad) &&
          std::isfinite(feature.depth_m) && feature.depth_m >= 0 && feature.static_probability >= 0 &&
          feature.static_probability <= 1 && feature.octave < kOctaves;
 }
-
-}  // namespace
 
 Eigen::Vector3d Frame::unproject(std::size_t feature) const {
   const msg::Feature& f = features[feature];

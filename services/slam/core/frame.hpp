@@ -42,6 +42,9 @@ struct Frame {
 };
 using FramePtr = std::shared_ptr<const Frame>;
 
+/// Whether all values of a feature are finite and in their ranges.
+bool usable(const msg::Feature& feature);
+
 /// Whether a frame keeps the features that the filter removed: only the landmark belief asks for them.
 enum class RemovedFeatures { kDrop, kKeep };
 

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/store/block_io.hpp"
+
+#include "common/mcap/crc32.hpp"
+#include "common/mcap/decode.hpp"
+#include "services/slam/core/store/field_io.hpp"
+
+namespace rtd::slam::map_format {
+namespace {
+
+constexpr std::size_t kCrcBytes = 4;
+
+std::string name_of(BlockTag tag) {
+  switch (tag) {
+    case BlockTag::kHead:
+    case BlockTag::kLandmarks:
+    case BlockTag::kKeyframes:
+    case BlockTag::kRemoved:
+    case BlockTag::kEnd: {
+      mcap::Bytes letters;
+      FieldWriter{letters}(static_cast<std::uint32_t>(tag));
+      return {reinterpret_cast<const char*>(letters.data()), letters.size()};
+    }
+  }
+  return {};
+}
+
+/// The preamble says which version wrote the rest, in every version alike.
+void check_preamble(mcap::ByteView preamble) {
+  if (!std::ranges::equal(preamble.first(kMagic.size()), mcap::bytes_of(kMagic)))
+    throw MapFileError(MapFileDefect::kNotAMap, "this is no map file: it does not begin with RTDMAP");
+  const mcap::ByteView described = preamble.first(kPreambleBytes - kCrcBytes);
+  if (mcap::load<std::uint32_t>(preamble.data() + described.size()) != mcap::crc32(described))
+    fail_damaged(0, "the checksum of the file's beginning does not fit");
+  const auto version = mcap::load<std::uint32_t>(preamble.data() + kMagic.size());
+  if (version == kVersion) return;
+  throw MapFileError(MapFileDefect::kVersion,
+                     "the map file has version " + std::to_string(version) + " of the format, this program reads " +
+                         "version " + std::to_string(kVersion) + ": " +
+                         (version > kVersion ? "use the newer program that wrote it, or map again"
+                                             : "map again, or use the older program that wrote it"));
+}
+
+}  // namespace
+
+void fail_damaged(std::uint64_t offset, const std::string& cause) {
+  throw MapFileError(MapFileDefect::kDamaged, "the map file is damaged at byte " + std::to_string(offset) + ": " +
+                                                  cause + "; use a copy or the last checkpoint, or map again");
+}
+
+BlockWriter::BlockWriter(mcap::ByteSink& sink) : sink_(sink) {
+  mcap::Bytes preamble(mcap::bytes_of(kMagic).begin(), mcap::bytes_of(kMagic).end());
+  FieldWriter write(preamble);
+  write(kVersion);
+  write(mcap::crc32(preamble));
+  sink_.append({preamble});
+}
+
+void BlockWriter::write(BlockTag tag, mcap::ByteView payload) {
+  mcap::Bytes head, crc;
+  FieldWriter{head}(static_cast<std::uint32_t>(tag), static_cast<std::uint32_t>(payload.size()));
+  FieldWriter{crc}(mcap::crc32(payload, mcap::crc32(head)));
+  sink_.append({head, payload, crc});
+  ++blocks_;
+}
+
+void BlockWriter::end() {
+  mcap::Bytes payload;
+  FieldWriter{payload}(blocks_, sink_.position());
+  write(BlockTag::kEnd, payload);
+}
+
+BlockReader::BlockReader(const mcap::ByteSource& source) : source_(source) {
+  const std::size_t begins_with = static_cast<std::size_t>(std::min<std::uint64_t>(source.size(), kMagic.size()));
+  const mcap::ByteView begin = read(begins_with, "beginning");
+  if (!std::ranges::equal(begin, mcap::bytes_of(kMagic).first(begin.size())) || source.size() == 0)
+    throw MapFileError(MapFileDefect::kNotAMap,
+                       source.size() == 0 ? "the file is empty" : "this is no map file: it does not begin with RTDMAP");
+  position_ = 0;
+  check_preamble(read(kPreambleBytes, "beginning"));
+}
+
+mcap::ByteView BlockReader::read(std::size_t size, const char* what) {
+  if (size > source_.size() - position_)
+    fail_damaged(position_, "the file ends inside its " + std::string(what) + " (" + std::to_string(source_.size()) +
+                                " bytes): it was cut");
+  if (buffer_.size() < size) buffer_.resize(size);
+  const std::span<std::byte> bytes(buffer_.data(), size);
+  if (source_.read(position_, bytes) != size) fail_damaged(position_, "the disk does not give its bytes");
+  position_ += size;
+  return bytes;
+}
+
+Block BlockReader::next() {
+  const std::uint64_t offset = position_;
+  const mcap::ByteView head = read(kBlockHeadBytes, "blocks");
+  const auto tag = static_cast<BlockTag>(mcap::load<std::uint32_t>(head.data()));
+  const auto size = mcap::load<std::uint32_t>(head.data() + 4);
+  const std::uint32_t head_crc = mcap::crc32(head);
+  const std::string name = name_of(tag);
+  if (name.empty()) fail_damaged(offset, "a block of an unknown kind");
+  if (size > kMaxBlockBytes) fail_damaged(offset, "block " + name + " of " + std::to_string(size) + " bytes");
+  const mcap::ByteView rest = read(size + kCrcBytes, "blocks");
+  const mcap::ByteView payload = rest.first(size);
+  if (mcap::load<std::uint32_t>(rest.data() + size) != mcap::crc32(payload, head_crc))
+    fail_damaged(offset, "the checksum of block " + name + " does not fit");
+  ++blocks_;
+  return {tag, offset, payload};
+}
+
+void BlockReader::check_end(const Block& last) const {
+  std::uint32_t blocks = 0;
+  std::uint64_t offset = 0;
+  if (last.tag != BlockTag::kEnd) fail_damaged(last.offset, "block ENDS is missing");
+  FieldReader read(last.payload);
+  read(blocks, offset);
+  if (blocks + 1 != blocks_ || offset != last.offset || read.left() != 0)
+    fail_damaged(last.offset, "blocks are missing or repeated");
+  if (position_ != source_.size()) fail_damaged(position_, "something follows the end of the map");
+}
+
+}  // namespace rtd::slam::map_format

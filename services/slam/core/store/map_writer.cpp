@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/store/map_writer.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "services/slam/core/store/block_io.hpp"
+#include "services/slam/core/store/field_io.hpp"
+#include "services/slam/core/store/soundness.hpp"
+
+namespace rtd::slam {
+namespace {
+
+using namespace map_format;
+
+mcap::Bytes encode_head(const Head& head) {
+  mcap::Bytes bytes;
+  FieldWriter write(bytes);
+  write(head.keyframes, head.landmarks, head.removed, head.next_keyframe, head.next_landmark, head.next_map,
+        static_cast<std::uint8_t>(head.probability_rule), static_cast<std::uint16_t>(head.cameras.size()));
+  for (const StoredCamera& camera : head.cameras) {
+    const auto& [fx, fy, cx, cy, disparity_px_m] = camera.projection;
+    write(fx, fy, cx, cy, disparity_px_m, static_cast<std::uint32_t>(camera.width_px),
+          static_cast<std::uint32_t>(camera.height_px));
+  }
+  return bytes;
+}
+
+/// Records of one size that are encoded already.
+void write_records(BlockWriter& blocks, BlockTag tag, mcap::ByteView records, std::size_t record_bytes) {
+  const std::size_t block_bytes = kBlockBytes / record_bytes * record_bytes;
+  for (; !records.empty(); records = records.subspan(std::min(block_bytes, records.size())))
+    blocks.write(tag, records.first(std::min(block_bytes, records.size())));
+}
+
+void encode_features(FieldWriter& write, const std::vector<msg::Feature>& features) {
+  for (const msg::Feature& f : features)
+    write(f.u_px, f.v_px, f.depth_m, f.angle_rad, f.static_probability, f.octave, f.flags, f.descriptor);
+}
+
+class KeyframeEncoder {
+ public:
+  explicit KeyframeEncoder(const MapSnapshot& snapshot) : snapshot_(snapshot) {}
+
+  void append(const MapSnapshot::Keyframe& keyframe, mcap::Bytes& out) {
+    check(keyframe);
+    FieldWriter write(out);
+    const auto observations = observations_of(keyframe);
+    write(keyframe.id, keyframe.parent, keyframe.map, keyframe.camera,
+          static_cast<std::uint16_t>(keyframe.frame->features.size()), static_cast<std::uint16_t>(observations.size()),
+          keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera);
+    for (const auto& [feature, landmark] : observations) write(feature, landmark);
+    encode_features(write, keyframe.frame->features);
+  }
+
+ private:
+  static void check(const MapSnapshot::Keyframe& keyframe) {
+    const std::string name = "map not saved: keyframe " + std::to_string(keyframe.id);
+    if (!is_rigid(keyframe.T_world_camera)) throw std::runtime_error(name + " has an impossible pose");
+    if (keyframe.frame->features.size() > msg::kMaxFeatures) throw std::runtime_error(name + " has too many features");
+  }
+  /// Feature and index of the landmark; without landmarks that were left out.
+  std::vector<std::pair<std::uint16_t, std::uint32_t>> observations_of(const MapSnapshot::Keyframe& keyframe) {
+    std::vector<std::pair<std::uint16_t, std::uint32_t>> found;
+    const std::vector<LandmarkId>& ids = snapshot_.landmark_ids;
+    for (; next_observation_ < keyframe.observations_end; ++next_observation_) {
+      const auto& [landmark, feature] = snapshot_.observations[next_observation_];
+      const auto id = std::lower_bound(ids.begin(), ids.end(), landmark);
+      if (id != ids.end() && *id == landmark) found.emplace_back(feature, static_cast<std::uint32_t>(id - ids.begin()));
+    }
+    return found;
+  }
+
+  const MapSnapshot& snapshot_;
+  std::size_t next_observation_ = 0;
+};
+
+void write_keyframes(BlockWriter& blocks, const MapSnapshot& snapshot) {
+  KeyframeEncoder encoder(snapshot);
+  mcap::Bytes block;
+  const auto flush = [&] {
+    if (!block.empty()) blocks.write(BlockTag::kKeyframes, block);
+    block.clear();
+  };
+  for (const MapSnapshot::Keyframe& keyframe : snapshot.keyframes) {
+    encoder.append(keyframe, block);
+    if (block.size() >= kBlockBytes) flush();
+  }
+  flush();
+}
+
+}  // namespace
+
+void write_map(const MapSnapshot& snapshot, mcap::ByteSink& sink) {
+  BlockWriter blocks(sink);
+  blocks.write(BlockTag::kHead, encode_head(snapshot.head));
+  write_records(blocks, BlockTag::kLandmarks, snapshot.landmarks, kLandmarkBytes);
+  write_keyframes(blocks, snapshot);
+  write_records(blocks, BlockTag::kRemoved, snapshot.removed, kRemovedBytes);
+  blocks.end();
+}
+
+}  // namespace rtd::slam

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/mcap/byte_sink.hpp"
+#include "common/mcap/byte_source.hpp"
+#include "services/slam/core/store/map_reader.hpp"
+#include "services/slam/core/store/map_writer.hpp"
+
+namespace rtd::slam {
+
+inline mcap::Bytes bytes_of_map(const MapSnapshot& snapshot) {
+  mcap::MemorySink sink;
+  write_map(snapshot, sink);
+  return sink.bytes();
+}
+
+inline mcap::Bytes bytes_of_map(const Map& map) {
+  return bytes_of_map(take_snapshot(map));
+}
+
+inline MapContents read_bytes(mcap::ByteView bytes, StoredFeatures features = StoredFeatures::kKeep) {
+  return read_map(mcap::MemorySource(bytes), {features, {}});
+}
+
+}  // namespace rtd::slam
