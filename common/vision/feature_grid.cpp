@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/vision/feature_grid.hpp"
 
+#include <limits>
 #include <numeric>
+#include <stdexcept>
 
 namespace rtd::vision {
 
@@ -13,13 +15,18 @@ FeatureGrid::FeatureGrid(std::span<const msg::Feature> features, int width_px, i
       rows_(std::max(1, (height_px + cell_px - 1) / cell_px)),
       starts_(static_cast<std::size_t>(columns_) * rows_ + 1, 0),
       indices_(features.size()) {
+  if (features.size() > std::numeric_limits<std::uint16_t>::max()) {
+    throw std::length_error("a feature grid holds at most 65535 features");
+  }
   const auto cell_of = [this](const msg::Feature& feature) {
     return static_cast<std::size_t>(row_of(feature.v_px) * columns_ + column_of(feature.u_px));
   };
   for (const msg::Feature& feature : features) ++starts_[cell_of(feature) + 1];
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
-  std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
-  for (std::uint32_t i = 0; i < features.size(); ++i) indices_[next[cell_of(features[i])]++] = i;
+  std::vector<std::uint16_t> next(starts_.begin(), starts_.end() - 1);
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    indices_[next[cell_of(features[i])]++] = static_cast<std::uint16_t>(i);
+  }
 }
 
 std::vector<std::uint32_t> FeatureGrid::find(const SearchWindow& window) const {

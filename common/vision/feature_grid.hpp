@@ -22,7 +22,8 @@ struct SearchWindow {
 /// Finds the features of one image near a pixel without looking at the others.
 ///
 /// Buckets the undistorted positions in square cells; positions outside the image go to the nearest border cell, so
-/// none is lost. Visits in a fixed order (row of cells, column, index). Refers to `features`, which must outlive the
+/// none is lost. Visits in a fixed order (row of cells, column, index). At most 65535 features (std::length_error).
+/// Refers to `features`, which must outlive the
 /// grid.
 class FeatureGrid {
  public:
@@ -67,8 +68,9 @@ class FeatureGrid {
   std::span<const msg::Feature> features_;
   float inverse_cell_px_ = 0;
   int columns_ = 0, rows_ = 0;
-  std::vector<std::uint32_t> starts_;   ///< first entry of each cell in indices_, one more at the end
-  std::vector<std::uint32_t> indices_;  ///< features ordered by cell
+  // 16 bits: every keyframe of a map keeps its grid.
+  std::vector<std::uint16_t> starts_;   ///< first entry of each cell in indices_, one more at the end
+  std::vector<std::uint16_t> indices_;  ///< features ordered by cell
 };
 
 }  // namespace rtd::vision

@@ -58,9 +58,13 @@ void SlamPublisher::publish_path() {
 }
 
 void SlamPublisher::publish_clouds() {
-  while (!ended_.wait_for(std::chrono::milliseconds(config_.map_period_ms))) {
-    const std::int64_t stamp_ns = newest_stamp_ns_;
+  constexpr int kRest = 20;  // times the work: a large map is published more rarely
+  std::chrono::nanoseconds pause = std::chrono::milliseconds(config_.map_period_ms);
+  while (!ended_.wait_for(pause)) {
+    const std::int64_t stamp_ns = newest_stamp_ns_, start_ns = service::monotonic_ns();
     if (stamp_ns >= 0) map_points_.write(make_cloud(points_(), stamp_ns, names_.map));
+    pause = std::max<std::chrono::nanoseconds>(std::chrono::milliseconds(config_.map_period_ms),
+                                               kRest * std::chrono::nanoseconds(service::monotonic_ns() - start_ns));
   }
 }
 

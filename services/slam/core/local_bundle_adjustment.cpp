@@ -108,10 +108,13 @@ void move_keyframe(Map& map, KeyframeId id, const Eigen::Isometry3d& T_world_cam
   }
 }
 
-void apply(Map& map, const LocalProblem& problem) {
+std::vector<KeyframeId> apply(Map& map, const LocalProblem& problem) {
+  std::vector<KeyframeId> moved;
   for (std::size_t i = 0; i < problem.keyframes.size(); ++i) {
     const BundleCamera& camera = problem.bundle.cameras[i];
-    if (!camera.fixed) move_keyframe(map, problem.keyframes[i], camera.T_world_camera);
+    if (camera.fixed) continue;
+    move_keyframe(map, problem.keyframes[i], camera.T_world_camera);
+    moved.push_back(problem.keyframes[i]);
   }
   for (std::size_t i = 0; i < problem.landmarks.size(); ++i) {
     map.find_landmark(problem.landmarks[i])->position = problem.bundle.points[i];
@@ -127,19 +130,20 @@ void apply(Map& map, const LocalProblem& problem) {
   for (const LandmarkId landmark : problem.landmarks) {
     if (map.find_landmark(landmark) != nullptr) map.refresh_geometry(landmark);
   }
+  return moved;
 }
 
 }  // namespace
 
-void adjust_local_map(Map& map, KeyframeId newest, const MapperConfig& config,
-                      const std::function<bool()>& interrupted) {
+std::vector<KeyframeId> adjust_local_map(Map& map, KeyframeId newest, const MapperConfig& config,
+                                         const std::function<bool()>& interrupted) {
   LocalProblem problem = build(map, newest, config);
   BundleOptions options;
   options.iterations_robust = config.ba_iterations_robust;
   options.iterations = config.ba_iterations;
   options.interrupted = interrupted;
   adjust_bundle(problem.bundle, options);
-  apply(map, problem);
+  return apply(map, problem);
 }
 
 }  // namespace rtd::slam

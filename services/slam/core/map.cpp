@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
+#include <utility>
 
 #include "common/vision/hamming.hpp"
 #include "services/slam/core/landmark_statistics.hpp"
@@ -24,6 +26,15 @@ auto find_observation(std::vector<Observation>& observations, KeyframeId keyfram
                           [](const Observation& o, KeyframeId id) { return o.keyframe < id; });
 }
 
+/// Grows by little when full: most landmarks have few observations, and doubling would keep half of their memory empty.
+void insert(std::vector<Observation>& observations, std::vector<Observation>::iterator position,
+            const Observation& added) {
+  const std::ptrdiff_t at = position - observations.begin();
+  if (observations.size() == observations.capacity())
+    observations.reserve(observations.size() + 2 + observations.size() / 4);
+  observations.insert(observations.begin() + at, added);
+}
+
 }  // namespace
 
 KeyframeId Map::add_keyframe(FramePtr frame, const Eigen::Isometry3d& T_world_camera, KeyframeId parent) {
@@ -37,12 +48,12 @@ KeyframeId Map::add_keyframe(FramePtr frame, const Eigen::Isometry3d& T_world_ca
   if (keyframe.is_origin()) {
     keyframe.map = next_map_++;
   } else {
-    Keyframe& older = keyframes_.at(parent);
+    Keyframe& older = keyframe_at(parent);
     keyframe.map = older.map;
     older.children.push_back(id);
   }
   ++component_sizes_[keyframe.map];
-  keyframes_.emplace(id, std::move(keyframe));
+  keyframe_index_.add(id, &keyframes_.emplace(id, std::move(keyframe)).first->second);
   return id;
 }
 
@@ -52,12 +63,11 @@ LandmarkId Map::add_landmark(const Eigen::Vector3d& p_world, Observation observa
   landmark.id = id;
   landmark.position = p_world;
   landmark.reference = landmark.first_keyframe = observation.keyframe;
-  landmarks_.emplace(id, std::move(landmark));
+  Landmark& added = landmarks_.emplace(id, std::move(landmark));
   add_observation(id, observation);
   if (probability_rule_ == ProbabilityRule::kBelief) {
-    Landmark& added = landmarks_.at(id);
     added.log_odds =
-        initial_log_odds(keyframes_.at(observation.keyframe).frame->features[observation.feature].static_probability);
+        initial_log_odds(keyframe_at(observation.keyframe).frame->features[observation.feature].static_probability);
     added.static_probability = to_probability(added.log_odds);
   }
   return id;
@@ -65,12 +75,12 @@ LandmarkId Map::add_landmark(const Eigen::Vector3d& p_world, Observation observa
 
 bool Map::add_observation(LandmarkId id, Observation observation) {
   Landmark& landmark = landmarks_.at(id);
-  Keyframe& keyframe = keyframes_.at(observation.keyframe);
+  Keyframe& keyframe = keyframe_at(observation.keyframe);
   if (keyframe.landmarks[observation.feature] != kNoLandmark) return false;
   const auto position = find_observation(landmark.observations, observation.keyframe);
   if (position != landmark.observations.end() && position->keyframe == observation.keyframe) return false;
   change_covisibility(landmark, observation.keyframe, +1);
-  landmark.observations.insert(position, observation);
+  insert(landmark.observations, position, observation);
   landmark.observation_weight += weight_of(keyframe, observation.feature);
   keyframe.landmarks[observation.feature] = id;
   return true;
@@ -80,7 +90,7 @@ void Map::remove_observation(LandmarkId id, KeyframeId keyframe) {
   Landmark& landmark = landmarks_.at(id);
   const auto position = find_observation(landmark.observations, keyframe);
   if (position == landmark.observations.end() || position->keyframe != keyframe) return;
-  Keyframe& observer = keyframes_.at(keyframe);
+  Keyframe& observer = keyframe_at(keyframe);
   observer.landmarks[position->feature] = kNoLandmark;
   landmark.observation_weight -= weight_of(observer, position->feature);
   landmark.observations.erase(position);
@@ -112,26 +122,27 @@ void Map::replace_landmark(LandmarkId lost_id, LandmarkId kept_id) {
 }
 
 void Map::remove_keyframe(KeyframeId id) {
-  Keyframe& keyframe = keyframes_.at(id);
+  Keyframe& keyframe = keyframe_at(id);
   for (const LandmarkId landmark : std::vector<LandmarkId>(keyframe.landmarks)) {
     if (landmark != kNoLandmark) remove_observation(landmark, id);
   }
-  Keyframe& parent = keyframes_.at(keyframe.parent);
+  Keyframe& parent = keyframe_at(keyframe.parent);
   removed_[id] = {keyframe.parent, parent.T_world_camera.inverse() * keyframe.T_world_camera};
   parent.children.erase(std::find(parent.children.begin(), parent.children.end(), id));
   for (const KeyframeId child : keyframe.children) adopt_child(keyframe.parent, child);
   --component_sizes_[keyframe.map];
+  keyframe_index_.erase(id);
   keyframes_.erase(id);
 }
 
 void Map::adopt_child(KeyframeId parent, KeyframeId child) {
-  keyframes_.at(child).parent = parent;
-  std::vector<KeyframeId>& children = keyframes_.at(parent).children;
+  keyframe_at(child).parent = parent;
+  std::vector<KeyframeId>& children = keyframe_at(parent).children;
   children.insert(std::upper_bound(children.begin(), children.end(), child), child);
 }
 
 void Map::join_components(MapId joined, KeyframeId parent) {
-  const MapId map = keyframes_.at(parent).map;
+  const MapId map = keyframe_at(parent).map;
   if (map == joined) return;
   for (auto& [id, keyframe] : keyframes_) {
     if (keyframe.map != joined) continue;
@@ -147,11 +158,20 @@ std::size_t Map::keyframe_count(MapId map) const {
   return it == component_sizes_.end() ? 0 : it->second;
 }
 
+const Keyframe& Map::keyframe_at(KeyframeId id) const {
+  if (const Keyframe* keyframe = find_keyframe(id)) return *keyframe;
+  throw std::out_of_range("keyframe " + std::to_string(id) + " is not in the map");
+}
+
+Keyframe& Map::keyframe_at(KeyframeId id) {
+  return const_cast<Keyframe&>(std::as_const(*this).keyframe_at(id));
+}
+
 void Map::change_covisibility(const Landmark& landmark, KeyframeId keyframe, int change) {
-  auto& own = keyframes_.at(keyframe).covisible;
+  auto& own = keyframe_at(keyframe).covisible;
   for (const Observation& observation : landmark.observations) {
     if (observation.keyframe == keyframe) continue;
-    auto& others = keyframes_.at(observation.keyframe).covisible;
+    auto& others = keyframe_at(observation.keyframe).covisible;
     const int shared = own[observation.keyframe] += change;
     others[keyframe] = shared;
     if (shared > 0) continue;
@@ -169,7 +189,7 @@ void Map::refresh_geometry(LandmarkId id) {
   Landmark& landmark = landmarks_.at(id);
   Eigen::Vector3d direction_sum = Eigen::Vector3d::Zero();
   for (const Observation& observation : landmark.observations) {
-    const Keyframe& keyframe = keyframes_.at(observation.keyframe);
+    const Keyframe& keyframe = keyframe_at(observation.keyframe);
     direction_sum += (landmark.position - keyframe.T_world_camera.translation()).normalized();
     if (observation.keyframe != landmark.reference) continue;
     const double distance_m = (landmark.position - keyframe.T_world_camera.translation()).norm();
@@ -184,7 +204,7 @@ void Map::refresh_appearance(Landmark& landmark) {
   std::size_t count = 0;
   double probability_sum = 0;
   for (auto it = landmark.observations.rbegin(); it != landmark.observations.rend(); ++it) {
-    const msg::Feature& feature = keyframes_.at(it->keyframe).frame->features[it->feature];
+    const msg::Feature& feature = keyframe_at(it->keyframe).frame->features[it->feature];
     probability_sum += feature.static_probability;
     if (count < descriptors.size()) descriptors[count++] = &feature.descriptor;
   }
@@ -204,38 +224,18 @@ void Map::refresh_appearance(Landmark& landmark) {
   }
 }
 
-const Landmark* Map::find_landmark(LandmarkId id) const {
-  const auto it = landmarks_.find(id);
-  return it == landmarks_.end() ? nullptr : &it->second;
-}
-
-Landmark* Map::find_landmark(LandmarkId id) {
-  const auto it = landmarks_.find(id);
-  return it == landmarks_.end() ? nullptr : &it->second;
-}
-
-const Keyframe* Map::find_keyframe(KeyframeId id) const {
-  const auto it = keyframes_.find(id);
-  return it == keyframes_.end() ? nullptr : &it->second;
-}
-
-Keyframe* Map::find_keyframe(KeyframeId id) {
-  const auto it = keyframes_.find(id);
-  return it == keyframes_.end() ? nullptr : &it->second;
-}
-
 Eigen::Isometry3d Map::T_world_keyframe(KeyframeId id) const {
   Eigen::Isometry3d T_ancestor_camera = Eigen::Isometry3d::Identity();
   for (auto it = removed_.find(id); it != removed_.end(); it = removed_.find(id)) {
     T_ancestor_camera = it->second.T_parent_camera * T_ancestor_camera;
     id = it->second.parent;
   }
-  return keyframes_.at(id).T_world_camera * T_ancestor_camera;
+  return keyframe_at(id).T_world_camera * T_ancestor_camera;
 }
 
 std::vector<KeyframeId> Map::best_covisible(KeyframeId id, std::size_t count, int min_shared) const {
   std::vector<std::pair<int, KeyframeId>> ranked;
-  for (const auto& [other, shared] : keyframes_.at(id).covisible) {
+  for (const auto& [other, shared] : keyframe_at(id).covisible) {
     if (shared >= min_shared) ranked.emplace_back(-shared, other);
   }
   std::sort(ranked.begin(), ranked.end());
@@ -244,14 +244,6 @@ std::vector<KeyframeId> Map::best_covisible(KeyframeId id, std::size_t count, in
   best.reserve(ranked.size());
   for (const auto& [shared, other] : ranked) best.push_back(other);
   return best;
-}
-
-std::vector<LandmarkId> Map::landmark_ids() const {
-  std::vector<LandmarkId> ids;
-  ids.reserve(landmarks_.size());
-  for (const auto& [id, landmark] : landmarks_) ids.push_back(id);
-  std::sort(ids.begin(), ids.end());
-  return ids;
 }
 
 }  // namespace rtd::slam

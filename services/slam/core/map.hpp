@@ -4,44 +4,15 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
-#include "common/msg/features.hpp"
 #include "services/slam/core/frame.hpp"
+#include "services/slam/core/landmark_store.hpp"
 
 namespace rtd::slam {
-
-using KeyframeId = std::uint32_t;
-using LandmarkId = std::uint64_t;
-using MapId = std::uint32_t;  ///< a component of the map: what one first keyframe grew to; 0 = the first
-inline constexpr KeyframeId kNoKeyframe = std::numeric_limits<KeyframeId>::max();
-inline constexpr LandmarkId kNoLandmark = std::numeric_limits<LandmarkId>::max();
-
-/// Landmark `landmark` is feature `feature` of keyframe `keyframe`.
-struct Observation {
-  KeyframeId keyframe = kNoKeyframe;
-  std::uint32_t feature = 0;
-};
-
-struct Landmark {
-  LandmarkId id = kNoLandmark;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< p_world, m
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< mean viewing direction, camera -> landmark, world frame
-  double min_distance_m = 0, max_distance_m = 0;       ///< from where the pyramid can show it
-  double static_probability = 1.0;                     ///< by the map's ProbabilityRule
-  double log_odds = 0.0;                               ///< of the same, with ProbabilityRule::kBelief
-  msg::Descriptor descriptor{};                        ///< the observation that is nearest to all others
-  KeyframeId reference = kNoKeyframe;                  ///< keyframe that scale is measured from
-  KeyframeId first_keyframe = kNoKeyframe;             ///< keyframe that made it
-  std::uint32_t visible = 1, found = 1;                ///< frames that should have seen it / did
-  int observation_weight = 0;                          ///< as ORB-SLAM2 counts: an observation with depth is two
-  std::vector<Observation> observations;               ///< ordered by keyframe, one per keyframe
-};
 
 struct Keyframe {
   KeyframeId id = kNoKeyframe;
@@ -114,10 +85,10 @@ class Map {
   void refresh_geometry(LandmarkId landmark);
 
   /// Null when unknown (removed meanwhile).
-  const Landmark* find_landmark(LandmarkId id) const;
-  Landmark* find_landmark(LandmarkId id);
-  const Keyframe* find_keyframe(KeyframeId id) const;
-  Keyframe* find_keyframe(KeyframeId id);
+  const Landmark* find_landmark(LandmarkId id) const { return landmarks_.find(id); }
+  Landmark* find_landmark(LandmarkId id) { return landmarks_.find(id); }
+  const Keyframe* find_keyframe(KeyframeId id) const { return keyframe_index_.find(id); }
+  Keyframe* find_keyframe(KeyframeId id) { return keyframe_index_.find(id); }
 
   /// Current pose of a keyframe that exists or existed.
   Eigen::Isometry3d T_world_keyframe(KeyframeId id) const;
@@ -127,8 +98,8 @@ class Map {
   std::vector<KeyframeId> best_covisible(KeyframeId id, std::size_t count, int min_shared = 15) const;
 
   const std::map<KeyframeId, Keyframe>& keyframes() const { return keyframes_; }
-  std::vector<LandmarkId> landmark_ids() const;  ///< ascending
-  std::size_t keyframe_count(MapId map) const;   ///< of one component; 0 when there is none (any more)
+  std::vector<LandmarkId> landmark_ids() const { return landmarks_.ids(); }  ///< ascending
+  std::size_t keyframe_count(MapId map) const;  ///< of one component; 0 when there is none (any more)
   std::size_t landmark_count() const { return landmarks_.size(); }
   bool empty() const { return keyframes_.empty(); }
   ProbabilityRule probability_rule() const { return probability_rule_; }
@@ -141,12 +112,16 @@ class Map {
 
  private:
   ProbabilityRule probability_rule_;
+  /// Throw std::out_of_range when unknown.
+  const Keyframe& keyframe_at(KeyframeId id) const;
+  Keyframe& keyframe_at(KeyframeId id);
   void adopt_child(KeyframeId parent, KeyframeId child);
   void change_covisibility(const Landmark& landmark, KeyframeId keyframe, int change);
   void refresh_appearance(Landmark& landmark);
 
   std::map<KeyframeId, Keyframe> keyframes_;
-  std::unordered_map<LandmarkId, Landmark> landmarks_;
+  PagedIndex<Keyframe*, nullptr> keyframe_index_;  ///< into keyframes_, whose nodes stay where they are
+  LandmarkStore landmarks_;
   std::map<KeyframeId, RemovedKeyframe> removed_;
   std::map<MapId, std::size_t> component_sizes_;  ///< keyframes
   MapId next_map_ = 0;

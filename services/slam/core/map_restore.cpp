@@ -44,17 +44,20 @@ Map::Map(MapContents contents)
       next_map_(contents.next_map),
       next_keyframe_(contents.next_keyframe),
       next_landmark_(contents.next_landmark) {
-  landmarks_.reserve(contents.landmarks.size());
-  for (Landmark& landmark : contents.landmarks) landmarks_.emplace(landmark.id, std::move(landmark));
+  for (Landmark& landmark : contents.landmarks) {
+    const LandmarkId id = landmark.id;
+    landmarks_.emplace(id, std::move(landmark));
+  }
   SharedLandmarks shared(contents.keyframes);
   for (Keyframe& keyframe : contents.keyframes) {
     for (const LandmarkId landmark : keyframe.landmarks) {
       if (landmark != kNoLandmark) shared.count(landmarks_.at(landmark), keyframe.id);
     }
     keyframe.covisible = shared.take();
-    if (!keyframe.is_origin()) keyframes_.at(keyframe.parent).children.push_back(keyframe.id);
+    if (!keyframe.is_origin()) keyframe_at(keyframe.parent).children.push_back(keyframe.id);
     ++component_sizes_[keyframe.map];
-    keyframes_.emplace_hint(keyframes_.end(), keyframe.id, std::move(keyframe));
+    const KeyframeId id = keyframe.id;
+    keyframe_index_.add(id, &keyframes_.emplace_hint(keyframes_.end(), id, std::move(keyframe))->second);
   }
 }
 

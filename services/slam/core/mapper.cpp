@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/core/mapper.hpp"
 
+#include <algorithm>
+
 #include "common/geometry/se3.hpp"
 #include "services/slam/core/landmark_creation.hpp"
 #include "services/slam/core/landmark_fusion.hpp"
@@ -30,15 +32,17 @@ KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<
   recent_.cull(map_, keyframe, config_.mapper.min_found_ratio);
   create_landmarks(keyframe);
   if (!busy()) fuse_landmarks(map_, keyframe, config_.mapper.neighbours);
-  if (!busy() && map_.keyframe_count(map_.find_keyframe(keyframe)->map) > 2)
-    adjust_local_map(map_, keyframe, config_.mapper, interrupted);
+  std::vector<KeyframeId> adjusted;
+  if (!busy() && map_.keyframe_count(map_.find_keyframe(keyframe)->map) > 2) {
+    adjusted = adjust_local_map(map_, keyframe, config_.mapper, interrupted);
+  }
   cull_keyframes(keyframe);
   if (vocabulary_ != nullptr) places_.add(keyframe, vocabulary_->describe(proposal.frame->features));
   const Keyframe& created = *map_.find_keyframe(keyframe);
   announced_[keyframe] = created.T_world_camera;
   changes_.push_back(
       {KeyframeChange::Kind::kCreated, keyframe, created.frame->seq, created.frame->stamp_ns, created.T_world_camera});
-  note_moved_keyframes();
+  note_moved_keyframes(std::move(adjusted));
   return keyframe;
 }
 
@@ -89,18 +93,33 @@ void Mapper::cull_keyframes(KeyframeId newest) {
   }
 }
 
-void Mapper::note_moved_keyframes() {
-  for (auto& [id, T_world_announced] : announced_) {
-    const Keyframe& keyframe = *map_.find_keyframe(id);
-    const Eigen::Isometry3d T_announced_now = T_world_announced.inverse() * keyframe.T_world_camera;
-    if (T_announced_now.translation().norm() < config_.mapper.correction_m &&
-        geometry::rotation_angle_rad(T_announced_now) < config_.mapper.correction_rad) {
-      continue;
-    }
-    T_world_announced = keyframe.T_world_camera;
-    changes_.push_back(
-        {KeyframeChange::Kind::kCorrected, id, keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera});
+/// Looks at the adjusted keyframes, and at some of the others in turn: what a larger correction moved is told bit by
+/// bit, and the cost does not grow with the map.
+void Mapper::note_moved_keyframes(std::vector<KeyframeId> adjusted) {
+  constexpr int kOthers = 40;  // with the adjusted ones fewer than readers of the topic keep
+  auto next = announced_.lower_bound(next_checked_);
+  for (int i = 0; i < kOthers && !announced_.empty(); ++i) {
+    if (next == announced_.end()) next = announced_.begin();
+    adjusted.push_back((next++)->first);
   }
+  next_checked_ = next == announced_.end() ? 0 : next->first;
+  std::sort(adjusted.begin(), adjusted.end());
+  adjusted.erase(std::unique(adjusted.begin(), adjusted.end()), adjusted.end());
+  for (const KeyframeId id : adjusted) note_if_moved(id);
+}
+
+void Mapper::note_if_moved(KeyframeId id) {
+  const auto announced = announced_.find(id);
+  if (announced == announced_.end()) return;  // culled meanwhile
+  const Keyframe& keyframe = *map_.find_keyframe(id);
+  const Eigen::Isometry3d T_announced_now = announced->second.inverse() * keyframe.T_world_camera;
+  if (T_announced_now.translation().norm() < config_.mapper.correction_m &&
+      geometry::rotation_angle_rad(T_announced_now) < config_.mapper.correction_rad) {
+    return;
+  }
+  announced->second = keyframe.T_world_camera;
+  changes_.push_back(
+      {KeyframeChange::Kind::kCorrected, id, keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera});
 }
 
 LocalMapPtr Mapper::local_map(KeyframeId centre) {

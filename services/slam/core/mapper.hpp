@@ -60,7 +60,8 @@ class Mapper {
   void count_statistics(const std::vector<LandmarkStatistics>& statistics);
   void create_landmarks(KeyframeId keyframe);
   void cull_keyframes(KeyframeId newest);
-  void note_moved_keyframes();
+  void note_moved_keyframes(std::vector<KeyframeId> adjusted);
+  void note_if_moved(KeyframeId keyframe);
 
   SlamConfig config_;
   Map map_;
@@ -68,6 +69,7 @@ class Mapper {
   KeyframeDatabase places_;
   RecentLandmarks recent_;
   std::map<KeyframeId, Eigen::Isometry3d> announced_;  ///< T_world_camera as last told
+  KeyframeId next_checked_ = 0;                        ///< in turn, of those that were not adjusted
   std::vector<KeyframeChange> changes_;
   std::uint64_t snapshots_ = 0;
 };

@@ -161,8 +161,15 @@ std::vector<StampedPose> SlamSystem::keyframes() const {
 }
 
 std::vector<MapPoint> SlamSystem::map_points() const {
+  constexpr std::size_t kPortion = 20'000;  // 2 ms: the mapper waits no longer
+  std::vector<LandmarkId> ids;
+  mapping_.read([&](const Map& map) { ids = map.landmark_ids(); });
   std::vector<MapPoint> points;
-  mapping_.read([&](const Map& map) { points = slam::map_points(map); });
+  points.reserve(ids.size());
+  for (std::size_t begin = 0; begin < ids.size(); begin += kPortion) {
+    const auto portion = std::span(ids).subspan(begin, std::min(kPortion, ids.size() - begin));
+    mapping_.read([&](const Map& map) { append_map_points(map, portion, points); });
+  }
   return points;
 }
 

@@ -43,11 +43,16 @@ std::vector<StampedPose> keyframe_trajectory(const Map& map) {
 std::vector<MapPoint> map_points(const Map& map) {
   std::vector<MapPoint> points;
   points.reserve(map.landmark_count());
-  for (const LandmarkId id : map.landmark_ids()) {
-    const Landmark& landmark = *map.find_landmark(id);
-    points.push_back({landmark.position.cast<float>(), static_cast<float>(landmark.static_probability)});
-  }
+  append_map_points(map, map.landmark_ids(), points);
   return points;
+}
+
+void append_map_points(const Map& map, std::span<const LandmarkId> landmarks, std::vector<MapPoint>& points) {
+  for (const LandmarkId id : landmarks) {
+    const Landmark* landmark = map.find_landmark(id);
+    if (landmark == nullptr) continue;
+    points.push_back({landmark->position.cast<float>(), static_cast<float>(landmark->static_probability)});
+  }
 }
 
 void write_tum_trajectory(std::ostream& out, const std::vector<StampedPose>& poses) {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <iosfwd>
+#include <span>
 #include <vector>
 
 #include "services/slam/core/map.hpp"
@@ -35,6 +36,8 @@ std::vector<StampedPose> compose_trajectory(const Map& map, const std::vector<Fr
 std::vector<StampedPose> keyframe_trajectory(const Map& map);
 /// All landmarks, by id.
 std::vector<MapPoint> map_points(const Map& map);
+/// Those of `landmarks` that are in the map.
+void append_map_points(const Map& map, std::span<const LandmarkId> landmarks, std::vector<MapPoint>& points);
 
 /// TUM format, one "stamp tx ty tz qx qy qz qw" a line, "%.6f" and "%.9f", qw >= 0.
 void write_tum_trajectory(std::ostream& out, const std::vector<StampedPose>& poses);
