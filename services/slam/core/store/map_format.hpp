@@ -30,7 +30,7 @@ constexpr std::size_t kBlockBytes = 1 << 20;     ///< a writer ends a block behi
 constexpr std::size_t kMaxBlockBytes = 4 << 20;  ///< a reader refuses larger ones
 
 constexpr std::size_t kTransformBytes = 12 * 8;
-constexpr std::size_t kLandmarkBytes = 8 + 10 * 8 + sizeof(msg::Descriptor) + 4 * 4;
+constexpr std::size_t kLandmarkBytes = 4 + 10 * 8 + sizeof(msg::Descriptor) + 4 * 4;
 constexpr std::size_t kObservationBytes = 2 + 4;
 constexpr std::size_t kFeatureBytes = 5 * 4 + 2 + sizeof(msg::Descriptor);
 constexpr std::size_t kKeyframeBytes = 3 * 4 + 3 * 2 + 2 * 8 + kTransformBytes;  ///< without observations and features

@@ -173,7 +173,7 @@ TEST_P(LyingMapFile, is_refused_with_the_reason) {
   EXPECT_THAT(refusal(bytes_of_map(snapshot)), AllOf(HasSubstr("damaged at byte"), HasSubstr(GetParam().refusal)));
 }
 
-constexpr std::size_t kPositionX = 8, kProbability = 8 + 8 * 8, kReference = 8 + 10 * 8 + 32;
+constexpr std::size_t kPositionX = 4, kProbability = 4 + 8 * 8, kReference = 4 + 10 * 8 + 32;
 const Lie kLies[] = {
     {"no_keyframe", [](MapSnapshot& s) { s.head.keyframes = 0; }, "holds no keyframe"},
     {"fewer_keyframes", [](MapSnapshot& s) { --s.head.keyframes; }, "more records than announced"},
