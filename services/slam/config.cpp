@@ -14,6 +14,8 @@ using service::ConfigBinder;
 void bind_techniques(ConfigBinder& binder, Techniques& t) {
   binder.field("techniques.landmark_belief", t.landmark_belief, "off: landmarks weigh the mean of their observations");
   binder.field("techniques.adaptive_kernel", t.adaptive_kernel, "off: Huber's loss with a fixed threshold");
+  binder.field("techniques.rolling_shutter", t.rolling_shutter,
+               "off: all rows of the image are taken to be exposed at once");
   binder.field("techniques.prediction", t.prediction, "off: lost at once when nothing static is in view");
   binder.field("techniques.place_recognition", t.place_recognition, "off: found back only around the last pose");
 }
@@ -22,6 +24,8 @@ void bind_sensor(ConfigBinder& binder, SensorConfig& c) {
   binder.field("sensor.disparity_px_m", c.disparity_px_m, {1.0, 10000.0},
                "weight of depth: a disparity of this / depth counts like a pixel");
   binder.field("sensor.close_depth_m", c.close_depth_m, {0.5, 20.0}, "nearer depths make landmarks at once");
+  binder.field("sensor.readout_s", c.readout_s, {-0.1, 0.1},
+               "of the image, first row to last, if known; 0: estimated while tracking");
   binder.field("sensor.max_depth_m", c.max_depth_m, {0.5, 50.0}, "farther depths are not used");
 }
 

@@ -23,7 +23,10 @@ FeatureWorld::FeatureWorld(const Options& options) : options_(options) {
 }
 
 Eigen::Isometry3d FeatureWorld::T_world_camera(std::uint64_t seq) {
-  const double t = static_cast<double>(seq) / 30.0;
+  return T_world_camera_at(static_cast<double>(seq) / 30.0);
+}
+
+Eigen::Isometry3d FeatureWorld::T_world_camera_at(double t) {
   geometry::Vector6d twist;
   twist << 0.6 * std::sin(1.5 * t), 0.3 * std::sin(1.1 * t), 0.3 * std::sin(0.9 * t), 0.2 * std::sin(1.3 * t),
       0.4 * std::sin(t), 0.2 * std::sin(0.8 * t);
@@ -32,6 +35,19 @@ Eigen::Isometry3d FeatureWorld::T_world_camera(std::uint64_t seq) {
 
 std::unique_ptr<msg::FeatureFrame> FeatureWorld::view(std::uint64_t seq,
                                                       const Eigen::Isometry3d& T_world_camera) const {
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  return view(
+      seq, [&](double) { return T_camera_world; }, geometry::so3_log(T_world_camera.linear()).z());
+}
+
+std::unique_ptr<msg::FeatureFrame> FeatureWorld::rolling_view(std::uint64_t seq, double readout_s) const {
+  const double time_s = static_cast<double>(seq) / 30.0;
+  const auto pose = [&](double share) { return T_world_camera_at(time_s + share * readout_s).inverse(); };
+  return view(seq, pose, geometry::so3_log(T_world_camera(seq).linear()).z());
+}
+
+std::unique_ptr<msg::FeatureFrame> FeatureWorld::view(std::uint64_t seq, const RowPose& T_camera_world,
+                                                      double roll_rad) const {
   auto frame = std::make_unique<msg::FeatureFrame>();
   frame->seq = seq;
   frame->stamp_ns = stamp_ns(seq);
@@ -40,10 +56,11 @@ std::unique_ptr<msg::FeatureFrame> FeatureWorld::view(std::uint64_t seq,
   frame->height = kHeight;
   std::mt19937_64 random(options_.seed * 7919 + seq);
   std::normal_distribution<double> normal(0, 1);
-  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  const double roll_rad = geometry::so3_log(T_world_camera.linear()).z();
   for (const Point& point : points_) {
-    const Eigen::Vector3d p_camera = T_camera_world * point.p_world;
+    Eigen::Vector3d p_camera = T_camera_world(0) * point.p_world;
+    for (int i = 0; i < 2 && p_camera.z() > 0.3; ++i) {  // the row decides on the pose, and the pose on the row
+      p_camera = T_camera_world((kFy * p_camera.y() / p_camera.z() + kCy) / kHeight - 0.5) * point.p_world;
+    }
     if (p_camera.z() < 0.3 || frame->count == msg::kMaxFeatures) continue;
     const int octave = static_cast<int>(std::ceil(std::log(point.max_distance_m / p_camera.norm()) / std::log(1.2)));
     const double u = kFx * p_camera.x() / p_camera.z() + kCx + options_.noise_px * normal(random);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <random>
 #include <vector>
@@ -28,8 +29,12 @@ class FeatureWorld {
 
   /// The features seen from a pose; seq and a stamp of 30 Hz. Same arguments, same frame.
   std::unique_ptr<msg::FeatureFrame> view(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera) const;
+  /// The features of a camera on the hand-held path whose rows are read out one after the other; the stamp is that of
+  /// the middle row.
+  std::unique_ptr<msg::FeatureFrame> rolling_view(std::uint64_t seq, double readout_s) const;
   /// A smooth hand-held motion, identity at seq 0: about 0.6 m and 25 degrees to and fro.
   static Eigen::Isometry3d T_world_camera(std::uint64_t seq);
+  static Eigen::Isometry3d T_world_camera_at(double time_s);  ///< the same path, seconds after seq 0
   static constexpr std::int64_t stamp_ns(std::uint64_t seq) {
     return 1'000'000'000 + static_cast<std::int64_t>(seq) * 33'333'333;
   }
@@ -38,6 +43,10 @@ class FeatureWorld {
   static constexpr std::uint32_t kWidth = 640, kHeight = 480;
 
  private:
+  /// T_camera_world while the row is exposed that lies `share` of the image's height below the middle.
+  using RowPose = std::function<Eigen::Isometry3d(double share)>;
+  std::unique_ptr<msg::FeatureFrame> view(std::uint64_t seq, const RowPose& T_camera_world, double roll_rad) const;
+
   struct Point {
     Eigen::Vector3d p_world;
     double max_distance_m;  ///< octave 0 shows it at this distance

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/slam/core/rolling_shutter.hpp"
 #include "services/slam/core/scale_pyramid.hpp"
 
 namespace rtd::slam {
@@ -28,7 +29,8 @@ Eigen::Vector3d Frame::unproject(std::size_t feature) const {
   return {(f.u_px - camera.cx) / camera.fx * f.depth_m, (f.v_px - camera.cy) / camera.fy * f.depth_m, f.depth_m};
 }
 
-FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config, RemovedFeatures removed) {
+FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config, RemovedFeatures removed,
+                      const ShutterMotion& motion) {
   FrameInput input;
   if (!usable_intrinsics(message)) {
     input.error = "intrinsics are zero or not finite";
@@ -55,6 +57,7 @@ FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& conf
       ++input.invalid;
     } else {
       if (feature.depth_m > config.max_depth_m) feature.depth_m = 0;
+      if (motion.readout_s != 0) feature = undo_rolling_shutter(feature, frame->camera, frame->height_px, motion);
       frame->features.push_back(feature);
     }
   }

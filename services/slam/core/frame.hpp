@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry/se3.hpp"
 #include "common/msg/features.hpp"
 #include "common/vision/feature_grid.hpp"
 #include "common/vision/reprojection.hpp"
@@ -56,8 +57,15 @@ struct FrameInput {
   std::uint32_t invalid = 0;  ///< features left out because a value is not finite or out of range
 };
 
-/// Takes the usable features out of a message. Data from outside: never throws for its content.
+/// How the camera moves while an image is read out row by row, docs/theory/rolling_shutter.md.
+struct ShutterMotion {
+  geometry::Vector6d velocity_per_s = geometry::Vector6d::Zero();  ///< twist in the camera's frame, m/s and rad/s
+  double readout_s = 0;                                            ///< from the first row to the last; 0 = all at once
+};
+
+/// Takes the usable features out of a message, each where it would be had all rows been exposed at once. Data from
+/// outside: never throws for its content.
 FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config,
-                      RemovedFeatures removed = RemovedFeatures::kDrop);
+                      RemovedFeatures removed = RemovedFeatures::kDrop, const ShutterMotion& motion = {});
 
 }  // namespace rtd::slam

@@ -14,6 +14,7 @@ class Vocabulary;
 struct Techniques {
   bool landmark_belief = false;  ///< landmarks bear a static probability over time; off: the mean of their observations
   bool adaptive_kernel = true;   ///< robust loss fitted to the residuals; off: Huber with a fixed threshold
+  bool rolling_shutter = true;   ///< the readout time of the image is estimated and undone; off: all rows at once
   bool prediction = true;        ///< a short, marked prediction when nothing static is in view; off: lost at once
   bool place_recognition = true;  ///< places are known again by their words; off: only around the last pose
 };
@@ -22,6 +23,7 @@ struct Techniques {
 struct SensorConfig {
   double disparity_px_m = 40.0;  ///< weight of depth against pixels, vision::RgbdProjection::disparity_px_m
   double close_depth_m = 4.0;    ///< nearer depths make landmarks at once, farther ones wait for a second view
+  double readout_s = 0;          ///< of the image, first row to last, if it is known; 0: estimated while tracking
   double max_depth_m = 8.0;      ///< depth beyond is not used at all
 };
 

@@ -3,6 +3,7 @@
 #include "services/slam/core/slam_system.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "common/msg/transform_eigen.hpp"
 
@@ -38,8 +39,10 @@ SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
   const std::int64_t start_ns = now_ns_();
   SlamOutput output;
   watch_source(message);
-  const FrameInput input = make_frame(
-      message, config_.sensor, config_.techniques.landmark_belief ? RemovedFeatures::kKeep : RemovedFeatures::kDrop);
+  shutter_ = shutter_motion();
+  const FrameInput input =
+      make_frame(message, config_.sensor,
+                 config_.techniques.landmark_belief ? RemovedFeatures::kKeep : RemovedFeatures::kDrop, shutter_);
   output.invalid_features = input.invalid;
   const TrackOutcome outcome = mapping_.snapshot() == nullptr ? initialize(input, output) : track(input, output);
   collect_events(output);
@@ -102,8 +105,30 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   }
   frames_.push_back(
       {input.frame->seq, input.frame->stamp_ns, outcome.tracked.reference, outcome.tracked.T_reference_camera});
+  observe_shutter(*map, outcome);
   maybe_insert_keyframe(*map, outcome);
   return outcome;
+}
+
+/// What the last frames tell of the motion during the next one.
+ShutterMotion SlamSystem::shutter_motion() const {
+  if (!config_.techniques.rolling_shutter || !tracker_.motion()) return {};
+  const double known_s = config_.sensor.readout_s;
+  return {tracker_.motion()->velocity_per_s, known_s != 0 ? known_s : readout_.readout_s()};
+}
+
+void SlamSystem::observe_shutter(const LocalMap& map, const TrackOutcome& outcome) {
+  const bool wanted = config_.techniques.rolling_shutter && config_.sensor.readout_s == 0;
+  if (!wanted || shutter_.velocity_per_s.isZero(0)) return;
+  std::vector<Eigen::Vector3d> points(outcome.tracked.landmarks.size(),
+                                      Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const LandmarkId id = outcome.tracked.landmarks[i];
+    if (const LocalLandmark* landmark = id == kNoLandmark ? nullptr : map.find_landmark(id)) {
+      points[i] = landmark->position;
+    }
+  }
+  readout_.add(*outcome.tracked.frame, outcome.tracked.T_world_camera, points, shutter_);
 }
 
 void SlamSystem::maybe_insert_keyframe(const LocalMap& map, TrackOutcome& outcome) {

@@ -9,6 +9,7 @@
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
 #include "services/slam/core/mapping_worker.hpp"
+#include "services/slam/core/rolling_shutter.hpp"
 #include "services/slam/core/tracker.hpp"
 #include "services/slam/core/trajectory.hpp"
 
@@ -40,11 +41,15 @@ class SlamSystem {
   std::vector<MapPoint> map_points() const;
   std::size_t frames_tracked() const { return frames_.size(); }
   std::uint64_t source_restarts() const { return source_restarts_; }
+  /// Of the camera, as it is undone now; 0: rows are taken to be exposed at once.
+  double readout_s() const { return shutter_.readout_s; }
 
  private:
   void watch_source(const msg::FeatureFrame& message);
   TrackOutcome initialize(const FrameInput& input, SlamOutput& output);
   TrackOutcome track(const FrameInput& input, SlamOutput& output);
+  ShutterMotion shutter_motion() const;
+  void observe_shutter(const LocalMap& map, const TrackOutcome& outcome);
   void maybe_insert_keyframe(const LocalMap& map, TrackOutcome& outcome);
   void follow_reference(const LocalMap& map, KeyframeId reference);
   void collect_events(SlamOutput& output);
@@ -55,6 +60,8 @@ class SlamSystem {
   Clock now_ns_;
   MappingWorker mapping_;
   Tracker tracker_;
+  ReadoutEstimator readout_;
+  ShutterMotion shutter_;  ///< what the features of the frame in work were corrected with
   std::vector<FrameRecord> frames_;
   std::uint64_t event_count_ = 0;
   std::uint64_t source_restarts_ = 0;

@@ -38,6 +38,8 @@ class Tracker {
   TrackOutcome track(FramePtr frame, const LocalMap& map);
   /// The source started again: no motion can be assumed between the last frame and the next.
   void forget_motion();
+  /// Between the last two tracked frames; empty when they were too far apart.
+  const std::optional<CameraMotion>& motion() const { return motion_; }
 
   /// Whether the frame just tracked should become a keyframe, and what the mapper then needs.
   KeyframeSituation keyframe_situation(const LocalMap& map, bool mapper_idle) const;
