@@ -9,14 +9,12 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/vision/pose_optimizer.hpp"
+#include "services/slam/core/dense_bundle.hpp"
 
 namespace rtd::slam {
 namespace {
 
 using geometry::Vector6d;
-
-/// Residuals of a point behind the camera: a constant that makes the step bad.
-constexpr double kBehindCameraResidual = 1e3;
 
 template <int Dimension>
 class ObservationCost final : public ceres::SizedCostFunction<Dimension, 6, 3> {
@@ -54,15 +52,15 @@ double chi2_limit(const BundleOptions& options, const BundleObservation& observa
   return observation.measured.has_depth() ? options.max_chi2_rgbd : options.max_chi2_pixel;
 }
 
-/// One solver run over the present inliers; poses are 6 local parameters around where they stand now.
-class BundleStage {
+/// One run of Ceres over the present inliers; poses are 6 local parameters around where they stand now.
+class SparseBundle {
  public:
-  BundleStage(BundleProblem& problem, const BundleOptions& options) : problem_(problem), options_(options) {
+  SparseBundle(BundleProblem& problem, const BundleOptions& options) : problem_(problem), options_(options) {
     for (const BundleCamera& camera : problem.cameras) T_camera_world_.push_back(camera.T_world_camera.inverse());
     poses_.assign(problem.cameras.size(), Vector6d::Zero());
   }
 
-  ceres::Solver::Summary solve(int iterations, bool robust) {
+  BundleSummary solve(int iterations, RobustLoss loss) {
     ceres::Problem::Options problem_options;
     problem_options.cost_function_ownership = ceres::TAKE_OWNERSHIP;
     problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -70,13 +68,13 @@ class BundleStage {
     ceres::Problem ceres_problem(problem_options);
     ceres::Solver::Options solver;
     solver.linear_solver_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-    const std::vector<std::unique_ptr<ceres::LossFunction>> losses = add_observations(ceres_problem, robust);
+    const std::vector<std::unique_ptr<ceres::LossFunction>> losses = add_observations(ceres_problem, loss);
     hold_gauge(ceres_problem, *solver.linear_solver_ordering);
     if (ceres_problem.NumResidualBlocks() == 0) return {};
 
-    solver.linear_solver_type = ceres::DENSE_SCHUR;
+    solver.linear_solver_type = ceres::SPARSE_SCHUR;
     solver.max_num_iterations = iterations;
-    solver.num_threads = 1;
+    solver.num_threads = options_.threads;
     solver.logging_type = ceres::SILENT;
     solver.function_tolerance = 1e-4;
     InterruptCallback interrupt(options_.interrupted);
@@ -84,11 +82,11 @@ class BundleStage {
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &ceres_problem, &summary);
     if (summary.IsSolutionUsable()) apply();
-    return summary;
+    return {summary.initial_cost, summary.final_cost, static_cast<int>(summary.iterations.size()), 0};
   }
 
  private:
-  std::vector<std::unique_ptr<ceres::LossFunction>> add_observations(ceres::Problem& ceres_problem, bool robust) {
+  std::vector<std::unique_ptr<ceres::LossFunction>> add_observations(ceres::Problem& ceres_problem, RobustLoss robust) {
     std::vector<std::unique_ptr<ceres::LossFunction>> losses;
     for (const BundleObservation& observation : problem_.observations) {
       if (!observation.inlier) continue;
@@ -99,7 +97,7 @@ class BundleStage {
       } else {
         cost = new ObservationCost<2>(problem_.camera, T_camera_world, observation);
       }
-      ceres::LossFunction* loss = robust ? &huber(observation) : nullptr;
+      ceres::LossFunction* loss = robust == RobustLoss::kHuber ? &huber(observation) : nullptr;
       if (observation.weight < 1) {
         // The weight multiplies the loss, so that the Huber threshold stays one of pixels.
         losses.push_back(std::make_unique<ceres::ScaledLoss>(loss, observation.weight, ceres::DO_NOT_TAKE_OWNERSHIP));
@@ -160,6 +158,11 @@ int classify(BundleProblem& problem, const BundleOptions& options) {
   return outliers;
 }
 
+BundleSummary solve(BundleProblem& problem, const BundleOptions& options, int iterations, RobustLoss loss) {
+  if (options.solver == BundleSolver::kSparse) return SparseBundle(problem, options).solve(iterations, loss);
+  return DenseBundle(problem, options).solve(iterations, loss);
+}
+
 }  // namespace
 
 void evaluate_bundle_residual(const vision::RgbdProjection& camera, const Eigen::Isometry3d& T_camera_world,
@@ -194,16 +197,12 @@ void evaluate_bundle_residual(const vision::RgbdProjection& camera, const Eigen:
 }
 
 BundleSummary adjust_bundle(BundleProblem& problem, const BundleOptions& options) {
-  BundleSummary summary;
-  const auto robust = BundleStage(problem, options).solve(options.iterations_robust, true);
-  summary.initial_cost = robust.initial_cost;
-  summary.final_cost = robust.final_cost;
-  summary.iterations = static_cast<int>(robust.iterations.size());
+  BundleSummary summary = solve(problem, options, options.iterations_robust, RobustLoss::kHuber);
   summary.outliers = classify(problem, options);
   if (options.iterations == 0 || (options.interrupted && options.interrupted())) return summary;
-  const auto precise = BundleStage(problem, options).solve(options.iterations, false);
+  const BundleSummary precise = solve(problem, options, options.iterations, RobustLoss::kNone);
   summary.final_cost = precise.final_cost;
-  summary.iterations += static_cast<int>(precise.iterations.size());
+  summary.iterations += precise.iterations;
   summary.outliers = classify(problem, options);
   return summary;
 }

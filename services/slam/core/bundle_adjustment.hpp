@@ -32,11 +32,19 @@ struct BundleProblem {
   std::vector<BundleObservation> observations;
 };
 
+enum class BundleSolver : std::uint8_t {
+  kDense,   ///< all cameras see each other: local bundle adjustment (dense_bundle.hpp)
+  kSparse,  ///< Ceres; long ways: global bundle adjustment
+};
+
 struct BundleOptions {
   int iterations_robust = 5;  ///< first stage, Huber loss
   int iterations = 5;         ///< second stage, inliers of the first only, no loss
   double max_chi2_pixel = 5.991, max_chi2_rgbd = 7.815;
-  std::function<bool()> interrupted;  ///< asked between iterations; true ends early with what is reached
+  BundleSolver solver = BundleSolver::kDense;
+  int threads = 1;  ///< of kSparse; the result does not depend on it beyond rounding
+  /// True ends early with what is reached. kDense asks every 0.1 ms, kSparse between iterations.
+  std::function<bool()> interrupted;
 };
 
 struct BundleSummary {
@@ -45,7 +53,12 @@ struct BundleSummary {
   int outliers = 0;
 };
 
-/// Bundle adjustment with Ceres (Schur complement), docs/theory/mapping.md Eq. (1)-(3). Deterministic, one thread.
+enum class RobustLoss : std::uint8_t { kNone, kHuber };
+
+/// Residuals of a point behind the camera: a constant that makes the step bad.
+inline constexpr double kBehindCameraResidual = 1e3;
+
+/// Bundle adjustment (Schur complement), docs/theory/mapping.md Eq. (1)-(3). Deterministic with one thread.
 /// Without a fixed camera the first one is held.
 BundleSummary adjust_bundle(BundleProblem& problem, const BundleOptions& options);
 

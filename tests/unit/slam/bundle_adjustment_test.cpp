@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <random>
 
 #include "common/geometry/se3.hpp"
+#include "tests/support/bundle_scene.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -121,6 +124,69 @@ TEST(BundleAdjustment, weights_decide_between_contradicting_observations) {
   }
   adjust_bundle(scene.problem, {20, 0});
   for (std::size_t i = 2; i < 5; ++i) EXPECT_LT(camera_error_m(scene, i), 2e-4);
+}
+
+test_support::BundleScene make_local_scene() {
+  test_support::BundleSceneOptions options;
+  options.keyframes = 8;
+  options.fixed_keyframes = 2;
+  options.landmarks = 400;
+  return test_support::make_bundle_scene(options);
+}
+
+TEST(BundleAdjustment, own_solver_finds_the_minimum_that_ceres_finds) {
+  test_support::BundleScene dense = make_local_scene(), sparse = dense;
+  BundleOptions options{30, 0};
+  const BundleSummary own = adjust_bundle(dense.problem, options);
+  options.solver = BundleSolver::kSparse;
+  const BundleSummary ceres = adjust_bundle(sparse.problem, options);
+  EXPECT_NEAR(own.initial_cost, ceres.initial_cost, 1e-9 * ceres.initial_cost);
+  EXPECT_NEAR(own.final_cost, ceres.final_cost, 2e-4 * ceres.final_cost);
+  EXPECT_NEAR(own.outliers, ceres.outliers, 3);
+  for (std::size_t i = 0; i < dense.problem.cameras.size(); ++i) {
+    const Eigen::Isometry3d T_own_ceres =
+        dense.problem.cameras[i].T_world_camera.inverse() * sparse.problem.cameras[i].T_world_camera;
+    EXPECT_LT(T_own_ceres.translation().norm(), 2e-4) << "camera " << i;  // m
+  }
+}
+
+TEST(BundleAdjustment, an_interrupt_keeps_what_is_reached) {
+  const test_support::BundleScene scene = make_local_scene();
+  int questions = 0;
+  BundleOptions options{5, 0};
+  options.interrupted = [&] { return ++questions < 0; };
+  test_support::BundleScene whole = scene;
+  const BundleSummary reached = adjust_bundle(whole.problem, options);
+  EXPECT_GT(questions, 60) << "asked every 32 of 400 landmarks, twice an iteration";
+  double last_cost = std::numeric_limits<double>::infinity();
+  for (int raised_at = 20; raised_at <= questions; raised_at += 8) {
+    test_support::BundleScene interrupted = scene;
+    int asked = 0;
+    options.interrupted = [&] { return ++asked >= raised_at; };
+    const BundleSummary summary = adjust_bundle(interrupted.problem, options);
+    EXPECT_LE(summary.final_cost, last_cost) << "the later, the better";
+    last_cost = summary.final_cost;
+  }
+  EXPECT_NEAR(last_cost, reached.final_cost, 1e-4 * last_cost);
+}
+
+TEST(BundleAdjustment, moves_points_alone_when_all_cameras_are_fixed) {
+  Scene scene = make_scene(0.0);
+  scene.problem.cameras = scene.truth.cameras;
+  for (BundleCamera& camera : scene.problem.cameras) camera.fixed = true;
+  adjust_bundle(scene.problem, {20, 0});
+  for (std::size_t i = 0; i < scene.truth.points.size(); ++i) {
+    EXPECT_LT((scene.problem.points[i] - scene.truth.points[i]).norm(), 1e-4) << "point " << i;  // m
+  }
+}
+
+TEST(BundleAdjustment, survives_points_behind_and_at_the_camera) {
+  Scene scene = make_scene(0.2);
+  scene.problem.points[0].z() = -2;
+  scene.problem.points[1].setZero();
+  const BundleSummary summary = adjust_bundle(scene.problem, {10, 0});
+  EXPECT_TRUE(std::isfinite(summary.final_cost));
+  for (std::size_t i = 2; i < 5; ++i) EXPECT_LT(camera_error_m(scene, i), 1e-2) << "camera " << i;
 }
 
 TEST(BundleAdjustment, ends_early_when_interrupted) {
