@@ -13,9 +13,15 @@ bool seen_by_others(const Map& map, const Landmark& landmark, KeyframeId keyfram
   int others = 0;
   for (const Observation& observation : landmark.observations) {
     if (observation.keyframe == keyframe) continue;
-    if (map.find_keyframe(observation.keyframe)->frame->features[observation.feature].octave <= octave + 1) ++others;
+    const msg::Feature& feature = map.find_keyframe(observation.keyframe)->frame->features[observation.feature];
+    if (feature.octave <= octave + 1 && ++others == kOthers) return true;
   }
-  return others >= kOthers;
+  return false;
+}
+
+bool is_close_landmark(const Keyframe& keyframe, std::size_t feature, double close_depth_m) {
+  const float depth_m = keyframe.frame->features[feature].depth_m;
+  return keyframe.landmarks[feature] != kNoLandmark && depth_m > 0 && depth_m <= close_depth_m;
 }
 
 }  // namespace
@@ -49,14 +55,17 @@ int RecentLandmarks::cull(Map& map, KeyframeId newest, double min_found_ratio) {
 bool is_redundant_keyframe(const Map& map, KeyframeId id, double redundant_ratio, double close_depth_m) {
   const Keyframe& keyframe = *map.find_keyframe(id);
   if (keyframe.is_origin()) return false;
-  int counted = 0, seen = 0;
+  int close = 0;
   for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
-    const msg::Feature& feature = keyframe.frame->features[i];
-    if (keyframe.landmarks[i] == kNoLandmark || feature.depth_m <= 0 || feature.depth_m > close_depth_m) continue;
-    ++counted;
-    if (seen_by_others(map, *map.find_landmark(keyframe.landmarks[i]), id, feature.octave)) ++seen;
+    if (is_close_landmark(keyframe, i, close_depth_m)) ++close;
   }
-  return seen > redundant_ratio * counted;
+  // Most keyframes are not redundant, which shows before all landmarks are looked at.
+  int seen = close;
+  for (std::size_t i = 0; i < keyframe.landmarks.size() && seen > redundant_ratio * close; ++i) {
+    if (!is_close_landmark(keyframe, i, close_depth_m)) continue;
+    if (!seen_by_others(map, *map.find_landmark(keyframe.landmarks[i]), id, keyframe.frame->features[i].octave)) --seen;
+  }
+  return seen > redundant_ratio * close;
 }
 
 }  // namespace rtd::slam

@@ -29,6 +29,7 @@ struct Landmark {
   KeyframeId first_keyframe = kNoKeyframe;             ///< keyframe that made it
   int observation_weight = 0;                          ///< as ORB-SLAM2 counts: an observation with depth is two
   std::uint32_t visible = 1, found = 1;                ///< frames that should have seen it / did
+  bool appearance_is_current = false;                  ///< descriptor and mean probability fit the observations
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< p_world, m
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< mean viewing direction, camera -> landmark, world frame
   double min_distance_m = 0, max_distance_m = 0;       ///< from where the pyramid can show it

@@ -82,6 +82,7 @@ bool Map::add_observation(LandmarkId id, Observation observation) {
   change_covisibility(landmark, observation.keyframe, +1);
   insert(landmark.observations, position, observation);
   landmark.observation_weight += weight_of(keyframe, observation.feature);
+  landmark.appearance_is_current = false;
   keyframe.landmarks[observation.feature] = id;
   return true;
 }
@@ -93,6 +94,7 @@ void Map::remove_observation(LandmarkId id, KeyframeId keyframe) {
   Keyframe& observer = keyframe_at(keyframe);
   observer.landmarks[position->feature] = kNoLandmark;
   landmark.observation_weight -= weight_of(observer, position->feature);
+  landmark.appearance_is_current = false;
   landmark.observations.erase(position);
   change_covisibility(landmark, keyframe, -1);
   if (landmark.observations.empty()) {
@@ -200,6 +202,8 @@ void Map::refresh_geometry(LandmarkId id) {
 }
 
 void Map::refresh_appearance(Landmark& landmark) {
+  if (landmark.appearance_is_current) return;
+  landmark.appearance_is_current = true;
   std::array<const msg::Descriptor*, kMaxComparedDescriptors> descriptors{};
   std::size_t count = 0;
   double probability_sum = 0;
@@ -211,10 +215,15 @@ void Map::refresh_appearance(Landmark& landmark) {
   if (probability_rule_ == ProbabilityRule::kMeanOfObservations) {
     landmark.static_probability = probability_sum / static_cast<double>(landmark.observations.size());
   }
+  std::array<std::array<int, kMaxComparedDescriptors>, kMaxComparedDescriptors> all_distances{};
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      all_distances[i][j] = all_distances[j][i] = vision::hamming_distance(*descriptors[i], *descriptors[j]);
+    }
+  }
   int best_median = std::numeric_limits<int>::max();
   for (std::size_t i = 0; i < count; ++i) {
-    std::array<int, kMaxComparedDescriptors> distances{};
-    for (std::size_t j = 0; j < count; ++j) distances[j] = vision::hamming_distance(*descriptors[i], *descriptors[j]);
+    auto& distances = all_distances[i];
     const auto median = distances.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
     std::nth_element(distances.begin(), median, distances.begin() + static_cast<std::ptrdiff_t>(count));
     if (*median < best_median) {
