@@ -32,7 +32,7 @@ enum class TrackingState : std::uint32_t {
   kOk = 1,
   kRecentlyLost = 2,
   kLost = 3,
-  kRelocalizing = 4,
+  kRelocalizing = 4,  ///< a place was recognised; its pose is not given out before the next frames agree
   kPredicted = 5,  ///< nothing static in view: the motion goes on as before for a moment, nothing is measured
 };
 
@@ -68,6 +68,7 @@ enum SlamStage : std::uint32_t {
   kStageKeyframe,
   kStageMapping,
   kStageSlamTotal,
+  kStageRelocalize,  ///< trying the places that look like the frame, while tracking is lost
   kSlamStages = 8
 };
 
@@ -84,10 +85,17 @@ struct TrackingResult {
   std::uint32_t inliers;          ///< landmarks matched and kept by the pose optimisation
   std::uint32_t features_static;  ///< features offered to tracking
   std::uint32_t features_removed;
-  std::uint32_t keyframes;                  ///< keyframes in the map
-  std::uint32_t landmarks;                  ///< landmarks in the map
+  std::uint32_t keyframes;  ///< keyframes in the map
+  std::uint32_t landmarks;  ///< landmarks in the map
+  std::uint32_t map_id;     ///< map that the pose is in: 0 is frame `map`; others are on their own until merged
+  std::uint32_t maps;       ///< maps that have not been merged
   std::array<float, kSlamStages> stage_ms;  ///< by SlamStage
 };
+
+/// Whether the result is a measured pose in frame `map`.
+constexpr bool is_measured_in_map(const TrackingResult& result) {
+  return result.state == TrackingState::kOk && result.map_id == 0;
+}
 static_assert(std::is_trivially_copyable_v<KeyframeEvent> && std::is_trivially_copyable_v<TrackingResult>);
 
 }  // namespace rtd::msg

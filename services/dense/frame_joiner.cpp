@@ -106,7 +106,7 @@ FrameJoiner::Verdict FrameJoiner::judge(const msg::TrackingResult& result) {
     ++counter;
     return Verdict::kDone;
   };
-  if (result.state != msg::TrackingState::kOk) return done(counters_.not_tracked);
+  if (!msg::is_measured_in_map(result)) return done(counters_.not_tracked);
   if (words_heard_ < result.event_count && may_wait) return Verdict::kWait;
   if (!wanted(result)) return done(counters_.passed_over);
   const bool has_image = with_stamp(frames_, result.stamp_ns) != frames_.end();

@@ -35,7 +35,7 @@ struct JoinedFrame {
 struct JoinCounters {
   std::uint64_t joined = 0;
   std::uint64_t passed_over = 0;  ///< neither every n-th nor a keyframe
-  std::uint64_t not_tracked = 0;
+  std::uint64_t not_tracked = 0;  ///< or in another map
   std::uint64_t without_image = 0;  ///< it had gone before its turn, or never came
   std::uint64_t without_mask = 0;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "common/msg/transform_eigen.hpp"
 #include "services/filter/core/arrivals.hpp"
@@ -312,6 +313,10 @@ void DynamicFilter::remember(Scene scene, const Geometry& geometry, FilterResult
 
 void DynamicFilter::on_tracking(const msg::TrackingResult& result) {
   if (result.state != msg::TrackingState::kOk) return;
+  if (std::exchange(map_, result.map_id) != result.map_id) {  // poses of two maps have nothing to do with each other
+    views_.forget_before(result.seq);
+    movers_.clear();
+  }
   if (!views_.correct(result.seq, msg::to_isometry(result.T_world_camera))) movers_.clear();  // another world
   if (published_ != nullptr) published_->on_tracking(result.seq, msg::to_isometry(result.T_world_camera));
 }

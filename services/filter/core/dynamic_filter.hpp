@@ -96,6 +96,7 @@ class DynamicFilter {
   OrbExtractor extractor_;
   DepthGridSampler sampler_;
   ViewStore views_;
+  std::uint32_t map_ = 0;  ///< that slam's last pose was in
   DynamicMemory memory_;
   MoverTracks movers_;
   SurfaceBeliefs beliefs_;

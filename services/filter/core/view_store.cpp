@@ -54,10 +54,14 @@ bool ViewStore::correct(std::uint64_t seq, const Eigen::Isometry3d& T_world_came
   }
   if (T_camera_change.translation().norm() < kNewWorldM && geometry::rotation_angle_rad(T_camera_change) < kNewWorldRad)
     return true;
-  recent_.erase(recent_.begin(), found);
+  forget_before(seq);
+  return false;
+}
+
+void ViewStore::forget_before(std::uint64_t seq) {
+  while (recent_.size() > 1 && recent_.front().seq < seq) recent_.pop_front();
   past_.clear();
   keyframes_.clear();
-  return false;
 }
 
 void ViewStore::mark_keyframe(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera) {

@@ -44,6 +44,8 @@ class ViewStore {
   /// The frame is a keyframe: its view is kept longer.
   void mark_keyframe(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera);
   void forget_keyframe(std::uint64_t seq);
+  /// Keeps only what is as new as this frame, and the newest view: what lies before belongs to another world.
+  void forget_before(std::uint64_t seq);
   void clear();
 
   bool empty() const { return recent_.empty(); }

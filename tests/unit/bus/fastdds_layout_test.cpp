@@ -164,6 +164,8 @@ TEST(PlainLayoutFields, of_tracking_and_keyframes_lie_where_the_idl_has_them) {
   result.features_removed = 9;
   result.keyframes = 10;
   result.landmarks = 11;
+  result.map_id = 12;
+  result.maps = 13;
   const auto same_owner = bytes_as<idl::TrackingResult_>(result);
   const auto& same = *same_owner;
   EXPECT_EQ(same.finished_ns(), 1);
@@ -177,6 +179,8 @@ TEST(PlainLayoutFields, of_tracking_and_keyframes_lie_where_the_idl_has_them) {
   EXPECT_EQ(same.features_removed(), 9U);
   EXPECT_EQ(same.keyframes(), 10U);
   EXPECT_EQ(same.landmarks(), 11U);
+  EXPECT_EQ(same.map_id(), 12U);
+  EXPECT_EQ(same.maps(), 13U);
 
   msg::KeyframeEvent event{};
   event.event_index = 1;

@@ -104,6 +104,16 @@ TEST_F(FrameJoinerTest, counts_frames_without_pose) {
   EXPECT_EQ(joiner_.counters().not_tracked, 1U);
 }
 
+TEST_F(FrameJoinerTest, leaves_out_frames_of_another_map) {
+  msg::TrackingResult result{};
+  result.state = msg::TrackingState::kOk;
+  result.map_id = 1;
+  image(0), mask(0);
+  joiner_.put(result);
+  EXPECT_EQ(next(), -1);
+  EXPECT_EQ(joiner_.counters().not_tracked, 1U);
+}
+
 TEST_F(FrameJoinerTest, keeps_the_newest_images_when_nobody_takes_them) {
   for (std::uint64_t seq = 0; seq < 400; ++seq) image(seq), mask(seq), pose(seq);
   std::int64_t first = next(), last = first;

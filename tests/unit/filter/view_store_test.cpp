@@ -66,6 +66,16 @@ TEST(ViewStore, drops_what_lies_in_another_world) {
   EXPECT_NEAR(store.newest().T_world_camera.translation().x(), 5.0, 1e-9) << "m";
 }
 
+TEST(ViewStore, forgets_what_lies_before_a_frame) {
+  ViewStore store;
+  for (std::uint64_t seq = 0; seq < 10; ++seq) store.add(view(seq));
+  store.mark_keyframe(2, at(0));
+  store.forget_before(6);
+  EXPECT_EQ(store.size(), 4U) << "6 to 9";
+  store.forget_before(77);
+  EXPECT_EQ(store.size(), 1U) << "the newest view stays";
+}
+
 TEST(ViewStore, ignores_frames_that_it_does_not_have) {
   ViewStore store;
   EXPECT_TRUE(store.correct(3, at(1)));

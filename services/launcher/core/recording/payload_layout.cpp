@@ -75,6 +75,8 @@ const std::vector<PayloadLayout> kLayouts = {
         {"features_removed", kU32},
         {"keyframes", kU32},
         {"landmarks", kU32},
+        {"map_id", kU32},
+        {"maps", kU32},
         {"stage_ms", kF32, msg::kSlamStages, true}}}}},
     {"KeyframeEvent",
      {{{{"event_index", kU64},
