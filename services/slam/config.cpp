@@ -94,6 +94,17 @@ void bind_mapper(ConfigBinder& binder, MapperConfig& c) {
   binder.field("mapper.correction_rad", c.correction_rad, {0.0, 1.0}, "the same for its rotation");
 }
 
+void bind_place(ConfigBinder& binder, PlaceConfig& c) {
+  binder.field("place.candidates", c.candidates, {1, 100}, "places that a lost frame is compared with, in turn");
+  binder.field("place.candidates_per_frame", c.candidates_per_frame, {1, 100}, "so many of them at one frame");
+  binder.field("place.min_inliers", c.min_inliers, {10, 500}, "landmarks that a pose needs at a recognised place");
+  binder.field("place.min_found_ratio", c.min_found_ratio, {0.0, 1.0}, "of the landmarks that should be seen there");
+  binder.field("place.confirmations", c.confirmations, {0, 100},
+               "frames that must agree before that pose is given out");
+  binder.field("place.new_map_after_s", c.new_map_after_s, {0.0, 1e6},
+               "a new map begins after so long with unknown views; 0: never");
+}
+
 /// At most one byte more than a vocabulary may have: who names a video by mistake need not wait.
 std::vector<std::byte> read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -127,6 +138,7 @@ void ServiceConfig::bind(ConfigBinder& binder) {
   bind_belief(binder, core.belief);
   bind_keyframe(binder, core.keyframe);
   bind_mapper(binder, core.mapper);
+  bind_place(binder, core.place);
   binder.field("place.vocabulary", vocabulary_file, "file of rtd-train-vocabulary; empty: the built-in one");
   binder.field("out", out_dir, "folder for trajectory.txt, keyframes.txt and map.ply; empty: none");
   binder.field("map_frame", map_frame, "frame of all poses in the messages");

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <functional>
 #include <stdexcept>
+#include <string>
 
 namespace rtd::slam {
 namespace {
@@ -23,6 +24,11 @@ void write_run_files(const SlamSystem& slam, const std::filesystem::path& folder
   std::filesystem::create_directories(folder, ignored);
   write_file(folder / "trajectory.txt", [&](std::ostream& out) { write_tum_trajectory(out, slam.trajectory()); });
   write_file(folder / "keyframes.txt", [&](std::ostream& out) { write_tum_trajectory(out, slam.keyframes()); });
+  for (const MapId map : slam.maps()) {
+    if (map == 0) continue;
+    write_file(folder / ("trajectory_map_" + std::to_string(map) + ".txt"),
+               [&](std::ostream& out) { write_tum_trajectory(out, slam.trajectory(map)); });
+  }
   write_file(folder / "map.ply", [&](std::ostream& out) { write_ply(out, slam.map_points()); });
 }
 

@@ -38,13 +38,17 @@ std::string text(double value) {
 
 }  // namespace
 
+std::string map_frame(const msg::TrackingResult& result, const FrameNames& names) {
+  return result.map_id == 0 ? names.map : names.map + "_" + std::to_string(result.map_id);
+}
+
 msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& names) {
-  return {{msg::to_time(result.stamp_ns), names.map}, to_pose(result.T_world_camera)};
+  return {{msg::to_time(result.stamp_ns), map_frame(result, names)}, to_pose(result.T_world_camera)};
 }
 
 msg::TFMessage make_tf(const msg::TrackingResult& result, const FrameNames& names) {
   const msg::Pose pose = to_pose(result.T_world_camera);
-  return {{{{msg::to_time(result.stamp_ns), names.map},
+  return {{{{msg::to_time(result.stamp_ns), map_frame(result, names)},
             names.camera,
             {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation}}}};
 }
@@ -52,7 +56,7 @@ msg::TFMessage make_tf(const msg::TrackingResult& result, const FrameNames& name
 msg::Odometry make_odometry(const msg::TrackingResult& result, const std::optional<msg::TrackingResult>& previous,
                             const FrameNames& names) {
   msg::Odometry odometry;
-  odometry.header = {msg::to_time(result.stamp_ns), names.map};
+  odometry.header = {msg::to_time(result.stamp_ns), map_frame(result, names)};
   odometry.child_frame_id = names.camera;
   odometry.pose = {to_pose(result.T_world_camera), result.covariance};
   if (!previous || previous->stamp_ns >= result.stamp_ns) return odometry;
@@ -84,6 +88,8 @@ msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const S
                    {"inliers", std::to_string(result.inliers)},
                    {"keyframes", std::to_string(result.keyframes)},
                    {"landmarks", std::to_string(result.landmarks)},
+                   {"map", std::to_string(result.map_id)},
+                   {"maps", std::to_string(result.maps)},
                    {"frames", std::to_string(counters.frames)},
                    {"frames_tracked", std::to_string(counters.tracked)},
                    {"frames_dropped", std::to_string(counters.dropped)},

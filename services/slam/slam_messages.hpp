@@ -18,6 +18,9 @@ struct FrameNames {
   std::string map, camera;
 };
 
+/// Frame of the poses: `map`, or `map_N` while another map than the first is tracked and not merged.
+std::string map_frame(const msg::TrackingResult& result, const FrameNames& names);
+
 msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& names);
 msg::TFMessage make_tf(const msg::TrackingResult& result, const FrameNames& names);
 /// Pose with covariance, and the twist in the camera frame: the motion since `previous` (state kOk, earlier stamp)

@@ -31,6 +31,7 @@ void SlamPublisher::publish(const SlamOutput& output) {
   const bool measured = output.result.state == msg::TrackingState::kOk;
   // From a predicted pose to a measured one the estimate may step: that is no velocity.
   if (measured && previous_ && previous_->state != msg::TrackingState::kOk) previous_.reset();
+  if (previous_ && previous_->map_id != output.result.map_id) previous_.reset();
   if (!msg::has_pose(output.result.state)) {
     previous_.reset();
     return;
@@ -45,6 +46,7 @@ void SlamPublisher::publish_pose(const msg::TrackingResult& result) {
   msg::PoseStamped pose = make_pose(result, names_);
   pose_.write(pose);
   newest_stamp_ns_ = result.stamp_ns;
+  if (!poses_.empty() && poses_.back().header.frame_id != pose.header.frame_id) poses_.clear();  // one path, one frame
   poses_.push_back(std::move(pose));
   while (poses_.size() > static_cast<std::size_t>(config_.path_length)) poses_.pop_front();
   publish_path();

@@ -67,6 +67,7 @@ LocalMapPtr make_local_map(const Map& map, KeyframeId centre, std::uint64_t vers
   auto local = std::make_shared<LocalMap>();
   local->version = version;
   local->map = map.find_keyframe(centre)->map;
+  local->components = map.component_count();
   local->component_keyframes = map.keyframe_count(local->map);
   local->map_keyframes = map.keyframes().size();
   local->map_landmarks = map.landmark_count();

@@ -37,6 +37,7 @@ struct LocalMap {
   std::vector<std::uint32_t> observers;              ///< indices into keyframes
   MapId map = 0;                                     ///< component of the centre
   std::size_t component_keyframes = 0;               ///< size of that component
+  std::size_t components = 0;                        ///< of the whole map
   std::size_t map_keyframes = 0, map_landmarks = 0;  ///< size of the whole map, all components
 
   const LocalLandmark* find_landmark(LandmarkId id) const;

@@ -242,6 +242,17 @@ Eigen::Isometry3d Map::T_world_keyframe(KeyframeId id) const {
   return keyframe_at(id).T_world_camera * T_ancestor_camera;
 }
 
+MapId Map::map_of(KeyframeId id) const {
+  for (auto it = removed_.find(id); it != removed_.end(); it = removed_.find(id)) id = it->second.parent;
+  return keyframes_.at(id).map;
+}
+
+std::vector<MapId> Map::maps() const {
+  std::vector<MapId> maps;
+  for (const auto& [map, size] : component_sizes_) maps.push_back(map);
+  return maps;
+}
+
 std::vector<KeyframeId> Map::best_covisible(KeyframeId id, std::size_t count, int min_shared) const {
   std::vector<std::pair<int, KeyframeId>> ranked;
   for (const auto& [other, shared] : keyframe_at(id).covisible) {

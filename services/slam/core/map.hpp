@@ -92,6 +92,10 @@ class Map {
 
   /// Current pose of a keyframe that exists or existed.
   Eigen::Isometry3d T_world_keyframe(KeyframeId id) const;
+  /// The map that a keyframe that exists or existed belongs to.
+  MapId map_of(KeyframeId id) const;
+  /// The maps that there are, oldest first.
+  std::vector<MapId> maps() const;
   /// What a removed keyframe hangs on (possibly removed itself).
   KeyframeId parent_of_removed(KeyframeId id) const { return removed_.at(id).parent; }
   /// Up to `count` keyframes with at least `min_shared` landmarks in common, most first.
@@ -100,6 +104,7 @@ class Map {
   const std::map<KeyframeId, Keyframe>& keyframes() const { return keyframes_; }
   std::vector<LandmarkId> landmark_ids() const { return landmarks_.ids(); }  ///< ascending
   std::size_t keyframe_count(MapId map) const;  ///< of one component; 0 when there is none (any more)
+  std::size_t component_count() const { return component_sizes_.size(); }
   std::size_t landmark_count() const { return landmarks_.size(); }
   bool empty() const { return keyframes_.empty(); }
   ProbabilityRule probability_rule() const { return probability_rule_; }

@@ -127,6 +127,20 @@ LocalMapPtr Mapper::local_map(KeyframeId centre) {
   return make_local_map(map_, centre, ++snapshots_);
 }
 
+std::vector<LocalMapPtr> Mapper::places_like(const Frame& frame, std::size_t first, std::size_t count) {
+  constexpr std::size_t kKeyframes = 20;  // of a place: enough to confirm a pose, quickly copied
+  if (vocabulary_ == nullptr) return {};
+  PlaceQuery query;
+  query.max_candidates = static_cast<std::size_t>(config_.place.candidates);
+  const auto candidates = find_places(places_, map_, vocabulary_->describe(frame.features), query);
+  std::vector<LocalMapPtr> places;
+  for (std::size_t i = 0; i < std::min(count, candidates.size()); ++i) {
+    const KeyframeId keyframe = candidates[(first + i) % candidates.size()].keyframe;
+    places.push_back(make_local_map(map_, keyframe, ++snapshots_, kKeyframes));
+  }
+  return places;
+}
+
 std::vector<KeyframeChange> Mapper::take_changes() {
   return std::exchange(changes_, {});
 }

@@ -47,6 +47,9 @@ class Mapper {
   KeyframeId insert(const KeyframeProposal& proposal, const std::function<bool()>& interrupted = {});
   /// A snapshot around `centre`, or around what `centre` hung on when it was removed meanwhile.
   LocalMapPtr local_map(KeyframeId centre);
+  /// The parts of the map around the places that look like this frame: `count` of them from rank `first` on, going
+  /// round; fewer when there are fewer places. Empty without place recognition.
+  std::vector<LocalMapPtr> places_like(const Frame& frame, std::size_t first, std::size_t count);
   /// Created, corrected and removed keyframes since the last call, in order.
   std::vector<KeyframeChange> take_changes();
   const Map& map() const { return map_; }

@@ -11,7 +11,10 @@ constexpr int kMaxPendingKeyframes = 3;
 }  // namespace
 
 MappingWorker::MappingWorker(const SlamConfig& config, MappingMode mode, std::function<void()> on_thread_start)
-    : mode_(mode), mapper_(config), queue_(kQueueCapacity, concurrency::Overflow::kBlock) {
+    : mode_(mode),
+      places_per_frame_(static_cast<std::size_t>(config.place.candidates_per_frame)),
+      mapper_(config),
+      queue_(kQueueCapacity, concurrency::Overflow::kBlock) {
   if (mode_ == MappingMode::kSynchronous) return;
   thread_ = std::thread([this, on_start = std::move(on_thread_start)] {
     if (on_start) on_start();
@@ -28,13 +31,16 @@ bool MappingWorker::room() const {
 }
 
 void MappingWorker::insert(KeyframeProposal proposal) {
-  const bool first = proposal.reference == kNoKeyframe;
-  if (mode_ == MappingMode::kSynchronous || first) {
+  if (mode_ == MappingMode::kSynchronous) {
     run(std::move(proposal));
   } else {
     ++pending_;
     if (!queue_.push(std::move(proposal))) --pending_;
   }
+}
+
+LocalMapPtr MappingWorker::begin_map(KeyframeProposal first) {
+  return run(std::move(first));
 }
 
 void MappingWorker::recentre(KeyframeId centre) {
@@ -43,6 +49,16 @@ void MappingWorker::recentre(KeyframeId centre) {
   } else {
     queue_.push(centre);
   }
+}
+
+std::vector<LocalMapPtr> MappingWorker::places_like(const FramePtr& frame, std::size_t attempt) {
+  if (mode_ == MappingMode::kSynchronous) {
+    run(PlaceQuestion{frame, attempt});
+  } else if (!place_wanted_.exchange(true)) {
+    queue_.push(PlaceQuestion{frame, attempt});
+  }
+  const std::lock_guard lock(output_mutex_);
+  return std::exchange(places_, {});
 }
 
 LocalMapPtr MappingWorker::snapshot() const {
@@ -65,8 +81,12 @@ void MappingWorker::read(const std::function<void(const Map&)>& look) const {
   look(mapper_.map());
 }
 
-void MappingWorker::run(const Command& command) {
+LocalMapPtr MappingWorker::run(const Command& command) {
   const std::lock_guard mapper_lock(mapper_mutex_);
+  if (const auto* question = std::get_if<PlaceQuestion>(&command)) {
+    find_places(*question);
+    return nullptr;
+  }
   if (const auto* proposal = std::get_if<KeyframeProposal>(&command)) {
     centre_ = mapper_.insert(*proposal, [this] { return pending_ > 1; });
   } else {
@@ -75,8 +95,17 @@ void MappingWorker::run(const Command& command) {
   LocalMapPtr snapshot = mapper_.local_map(centre_);
   const std::vector<KeyframeChange> changes = mapper_.take_changes();
   const std::lock_guard output_lock(output_mutex_);
-  snapshot_ = std::move(snapshot);
+  snapshot_ = snapshot;
   changes_.insert(changes_.end(), changes.begin(), changes.end());
+  return snapshot;
+}
+
+void MappingWorker::find_places(const PlaceQuestion& question) {
+  std::vector<LocalMapPtr> places =
+      mapper_.places_like(*question.frame, question.attempt * places_per_frame_, places_per_frame_);
+  place_wanted_ = false;
+  const std::lock_guard output_lock(output_mutex_);
+  places_ = std::move(places);
 }
 
 void MappingWorker::loop() {

@@ -21,7 +21,8 @@ enum class MappingMode : std::uint8_t {
 };
 
 /// Runs a Mapper in the caller's thread or in one of its own, and hands out what tracking needs of it.
-/// insert(), recentre(), finish(): one thread (tracking). snapshot(), take_changes(), room(), idle(), read(): any.
+/// insert(), begin_map(), recentre(), places_like(), finish(): one thread (tracking). snapshot(), take_changes(),
+/// room(), idle(), read(): any.
 class MappingWorker {
  public:
   /// `on_thread_start` runs first in the mapper's own thread (priority, name); may be empty.
@@ -31,10 +32,16 @@ class MappingWorker {
   /// Room for another keyframe; idle: nothing queued or in work. Synchronous: both always true.
   bool room() const;
   bool idle() const { return pending_ == 0; }
-  /// Hands a keyframe over. The first keyframe of a map is inserted before this returns, in both modes.
+  /// Hands a keyframe over.
   void insert(KeyframeProposal proposal);
+  /// Inserts the first keyframe of a map before it returns, in both modes; snapshots are taken around it from now on.
+  LocalMapPtr begin_map(KeyframeProposal first);
   /// Asks for snapshots around this keyframe from now on.
   void recentre(KeyframeId centre);
+  /// Parts of the map around places that look like this frame; every `attempt` of a search, counted from 0, tries
+  /// others. Synchronous: at once. Threaded: never waits; the answer is that to an earlier frame, empty when it has
+  /// been given out or is not there yet.
+  std::vector<LocalMapPtr> places_like(const FramePtr& frame, std::size_t attempt);
   /// Newest snapshot; null before the first keyframe.
   LocalMapPtr snapshot() const;
   std::vector<KeyframeChange> take_changes();
@@ -44,18 +51,26 @@ class MappingWorker {
   void read(const std::function<void(const Map&)>& look) const;
 
  private:
-  using Command = std::variant<KeyframeProposal, KeyframeId>;
-  void run(const Command& command);
+  struct PlaceQuestion {
+    FramePtr frame;
+    std::size_t attempt;
+  };
+  using Command = std::variant<KeyframeProposal, KeyframeId, PlaceQuestion>;  ///< insert, recentre, recognise
+  LocalMapPtr run(const Command& command);
+  void find_places(const PlaceQuestion& question);
   void loop();
 
   const MappingMode mode_;
+  const std::size_t places_per_frame_;
   mutable std::mutex mapper_mutex_;  ///< held while the mapper works
   Mapper mapper_;
   KeyframeId centre_ = 0;
-  mutable std::mutex output_mutex_;  ///< guards the two below, held briefly
+  mutable std::mutex output_mutex_;  ///< guards the three below, held briefly
   LocalMapPtr snapshot_;
   std::vector<KeyframeChange> changes_;
+  std::vector<LocalMapPtr> places_;
   std::atomic<int> pending_{0};
+  std::atomic<bool> place_wanted_{false};
   concurrency::BoundedQueue<Command> queue_;
   std::thread thread_;
 };

@@ -14,6 +14,7 @@ struct PoseRansacOptions {
   int max_iterations = 200;
   double max_error_px = 5.0;  ///< at the finest octave
   int min_inliers = 15;
+  int min_with_depth = 15;  ///< observations with depth that make points of their own; fewer: P3P
   std::uint64_t seed = 0;
 };
 
@@ -23,8 +24,9 @@ struct PoseRansacResult {
   int inliers = 0;
 };
 
-/// Camera pose from 3D-3D correspondences with many outliers: triples of observations with depth give hypotheses
-/// (least-squares rigid alignment), reprojection of all observations counts. docs/theory/tracking.md, "Recovery".
+/// Camera pose from correspondences with many outliers: triples of observations give hypotheses, by least-squares rigid
+/// alignment where there is depth enough, else by P3P; reprojection of all observations counts.
+/// docs/theory/tracking.md, "Reference keyframe and recovery".
 PoseRansacResult estimate_pose_ransac(const vision::RgbdProjection& camera,
                                       const std::vector<vision::PoseObservation>& observations,
                                       const PoseRansacOptions& options);

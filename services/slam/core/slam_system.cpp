@@ -33,7 +33,8 @@ SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns,
     : config_(config),
       now_ns_(now_ns),
       mapping_(config, mode, std::move(on_mapping_thread)),
-      tracker_(config, std::move(now_ns)) {}
+      tracker_(config, std::move(now_ns),
+               [this](const FramePtr& frame, std::size_t attempt) { return mapping_.places_like(frame, attempt); }) {}
 
 SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
   const std::int64_t start_ns = now_ns_();
@@ -73,15 +74,17 @@ TrackOutcome SlamSystem::initialize(const FrameInput& input, SlamOutput& output)
         "initializing: fewer than " + std::to_string(config_.tracker.min_initial_points) + " features with depth";
     return {};
   }
+  return begin_map(input);
+}
+
+TrackOutcome SlamSystem::begin_map(const FrameInput& input) {
   const std::int64_t start_ns = now_ns_();
   KeyframeProposal first;
   first.frame = input.frame;
   first.landmarks.assign(input.frame->features.size(), kNoLandmark);
-  mapping_.insert(std::move(first));
-  const LocalMapPtr map = mapping_.snapshot();
-  requested_centre_ = map->keyframes.front().id;
-  TrackOutcome outcome = tracker_.initialize(input.frame, requested_centre_);
-  outcome.inliers = static_cast<int>(map->landmarks.size());
+  TrackOutcome outcome = tracker_.initialize(input.frame, mapping_.begin_map(std::move(first)));
+  requested_centre_ = outcome.tracked.reference;
+  unknown_view_.reset();
   outcome.stage_ms[msg::kStageMapping] = to_ms(now_ns_() - start_ns);
   frames_.push_back(
       {input.frame->seq, input.frame->stamp_ns, outcome.tracked.reference, outcome.tracked.T_reference_camera});
@@ -95,8 +98,13 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
     outcome.state = msg::TrackingState::kRecentlyLost;
     return outcome;
   }
-  const LocalMapPtr map = mapping_.snapshot();
-  TrackOutcome outcome = tracker_.track(input.frame, *map);
+  TrackOutcome outcome = tracker_.track(input.frame, mapping_.snapshot());
+  if (wants_new_map(*input.frame, outcome.state)) return begin_map(input);
+  if (outcome.state == msg::TrackingState::kRelocalizing) {
+    output.problem = "relocalizing: a place was recognised, the next frames have to agree";
+    follow_reference(outcome);
+    return outcome;
+  }
   if (outcome.state != msg::TrackingState::kOk) {
     const bool predicted = outcome.state == msg::TrackingState::kPredicted;
     output.problem = (predicted ? "predicted: " : "lost: ") + std::to_string(outcome.inliers) + " of " +
@@ -105,8 +113,8 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   }
   frames_.push_back(
       {input.frame->seq, input.frame->stamp_ns, outcome.tracked.reference, outcome.tracked.T_reference_camera});
-  observe_shutter(*map, outcome);
-  maybe_insert_keyframe(*map, outcome);
+  observe_shutter(*outcome.map, outcome);
+  maybe_insert_keyframe(outcome);
   return outcome;
 }
 
@@ -131,20 +139,39 @@ void SlamSystem::observe_shutter(const LocalMap& map, const TrackOutcome& outcom
   readout_.add(*outcome.tracked.frame, outcome.tracked.T_world_camera, points, shutter_);
 }
 
-void SlamSystem::maybe_insert_keyframe(const LocalMap& map, TrackOutcome& outcome) {
+/// Lost for long, with views that nobody knows: the world goes on in a map of its own.
+bool SlamSystem::wants_new_map(const Frame& frame, msg::TrackingState state) {
+  const bool lost = state == msg::TrackingState::kRecentlyLost || state == msg::TrackingState::kLost;
+  if (!lost) {
+    unknown_view_.reset();
+    return false;
+  }
+  const double unknown_s = unknown_view_.observe(frame.stamp_ns, tracker_.can_initialize(frame));
+  return config_.place.new_map_after_s > 0 && unknown_s >= config_.place.new_map_after_s;
+}
+
+void SlamSystem::maybe_insert_keyframe(TrackOutcome& outcome) {
   const std::int64_t start_ns = now_ns_();
-  const KeyframeSituation situation = tracker_.keyframe_situation(map, mapping_.idle());
+  const KeyframeSituation situation = tracker_.keyframe_situation(*outcome.map, mapping_.idle());
   const bool insert = decide_keyframe(situation, config_.keyframe) == KeyframeDecision::kOffer && mapping_.room();
   outcome.stage_ms[msg::kStageKeyframe] = to_ms(now_ns_() - start_ns);
   const std::int64_t mapping_start_ns = now_ns_();
   if (insert) {
     mapping_.insert(tracker_.propose_keyframe());
     requested_centre_ = kNoKeyframe;
-  } else if (outcome.tracked.reference != map.keyframes.front().id && outcome.tracked.reference != requested_centre_) {
-    requested_centre_ = outcome.tracked.reference;
-    mapping_.recentre(requested_centre_);
+  } else {
+    follow_reference(outcome);
   }
   outcome.stage_ms[msg::kStageMapping] = to_ms(now_ns_() - mapping_start_ns);
+}
+
+/// Snapshots are to be taken around the keyframe that the camera is near.
+void SlamSystem::follow_reference(const TrackOutcome& outcome) {
+  const KeyframeId reference = outcome.tracked.reference;
+  const bool followed = reference == mapping_.snapshot()->keyframes.front().id;
+  if (followed || reference == requested_centre_) return;
+  requested_centre_ = reference;
+  mapping_.recentre(reference);
 }
 
 void SlamSystem::collect_events(SlamOutput& output) {
@@ -159,7 +186,8 @@ void SlamSystem::fill_result(const msg::FeatureFrame& message, const FrameInput&
   msg::TrackingResult& result = output.result;
   result.seq = message.seq;
   result.stamp_ns = message.stamp_ns;
-  result.T_world_camera = msg::to_message(outcome.tracked.T_world_camera);
+  result.T_world_camera =
+      msg::to_message(msg::has_pose(outcome.state) ? outcome.tracked.T_world_camera : Eigen::Isometry3d::Identity());
   Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(result.covariance.data()) = outcome.covariance;
   result.event_count = event_count_;
   result.state = outcome.state;
@@ -170,22 +198,24 @@ void SlamSystem::fill_result(const msg::FeatureFrame& message, const FrameInput&
   if (const LocalMapPtr map = mapping_.snapshot()) {
     result.keyframes = static_cast<std::uint32_t>(map->map_keyframes);
     result.landmarks = static_cast<std::uint32_t>(map->map_landmarks);
+    result.map_id = (outcome.map != nullptr ? outcome.map : map)->map;
+    result.maps = static_cast<std::uint32_t>(map->components);
   }
 }
 
-std::vector<StampedPose> SlamSystem::trajectory() const {
+std::vector<StampedPose> SlamSystem::trajectory(MapId id) const {
   std::vector<StampedPose> poses;
-  mapping_.read([&](const Map& map) { poses = compose_trajectory(map, frames_); });
+  mapping_.read([&](const Map& map) { poses = compose_trajectory(map, frames_, id); });
   return poses;
 }
 
-std::vector<StampedPose> SlamSystem::keyframes() const {
+std::vector<StampedPose> SlamSystem::keyframes(MapId id) const {
   std::vector<StampedPose> poses;
-  mapping_.read([&](const Map& map) { poses = keyframe_trajectory(map); });
+  mapping_.read([&](const Map& map) { poses = keyframe_trajectory(map, id); });
   return poses;
 }
 
-std::vector<MapPoint> SlamSystem::map_points() const {
+std::vector<MapPoint> SlamSystem::map_points(MapId id) const {
   constexpr std::size_t kPortion = 20'000;  // 2 ms: the mapper waits no longer
   std::vector<LandmarkId> ids;
   mapping_.read([&](const Map& map) { ids = map.landmark_ids(); });
@@ -193,9 +223,15 @@ std::vector<MapPoint> SlamSystem::map_points() const {
   points.reserve(ids.size());
   for (std::size_t begin = 0; begin < ids.size(); begin += kPortion) {
     const auto portion = std::span(ids).subspan(begin, std::min(kPortion, ids.size() - begin));
-    mapping_.read([&](const Map& map) { append_map_points(map, portion, points); });
+    mapping_.read([&](const Map& map) { append_map_points(map, id, portion, points); });
   }
   return points;
+}
+
+std::vector<MapId> SlamSystem::maps() const {
+  std::vector<MapId> maps;
+  mapping_.read([&](const Map& map) { maps = map.maps(); });
+  return maps;
 }
 
 }  // namespace rtd::slam

@@ -36,9 +36,11 @@ class SlamSystem {
   /// Ends mapping: everything queued is worked off. The trajectories are final after it.
   void finish() { mapping_.finish(); }
 
-  std::vector<StampedPose> trajectory() const;
-  std::vector<StampedPose> keyframes() const;
-  std::vector<MapPoint> map_points() const;
+  /// Of one map: each has a world frame of its own.
+  std::vector<StampedPose> trajectory(MapId id = 0) const;
+  std::vector<StampedPose> keyframes(MapId id = 0) const;
+  std::vector<MapPoint> map_points(MapId id = 0) const;
+  std::vector<MapId> maps() const;
   std::size_t frames_tracked() const { return frames_.size(); }
   std::uint64_t source_restarts() const { return source_restarts_; }
   /// Of the camera, as it is undone now; 0: rows are taken to be exposed at once.
@@ -47,11 +49,13 @@ class SlamSystem {
  private:
   void watch_source(const msg::FeatureFrame& message);
   TrackOutcome initialize(const FrameInput& input, SlamOutput& output);
+  TrackOutcome begin_map(const FrameInput& input);
+  bool wants_new_map(const Frame& frame, msg::TrackingState state);
   TrackOutcome track(const FrameInput& input, SlamOutput& output);
   ShutterMotion shutter_motion() const;
   void observe_shutter(const LocalMap& map, const TrackOutcome& outcome);
-  void maybe_insert_keyframe(const LocalMap& map, TrackOutcome& outcome);
-  void follow_reference(const LocalMap& map, KeyframeId reference);
+  void maybe_insert_keyframe(TrackOutcome& outcome);
+  void follow_reference(const TrackOutcome& outcome);
   void collect_events(SlamOutput& output);
   void fill_result(const msg::FeatureFrame& message, const FrameInput& input, const TrackOutcome& outcome,
                    SlamOutput& output);
@@ -60,6 +64,7 @@ class SlamSystem {
   Clock now_ns_;
   MappingWorker mapping_;
   Tracker tracker_;
+  UnknownViewClock unknown_view_;
   ReadoutEstimator readout_;
   ShutterMotion shutter_;  ///< what the features of the frame in work were corrected with
   std::vector<FrameRecord> frames_;

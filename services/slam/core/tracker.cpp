@@ -40,36 +40,46 @@ bool Tracker::can_initialize(const Frame& frame) const {
   return with_depth >= config_.tracker.min_initial_points;
 }
 
-TrackOutcome Tracker::initialize(FramePtr frame, KeyframeId first) {
+TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
   TrackOutcome outcome;
   outcome.state = state_ = msg::TrackingState::kOk;
   last_ = TrackedFrame{};
   last_.landmarks.assign(frame->features.size(), kNoLandmark);
   last_.frame = std::move(frame);
-  last_.reference = first;
+  last_.reference = map->keyframes.front().id;
   outcome.tracked = last_;
-  frames_since_keyframe_ = 0;
+  outcome.inliers = static_cast<int>(map->landmarks.size());
+  motion_.reset();
+  frames_since_keyframe_ = failed_frames_ = frames_at_place_ = 0;
+  outcome.map = place_ = std::move(map);
   return outcome;
 }
 
-TrackOutcome Tracker::track(FramePtr frame, const LocalMap& map) {
+TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
   const std::int64_t start_ns = now_ns_();
   TrackOutcome outcome;
-  adopt(map);
-  const PoseGuess guess = find_pose(*frame, map);
+  outcome.map = choose_map(snapshot);
+  adopt(*outcome.map);
+  const PoseGuess guess = find_pose(*frame, *outcome.map);
   const std::int64_t matched_ns = now_ns_();
   outcome.stage_ms[msg::kStageMatch] = to_ms(matched_ns - start_ns - guess.optimizer_ns);
   outcome.stage_ms[msg::kStagePose] = to_ms(guess.optimizer_ns);
-  if (!guess.success) {
-    reject(outcome, *frame, {});
-    return outcome;
+  LocalMapTracking tracking;
+  if (guess.success) {
+    tracking = track_local_map(*frame, *outcome.map, guess, context());
+    outcome.stage_ms[msg::kStageLocalMap] = to_ms(now_ns_() - matched_ns - tracking.guess.optimizer_ns);
+    outcome.stage_ms[msg::kStagePose] += to_ms(tracking.guess.optimizer_ns);
   }
-  const LocalMapTracking tracking = track_local_map(*frame, map, guess, context());
-  outcome.stage_ms[msg::kStageLocalMap] = to_ms(now_ns_() - matched_ns - tracking.guess.optimizer_ns);
-  outcome.stage_ms[msg::kStagePose] += to_ms(tracking.guess.optimizer_ns);
   outcome.inliers = tracking.guess.inliers;
   if (acceptable(tracking.guess)) {
-    accept(outcome, std::move(frame), map, tracking);
+    accept(outcome, std::move(frame), tracking);
+    return outcome;
+  }
+  const std::int64_t failed_ns = now_ns_();
+  auto found = may_relocalize(*frame) ? relocalize(*frame, places_(frame, place_attempts_++), context()) : std::nullopt;
+  outcome.stage_ms[msg::kStageRelocalize] = to_ms(now_ns_() - failed_ns);
+  if (found) {
+    enter_place(outcome, std::move(frame), std::move(*found));
   } else {
     reject(outcome, *frame, tracking.guess);
   }
@@ -79,6 +89,16 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMap& map) {
 void Tracker::forget_motion() {
   motion_.reset();
   if (msg::has_pose(state_)) state_ = msg::TrackingState::kRecentlyLost;
+}
+
+/// Where the camera entered the map, until the mapper's snapshots have followed it there: they come from another
+/// thread.
+LocalMapPtr Tracker::choose_map(const LocalMapPtr& snapshot) {
+  constexpr int kMaxFrames = 30;  // the keyframe that is waited for may have been removed meanwhile
+  if (place_ == nullptr) return snapshot;
+  if (snapshot->find_keyframe(last_.reference) == nullptr && ++frames_at_place_ <= kMaxFrames) return place_;
+  place_.reset();
+  return snapshot;
 }
 
 /// The map may have moved under the last frame, and the last frame may have become a keyframe with new landmarks.
@@ -125,10 +145,10 @@ PoseGuess Tracker::find_pose(const Frame& frame, const LocalMap& map) {
       if (guess.success) return guess;
     }
   }
-  return msg::has_pose(state_) ? PoseGuess{} : recover(frame, map);
+  return msg::has_pose(state_) || config_.techniques.place_recognition ? PoseGuess{} : recover(frame, map);
 }
 
-/// Tries a few keyframes of the window in each frame, going round. Place recognition will choose them once it exists.
+/// Without place recognition: tries a few keyframes of the window in each frame, going round.
 PoseGuess Tracker::recover(const Frame& frame, const LocalMap& map) {
   const std::size_t tries =
       std::min(map.keyframes.size(), static_cast<std::size_t>(config_.tracker.recovery_keyframes));
@@ -139,15 +159,50 @@ PoseGuess Tracker::recover(const Frame& frame, const LocalMap& map) {
   return {};
 }
 
+/// Lost, or about to be although the view is rich: somebody has carried the camera away.
+bool Tracker::may_relocalize(const Frame& frame) const {
+  constexpr std::size_t kFeatures = 15, kRichView = 100;
+  if (!config_.techniques.place_recognition || !places_) return false;
+  return frame.features.size() >= (msg::has_pose(state_) ? kRichView : kFeatures);
+}
+
 bool Tracker::acceptable(const PoseGuess& guess) const {
   // After a loss a wrong place is the greater danger.
   const double strictness = msg::has_pose(state_) ? 1.0 : 1.5;
   return guess.success && guess.inliers >= strictness * config_.tracker.min_inliers;
 }
 
-void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking) {
+/// The frame was tracked. After a recognised place it takes some more that agree before a pose is given out.
+void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking) {
+  follow(std::move(frame), *outcome.map, tracking);
+  outcome.tracked = last_;
+  if (state_ == msg::TrackingState::kRelocalizing && ++confirmations_ < config_.place.confirmations) {
+    outcome.state = state_;
+    return;
+  }
+  count(*last_.frame, *outcome.map, tracking);
+  failed_frames_ = 0;
+  place_attempts_ = 0;
+  ++frames_since_keyframe_;
+  outcome.state = state_ = msg::TrackingState::kOk;
+  outcome.covariance = tracking.guess.covariance;
+}
+
+void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalization found) {
+  state_ = msg::TrackingState::kRelocalizing;
+  outcome.map = place_ = std::move(found.place);
+  outcome.inliers = found.tracking.guess.inliers;
+  frames_at_place_ = 0;
+  confirmations_ = -1;  // the frame itself does not count
+  motion_.reset();
+  accept(outcome, std::move(frame), found.tracking);
+}
+
+/// The frame is the last tracked one from now on.
+void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking) {
   const double gap_s = seconds_between(*last_.frame, *frame);
-  const bool continuous = msg::has_pose(state_) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
+  const bool entered = state_ == msg::TrackingState::kRelocalizing && confirmations_ >= 0;
+  const bool continuous = (msg::has_pose(state_) || entered) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
   motion_.reset();
   if (continuous) {
     const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * tracking.guess.T_world_camera;
@@ -162,13 +217,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMap& map,
   }
   if (map.find_keyframe(last_.reference) == nullptr) last_.reference = map.keyframes.front().id;
   last_.T_reference_camera = map.find_keyframe(last_.reference)->T_world_camera.inverse() * last_.T_world_camera;
-  count(*last_.frame, map, tracking);
   inliers_ = tracking.guess.inliers;
-  failed_frames_ = 0;
-  ++frames_since_keyframe_;
-  outcome.state = state_ = msg::TrackingState::kOk;
-  outcome.tracked = last_;
-  outcome.covariance = tracking.guess.covariance;
 }
 
 /// Too little was found: predicts for a moment, or says lost. A pose from few landmarks that agrees with the

@@ -11,12 +11,14 @@
 #include "services/slam/core/keyframe_policy.hpp"
 #include "services/slam/core/mapper.hpp"
 #include "services/slam/core/motion_prediction.hpp"
+#include "services/slam/core/place/relocalization.hpp"
 #include "services/slam/core/tracking_steps.hpp"
 
 namespace rtd::slam {
 
 /// What tracking says of one frame.
 struct TrackOutcome {
+  LocalMapPtr map;  ///< the part of the map that the frame was compared with
   msg::TrackingState state = msg::TrackingState::kInitializing;
   TrackedFrame tracked;  ///< in state kPredicted the pose only
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
@@ -24,18 +26,24 @@ struct TrackOutcome {
   std::array<float, msg::kSlamStages> stage_ms{};
 };
 
-/// Follows the camera through the map: motion model, else reference keyframe; then local map. Owns no map, sees it in
-/// snapshots only. docs/theory/tracking.md. Not thread-safe.
+/// Parts of the map around places that look like a frame; every attempt of a search gives others. May be empty.
+using PlaceSource = std::function<std::vector<LocalMapPtr>(const FramePtr&, std::size_t attempt)>;
+
+/// Follows the camera through the map: motion model, else reference keyframe; then local map; when that fails, the
+/// places that look alike. Owns no map, sees it in snapshots only. docs/theory/tracking.md, place_recognition.md. Not
+/// thread-safe.
 class Tracker {
  public:
-  Tracker(const SlamConfig& config, Clock now_ns) : config_(config), now_ns_(std::move(now_ns)) {}
+  /// Without `places` a lost camera is found only around its last pose.
+  Tracker(const SlamConfig& config, Clock now_ns, PlaceSource places = {})
+      : config_(config), now_ns_(std::move(now_ns)), places_(std::move(places)) {}
 
   /// Whether a first keyframe can be made of this frame.
   bool can_initialize(const Frame& frame) const;
-  /// The frame is the first keyframe, at the origin of the world.
-  TrackOutcome initialize(FramePtr frame, KeyframeId first);
+  /// The frame is the first keyframe of a map, at the origin of its world; `map` is what that map consists of.
+  TrackOutcome initialize(FramePtr frame, LocalMapPtr map);
   /// Tracks one frame. A failure leaves the last tracked frame as it was.
-  TrackOutcome track(FramePtr frame, const LocalMap& map);
+  TrackOutcome track(FramePtr frame, const LocalMapPtr& snapshot);
   /// The source started again: no motion can be assumed between the last frame and the next.
   void forget_motion();
   /// Between the last two tracked frames; empty when they were too far apart.
@@ -47,18 +55,23 @@ class Tracker {
 
  private:
   TrackingContext context() const { return {config_, now_ns_, statistics_}; }
+  LocalMapPtr choose_map(const LocalMapPtr& snapshot);
   void adopt(const LocalMap& map);
   Eigen::Isometry3d predict(const Frame& frame) const;
   PoseGuess find_pose(const Frame& frame, const LocalMap& map);
   PoseGuess recover(const Frame& frame, const LocalMap& map);
+  bool may_relocalize(const Frame& frame) const;
   bool acceptable(const PoseGuess& guess) const;
-  void accept(TrackOutcome& outcome, FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking);
+  void enter_place(TrackOutcome& outcome, FramePtr frame, Relocalization found);
+  void follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking);
+  void accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking);
   void reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess& weak);
   std::optional<PredictedPose> hold(const Frame& frame) const;
   void count(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking);
 
   SlamConfig config_;
   Clock now_ns_;
+  PlaceSource places_;
   msg::TrackingState state_ = msg::TrackingState::kInitializing;
   TrackedFrame last_;
   std::optional<CameraMotion> motion_;  ///< at the last tracked frame, whose pose the map may have moved since
@@ -66,6 +79,10 @@ class Tracker {
   int frames_since_keyframe_ = 0;
   int failed_frames_ = 0;
   std::size_t next_recovery_ = 0;
+  std::size_t place_attempts_ = 0;  ///< of the search that is going on
+  int confirmations_ = 0;           ///< frames that agreed with the recognised place
+  LocalMapPtr place_;               ///< where the camera entered the map, until the snapshots have followed it
+  int frames_at_place_ = 0;
   StatisticsById statistics_;
 };
 

@@ -24,33 +24,36 @@ void append_stamp(std::array<char, kLineLength>& line, std::int64_t stamp_ns) {
 
 }  // namespace
 
-std::vector<StampedPose> compose_trajectory(const Map& map, const std::vector<FrameRecord>& frames) {
+std::vector<StampedPose> compose_trajectory(const Map& map, const std::vector<FrameRecord>& frames, MapId id) {
   std::vector<StampedPose> poses;
   poses.reserve(frames.size());
   for (const FrameRecord& frame : frames) {
+    if (map.map_of(frame.reference) != id) continue;
     poses.push_back({frame.stamp_ns, map.T_world_keyframe(frame.reference) * frame.T_reference_camera});
   }
   return poses;
 }
 
-std::vector<StampedPose> keyframe_trajectory(const Map& map) {
+std::vector<StampedPose> keyframe_trajectory(const Map& map, MapId id) {
   std::vector<StampedPose> poses;
-  for (const auto& [id, keyframe] : map.keyframes())
-    poses.push_back({keyframe.frame->stamp_ns, keyframe.T_world_camera});
+  for (const auto& [keyframe_id, keyframe] : map.keyframes()) {
+    if (keyframe.map == id) poses.push_back({keyframe.frame->stamp_ns, keyframe.T_world_camera});
+  }
   return poses;
 }
 
-std::vector<MapPoint> map_points(const Map& map) {
+std::vector<MapPoint> map_points(const Map& map, MapId id) {
   std::vector<MapPoint> points;
   points.reserve(map.landmark_count());
-  append_map_points(map, map.landmark_ids(), points);
+  append_map_points(map, id, map.landmark_ids(), points);
   return points;
 }
 
-void append_map_points(const Map& map, std::span<const LandmarkId> landmarks, std::vector<MapPoint>& points) {
-  for (const LandmarkId id : landmarks) {
-    const Landmark* landmark = map.find_landmark(id);
-    if (landmark == nullptr) continue;
+void append_map_points(const Map& map, MapId id, std::span<const LandmarkId> landmarks,
+                       std::vector<MapPoint>& points) {
+  for (const LandmarkId landmark_id : landmarks) {
+    const Landmark* landmark = map.find_landmark(landmark_id);
+    if (landmark == nullptr || map.map_of(landmark->reference) != id) continue;
     points.push_back({landmark->position.cast<float>(), static_cast<float>(landmark->static_probability)});
   }
 }

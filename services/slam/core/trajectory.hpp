@@ -31,13 +31,15 @@ struct MapPoint {
 };
 
 /// Final poses of the recorded frames: T_world_reference (as corrected by now) * T_reference_camera.
-std::vector<StampedPose> compose_trajectory(const Map& map, const std::vector<FrameRecord>& frames);
+/// Those of one map: each has a world frame of its own.
+std::vector<StampedPose> compose_trajectory(const Map& map, const std::vector<FrameRecord>& frames, MapId id = 0);
 /// Poses of the keyframes still in the map, oldest first.
-std::vector<StampedPose> keyframe_trajectory(const Map& map);
-/// All landmarks, by id.
-std::vector<MapPoint> map_points(const Map& map);
-/// Those of `landmarks` that are in the map.
-void append_map_points(const Map& map, std::span<const LandmarkId> landmarks, std::vector<MapPoint>& points);
+std::vector<StampedPose> keyframe_trajectory(const Map& map, MapId id = 0);
+/// All landmarks of one map, by id.
+std::vector<MapPoint> map_points(const Map& map, MapId id = 0);
+/// Those of `landmarks` that are in this map.
+void append_map_points(const Map& map, MapId id, std::span<const LandmarkId> landmarks,
+                       std::vector<MapPoint>& points);
 
 /// TUM format, one "stamp tx ty tz qx qy qz qw" a line, "%.6f" and "%.9f", qw >= 0.
 void write_tum_trajectory(std::ostream& out, const std::vector<StampedPose>& poses);

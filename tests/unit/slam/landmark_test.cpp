@@ -185,7 +185,23 @@ TEST(PoseRansac, finds_the_pose_among_outliers) {
   EXPECT_GE(result.inliers, static_cast<int>(observations.size()) * 2 / 5 - 1);
 }
 
-TEST(PoseRansac, fails_without_three_depths_or_without_agreement) {
+TEST(PoseRansac, needs_no_depth_at_all) {
+  const Eigen::Isometry3d T_world_camera =
+      geometry::se3_exp((geometry::Vector6d() << 0.5, 0.2, -0.3, 0.2, 0.6, -0.1).finished());
+  const FramePtr frame = view(make_world(), 0, T_world_camera, true);
+  std::vector<vision::PoseObservation> observations;
+  for (std::size_t i = 0; i < frame->features.size(); ++i) {
+    vision::PoseObservation observation{T_world_camera * frame->unproject(i), frame->measurement(i), 1.0, 1.0};
+    observation.measured.depth_m = 0;
+    if (i % 5 < 3) observation.p_world += Eigen::Vector3d(1 + 0.01 * static_cast<double>(i), -0.5, 0.3);  // 60 %
+    observations.push_back(observation);
+  }
+  const auto result = estimate_pose_ransac(frame->camera, observations, {});
+  ASSERT_TRUE(result.success);
+  EXPECT_LT((result.T_world_camera.inverse() * T_world_camera).translation().norm(), 1e-3);
+}
+
+TEST(PoseRansac, fails_with_two_points_or_without_agreement) {
   const FramePtr frame = view(make_world(), 0, shifted(0), true);
   std::vector<vision::PoseObservation> observations;
   for (std::size_t i = 0; i < frame->features.size(); ++i) {

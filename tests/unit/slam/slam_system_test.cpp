@@ -123,6 +123,10 @@ TEST(SlamSystem, says_lost_without_features_and_finds_back) {
     EXPECT_FALSE(output.problem.empty());
   }
   EXPECT_EQ(slam.frames_tracked(), tracked) << "a pose was invented";
+  for (int i = 0; i < 2; ++i) {  // found, but not believed at once
+    EXPECT_EQ(slam.process(*view(world, seq++)).result.state, TrackingState::kRelocalizing);
+    EXPECT_EQ(slam.frames_tracked(), tracked);
+  }
   const SlamOutput back = slam.process(*view(world, seq));
   ASSERT_EQ(back.result.state, TrackingState::kOk) << back.problem;
   EXPECT_LT(position_error_m(back.result.T_world_camera, seq), 1e-3);
