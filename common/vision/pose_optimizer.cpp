@@ -35,6 +35,7 @@ class PoseCost {
            bool robust, const std::optional<GeneralLoss>& loss)
       : camera_(camera), T_camera_world_(T_camera_world), options_(options), robust_(robust), loss_(loss) {}
 
+  void reserve(std::size_t observations) { active_.reserve(observations); }
   void add(const PoseObservation& observation) { active_.push_back(&observation); }
   std::size_t size() const { return active_.size(); }
   int NumResiduals() const {  // NOLINT(readability-identifier-naming): the name that TinySolver asks for
@@ -191,6 +192,7 @@ PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vecto
     // The start may be far off: its residuals are not those of the noise, and Huber's loss pulls from afar.
     if (options.kernel == RobustKernel::kAdaptive && round > 0) loss = fit_loss(camera, observations, T_camera_world);
     PoseCost cost(camera, T_camera_world, options, round < options.robust_rounds, loss);
+    cost.reserve(observations.size());
     for (std::size_t i = 0; i < observations.size(); ++i) {
       if (result.inlier[i] != 0) cost.add(observations[i]);
     }

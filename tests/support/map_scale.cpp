@@ -23,18 +23,20 @@ class Walk {
 
   void start() {
     slam::KeyframeProposal first;
-    first.frame = next_frame();
+    first.frame = slam::make_frame(*next_message(), options_.slam.sensor).frame;
     first.landmarks.assign(first.frame->features.size(), slam::kNoLandmark);
     const FramePtr frame = first.frame;
     insert(first);
-    tracker_.initialize(frame, newest_);
+    tracker_.initialize(frame, snapshot_);
   }
 
   void step() {
-    const FramePtr frame = next_frame();
-    const std::int64_t start_ns = options_.now_ns();
-    const slam::TrackOutcome outcome = tracker_.track(frame, *snapshot_);
+    const auto message = next_message();
+    const std::int64_t allocations = count_allocations(), start_ns = options_.now_ns();
+    const FramePtr frame = slam::make_frame(*message, options_.slam.sensor).frame;
+    const slam::TrackOutcome outcome = tracker_.track(frame, snapshot_);
     note(costs_.tracking, start_ns);
+    costs_.allocations.push_back(count_allocations() - allocations);
     ++report_.frames;
     if (outcome.state != msg::TrackingState::kOk) {
       ++report_.lost_frames;
@@ -79,10 +81,12 @@ class Walk {
   }
 
  private:
-  FramePtr next_frame() {
+  std::unique_ptr<msg::FeatureFrame> next_message() {
     T_world_camera_ = (options_.path == WalkPath::kRoom ? room_pose : aisle_pose)(seq_);
-    return slam::make_frame(*world_.view(seq_++, T_world_camera_), options_.slam.sensor).frame;
+    return world_.view(seq_++, T_world_camera_);
   }
+
+  std::int64_t count_allocations() const { return options_.allocations ? options_.allocations() : 0; }
 
   void insert(const slam::KeyframeProposal& proposal) {
     const std::int64_t start_ns = options_.now_ns();
@@ -161,11 +165,11 @@ MapScaleReport run_map_scale(const MapScaleOptions& options) {
   return report;
 }
 
-double median_ms(std::vector<std::int64_t> costs_ns) {
-  if (costs_ns.empty()) return 0;
-  const auto median = costs_ns.begin() + static_cast<std::ptrdiff_t>(costs_ns.size() / 2);
-  std::nth_element(costs_ns.begin(), median, costs_ns.end());
-  return static_cast<double>(*median) * 1e-6;
+std::int64_t median(std::vector<std::int64_t> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace rtd::test_support

@@ -27,12 +27,14 @@ struct MapScaleOptions {
   WalkWorld::Options world;
   slam::SlamConfig slam;
   slam::Clock now_ns;                            ///< CPU time of this thread: what else the host does counts little
+  std::function<std::int64_t()> allocations;     ///< counts up, of this process; may be empty
   std::function<void(std::size_t)> on_keyframe;  ///< insertions so far; may be empty
 };
 
 /// Costs of tracked frames, insertions and snapshots, ns each.
 struct MapScaleCosts {
   std::vector<std::int64_t> tracking, insertion, snapshot;
+  std::vector<std::int64_t> allocations;  ///< of memory, by each tracked frame
 };
 
 struct MapScaleReport {
@@ -48,6 +50,6 @@ struct MapScaleReport {
 /// in turn with a second map of 100 keyframes, so that both meet the same moods of the host.
 MapScaleReport run_map_scale(const MapScaleOptions& options);
 
-double median_ms(std::vector<std::int64_t> costs_ns);  ///< 0 of none
+std::int64_t median(std::vector<std::int64_t> values);  ///< 0 of none
 
 }  // namespace rtd::test_support

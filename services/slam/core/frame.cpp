@@ -16,6 +16,13 @@ bool usable_intrinsics(const msg::FeatureFrame& message) {
   return std::isfinite(fx) && std::isfinite(fy) && std::isfinite(cx) && std::isfinite(cy) && fx > 1 && fy > 1;
 }
 
+std::size_t count_usable(const msg::FeatureFrame& message) {
+  const auto end = message.features.begin() + message.count;
+  return static_cast<std::size_t>(std::count_if(message.features.begin(), end, [](const msg::Feature& feature) {
+    return (feature.flags & msg::kFeatureRemoved) == 0 && usable(feature);
+  }));
+}
+
 }  // namespace
 
 bool usable(const msg::Feature& feature) {
@@ -47,7 +54,7 @@ FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& conf
                    config.disparity_px_m};
   frame->width_px = static_cast<int>(message.width);
   frame->height_px = static_cast<int>(message.height);
-  frame->features.reserve(message.count);
+  frame->features.reserve(count_usable(message));  // exactly: keyframes keep their features
   for (std::uint32_t i = 0; i < message.count; ++i) {
     msg::Feature feature = message.features[i];
     if ((feature.flags & msg::kFeatureRemoved) != 0) {

@@ -158,11 +158,13 @@ std::vector<std::uint32_t> select_close_features(const Frame& frame, const std::
                                                  double close_depth_m) {
   constexpr std::size_t kMinNearest = 100;
   std::vector<std::pair<float, std::uint32_t>> by_depth;
+  by_depth.reserve(frame.features.size());
   for (std::uint32_t i = 0; i < frame.features.size(); ++i) {
     if (frame.features[i].depth_m > 0) by_depth.emplace_back(frame.features[i].depth_m, i);
   }
   std::sort(by_depth.begin(), by_depth.end());
   std::vector<std::uint32_t> selected;
+  selected.reserve(by_depth.size());
   for (std::size_t rank = 0; rank < by_depth.size(); ++rank) {
     const auto [depth_m, feature] = by_depth[rank];
     if (depth_m > close_depth_m && rank >= kMinNearest) break;

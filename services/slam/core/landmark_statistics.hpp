@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory_resource>
 #include <unordered_map>
 
 #include "services/slam/core/map.hpp"
@@ -16,7 +17,7 @@ struct LandmarkStatistics {
   std::uint32_t visible = 0, found = 0;  ///< frames that should have seen it / did
   double log_odds = 0;                   ///< change of its static probability
 };
-using StatisticsById = std::unordered_map<LandmarkId, LandmarkStatistics>;
+using StatisticsById = std::pmr::unordered_map<LandmarkId, LandmarkStatistics>;
 
 /// A landmark's static probability as log odds: evidence adds up. docs/theory/tracking.md, "Belief".
 inline double to_probability(double log_odds) {

@@ -74,6 +74,7 @@ std::vector<Match> keep_consistent_rotation(const std::vector<Match>& matches, s
     kept[static_cast<std::size_t>(bin)] = 10 * count_of(bin) >= count_of(order[0]);
   }
   std::vector<Match> consistent;
+  consistent.reserve(matches.size());
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (kept[static_cast<std::size_t>(bins[i])]) consistent.push_back(matches[i]);
   }
@@ -94,6 +95,8 @@ std::vector<Match> match_projected(const Frame& frame, std::span<const SearchPoi
   }
   std::vector<Match> matches;
   std::vector<float> change_rad;
+  matches.reserve(owner.size());
+  change_rad.reserve(owner.size());
   for (std::uint32_t feature = 0; feature < owner.size(); ++feature) {
     if (owner[feature] == kNobody) continue;
     const SearchPoint& point = points[owner[feature]];

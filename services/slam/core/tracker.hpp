@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <memory_resource>
 #include <optional>
 #include <unordered_map>
 
@@ -83,7 +84,8 @@ class Tracker {
   int confirmations_ = 0;           ///< frames that agreed with the recognised place
   LocalMapPtr place_;               ///< where the camera entered the map, until the snapshots have followed it
   int frames_at_place_ = 0;
-  StatisticsById statistics_;
+  std::pmr::unsynchronized_pool_resource statistics_memory_;  ///< used again from keyframe to keyframe
+  StatisticsById statistics_{&statistics_memory_};
 };
 
 /// The keyframe of the window that sees most of these landmarks; kNoKeyframe when none does.

@@ -51,6 +51,7 @@ PoseGuess optimize(const Frame& frame, const std::vector<Association>& associati
 /// Landmarks of the last frame, and its close features without one at the depth that was measured there.
 std::vector<Association> points_of(const TrackedFrame& last, const LocalMap& map, const TrackingContext& context) {
   std::vector<Association> points;
+  points.reserve(last.landmarks.size());
   std::vector<LandmarkId> known(last.landmarks.size(), kNoLandmark);
   for (std::uint32_t i = 0; i < last.landmarks.size(); ++i) {
     if (last.landmarks[i] == kNoLandmark) continue;
@@ -115,6 +116,7 @@ PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const L
   }
   if (static_cast<int>(matches.size()) < config.tracker.min_motion_matches) return {};
   std::vector<Association> associations;
+  associations.reserve(matches.size());
   for (const Match& match : matches) {
     associations.push_back(points[match.tag]);
     associations.back().feature = match.feature;
@@ -158,6 +160,8 @@ LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const 
   std::vector<LandmarkId> known;
   std::vector<Association> associations;
   std::vector<char> taken(frame.features.size(), 0);
+  known.reserve(frame.features.size());
+  associations.reserve(frame.features.size());
   for (std::uint32_t i = 0; i < guess.landmarks.size(); ++i) {
     const LocalLandmark* landmark = guess.landmarks[i] == kNoLandmark ? nullptr : map.find_landmark(guess.landmarks[i]);
     if (landmark == nullptr) continue;
@@ -170,6 +174,8 @@ LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const 
 
   const Eigen::Isometry3d T_camera_world = guess.T_world_camera.inverse();
   std::vector<SearchPoint> search;
+  search.reserve(map.landmarks.size());
+  result.visible.reserve(map.landmarks.size());
   for (std::uint32_t i = 0; i < map.landmarks.size(); ++i) {
     const LocalLandmark& landmark = map.landmarks[i];
     if (std::binary_search(known.begin(), known.end(), landmark.id)) continue;

@@ -5,10 +5,27 @@
 #include <malloc.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <string>
+
+namespace {
+
+std::atomic<std::int64_t> allocations{0};
+
+}  // namespace
+
+extern "C" {
+// glibc's own: the count needs no library and no environment.
+void* __libc_malloc(std::size_t size);  // NOLINT(bugprone-reserved-identifier,readability-identifier-naming)
+
+void* malloc(std::size_t size) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  return __libc_malloc(size);
+}
+}
 
 namespace {
 
@@ -30,11 +47,13 @@ double memory_mb(const std::string& key) {
   return 0;
 }
 
-using rtd::test_support::median_ms;
+double median_ms(const std::vector<std::int64_t>& costs_ns) {
+  return static_cast<double>(rtd::test_support::median(costs_ns)) * 1e-6;
+}
 
 void print_row(const char* name, const rtd::test_support::MapScaleCosts& costs) {
-  std::printf("%-10s %10.2f %10.2f %10.2f\n", name, median_ms(costs.tracking), median_ms(costs.insertion),
-              median_ms(costs.snapshot));
+  std::printf("%-10s %10.2f %10.2f %10.2f %12ld\n", name, median_ms(costs.tracking), median_ms(costs.insertion),
+              median_ms(costs.snapshot), static_cast<long>(rtd::test_support::median(costs.allocations)));
 }
 
 void print(const MapScaleReport& report) {
@@ -43,7 +62,9 @@ void print(const MapScaleReport& report) {
   std::printf("frames %zu, not tracked %zu, worst motion error %.4f m, invariants: %s\n", report.frames,
               report.lost_frames, report.max_error_m,
               report.broken_invariant.empty() ? "hold" : report.broken_invariant.c_str());
-  std::printf("map          tracking  insertion   snapshot   (median ms of CPU time, both maps in turn)\n");
+  std::printf(
+      "map          tracking  insertion   snapshot  allocations   (medians, ms of CPU time and of a frame, both maps "
+      "in turn)\n");
   print_row("100", report.small);
   print_row("this one", report.large);
   std::printf("tracking, this one / 100 keyframes: %.2f\n",
@@ -59,6 +80,7 @@ int main(int argc, char** argv) {
   CLI::App app("RTD-SLAM map scale: cost per frame and per keyframe, and memory, as the map grows");
   rtd::test_support::MapScaleOptions options;
   options.now_ns = cpu_ns;
+  options.allocations = [] { return allocations.load(std::memory_order_relaxed); };
   std::string path = "aisles";
   app.add_option("--keyframes", options.keyframes, "in the map at the end; room: insertions")
       ->check(CLI::Range(100, 1000000));
