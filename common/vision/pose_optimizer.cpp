@@ -134,27 +134,63 @@ void classify(const RgbdProjection& camera, const std::vector<PoseObservation>& 
   result.rmse_px = result.inliers > 0 ? std::sqrt(sum_chi2 / result.inliers) : 0.0;
 }
 
-/// Gauss-Newton Hessian of the inliers in [rho; phi] at T_camera_world.
-Matrix6d hessian(const RgbdProjection& camera, const std::vector<PoseObservation>& observations,
-                 const std::vector<char>& inlier, const Eigen::Isometry3d& T_camera_world) {
-  Matrix6d H = Matrix6d::Zero();
+/// What the inliers say of the pose in [rho; phi] at T_camera_world.
+struct Information {
+  Matrix6d pixels = Matrix6d::Zero(), depths = Matrix6d::Zero();  ///< Gauss-Newton Hessians, weights not squared
+  Matrix6d pixels_squared = Matrix6d::Zero(), depths_squared = Matrix6d::Zero();  ///< weights squared
+  double pixel_chi2 = 0, depth_chi2 = 0, pixel_residuals = 0, depth_residuals = 0;
+};
+
+Information gather(const RgbdProjection& camera, const std::vector<PoseObservation>& observations,
+                   const std::vector<char>& inlier, const Eigen::Isometry3d& T_camera_world) {
+  Information sum;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     if (inlier[i] == 0) continue;
     const PoseObservation& observation = observations[i];
     const Eigen::Vector3d p_rotated = T_camera_world.linear() * observation.p_world;
-    const Matrix36d J = pose_jacobian(camera, p_rotated, p_rotated + T_camera_world.translation(),
-                                      Eigen::Matrix3d::Identity(), observation.measured);
-    H += observation.weight / (observation.sigma_px * observation.sigma_px) * J.transpose() * J;
+    const Eigen::Vector3d p_camera = p_rotated + T_camera_world.translation();
+    const Matrix36d J = pose_jacobian(camera, p_rotated, p_camera, Eigen::Matrix3d::Identity(), observation.measured) /
+                        observation.sigma_px;
+    const Eigen::Vector3d r = rgbd_residual(camera, p_camera, observation.measured) / observation.sigma_px;
+    const Matrix6d pixels = J.topRows<2>().transpose() * J.topRows<2>();
+    const double w = observation.weight;
+    sum.pixels += w * pixels;
+    sum.pixels_squared += w * w * pixels;
+    sum.pixel_chi2 += w * r.head<2>().squaredNorm();
+    sum.pixel_residuals += 2 * w;
+    if (!observation.measured.has_depth()) continue;
+    const Matrix6d depths = J.row(2).transpose() * J.row(2);
+    sum.depths += w * depths;
+    sum.depths_squared += w * w * depths;
+    sum.depth_chi2 += w * r.z() * r.z();
+    sum.depth_residuals += w;
   }
-  return H;
+  return sum;
 }
 
-/// Inverts the Hessian and turns it from [rho; phi] in the camera frame to (x y z rx ry rz) in the world frame,
-/// docs/theory/tracking.md Eq. (4). False when some direction of the pose is not determined.
-bool world_covariance(const Matrix6d& H, const Eigen::Isometry3d& T_camera_world, Matrix6d& covariance) {
+/// Variance of whitened residuals, as found. Few of them tell little: the assumed 1 counts like so many more.
+double found_variance(double chi2, double residuals) {
+  constexpr double kAssumed = 12.0;
+  return (chi2 + kAssumed) / (residuals + kAssumed);
+}
+
+/// The variance of a Gaussian of which the residuals beyond `limit` (squared norm of two) were left out when `variance`
+/// was formed: fixed point of E[s | s <= limit] = 2 whole - limit / (exp(limit / (2 whole)) - 1).
+double untruncated(double variance, double limit) {
+  constexpr double kMax = 4.0;
+  double whole = variance;
+  for (int i = 0; i < 10; ++i) whole = std::min(kMax, variance + 0.5 * limit / std::expm1(limit / (2 * whole)));
+  return whole;
+}
+
+/// Covariance of the least-squares pose whatever the noise really is: H^-1 M H^-1 with the variances found, turned from
+/// [rho; phi] in the camera frame to (x y z rx ry rz) in the world frame, docs/theory/tracking.md Eq. (4). False when
+/// some direction of the pose is not determined.
+bool world_covariance(const Information& information, const Eigen::Isometry3d& T_camera_world, Matrix6d& covariance) {
   // Metres and radians are of like size here; a direction known ten million times worse than the best is not known.
   constexpr double kMinConditionInverse = 1e-14;
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(H);
+  constexpr double kPixelLimit = 7.0;  // between the limits of inliers with and without depth
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information.pixels + information.depths);
   const Vector6d& values = eigen.eigenvalues();
   if (!(values.maxCoeff() > 0) || values.minCoeff() < kMinConditionInverse * values.maxCoeff()) return false;
   const Matrix6d inverse = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
@@ -163,7 +199,10 @@ bool world_covariance(const Matrix6d& H, const Eigen::Isometry3d& T_camera_world
   A.topLeftCorner<3, 3>() = -R_world_camera;
   A.topRightCorner<3, 3>() = -R_world_camera * geometry::skew(T_camera_world.translation());
   A.bottomRightCorner<3, 3>() = -R_world_camera;
-  covariance = A * inverse * A.transpose();
+  const Matrix6d M = untruncated(found_variance(information.pixel_chi2, information.pixel_residuals), kPixelLimit) *
+                         information.pixels_squared +
+                     found_variance(information.depth_chi2, information.depth_residuals) * information.depths_squared;
+  covariance = A * inverse * M * inverse * A.transpose();
   return true;
 }
 
@@ -211,7 +250,7 @@ PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vecto
   result.T_world_camera = T_camera_world.inverse();
   result.success =
       result.inliers >= options.min_inliers &&
-      world_covariance(hessian(camera, observations, result.inlier, T_camera_world), T_camera_world, result.covariance);
+      world_covariance(gather(camera, observations, result.inlier, T_camera_world), T_camera_world, result.covariance);
   return result;
 }
 

@@ -24,6 +24,8 @@ void bind_sensor(ConfigBinder& binder, SensorConfig& c) {
   binder.field("sensor.disparity_px_m", c.disparity_px_m, {1.0, 10000.0},
                "weight of depth: a disparity of this / depth counts like a pixel");
   binder.field("sensor.close_depth_m", c.close_depth_m, {0.5, 20.0}, "nearer depths make landmarks at once");
+  binder.field("sensor.shared_error", c.shared_error, {0.1, 100.0},
+               "factor on the covariance of the pose: features share errors of image and depth");
   binder.field("sensor.readout_s", c.readout_s, {-0.1, 0.1},
                "of the image, first row to last, if known; 0: estimated while tracking");
   binder.field("sensor.max_depth_m", c.max_depth_m, {0.5, 50.0}, "farther depths are not used");

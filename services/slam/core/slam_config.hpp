@@ -23,6 +23,7 @@ struct Techniques {
 struct SensorConfig {
   double disparity_px_m = 40.0;  ///< weight of depth against pixels, vision::RgbdProjection::disparity_px_m
   double close_depth_m = 4.0;    ///< nearer depths make landmarks at once, farther ones wait for a second view
+  double shared_error = 3.0;     ///< features share errors of image and depth: factor on the covariance of the pose
   double readout_s = 0;          ///< of the image, first row to last, if it is known; 0: estimated while tracking
   double max_depth_m = 8.0;      ///< depth beyond is not used at all
 };

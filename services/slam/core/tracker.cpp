@@ -185,7 +185,10 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   place_attempts_ = 0;
   ++frames_since_keyframe_;
   outcome.state = state_ = msg::TrackingState::kOk;
-  outcome.covariance = tracking.guess.covariance;
+  const geometry::Matrix6d local = config_.sensor.shared_error * tracking.guess.covariance;
+  covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
+  map_covariance_ = covariance_ - local;
+  outcome.covariance = covariance_;
 }
 
 void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalization found) {
@@ -232,7 +235,7 @@ void Tracker::reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess&
       claimed = measured;
     }
     outcome.tracked.T_world_camera = claimed->T_world_camera;
-    outcome.covariance = claimed->covariance;
+    outcome.covariance = config_.sensor.shared_error * claimed->covariance + map_covariance_;
     outcome.state = state_ = msg::TrackingState::kPredicted;
     return;
   }
@@ -281,6 +284,7 @@ KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_i
 
 KeyframeProposal Tracker::propose_keyframe() {
   KeyframeProposal proposal{last_.frame, last_.reference, last_.T_reference_camera, last_.landmarks, {}};
+  uncertainty_.add_keyframe(last_.frame->seq, last_.T_world_camera.translation(), covariance_);
   for (const auto& [id, statistics] : statistics_) proposal.statistics.push_back(statistics);  // sums: order is free
   statistics_.clear();
   frames_since_keyframe_ = 0;

@@ -10,6 +10,7 @@
 
 #include "common/msg/tracking.hpp"
 #include "services/slam/core/keyframe_policy.hpp"
+#include "services/slam/core/map_uncertainty.hpp"
 #include "services/slam/core/mapper.hpp"
 #include "services/slam/core/motion_prediction.hpp"
 #include "services/slam/core/place/relocalization.hpp"
@@ -75,6 +76,9 @@ class Tracker {
   PlaceSource places_;
   msg::TrackingState state_ = msg::TrackingState::kInitializing;
   TrackedFrame last_;
+  MapUncertainty uncertainty_;
+  geometry::Matrix6d covariance_ = geometry::Matrix6d::Zero();      ///< of last_, in the world
+  geometry::Matrix6d map_covariance_ = geometry::Matrix6d::Zero();  ///< the map's part of it
   std::optional<CameraMotion> motion_;  ///< at the last tracked frame, whose pose the map may have moved since
   int inliers_ = 0;
   int frames_since_keyframe_ = 0;

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Whether poses are as uncertain as slam says, on rendered scenes: NEES, 6 degrees of freedom.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "common/geometry/se3.hpp"
+#include "common/msg/transform_eigen.hpp"
+#include "services/camera/core/source_factory.hpp"
+#include "tests/support/offline_pipeline.hpp"
+
+namespace rtd::test_support {
+namespace {
+
+/// Mean over the frames of a scene, from the fifth on.
+double mean_nees(const std::string& source, const std::string& mode) {
+  const auto groundtruth = camera::make_source(source)->groundtruth();
+  OfflineOptions options;
+  options.source = source;
+  options.front_end.mode = mode;
+  double sum = 0;
+  std::size_t frame = 0, counted = 0;
+  options.on_frame = [&](const slam::SlamOutput& output) {
+    constexpr std::size_t kFirst = 5;
+    const std::size_t index = frame++;
+    if (index < kFirst || index >= groundtruth.size()) return;
+    const Eigen::Isometry3d truth = groundtruth.front().T_world_camera.inverse() * groundtruth[index].T_world_camera;
+    const Eigen::Isometry3d found = msg::to_isometry(output.result.T_world_camera);
+    geometry::Vector6d error;
+    error.head<3>() = found.translation() - truth.translation();
+    error.tail<3>() = geometry::so3_log(found.linear() * truth.linear().transpose());
+    const Eigen::Map<const geometry::Matrix6d> covariance(output.result.covariance.data());
+    sum += error.dot(covariance.ldlt().solve(error));
+    ++counted;
+  };
+  run_offline(options);
+  return sum / static_cast<double>(counted);
+}
+
+/// Frames of a scene share their drift: each scene counts as one sample. 95 % of the mean of six chi2 values with 6
+/// degrees of freedom lie between 3.6 and 9.1; below is a promise more than kept.
+TEST(CovarianceScenes, mean_error_is_what_the_covariance_says) {
+  double mean = 0;
+  for (const std::string seed : {"1", "2", "3"}) {
+    mean += mean_nees("synthetic:static?frames=60&seed=" + seed, "off") / 6;
+    mean += mean_nees("synthetic:office?frames=60&seed=" + seed, "true-mask") / 6;
+  }
+  RecordProperty("mean_nees", std::to_string(mean));
+  std::printf("mean NEES %.2f\n", mean);
+  EXPECT_GT(mean, 1.0);
+  EXPECT_LT(mean, 9.1);
+}
+
+}  // namespace
+}  // namespace rtd::test_support
