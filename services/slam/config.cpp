@@ -142,12 +142,26 @@ void ServiceConfig::bind(ConfigBinder& binder) {
   bind_mapper(binder, core.mapper);
   bind_place(binder, core.place);
   binder.field("place.vocabulary", vocabulary_file, "file of rtd-train-vocabulary; empty: the built-in one");
+  binder.field("map.load", map.load, "map file to go on with; empty: a new map");
+  binder.field("map.save", map.save, "map file to write at checkpoints and at the end; empty: none");
+  binder.field("map.checkpoint_s", map.checkpoint_s, {0.0, 86400.0},
+               "time between two checkpoints; 0: only at the end");
+  binder.field("map.localize_only", core.localize_only, "find poses in the loaded map and leave it as it is");
   binder.field("out", out_dir, "folder for trajectory.txt, keyframes.txt and map.ply; empty: none");
   binder.field("map_frame", map_frame, "frame of all poses in the messages");
   binder.field("camera_frame", camera_frame, "child frame of the poses: optical");
   binder.field("path_length", path_length, {1, 1000000}, "poses kept for the path message");
   binder.field("path_period_ms", path_period_ms, {1, 60000}, "time between two path messages");
   binder.field("map_period_ms", map_period_ms, {1, 60000}, "time between two point clouds");
+}
+
+void ServiceConfig::validate() const {
+  if (!core.localize_only) return;
+  if (map.load.empty())
+    throw service::ConfigError("slam.map.localize_only needs a map: name its file with --map (slam.map.load)");
+  if (!map.save.empty())
+    throw service::ConfigError("slam.map.save=" + map.save +
+                               ": with slam.map.localize_only the map does not change, leave one of the two away");
 }
 
 }  // namespace rtd::slam

@@ -4,10 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 
 #include "common/concurrency/thread_priority.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "services/slam/map_file.hpp"
 #include "services/slam/run_files.hpp"
 
 namespace rtd::slam {
@@ -35,7 +37,13 @@ void yield_to_tracking() {
 }  // namespace
 
 void SlamService::add_options(CLI::App& app, Config& config) {
+  const auto last = CLI::MultiOptionPolicy::TakeLast;  // a supervisor adds its own behind those of the first start
   app.add_option("--out", config.out_dir, "Folder for trajectory.txt, keyframes.txt and map.ply (slam.out)");
+  app.add_option("--map", config.map.load, "Map file to go on with (slam.map.load)")->multi_option_policy(last);
+  app.add_option("--save-map", config.map.save, "Map file to write at the end and at checkpoints (slam.map.save)")
+      ->multi_option_policy(last);
+  app.add_flag("--localize-only", config.core.localize_only,
+               "Find poses in the map of --map and leave it as it is (slam.map.localize_only)");
 }
 
 SlamService::SlamService(const Config& config, service::Runtime& runtime)
@@ -46,6 +54,9 @@ SlamService::SlamService(const Config& config, service::Runtime& runtime)
       arrivals_(runtime.pace == service::Pace::kRealtime
                     ? std::make_shared<Arrivals>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
                     : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)) {
+  config.validate();
+  load_map();
+  if (!config.map.save.empty()) map_keeper_.emplace(config.map, slam_);
   runtime.stop.on_stop([arrivals = arrivals_] { arrivals->close(); });
   runtime.heartbeat.on_status([this](const msg::ServiceStatus& status) {
     if (status.service == "camera") source_ended_ = status.state == msg::ServiceState::kFinished;
@@ -61,10 +72,37 @@ SlamService::~SlamService() {
   runtime_.heartbeat.on_status({});
 }
 
+void SlamService::load_map() {
+  const std::string& file = config_.map.load;
+  if (file.empty()) return;
+  const std::int64_t start_ns = service::monotonic_ns();
+  try {
+    MapContents contents = load_map_file(file);
+    map_cameras_ = cameras_of(contents);
+    SPDLOG_INFO("event=map_loaded file={} keyframes={} landmarks={} maps={}", file, contents.keyframes.size(),
+                contents.landmarks.size(), std::ranges::count_if(contents.keyframes, &Keyframe::is_origin));
+    slam_.restore(std::move(contents));
+  } catch (const std::system_error& error) {
+    throw service::ConfigError(std::string("slam.map.load: ") + error.what());
+  } catch (const MapFileError& error) {
+    throw service::ConfigError(std::string("slam.map.load: ") + error.what());
+  }
+  SPDLOG_INFO("event=map_ready file={} ms={:.0f}", file,
+              static_cast<double>(service::monotonic_ns() - start_ns) * 1e-6);
+}
+
+bool SlamService::check_camera(const msg::FeatureFrame& frame) {
+  const std::string difference = difference_to(map_cameras_, frame);
+  if (difference.empty()) return true;
+  SPDLOG_ERROR("event=other_camera file={} cause=\"{}\"", config_.map.load, difference);
+  return false;
+}
+
 service::ExitCode SlamService::run() {
   while (!runtime_.stop.stop_requested()) {
     report_state();
     const auto frame = arrivals_->pop_for(kStatePeriod);
+    if (frame && counters_.frames == 0 && !check_camera(**frame)) return service::kUsageOrConfig;
     if (frame) answer(**frame);
     watch_input(frame.has_value());
   }
@@ -72,7 +110,7 @@ service::ExitCode SlamService::run() {
       "event=summary frames={} tracked={} dropped={} duplicates={} invalid_features={} keyframes={} landmarks={}",
       counters_.frames, counters_.tracked, arrivals_->dropped(), counters_.duplicates, counters_.invalid_features,
       last_result_.keyframes, last_result_.landmarks);
-  return write_files();
+  return finish();
 }
 
 /// Every frame gets one result; a frame sent again because its result was lost gets the same result again.
@@ -117,7 +155,9 @@ void SlamService::count(const SlamOutput& output) {
 void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
   const msg::TrackingResult& result = output.result;
   const bool tracked = result.state == msg::TrackingState::kOk, was_tracked = previous == msg::TrackingState::kOk;
-  if (tracked && counters_.tracked == 1) {
+  if (tracked && counters_.tracked == 1 && !map_cameras_.empty()) {
+    SPDLOG_INFO("event=relocalized frame={} inliers={} after_frames={}", result.seq, result.inliers, counters_.frames);
+  } else if (tracked && counters_.tracked == 1) {
     SPDLOG_INFO("event=map_started frame={} landmarks={}", result.seq, result.landmarks);
   } else if (tracked && !was_tracked) {
     SPDLOG_INFO("event=tracking_recovered frame={} inliers={}", result.seq, result.inliers);
@@ -166,6 +206,9 @@ std::string SlamService::trouble() const {
     return fmt::format("no features for {:g} s: camera or filter gone, the map is kept",
                        input_gone_after_s(runtime_.pace));
   }
+  if (map_keeper_) {
+    if (std::string unsaved = map_keeper_->trouble(); !unsaved.empty()) return unsaved;
+  }
   return counters_.frames > 0 && last_result_.state != msg::TrackingState::kOk ? last_problem_ : std::string{};
 }
 
@@ -180,17 +223,24 @@ void SlamService::report_state() {
   runtime_.heartbeat.set_state(message.empty() ? msg::ServiceState::kRunning : msg::ServiceState::kDegraded, message);
 }
 
-service::ExitCode SlamService::write_files() {
+/// The map too when the other files cannot be written, and the other way round.
+service::ExitCode SlamService::finish() {
   slam_.finish();
-  if (config_.out_dir.empty()) return service::kOk;
+  const bool written = write_files();
+  const bool saved = !map_keeper_ || map_keeper_->save_at_end();
+  return written && saved ? service::kOk : service::kRunFailed;
+}
+
+bool SlamService::write_files() {
+  if (config_.out_dir.empty()) return true;
   try {
     write_run_files(slam_, config_.out_dir);
   } catch (const std::exception& error) {
     SPDLOG_ERROR("event=files_not_written cause=\"{}\"", error.what());
-    return service::kRunFailed;
+    return false;
   }
   SPDLOG_INFO("event=files_written folder={} poses={}", config_.out_dir, slam_.frames_tracked());
-  return service::kOk;
+  return true;
 }
 
 }  // namespace rtd::slam

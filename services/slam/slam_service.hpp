@@ -13,6 +13,8 @@
 #include "common/service/runtime.hpp"
 #include "services/slam/config.hpp"
 #include "services/slam/core/slam_system.hpp"
+#include "services/slam/map_camera.hpp"
+#include "services/slam/map_keeper.hpp"
 #include "services/slam/slam_publisher.hpp"
 
 namespace rtd::slam {
@@ -37,6 +39,9 @@ class SlamService {
  private:
   using Arrivals = concurrency::BoundedQueue<std::shared_ptr<const msg::FeatureFrame>>;
 
+  void load_map();
+  /// False when the camera is not that of the loaded map.
+  bool check_camera(const msg::FeatureFrame& frame);
   void answer(const msg::FeatureFrame& frame);
   bool answered_before(const msg::FeatureFrame& frame) const;
   void count(const SlamOutput& output);
@@ -44,16 +49,19 @@ class SlamService {
   void watch_input(bool arrived);
   void report_state();
   std::string trouble() const;
-  service::ExitCode write_files();
+  service::ExitCode finish();
+  bool write_files();
 
   const Config config_;
   service::Runtime& runtime_;
   SlamSystem slam_;
+  MapCameras map_cameras_;  ///< of the loaded map
   SlamPublisher publisher_;
   std::shared_ptr<Arrivals> arrivals_;
   bus::Reader<msg::FeatureFrame> features_;
   std::atomic<bool> source_ended_{false};  ///< the camera said so
   SlamCounters counters_;
+  std::optional<MapKeeper> map_keeper_;  ///< ends before the system that it reads
   msg::TrackingResult last_result_{};
   std::string last_problem_;
   std::int64_t last_arrival_ns_ = 0, last_diagnostics_ns_ = 0;

@@ -25,6 +25,17 @@ Mapper::Mapper(const SlamConfig& config)
       map_(config.techniques.landmark_belief ? ProbabilityRule::kBelief : ProbabilityRule::kMeanOfObservations),
       vocabulary_(choose_vocabulary(config)) {}
 
+void Mapper::restore(MapContents contents) {
+  const ProbabilityRule rule = map_.probability_rule();
+  if (rule == ProbabilityRule::kBelief && contents.probability_rule != rule) {
+    for (Landmark& landmark : contents.landmarks) landmark.log_odds = initial_log_odds(landmark.static_probability);
+  }
+  contents.probability_rule = rule;
+  map_ = Map(std::move(contents));
+  if (vocabulary_ == nullptr) return;
+  for (const auto& [id, keyframe] : map_.keyframes()) places_.add(id, vocabulary_->describe(keyframe.frame->features));
+}
+
 KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<bool()>& interrupted) {
   const auto busy = [&] { return interrupted && interrupted(); };
   count_statistics(proposal.statistics);
@@ -85,9 +96,10 @@ void Mapper::cull_keyframes(KeyframeId newest) {
   for (const KeyframeId id : map_.best_covisible(newest, kMaxRedundancyCandidates)) {
     if (!is_redundant_keyframe(map_, id, config_.mapper.redundant_ratio, config_.sensor.close_depth_m)) continue;
     const Keyframe& keyframe = *map_.find_keyframe(id);
-    changes_.push_back(
-        {KeyframeChange::Kind::kRemoved, id, keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera});
-    announced_.erase(id);
+    if (announced_.erase(id) > 0) {
+      changes_.push_back(
+          {KeyframeChange::Kind::kRemoved, id, keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera});
+    }
     places_.remove(id);
     map_.remove_keyframe(id);
   }

@@ -43,6 +43,8 @@ class Mapper {
  public:
   explicit Mapper(const SlamConfig& config);
 
+  /// Goes on with a map that was saved. Its keyframes are not announced: nobody else has their frames.
+  void restore(MapContents contents);
   /// Takes a keyframe into the map. `interrupted` (another keyframe waits) shortens the work.
   KeyframeId insert(const KeyframeProposal& proposal, const std::function<bool()>& interrupted = {});
   /// A snapshot around `centre`, or around what `centre` hung on when it was removed meanwhile.

@@ -26,6 +26,15 @@ MappingWorker::~MappingWorker() {
   finish();
 }
 
+void MappingWorker::restore(MapContents contents) {
+  const std::lock_guard mapper_lock(mapper_mutex_);
+  mapper_.restore(std::move(contents));
+  centre_ = mapper_.map().keyframes().begin()->first;
+  LocalMapPtr snapshot = mapper_.local_map(centre_);
+  const std::lock_guard output_lock(output_mutex_);
+  snapshot_ = std::move(snapshot);
+}
+
 bool MappingWorker::room() const {
   return pending_ < kMaxPendingKeyframes;
 }

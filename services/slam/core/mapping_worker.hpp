@@ -21,14 +21,16 @@ enum class MappingMode : std::uint8_t {
 };
 
 /// Runs a Mapper in the caller's thread or in one of its own, and hands out what tracking needs of it.
-/// insert(), begin_map(), recentre(), places_like(), finish(): one thread (tracking). snapshot(), take_changes(),
-/// room(), idle(), read(): any.
+/// restore(), insert(), begin_map(), recentre(), places_like(), finish(): one thread (tracking). snapshot(),
+/// take_changes(), room(), idle(), read(): any.
 class MappingWorker {
  public:
   /// `on_thread_start` runs first in the mapper's own thread (priority, name); may be empty.
   MappingWorker(const SlamConfig& config, MappingMode mode, std::function<void()> on_thread_start);
   ~MappingWorker();
 
+  /// Goes on with a map that was saved; before the first keyframe.
+  void restore(MapContents contents);
   /// Room for another keyframe; idle: nothing queued or in work. Synchronous: both always true.
   bool room() const;
   bool idle() const { return pending_ == 0; }

@@ -99,6 +99,7 @@ struct SlamConfig {
   BeliefConfig belief;
   KeyframeConfig keyframe;
   MapperConfig mapper;
+  bool localize_only = false;  ///< the map stays as it was loaded
   PlaceConfig place;
 };
 

@@ -22,6 +22,11 @@ msg::KeyframeEventKind to_message(KeyframeChange::Kind kind) {
   return msg::KeyframeEventKind::kRemoved;
 }
 
+const char* failure_name(msg::TrackingState state) {
+  const bool says_more = state == msg::TrackingState::kPredicted || state == msg::TrackingState::kRelocalizing;
+  return says_more ? msg::to_string(state) : "lost";
+}
+
 float to_ms(std::int64_t duration_ns) {
   return static_cast<float>(static_cast<double>(duration_ns) * 1e-6);
 }
@@ -35,6 +40,11 @@ SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns,
       mapping_(config, mode, std::move(on_mapping_thread)),
       tracker_(config, std::move(now_ns),
                [this](const FramePtr& frame, std::size_t attempt) { return mapping_.places_like(frame, attempt); }) {}
+
+void SlamSystem::restore(MapContents contents) {
+  mapping_.restore(std::move(contents));
+  tracker_.await_relocalization();
+}
 
 SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
   const std::int64_t start_ns = now_ns_();
@@ -95,19 +105,18 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   if (input.frame == nullptr) {
     output.problem = input.error;
     TrackOutcome outcome;
-    outcome.state = msg::TrackingState::kRecentlyLost;
+    outcome.state = tracker_.unlocated() ? msg::TrackingState::kRelocalizing : msg::TrackingState::kRecentlyLost;
     return outcome;
   }
   TrackOutcome outcome = tracker_.track(input.frame, mapping_.snapshot());
-  if (wants_new_map(*input.frame, outcome.state)) return begin_map(input);
-  if (outcome.state == msg::TrackingState::kRelocalizing) {
+  if (wants_new_map(*input.frame, outcome)) return begin_map(input);
+  if (outcome.at_place()) {
     output.problem = "relocalizing: a place was recognised, the next frames have to agree";
     follow_reference(outcome);
     return outcome;
   }
   if (outcome.state != msg::TrackingState::kOk) {
-    const bool predicted = outcome.state == msg::TrackingState::kPredicted;
-    output.problem = (predicted ? "predicted: " : "lost: ") + std::to_string(outcome.inliers) + " of " +
+    output.problem = std::string(failure_name(outcome.state)) + ": " + std::to_string(outcome.inliers) + " of " +
                      std::to_string(config_.tracker.min_inliers) + " landmarks that a pose needs";
     return outcome;
   }
@@ -140,9 +149,8 @@ void SlamSystem::observe_shutter(const LocalMap& map, const TrackOutcome& outcom
 }
 
 /// Lost for long, with views that nobody knows: the world goes on in a map of its own.
-bool SlamSystem::wants_new_map(const Frame& frame, msg::TrackingState state) {
-  const bool lost = state == msg::TrackingState::kRecentlyLost || state == msg::TrackingState::kLost;
-  if (!lost) {
+bool SlamSystem::wants_new_map(const Frame& frame, const TrackOutcome& outcome) {
+  if (config_.localize_only || msg::has_pose(outcome.state) || outcome.at_place()) {
     unknown_view_.reset();
     return false;
   }
@@ -153,7 +161,8 @@ bool SlamSystem::wants_new_map(const Frame& frame, msg::TrackingState state) {
 void SlamSystem::maybe_insert_keyframe(TrackOutcome& outcome) {
   const std::int64_t start_ns = now_ns_();
   const KeyframeSituation situation = tracker_.keyframe_situation(*outcome.map, mapping_.idle());
-  const bool insert = decide_keyframe(situation, config_.keyframe) == KeyframeDecision::kOffer && mapping_.room();
+  const bool insert = !config_.localize_only &&
+                      decide_keyframe(situation, config_.keyframe) == KeyframeDecision::kOffer && mapping_.room();
   outcome.stage_ms[msg::kStageKeyframe] = to_ms(now_ns_() - start_ns);
   const std::int64_t mapping_start_ns = now_ns_();
   if (insert) {

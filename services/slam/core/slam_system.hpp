@@ -24,12 +24,14 @@ struct SlamOutput {
 };
 
 /// RGB-D SLAM on features: tracking, keyframes, local mapping. docs/theory/{tracking,mapping}.md.
-/// process() and the writers: one thread. map_points(): any.
+/// process() and the writers: one thread. map_points(), read_map(): any.
 class SlamSystem {
  public:
   /// `on_mapping_thread` runs first in the mapper's thread (kThreaded only), e.g. to lower its priority.
   SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns, std::function<void()> on_mapping_thread = {});
 
+  /// Goes on with a map that was saved, before the first frame: relocalizing until a frame is found in it.
+  void restore(MapContents contents);
   /// Never throws for the content of the message. Frames are expected in order; a seq that jumps back is taken for a
   /// source that started again: motion is forgotten, the map stays.
   SlamOutput process(const msg::FeatureFrame& message);
@@ -41,6 +43,8 @@ class SlamSystem {
   std::vector<StampedPose> keyframes(MapId id = 0) const;
   std::vector<MapPoint> map_points(MapId id = 0) const;
   std::vector<MapId> maps() const;
+  /// Looks at the whole map: may wait for a bundle adjustment, and the mapper waits meanwhile.
+  void read_map(const std::function<void(const Map&)>& look) const { mapping_.read(look); }
   std::size_t frames_tracked() const { return frames_.size(); }
   std::uint64_t source_restarts() const { return source_restarts_; }
   /// Of the camera, as it is undone now; 0: rows are taken to be exposed at once.
@@ -50,7 +54,7 @@ class SlamSystem {
   void watch_source(const msg::FeatureFrame& message);
   TrackOutcome initialize(const FrameInput& input, SlamOutput& output);
   TrackOutcome begin_map(const FrameInput& input);
-  bool wants_new_map(const Frame& frame, msg::TrackingState state);
+  bool wants_new_map(const Frame& frame, const TrackOutcome& outcome);
   TrackOutcome track(const FrameInput& input, SlamOutput& output);
   ShutterMotion shutter_motion() const;
   void observe_shutter(const LocalMap& map, const TrackOutcome& outcome);

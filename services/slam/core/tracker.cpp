@@ -51,6 +51,7 @@ TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
   outcome.inliers = static_cast<int>(map->landmarks.size());
   motion_.reset();
   frames_since_keyframe_ = failed_frames_ = frames_at_place_ = 0;
+  unlocated_ = false;
   outcome.map = place_ = std::move(map);
   return outcome;
 }
@@ -91,6 +92,14 @@ void Tracker::forget_motion() {
   if (msg::has_pose(state_)) state_ = msg::TrackingState::kRecentlyLost;
 }
 
+void Tracker::await_relocalization() {
+  motion_.reset();
+  last_ = TrackedFrame{};
+  state_ = msg::TrackingState::kLost;
+  failed_frames_ = config_.tracker.recently_lost_frames;
+  unlocated_ = true;
+}
+
 /// Where the camera entered the map, until the mapper's snapshots have followed it there: they come from another
 /// thread.
 LocalMapPtr Tracker::choose_map(const LocalMapPtr& snapshot) {
@@ -128,6 +137,7 @@ Eigen::Isometry3d Tracker::predict(const Frame& frame) const {
 
 /// The pose that may be claimed though nothing was measured; empty when too long ago.
 std::optional<PredictedPose> Tracker::hold(const Frame& frame) const {
+  if (last_.frame == nullptr) return std::nullopt;
   const double gap_s = seconds_between(*last_.frame, frame);
   const bool recent = gap_s > 0 && gap_s <= config_.prediction.max_hold_s;
   if (!config_.techniques.prediction || !motion_ || !msg::has_pose(state_) || !recent) return std::nullopt;
@@ -183,6 +193,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   count(*last_.frame, *outcome.map, tracking);
   failed_frames_ = 0;
   place_attempts_ = 0;
+  unlocated_ = false;
   ++frames_since_keyframe_;
   outcome.state = state_ = msg::TrackingState::kOk;
   const geometry::Matrix6d local = config_.sensor.shared_error * tracking.guess.covariance;
@@ -203,7 +214,7 @@ void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalization 
 
 /// The frame is the last tracked one from now on.
 void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking) {
-  const double gap_s = seconds_between(*last_.frame, *frame);
+  const double gap_s = last_.frame == nullptr ? 0 : seconds_between(*last_.frame, *frame);
   const bool entered = state_ == msg::TrackingState::kRelocalizing && confirmations_ >= 0;
   const bool continuous = (msg::has_pose(state_) || entered) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
   motion_.reset();
@@ -243,7 +254,7 @@ void Tracker::reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess&
   motion_.reset();
   state_ = failed_frames_ > config_.tracker.recently_lost_frames ? msg::TrackingState::kLost
                                                                  : msg::TrackingState::kRecentlyLost;
-  outcome.state = state_;
+  outcome.state = unlocated_ ? msg::TrackingState::kRelocalizing : state_;
 }
 
 void Tracker::count(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking) {

@@ -26,6 +26,9 @@ struct TrackOutcome {
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
   int inliers = 0;
   std::array<float, msg::kSlamStages> stage_ms{};
+
+  /// A place was recognised and is not confirmed yet.
+  bool at_place() const { return state == msg::TrackingState::kRelocalizing && tracked.frame != nullptr; }
 };
 
 /// Parts of the map around places that look like a frame; every attempt of a search gives others. May be empty.
@@ -50,6 +53,11 @@ class Tracker {
   void forget_motion();
   /// Between the last two tracked frames; empty when they were too far apart.
   const std::optional<CameraMotion>& motion() const { return motion_; }
+
+  /// The map was there before the first frame: no pose until a frame is found in it.
+  void await_relocalization();
+  /// Not found in that map so far.
+  bool unlocated() const { return unlocated_; }
 
   /// Whether the frame just tracked should become a keyframe, and what the mapper then needs.
   KeyframeSituation keyframe_situation(const LocalMap& map, bool mapper_idle) const;
@@ -83,6 +91,7 @@ class Tracker {
   int inliers_ = 0;
   int frames_since_keyframe_ = 0;
   int failed_frames_ = 0;
+  bool unlocated_ = false;  ///< told as kRelocalizing; state_ is kLost meanwhile
   std::size_t next_recovery_ = 0;
   std::size_t place_attempts_ = 0;  ///< of the search that is going on
   int confirmations_ = 0;           ///< frames that agreed with the recognised place

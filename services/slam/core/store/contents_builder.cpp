@@ -11,7 +11,7 @@ namespace {
 
 /// In memory a map needs a few times the bytes of its file. A file that would need more was made to harm.
 constexpr std::uint64_t kMemoryPerByte = 64, kMemoryBase = 4 << 20;
-constexpr std::uint64_t kCovisiblePairBytes = 128, kGridCellBytes = 4;
+constexpr std::uint64_t kCovisiblePairBytes = 128, kGridCellBytes = 4, kTablesPerIdBytes = 16, kIdsPerTableByte = 128;
 constexpr std::uint64_t kGridCellPx = 20;
 
 void require(bool condition, const std::string& name, const char* complaint) {
@@ -51,6 +51,8 @@ Head read_head(FieldReader fields) {
 
 ContentsBuilder::ContentsBuilder(const Head& head, StoredFeatures features, std::uint64_t file_bytes)
     : head_(head), features_(features), memory_left_(kMemoryPerByte * file_bytes + kMemoryBase) {
+  reserve_memory(head.next_keyframe * kTablesPerIdBytes, "keyframe ids");
+  reserve_memory(head.next_landmark / kIdsPerTableByte, "landmark ids");
   contents_.probability_rule = head.probability_rule;
   contents_.next_keyframe = head.next_keyframe;
   contents_.next_landmark = head.next_landmark;

@@ -17,7 +17,7 @@ class MapReader {
 
   MapContents read() {
     const Head head = read_head();
-    ContentsBuilder builder(head, options_.features, blocks_.size());
+    ContentsBuilder builder = located([&] { return ContentsBuilder(head, options_.features, blocks_.size()); });
     read_records(BlockTag::kLandmarks, head.landmarks, [&](FieldReader& fields) { builder.add_landmark(fields); });
     read_records(BlockTag::kKeyframes, head.keyframes, [&](FieldReader& fields) { builder.add_keyframe(fields); });
     read_records(BlockTag::kRemoved, head.removed, [&](FieldReader& fields) { builder.add_removed(fields); });

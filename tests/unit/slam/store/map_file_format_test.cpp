@@ -182,6 +182,7 @@ const Lie kLies[] = {
     {"probability_rule", [](MapSnapshot& s) { s.head.probability_rule = ProbabilityRule{7}; }, "probability rule"},
     {"focal_length", [](MapSnapshot& s) { s.head.cameras[0].projection.fx = std::nan(""); }, "intrinsics"},
     {"image_size", [](MapSnapshot& s) { s.head.cameras[0].width_px = 2000000000; }, "intrinsics"},
+    {"many_keyframe_ids", [](MapSnapshot& s) { s.head.next_keyframe = 0xFFFFFFF0; }, "far more memory"},
     {"camera", [](MapSnapshot& s) { s.keyframes[1].camera = 3; }, "unknown camera"},
     {"free_keyframe_id", [](MapSnapshot& s) { s.keyframes.back().id = 400; }, "still free"},
     {"free_landmark_id", [](MapSnapshot& s) { s.head.next_landmark = 4; }, "still free"},

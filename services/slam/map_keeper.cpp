@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/map_keeper.hpp"
+
+#include <fmt/format.h>
+
+#include "common/concurrency/thread_priority.hpp"
+#include "common/service/log.hpp"
+#include "common/service/monotonic_clock.hpp"
+#include "services/slam/map_file.hpp"
+
+namespace rtd::slam {
+namespace {
+
+constexpr int kNicer = 10;
+
+double ms_since(std::int64_t start_ns) {
+  return static_cast<double>(service::monotonic_ns() - start_ns) * 1e-6;
+}
+
+}  // namespace
+
+MapKeeper::MapKeeper(const MapFileConfig& config, const SlamSystem& slam) : config_(config), slam_(slam) {
+  if (config.checkpoint_s > 0) thread_ = std::thread([this] { loop(); });
+}
+
+MapKeeper::~MapKeeper() {
+  ended_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::string MapKeeper::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return trouble_;
+}
+
+bool MapKeeper::save_at_end() {
+  ended_.request_stop();
+  if (thread_.joinable()) thread_.join();
+  return save("end");
+}
+
+void MapKeeper::loop() {
+  concurrency::lower_thread_priority(kNicer);
+  const std::chrono::milliseconds period(static_cast<std::int64_t>(config_.checkpoint_s * 1000));
+  while (!ended_.wait_for(period)) {
+    Growth now;
+    slam_.read_map([&](const Map& map) { now = {map.next_keyframe(), map.next_landmark()}; });
+    if (now != saved_) save("checkpoint");
+  }
+}
+
+bool MapKeeper::save(const char* occasion) {
+  const std::int64_t start_ns = service::monotonic_ns();
+  MapSnapshot snapshot;
+  slam_.read_map([&](const Map& map) { snapshot = take_snapshot(map); });
+  const double copy_ms = ms_since(start_ns);
+  if (snapshot.keyframes.empty()) {
+    SPDLOG_WARN("event=map_not_saved file={} cause=\"nothing was mapped\"", config_.save);
+    return true;
+  }
+  try {
+    const std::uint64_t bytes = save_map_file(config_.save, snapshot);
+    SPDLOG_INFO("event=map_saved file={} occasion={} keyframes={} landmarks={} bytes={} copy_ms={:.0f} ms={:.0f}",
+                config_.save, occasion, snapshot.head.keyframes, snapshot.head.landmarks, bytes, copy_ms,
+                ms_since(start_ns));
+  } catch (const std::exception& error) {
+    SPDLOG_ERROR("event=map_not_saved file={} occasion={} cause=\"{}\" kept=\"what the file held before\"",
+                 config_.save, occasion, error.what());
+    note_trouble(fmt::format("map not saved, {} keeps what it held: {}", config_.save, error.what()));
+    return false;
+  }
+  saved_ = {snapshot.head.next_keyframe, snapshot.head.next_landmark};
+  note_trouble({});
+  return true;
+}
+
+void MapKeeper::note_trouble(std::string trouble) {
+  const std::lock_guard lock(mutex_);
+  trouble_ = std::move(trouble);
+}
+
+}  // namespace rtd::slam

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "common/service/stop_token.hpp"
+#include "services/slam/config.hpp"
+#include "services/slam/core/slam_system.hpp"
+
+namespace rtd::slam {
+
+/// Keeps the map of a SlamSystem on disk: checkpoints while it grows, written in a thread of its own that yields to all
+/// others, and the last word at the end. Tracking is never held up, the mapper only while the map is copied.
+class MapKeeper {
+ public:
+  /// `slam` outlives it.
+  MapKeeper(const MapFileConfig& config, const SlamSystem& slam);
+  ~MapKeeper();
+  MapKeeper(const MapKeeper&) = delete;
+  MapKeeper& operator=(const MapKeeper&) = delete;
+
+  /// Why the last save failed, what is left and what to do; empty when it did not. Any thread.
+  std::string trouble() const;
+  /// Ends the checkpoints and saves the map; false when that fails. An empty map leaves the file as it is.
+  bool save_at_end();
+
+ private:
+  /// Tells one state of the map from a later one.
+  struct Growth {
+    KeyframeId next_keyframe = 0;
+    LandmarkId next_landmark = 0;
+    bool operator==(const Growth&) const = default;
+  };
+
+  void loop();
+  bool save(const char* occasion);
+  void note_trouble(std::string trouble);
+
+  const MapFileConfig config_;
+  const SlamSystem& slam_;
+  Growth saved_;
+  mutable std::mutex mutex_;  ///< guards trouble_
+  std::string trouble_;
+  service::StopToken ended_;
+  std::thread thread_;
+};
+
+}  // namespace rtd::slam

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+/// The map of one service is the map of the next.
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "common/msg/transform_eigen.hpp"
+#include "services/slam/map_file.hpp"
+#include "services/slam/slam_service.hpp"
+#include "tests/support/feature_world.hpp"
+#include "tests/support/service_fixture.hpp"
+
+namespace rtd::slam {
+namespace {
+
+using test_support::FeatureWorld;
+using test_support::Inbox;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+class MapServiceTest : public test_support::ServiceFixture<SlamService> {
+ protected:
+  MapServiceTest() : features_(bus_->writer(bus::topics::kFeatures)), file_((folder_ / "room.rtdmap").string()) {
+    hear(bus::topics::kTracking, results_);
+    std::filesystem::create_directories(folder_);
+  }
+
+  void step(std::uint64_t seq) {
+    const std::size_t before = results_.all().size();
+    ASSERT_TRUE(features_.write(*world_.view(seq, FeatureWorld::T_world_camera(seq))));
+    ASSERT_TRUE(results_.wait_count(before + 1)) << "no result for frame " << seq;
+  }
+  /// A map of 60 frames in file_, made by a core alone.
+  void make_map() const {
+    SlamSystem slam(SlamConfig{}, MappingMode::kSynchronous, [] { return 0; });
+    for (std::uint64_t seq = 0; seq < 60; ++seq) slam.process(*world_.view(seq, FeatureWorld::T_world_camera(seq)));
+    slam.read_map([&](const Map& map) { save_map_file(file_, take_snapshot(map)); });
+  }
+  std::string bytes() const {
+    std::ifstream file(file_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  /// Waits until the file is there and holds at least so many keyframes.
+  bool wait_saved(std::size_t keyframes) const {
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (std::chrono::steady_clock::now() < give_up) {
+      if (std::filesystem::exists(file_) && load_map_file(file_).keyframes.size() >= keyframes) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
+
+  const FeatureWorld world_{{}};
+  Inbox<msg::TrackingResult> results_;
+  bus::Writer<msg::FeatureFrame> features_;
+  const std::string file_;
+};
+
+TEST_F(MapServiceTest, saves_its_map_at_the_end) {
+  config_.map.save = file_;
+  config_.map.checkpoint_s = 0;
+  start(service::Pace::kLockstep);
+  for (std::uint64_t seq = 0; seq < 40; ++seq) step(seq);
+  EXPECT_FALSE(std::filesystem::exists(file_));
+  EXPECT_EQ(stop(), service::kOk);
+  EXPECT_EQ(load_map_file(file_).keyframes.size(), results_.all().back()->keyframes);
+}
+
+TEST_F(MapServiceTest, saves_its_map_while_it_runs) {
+  config_.map.save = file_;
+  config_.map.checkpoint_s = 0.02;
+  start(service::Pace::kRealtime);
+  std::uint64_t seq = 0;
+  for (; seq < 5; ++seq) step(seq);
+  ASSERT_TRUE(wait_saved(1));
+  while (seq < 200 && results_.all().back()->keyframes < 3) step(seq++);
+  EXPECT_TRUE(wait_saved(3)) << "a map that grew is saved again";
+}
+
+TEST_F(MapServiceTest, finds_its_place_in_a_loaded_map_and_leaves_the_file_alone) {
+  make_map();
+  const std::string before = bytes();
+  config_.map.load = file_;
+  config_.core.localize_only = true;
+  start(service::Pace::kLockstep);
+  for (std::uint64_t seq = 30; seq < 60; ++seq) step(seq);
+  std::size_t tracked = 0;
+  for (const auto& result : results_.all()) {
+    if (result->state != msg::TrackingState::kOk) continue;
+    ++tracked;
+    const Eigen::Isometry3d T_truth_estimate =
+        FeatureWorld::T_world_camera(result->seq).inverse() * msg::to_isometry(result->T_world_camera);
+    EXPECT_LT(T_truth_estimate.translation().norm(), 2e-3);
+  }
+  EXPECT_GE(tracked, 28U) << "of 30";
+  EXPECT_EQ(stop(), service::kOk);
+  EXPECT_EQ(bytes(), before);
+}
+
+TEST_F(MapServiceTest, goes_on_with_a_loaded_map) {
+  make_map();
+  const std::size_t loaded = load_map_file(file_).keyframes.size();
+  config_.map.load = config_.map.save = file_;
+  start(service::Pace::kLockstep);
+  for (std::uint64_t seq = 60; seq < 140; ++seq) step(seq);
+  EXPECT_EQ(results_.all()[2]->state, msg::TrackingState::kOk);
+  EXPECT_EQ(stop(), service::kOk);
+  EXPECT_GT(load_map_file(file_).keyframes.size(), loaded);
+}
+
+TEST_F(MapServiceTest, says_that_it_looks_for_its_place) {
+  make_map();
+  config_.map.load = file_;
+  start(service::Pace::kRealtime);
+  auto empty = world_.view(0, Eigen::Isometry3d::Identity());
+  empty->count = 0;
+  ASSERT_TRUE(features_.write(*empty));
+  ASSERT_TRUE(wait_state(msg::ServiceState::kDegraded, "relocalizing"));
+  EXPECT_EQ(results_.all().back()->state, msg::TrackingState::kRelocalizing);
+}
+
+TEST_F(MapServiceTest, refuses_a_file_that_is_no_map) {
+  config_.map.load = file_;
+  launch(service::Pace::kLockstep);
+  EXPECT_THAT([&] { running_code(); },
+              ThrowsMessage<service::ConfigError>(AllOf(HasSubstr("slam.map.load"), HasSubstr("No such file"))));
+  std::ofstream(file_) << "something else";
+  launch(service::Pace::kLockstep);
+  EXPECT_THAT([&] { running_code(); },
+              ThrowsMessage<service::ConfigError>(AllOf(HasSubstr("room.rtdmap"), HasSubstr("no map file"))));
+  make_map();
+  std::filesystem::resize_file(file_, std::filesystem::file_size(file_) / 2);
+  launch(service::Pace::kLockstep);
+  EXPECT_THAT([&] { running_code(); }, ThrowsMessage<service::ConfigError>(HasSubstr("damaged at byte")));
+}
+
+TEST_F(MapServiceTest, refuses_to_localize_without_a_map_or_to_save_what_does_not_change) {
+  config_.core.localize_only = true;
+  launch(service::Pace::kLockstep);
+  EXPECT_THAT([&] { running_code(); }, ThrowsMessage<service::ConfigError>(HasSubstr("--map")));
+  config_.map.load = config_.map.save = file_;
+  launch(service::Pace::kLockstep);
+  EXPECT_THAT([&] { running_code(); }, ThrowsMessage<service::ConfigError>(HasSubstr("slam.map.save")));
+}
+
+TEST_F(MapServiceTest, refuses_another_camera) {
+  make_map();
+  config_.map.load = file_;
+  start(service::Pace::kLockstep);
+  auto frame = world_.view(0, Eigen::Isometry3d::Identity());
+  frame->intrinsics[0] = frame->intrinsics[1] = 365;
+  ASSERT_TRUE(features_.write(*frame));
+  EXPECT_EQ(running_code(), service::kUsageOrConfig);
+}
+
+TEST_F(MapServiceTest, tracks_on_when_the_map_cannot_be_saved_and_says_so) {
+  config_.map.save = (folder_ / "none" / "room.rtdmap").string();
+  config_.map.checkpoint_s = 0.02;
+  start(service::Pace::kRealtime);
+  step(0);
+  ASSERT_TRUE(wait_state(msg::ServiceState::kDegraded, "no such folder"));
+  step(1);
+  EXPECT_EQ(results_.all().back()->state, msg::TrackingState::kOk);
+  EXPECT_EQ(stop(), service::kRunFailed);
+}
+
+}  // namespace
+}  // namespace rtd::slam
