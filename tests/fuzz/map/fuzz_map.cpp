@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+/// Feeds changed map files to the reader: fuzz_map [inputs] [seed]. What must hold for every input: no crash, no
+/// sanitizer report, bounded memory; it is refused, or what is read is a sound map that is written as it was read. Exit
+/// code 1 and the input in fuzz_map_failed.rtdmap otherwise. The preset asan-ubsan gives it its teeth.
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include "common/mcap/crc32.hpp"
+#include "common/mcap/decode.hpp"
+#include "services/slam/core/store/map_reader.hpp"
+#include "services/slam/core/store/map_writer.hpp"
+#include "tests/fuzz/mcap/allocation_watch.hpp"
+#include "tests/fuzz/mcap/mutation.hpp"
+#include "tests/support/sample_map.hpp"
+
+#if defined(__SANITIZE_ADDRESS__)
+extern "C" const char* __ubsan_default_options();
+extern "C" const char* __ubsan_default_options() {
+  return "halt_on_error=1:print_stacktrace=1";
+}
+#endif
+
+namespace rtd::slam {
+namespace {
+
+using mcap::Bytes;
+using mcap::ByteView;
+
+// What the reader allows itself, a block twice, and the map that is made of it.
+constexpr std::size_t kMostPerByte = 96, kMostAllocated = 24 << 20;
+
+Bytes bytes_of(const Map& map) {
+  mcap::MemorySink sink;
+  write_map(take_snapshot(map), sink);
+  return sink.bytes();
+}
+
+std::vector<Bytes> seeds() {
+  std::vector<Bytes> files;
+  for (const std::uint32_t keyframes : {1, 3, 6, 12})
+    files.push_back(bytes_of(test_support::sample_map(
+        {.keyframes = keyframes, .features = 12, .seen_per_keyframe = 5, .new_per_keyframe = 3, .seed = keyframes})));
+  return files;
+}
+
+/// Lets every checksum fit again, so that what is behind the checksums is reached.
+void reseal(Bytes& file) {
+  constexpr std::size_t kPreamble = 12, kHead = 8, kCrc = 4;
+  if (file.size() < kPreamble + kCrc) return;
+  mcap::Encoder::store(file.data() + kPreamble, mcap::crc32(ByteView(file).first(kPreamble)));
+  for (std::size_t at = kPreamble + kCrc; at + kHead + kCrc <= file.size();) {
+    const std::size_t size = mcap::load<std::uint32_t>(file.data() + at + 4);
+    if (size > file.size() - at - kHead - kCrc) return;
+    mcap::Encoder::store(file.data() + at + kHead + size, mcap::crc32(ByteView(file).subspan(at, kHead + size)));
+    at += kHead + size + kCrc;
+  }
+}
+
+/// Changes values, not sizes: most such files are still made of blocks.
+void change_values(Bytes& file, std::mt19937_64& random) {
+  constexpr std::array<std::uint64_t, 8> kValues{
+      0, 1, 0x7F, 0xFFFF, 0xFFFFFFFF, 0x7FF8000000000000, 0x7FF0000000000000, ~std::uint64_t{0}};
+  constexpr std::size_t kBlocks = 16;
+  for (std::uint64_t changes = 1 + random() % 4; changes > 0; --changes) {
+    const std::size_t width = std::size_t{1} << (random() % 4);
+    const std::size_t at = kBlocks + random() % (file.size() - kBlocks - width);
+    std::byte bytes[8];
+    mcap::Encoder::store(bytes, random() % 2 == 0 ? kValues[random() % kValues.size()] : random() % 32);
+    std::copy_n(bytes, width, file.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+}
+
+Bytes make_input(const std::vector<Bytes>& files, std::mt19937_64& random) {
+  const Bytes& file = files[random() % files.size()];
+  const std::uint64_t way = random() % 4;
+  if (way == 0) return mcap::mutate(file, files[random() % files.size()], random);
+  Bytes input = way == 1 ? mcap::mutate(file, files[random() % files.size()], random) : file;
+  if (way > 1) change_values(input, random);
+  reseal(input);
+  return input;
+}
+
+/// Why the input is a failure; empty when it is none. Counts the inputs that are maps.
+std::string try_input(const Bytes& file, std::uint64_t& maps) {
+  try {
+    const mcap::MemorySource source(file);
+    const std::size_t skimmed = read_map(source, {StoredFeatures::kSkip, {}}).keyframes.size();
+    const Map map(read_map(source));
+    if (std::string broken = map.check_invariants(); !broken.empty()) return "it became an unsound map: " + broken;
+    if (map.keyframes().size() != skimmed) return "it has other keyframes without features";
+    if (bytes_of(map) != file) return "written again it is another file";
+    ++maps;
+  } catch (const MapFileError&) {
+  }
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated + kMostPerByte * file.size())
+    return "it made the reader hold " + std::to_string(peak) + " bytes";
+  return "";
+}
+
+int fuzz(std::uint64_t inputs, std::uint64_t seed) {
+  const std::vector<Bytes> files = seeds();
+  std::mt19937_64 random(seed);
+  std::uint64_t maps = 0;
+  testing::watch_allocations();
+  for (std::uint64_t i = 0; i < inputs; ++i) {
+    const Bytes input = make_input(files, random);
+    testing::peak_allocation();
+    const std::string failure = try_input(input, maps);
+    if (failure.empty()) continue;
+    std::ofstream("fuzz_map_failed.rtdmap", std::ios::binary)
+        .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
+    std::fprintf(stderr, "input %llu of seed %llu: %s\n", static_cast<unsigned long long>(i),
+                 static_cast<unsigned long long>(seed), failure.c_str());
+    return 1;
+  }
+  std::printf("%llu inputs, all well (%llu of them maps)\n", static_cast<unsigned long long>(inputs),
+              static_cast<unsigned long long>(maps));
+  return 0;
+}
+
+}  // namespace
+}  // namespace rtd::slam
+
+int main(int argc, char** argv) {
+  const std::uint64_t inputs = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 5000;
+  return rtd::slam::fuzz(inputs, argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1);
+}
