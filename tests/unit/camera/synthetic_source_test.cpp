@@ -141,7 +141,7 @@ TEST(SyntheticSource, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT([] { make_source("synthetic:kitchen"); },
               ThrowsMessage<SourceError>(
                   AllOf(HasSubstr("'kitchen'"),
-                        HasSubstr("office, static, box, crowd, tour, sitting, fill, approach, slow, flicker"))));
+                        HasSubstr("office, static, box, crowd, tour, sitting, fill, approach, slow, flicker, corridor, lookalike"))));
   EXPECT_THAT([] { make_source("synthetic:office?sed=1"); },
               ThrowsMessage<SourceError>(AllOf(HasSubstr("'sed'"), HasSubstr("seed"))));
   EXPECT_THAT([] { make_source("synthetic:office?width=1280"); }, ThrowsMessage<SourceError>(HasSubstr("[64, 640]")));

@@ -25,7 +25,9 @@ struct Axis {
 constexpr std::array<Axis, 6> kAxes = {
     {{0.85, 0.37}, {0.40, 0.43}, {0.14, 0.61}, {0.42, 0.29}, {0.10, 0.47}, {0.05, 0.71}}};
 
-Eigen::Matrix3d camera_rotation(double yaw_rad, double pitch_rad, double roll_rad) {
+}  // namespace
+
+Eigen::Matrix3d level_camera_rotation(double yaw_rad, double pitch_rad, double roll_rad) {
   const Eigen::Vector3d forward(std::sin(yaw_rad) * std::cos(pitch_rad), std::cos(yaw_rad) * std::cos(pitch_rad),
                                 std::sin(pitch_rad));
   const Eigen::Vector3d right(std::cos(yaw_rad), -std::sin(yaw_rad), 0);
@@ -33,8 +35,6 @@ Eigen::Matrix3d camera_rotation(double yaw_rad, double pitch_rad, double roll_ra
   R_world_level << right, forward.cross(right), forward;
   return R_world_level * Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
-
-}  // namespace
 
 double CameraPath::Sway::at(double t_s) const {
   return amplitude * (std::sin(rate_rad_s * t_s + phase_rad) +
@@ -57,7 +57,7 @@ Eigen::Isometry3d CameraPath::T_world_camera(double t_s) const {
   const double turned_rad = motion_ == CameraMotion::kTour ? kTurnRateRadS * t_s : 0.0;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translation() = Eigen::Vector3d(x.at(t_s), kMeanYM + y.at(t_s), kMeanZM + z.at(t_s));
-  T.linear() = camera_rotation(yaw.at(t_s) + turned_rad, kMeanPitchRad + pitch.at(t_s), roll.at(t_s));
+  T.linear() = level_camera_rotation(yaw.at(t_s) + turned_rad, kMeanPitchRad + pitch.at(t_s), roll.at(t_s));
   return T;
 }
 

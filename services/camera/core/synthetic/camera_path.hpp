@@ -33,6 +33,9 @@ class CameraPath {
   std::array<Sway, 6> sways_{};  ///< x y z (m), yaw pitch roll (rad)
 };
 
+/// R_world_camera of an optical frame that looks along (sin yaw, cos yaw) and up by the pitch, then rolls.
+Eigen::Matrix3d level_camera_rotation(double yaw_rad, double pitch_rad, double roll_rad);
+
 /// The box that the camera centre stays in, world frame, m: nothing else may stand there.
 struct CameraRoom {
   static constexpr double kMinX = -1.2, kMaxX = 1.2, kMinY = -2.1, kMaxY = -0.9, kMinZ = 1.0, kMaxZ = 1.6;

@@ -20,7 +20,14 @@ std::vector<SceneSpec> make_catalog() {
   approach.plot = Plot::kAxialBox;
   slow.plot = Plot::kSlowBoxes;
   flicker.flicker = 1;
-  return {office, still, box, crowd, tour, sitting, fill, approach, slow, flicker};
+  SceneSpec corridor{"corridor"}, lookalike{"lookalike"};
+  corridor.corridor = CorridorPlan{};
+  corridor.fps = lookalike.fps = 10, corridor.frames = 570;
+  corridor.range_m = lookalike.range_m = 4, corridor.grain = lookalike.grain = 3;
+  corridor.focal_error = lookalike.focal_error = 0.02;  // as a Kinect's without calibration: what drift comes from
+  lookalike.corridor = CorridorPlan{.length_m = 11, .depth_m = 11, .alike = true};
+  lookalike.frames = 180;  // ends before it sees its start again
+  return {office, still, box, crowd, tour, sitting, fill, approach, slow, flicker, corridor, lookalike};
 }
 
 }  // namespace
@@ -31,7 +38,10 @@ const std::vector<SceneSpec>& scene_catalog() {
 }
 
 Scene::Scene(const SceneSpec& spec, std::uint64_t seed)
-    : room_(build_room(seed, textures_)), camera_path_(spec.motion, seed), lighting_(spec.flicker, seed) {
+    : room_(spec.corridor ? build_corridor(*spec.corridor, seed, textures_) : build_room(seed, textures_)),
+      camera_path_(spec.motion, seed),
+      lighting_(spec.flicker, seed) {
+  if (spec.corridor) walk_.emplace(*spec.corridor, seed);
   SeededRandom random(seed);
   for (int i = 0; i < spec.people; ++i) {
     movers_.push_back(std::make_unique<Walker>(random.next(), spec.area, textures_));

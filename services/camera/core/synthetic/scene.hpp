@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "services/camera/core/synthetic/camera_path.hpp"
+#include "services/camera/core/synthetic/corridor.hpp"
 #include "services/camera/core/synthetic/lighting.hpp"
 #include "services/camera/core/synthetic/movers.hpp"
 #include "services/camera/core/synthetic/room.hpp"
@@ -17,17 +19,23 @@ namespace rtd::camera::synthetic {
 /// Movers with a plot; staged_movers.hpp.
 enum class Plot { kNone, kSitter, kBlocker, kAxialBox, kSlowBoxes };
 
-/// What is in a scene beside the room.
+/// What is in a scene beside the room; or which corridor there is instead of it.
 struct SceneSpec {
   std::string name;
   int people = 0, boxes = 0;  ///< who walk about, which are carried about
   CameraMotion motion = CameraMotion::kHandHeld;
   WalkArea area = {};
   Plot plot = Plot::kNone;
-  std::uint64_t frames = 300;  ///< of a clip, unless asked for otherwise
-  double flicker = 0;          ///< Lighting's unrest, [0, 1]
-  double sit_s = 10;           ///< a sitter rises after this time
-  double fidget_rad = 0.03;    ///< ... and moves arms and head so much meanwhile
+  std::uint64_t frames = 300;                 ///< of a clip, unless asked for otherwise
+  double fps = 30;                            ///< the same
+  double range_m = 6;                         ///< depth is measured so far
+  double depth_noise = 1;                     ///< factor on its noise
+  double focal_error = 0;                     ///< relative: the calibration's focal length against the true one
+  double grain = 2;                           ///< standard deviation of the colour noise, grey levels
+  double flicker = 0;                         ///< Lighting's unrest, [0, 1]
+  double sit_s = 10;                          ///< a sitter rises after this time
+  double fidget_rad = 0.03;                   ///< ... and moves arms and head so much meanwhile
+  std::optional<CorridorPlan> corridor = {};  ///< instead of the room and its camera path
 };
 
 /// The scenes that have a name.
@@ -38,7 +46,9 @@ class Scene {
  public:
   Scene(const SceneSpec& spec, std::uint64_t seed);
   Geometry geometry_at(double t_s) const;
-  Eigen::Isometry3d T_world_camera(double t_s) const { return camera_path_.T_world_camera(t_s); }
+  Eigen::Isometry3d T_world_camera(double t_s) const {
+    return walk_ ? walk_->T_world_camera(t_s) : camera_path_.T_world_camera(t_s);
+  }
   const Lighting& lighting() const { return lighting_; }
   const std::vector<Texture>& textures() const { return textures_; }
 
@@ -49,6 +59,7 @@ class Scene {
   std::vector<Face> room_;
   std::vector<std::unique_ptr<Mover>> movers_;
   CameraPath camera_path_;
+  std::optional<CorridorWalk> walk_;  ///< in a corridor, instead of the path
   Lighting lighting_;
 };
 

@@ -34,10 +34,10 @@ double number_in(const SourceUri& uri, const std::string& key, const std::string
   throw SourceError(message.str());
 }
 
-geometry::CameraModel make_camera(const SyntheticOptions& options) {
+geometry::CameraModel make_camera(const SyntheticOptions& options, double focal_error) {
   geometry::CameraModel::Parameters parameters;
   parameters.width = options.width, parameters.height = options.height;
-  parameters.fx = parameters.fy = kFocalShare * options.width;
+  parameters.fx = parameters.fy = kFocalShare * options.width * (1 + focal_error);
   parameters.cx = (options.width - 1) / 2.0, parameters.cy = (options.height - 1) / 2.0;
   return geometry::CameraModel(parameters);
 }
@@ -46,6 +46,9 @@ synthetic::SensorModel make_sensor(const SyntheticOptions& options) {
   synthetic::SensorModel model;
   model.noise = options.noise;
   model.depth_units_per_m = kDepthUnitsPerM;
+  model.max_depth_m = static_cast<float>(options.scene.range_m);
+  model.disparity_noise_steps *= static_cast<float>(options.scene.depth_noise);
+  model.color_noise_levels = static_cast<float>(options.scene.grain);
   model.max_relative_slope *= 640.0F / static_cast<float>(options.width);
   return model;
 }
@@ -56,6 +59,7 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
   SyntheticOptions options;
   options.scene = find_scene(uri);
   options.frames = options.scene.frames;
+  options.fps = options.scene.fps;
   struct Parameter {
     const char* key;
     double min, max;
@@ -65,6 +69,10 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
       {"seed", 0, 1e9, [&](double v) { options.seed = static_cast<std::uint64_t>(v); }},
       {"frames", 0, 1e9, [&](double v) { options.frames = static_cast<std::uint64_t>(v); }},
       {"fps", 1, 240, [&](double v) { options.fps = v; }},
+      {"range", 0.5, 12, [&](double v) { options.scene.range_m = v; }},
+      {"depth_noise", 0, 20, [&](double v) { options.scene.depth_noise = v; }},
+      {"focal_error", -0.1, 0.1, [&](double v) { options.scene.focal_error = v; }},
+      {"grain", 0, 30, [&](double v) { options.scene.grain = v; }},
       {"noise", 0, 1, [&](double v) { options.noise = v > 0; }},
       {"people", 0, 20, [&](double v) { options.scene.people = static_cast<int>(v); }},
       {"boxes", 0, 20, [&](double v) { options.scene.boxes = static_cast<int>(v); }},
@@ -77,9 +85,9 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
     const auto known =
         std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& p) { return key == p.key; });
     if (known == parameters.end()) {
-      throw SourceError(
-          "source '" + uri.text + "': unknown parameter '" + key +
-          "'; known: seed, frames (0 = endless), fps, noise, people, boxes, flicker, sit, fidget, width, height");
+      throw SourceError("source '" + uri.text + "': unknown parameter '" + key +
+                        "'; known: seed, frames (0 = endless), fps, noise, people, boxes, flicker, sit, fidget, range, "
+                        "depth_noise, focal_error, grain, width, height");
     }
     known->assign(number_in(uri, key, value, known->min, known->max));
   }
@@ -88,9 +96,10 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
 
 SyntheticSource::SyntheticSource(std::string uri, const SyntheticOptions& options)
     : options_(options),
-      info_{std::move(uri), make_camera(options), 1.0 / kDepthUnitsPerM, options.fps, options.frames},
+      info_{std::move(uri), make_camera(options, options.scene.focal_error), 1.0 / kDepthUnitsPerM, options.fps,
+            options.frames},
       scene_(options.scene, options.seed),
-      renderer_(info_.camera),
+      renderer_(make_camera(options, 0)),
       sensor_(make_sensor(options), options.seed) {}
 
 std::int64_t SyntheticSource::stamp_ns(std::uint64_t frame) const {
