@@ -326,7 +326,7 @@ void DynamicFilter::on_keyframe(const msg::KeyframeEvent& event) {
     views_.forget_keyframe(event.frame_seq);
     if (published_ != nullptr) published_->forget_keyframe(event.frame_seq);
   } else {
-    views_.mark_keyframe(event.frame_seq, msg::to_isometry(event.T_world_camera));
+    if (!views_.mark_keyframe(event.frame_seq, msg::to_isometry(event.T_world_camera))) movers_.clear();
     if (published_ != nullptr) published_->on_keyframe(event.frame_seq, msg::to_isometry(event.T_world_camera));
   }
 }

@@ -12,8 +12,9 @@ namespace rtd::filter {
 namespace {
 
 constexpr std::int64_t kPastStepNs = 250'000'000;
-constexpr double kNewWorldM = 0.25, kNewWorldRad = 0.25;  // slam and we differ by more: another world
-constexpr double kSameWayRad = 0.5;                       // a keyframe worth comparing with
+constexpr double kNewWorldM = 0.25, kNewWorldRad = 0.25;    // slam and we differ by more: another world
+constexpr double kCorrectedM = 0.05, kCorrectedRad = 0.05;  // a keyframe moved by more: slam has corrected its map
+constexpr double kSameWayRad = 0.5;                         // a keyframe worth comparing with
 constexpr std::array<std::int64_t, 4> kAgesNs{100'000'000, 270'000'000, 550'000'000, 1'000'000'000};
 
 auto find_seq(std::deque<View>& views, std::uint64_t seq) {
@@ -64,16 +65,28 @@ void ViewStore::forget_before(std::uint64_t seq) {
   keyframes_.clear();
 }
 
-void ViewStore::mark_keyframe(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera) {
+bool ViewStore::mark_keyframe(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera) {
+  const auto found = find_seq(recent_, seq);
+  bool corrected = false;
+  if (found != recent_.end() && found->posed_by_slam) {
+    const Eigen::Isometry3d T_old_new = found->T_world_camera.inverse() * T_world_camera;
+    corrected = T_old_new.translation().norm() > kCorrectedM || geometry::rotation_angle_rad(T_old_new) > kCorrectedRad;
+    if (corrected) move_along(T_world_camera * found->T_world_camera.inverse());
+  }
   if (const auto known = find_seq(keyframes_, seq); known != keyframes_.end()) {
     known->T_world_camera = T_world_camera;
-    return;
+  } else if (found != recent_.end()) {
+    keyframes_.push_back(*found);
+    keyframes_.back().T_world_camera = T_world_camera;
+    if (keyframes_.size() > kMaxKeyframes) keyframes_.pop_front();
   }
-  const auto found = find_seq(recent_, seq);
-  if (found == recent_.end()) return;
-  keyframes_.push_back(*found);
-  keyframes_.back().T_world_camera = T_world_camera;
-  if (keyframes_.size() > kMaxKeyframes) keyframes_.pop_front();
+  return !corrected;
+}
+
+void ViewStore::move_along(const Eigen::Isometry3d& T_new_old) {
+  for (std::deque<View>* views : {&recent_, &past_}) {
+    for (View& view : *views) view.T_world_camera = geometry::normalized(T_new_old * view.T_world_camera);
+  }
 }
 
 void ViewStore::forget_keyframe(std::uint64_t seq) {

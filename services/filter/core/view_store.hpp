@@ -41,8 +41,10 @@ class ViewStore {
   void add(View view);
   /// slam's pose of a frame. Returns false when it made us drop the older views.
   bool correct(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera);
-  /// The frame is a keyframe: its view is kept longer.
-  void mark_keyframe(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera);
+  /// The frame is a keyframe: its view is kept longer. Where slam has moved a recent one far from where it had it
+  /// before, it has corrected its map: recent and past views move along, so that they still fit together. Returns false
+  /// then. Other keyframes wait for a word of their own.
+  bool mark_keyframe(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera);
   void forget_keyframe(std::uint64_t seq);
   /// Keeps only what is as new as this frame, and the newest view: what lies before belongs to another world.
   void forget_before(std::uint64_t seq);
@@ -80,6 +82,7 @@ class ViewStore {
 
  private:
   void retire_oldest();
+  void move_along(const Eigen::Isometry3d& T_new_old);
   std::deque<View> recent_;     ///< by seq
   std::deque<View> past_;       ///< by seq, settled ones from before the recent ones, a quarter of a second apart
   std::deque<View> keyframes_;  ///< by seq

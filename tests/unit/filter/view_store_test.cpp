@@ -132,5 +132,21 @@ TEST(ViewStore, prefers_settled_views) {
   EXPECT_EQ(store.of_age(stamp(4), kPeriodNs).seq, 2U);
 }
 
+TEST(ViewStore, views_move_along_when_slam_corrects_its_map) {
+  ViewStore store;
+  for (std::uint64_t seq = 0; seq < 20; ++seq) store.add(view(seq, 0.1 * static_cast<double>(seq)));
+  for (const std::uint64_t seq : {3U, 12U}) {
+    store.mark_keyframe(seq, at(0.1 * static_cast<double>(seq)));
+    store.correct(seq, at(0.1 * static_cast<double>(seq)));
+  }
+  EXPECT_TRUE(store.mark_keyframe(12, at(1.21))) << "local adjustment";
+  EXPECT_NEAR(store.newest().T_world_camera.translation().x(), 1.9, 1e-9);
+  EXPECT_FALSE(store.mark_keyframe(12, at(1.7))) << "half a metre: a loop was closed";
+  EXPECT_TRUE(store.mark_keyframe(3, at(0.8))) << "the others are moved once";
+  EXPECT_NEAR(store.newest().T_world_camera.translation().x(), 2.4, 1e-9);
+  EXPECT_TRUE(store.correct(19, at(2.41))) << "and slam's next word fits";
+  EXPECT_EQ(store.near_keyframes(at(0.8), {6, 0.05}).size(), 1U);
+}
+
 }  // namespace
 }  // namespace rtd::filter
