@@ -18,6 +18,7 @@ void bind_techniques(ConfigBinder& binder, Techniques& t) {
                "off: all rows of the image are taken to be exposed at once");
   binder.field("techniques.prediction", t.prediction, "off: lost at once when nothing static is in view");
   binder.field("techniques.place_recognition", t.place_recognition, "off: found back only around the last pose");
+  binder.field("techniques.loop_closing", t.loop_closing, "off: a known place does not correct the map");
 }
 
 void bind_sensor(ConfigBinder& binder, SensorConfig& c) {
@@ -107,6 +108,27 @@ void bind_place(ConfigBinder& binder, PlaceConfig& c) {
                "a new map begins after so long with unknown views; 0: never");
 }
 
+void bind_loop(ConfigBinder& binder, LoopConfig& c) {
+  binder.field("loop.max_candidates", c.max_candidates, {1, 100}, "places that each keyframe is compared with");
+  binder.field("loop.min_similarity", c.min_similarity, {0.0, 1.0},
+               "of a place, over that of the keyframe's least similar neighbour");
+  binder.field("loop.min_inliers", c.min_inliers, {10, 1000}, "landmarks of the place that the keyframe must see");
+  binder.field("loop.min_found_share", c.min_found_share, {0.0, 1.0}, "of those that it should see");
+  binder.field("loop.confirmations", c.confirmations, {1, 20}, "keyframes that must ask for the same correction");
+  binder.field("loop.max_misses", c.max_misses, {0, 20}, "keyframes in between that find nothing");
+  binder.field("loop.agreement_m", c.agreement_m, {0.0, 10.0}, "corrections that differ by less are the same");
+  binder.field("loop.agreement_rad", c.agreement_rad, {0.0, 1.0}, "the same for their rotation");
+  binder.field("loop.max_offset_m", c.max_offset_m, {0.0, 100.0}, "a correction is at most this, and ...");
+  binder.field("loop.max_drift_ratio", c.max_drift_ratio, {0.0, 1.0}, "... this times the way walked since");
+  binder.field("loop.max_offset_rad", c.max_offset_rad, {0.0, 3.2}, "the same for its rotation, and ...");
+  binder.field("loop.max_drift_rad_m", c.max_drift_rad_m, {0.0, 1.0}, "... rad per metre walked since");
+  binder.field("loop.graph_iterations", c.graph_iterations, {1, 1000}, "of the pose graph");
+  binder.field("loop.global_iterations", c.global_iterations, {0, 100}, "of global bundle adjustment; 0 = none");
+  binder.field("loop.max_odometry_step_m", c.max_odometry_step_m, {0.0, 10.0},
+               "larger corrections go into map -> odom, smaller ones into the odometry");
+  binder.field("loop.max_odometry_step_rad", c.max_odometry_step_rad, {0.0, 1.0}, "the same for its rotation");
+}
+
 /// At most one byte more than a vocabulary may have: who names a video by mistake need not wait.
 std::vector<std::byte> read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -142,13 +164,15 @@ void ServiceConfig::bind(ConfigBinder& binder) {
   bind_mapper(binder, core.mapper);
   bind_place(binder, core.place);
   binder.field("place.vocabulary", vocabulary_file, "file of rtd-train-vocabulary; empty: the built-in one");
+  bind_loop(binder, core.loop);
   binder.field("map.load", map.load, "map file to go on with; empty: a new map");
   binder.field("map.save", map.save, "map file to write at checkpoints and at the end; empty: none");
   binder.field("map.checkpoint_s", map.checkpoint_s, {0.0, 86400.0},
                "time between two checkpoints; 0: only at the end");
   binder.field("map.localize_only", core.localize_only, "find poses in the loaded map and leave it as it is");
   binder.field("out", out_dir, "folder for trajectory.txt, keyframes.txt and map.ply; empty: none");
-  binder.field("map_frame", map_frame, "frame of all poses in the messages");
+  binder.field("map_frame", map_frame, "frame of the poses and of the map");
+  binder.field("odom_frame", odom_frame, "frame of the odometry: smooth, map -> odom takes up the corrections");
   binder.field("camera_frame", camera_frame, "child frame of the poses: optical");
   binder.field("path_length", path_length, {1, 1000000}, "poses kept for the path message");
   binder.field("path_period_ms", path_period_ms, {1, 60000}, "time between two path messages");

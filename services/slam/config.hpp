@@ -23,6 +23,7 @@ struct ServiceConfig {
   MapFileConfig map;
   std::string out_dir;  ///< trajectory, keyframes and map are written here at the end; empty = nowhere
   std::string map_frame = "map";
+  std::string odom_frame = "odom";
   std::string camera_frame = "camera_color_optical_frame";
   int path_length = 2000;    ///< poses kept for rt/slam/path
   int path_period_ms = 500;  ///< between two paths

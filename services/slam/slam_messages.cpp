@@ -46,17 +46,33 @@ msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& 
   return {{msg::to_time(result.stamp_ns), map_frame(result, names)}, to_pose(result.T_world_camera)};
 }
 
-msg::TFMessage make_tf(const msg::TrackingResult& result, const FrameNames& names) {
-  const msg::Pose pose = to_pose(result.T_world_camera);
-  return {{{{msg::to_time(result.stamp_ns), map_frame(result, names)},
-            names.camera,
-            {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation}}}};
+msg::TFMessage make_tf(const msg::TrackingResult& result, const Eigen::Isometry3d& T_map_odom,
+                       const FrameNames& names) {
+  const auto link = [&](const std::string& parent, const std::string& child, const msg::Transform& T) {
+    const msg::Pose pose = to_pose(T);
+    return msg::TransformStamped{{msg::to_time(result.stamp_ns), parent},
+                                 child,
+                                 {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation}};
+  };
+  return {{link(map_frame(result, names), names.odom, msg::to_message(T_map_odom)),
+           link(names.odom, names.camera, to_odometry_frame(result, T_map_odom).T_world_camera)}};
+}
+
+msg::TrackingResult to_odometry_frame(const msg::TrackingResult& result, const Eigen::Isometry3d& T_map_odom) {
+  if (T_map_odom.matrix().isIdentity(0)) return result;  // to the last bit
+  msg::TrackingResult moved = result;
+  moved.T_world_camera = msg::to_message(T_map_odom.inverse() * msg::to_isometry(result.T_world_camera));
+  RowMajor6d turn = RowMajor6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = T_map_odom.linear().transpose();
+  Eigen::Map<RowMajor6d>(moved.covariance.data()) =
+      turn * Eigen::Map<const RowMajor6d>(result.covariance.data()) * turn.transpose();
+  return moved;
 }
 
 msg::Odometry make_odometry(const msg::TrackingResult& result, const std::optional<msg::TrackingResult>& previous,
                             const FrameNames& names) {
   msg::Odometry odometry;
-  odometry.header = {msg::to_time(result.stamp_ns), map_frame(result, names)};
+  odometry.header = {msg::to_time(result.stamp_ns), names.odom};
   odometry.child_frame_id = names.camera;
   odometry.pose = {to_pose(result.T_world_camera), result.covariance};
   if (!previous || previous->stamp_ns >= result.stamp_ns) return odometry;
@@ -97,6 +113,7 @@ msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const S
                    {"frames_unusable", std::to_string(counters.unusable_frames)},
                    {"features_invalid", std::to_string(counters.invalid_features)},
                    {"source_restarts", std::to_string(counters.source_restarts)},
+                   {"loops_closed", std::to_string(counters.loops)},
                    {"slam_ms", text(static_cast<double>(result.stage_ms[msg::kStageSlamTotal]))}};
   return {{msg::to_time(stamp_ns), ""}, {status}};
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -15,16 +16,19 @@ namespace rtd::slam {
 
 /// Names of the coordinate frames on the wire, docs/frames.md.
 struct FrameNames {
-  std::string map, camera;
+  std::string map, odom, camera;
 };
 
 /// Frame of the poses: `map`, or `map_N` while another map than the first is tracked and not merged.
 std::string map_frame(const msg::TrackingResult& result, const FrameNames& names);
 
 msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& names);
-msg::TFMessage make_tf(const msg::TrackingResult& result, const FrameNames& names);
-/// Pose with covariance, and the twist in the camera frame: the motion since `previous` (state kOk, earlier stamp)
-/// divided by the time; zero without it.
+/// map -> odom, which takes up the jumps when the map is corrected, and odom -> camera, which is smooth.
+msg::TFMessage make_tf(const msg::TrackingResult& result, const Eigen::Isometry3d& T_map_odom, const FrameNames& names);
+/// The result with pose and covariance in frame odom.
+msg::TrackingResult to_odometry_frame(const msg::TrackingResult& result, const Eigen::Isometry3d& T_map_odom);
+/// Of results in frame odom: pose with covariance, and the twist in the camera frame: the motion since `previous`
+/// (state kOk, earlier stamp) divided by the time; zero without it.
 msg::Odometry make_odometry(const msg::TrackingResult& result, const std::optional<msg::TrackingResult>& previous,
                             const FrameNames& names);
 /// x y z and intensity (the static probability), all float32.
@@ -33,7 +37,7 @@ msg::PointCloud2 make_cloud(const std::vector<MapPoint>& points, std::int64_t st
 /// Counters of the adapter.
 struct SlamCounters {
   std::uint64_t frames = 0, tracked = 0, dropped = 0, duplicates = 0, invalid_features = 0, unusable_frames = 0,
-                source_restarts = 0;
+                source_restarts = 0, loops = 0;
 };
 /// One status "rtd-slam: tracking".
 msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const SlamCounters& counters,

@@ -8,7 +8,7 @@ namespace rtd::slam {
 
 SlamPublisher::SlamPublisher(const ServiceConfig& config, bus::Bus& bus, std::function<std::vector<MapPoint>()> points)
     : config_(config),
-      names_{config.map_frame, config.camera_frame},
+      names_{config.map_frame, config.odom_frame, config.camera_frame},
       points_(std::move(points)),
       keyframes_(bus.writer(bus::topics::kKeyframes)),
       tracking_(bus.writer(bus::topics::kTracking)),
@@ -36,9 +36,10 @@ void SlamPublisher::publish(const SlamOutput& output) {
     previous_.reset();
     return;
   }
-  odometry_.write(make_odometry(output.result, previous_, names_));
-  tf_.write(make_tf(output.result, names_));
-  previous_ = output.result;
+  const msg::TrackingResult smooth = to_odometry_frame(output.result, output.T_map_odom);
+  odometry_.write(make_odometry(smooth, previous_, names_));
+  tf_.write(make_tf(output.result, output.T_map_odom, names_));
+  previous_ = smooth;
   if (measured) publish_pose(output.result);
 }
 

@@ -50,7 +50,7 @@ class SlamPublisher {
   bus::Writer<msg::Path> path_;
   bus::Writer<msg::PointCloud2> map_points_;
   bus::Writer<msg::DiagnosticArray> diagnostics_;
-  std::optional<msg::TrackingResult> previous_;  ///< last tracked result, for the twist
+  std::optional<msg::TrackingResult> previous_;  ///< last tracked result in frame odom, for the twist
   std::deque<msg::PoseStamped> poses_;
   std::int64_t path_published_ns_ = 0;
   std::atomic<std::int64_t> newest_stamp_ns_{-1};  ///< -1: nothing tracked yet

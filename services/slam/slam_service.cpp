@@ -140,6 +140,7 @@ void SlamService::count(const SlamOutput& output) {
   if (output.result.state == msg::TrackingState::kOk) ++counters_.tracked;
   if (output.result.features_static == 0 && !output.problem.empty()) ++counters_.unusable_frames;
   counters_.invalid_features += output.invalid_features;
+  counters_.loops += output.loops.size();
   counters_.dropped = arrivals_->dropped();
   counters_.source_restarts = slam_.source_restarts();
   service::Heartbeat& heartbeat = runtime_.heartbeat;
@@ -148,6 +149,7 @@ void SlamService::count(const SlamOutput& output) {
   heartbeat.set_metric("frames_dropped", static_cast<double>(counters_.dropped));
   heartbeat.set_metric("features_invalid", static_cast<double>(counters_.invalid_features));
   heartbeat.set_metric("keyframes", output.result.keyframes);
+  heartbeat.set_metric("loops_closed", static_cast<double>(counters_.loops));
   heartbeat.set_metric("landmarks", output.result.landmarks);
   heartbeat.set_metric("slam_ms", static_cast<double>(output.result.stage_ms[msg::kStageSlamTotal]));
 }
@@ -169,6 +171,10 @@ void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
   } else if (!output.problem.empty() && problem_log_.pass()) {
     SPDLOG_WARN("event=not_tracked frame={} state=\"{}\" cause=\"{}\"", result.seq, to_string(result.state),
                 output.problem);
+  }
+  for (const LoopClosure& loop : output.loops) {
+    SPDLOG_INFO("event=loop_closed keyframe={} place={} inliers={} moved_m={:.3f} joined={} maps_merged={}",
+                loop.edge.newer, loop.edge.older, loop.edge.inliers, loop.correction_m, loop.joined, loop.merged);
   }
   if (output.invalid_features > 0 && invalid_log_.pass()) {
     SPDLOG_WARN("event=features_invalid frame={} count={} total={}", result.seq, output.invalid_features,

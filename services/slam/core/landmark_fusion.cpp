@@ -53,6 +53,8 @@ std::optional<std::uint32_t> find_feature(const Frame& frame, const SearchPoint&
   return found;
 }
 
+}  // namespace
+
 int fuse_into(Map& map, KeyframeId target, const std::vector<LandmarkId>& landmarks) {
   constexpr double kRadius_px = 3.0;
   const Eigen::Isometry3d T_world_camera = map.find_keyframe(target)->T_world_camera;
@@ -91,8 +93,6 @@ std::vector<LandmarkId> landmarks_of(const Map& map, const std::vector<KeyframeI
   landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
   return landmarks;
 }
-
-}  // namespace
 
 int fuse_landmarks(Map& map, KeyframeId keyframe, int neighbours) {
   const std::vector<KeyframeId> targets = select_targets(map, keyframe, neighbours);

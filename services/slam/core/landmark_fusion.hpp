@@ -13,4 +13,10 @@ namespace rtd::slam {
 /// with fewer observations goes. docs/theory/mapping.md, "Fusion". Returns how many landmarks were merged away.
 int fuse_landmarks(Map& map, KeyframeId keyframe, int neighbours);
 
+/// The same for chosen landmarks and one keyframe that may see them.
+int fuse_into(Map& map, KeyframeId target, const std::vector<LandmarkId>& landmarks);
+
+/// What these keyframes see, ascending.
+std::vector<LandmarkId> landmarks_of(const Map& map, const std::vector<KeyframeId>& keyframes);
+
 }  // namespace rtd::slam

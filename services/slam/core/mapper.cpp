@@ -23,7 +23,9 @@ std::shared_ptr<const Vocabulary> choose_vocabulary(const SlamConfig& config) {
 Mapper::Mapper(const SlamConfig& config)
     : config_(config),
       map_(config.techniques.landmark_belief ? ProbabilityRule::kBelief : ProbabilityRule::kMeanOfObservations),
-      vocabulary_(choose_vocabulary(config)) {}
+      vocabulary_(choose_vocabulary(config)),
+      loop_closer_(config),
+      adjuster_(GlobalBundleOptions{config.loop.global_iterations, 1, {}}) {}
 
 void Mapper::restore(MapContents contents) {
   const ProbabilityRule rule = map_.probability_rule();
@@ -38,6 +40,7 @@ void Mapper::restore(MapContents contents) {
 
 KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<bool()>& interrupted) {
   const auto busy = [&] { return interrupted && interrupted(); };
+  apply_adjustment();
   count_statistics(proposal.statistics);
   const KeyframeId keyframe = add_keyframe(proposal);
   recent_.cull(map_, keyframe, config_.mapper.min_found_ratio);
@@ -49,6 +52,7 @@ KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<
   }
   cull_keyframes(keyframe);
   if (vocabulary_ != nullptr) places_.add(keyframe, vocabulary_->describe(proposal.frame->features));
+  close_loop(keyframe);
   const Keyframe& created = *map_.find_keyframe(keyframe);
   announced_[keyframe] = created.T_world_camera;
   changes_.push_back(
@@ -103,6 +107,38 @@ void Mapper::cull_keyframes(KeyframeId newest) {
     places_.remove(id);
     map_.remove_keyframe(id);
   }
+}
+
+/// docs/theory/loop_closing.md.
+void Mapper::close_loop(KeyframeId newest) {
+  if (!config_.techniques.loop_closing || vocabulary_ == nullptr) return;
+  const std::optional<LoopClosure> closure = loop_closer_.close(map_, places_, newest);
+  if (!closure) return;
+  loops_.push_back(*closure);
+  note_all_moved_keyframes();
+  if (config_.loop.global_iterations == 0) return;
+  adjuster_.start(copy_global_problem(map_, closure->map));
+  apply_adjustment();
+}
+
+void Mapper::apply_adjustment() {
+  const std::optional<GlobalProblem> adjusted = adjuster_.take();
+  if (!adjusted) return;
+  apply_global_problem(map_, *adjusted);
+  note_all_moved_keyframes();
+}
+
+void Mapper::finish_adjustment() {
+  adjuster_.wait();
+  apply_adjustment();
+}
+
+/// After a correction of the whole map; whoever publishes the changes portions them out.
+void Mapper::note_all_moved_keyframes() {
+  std::vector<KeyframeId> all;
+  all.reserve(announced_.size());
+  for (const auto& [id, T_world_camera] : announced_) all.push_back(id);
+  for (const KeyframeId id : all) note_if_moved(id);
 }
 
 /// Looks at the adjusted keyframes, and at some of the others in turn: what a larger correction moved is told bit by

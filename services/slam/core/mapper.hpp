@@ -10,6 +10,8 @@
 #include "services/slam/core/culling.hpp"
 #include "services/slam/core/landmark_statistics.hpp"
 #include "services/slam/core/local_map.hpp"
+#include "services/slam/core/loop/global_adjuster.hpp"
+#include "services/slam/core/loop/loop_closer.hpp"
 #include "services/slam/core/map.hpp"
 #include "services/slam/core/place/keyframe_database.hpp"
 #include "services/slam/core/place/vocabulary.hpp"
@@ -54,6 +56,13 @@ class Mapper {
   std::vector<LocalMapPtr> places_like(const Frame& frame, std::size_t first, std::size_t count);
   /// Created, corrected and removed keyframes since the last call, in order.
   std::vector<KeyframeChange> take_changes();
+  /// Global bundle adjustment runs beside the mapper from now on; `on_done` says, from its thread, that
+  /// apply_adjustment() has something to apply.
+  void adjust_in_background(std::function<void()> on_done) { adjuster_.run_in_background(std::move(on_done)); }
+  void apply_adjustment();
+  /// Waits for a global bundle adjustment that is running, and applies it.
+  void finish_adjustment();
+  const std::vector<LoopClosure>& loops() const { return loops_; }
   const Map& map() const { return map_; }
   /// Words of all keyframes in the map; empty when place recognition is off.
   const KeyframeDatabase& places() const { return places_; }
@@ -65,6 +74,8 @@ class Mapper {
   void count_statistics(const std::vector<LandmarkStatistics>& statistics);
   void create_landmarks(KeyframeId keyframe);
   void cull_keyframes(KeyframeId newest);
+  void close_loop(KeyframeId newest);
+  void note_all_moved_keyframes();
   void note_moved_keyframes(std::vector<KeyframeId> adjusted);
   void note_if_moved(KeyframeId keyframe);
 
@@ -73,6 +84,9 @@ class Mapper {
   std::shared_ptr<const Vocabulary> vocabulary_;
   KeyframeDatabase places_;
   RecentLandmarks recent_;
+  LoopCloser loop_closer_;
+  std::vector<LoopClosure> loops_;
+  GlobalAdjuster adjuster_;
   std::map<KeyframeId, Eigen::Isometry3d> announced_;  ///< T_world_camera as last told
   KeyframeId next_checked_ = 0;                        ///< in turn, of those that were not adjusted
   std::vector<KeyframeChange> changes_;

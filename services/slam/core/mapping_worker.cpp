@@ -5,7 +5,8 @@
 namespace rtd::slam {
 namespace {
 
-constexpr std::size_t kQueueCapacity = 16;  ///< commands; keyframes among them are bounded by room()
+/// Commands. Nobody ever waits for room: keyframes among them are bounded by room(), the others are one each.
+constexpr std::size_t kQueueCapacity = 16;
 constexpr int kMaxPendingKeyframes = 3;
 
 }  // namespace
@@ -16,6 +17,7 @@ MappingWorker::MappingWorker(const SlamConfig& config, MappingMode mode, std::fu
       mapper_(config),
       queue_(kQueueCapacity, concurrency::Overflow::kBlock) {
   if (mode_ == MappingMode::kSynchronous) return;
+  mapper_.adjust_in_background([this] { queue_.push(ApplyAdjustment{}); });
   thread_ = std::thread([this, on_start = std::move(on_thread_start)] {
     if (on_start) on_start();
     loop();
@@ -53,10 +55,11 @@ LocalMapPtr MappingWorker::begin_map(KeyframeProposal first) {
 }
 
 void MappingWorker::recentre(KeyframeId centre) {
+  wanted_centre_ = centre;
   if (mode_ == MappingMode::kSynchronous) {
-    run(centre);
-  } else {
-    queue_.push(centre);
+    run(Recentre{});
+  } else if (!recentre_queued_.exchange(true)) {
+    queue_.push(Recentre{});
   }
 }
 
@@ -82,12 +85,22 @@ std::vector<KeyframeChange> MappingWorker::take_changes() {
 
 void MappingWorker::finish() {
   queue_.close();
-  if (thread_.joinable()) thread_.join();
+  if (!thread_.joinable()) return;
+  thread_.join();
+  const std::lock_guard mapper_lock(mapper_mutex_);
+  mapper_.finish_adjustment();
+  publish();
 }
 
 void MappingWorker::read(const std::function<void(const Map&)>& look) const {
   const std::lock_guard lock(mapper_mutex_);
   look(mapper_.map());
+}
+
+std::vector<LoopClosure> MappingWorker::loops(std::size_t first) const {
+  const std::lock_guard lock(output_mutex_);
+  if (first >= loops_.size()) return {};
+  return {loops_.begin() + static_cast<std::ptrdiff_t>(first), loops_.end()};
 }
 
 LocalMapPtr MappingWorker::run(const Command& command) {
@@ -97,14 +110,34 @@ LocalMapPtr MappingWorker::run(const Command& command) {
     return nullptr;
   }
   if (const auto* proposal = std::get_if<KeyframeProposal>(&command)) {
-    centre_ = mapper_.insert(*proposal, [this] { return pending_ > 1; });
+    work(*proposal);
+  } else if (std::holds_alternative<Recentre>(command)) {
+    work(Recentre{});
   } else {
-    centre_ = std::get<KeyframeId>(command);
+    work(ApplyAdjustment{});
   }
+  return publish();
+}
+
+void MappingWorker::work(const KeyframeProposal& proposal) {
+  centre_ = mapper_.insert(proposal, [this] { return pending_ > 1; });
+}
+
+void MappingWorker::work(Recentre /*command*/) {
+  recentre_queued_ = false;
+  centre_ = wanted_centre_;
+}
+
+void MappingWorker::work(ApplyAdjustment /*command*/) {
+  mapper_.apply_adjustment();
+}
+
+LocalMapPtr MappingWorker::publish() {
   LocalMapPtr snapshot = mapper_.local_map(centre_);
   const std::vector<KeyframeChange> changes = mapper_.take_changes();
   const std::lock_guard output_lock(output_mutex_);
   snapshot_ = snapshot;
+  loops_ = mapper_.loops();
   changes_.insert(changes_.end(), changes.begin(), changes.end());
   return snapshot;
 }

@@ -47,18 +47,26 @@ class MappingWorker {
   /// Newest snapshot; null before the first keyframe.
   LocalMapPtr snapshot() const;
   std::vector<KeyframeChange> take_changes();
+  /// Loops closed so far, from the `first` on.
+  std::vector<LoopClosure> loops(std::size_t first = 0) const;
   /// Works off what is queued and ends the thread; later calls of insert() do nothing.
   void finish();
   /// Looks at the whole map between two keyframes: may wait for a bundle adjustment.
   void read(const std::function<void(const Map&)>& look) const;
 
  private:
+  struct Recentre {};         ///< on wanted_centre_
+  struct ApplyAdjustment {};  ///< of global bundle adjustment
   struct PlaceQuestion {
     FramePtr frame;
     std::size_t attempt;
   };
-  using Command = std::variant<KeyframeProposal, KeyframeId, PlaceQuestion>;  ///< insert, recentre, recognise
+  using Command = std::variant<KeyframeProposal, Recentre, PlaceQuestion, ApplyAdjustment>;
   LocalMapPtr run(const Command& command);
+  void work(const KeyframeProposal& proposal);
+  void work(Recentre command);
+  void work(ApplyAdjustment command);
+  LocalMapPtr publish();
   void find_places(const PlaceQuestion& question);
   void loop();
 
@@ -71,8 +79,11 @@ class MappingWorker {
   LocalMapPtr snapshot_;
   std::vector<KeyframeChange> changes_;
   std::vector<LocalMapPtr> places_;
+  std::vector<LoopClosure> loops_;
   std::atomic<int> pending_{0};
   std::atomic<bool> place_wanted_{false};
+  std::atomic<KeyframeId> wanted_centre_{0};
+  std::atomic<bool> recentre_queued_{false};
   concurrency::BoundedQueue<Command> queue_;
   std::thread thread_;
 };

@@ -17,6 +17,7 @@ struct Techniques {
   bool rolling_shutter = true;   ///< the readout time of the image is estimated and undone; off: all rows at once
   bool prediction = true;        ///< a short, marked prediction when nothing static is in view; off: lost at once
   bool place_recognition = true;  ///< places are known again by their words; off: only around the last pose
+  bool loop_closing = true;       ///< known places correct the map; off: drift stays
 };
 
 /// The camera and its features, as SLAM weighs them.
@@ -91,6 +92,26 @@ struct PlaceConfig {
   double new_map_after_s = 3.0;  ///< a new map begins after so long with views that nobody knows; 0 = never
 };
 
+/// When two places are one, and what follows: docs/theory/loop_closing.md.
+struct LoopConfig {
+  int max_candidates = 3;             ///< places that each keyframe is compared with
+  double min_similarity = 0.75;       ///< of a place, over that of the keyframe's least similar neighbour
+  int min_inliers = 50;               ///< landmarks of the place that the keyframe must see
+  double min_found_share = 0.15;      ///< of those that it should see
+  int confirmations = 3;              ///< keyframes that must ask for the same correction
+  int max_misses = 2;                 ///< keyframes in between that find nothing
+  double agreement_m = 0.1;           ///< corrections that differ by less are the same
+  double agreement_rad = 0.04;        ///< the same for their rotation
+  double max_offset_m = 0.3;          ///< a correction is at most this ...
+  double max_drift_ratio = 0.05;      ///< ... and this times the way walked since
+  double max_offset_rad = 0.1;        ///< the same for its rotation
+  double max_drift_rad_m = 0.01;      ///< rad per metre
+  int graph_iterations = 30;          ///< of the pose graph
+  int global_iterations = 10;         ///< of global bundle adjustment; 0 = none
+  double max_odometry_step_m = 0.01;  ///< larger corrections go into map -> odom, smaller ones into the odometry
+  double max_odometry_step_rad = 0.005;
+};
+
 struct SlamConfig {
   Techniques techniques;
   SensorConfig sensor;
@@ -101,6 +122,7 @@ struct SlamConfig {
   MapperConfig mapper;
   bool localize_only = false;  ///< the map stays as it was loaded
   PlaceConfig place;
+  LoopConfig loop;
 };
 
 }  // namespace rtd::slam

@@ -39,7 +39,8 @@ SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns,
       now_ns_(now_ns),
       mapping_(config, mode, std::move(on_mapping_thread)),
       tracker_(config, std::move(now_ns),
-               [this](const FramePtr& frame, std::size_t attempt) { return mapping_.places_like(frame, attempt); }) {}
+               [this](const FramePtr& frame, std::size_t attempt) { return mapping_.places_like(frame, attempt); }),
+      odometry_(config.loop) {}
 
 void SlamSystem::restore(MapContents contents) {
   mapping_.restore(std::move(contents));
@@ -56,6 +57,8 @@ SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
                  config_.techniques.landmark_belief ? RemovedFeatures::kKeep : RemovedFeatures::kDrop, shutter_);
   output.invalid_features = input.invalid;
   const TrackOutcome outcome = mapping_.snapshot() == nullptr ? initialize(input, output) : track(input, output);
+  had_pose_ = msg::has_pose(outcome.state);
+  if (outcome.map != nullptr) map_ = outcome.map->map;
   collect_events(output);
   fill_result(message, input, outcome, output);
   output.result.stage_ms[msg::kStageSlamTotal] = to_ms(now_ns_() - start_ns);
@@ -92,7 +95,9 @@ TrackOutcome SlamSystem::begin_map(const FrameInput& input) {
   KeyframeProposal first;
   first.frame = input.frame;
   first.landmarks.assign(input.frame->features.size(), kNoLandmark);
+  const Eigen::Isometry3d before = tracker_.T_world_camera();
   TrackOutcome outcome = tracker_.initialize(input.frame, mapping_.begin_map(std::move(first)));
+  odometry_.correct(before, tracker_.T_world_camera());  // another world, the same odometry
   requested_centre_ = outcome.tracked.reference;
   unknown_view_.reset();
   outcome.stage_ms[msg::kStageMapping] = to_ms(now_ns_() - start_ns);
@@ -108,7 +113,10 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
     outcome.state = tracker_.unlocated() ? msg::TrackingState::kRelocalizing : msg::TrackingState::kRecentlyLost;
     return outcome;
   }
-  TrackOutcome outcome = tracker_.track(input.frame, mapping_.snapshot());
+  const LocalMapPtr snapshot = mapping_.snapshot();
+  follow_map(*snapshot);
+  const Eigen::Isometry3d before = tracker_.T_world_camera();
+  TrackOutcome outcome = tracker_.track(input.frame, snapshot);
   if (wants_new_map(*input.frame, outcome)) return begin_map(input);
   if (outcome.at_place()) {
     output.problem = "relocalizing: a place was recognised, the next frames have to agree";
@@ -122,8 +130,14 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   }
   frames_.push_back(
       {input.frame->seq, input.frame->stamp_ns, outcome.tracked.reference, outcome.tracked.T_reference_camera});
+  if (!had_pose_ && outcome.map->map != map_) odometry_.correct(before, tracker_.T_world_camera());
   observe_shutter(*outcome.map, outcome);
   maybe_insert_keyframe(outcome);
+  // A loop that this very frame has closed: it is told where the corrected map has it.
+  if (const LocalMapPtr corrected = mapping_.snapshot(); follow_map(*corrected)) {
+    outcome.tracked.T_world_camera = tracker_.T_world_camera();
+    outcome.map = corrected;
+  }
   return outcome;
 }
 
@@ -183,8 +197,19 @@ void SlamSystem::follow_reference(const TrackOutcome& outcome) {
   mapping_.recentre(reference);
 }
 
+/// The map may have been corrected under the camera: the jump goes into map -> odom. True when there was one.
+bool SlamSystem::follow_map(const LocalMap& map) {
+  const Eigen::Isometry3d before = tracker_.T_world_camera();
+  tracker_.adopt(map);
+  return odometry_.correct(before, tracker_.T_world_camera());
+}
+
 void SlamSystem::collect_events(SlamOutput& output) {
-  for (const KeyframeChange& change : mapping_.take_changes()) {
+  constexpr std::size_t kMaxEvents = 48;  // of one frame; readers of rtd/keyframes keep 64
+  output.loops = mapping_.loops(loops_told_);
+  loops_told_ += output.loops.size();
+  news_.add(mapping_.take_changes());
+  for (const KeyframeChange& change : news_.take(kMaxEvents)) {
     output.events.push_back({event_count_++, change.frame_seq, change.stamp_ns, msg::to_message(change.T_world_camera),
                              change.id, to_message(change.kind)});
   }
@@ -193,6 +218,7 @@ void SlamSystem::collect_events(SlamOutput& output) {
 void SlamSystem::fill_result(const msg::FeatureFrame& message, const FrameInput& input, const TrackOutcome& outcome,
                              SlamOutput& output) {
   msg::TrackingResult& result = output.result;
+  output.T_map_odom = odometry_.T_map_odom();
   result.seq = message.seq;
   result.stamp_ns = message.stamp_ns;
   result.T_world_camera =

@@ -8,7 +8,9 @@
 
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
+#include "services/slam/core/keyframe_news.hpp"
 #include "services/slam/core/mapping_worker.hpp"
+#include "services/slam/core/odometry_frame.hpp"
 #include "services/slam/core/rolling_shutter.hpp"
 #include "services/slam/core/tracker.hpp"
 #include "services/slam/core/trajectory.hpp"
@@ -19,8 +21,10 @@ namespace rtd::slam {
 struct SlamOutput {
   msg::TrackingResult result{};            ///< published_ns and finished_ns are the caller's to fill
   std::vector<msg::KeyframeEvent> events;  ///< to be published before the result
-  std::uint32_t invalid_features = 0;      ///< left out because a value is not finite or out of range
-  std::string problem;                     ///< one line for people when the frame is not tracked; else empty
+  Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();  ///< takes up the jumps when the map is corrected
+  std::vector<LoopClosure> loops;                                ///< closed since the last frame
+  std::uint32_t invalid_features = 0;  ///< left out because a value is not finite or out of range
+  std::string problem;                 ///< one line for people when the frame is not tracked; else empty
 };
 
 /// RGB-D SLAM on features: tracking, keyframes, local mapping. docs/theory/{tracking,mapping}.md.
@@ -45,6 +49,7 @@ class SlamSystem {
   std::vector<MapId> maps() const;
   /// Looks at the whole map: may wait for a bundle adjustment, and the mapper waits meanwhile.
   void read_map(const std::function<void(const Map&)>& look) const { mapping_.read(look); }
+  std::vector<LoopClosure> loops() const { return mapping_.loops(); }
   std::size_t frames_tracked() const { return frames_.size(); }
   std::uint64_t source_restarts() const { return source_restarts_; }
   /// Of the camera, as it is undone now; 0: rows are taken to be exposed at once.
@@ -60,6 +65,7 @@ class SlamSystem {
   void observe_shutter(const LocalMap& map, const TrackOutcome& outcome);
   void maybe_insert_keyframe(TrackOutcome& outcome);
   void follow_reference(const TrackOutcome& outcome);
+  bool follow_map(const LocalMap& map);
   void collect_events(SlamOutput& output);
   void fill_result(const msg::FeatureFrame& message, const FrameInput& input, const TrackOutcome& outcome,
                    SlamOutput& output);
@@ -71,8 +77,13 @@ class SlamSystem {
   UnknownViewClock unknown_view_;
   ReadoutEstimator readout_;
   ShutterMotion shutter_;  ///< what the features of the frame in work were corrected with
+  OdometryFrame odometry_;
+  bool had_pose_ = false;  ///< the last frame
+  MapId map_ = 0;          ///< component that it was tracked in
+  KeyframeNews news_;
   std::vector<FrameRecord> frames_;
   std::uint64_t event_count_ = 0;
+  std::size_t loops_told_ = 0;
   std::uint64_t source_restarts_ = 0;
   std::optional<std::uint64_t> last_seq_;
   std::int64_t last_stamp_ns_ = 0;

@@ -49,6 +49,10 @@ class Tracker {
   TrackOutcome initialize(FramePtr frame, LocalMapPtr map);
   /// Tracks one frame. A failure leaves the last tracked frame as it was.
   TrackOutcome track(FramePtr frame, const LocalMapPtr& snapshot);
+  /// The map may have moved under the last frame: takes its pose from its reference keyframe, as track() does first.
+  void adopt(const LocalMap& map);
+  /// Of the last tracked frame.
+  const Eigen::Isometry3d& T_world_camera() const { return last_.T_world_camera; }
   /// The source started again: no motion can be assumed between the last frame and the next.
   void forget_motion();
   /// Between the last two tracked frames; empty when they were too far apart.
@@ -66,7 +70,6 @@ class Tracker {
  private:
   TrackingContext context() const { return {config_, now_ns_, statistics_}; }
   LocalMapPtr choose_map(const LocalMapPtr& snapshot);
-  void adopt(const LocalMap& map);
   Eigen::Isometry3d predict(const Frame& frame) const;
   PoseGuess find_pose(const Frame& frame, const LocalMap& map);
   PoseGuess recover(const Frame& frame, const LocalMap& map);

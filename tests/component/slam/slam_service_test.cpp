@@ -78,12 +78,15 @@ TEST_F(SlamServiceTest, answers_every_frame_with_pose_odometry_and_tf) {
     EXPECT_LT(error.translation().norm(), 1e-3);
   }
   const msg::Odometry odometry = *odometry_.all().back();
-  EXPECT_EQ(odometry.header.frame_id, "map");
+  EXPECT_EQ(odometry.header.frame_id, "odom");
   EXPECT_EQ(odometry.child_frame_id, "camera_color_optical_frame");
   EXPECT_GT(odometry.pose.covariance[0], 0);
   const Eigen::Isometry3d T_18_19 = FeatureWorld::T_world_camera(18).inverse() * FeatureWorld::T_world_camera(19);
   EXPECT_NEAR(odometry.twist.twist.linear.x, T_18_19.translation().x() * 30, 0.05);  // m/s
-  EXPECT_EQ(tf_.all().back()->transforms.at(0).child_frame_id, "camera_color_optical_frame");
+  const std::vector<msg::TransformStamped> tf = tf_.all().back()->transforms;
+  ASSERT_EQ(tf.size(), 2U);
+  EXPECT_EQ(tf[0].header.frame_id + tf[0].child_frame_id, "mapodom");
+  EXPECT_EQ(tf[1].header.frame_id + tf[1].child_frame_id, "odomcamera_color_optical_frame");
   EXPECT_TRUE(wait_state(msg::ServiceState::kRunning));
 }
 

@@ -18,7 +18,7 @@ using geometry::Vector6d;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-const FrameNames kNames{"map", "camera"};
+const FrameNames kNames{"map", "odom", "camera"};
 
 msg::TrackingResult result_at(std::int64_t stamp_ns, const Eigen::Isometry3d& T_world_camera) {
   msg::TrackingResult result{};
@@ -49,6 +49,31 @@ TEST(Odometry, has_no_twist_without_an_earlier_pose) {
   const auto result = result_at(5, Eigen::Isometry3d::Identity());
   EXPECT_EQ(make_odometry(result, std::nullopt, kNames).twist.twist.linear.x, 0);
   EXPECT_EQ(make_odometry(result, result_at(5, geometry::se3_exp(Vector6d::Ones())), kNames).twist.twist.linear.x, 0);
+}
+
+TEST(Tf, chains_map_to_odom_to_camera) {
+  const Eigen::Isometry3d T_map_odom = geometry::se3_exp((Vector6d() << 0.4, -0.1, 0.2, 0.1, 0.5, -0.2).finished());
+  const Eigen::Isometry3d T_map_camera = geometry::se3_exp(Vector6d::Constant(0.7));
+  const msg::TFMessage tf = make_tf(result_at(5, T_map_camera), T_map_odom, kNames);
+  ASSERT_EQ(tf.transforms.size(), 2U);
+  const auto T = [&](std::size_t i) {
+    const auto& [t, q] = tf.transforms[i].transform;
+    return msg::to_isometry({{t.x, t.y, t.z}, {q.x, q.y, q.z, q.w}});
+  };
+  EXPECT_EQ(tf.transforms[0].header.frame_id + ">" + tf.transforms[0].child_frame_id, "map>odom");
+  EXPECT_EQ(tf.transforms[1].header.frame_id + ">" + tf.transforms[1].child_frame_id, "odom>camera");
+  EXPECT_TRUE(T(0).isApprox(T_map_odom, 1e-12));
+  EXPECT_TRUE((T(0) * T(1)).isApprox(T_map_camera, 1e-12));
+}
+
+TEST(Odometry, in_its_own_frame_turns_the_covariance_and_keeps_the_twist) {
+  const Eigen::Isometry3d T_map_odom(Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitZ()));
+  msg::TrackingResult result = result_at(5, Eigen::Isometry3d::Identity());
+  result.covariance[0] = 9;  // map x is odom -y
+  const msg::TrackingResult smooth = to_odometry_frame(result, T_map_odom);
+  EXPECT_NEAR(smooth.covariance[7], 9, 1e-12);
+  EXPECT_NEAR(smooth.covariance[0], 1e-4, 1e-12);
+  EXPECT_EQ(to_odometry_frame(result, Eigen::Isometry3d::Identity()).covariance, result.covariance);
 }
 
 TEST(Cloud, lays_out_floats) {

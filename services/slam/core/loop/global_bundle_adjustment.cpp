@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/loop/global_bundle_adjustment.hpp"
+
+#include <algorithm>
+
+#include "services/slam/core/loop/essential_graph.hpp"
+#include "services/slam/core/scale_pyramid.hpp"
+
+namespace rtd::slam {
+namespace {
+
+void add_observations(const Map& map, const Landmark& landmark, std::uint32_t point, GlobalProblem& problem) {
+  for (const Observation& observation : landmark.observations) {
+    const Keyframe& keyframe = *map.find_keyframe(observation.keyframe);
+    const auto camera = std::lower_bound(problem.keyframes.begin(), problem.keyframes.end(), keyframe.id);
+    if (camera == problem.keyframes.end() || *camera != keyframe.id) continue;
+    const msg::Feature& feature = keyframe.frame->features[observation.feature];
+    const double weight = std::min<double>(feature.static_probability, landmark.static_probability);
+    problem.bundle.observations.push_back({static_cast<std::uint32_t>(camera - problem.keyframes.begin()), point,
+                                           keyframe.frame->measurement(observation.feature), sigma_px(feature.octave),
+                                           std::max(weight, 1e-3), true});
+  }
+}
+
+/// New poses of all keyframes of the component: adjusted ones, and those made meanwhile behind their parents.
+KeyframePoses follow_parents(const Map& map, const GlobalProblem& problem) {
+  KeyframePoses poses;
+  for (std::size_t i = 0; i < problem.keyframes.size(); ++i) {
+    if (map.find_keyframe(problem.keyframes[i]) == nullptr) continue;
+    poses[problem.keyframes[i]] = problem.bundle.cameras[i].T_world_camera;
+  }
+  for (const auto& [id, keyframe] : map.keyframes()) {  // ascending: a parent is older and so done before
+    if (keyframe.map != problem.component || keyframe.is_origin() || poses.contains(id)) continue;
+    const auto parent = poses.find(keyframe.parent);
+    if (parent == poses.end()) continue;
+    const Eigen::Isometry3d T_parent_camera =
+        map.find_keyframe(keyframe.parent)->T_world_camera.inverse() * keyframe.T_world_camera;
+    poses[id] = geometry::normalized(parent->second * T_parent_camera);
+  }
+  return poses;
+}
+
+}  // namespace
+
+GlobalProblem copy_global_problem(const Map& map, MapId component) {
+  GlobalProblem problem;
+  problem.component = component;
+  for (const auto& [id, keyframe] : map.keyframes()) {
+    if (keyframe.map != component) continue;
+    problem.keyframes.push_back(id);
+    problem.bundle.cameras.push_back({keyframe.T_world_camera, keyframe.is_origin()});
+    problem.bundle.camera = keyframe.frame->camera;
+  }
+  for (const LandmarkId id : map.landmark_ids()) {
+    const Landmark& landmark = *map.find_landmark(id);
+    if (landmark.observations.size() < 2 || map.find_keyframe(landmark.reference)->map != component) continue;
+    const auto point = static_cast<std::uint32_t>(problem.landmarks.size());
+    problem.landmarks.push_back(id);
+    problem.bundle.points.push_back(landmark.position);
+    add_observations(map, landmark, point, problem);
+  }
+  return problem;
+}
+
+BundleSummary adjust_globally(GlobalProblem& problem, const GlobalBundleOptions& options) {
+  BundleOptions bundle;
+  bundle.iterations_robust = options.iterations;
+  bundle.iterations = 0;
+  bundle.solver = BundleSolver::kSparse;
+  bundle.threads = options.threads;
+  bundle.interrupted = options.interrupted;
+  return adjust_bundle(problem.bundle, bundle);
+}
+
+void apply_global_problem(Map& map, const GlobalProblem& problem) {
+  move_keyframes(map, follow_parents(map, problem));
+  for (std::size_t i = 0; i < problem.landmarks.size(); ++i) {
+    Landmark* landmark = map.find_landmark(problem.landmarks[i]);
+    if (landmark == nullptr) continue;
+    landmark->position = problem.bundle.points[i];
+    map.refresh_geometry(landmark->id);
+  }
+}
+
+}  // namespace rtd::slam

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "services/slam/core/bundle_adjustment.hpp"
+#include "services/slam/core/map.hpp"
+
+namespace rtd::slam {
+
+/// A copy of one component that can be adjusted while the map grows on; docs/theory/loop_closing.md, "Global bundle
+/// adjustment". Holds no reference to the map.
+struct GlobalProblem {
+  BundleProblem bundle;
+  MapId component = 0;
+  std::vector<KeyframeId> keyframes;  ///< per camera, ascending
+  std::vector<LandmarkId> landmarks;  ///< per point; those that at least two keyframes see
+};
+
+GlobalProblem copy_global_problem(const Map& map, MapId component);
+
+struct GlobalBundleOptions {
+  int iterations = 10;
+  int threads = 1;
+  std::function<bool()> interrupted;  ///< asked between iterations; then the result is not to be applied
+};
+BundleSummary adjust_globally(GlobalProblem& problem, const GlobalBundleOptions& options);
+
+/// Takes an adjusted copy over. Keyframes made meanwhile follow their parents, landmarks made meanwhile their
+/// reference keyframe; what has been removed meanwhile is passed over.
+void apply_global_problem(Map& map, const GlobalProblem& problem);
+
+}  // namespace rtd::slam

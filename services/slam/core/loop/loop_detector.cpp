@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/loop/loop_detector.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "common/geometry/se3.hpp"
+
+namespace rtd::slam {
+namespace {
+
+constexpr int kMinShared = 15;  ///< landmarks in common that make neighbours
+
+/// The keyframe, its neighbours and theirs: what looks alike there is no news.
+std::set<KeyframeId> neighbourhood(const Map& map, KeyframeId keyframe) {
+  constexpr std::size_t kAll = 1000;
+  std::set<KeyframeId> near{keyframe};
+  const std::vector<KeyframeId> neighbours = map.best_covisible(keyframe, kAll, kMinShared);
+  near.insert(neighbours.begin(), neighbours.end());
+  for (const KeyframeId neighbour : neighbours) {
+    for (const KeyframeId second : map.best_covisible(neighbour, kAll, kMinShared)) near.insert(second);
+  }
+  return near;
+}
+
+/// How alike the keyframe and its worst neighbour are: a place that is the same looks at least so alike.
+float least_similarity(const Map& map, const KeyframeDatabase& places, KeyframeId keyframe) {
+  constexpr std::size_t kNeighbours = 10;
+  const BagOfWords& own = *places.find(keyframe);
+  float least = 1;
+  for (const KeyframeId neighbour : map.best_covisible(keyframe, kNeighbours, kMinShared)) {
+    const BagOfWords* bag = places.find(neighbour);
+    if (bag != nullptr) least = std::min(least, similarity(own, *bag));
+  }
+  return least;
+}
+
+/// The correction that a meeting asks for: T_world_new = T_new_old T_world_old for the keyframe and what hangs on it.
+Eigen::Isometry3d correction(const Keyframe& keyframe, const PlaceMeeting& meeting) {
+  return meeting.T_world_camera * keyframe.T_world_camera.inverse();
+}
+
+}  // namespace
+
+std::optional<Loop> LoopDetector::detect(const Map& map, const KeyframeDatabase& places, KeyframeId newest) {
+  count_way(map, newest);
+  const std::optional<PlaceMeeting> meeting = meet(map, places, newest);
+  if (!meeting) {
+    if (hypothesis_ && ++hypothesis_->misses > config_.loop.max_misses) hypothesis_.reset();
+    return std::nullopt;
+  }
+  const bool confirmed = hypothesis_ && agrees(map, newest, *meeting);
+  if (hypothesis_ && !confirmed) ++counters_.contradictory;
+  const int confirmations = confirmed ? hypothesis_->confirmations + 1 : 1;
+  hypothesis_ = Hypothesis{newest, meeting->place, correction(*map.find_keyframe(newest), *meeting), confirmations, 0};
+  if (confirmations < config_.loop.confirmations) return std::nullopt;
+  hypothesis_.reset();
+  return Loop{newest, *meeting};
+}
+
+void LoopDetector::count_way(const Map& map, KeyframeId newest) {
+  const double before_m = way_m_.empty() ? 0 : way_m_.back();
+  way_m_.resize(newest + 1, before_m);
+  if (map.find_keyframe(newest)->is_origin() || newest == 0) return;
+  const Eigen::Vector3d step_m =
+      map.T_world_keyframe(newest).translation() - map.T_world_keyframe(newest - 1).translation();
+  way_m_[newest] = before_m + step_m.norm();
+}
+
+double LoopDetector::way_between_m(KeyframeId older, KeyframeId newer) const {
+  return older < way_m_.size() && newer < way_m_.size() ? way_m_[newer] - way_m_[older] : 0;
+}
+
+std::optional<PlaceMeeting> LoopDetector::meet(const Map& map, const KeyframeDatabase& places, KeyframeId newest) {
+  const BagOfWords* bag = places.find(newest);
+  if (bag == nullptr) return std::nullopt;
+  const std::set<KeyframeId> near = neighbourhood(map, newest);
+  PlaceQuery query;
+  query.admitted = [&](KeyframeId id) { return !near.contains(id); };
+  query.min_score = static_cast<float>(config_.loop.min_similarity) * least_similarity(map, places, newest);
+  query.max_candidates = static_cast<std::size_t>(config_.loop.max_candidates);
+  for (const PlaceCandidate& candidate : find_places(places, map, *bag, query)) {
+    ++counters_.candidates;
+    auto meeting = meet_place(map, newest, candidate.keyframe, config_);
+    if (!meeting) continue;
+    ++counters_.met;
+    if (plausible(map, newest, *meeting)) return meeting;
+    ++counters_.implausible;
+  }
+  return std::nullopt;
+}
+
+/// The correction must be one that drift can explain, docs/theory/loop_closing.md Eq. (1). Between two maps nothing is
+/// known.
+bool LoopDetector::plausible(const Map& map, KeyframeId newest, const PlaceMeeting& meeting) const {
+  const Keyframe& keyframe = *map.find_keyframe(newest);
+  if (map.find_keyframe(meeting.place)->map != keyframe.map) return true;
+  const double way_m = way_between_m(meeting.place, newest);
+  const Eigen::Isometry3d T_old_new = keyframe.T_world_camera.inverse() * meeting.T_world_camera;
+  const LoopConfig& config = config_.loop;
+  return T_old_new.translation().norm() <= config.max_offset_m + config.max_drift_ratio * way_m &&
+         geometry::rotation_angle_rad(T_old_new) <= config.max_offset_rad + config.max_drift_rad_m * way_m;
+}
+
+/// Both keyframes ask for the same correction of the newest one's pose, and of the same map.
+bool LoopDetector::agrees(const Map& map, KeyframeId newest, const PlaceMeeting& meeting) const {
+  const Keyframe* place_before = map.find_keyframe(hypothesis_->place);
+  const Keyframe* keyframe_before = map.find_keyframe(hypothesis_->keyframe);
+  const Keyframe& keyframe = *map.find_keyframe(newest);
+  if (place_before != nullptr && place_before->map != map.find_keyframe(meeting.place)->map) return false;
+  if (keyframe_before != nullptr && keyframe_before->map != keyframe.map) return false;
+  const Eigen::Isometry3d T_difference =
+      meeting.T_world_camera.inverse() * hypothesis_->T_new_old * keyframe.T_world_camera;
+  return T_difference.translation().norm() <= config_.loop.agreement_m &&
+         geometry::rotation_angle_rad(T_difference) <= config_.loop.agreement_rad;
+}
+
+}  // namespace rtd::slam

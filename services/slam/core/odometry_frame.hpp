@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "common/geometry/se3.hpp"
+#include "services/slam/core/slam_config.hpp"
+
+namespace rtd::slam {
+
+/// Frame `odom`: poses in it stay smooth when the map is corrected, because T_map_odom takes the jump up. Small
+/// corrections, as local bundle adjustment makes them, stay in the odometry: there it does not drift from the map.
+class OdometryFrame {
+ public:
+  explicit OdometryFrame(const LoopConfig& config) : config_(config) {}
+
+  /// The map moved a camera from one pose to another. True when T_map_odom took that up.
+  bool correct(const Eigen::Isometry3d& T_map_before, const Eigen::Isometry3d& T_map_after) {
+    const Eigen::Isometry3d T_before_after = T_map_before.inverse() * T_map_after;
+    if (T_before_after.translation().norm() <= config_.max_odometry_step_m &&
+        geometry::rotation_angle_rad(T_before_after) <= config_.max_odometry_step_rad) {
+      return false;
+    }
+    T_map_odom_ = geometry::normalized(T_map_after * T_map_before.inverse() * T_map_odom_);
+    return true;
+  }
+  const Eigen::Isometry3d& T_map_odom() const { return T_map_odom_; }
+
+ private:
+  LoopConfig config_;
+  Eigen::Isometry3d T_map_odom_ = Eigen::Isometry3d::Identity();
+};
+
+}  // namespace rtd::slam
