@@ -3,10 +3,14 @@
 #include "tests/support/offline_pipeline.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <numbers>
 #include <optional>
 #include <sstream>
+#include <thread>
 
+#include "common/geometry/se3.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/launcher/core/evaluation/ate.hpp"
 #include "services/launcher/core/evaluation/rpe.hpp"
@@ -34,6 +38,23 @@ void evaluate(OfflineReport& report) {
   report.rpe_rot_rmse_deg = rpe.rotation_rad.rmse * 180 / std::numbers::pi;
 }
 
+std::optional<Eigen::Isometry3d> true_pose(const eval::Trajectory& groundtruth, std::int64_t stamp_ns) {
+  const auto found = std::find_if(groundtruth.begin(), groundtruth.end(),
+                                  [stamp_ns](const auto& pose) { return pose.stamp_ns == stamp_ns; });
+  if (found == groundtruth.end()) return std::nullopt;
+  return found->T_world_body;
+}
+
+ClosedLoop judge(const slam::LoopClosure& closure, const eval::Trajectory& groundtruth) {
+  ClosedLoop loop{closure, std::nan(""), std::nan("")};
+  const auto older = true_pose(groundtruth, closure.older_ns), newer = true_pose(groundtruth, closure.newer_ns);
+  if (!older || !newer) return loop;
+  const Eigen::Isometry3d T_error = closure.edge.T_older_newer.inverse() * older->inverse() * *newer;
+  loop.error_m = T_error.translation().norm();
+  loop.error_rad = geometry::rotation_angle_rad(T_error);
+  return loop;
+}
+
 }  // namespace
 
 std::unique_ptr<msg::FeatureFrame> make_feature_frame(const vision::RgbdImage& image,
@@ -56,6 +77,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
   slam::SlamSystem slam(options.slam, options.mapping, options.now_ns);
   OfflineReport report;
   std::optional<std::int64_t> first_ns;
+  auto next_frame = std::chrono::steady_clock::now();
   while (options.max_frames == 0 || report.frames < options.max_frames) {
     const auto frame = source->next();
     if (!frame) break;
@@ -67,6 +89,9 @@ OfflineReport run_offline(const OfflineOptions& options) {
     }
     const auto message = make_feature_frame(frame->image, front.features);
     for (const auto& [name, ms] : front.stage_ms) report.stage_ms[name].push_back(ms);
+    std::this_thread::sleep_until(next_frame);
+    next_frame = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                                        std::chrono::duration<double>(options.min_period_s));
     const slam::SlamOutput output = slam.process(*message);
     front_end->listen(output);
     add_stage_times(output.result, report);
@@ -85,6 +110,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
   for (const camera::StampedPose& pose : source->groundtruth()) {
     report.groundtruth.push_back({pose.stamp_ns, pose.T_world_camera});
   }
+  for (const slam::LoopClosure& closure : slam.loops()) report.loops.push_back(judge(closure, report.groundtruth));
   evaluate(report);
   return report;
 }

@@ -54,10 +54,17 @@ struct OfflineOptions {
   std::size_t max_frames = 0;  ///< 0 = all
   slam::SlamConfig slam;
   slam::MappingMode mapping = slam::MappingMode::kSynchronous;
+  double min_period_s = 0;  ///< a frame at most so often, as from a live camera; 0: as fast as it goes
   slam::Clock now_ns = service::monotonic_ns;             ///< for slam's stage times
   std::function<void(const slam::SlamOutput&)> on_frame;  ///< called after each frame; may be empty
   /// Called with what the front end makes of each frame; may be empty.
   std::function<void(const camera::SourceFrame&, const std::vector<msg::Feature>&)> on_features;
+};
+
+/// A loop that was closed, and how far the motion between its keyframes is from the true one.
+struct ClosedLoop {
+  slam::LoopClosure closure;
+  double error_m = 0, error_rad = 0;  ///< NaN without ground truth
 };
 
 /// The whole system in one thread without transport: what lockstep computes.
@@ -65,9 +72,10 @@ struct OfflineReport {
   std::size_t frames = 0, tracked = 0, keyframes = 0, landmarks = 0;
   std::string trajectory_tum;  ///< as rtd-slam writes trajectory.txt
   eval::Trajectory trajectory, groundtruth;
-  double ate_rmse_m = 0;                                ///< NaN without ground truth
-  double rpe_trans_rmse_m = 0, rpe_rot_rmse_deg = 0;    ///< per second
-  double coverage = 0;                                  ///< tracked / frames
+  double ate_rmse_m = 0;                              ///< NaN without ground truth
+  double rpe_trans_rmse_m = 0, rpe_rot_rmse_deg = 0;  ///< per second
+  double coverage = 0;                                ///< tracked / frames
+  std::vector<ClosedLoop> loops;
   eval::RemovalQuality removal;                         ///< after the first second; of sources with masks
   std::map<std::string, std::vector<double>> stage_ms;  ///< per frame, by name
 };

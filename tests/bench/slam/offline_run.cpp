@@ -34,11 +34,17 @@ void print(const rtd::test_support::OfflineReport& report) {
     std::printf("removed features after 1 s: precision %.3f  recall %.3f\n", report.removal.precision(),
                 report.removal.recall());
   }
+  for (const auto& [closure, error_m, error_rad] : report.loops) {
+    std::printf("loop %u - %u: %d inliers, moved %.3f m, joined %d, off by %.3f m %.4f rad%s\n", closure.edge.older,
+                closure.edge.newer, closure.edge.inliers, closure.correction_m, closure.joined, error_m, error_rad,
+                closure.merged ? ", maps merged" : "");
+  }
   for (const auto& [name, values] : report.stage_ms) {
     double sum = 0;
     for (const double value : values) sum += value;
-    std::printf("  %-16s mean %7.2f  p50 %7.2f  p99 %7.2f ms\n", name.c_str(), sum / static_cast<double>(values.size()),
-                percentile(values, 0.5), percentile(values, 0.99));
+    std::printf("  %-16s mean %7.2f  p50 %7.2f  p99 %7.2f  max %7.2f ms\n", name.c_str(),
+                sum / static_cast<double>(values.size()), percentile(values, 0.5), percentile(values, 0.99),
+                percentile(values, 1));
   }
 }
 
@@ -55,7 +61,11 @@ void print_json(const rtd::test_support::OfflineReport& report) {
     const auto found = report.stage_ms.find(stage);
     return found == report.stage_ms.end() ? nlohmann::json() : nlohmann::json(percentile(found->second, 0.5));
   };
+  double loop_error_m = 0;  // of the worst one
+  for (const auto& loop : report.loops) loop_error_m = std::max(loop_error_m, loop.error_m);
   const nlohmann::json line = {{"frames", report.frames},
+                               {"loops", report.loops.size()},
+                               {"loop_error_m", loop_error_m},
                                {"coverage", report.coverage},
                                {"ate_m", report.ate_rmse_m},
                                {"max_error_m", lost_m},
@@ -109,13 +119,20 @@ void print_errors(const rtd::test_support::OfflineReport& report) {
   }
 }
 
+void write_truth(const rtd::test_support::OfflineReport& report, const std::string& path) {
+  std::vector<rtd::slam::StampedPose> poses;
+  for (const rtd::eval::StampedPose& pose : report.groundtruth) poses.push_back({pose.stamp_ns, pose.T_world_body});
+  std::ofstream file(path);
+  rtd::slam::write_tum_trajectory(file, poses);
+}
+
 }  // namespace
 
 /// Runs the system on a source in one thread and prints its errors and times: the instrument for tuning.
 int main(int argc, char** argv) {
   CLI::App app("RTD-SLAM offline: accuracy and stage times of one source");
   rtd::test_support::OfflineOptions options;
-  std::string trajectory_file;
+  std::string trajectory_file, truth_file;
   bool verbose = false, threaded = false, errors = false, json = false;
   auto& slam = options.slam;
   app.add_option("--source", options.source, "source URI or TUM folder")->required();
@@ -125,6 +142,7 @@ int main(int argc, char** argv) {
   app.add_option("--frames", options.max_frames, "stop after so many frames, 0 = all");
   app.add_option("--out", trajectory_file, "write the trajectory here, TUM format");
   app.add_option("--disparity", slam.sensor.disparity_px_m);
+  app.add_option("--truth", truth_file, "write the source's own trajectory here, TUM format");
   app.add_option("--close-depth", slam.sensor.close_depth_m);
   app.add_option("--max-depth", slam.sensor.max_depth_m);
   app.add_option("--reference-ratio", slam.keyframe.reference_ratio);
@@ -133,6 +151,9 @@ int main(int argc, char** argv) {
   app.add_option("--ba-fixed", slam.mapper.ba_fixed_keyframes);
   app.add_option("--ba-robust", slam.mapper.ba_iterations_robust);
   app.add_option("--ba-iterations", slam.mapper.ba_iterations);
+  app.add_option("--loop-closing", slam.techniques.loop_closing, "true, false");
+  app.add_option("--global-iterations", slam.loop.global_iterations);
+  app.add_option("--min-period", options.min_period_s, "seconds between two frames at least, as from a live camera");
   app.add_flag("--threaded", threaded, "mapping in a thread of its own");
   app.add_flag_callback(
       "--cpu-time", [&] { options.now_ns = cpu_ns; }, "slam's stage times in CPU time");
@@ -160,6 +181,7 @@ int main(int argc, char** argv) {
     json ? print_json(report) : print(report);
     if (errors) print_errors(report);
     if (!trajectory_file.empty()) std::ofstream(trajectory_file) << report.trajectory_tum;
+    if (!truth_file.empty()) write_truth(report, truth_file);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
