@@ -75,6 +75,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
   const auto source = camera::make_source(options.source);
   const auto front_end = make_front_end(options.front_end);
   slam::SlamSystem slam(options.slam, options.mapping, options.now_ns);
+  if (options.on_start) options.on_start(slam);
   OfflineReport report;
   std::optional<std::int64_t> first_ns;
   auto next_frame = std::chrono::steady_clock::now();
@@ -102,6 +103,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
     if (options.on_frame) options.on_frame(output);
   }
   slam.finish();
+  if (options.on_end) options.on_end(slam);
   std::ostringstream text;
   slam::write_tum_trajectory(text, slam.trajectory());
   report.trajectory_tum = text.str();

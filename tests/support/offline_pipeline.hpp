@@ -56,6 +56,8 @@ struct OfflineOptions {
   slam::MappingMode mapping = slam::MappingMode::kSynchronous;
   double min_period_s = 0;  ///< a frame at most so often, as from a live camera; 0: as fast as it goes
   slam::Clock now_ns = service::monotonic_ns;             ///< for slam's stage times
+  std::function<void(slam::SlamSystem&)> on_start;        ///< before the first frame: may restore a map; may be empty
+  std::function<void(slam::SlamSystem&)> on_end;          ///< mapping has ended; may be empty
   std::function<void(const slam::SlamOutput&)> on_frame;  ///< called after each frame; may be empty
   /// Called with what the front end makes of each frame; may be empty.
   std::function<void(const camera::SourceFrame&, const std::vector<msg::Feature>&)> on_features;
