@@ -16,6 +16,7 @@
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/eval/eval_command.hpp"
 #include "services/launcher/eval_detector/eval_detector_command.hpp"
+#include "services/launcher/map/map_command.hpp"
 #include "services/launcher/process/executable.hpp"
 #include "services/launcher/recording/diff_command.hpp"
 #include "services/launcher/recording/info_command.hpp"
@@ -24,8 +25,8 @@
 namespace rtd::launcher {
 namespace {
 
-const std::vector<std::string> kCommands = {"run",  "demo", "ablate", "convert", "eval", "eval-detector",
-                                            "info", "diff", "doctor", "version", "help"};
+const std::vector<std::string> kCommands = {"run",  "demo", "ablate", "convert", "eval",    "eval-detector",
+                                            "info", "diff", "map",    "doctor",  "version", "help"};
 
 struct Requests {
   RunOptions run;
@@ -36,6 +37,7 @@ struct Requests {
   EvalDetectorOptions eval_detector;
   InfoOptions info;
   DiffRequest diff;
+  MapRequest map;
 };
 
 void add_run_command(CLI::App& app, RunOptions& options) {
@@ -61,6 +63,9 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--model", options.model,
                       "Detector weights, ONNX (default: RTD_MODEL_DIR, then the user's cache)");
   command->add_option("--frames", options.frames, "End after so many frames");
+  command->add_option("--map", options.map, "Go on with the map in this file");
+  command->add_option("--save-map", options.save_map, "Map file to write (default: map.rtdmap in the folder of --out)");
+  command->add_flag("--localize-only", options.localize_only, "Find poses in the map of --map and leave it as it is");
   command->add_flag("--dense", options.dense, "Also fuse a dense static map: static_map.ply");
   command->add_option("--record", options.record, "Also record all topics: FILE.mcap, or a folder as rosbag2 has it");
   command
@@ -111,6 +116,7 @@ int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("eval-detector")) return run_eval_detector(requests.eval_detector, std::cout, std::cerr);
   if (app.got_subcommand("info")) return run_info(requests.info, std::cout, std::cerr);
   if (app.got_subcommand("diff")) return run_diff(requests.diff, std::cout, std::cerr);
+  if (app.got_subcommand("map")) return run_map(requests.map, std::cout, std::cerr);
   if (app.got_subcommand("doctor")) return doctor(std::cout);
   if (app.got_subcommand("version")) {
     std::cout << "rtd " << RTD_VERSION << '\n';
@@ -139,6 +145,7 @@ int front(int argc, char** argv) {
   add_eval_detector_command(app, requests.eval_detector);
   add_info_command(app, requests.info);
   add_diff_command(app, requests.diff);
+  add_map_command(app, requests.map);
   app.add_subcommand("doctor", "Check this host: shared memory, sockets, services, weights, data");
   app.add_subcommand("version", "Print the version");
   app.add_subcommand("help", "Print this text");

@@ -27,6 +27,9 @@ struct RunOptions {
   std::string detector = "auto";       ///< "auto": when weights are found and the filter mode needs them; "off"
   std::string model;                   ///< ONNX file; empty: search
   std::string out_dir;
+  std::string map;                         ///< map file to go on with; empty: a new map
+  std::string save_map;                    ///< map file to write; empty: map.rtdmap in out_dir
+  bool localize_only = false;              ///< leave the map as it is
   bool dense = false;                      ///< also fuse a dense static map
   std::string record;                      ///< also record all topics: FILE.mcap or a folder; empty = no
   std::vector<std::string> replay_topics;  ///< "detections", "features": of a recording, in place of who makes them

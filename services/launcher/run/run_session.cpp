@@ -48,7 +48,7 @@ double span_s(const std::vector<FrameRecord>& frames) {
 }
 
 std::string begins_anew(const std::string& service) {
-  if (service == "slam") return ": map and trajectory.txt begin anew";
+  if (service == "slam") return ": trajectory.txt begins anew, the map with its last checkpoint";
   if (service == "record") return ": it goes on in a file beside";
   return service == "dense" ? ": static_map.ply begins anew" : "";
 }
@@ -99,7 +99,7 @@ void RunSession::supervise(const ServicePlan& camera) {
     const milliseconds time = now();
     if (signals_.take() > 0) {
       const bool again = supervisor_.outcome() == RunOutcome::kInterrupted;
-      supervisor_.stop(time, milliseconds(again ? 0 : setup_.launcher.interrupt_grace_ms), RunOutcome::kInterrupted);
+      supervisor_.stop(time, again ? milliseconds(0) : interrupt_grace(), RunOutcome::kInterrupted);
     }
     supervisor_.update(time);
     stop_when_decided(time);
@@ -111,6 +111,11 @@ void RunSession::supervise(const ServicePlan& camera) {
     keep_notices();
     if (!supervisor_.stopping()) terminal_.status(format_live_status(collector_.live()), time);
   }
+}
+
+/// Whoever names a map file wants the map in it, however large it is.
+milliseconds RunSession::interrupt_grace() const {
+  return milliseconds(setup_.save_map_asked ? setup_.launcher.finish_grace_ms : setup_.launcher.interrupt_grace_ms);
 }
 
 /// Who answers the first frame is heard here, so that no answer is missed. When somebody never comes, the camera names

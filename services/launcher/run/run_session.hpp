@@ -40,6 +40,7 @@ class RunSession {
   void on_event(const SupervisorEvent& event);
   void explain(const std::string& service, const std::vector<std::string>& lines);
   void keep_notices();
+  std::chrono::milliseconds interrupt_grace() const;
   void stop_when_decided(Milliseconds now);
   void sample_memory(Milliseconds now);
   void note(const std::string& text);

@@ -136,6 +136,44 @@ ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole rol
   return plan;
 }
 
+void choose_map(const RunOptions& options, RunSetup& setup) {
+  if (!options.map.empty() && !fs::is_regular_file(options.map))
+    throw ConfigError("--map " + options.map + ": there is no such file");
+  if (options.localize_only && options.map.empty())
+    throw ConfigError("--localize-only needs a map: name its file with --map");
+  if (options.localize_only && !options.save_map.empty())
+    throw ConfigError("--save-map " + options.save_map + ": with --localize-only the map does not change");
+  setup.map = options.map;
+  setup.localize_only = options.localize_only;
+  setup.save_map = options.save_map.empty() ? peek(options, "slam", "map.save") : options.save_map;
+  setup.save_map_asked = !setup.save_map.empty();
+  const bool map_stays = options.localize_only || peek(options, "slam", "map.localize_only") == "true";
+  if (setup.save_map.empty() && !map_stays) setup.save_map = options.out_dir + "/map.rtdmap";
+}
+
+/// When slam died it goes on with the map of its last checkpoint. A file of an earlier run is none.
+std::function<std::vector<std::string>()> load_checkpoint(const std::string& save_map) {
+  if (save_map.empty()) return {};
+  const auto saved_at = [save_map] {
+    std::error_code missing;
+    const auto time = fs::last_write_time(save_map, missing);
+    return missing ? std::optional<fs::file_time_type>() : time;
+  };
+  return [save_map, saved_at, before = saved_at()]() -> std::vector<std::string> {
+    const auto now = saved_at();
+    if (!now || now == before) return {};
+    return {"--map", save_map};
+  };
+}
+
+std::vector<std::string> slam_arguments(const RunSetup& setup) {
+  std::vector<std::string> arguments = {"--out", setup.out_dir};
+  if (!setup.map.empty()) arguments.insert(arguments.end(), {"--map", setup.map});
+  if (!setup.save_map.empty()) arguments.insert(arguments.end(), {"--save-map", setup.save_map});
+  if (setup.localize_only) arguments.emplace_back("--localize-only");
+  return arguments;
+}
+
 std::vector<std::string> filter_arguments(const RunSetup& setup) {
   std::vector<std::string> arguments = {"--set", "filter.mode=" + setup.filter_mode};
   if (setup.model_path.empty() && !setup.replay.detections)
@@ -177,6 +215,7 @@ RunSetup prepare_run(const RunOptions& options) {
   setup.total_frames = setup.replay ? setup.replay.frames : count_frames(setup.source, options.frames);
   choose_detector(options, setup);
   setup.out_dir = options.out_dir;
+  choose_map(options, setup);
   create_out_dir(setup.out_dir);
   if (fs::exists(setup.record)) throw ConfigError("--record " + setup.record + " exists already: give another name");
   return setup;
@@ -185,6 +224,10 @@ RunSetup prepare_run(const RunOptions& options) {
 void clear_out_dir(const RunSetup& setup) {
   const fs::path out_dir = setup.out_dir;
   std::error_code error;
+  const fs::path map = out_dir / "map.rtdmap";
+  const bool needed = !setup.map.empty() && fs::equivalent(setup.map, map, error);  // --map of an earlier run here
+  error.clear();
+  if (!needed) fs::remove(map, error);
   for (const char* left : {"logs", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply",
                            "static_map.ply", "background.png", "groundtruth.txt", "report.json", "report.html"}) {
     if (!error) fs::remove_all(out_dir / left, error);
@@ -204,7 +247,8 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
   if (detector)
     plans.push_back(plan(setup, "detector", ServiceRole::kOptional, {"--set", "detector.model=" + setup.model_path}));
   if (filter) plans.push_back(plan(setup, "filter", ServiceRole::kEssential, filter_arguments(setup)));
-  plans.push_back(plan(setup, "slam", ServiceRole::kEssential, {"--out", setup.out_dir}));
+  plans.push_back(plan(setup, "slam", ServiceRole::kEssential, slam_arguments(setup)));
+  plans.back().when_restarted = load_checkpoint(setup.save_map);
   if (setup.dense) plans.push_back(plan(setup, "dense", ServiceRole::kOptional, {"--out", setup.out_dir}));
   std::vector<std::string> wait_for;
   for (ServicePlan& service : plans) {

@@ -23,6 +23,7 @@ class FakeHost : public ProcessHost {
     const std::string& name = spec.name;
     if (missing.count(name) != 0) throw ProcessError("cannot run " + name + ": No such file or directory");
     started.push_back(name);
+    arguments.assign(spec.command.begin() + 1, spec.command.end());
     names[++last_id] = name;
     return last_id;
   }
@@ -50,6 +51,7 @@ class FakeHost : public ProcessHost {
 
   std::set<std::string> missing, deaf;
   std::vector<std::string> started, terminated, killed;
+  std::vector<std::string> arguments;  ///< of the last one started
   std::map<ProcessId, std::string> names;
   std::map<ProcessId, ProcessExit> exits;
   ProcessId last_id = 0, newest = 0;
@@ -232,6 +234,18 @@ TEST_F(SupervisorTest, a_second_stop_asks_who_ends_last_too) {
   supervisor.stop(now, milliseconds(5000), RunOutcome::kInterrupted);
   supervisor.stop(now, milliseconds(0), RunOutcome::kInterrupted);
   EXPECT_THAT(host.terminated, Contains("record"));
+}
+
+TEST_F(SupervisorTest, a_restarted_service_gets_the_arguments_of_that_moment) {
+  int asked = 0;
+  ServicePlan slam{"slam", {"rtd-slam", "--out", "o"}};
+  slam.when_restarted = [&asked] { return std::vector<std::string>{"--map", std::to_string(++asked)}; };
+  supervisor.start(slam, now);
+  EXPECT_THAT(host.arguments, ElementsAre("--out", "o"));
+  die_and_wait("slam", 1);
+  EXPECT_THAT(host.arguments, ElementsAre("--out", "o", "--map", "1"));
+  die_and_wait("slam", 1);
+  EXPECT_THAT(host.arguments, ElementsAre("--out", "o", "--map", "2"));
 }
 
 TEST_F(SupervisorTest, a_missing_executable_is_told_to_the_caller) {

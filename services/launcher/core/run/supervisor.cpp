@@ -89,8 +89,10 @@ std::vector<std::pair<std::string, ProcessId>> Supervisor::running() const {
   return result;
 }
 
-void Supervisor::launch(Child& child, Clock now) {
-  child.process = host_.start({child.plan.name, child.plan.command, child.plan.niceness});
+void Supervisor::launch(Child& child, Clock now, const std::vector<std::string>& more_arguments) {
+  std::vector<std::string> command = child.plan.command;
+  command.insert(command.end(), more_arguments.begin(), more_arguments.end());
+  child.process = host_.start({child.plan.name, command, child.plan.niceness});
   child.state = State::kRunning;
   child.started = now;
   child.killed = false;
@@ -99,7 +101,7 @@ void Supervisor::launch(Child& child, Clock now) {
 void Supervisor::relaunch(Child& child, Clock now) {
   ++child.restarts;
   try {
-    launch(child, now);
+    launch(child, now, child.plan.when_restarted ? child.plan.when_restarted() : std::vector<std::string>{});
   } catch (const ProcessError& error) {
     child.state = State::kEnded;
     report(SupervisorEvent::Kind::kGivenUp, child, child.plan.name + " could not be restarted: " + error.what());

@@ -25,6 +25,8 @@ struct ServicePlan {
   ServiceRole role = ServiceRole::kEssential;
   int niceness = 0;        ///< see ProcessSpec
   bool ends_last = false;  ///< asked to end when all others have ended: a recorder hears their last words
+  /// Further arguments when it is started again; may be empty. Asked at each restart.
+  std::function<std::vector<std::string>()> when_restarted = {};
 };
 
 struct SupervisorOptions {
@@ -88,7 +90,7 @@ class Supervisor {
     Clock kill_at{};
   };
 
-  void launch(Child& child, Clock now);
+  void launch(Child& child, Clock now, const std::vector<std::string>& more_arguments = {});
   void relaunch(Child& child, Clock now);
   void on_exit(Child& child, const ProcessExit& exit, Clock now);
   void on_death(Child& child, const ProcessExit& exit, Clock now);

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "services/slam/core/map.hpp"
+
+namespace rtd::launcher {
+
+/// One map of a file: its keyframes and landmarks have one frame.
+struct MapPart {
+  slam::MapId id = 0;
+  std::size_t keyframes = 0, landmarks = 0;
+  std::int64_t first_stamp_ns = 0, last_stamp_ns = 0;  ///< of its keyframes
+  double path_m = 0;                                   ///< from keyframe to keyframe by time
+  Eigen::AlignedBox3d extent_m;                        ///< of its landmarks
+};
+
+/// What is in a map file.
+struct MapReport {
+  std::uint64_t bytes = 0;  ///< of the file
+  std::uint32_t version = 0;
+  std::size_t keyframes = 0, landmarks = 0, observations = 0, features = 0, removed_keyframes = 0;
+  std::vector<slam::FramePtr> cameras;  ///< a frame of each camera
+  std::vector<MapPart> maps;            ///< by id
+};
+
+MapReport report_on(const slam::MapContents& contents, std::uint64_t file_bytes);
+
+/// What `rtd map info` prints.
+std::string to_text(const MapReport& report, const std::string& name);
+nlohmann::ordered_json to_json(const MapReport& report, const std::string& name);
+
+}  // namespace rtd::launcher

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iosfwd>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace rtd::launcher {
+
+/// What `rtd map` was asked.
+struct MapRequest {
+  bool info = false, to_export = false;  ///< which of the two
+  std::string file;
+  bool json = false;
+  std::string format;     ///< ply, pcd or tum
+  std::string out;        ///< file to write
+  long long map_id = -1;  ///< which map of the file; -1 = that with most keyframes
+};
+
+/// Adds the subcommand `map` with `info` and `export`; parsing fills `request`, which must outlive `parent`.
+CLI::App* add_map_command(CLI::App& parent, MapRequest& request);
+
+/// Writes report or file; what prevents it with the fix and the progress to `err`. Returns the exit code: 0; 1 when the
+/// output cannot be written; 2 when the file cannot be read, is no map or of another version, or the output exists; 3
+/// when it is damaged.
+int run_map(const MapRequest& request, std::ostream& out, std::ostream& err);
+
+}  // namespace rtd::launcher
