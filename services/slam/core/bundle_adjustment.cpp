@@ -76,7 +76,7 @@ class SparseBundle {
     solver.max_num_iterations = iterations;
     solver.num_threads = options_.threads;
     solver.logging_type = ceres::SILENT;
-    solver.function_tolerance = 1e-4;
+    solver.function_tolerance = 1e-7;  // bending a whole loop changes the cost little
     InterruptCallback interrupt(options_.interrupted);
     solver.callbacks.push_back(&interrupt);
     ceres::Solver::Summary summary;
