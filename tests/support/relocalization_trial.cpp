@@ -126,9 +126,11 @@ RelocalizationOutcome run_relocalization(const FeatureClip& mapped, const Featur
     outcome.worst_ms = std::max(outcome.worst_ms, static_cast<double>(result.stage_ms[msg::kStageSlamTotal]));
     outcome.worst_search_ms =
         std::max(outcome.worst_search_ms, static_cast<double>(result.stage_ms[msg::kStageRelocalize]));
+    if (trial.on_frame && !msg::has_pose(result.state)) trial.on_frame(result, 0, 0);
     if (!msg::has_pose(result.state) || !again.T_world_camera[i]) continue;
     const PosePair pair{msg::to_isometry(result.T_world_camera), *again.T_world_camera[i]};
     const double error_m = comparison.error_m(pair), error_deg = comparison.error_deg(pair);
+    if (trial.on_frame) trial.on_frame(result, error_m, error_deg);
     if (result.map_id != 0 || error_m > kWrong_m || error_deg > kWrong_deg) ++outcome.wrong;
     if (result.state != msg::TrackingState::kOk) continue;
     if (!outcome.found) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,6 +26,7 @@ FeatureClip record_features(const std::string& source, std::size_t first, std::s
 /// on. Frames are stamped anew, 30 a second.
 struct RelocalizationTrial {
   std::size_t mapped = 0, covered = 0, resume = 0, length = 30;
+  std::function<void(const msg::TrackingResult&, double error_m, double error_deg)> on_frame;  ///< after the cut
 };
 
 struct RelocalizationOutcome {

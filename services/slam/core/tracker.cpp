@@ -72,7 +72,7 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
     outcome.stage_ms[msg::kStagePose] += to_ms(tracking.guess.optimizer_ns);
   }
   outcome.inliers = tracking.guess.inliers;
-  if (acceptable(tracking.guess)) {
+  if (acceptable(tracking.guess) && believable(*frame, guess, tracking)) {
     accept(outcome, std::move(frame), tracking);
     return outcome;
   }
@@ -200,6 +200,14 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
   map_covariance_ = covariance_ - local;
   outcome.covariance = covariance_;
+}
+
+/// Found by the reference keyframe's descriptors alone, or by hardly any landmark of the last frame, the camera may as
+/// well have been carried away to where things look alike.
+bool Tracker::believable(const Frame& frame, const PoseGuess& start, const LocalMapTracking& tracking) const {
+  if (!config_.techniques.place_recognition) return true;
+  if (!start.guided) return is_convincing(frame, tracking, config_.place);
+  return start.inliers >= config_.tracker.min_inliers || agrees_widely(frame, tracking, config_.place);
 }
 
 void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalization found) {

@@ -75,6 +75,7 @@ class Tracker {
   PoseGuess recover(const Frame& frame, const LocalMap& map);
   bool may_relocalize(const Frame& frame) const;
   bool acceptable(const PoseGuess& guess) const;
+  bool believable(const Frame& frame, const PoseGuess& start, const LocalMapTracking& tracking) const;
   void enter_place(TrackOutcome& outcome, FramePtr frame, Relocalization found);
   void follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking);
   void accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking);

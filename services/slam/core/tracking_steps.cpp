@@ -37,8 +37,11 @@ PoseGuess optimize(const Frame& frame, const std::vector<Association>& associati
   vision::PoseOptimizerOptions options;
   if (context.config.techniques.adaptive_kernel) options.kernel = vision::RobustKernel::kAdaptive;
   const auto optimized = vision::optimize_pose(frame.camera, observations, T_world_camera_initial, options);
-  PoseGuess guess{optimized.success,           optimized.T_world_camera, {}, 0,
-                  context.now_ns() - start_ns, optimized.covariance};
+  PoseGuess guess;
+  guess.success = optimized.success;
+  guess.T_world_camera = optimized.T_world_camera;
+  guess.covariance = optimized.covariance;
+  guess.optimizer_ns = context.now_ns() - start_ns;
   guess.landmarks.assign(frame.features.size(), kNoLandmark);
   for (std::size_t i = 0; i < associations.size(); ++i) {
     if (optimized.inlier[i] == 0 || associations[i].landmark == kNoLandmark) continue;
@@ -147,6 +150,7 @@ PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, cons
   const auto coarse = estimate_pose_ransac(frame.camera, observations, options);
   PoseGuess guess =
       optimize(frame, associations, coarse.success ? coarse.T_world_camera : keyframe.T_world_camera, context);
+  guess.guided = false;
   guess.success = guess.success && guess.inliers >= kMinInliers;
   return guess;
 }

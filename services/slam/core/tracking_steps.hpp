@@ -25,6 +25,7 @@ struct TrackedFrame {
 /// The outcome of one step of tracking. `landmarks` are the inliers of `T_world_camera`.
 struct PoseGuess {
   bool success = false;
+  bool guided = true;  ///< by the motion; else by descriptors alone
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::vector<LandmarkId> landmarks;  ///< per feature
   int inliers = 0;                    ///< landmarks, without temporary points

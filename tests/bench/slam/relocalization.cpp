@@ -5,6 +5,7 @@
 // a covered camera. One line per cut.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <optional>
 
 #include "tests/support/relocalization_trial.hpp"
 
@@ -16,8 +17,15 @@ struct Options {
   std::string source, again;
   std::size_t frames = 300, mapped = 0, cuts = 20;
   bool masks = false, threaded = false;
+  std::optional<std::size_t> only;  ///< this cut, with a line per frame
   slam::SlamConfig slam;
 };
+
+void print_frame(const msg::TrackingResult& result, double error_m, double error_deg) {
+  std::printf("   %llu %s: %u inliers of %u features, map %u, %.4f m %.2f deg\n",
+              static_cast<unsigned long long>(result.seq), to_string(result.state), result.inliers,
+              result.features_static, result.map_id, error_m, error_deg);
+}
 
 /// Cut `index` of a clip of `size` frames: the map ends between 1/2 and 3/4 of it; the camera comes back to frames that
 /// it has not mapped, or anywhere on the mapped part of another recording of the same path.
@@ -49,7 +57,9 @@ int main(int argc, char** argv) {
   app.add_flag("--masks", options.masks, "drop features on the source's masks of moving pixels");
   app.add_flag("--threaded", options.threaded, "mapping in a thread of its own, 30 frames a second");
   app.add_option("--candidates-per-frame", options.slam.place.candidates_per_frame);
+  app.add_option("--only", options.only, "this cut, with a line per frame");
   app.add_option("--min-inliers", options.slam.place.min_inliers);
+  app.add_option("--min-found-ratio", options.slam.place.min_found_ratio);
   app.add_option("--confirmations", options.slam.place.confirmations);
   CLI11_PARSE(app, argc, argv);
   const auto mapped = test_support::record_features(options.source, 0, options.frames, options.masks);
@@ -57,7 +67,9 @@ int main(int argc, char** argv) {
       options.again.empty() ? mapped : test_support::record_features(options.again, 0, options.frames, options.masks);
   std::size_t good = 0;
   for (std::size_t i = 0; i < options.cuts; ++i) {
-    const auto trial = cut(options, std::min(mapped.frames.size(), again.frames.size()), i);
+    if (options.only && *options.only != i) continue;
+    auto trial = cut(options, std::min(mapped.frames.size(), again.frames.size()), i);
+    if (options.only) trial.on_frame = print_frame;
     const auto outcome =
         run_relocalization(mapped, again, trial, options.slam,
                            options.threaded ? slam::MappingMode::kThreaded : slam::MappingMode::kSynchronous);

@@ -5,16 +5,15 @@
 #include <algorithm>
 
 namespace rtd::slam {
-namespace {
 
-/// After a loss a wrong place is the greater danger: many landmarks, and a fair part of those that should be seen.
-bool convincing(const LocalMapTracking& tracking, const PlaceConfig& config) {
-  const auto visible = static_cast<double>(tracking.visible.size());
-  return tracking.guess.success && tracking.guess.inliers >= config.min_inliers &&
-         tracking.guess.inliers >= config.min_found_ratio * visible;
+bool agrees_widely(const Frame& frame, const LocalMapTracking& tracking, const PlaceConfig& config) {
+  const auto possible = static_cast<double>(std::min(tracking.visible.size(), frame.features.size()));
+  return tracking.guess.success && tracking.guess.inliers >= config.min_found_ratio * possible;
 }
 
-}  // namespace
+bool is_convincing(const Frame& frame, const LocalMapTracking& tracking, const PlaceConfig& config) {
+  return tracking.guess.inliers >= config.min_inliers && agrees_widely(frame, tracking, config);
+}
 
 std::optional<Relocalization> relocalize(const Frame& frame, std::span<const LocalMapPtr> places,
                                          const TrackingContext& context) {
@@ -23,9 +22,8 @@ std::optional<Relocalization> relocalize(const Frame& frame, std::span<const Loc
     if (!coarse.success) continue;
     LocalMapTracking tracking = track_local_map(frame, *place, coarse, context);
     if (!tracking.guess.success) continue;
-    tracking =
-        track_local_map(frame, *place, tracking.guess, context);  // a coarse pose shows landmarks beside themselves
-    if (convincing(tracking, context.config.place)) return Relocalization{place, std::move(tracking)};
+    tracking = track_local_map(frame, *place, tracking.guess, context);  // from a coarse pose many are missed
+    if (is_convincing(frame, tracking, context.config.place)) return Relocalization{place, std::move(tracking)};
   }
   return std::nullopt;
 }

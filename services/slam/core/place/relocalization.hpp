@@ -15,6 +15,13 @@ struct Relocalization {
   LocalMapTracking tracking;
 };
 
+/// Whether more landmarks were found than chance makes agree with any pose: a part of those that should be seen, or of
+/// the frame's features where these are fewer. docs/theory/place_recognition.md Eq. (5).
+bool agrees_widely(const Frame& frame, const LocalMapTracking& tracking, const PlaceConfig& config);
+
+/// Whether a pose found by descriptors alone can be believed.
+bool is_convincing(const Frame& frame, const LocalMapTracking& tracking, const PlaceConfig& config);
+
 /// Tries the places in turn: descriptors of the centre keyframe, RANSAC, optimisation, then the landmarks around it
 /// where that pose shows them. The first place that the frame clearly belongs to; empty when there is none.
 /// docs/theory/place_recognition.md, "Relocalisation".
