@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/feature_world.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/geometry/se3.hpp"
@@ -48,12 +49,7 @@ std::unique_ptr<msg::FeatureFrame> FeatureWorld::rolling_view(std::uint64_t seq,
 
 std::unique_ptr<msg::FeatureFrame> FeatureWorld::view(std::uint64_t seq, const RowPose& T_camera_world,
                                                       double roll_rad) const {
-  auto frame = std::make_unique<msg::FeatureFrame>();
-  frame->seq = seq;
-  frame->stamp_ns = stamp_ns(seq);
-  frame->intrinsics = {kFx, kFy, kCx, kCy};
-  frame->width = kWidth;
-  frame->height = kHeight;
+  auto frame = make_empty_view(seq);
   std::mt19937_64 random(options_.seed * 7919 + seq);
   std::normal_distribution<double> normal(0, 1);
   for (const Point& point : points_) {
@@ -66,23 +62,39 @@ std::unique_ptr<msg::FeatureFrame> FeatureWorld::view(std::uint64_t seq, const R
     const double u = kFx * p_camera.x() / p_camera.z() + kCx + options_.noise_px * normal(random);
     const double v = kFy * p_camera.y() / p_camera.z() + kCy + options_.noise_px * normal(random);
     if (u < 0 || v < 0 || u >= kWidth || v >= kHeight || octave > 7) continue;
-    msg::Feature& feature = frame->features[frame->count++];
-    feature = {};
-    feature.u_px = feature.u_raw_px = static_cast<float>(u);
-    feature.v_px = feature.v_raw_px = static_cast<float>(v);
     const double noise_m = options_.depth_noise_factor * p_camera.z() * p_camera.z() * normal(random);
-    feature.depth_m = static_cast<float>(p_camera.z() + noise_m);
-    feature.angle_rad = point.angle_rad - static_cast<float>(roll_rad);
-    feature.static_probability = 1;
-    feature.octave = static_cast<std::uint8_t>(std::max(octave, 0));
-    feature.object_id = -1;
-    feature.descriptor = point.descriptor;
-    for (int i = 0; i < options_.flipped_bits; ++i) {
-      const std::uint64_t bit = random() % 256;
-      feature.descriptor[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
-    }
+    add_feature(*frame, {u, v, p_camera.z() + noise_m, point.angle_rad - static_cast<float>(roll_rad), octave},
+                point.descriptor, options_.flipped_bits, random);
   }
   return frame;
+}
+
+std::unique_ptr<msg::FeatureFrame> make_empty_view(std::uint64_t seq) {
+  auto frame = std::make_unique<msg::FeatureFrame>();
+  frame->seq = seq;
+  frame->stamp_ns = FeatureWorld::stamp_ns(seq);
+  frame->intrinsics = {FeatureWorld::kFx, FeatureWorld::kFy, FeatureWorld::kCx, FeatureWorld::kCy};
+  frame->width = FeatureWorld::kWidth;
+  frame->height = FeatureWorld::kHeight;
+  return frame;
+}
+
+void add_feature(msg::FeatureFrame& frame, const SeenFeature& seen, const msg::Descriptor& descriptor, int flipped_bits,
+                 std::mt19937_64& random) {
+  msg::Feature& feature = frame.features[frame.count++];
+  feature = {};
+  feature.u_px = feature.u_raw_px = static_cast<float>(seen.u_px);
+  feature.v_px = feature.v_raw_px = static_cast<float>(seen.v_px);
+  feature.depth_m = static_cast<float>(seen.depth_m);
+  feature.angle_rad = seen.angle_rad;
+  feature.static_probability = 1;
+  feature.octave = static_cast<std::uint8_t>(std::max(seen.octave, 0));
+  feature.object_id = -1;
+  feature.descriptor = descriptor;
+  for (int i = 0; i < flipped_bits; ++i) {
+    const std::uint64_t bit = random() % 256;
+    feature.descriptor[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
+  }
 }
 
 }  // namespace rtd::test_support

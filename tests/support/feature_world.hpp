@@ -57,4 +57,17 @@ class FeatureWorld {
   std::vector<Point> points_;
 };
 
+/// A frame of FeatureWorld's camera without features yet.
+std::unique_ptr<msg::FeatureFrame> make_empty_view(std::uint64_t seq);
+
+/// A feature as a view shows it.
+struct SeenFeature {
+  double u_px, v_px, depth_m;
+  float angle_rad;
+  int octave;  ///< below 0: 0
+};
+/// Adds a feature; `flipped_bits` of the descriptor, drawn from `random`, are not what they should be.
+void add_feature(msg::FeatureFrame& frame, const SeenFeature& seen, const msg::Descriptor& descriptor, int flipped_bits,
+                 std::mt19937_64& random);
+
 }  // namespace rtd::test_support

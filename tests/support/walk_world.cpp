@@ -56,56 +56,41 @@ WalkWorld::Cell WalkWorld::make_cell(int x, int z) const {
 }
 
 std::unique_ptr<msg::FeatureFrame> WalkWorld::view(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera) {
-  auto frame = std::make_unique<msg::FeatureFrame>();
-  frame->seq = seq;
-  frame->stamp_ns = FeatureWorld::stamp_ns(seq);
-  frame->intrinsics = {FeatureWorld::kFx, FeatureWorld::kFy, FeatureWorld::kCx, FeatureWorld::kCy};
-  frame->width = FeatureWorld::kWidth;
-  frame->height = FeatureWorld::kHeight;
   if (cells_.size() > kMaxCells) cells_.clear();
+  auto frame = make_empty_view(seq);
   std::mt19937_64 random(options_.seed * 7919 + seq);
-  std::normal_distribution<double> normal(0, 1);
-  std::uniform_real_distribution<double> unit(0, 1);
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  const auto see = [&](const Point& point) {
-    const Eigen::Vector3d p_camera = T_camera_world * point.p_world;
-    const double distance_m = p_camera.norm();
-    if (p_camera.z() < kMinDistance_m || distance_m > std::min(options_.range_m, point.max_distance_m)) return;
-    const int octave = static_cast<int>(std::ceil(std::log(point.max_distance_m / distance_m) / std::log(1.2)));
-    const double sigma_px = options_.noise_px * std::pow(1.2, octave);
-    const double u = FeatureWorld::kFx * p_camera.x() / p_camera.z() + FeatureWorld::kCx + sigma_px * normal(random);
-    const double v = FeatureWorld::kFy * p_camera.y() / p_camera.z() + FeatureWorld::kCy + sigma_px * normal(random);
-    if (u < 0 || v < 0 || u >= FeatureWorld::kWidth || v >= FeatureWorld::kHeight || octave > kMaxOctave) return;
-    if (unit(random) > options_.detection_rate || frame->count == msg::kMaxFeatures) return;
-    msg::Feature& feature = frame->features[frame->count++];
-    feature = {};
-    feature.u_px = feature.u_raw_px = static_cast<float>(u);
-    feature.v_px = feature.v_raw_px = static_cast<float>(v);
-    const double noise_m = options_.depth_noise_factor * p_camera.z() * p_camera.z() * normal(random);
-    feature.depth_m = static_cast<float>(p_camera.z() + noise_m);
-    feature.angle_rad = point.angle_rad;
-    feature.static_probability = 1;
-    feature.octave = static_cast<std::uint8_t>(std::max(octave, 0));
-    feature.object_id = -1;
-    feature.descriptor = point.descriptor;
-    for (int i = 0; i < options_.flipped_bits; ++i) {
-      const std::uint64_t bit = random() % 256;
-      feature.descriptor[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
-    }
-  };
-  // The cells that the view can reach: a wedge about the optical axis.
   const Eigen::Vector3d centre = T_world_camera.translation(), axis = T_world_camera.linear().col(2);
   const int reach = static_cast<int>(std::ceil(options_.range_m));
   for (int dx = -reach; dx <= reach; ++dx) {
     for (int dz = -reach; dz <= reach; ++dz) {
       const int x = static_cast<int>(std::floor(centre.x())) + dx, z = static_cast<int>(std::floor(centre.z())) + dz;
       const Eigen::Vector3d offset = Eigen::Vector3d(x + 0.5, 0, z + 0.5) - centre;
-      const double along = offset.dot(axis), across = (offset - along * axis).norm();
-      if (along < -1 || across > 0.65 * std::max(along, 0.0) + 1.5) continue;
-      for (const Point& point : cell(x, z)) see(point);
+      const double along_m = offset.dot(axis), across_m = (offset - along_m * axis).norm();
+      const bool in_wedge = along_m >= -1 && across_m <= 0.65 * std::max(along_m, 0.0) + 1.5;
+      if (!in_wedge) continue;
+      for (const Point& point : cell(x, z)) observe(point, T_camera_world, *frame, random);
     }
   }
   return frame;
+}
+
+void WalkWorld::observe(const Point& point, const Eigen::Isometry3d& T_camera_world, msg::FeatureFrame& frame,
+                        std::mt19937_64& random) const {
+  std::normal_distribution<double> normal(0, 1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const Eigen::Vector3d p_camera = T_camera_world * point.p_world;
+  const double distance_m = p_camera.norm();
+  if (p_camera.z() < kMinDistance_m || distance_m > std::min(options_.range_m, point.max_distance_m)) return;
+  const int octave = static_cast<int>(std::ceil(std::log(point.max_distance_m / distance_m) / std::log(1.2)));
+  const double sigma_px = options_.noise_px * std::pow(1.2, octave);
+  const double u = FeatureWorld::kFx * p_camera.x() / p_camera.z() + FeatureWorld::kCx + sigma_px * normal(random);
+  const double v = FeatureWorld::kFy * p_camera.y() / p_camera.z() + FeatureWorld::kCy + sigma_px * normal(random);
+  if (u < 0 || v < 0 || u >= FeatureWorld::kWidth || v >= FeatureWorld::kHeight || octave > kMaxOctave) return;
+  if (unit(random) > options_.detection_rate || frame.count == msg::kMaxFeatures) return;
+  const double noise_m = options_.depth_noise_factor * p_camera.z() * p_camera.z() * normal(random);
+  add_feature(frame, {u, v, p_camera.z() + noise_m, point.angle_rad, octave}, point.descriptor, options_.flipped_bits,
+              random);
 }
 
 Eigen::Isometry3d aisle_pose(std::uint64_t seq) {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
+#include <random>
 #include <unordered_map>
 #include <vector>
 
@@ -41,6 +42,9 @@ class WalkWorld {
 
   const Cell& cell(int x, int z);
   Cell make_cell(int x, int z) const;
+  /// Adds the point to the frame if this view shows it.
+  void observe(const Point& point, const Eigen::Isometry3d& T_camera_world, msg::FeatureFrame& frame,
+               std::mt19937_64& random) const;
 
   Options options_;
   std::unordered_map<std::uint64_t, Cell> cells_;  ///< those looked at lately

@@ -12,15 +12,18 @@ std::string check_landmark(const Map& map, const Landmark& landmark) {
   const std::string name = "landmark " + std::to_string(landmark.id);
   if (landmark.observations.empty()) return name + " has no observation";
   KeyframeId previous = kNoKeyframe;
+  bool seen_by_reference = false;
   int weight = 0;
   for (const Observation& observation : landmark.observations) {
     if (previous != kNoKeyframe && observation.keyframe <= previous) return name + " has unordered observations";
     previous = observation.keyframe;
+    seen_by_reference = seen_by_reference || observation.keyframe == landmark.reference;
     const Keyframe* keyframe = map.find_keyframe(observation.keyframe);
     if (keyframe == nullptr) return name + " is seen by a keyframe that is gone";
     if (keyframe->landmarks[observation.feature] != landmark.id) return name + " is unknown to its keyframe";
     weight += keyframe->frame->features[observation.feature].depth_m > 0 ? 2 : 1;
   }
+  if (!seen_by_reference) return name + " is not seen by its reference";
   return weight == landmark.observation_weight ? std::string{} : name + " miscounts its observations";
 }
 
@@ -66,11 +69,13 @@ std::string check_keyframe(const Map& map, const Keyframe& keyframe) {
 
 std::string Map::check_invariants() const {
   for (const LandmarkId id : landmark_ids()) {
+    if (find_landmark(id)->id != id) return "landmark " + std::to_string(id) + " lies where another one should";
     if (std::string error = check_landmark(*this, *find_landmark(id)); !error.empty()) return error;
   }
   std::map<MapId, std::size_t> sizes;
   for (const auto& [id, keyframe] : keyframes_) {
     ++sizes[keyframe.map];
+    if (find_keyframe(id) != &keyframe) return "keyframe " + std::to_string(id) + " is not in the index";
     if (std::string error = check_keyframe(*this, keyframe); !error.empty()) return error;
   }
   return sizes == component_sizes_ ? std::string{} : "keyframes of a component are miscounted";
