@@ -8,9 +8,11 @@
 #include <condition_variable>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <future>
 #include <mutex>
 #include <opencv2/imgcodecs.hpp>
+#include <thread>
 
 #include "common/bus/bus_factory.hpp"
 #include "services/camera/core/trajectory_file.hpp"
@@ -88,6 +90,14 @@ class FakeTracker {
   bus::Writer<msg::TrackingResult> results_;
   bus::Reader<msg::RgbdFrame> frames_;
 };
+
+/// Messages reach a reader on a thread of the bus.
+void wait_until(const std::function<bool()>& done) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!done() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
 
 class CameraServiceTest : public ::testing::Test {
  protected:
@@ -265,6 +275,7 @@ TEST_F(CameraServiceTest, EncodesEveryJpegWhenNothingMayBeDropped) {
     JpegPublisher publisher(bus_->writer(bus::topics::kColorJpeg), 90, concurrency::Overflow::kBlock);
     for (int i = 0; i < kImages; ++i) publisher.offer(cv::Mat(480, 640, CV_8UC3, cv::Scalar(i, i, i)), i);
   }
+  wait_until([&] { return received == kImages; });
   EXPECT_EQ(received, kImages) << "what waits at the end is published too";
 }
 
@@ -279,6 +290,7 @@ TEST_F(CameraServiceTest, CountsTheJpegsThatNewerOnesReplaced) {
     dropped = publisher.dropped();
   }
   EXPECT_GT(dropped, 0U);
+  wait_until([&] { return received == kImages - dropped; });
   EXPECT_EQ(received, kImages - dropped);
 }
 

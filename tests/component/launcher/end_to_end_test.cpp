@@ -12,6 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
+using testing::AnyOf;
 using testing::HasSubstr;
 
 /// The real services over Fast DDS. Every test has a DDS domain of its own.
@@ -133,7 +134,10 @@ TEST_F(EndToEndTest, a_second_run_in_the_same_domain_is_refused_and_leaves_the_f
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   RtdCommand second;
   EXPECT_EQ(second.run({"run", "--source", "synthetic:office", "--domain", "128", "--out", scratch_ / "second"}), 2);
-  EXPECT_THAT(second.output(), AllOf(HasSubstr("domain 128 is taken by"), HasSubstr("--domain")));
+  // The launcher sees it, or, on a busy host where the first is not heard in time, the service that starts.
+  EXPECT_THAT(second.output(),
+              AllOf(AnyOf(HasSubstr("domain 128 is taken by"), HasSubstr("already runs in this DDS domain")),
+                    HasSubstr("--domain")));
   EXPECT_EQ(rtd_.wait(), 0) << rtd_.output();
   EXPECT_EQ(report()["frames_tracked"], 60);
 }
