@@ -17,7 +17,7 @@ struct WeightedWord {
 /// What an image shows, as words of a Vocabulary.
 struct BagOfWords {
   std::vector<WeightedWord> words;    ///< ascending, weights add up to 1; empty without features
-  std::vector<std::uint16_t> groups;  ///< per feature: only features of one group are compared in match_by_words()
+  std::vector<std::uint16_t> groups;  ///< per feature: an inner node of the tree; like features share one
 };
 
 /// Likeness of two images in [0, 1]: what their weights have in common. docs/theory/place_recognition.md Eq. (3).
