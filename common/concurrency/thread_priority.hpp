@@ -4,6 +4,10 @@
 
 #include <sys/resource.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
 namespace rtd::concurrency {
 
 /// Makes the calling thread `by` nicer (on Linux niceness belongs to the thread): it yields to threads whose work is
@@ -11,6 +15,15 @@ namespace rtd::concurrency {
 inline void lower_thread_priority(int by) {
   const int own = getpriority(PRIO_PROCESS, 0);
   setpriority(PRIO_PROCESS, 0, own + by);
+}
+
+/// The same for every thread that the process has now; those made later inherit it from who makes them.
+inline void lower_process_priority(int by) {
+  std::error_code error;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", error)) {
+    const auto thread = static_cast<id_t>(std::atoi(task.path().filename().c_str()));
+    setpriority(PRIO_PROCESS, thread, getpriority(PRIO_PROCESS, thread) + by);
+  }
 }
 
 }  // namespace rtd::concurrency

@@ -32,8 +32,10 @@ std::unique_ptr<FrameSource> open_source(const std::string& uri) {
   }
 }
 
-bool consumes_frames(const std::string& service) {
-  return service == "filter" || service == "detector" || service == "dense";
+/// Readers of frames and JPEGs that a service has. A recorder of a run takes both, and misses none.
+int readers_of(const std::string& service) {
+  if (service == "record") return 2;
+  return service == "filter" || service == "detector" || service == "dense" ? 1 : 0;
 }
 
 }  // namespace
@@ -113,9 +115,10 @@ std::vector<std::string> CameraService::missing() const {
   for (const std::string& name : config_.wait_for) {
     if (!runtime_.heartbeat.ready(name)) absent.push_back(name);
   }
-  const auto consumers = std::count_if(config_.wait_for.begin(), config_.wait_for.end(), consumes_frames);
+  int expected = 0;
+  for (const std::string& name : config_.wait_for) expected += readers_of(name);
   const int readers = publisher_.frame_readers() + publisher_.jpeg_readers();
-  if (readers < consumers) absent.push_back(fmt::format("{} of {} frame readers", consumers - readers, consumers));
+  if (readers < expected) absent.push_back(fmt::format("{} of {} frame readers", expected - readers, expected));
   return absent;
 }
 

@@ -111,7 +111,6 @@ std::shared_ptr<mcap::ByteSink> RecorderService::open_sink(std::size_t number) c
 }
 
 service::ExitCode RecorderService::run() {
-  concurrency::lower_thread_priority(config_.niceness);  // the threads of the bus inherit it
   started_ns_ = progress_ns_ = service::monotonic_ns();
   bus::BusOptions options = runtime_.bus_options;
   options.participant_name = "rtd-record-topics";
@@ -188,6 +187,10 @@ void RecorderService::say_state(const TopicCounts& totals) {
     return runtime_.heartbeat.set_state(msg::ServiceState::kDegraded, fmt::format("{} messages lost", totals.lost()));
   }
   if (!readers_->settled()) return runtime_.heartbeat.set_state(msg::ServiceState::kStarting, "joins the topics");
+  if (!stepped_back_ && readers_->any()) {  // not before: who joins late misses the first messages
+    concurrency::lower_process_priority(config_.niceness);
+    stepped_back_ = true;
+  }
   if (totals.written > 0) return runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
   const bool any = readers_->any();
   if (!any && !waiting_said_) {

@@ -56,7 +56,7 @@ class RecorderService {
   std::optional<TopicReaders> readers_;
   std::int64_t started_ns_ = 0, reported_ns_ = 0, progress_ns_ = 0;
   std::uint64_t progress_bytes_ = 0, free_bytes_ = 0;
-  bool interactive_ = false, waiting_said_ = false;
+  bool interactive_ = false, waiting_said_ = false, stepped_back_ = false;
   std::string failure_;  ///< why it ends early
 };
 
