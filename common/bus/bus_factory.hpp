@@ -11,14 +11,33 @@
 
 namespace rtd::bus {
 
+/// Where a process looks for others, and how its datagrams are cut. Defaults: what suits the loopback interface.
+struct NetworkOptions {
+  bool loopback_only = true;                 ///< false: also the host's network interfaces
+  std::vector<std::string> interfaces;       ///< names or IPv4 addresses to use beside loopback; empty: all
+  bool multicast = true;                     ///< false: only `peers` and the discovery server are asked
+  std::vector<std::string> peers;            ///< host names or IPv4 addresses, `:PORT` where it is not the domain's own
+  std::string discovery_server;              ///< HOST:PORT of a Fast DDS Discovery Server; empty: none
+  std::uint32_t max_datagram_bytes = 65000;  ///< larger samples are cut by DDS; <= 1400 where packets may get lost
+};
+
+/// DDS-Security: a keystore in the layout of sros2, and whose keys to use. Both empty: plain DDS.
+struct SecurityOptions {
+  std::string keystore;  ///< folder with public/, private/, enclaves/
+  std::string enclave;   ///< path below enclaves/, e.g. "/rtd/slam"
+  bool enabled() const { return !keystore.empty(); }
+};
+
 /// How a process joins the bus. Defaults: Fast DDS, loopback only.
 struct BusOptions {
-  std::string vendor = "fastdds";          ///< "fastdds" or "inprocess"; `--dds`, RTD_DDS
+  std::string vendor = "fastdds";          ///< "fastdds", "cyclonedds" or "inprocess"; `--dds`, RTD_DDS
   std::uint32_t domain = 0;                ///< DDS domain 0..232; `--domain`, ROS_DOMAIN_ID
   std::string participant_name;            ///< shown by DDS tools, e.g. "rtd-filter"
   std::uint32_t shm_segment_mib = 16;      ///< shared-memory segment of this process, >= 8
   std::uint32_t socket_buffer_kib = 4096;  ///< asked UDP buffer, capped by net.core.rmem_max
-  bool loopback_only = true;               ///< false: also the host's network interfaces
+  NetworkOptions network;
+  SecurityOptions security;
+  bool iceoryx = false;  ///< Cyclone DDS: fixed-size samples through a running iox-roudi
 };
 
 /// Connects to the bus. Throws BusError: unknown vendor (with the list of those built in), domain out of range,

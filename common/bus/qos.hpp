@@ -27,7 +27,9 @@ struct StatusCallbacks {
   std::function<void(const std::string& policy)> on_incompatible_qos;  ///< a peer was refused, the policy by name
   std::function<void(int alive)> on_liveliness;                        ///< readers: current number of alive writers
   std::function<void()> on_deadline_missed;
-  std::function<void(int total)> on_samples_lost;  ///< readers: samples lost so far
+  std::function<void(int total)> on_samples_lost;      ///< readers: samples lost so far
+  std::function<void(int total)> on_samples_rejected;  ///< readers: samples so far that did not fit into the history
+  std::function<void(const std::string& type)> on_type_mismatch;  ///< a peer uses the topic's name with another type
 };
 
 }  // namespace rtd::bus

@@ -26,7 +26,7 @@ bus::BusOptions to_bus_options(const BusConfig& config, const std::string& parti
   options.participant_name = participant_name;
   options.shm_segment_mib = static_cast<std::uint32_t>(config.shm_segment_mib);
   options.socket_buffer_kib = static_cast<std::uint32_t>(config.socket_buffer_kib);
-  options.loopback_only = config.loopback_only;
+  options.network.loopback_only = config.loopback_only;
   return options;
 }
 

@@ -16,7 +16,7 @@ struct BusConfig {
   int domain = static_cast<int>(bus::BusOptions{}.domain);
   int shm_segment_mib = static_cast<int>(bus::BusOptions{}.shm_segment_mib);
   int socket_buffer_kib = static_cast<int>(bus::BusOptions{}.socket_buffer_kib);
-  bool loopback_only = bus::BusOptions{}.loopback_only;
+  bool loopback_only = bus::NetworkOptions{}.loopback_only;
 
   void bind(ConfigBinder& binder);
 };

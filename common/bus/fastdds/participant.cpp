@@ -50,7 +50,7 @@ std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp_transport
   auto transport = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   transport->receiveBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.rmem_max);
   transport->sendBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.wmem_max);
-  if (options.loopback_only) transport->interfaceWhiteList.emplace_back("127.0.0.1");
+  if (options.network.loopback_only) transport->interfaceWhiteList.emplace_back("127.0.0.1");
   return transport;
 }
 
