@@ -13,8 +13,7 @@ namespace rtd::concurrency {
 /// Makes the calling thread `by` nicer (on Linux niceness belongs to the thread): it yields to threads whose work is
 /// more urgent. At most 19; what the system refuses is left as it was.
 inline void lower_thread_priority(int by) {
-  const int own = getpriority(PRIO_PROCESS, 0);
-  setpriority(PRIO_PROCESS, 0, own + by);
+  setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + by);
 }
 
 /// The same for every thread that the process has now; those made later inherit it from who makes them.

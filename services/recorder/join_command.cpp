@@ -14,6 +14,7 @@
 #include "common/mcap/join.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"
+#include "services/recorder/file_command.hpp"
 
 namespace rtd::recorder {
 namespace {
@@ -113,18 +114,7 @@ int run_join(int argc, char** argv) {
   app.add_option("-o,--output", options.output, "New file")->required();
   app.add_flag("--force", options.force, "Replace the new file if it exists");
   app.add_flag("--json", options.json, "Report as JSON");
-  try {
-    app.parse(argc - 1, argv + 1);
-    return join(options);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? service::kOk : service::kUsageOrConfig;
-  } catch (const mcap::IoError& error) {
-    std::cerr << "rtd-record: " << error.what() << '\n';
-    return service::kUsageOrConfig;
-  } catch (const std::exception& error) {
-    std::cerr << "rtd-record: " << error.what() << '\n';
-    return service::kRunFailed;
-  }
+  return run_file_command(app, argc, argv, [&] { return join(options); });
 }
 
 }  // namespace rtd::recorder

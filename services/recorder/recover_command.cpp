@@ -11,6 +11,7 @@
 #include "common/mcap/recover.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"
+#include "services/recorder/file_command.hpp"
 
 namespace rtd::recorder {
 namespace {
@@ -77,19 +78,10 @@ int run_recover(int argc, char** argv) {
   app.add_option("-o,--output", options.output, "New file (default: FILE.recovered.mcap)");
   app.add_flag("--force", options.force, "Replace the new file if it exists");
   app.add_flag("--json", options.json, "Report as JSON");
-  try {
-    app.parse(argc - 1, argv + 1);
+  return run_file_command(app, argc, argv, [&] {
     if (options.output.empty()) options.output = default_output(options.input);
     return recover(options);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? service::kOk : service::kUsageOrConfig;
-  } catch (const mcap::IoError& error) {
-    std::cerr << "rtd-record: " << error.what() << '\n';
-    return service::kUsageOrConfig;
-  } catch (const std::exception& error) {
-    std::cerr << "rtd-record: " << error.what() << '\n';
-    return service::kRunFailed;
-  }
+  });
 }
 
 }  // namespace rtd::recorder

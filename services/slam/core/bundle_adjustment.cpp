@@ -10,6 +10,7 @@
 #include "common/geometry/se3.hpp"
 #include "common/vision/pose_optimizer.hpp"
 #include "services/slam/core/dense_bundle.hpp"
+#include "services/slam/core/interrupt_callback.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -34,18 +35,6 @@ class ObservationCost final : public ceres::SizedCostFunction<Dimension, 6, 3> {
   const vision::RgbdProjection& camera_;
   const Eigen::Isometry3d& T_camera_world_;
   const BundleObservation& observation_;
-};
-
-/// Ends the solver when somebody is waiting for the mapper.
-class InterruptCallback final : public ceres::IterationCallback {
- public:
-  explicit InterruptCallback(const std::function<bool()>& interrupted) : interrupted_(interrupted) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
-    return interrupted_ && interrupted_() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const std::function<bool()>& interrupted_;
 };
 
 double chi2_limit(const BundleOptions& options, const BundleObservation& observation) {

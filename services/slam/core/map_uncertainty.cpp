@@ -9,7 +9,7 @@ namespace {
 
 using geometry::Matrix6d;
 
-/// What an error of the pose (translation, rotation about it) at `from` means at `to`. Eq. (13).
+/// What an error of the pose (translation, rotation about it) at `from` means at `to`. Eq. (14).
 Matrix6d moved(const Matrix6d& covariance, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   Matrix6d lever = Matrix6d::Identity();
   lever.topRightCorner<3, 3>() = -geometry::skew(to - from);

@@ -12,7 +12,7 @@
 
 namespace rtd::slam {
 
-/// How uncertain the map itself is where the camera is, docs/theory/tracking.md Eq. (12), (13): a landmark is as
+/// How uncertain the map itself is where the camera is, docs/theory/tracking.md Eq. (13), (14): a landmark is as
 /// uncertain as the keyframe that found it first, a keyframe as uncertain as what it was tracked by and its own pose
 /// against it. Covariances are of (x y z rx ry rz) in the world frame.
 class MapUncertainty {

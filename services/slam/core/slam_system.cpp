@@ -3,7 +3,6 @@
 #include "services/slam/core/slam_system.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "common/msg/transform_eigen.hpp"
 
@@ -151,13 +150,11 @@ ShutterMotion SlamSystem::shutter_motion() const {
 void SlamSystem::observe_shutter(const LocalMap& map, const TrackOutcome& outcome) {
   const bool wanted = config_.techniques.rolling_shutter && config_.sensor.readout_s == 0;
   if (!wanted || shutter_.velocity_per_s.isZero(0)) return;
-  std::vector<Eigen::Vector3d> points(outcome.tracked.landmarks.size(),
-                                      Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  std::vector<Association> points;
+  for (std::uint32_t i = 0; i < outcome.tracked.landmarks.size(); ++i) {
     const LandmarkId id = outcome.tracked.landmarks[i];
-    if (const LocalLandmark* landmark = id == kNoLandmark ? nullptr : map.find_landmark(id)) {
-      points[i] = landmark->position;
-    }
+    const LocalLandmark* landmark = id == kNoLandmark ? nullptr : map.find_landmark(id);
+    if (landmark != nullptr) points.push_back({i, id, landmark->position});
   }
   readout_.add(*outcome.tracked.frame, outcome.tracked.T_world_camera, points, shutter_);
 }

@@ -11,7 +11,7 @@
 #include "services/slam/core/keyframe_news.hpp"
 #include "services/slam/core/mapping_worker.hpp"
 #include "services/slam/core/odometry_frame.hpp"
-#include "services/slam/core/rolling_shutter.hpp"
+#include "services/slam/core/readout_estimator.hpp"
 #include "services/slam/core/tracker.hpp"
 #include "services/slam/core/trajectory.hpp"
 

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 
+#include "services/slam/core/interrupt_callback.hpp"
+
 namespace rtd::slam {
 namespace {
 
@@ -87,17 +89,6 @@ class EdgeCost final : public ceres::SizedCostFunction<kTangent, kAmbient, kAmbi
  private:
   Eigen::Isometry3d T_from_to_;
   Vector6d whitening_;
-};
-
-class InterruptCallback final : public ceres::IterationCallback {
- public:
-  explicit InterruptCallback(const std::function<bool()>& interrupted) : interrupted_(interrupted) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*summary*/) override {
-    return interrupted_ && interrupted_() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
-  }
-
- private:
-  const std::function<bool()>& interrupted_;
 };
 
 /// ad of a twist: [[phi]x, [rho]x; 0, [phi]x].
