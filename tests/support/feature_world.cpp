@@ -23,6 +23,15 @@ FeatureWorld::FeatureWorld(const Options& options) : options_(options) {
   }
 }
 
+FeatureWorld FeatureWorld::noisy(std::uint64_t seed) {
+  Options options;
+  options.noise_px = 0.5;
+  options.depth_noise_factor = 0.0015;
+  options.flipped_bits = 12;
+  options.seed = seed;
+  return FeatureWorld(options);
+}
+
 Eigen::Isometry3d FeatureWorld::T_world_camera(std::uint64_t seq) {
   return T_world_camera_at(static_cast<double>(seq) / 30.0);
 }

@@ -26,6 +26,8 @@ class FeatureWorld {
     std::uint64_t seed = 1;
   };
   explicit FeatureWorld(const Options& options);
+  /// With noise as of a real camera: half a pixel, depth as of a Kinect, 12 flipped bits.
+  static FeatureWorld noisy(std::uint64_t seed = 1);
 
   /// The features seen from a pose; seq and a stamp of 30 Hz. Same arguments, same frame.
   std::unique_ptr<msg::FeatureFrame> view(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera) const;

@@ -6,10 +6,9 @@
 
 #include <cstdio>
 
-#include "common/geometry/se3.hpp"
-#include "common/msg/transform_eigen.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "tests/support/offline_pipeline.hpp"
+#include "tests/support/pose_error.hpp"
 
 namespace rtd::test_support {
 namespace {
@@ -26,13 +25,7 @@ double mean_nees(const std::string& source, const std::string& mode) {
     constexpr std::size_t kFirst = 5;
     const std::size_t index = frame++;
     if (index < kFirst || index >= groundtruth.size()) return;
-    const Eigen::Isometry3d truth = groundtruth.front().T_world_camera.inverse() * groundtruth[index].T_world_camera;
-    const Eigen::Isometry3d found = msg::to_isometry(output.result.T_world_camera);
-    geometry::Vector6d error;
-    error.head<3>() = found.translation() - truth.translation();
-    error.tail<3>() = geometry::so3_log(found.linear() * truth.linear().transpose());
-    const Eigen::Map<const geometry::Matrix6d> covariance(output.result.covariance.data());
-    sum += error.dot(covariance.ldlt().solve(error));
+    sum += nees(output.result, groundtruth.front().T_world_camera.inverse() * groundtruth[index].T_world_camera);
     ++counted;
   };
   run_offline(options);

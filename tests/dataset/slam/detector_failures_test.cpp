@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "tests/support/clip_uri.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
 namespace rtd::test_support {
@@ -15,9 +16,7 @@ namespace {
 OfflineOptions clip(const std::string& name, const std::string& mode) {
   OfflineOptions options;
   options.front_end.mode = mode;
-  const char* folder = std::getenv("RTD_DATA_DIR");
-  if (folder == nullptr || !std::filesystem::exists(std::filesystem::path(folder) / name)) return options;
-  options.source = "tum:" + (std::filesystem::path(folder) / name).string();
+  options.source = clip_uri(name);
   return options;
 }
 

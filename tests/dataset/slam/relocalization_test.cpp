@@ -4,19 +4,11 @@
 // A few of the cuts that rtd_relocalization makes by the dozen.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-
+#include "tests/support/clip_uri.hpp"
 #include "tests/support/relocalization_trial.hpp"
 
 namespace rtd::test_support {
 namespace {
-
-std::string clip(const std::string& name, const std::string& parameters = {}) {
-  const char* folder = std::getenv("RTD_DATA_DIR");
-  if (folder == nullptr || !std::filesystem::exists(std::filesystem::path(folder) / name)) return {};
-  return "tum:" + (std::filesystem::path(folder) / name).string() + parameters;
-}
 
 /// `max_deg`: fr1's truth is noisier than what is asked.
 void expect_found(const FeatureClip& features, const RelocalizationTrial& trial, double max_deg) {
@@ -30,7 +22,7 @@ void expect_found(const FeatureClip& features, const RelocalizationTrial& trial,
 }
 
 TEST(Relocalization, finds_the_camera_in_the_room_of_walk_xyz) {
-  const std::string source = clip("walk_xyz", "?masks=1");
+  const std::string source = clip_uri("walk_xyz", "?masks=1");
   if (source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no walk_xyz";
   const FeatureClip features = record_features(source, 0, 200, true);
   expect_found(features, {.mapped = 126, .covered = 90, .resume = 164, .length = 15}, 1.0);
@@ -39,7 +31,7 @@ TEST(Relocalization, finds_the_camera_in_the_room_of_walk_xyz) {
 }
 
 TEST(Relocalization, finds_the_camera_at_the_desk_of_fr1_xyz) {
-  const std::string source = clip("fr1_xyz");
+  const std::string source = clip_uri("fr1_xyz");
   if (source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no fr1_xyz";
   const FeatureClip features = record_features(source, 0, 130, false);
   expect_found(features, {.mapped = 100, .covered = 90, .resume = 108, .length = 15}, 2.0);

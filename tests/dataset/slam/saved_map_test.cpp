@@ -8,6 +8,7 @@
 
 #include "services/slam/core/store/map_reader.hpp"
 #include "services/slam/core/store/map_writer.hpp"
+#include "tests/support/clip_uri.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
 namespace rtd::test_support {
@@ -25,9 +26,7 @@ void PrintTo(const Session& session, std::ostream* out) {
 /// The URI; empty when the clip is not there.
 std::string uri_of(const std::string& source) {
   if (source.find(':') != std::string::npos) return source;
-  const char* folder = std::getenv("RTD_DATA_DIR");
-  if (folder == nullptr || !std::filesystem::exists(std::filesystem::path(folder) / source)) return {};
-  return "tum:" + (std::filesystem::path(folder) / source).string();
+  return clip_uri(source);
 }
 
 mcap::Bytes save(const slam::SlamSystem& slam) {

@@ -2,20 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-
+#include "tests/support/clip_uri.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
 namespace rtd::test_support {
 namespace {
-
-/// tum: URI of a clip below RTD_DATA_DIR; empty when it is not there.
-std::string clip(const std::string& name, const std::string& parameters = {}) {
-  const char* folder = std::getenv("RTD_DATA_DIR");
-  if (folder == nullptr || !std::filesystem::exists(std::filesystem::path(folder) / name)) return {};
-  return "tum:" + (std::filesystem::path(folder) / name).string() + parameters;
-}
 
 OfflineReport run(const std::string& source, const std::string& mode) {
   OfflineOptions options;
@@ -36,7 +27,7 @@ class TrueMaskClip : public ::testing::TestWithParam<MaskedClip> {};
 
 /// The backend alone: what remains when the filter is perfect.
 TEST_P(TrueMaskClip, is_tracked_as_well_as_by_orb_slam2) {
-  const std::string source = clip(GetParam().name, "?masks=1");
+  const std::string source = clip_uri(GetParam().name, "?masks=1");
   if (source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no " << GetParam().name;
   const OfflineReport report = run(source, "true-mask");
   EXPECT_LE(report.ate_rmse_m, GetParam().max_ate_m);
@@ -48,7 +39,7 @@ INSTANTIATE_TEST_SUITE_P(Clips, TrueMaskClip,
                                            MaskedClip{"walk_box", 0.0035}));
 
 TEST(StaticClip, fr1_xyz_is_tracked_as_well_as_by_orb_slam2) {
-  const std::string source = clip("fr1_xyz");
+  const std::string source = clip_uri("fr1_xyz");
   if (source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no fr1_xyz";
   const OfflineReport report = run(source, "off");
   EXPECT_LE(report.ate_rmse_m, 0.0094);  // ORB-SLAM2: 0.0098
@@ -58,14 +49,14 @@ TEST(StaticClip, fr1_xyz_is_tracked_as_well_as_by_orb_slam2) {
 
 TEST(StaticClip, same_clip_gives_the_same_bytes) {
   OfflineOptions options;
-  options.source = clip("fr1_xyz");
+  options.source = clip_uri("fr1_xyz");
   if (options.source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no fr1_xyz";
   options.max_frames = 80;
   EXPECT_EQ(run_offline(options).trajectory_tum, run_offline(options).trajectory_tum);
 }
 
 TEST(DynamicClip, walk_xyz_without_filter_fails_as_orb_slam2_does) {
-  const std::string source = clip("walk_xyz");
+  const std::string source = clip_uri("walk_xyz");
   if (source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no walk_xyz";
   EXPECT_GT(run(source, "off").ate_rmse_m, 0.1);
 }

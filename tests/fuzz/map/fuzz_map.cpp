@@ -3,24 +3,13 @@
 /// Feeds changed map files to the reader: fuzz_map [inputs] [seed]. What must hold for every input: no crash, no
 /// sanitizer report, bounded memory; it is refused, or what is read is a sound map that is written as it was read. Exit
 /// code 1 and the input in fuzz_map_failed.rtdmap otherwise. The preset asan-ubsan gives it its teeth.
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
-
 #include "common/mcap/crc32.hpp"
 #include "common/mcap/decode.hpp"
 #include "services/slam/core/store/map_reader.hpp"
 #include "services/slam/core/store/map_writer.hpp"
-#include "tests/fuzz/mcap/allocation_watch.hpp"
+#include "tests/fuzz/fuzz_loop.hpp"
 #include "tests/fuzz/mcap/mutation.hpp"
 #include "tests/support/sample_map.hpp"
-
-#if defined(__SANITIZE_ADDRESS__)
-extern "C" const char* __ubsan_default_options();
-extern "C" const char* __ubsan_default_options() {
-  return "halt_on_error=1:print_stacktrace=1";
-}
-#endif
 
 namespace rtd::slam {
 namespace {
@@ -99,31 +88,15 @@ std::string try_input(const Bytes& file, std::uint64_t& maps) {
   return "";
 }
 
-int fuzz(std::uint64_t inputs, std::uint64_t seed) {
-  const std::vector<Bytes> files = seeds();
-  std::mt19937_64 random(seed);
-  std::uint64_t maps = 0;
-  testing::watch_allocations();
-  for (std::uint64_t i = 0; i < inputs; ++i) {
-    const Bytes input = make_input(files, random);
-    testing::peak_allocation();
-    const std::string failure = try_input(input, maps);
-    if (failure.empty()) continue;
-    std::ofstream("fuzz_map_failed.rtdmap", std::ios::binary)
-        .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
-    std::fprintf(stderr, "input %llu of seed %llu: %s\n", static_cast<unsigned long long>(i),
-                 static_cast<unsigned long long>(seed), failure.c_str());
-    return 1;
-  }
-  std::printf("%llu inputs, all well (%llu of them maps)\n", static_cast<unsigned long long>(inputs),
-              static_cast<unsigned long long>(maps));
-  return 0;
-}
-
 }  // namespace
 }  // namespace rtd::slam
 
 int main(int argc, char** argv) {
-  const std::uint64_t inputs = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 5000;
-  return rtd::slam::fuzz(inputs, argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1);
+  using namespace rtd;
+  const std::vector<mcap::Bytes> files = slam::seeds();
+  std::uint64_t maps = 0;
+  return testing::run_fuzz(
+      argc, argv, "fuzz_map_failed.rtdmap", [&](std::mt19937_64& random) { return slam::make_input(files, random); },
+      [&](const mcap::Bytes& input, std::mt19937_64& /*random*/) { return slam::try_input(input, maps); },
+      [&] { return std::to_string(maps) + " of them maps"; });
 }

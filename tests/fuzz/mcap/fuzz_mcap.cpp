@@ -3,21 +3,10 @@
 /// Feeds changed MCAP files to the readers: fuzz_mcap [inputs] [seed]. What must hold for every input: no crash, no
 /// sanitizer report, bounded memory, and what recover() makes of it reads back without a problem. Exit code 1 and the
 /// input in fuzz_mcap_failed.mcap otherwise. The preset asan-ubsan gives it its teeth.
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
-
 #include "common/mcap/recover.hpp"
-#include "tests/fuzz/mcap/allocation_watch.hpp"
+#include "tests/fuzz/fuzz_loop.hpp"
 #include "tests/fuzz/mcap/mutation.hpp"
 #include "tests/unit/mcap/sample_file.hpp"
-
-#if defined(__SANITIZE_ADDRESS__)
-extern "C" const char* __ubsan_default_options();
-extern "C" const char* __ubsan_default_options() {
-  return "halt_on_error=1:print_stacktrace=1";
-}
-#endif
 
 namespace rtd::mcap {
 namespace {
@@ -82,31 +71,18 @@ std::string try_input(const Bytes& file, bool check_crcs, std::uint64_t& sum) {
   return "";
 }
 
-int fuzz(std::uint64_t inputs, std::uint64_t seed) {
-  const std::vector<Bytes> files = seeds();
-  std::mt19937_64 random(seed);
-  std::uint64_t sum = 0;
-  testing::watch_allocations();
-  for (std::uint64_t i = 0; i < inputs; ++i) {
-    const Bytes input = mutate(files[random() % files.size()], files[random() % files.size()], random);
-    testing::peak_allocation();
-    const std::string failure = try_input(input, random() % 2 == 0, sum);
-    if (failure.empty()) continue;
-    std::ofstream("fuzz_mcap_failed.mcap", std::ios::binary)
-        .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
-    std::fprintf(stderr, "input %llu of seed %llu: %s\n", static_cast<unsigned long long>(i),
-                 static_cast<unsigned long long>(seed), failure.c_str());
-    return 1;
-  }
-  std::printf("%llu inputs, all well (sum of all bytes read %llu)\n", static_cast<unsigned long long>(inputs),
-              static_cast<unsigned long long>(sum));
-  return 0;
-}
-
 }  // namespace
 }  // namespace rtd::mcap
 
 int main(int argc, char** argv) {
-  const std::uint64_t inputs = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 5000;
-  return rtd::mcap::fuzz(inputs, argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1);
+  using namespace rtd;
+  const std::vector<mcap::Bytes> files = mcap::seeds();
+  std::uint64_t sum = 0;
+  return testing::run_fuzz(
+      argc, argv, "fuzz_mcap_failed.mcap",
+      [&](std::mt19937_64& random) {
+        return mcap::mutate(files[random() % files.size()], files[random() % files.size()], random);
+      },
+      [&](const mcap::Bytes& input, std::mt19937_64& random) { return mcap::try_input(input, random() % 2 == 0, sum); },
+      [&] { return "sum of all bytes read " + std::to_string(sum); });
 }

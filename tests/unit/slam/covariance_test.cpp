@@ -4,27 +4,18 @@
 // Whether poses are as uncertain as slam says: normalised estimation error squared (NEES), 6 degrees of freedom.
 #include <gtest/gtest.h>
 
-#include "common/geometry/se3.hpp"
-#include "common/msg/transform_eigen.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/feature_world.hpp"
+#include "tests/support/pose_error.hpp"
 
 namespace rtd::slam {
 namespace {
 
 using test_support::FeatureWorld;
+using test_support::nees;
 
 constexpr int kWorlds = 20;
 constexpr std::array<std::uint64_t, 3> kLooks{20, 45, 70};
-
-double nees(const msg::TrackingResult& result, std::uint64_t seq) {
-  const Eigen::Isometry3d found = msg::to_isometry(result.T_world_camera), truth = FeatureWorld::T_world_camera(seq);
-  geometry::Vector6d error;
-  error.head<3>() = found.translation() - truth.translation();
-  error.tail<3>() = geometry::so3_log(found.linear() * truth.linear().transpose());
-  const Eigen::Map<const geometry::Matrix6d> covariance(result.covariance.data());
-  return error.dot(covariance.ldlt().solve(error));
-}
 
 /// Mean over independent worlds, at each look.
 std::array<double, kLooks.size()> mean_nees(double noise_px, double depth_noise_factor) {
@@ -42,7 +33,8 @@ std::array<double, kLooks.size()> mean_nees(double noise_px, double depth_noise_
     for (std::uint64_t seq = 0; seq <= kLooks.back(); ++seq) {
       const SlamOutput output = slam.process(*features.view(seq, FeatureWorld::T_world_camera(seq)));
       const auto look = std::find(kLooks.begin(), kLooks.end(), seq);
-      if (look != kLooks.end()) mean[look - kLooks.begin()] += nees(output.result, seq) / kWorlds;
+      if (look != kLooks.end())
+        mean[look - kLooks.begin()] += nees(output.result, FeatureWorld::T_world_camera(seq)) / kWorlds;
     }
   }
   return mean;

@@ -169,36 +169,36 @@ TEST(Culling, finds_keyframes_that_three_others_make_superfluous) {
   EXPECT_FALSE(is_redundant_keyframe(map, 1, 0.9, 10.0)) << "most of it is left with two others";
 }
 
-TEST(PoseRansac, finds_the_pose_among_outliers) {
-  const Eigen::Isometry3d T_world_camera =
-      geometry::se3_exp((geometry::Vector6d() << 0.5, 0.2, -0.3, 0.2, 0.6, -0.1).finished());
-  const FramePtr frame = view(make_world(), 0, T_world_camera, true);
+const Eigen::Isometry3d kFarPose =
+    geometry::se3_exp((geometry::Vector6d() << 0.5, 0.2, -0.3, 0.2, 0.6, -0.1).finished());
+
+/// What a frame at kFarPose sees; 60 % are wrong.
+std::vector<vision::PoseObservation> observe_with_outliers(const Frame& frame) {
   std::vector<vision::PoseObservation> observations;
-  for (std::size_t i = 0; i < frame->features.size(); ++i) {
-    vision::PoseObservation observation{T_world_camera * frame->unproject(i), frame->measurement(i), 1.0, 1.0};
-    if (i % 5 < 3) observation.p_world += Eigen::Vector3d(1 + 0.01 * static_cast<double>(i), -0.5, 0.3);  // 60 %
+  for (std::size_t i = 0; i < frame.features.size(); ++i) {
+    vision::PoseObservation observation{kFarPose * frame.unproject(i), frame.measurement(i), 1.0, 1.0};
+    if (i % 5 < 3) observation.p_world += Eigen::Vector3d(1 + 0.01 * static_cast<double>(i), -0.5, 0.3);
     observations.push_back(observation);
   }
+  return observations;
+}
+
+TEST(PoseRansac, finds_the_pose_among_outliers) {
+  const FramePtr frame = view(make_world(), 0, kFarPose, true);
+  const auto observations = observe_with_outliers(*frame);
   const auto result = estimate_pose_ransac(frame->camera, observations, {});
   ASSERT_TRUE(result.success);
-  EXPECT_LT((result.T_world_camera.inverse() * T_world_camera).translation().norm(), 1e-3);
+  EXPECT_LT((result.T_world_camera.inverse() * kFarPose).translation().norm(), 1e-3);
   EXPECT_GE(result.inliers, static_cast<int>(observations.size()) * 2 / 5 - 1);
 }
 
 TEST(PoseRansac, needs_no_depth_at_all) {
-  const Eigen::Isometry3d T_world_camera =
-      geometry::se3_exp((geometry::Vector6d() << 0.5, 0.2, -0.3, 0.2, 0.6, -0.1).finished());
-  const FramePtr frame = view(make_world(), 0, T_world_camera, true);
-  std::vector<vision::PoseObservation> observations;
-  for (std::size_t i = 0; i < frame->features.size(); ++i) {
-    vision::PoseObservation observation{T_world_camera * frame->unproject(i), frame->measurement(i), 1.0, 1.0};
-    observation.measured.depth_m = 0;
-    if (i % 5 < 3) observation.p_world += Eigen::Vector3d(1 + 0.01 * static_cast<double>(i), -0.5, 0.3);  // 60 %
-    observations.push_back(observation);
-  }
+  const FramePtr frame = view(make_world(), 0, kFarPose, true);
+  auto observations = observe_with_outliers(*frame);
+  for (vision::PoseObservation& observation : observations) observation.measured.depth_m = 0;
   const auto result = estimate_pose_ransac(frame->camera, observations, {});
   ASSERT_TRUE(result.success);
-  EXPECT_LT((result.T_world_camera.inverse() * T_world_camera).translation().norm(), 1e-3);
+  EXPECT_LT((result.T_world_camera.inverse() * kFarPose).translation().norm(), 1e-3);
 }
 
 TEST(PoseRansac, fails_with_two_points_or_without_agreement) {

@@ -18,15 +18,6 @@ std::int64_t frozen_clock() {
   return 0;
 }
 
-FeatureWorld noisy_world(std::uint64_t seed = 1) {
-  FeatureWorld::Options options;
-  options.noise_px = 0.5;
-  options.depth_noise_factor = 0.0015;
-  options.flipped_bits = 12;
-  options.seed = seed;
-  return FeatureWorld(options);
-}
-
 std::unique_ptr<msg::FeatureFrame> view(const FeatureWorld& world, std::uint64_t seq) {
   return world.view(seq, FeatureWorld::T_world_camera(seq));
 }
@@ -55,7 +46,7 @@ geometry::Vector6d sigma_of(const msg::TrackingResult& result) {
 constexpr std::uint64_t kHoldFrames = 14;  // at 30 Hz the default half second
 
 TEST(Prediction, bridges_half_a_second_and_says_so) {
-  const FeatureWorld world = noisy_world();
+  const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam({}, MappingMode::kSynchronous, frozen_clock);
   std::uint64_t seq = 0;
   for (; seq < 30; ++seq) ASSERT_EQ(slam.process(*view(world, seq)).result.state, TrackingState::kOk);
@@ -79,7 +70,7 @@ TEST(Prediction, bridges_half_a_second_and_says_so) {
 TEST(Prediction, error_stays_within_three_sigma) {
   int held = 0;
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const FeatureWorld world = noisy_world(seed);
+    const FeatureWorld world = FeatureWorld::noisy(seed);
     for (std::uint64_t start = 10; start < 90; start += 8) {
       SlamSystem slam({}, MappingMode::kSynchronous, frozen_clock);
       for (std::uint64_t seq = start - 8; seq < start; ++seq) slam.process(*view(world, seq));
@@ -105,7 +96,7 @@ TEST(Prediction, error_stays_within_three_sigma) {
 
 TEST(Prediction, tracking_goes_on_in_the_same_map) {
   for (const std::uint64_t gap : {4, 12, 40}) {
-    const FeatureWorld world = noisy_world();
+    const FeatureWorld world = FeatureWorld::noisy();
     SlamSystem slam({}, MappingMode::kSynchronous, frozen_clock);
     std::uint64_t seq = 0;
     for (; seq < 30; ++seq) slam.process(*view(world, seq));
@@ -125,7 +116,7 @@ TEST(Prediction, tracking_goes_on_in_the_same_map) {
 }
 
 TEST(Prediction, few_landmarks_are_better_than_none) {
-  const FeatureWorld world = noisy_world();
+  const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam({}, MappingMode::kSynchronous, frozen_clock);
   std::uint64_t seq = 0;
   for (; seq < 30; ++seq) slam.process(*view(world, seq));
@@ -142,7 +133,7 @@ TEST(Prediction, few_landmarks_are_better_than_none) {
 }
 
 TEST(Prediction, can_be_switched_off) {
-  const FeatureWorld world = noisy_world();
+  const FeatureWorld world = FeatureWorld::noisy();
   SlamConfig config;
   config.techniques.prediction = false;
   SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);

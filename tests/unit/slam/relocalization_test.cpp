@@ -21,15 +21,6 @@ using test_support::FeatureWorld;
 
 constexpr int kDark = 60;  ///< frames after which tracking is lost, not only recently
 
-FeatureWorld world_of_seed(std::uint64_t seed) {
-  FeatureWorld::Options options;
-  options.noise_px = 0.5;
-  options.depth_noise_factor = 0.0015;
-  options.flipped_bits = 12;
-  options.seed = seed;
-  return FeatureWorld(options);
-}
-
 /// Slam that is shown views of its world in any order; frames are counted and stamped as they come.
 class Relocalization : public ::testing::Test {
  protected:
@@ -79,7 +70,7 @@ class Relocalization : public ::testing::Test {
     return -1;
   }
 
-  const FeatureWorld world_ = world_of_seed(1), elsewhere_ = world_of_seed(2);
+  const FeatureWorld world_ = FeatureWorld::noisy(1), elsewhere_ = FeatureWorld::noisy(2);
   const MappingMode mode_;
   std::unique_ptr<SlamSystem> slam_;
   std::uint64_t next_ = 0;

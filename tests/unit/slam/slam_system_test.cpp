@@ -24,14 +24,6 @@ std::int64_t frozen_clock() {
   return 0;
 }
 
-FeatureWorld noisy_world() {
-  FeatureWorld::Options options;
-  options.noise_px = 0.5;
-  options.depth_noise_factor = 0.0015;
-  options.flipped_bits = 12;
-  return FeatureWorld(options);
-}
-
 SlamSystem make_slam(MappingMode mode = MappingMode::kSynchronous) {
   return {SlamConfig{}, mode, frozen_clock};
 }
@@ -61,7 +53,7 @@ TEST(SlamSystem, follows_the_camera_through_an_exact_world) {
 }
 
 TEST(SlamSystem, stays_within_a_centimetre_with_noise) {
-  const FeatureWorld world = noisy_world();
+  const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam();
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
     const SlamOutput output = slam.process(*view(world, seq));
@@ -80,7 +72,7 @@ TEST(SlamSystem, stays_within_a_centimetre_with_noise) {
 }
 
 TEST(SlamSystem, gives_the_same_bits_twice) {
-  const FeatureWorld world = noisy_world();
+  const FeatureWorld world = FeatureWorld::noisy();
   std::array<std::string, 2> texts;
   for (std::string& text : texts) {
     SlamSystem slam = make_slam();
@@ -94,7 +86,7 @@ TEST(SlamSystem, gives_the_same_bits_twice) {
 }
 
 TEST(SlamSystem, maps_in_a_thread_as_well) {
-  const FeatureWorld world = noisy_world();
+  const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam(MappingMode::kThreaded);
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
     ASSERT_EQ(slam.process(*view(world, seq)).result.state, TrackingState::kOk) << "frame " << seq;
@@ -244,7 +236,7 @@ TEST(SlamSystem, low_static_probability_takes_the_weight_from_movers) {
 }
 
 TEST(SlamSystem, events_tell_the_whole_story_of_the_keyframes) {
-  const FeatureWorld world = noisy_world();
+  const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam();
   std::uint64_t next_index = 0;
   std::set<std::uint32_t> known;
