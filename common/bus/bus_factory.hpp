@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,6 +39,9 @@ struct BusOptions {
   NetworkOptions network;
   SecurityOptions security;
   bool iceoryx = false;  ///< Cyclone DDS: fixed-size samples through a running iox-roudi
+  /// Told in one line what keeps others from meeting us, e.g. a participant of another vendor in a secured domain.
+  /// Runs on a bus thread, maybe several times: be brief, do not call the bus.
+  std::function<void(const std::string& problem)> on_problem = {};
 };
 
 /// Connects to the bus. Throws BusError: unknown vendor (with the list of those built in), domain out of range,
