@@ -25,11 +25,11 @@ function(rtd_idl_fastdds name)
     list(APPEND headers "${out_dir}/${idl}.h" "${out_dir}/${idl}PubSubTypes.h")
   endforeach()
   # fastddsgen ends with 0 after some errors; a missing output then fails the build. -typeros2 is left out on purpose: the
-  # ROS 2 names stand in the IDL already and would be mangled twice.
+  # ROS 2 names stand in the IDL already and would be mangled twice. -t: two builds at once would share files in /tmp otherwise.
   add_custom_command(
     OUTPUT ${sources} ${headers}
     COMMAND "${CMAKE_COMMAND}" -E make_directory "${out_dir}"
-    COMMAND "${RTD_FASTDDSGEN}" -cs -replace -d "${out_dir}" -I "${idl_dir}" ${idl_files}
+    COMMAND "${RTD_FASTDDSGEN}" -cs -replace -t "${out_dir}" -d "${out_dir}" -I "${idl_dir}" ${idl_files}
     DEPENDS ${idl_files}
     WORKING_DIRECTORY "${idl_dir}"
     COMMENT "Generating Fast DDS types from idl/"

@@ -11,7 +11,8 @@
 
 namespace rtd::ros {
 
-/// Reads messages of wire.hpp. Never allocates more than the bytes it is given could hold. Throws WireError.
+/// Reads messages of wire.hpp. What it allocates is bounded by the bytes that it is given, whatever they claim. Throws
+/// WireError.
 template <Wire kFormat>
 class WireReader {
  public:
@@ -44,6 +45,10 @@ class WireReader {
   void read(T& value) {
     if constexpr (std::is_same_v<T, bool>) {
       value = cursor_.read<std::uint8_t>() != 0;
+    } else if constexpr (std::is_enum_v<T>) {
+      std::underlying_type_t<T> number{};
+      read(number);
+      value = static_cast<T>(number);
     } else if constexpr (std::is_arithmetic_v<T>) {
       align(sizeof(T));
       value = cursor_.read<T>();
@@ -60,20 +65,34 @@ class WireReader {
 
   void read(std::string& text) {
     const std::size_t length = read_count();
-    const Bytes bytes = cursor_.take(length);
-    const bool ended = kFormat == Wire::kCdr && length > 0 && bytes.back() == 0;
-    text = to_text(bytes.first(ended ? length - 1 : length));
+    Bytes bytes = cursor_.take(length);
+    if (kFormat == Wire::kCdr && length > 0) {  // some write an empty string as length 0, without end mark
+      if (bytes.back() != 0) {
+        throw WireError("a string of " + std::to_string(length) + " bytes before byte " +
+                        std::to_string(cursor_.position()) + " has no end mark");
+      }
+      bytes = bytes.first(length - 1);
+    }
+    text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   }
 
   template <class T, std::size_t kSize>
   void read(std::array<T, kSize>& values) {
-    for (T& value : values) read(value);
+    if constexpr (std::is_arithmetic_v<T>) {
+      align(sizeof(T));
+      std::memcpy(values.data(), cursor_.take(sizeof(values)).data(), sizeof(values));
+    } else {
+      for (T& value : values) read(value);
+    }
   }
 
   template <class T>
   void read(std::vector<T>& values) {
     const std::size_t count = read_count();
-    if constexpr (std::is_arithmetic_v<T>) {
+    if constexpr (sizeof(T) == 1) {
+      const Bytes bytes = cursor_.take(count);
+      values.assign(bytes.begin(), bytes.end());
+    } else if constexpr (std::is_arithmetic_v<T>) {
       if (count > 0) align(sizeof(T));
       const Bytes bytes = cursor_.take(count * sizeof(T));
       values.resize(count);

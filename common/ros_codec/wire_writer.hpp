@@ -4,86 +4,132 @@
 
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "common/ros_codec/wire.hpp"
 
 namespace rtd::ros {
 
+/// Where written bytes go.
+class ByteVector {
+ public:
+  void append(const void* source, std::size_t size) {
+    const auto* first = static_cast<const std::uint8_t*>(source);
+    bytes_.insert(bytes_.end(), first, first + size);
+  }
+  void pad(std::size_t size) { bytes_.resize(bytes_.size() + size); }
+  std::size_t size() const { return bytes_.size(); }
+  void reserve(std::size_t size) { bytes_.reserve(size); }
+  std::vector<std::uint8_t> take() { return std::move(bytes_); }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+};
+
+/// Only counts them.
+class ByteCount {
+ public:
+  void append(const void*, std::size_t size) { size_ += size; }
+  void pad(std::size_t size) { size_ += size; }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::size_t size_ = 0;
+};
+
 /// Writes messages of wire.hpp.
-template <Wire kFormat>
+template <Wire kFormat, class Output = ByteVector>
 class WireWriter {
  public:
   static constexpr Wire kWire = kFormat;
 
-  WireWriter() {
-    if constexpr (kFormat == Wire::kCdr) bytes_ = {0, 1, 0, 0};
+  explicit WireWriter(Output output = {}) : output_(std::move(output)) {
+    constexpr std::uint8_t kLittleEndianCdr[kHeaderBytes] = {0, 1, 0, 0};
+    if constexpr (kFormat == Wire::kCdr) output_.append(kLittleEndianCdr, kHeaderBytes);
   }
 
   template <class... Fields>
   void operator()(const Fields&... values) {
     (write(values), ...);
   }
-  std::vector<std::uint8_t> take() { return std::move(bytes_); }
+  Output& output() { return output_; }
 
  private:
-  void align(std::size_t size) {
-    constexpr std::size_t kHeaderBytes = 4;
-    if constexpr (kFormat == Wire::kCdr) {
-      const std::size_t position = bytes_.size() - kHeaderBytes;
-      bytes_.resize(bytes_.size() + (size - position % size) % size);
-    }
-  }
+  static constexpr std::size_t kHeaderBytes = 4;
 
-  void append(const void* source, std::size_t size) {
-    const auto* first = static_cast<const std::uint8_t*>(source);
-    bytes_.insert(bytes_.end(), first, first + size);
+  void align(std::size_t size) {
+    if constexpr (kFormat == Wire::kCdr) {
+      const std::size_t position = output_.size() - kHeaderBytes;
+      output_.pad((size - position % size) % size);
+    }
   }
 
   template <class T>
   void write(const T& value) {
     if constexpr (std::is_same_v<T, bool>) {
-      bytes_.push_back(value ? 1 : 0);
+      const std::uint8_t byte = value ? 1 : 0;
+      output_.append(&byte, 1);
+    } else if constexpr (std::is_enum_v<T>) {
+      write(static_cast<std::underlying_type_t<T>>(value));
     } else if constexpr (std::is_arithmetic_v<T>) {
-      align(sizeof(T));
-      append(&value, sizeof(T));
+      write_numbers(&value, 1);
     } else {
       fields(*this, value);
     }
   }
 
+  template <class T>
+  void write_numbers(const T* values, std::size_t count) {
+    align(sizeof(T));
+    output_.append(values, count * sizeof(T));
+  }
+
   void write(const std::string& text) {
-    write(static_cast<std::uint32_t>(text.size() + (kFormat == Wire::kCdr ? 1 : 0)));
-    append(text.data(), text.size());
-    if constexpr (kFormat == Wire::kCdr) bytes_.push_back(0);
+    constexpr std::size_t kEndMark = kFormat == Wire::kCdr ? 1 : 0;
+    write(static_cast<std::uint32_t>(text.size() + kEndMark));
+    output_.append(text.c_str(), text.size() + kEndMark);
   }
 
   template <class T, std::size_t kSize>
   void write(const std::array<T, kSize>& values) {
-    for (const T& value : values) write(value);
+    if constexpr (std::is_arithmetic_v<T>) {
+      write_numbers(values.data(), kSize);
+    } else {
+      for (const T& value : values) write(value);
+    }
   }
 
   template <class T>
   void write(const std::vector<T>& values) {
     write(static_cast<std::uint32_t>(values.size()));
     if constexpr (std::is_arithmetic_v<T>) {
-      if (!values.empty()) align(sizeof(T));
-      append(values.data(), values.size() * sizeof(T));
+      if (!values.empty()) write_numbers(values.data(), values.size());
     } else {
       for (const T& value : values) write(value);
     }
   }
 
-  std::vector<std::uint8_t> bytes_;
+  Output output_;
 };
+
+/// How many bytes encode() gives.
+template <Wire kFormat, class Message>
+std::size_t encoded_size(const Message& message) {
+  WireWriter<kFormat, ByteCount> counter;
+  counter(message);
+  return counter.output().size();
+}
 
 template <Wire kFormat, class Message>
 std::vector<std::uint8_t> encode(const Message& message) {
-  WireWriter<kFormat> writer;
+  ByteVector bytes;
+  bytes.reserve(encoded_size<kFormat>(message));
+  WireWriter<kFormat> writer(std::move(bytes));
   writer(message);
-  return writer.take();
+  return writer.output().take();
 }
 
 }  // namespace rtd::ros
