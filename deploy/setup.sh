@@ -13,7 +13,7 @@ Usage: deploy/setup.sh [--check | --list | --models | --no-models | --viewers]
   --list       print the Debian packages, one a line
   --models     only fetch and convert the detector weights
   --no-models  only install the packages
-  --viewers    also what the tests with other people's viewers need: node, Chromium, npm packages (500 MB)
+  --viewers    also what the tests with other people's viewers and serialisers need: node, Chromium, npm packages (500 MB)
 TEXT
 }
 
@@ -100,7 +100,7 @@ install_viewers() {
   mkdir -p "$tools"
   cp "$root/tests/interop/viewers/package.json" "$tools/"
   npm --prefix "$tools" install --no-audit --no-fund --ignore-scripts
-  echo "setup: next: ./deploy/test.sh -R interop.viewer"
+  echo "setup: next: ./deploy/test.sh -R interop"
 }
 
 check() {

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Samples of the standard messages, one JSON object a line: {"type": "nav_msgs/Odometry", "value": {..}, "cdr":
+// "0001.."}
+//   cdr_samples write            prints samples of our own
+//   cdr_samples check < SAMPLES  encodes and decodes those of another implementation; exit code 1 where we differ
+#include <fmt/format.h>
+
+#include <iostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "common/ros_codec/wire_reader.hpp"
+#include "common/ros_codec/wire_writer.hpp"
+#include "tests/interop/cdr/named_messages.hpp"
+#include "tests/unit/bus/random_message.hpp"
+
+namespace rtd {
+namespace {
+
+using Json = nlohmann::json;
+using Cdr = std::vector<std::uint8_t>;
+
+/// Calls use.operator()<T>(name) with each standard type of a topic.
+void for_each_type(auto use) {
+  use.template operator()<msg::CompressedImage>("sensor_msgs/CompressedImage");
+  use.template operator()<msg::Image>("sensor_msgs/Image");
+  use.template operator()<msg::CameraInfo>("sensor_msgs/CameraInfo");
+  use.template operator()<msg::PointCloud2>("sensor_msgs/PointCloud2");
+  use.template operator()<msg::Detection2DArray>("vision_msgs/Detection2DArray");
+  use.template operator()<msg::Odometry>("nav_msgs/Odometry");
+  use.template operator()<msg::Path>("nav_msgs/Path");
+  use.template operator()<msg::PoseStamped>("geometry_msgs/PoseStamped");
+  use.template operator()<msg::TFMessage>("tf2_msgs/TFMessage");
+  use.template operator()<msg::DiagnosticArray>("diagnostic_msgs/DiagnosticArray");
+}
+
+std::string to_hex(const Cdr& bytes) {
+  std::string text;
+  for (const std::uint8_t byte : bytes) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+Cdr from_hex(const std::string& text) {
+  Cdr bytes;
+  for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
+    bytes.push_back(static_cast<std::uint8_t>(std::stoul(text.substr(i, 2), nullptr, 16)));
+  }
+  return bytes;
+}
+
+void write_samples() {
+  constexpr int kSamples = 50;  // of a type; the first one is empty
+  std::mt19937_64 random(21);
+  for_each_type([&]<class T>(const char* name) {
+    for (int i = 0; i < kSamples; ++i) {
+      T message;
+      if (i > 0) bus::reflect::randomize(message, random);
+      const Json sample{{"type", name}, {"value", message}, {"cdr", to_hex(ros::encode<ros::Wire::kCdr>(message))}};
+      std::cout << sample.dump() << '\n';
+    }
+  });
+}
+
+/// Empty: we write the same bytes and read the same values.
+template <class T>
+std::string difference(const Json& sample) {
+  const Cdr theirs = from_hex(sample.at("cdr"));
+  const Cdr ours = ros::encode<ros::Wire::kCdr>(sample.at("value").get<T>());
+  if (ours != theirs) return "we write\n  " + to_hex(ours) + "\nthey write\n  " + to_hex(theirs);
+  const Json read = ros::decode<T>(ros::Wire::kCdr, theirs);
+  if (read != sample.at("value")) return "we read " + read.dump();
+  return {};
+}
+
+int check_samples() {
+  int samples = 0, differences = 0;
+  for (std::string line; std::getline(std::cin, line); ++samples) {
+    const Json sample = Json::parse(line);
+    bool known = false;
+    for_each_type([&]<class T>(const char* name) {
+      if (sample.at("type") != name) return;
+      known = true;
+      const std::string what = difference<T>(sample);
+      if (what.empty()) return;
+      ++differences;
+      std::cerr << name << ' ' << sample.at("value").dump() << ": " << what << '\n';
+    });
+    if (!known) ++differences;
+  }
+  std::cout << samples << " of their samples, " << differences << " differ\n";
+  return samples > 0 && differences == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace rtd
+
+int main(int argc, char** argv) {
+  const std::string command = argc == 2 ? argv[1] : "";
+  try {
+    if (command == "check") return rtd::check_samples();
+    if (command == "write") return rtd::write_samples(), 0;
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+  std::cerr << "usage: cdr_samples write|check\n";
+  return 2;
+}
