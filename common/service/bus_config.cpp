@@ -6,12 +6,21 @@
 
 namespace rtd::service {
 
+void NetworkConfig::bind(ConfigBinder& binder) {
+  binder.field("loopback_only", loopback_only, "false: also the host's network interfaces");
+  binder.field("interfaces", interfaces, "names or IPv4 addresses to use beside loopback, none: all (--interface)");
+  binder.field("multicast", multicast, "false: only peers and the discovery server are asked");
+  binder.field("peers", peers, "hosts that are asked directly, HOST or HOST:PORT (--peers)");
+  binder.field("discovery_server", discovery_server, "HOST:PORT of a Fast DDS Discovery Server (--discovery-server)");
+  binder.field("max_datagram_bytes", max_datagram_bytes, {512, 65000}, "DDS cuts larger samples; 1400 on a network");
+}
+
 void BusConfig::bind(ConfigBinder& binder) {
   binder.field("vendor", vendor, "DDS implementation (--dds, RTD_DDS)");
   binder.field("domain", domain, {0, 232}, "DDS domain (--domain, ROS_DOMAIN_ID)");
   binder.field("shm_segment_mib", shm_segment_mib, {8, 1024}, "shared-memory segment of each process");
   binder.field("socket_buffer_kib", socket_buffer_kib, {64, 65536}, "wanted UDP buffers, capped by the kernel");
-  binder.field("loopback_only", loopback_only, "false: also use the host's network interfaces");
+  binder.section("network", network);
 }
 
 void apply_bus_environment(ConfigBinder& binder) {
@@ -26,7 +35,12 @@ bus::BusOptions to_bus_options(const BusConfig& config, const std::string& parti
   options.participant_name = participant_name;
   options.shm_segment_mib = static_cast<std::uint32_t>(config.shm_segment_mib);
   options.socket_buffer_kib = static_cast<std::uint32_t>(config.socket_buffer_kib);
-  options.network.loopback_only = config.loopback_only;
+  options.network.loopback_only = config.network.loopback_only;
+  options.network.interfaces = config.network.interfaces;
+  options.network.multicast = config.network.multicast;
+  options.network.peers = config.network.peers;
+  options.network.discovery_server = config.network.discovery_server;
+  options.network.max_datagram_bytes = static_cast<std::uint32_t>(config.network.max_datagram_bytes);
   return options;
 }
 

@@ -10,13 +10,25 @@
 
 namespace rtd::service {
 
+/// bus.network: where a process looks for others. The profiles of config/profiles are sets of these.
+struct NetworkConfig {
+  bool loopback_only = bus::NetworkOptions{}.loopback_only;
+  std::vector<std::string> interfaces;
+  bool multicast = bus::NetworkOptions{}.multicast;
+  std::vector<std::string> peers;
+  std::string discovery_server;
+  int max_datagram_bytes = static_cast<int>(bus::NetworkOptions{}.max_datagram_bytes);
+
+  void bind(ConfigBinder& binder);
+};
+
 /// Settings of the bus as config keys; defaults come from BusOptions and the environment.
 struct BusConfig {
   std::string vendor = bus::BusOptions{}.vendor;
   int domain = static_cast<int>(bus::BusOptions{}.domain);
   int shm_segment_mib = static_cast<int>(bus::BusOptions{}.shm_segment_mib);
   int socket_buffer_kib = static_cast<int>(bus::BusOptions{}.socket_buffer_kib);
-  bool loopback_only = bus::NetworkOptions{}.loopback_only;
+  NetworkConfig network;
 
   void bind(ConfigBinder& binder);
 };

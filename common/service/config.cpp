@@ -239,19 +239,24 @@ void flatten(const YAML::Node& node, const std::string& prefix, const std::vecto
 }  // namespace
 
 void ConfigBinder::load_file(const std::string& path, const std::vector<std::string>& foreign_sections) {
-  if (!std::ifstream(path))
-    throw ConfigError(fmt::format("config file '{}' cannot be read: check the path given to --config", path));
+  std::ifstream file(path);
+  if (!file) throw ConfigError(fmt::format("config file '{}' cannot be read: check the path given to --config", path));
+  load_text({std::istreambuf_iterator<char>(file), {}}, path, foreign_sections);
+}
+
+void ConfigBinder::load_text(const std::string& yaml, const std::string& origin,
+                             const std::vector<std::string>& foreign_sections) {
   YAML::Node root;
   try {
-    root = YAML::LoadFile(path);
+    root = YAML::Load(yaml);
   } catch (const YAML::Exception& error) {
-    throw ConfigError(fmt::format("{}:{}: not valid YAML: {}", path, error.mark.line + 1, error.msg));
+    throw ConfigError(fmt::format("{}:{}: not valid YAML: {}", origin, error.mark.line + 1, error.msg));
   }
   if (root.IsNull()) return;
-  if (!root.IsMap()) throw ConfigError(fmt::format("{}: expected sections such as 'filter:' at the top level", path));
-  flatten(root, "", keys(), [&](const std::string& key, const std::string& yaml) {
+  if (!root.IsMap()) throw ConfigError(fmt::format("{}: expected sections such as 'filter:' at the top level", origin));
+  flatten(root, "", keys(), [&](const std::string& key, const std::string& value) {
     if (is_foreign(key, foreign_sections)) return;
-    set(key, yaml, path);
+    set(key, value, origin);
   });
 }
 

@@ -51,6 +51,8 @@ class ConfigBinder {
   /// Loads a YAML file. Top-level sections named in `foreign_sections` belong to other services and are skipped, unless
   /// a key of this binder lies in them; any other unknown key, a wrong type or a value out of range throws ConfigError.
   void load_file(const std::string& path, const std::vector<std::string>& foreign_sections);
+  /// The same for YAML text; errors name `origin`.
+  void load_text(const std::string& yaml, const std::string& origin, const std::vector<std::string>& foreign_sections);
   /// Applies one "key=value" override (value parsed as YAML). With `foreign_sections`, a key of another service is
   /// skipped.
   void set(const std::string& assignment, const std::vector<std::string>& foreign_sections = {});

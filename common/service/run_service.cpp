@@ -13,6 +13,7 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/host_checks.hpp"
+#include "common/service/bus_arguments.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/log.hpp"
 
@@ -20,32 +21,21 @@ namespace rtd::service {
 namespace {
 
 struct CommonOptions {
-  std::string config_file, pace = "realtime", log_level = "info";
-  std::vector<std::string> overrides;
-  std::string vendor;
-  int domain = -1;
+  BusArguments bus;
+  ConfigSources config;
+  std::string pace = "realtime", log_level = "info";
   bool print_config = false;
 };
 
 void add_common_options(CLI::App& app, CommonOptions& common) {
-  app.add_option("--config", common.config_file, "YAML file with a section per service");
-  app.add_option("--set", common.overrides, "Override one key, e.g. --set filter.mode=rtd (repeatable)");
+  app.add_option("--config", common.config.file, "YAML file with a section per service");
+  app.add_option("--set", common.config.overrides, "Override one key, e.g. --set filter.mode=rtd (repeatable)");
   app.add_option("--pace", common.pace, "realtime, asap or lockstep")->capture_default_str();
-  app.add_option("--dds", common.vendor, "DDS implementation: fastdds (RTD_DDS)");
-  app.add_option("--domain", common.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
+  add_bus_options(app, common.bus);
   app.add_option("--log-level", common.log_level, "trace, debug, info, warning, error")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error"}))
       ->capture_default_str();
   app.add_flag("--print-config", common.print_config, "Print all keys with the values in force and end");
-}
-
-/// Values in rising priority: defaults, environment, file, --set, own options.
-void load_config(ConfigBinder& binder, const CommonOptions& common) {
-  apply_bus_environment(binder);
-  if (!common.config_file.empty()) binder.load_file(common.config_file, config_sections());
-  for (const std::string& assignment : common.overrides) binder.set(assignment, config_sections());
-  if (!common.vendor.empty()) binder.set("bus.vendor", common.vendor, "--dds");
-  if (common.domain >= 0) binder.set("bus.domain", std::to_string(common.domain), "--domain");
 }
 
 /// Turns SIGINT and SIGTERM into a stop request. All other threads inherit the blocked mask.
@@ -110,8 +100,8 @@ int run_service(const ServiceDefinition& definition, int argc, char** argv) {
     definition.add_options(app);
     try {
       app.parse(argc, argv);
-      load_config(binder, common);
-      common.overrides.clear();
+      load_config(binder, common.bus, common.config);
+      common.config.overrides.clear();
       app.clear();
       app.parse(argc, argv);
     } catch (const CLI::CallForHelp& help) {

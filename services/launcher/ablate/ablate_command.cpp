@@ -178,8 +178,7 @@ void add_ablate_command(CLI::App& app, AblateOptions& options) {
       ->delimiter(',');
   command->add_option("--out", options.out_dir, "Folder for all runs and ablation.html")->capture_default_str();
   command->add_option("--frames", options.frames, "End each run after so many frames");
-  command->add_option("--dds", options.dds, "DDS implementation: fastdds (RTD_DDS)");
-  command->add_option("--domain", options.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
+  service::add_bus_options(*command, options.bus);
   command->add_option("--config", options.config_file, "YAML file with a section per service")
       ->check(CLI::ExistingFile);
   command->add_option("--set", options.overrides, "Override one key in every run (repeatable)");

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/service/bus_arguments.hpp"
+
 namespace CLI {
 class App;
 }
@@ -20,9 +22,9 @@ struct AblateOptions {
   std::vector<std::string> modes;    ///< empty: all
   std::vector<std::string> without;  ///< techniques to switch off, each alone; empty: all; "none"
   std::string out_dir = "rtd_ablation";
-  std::string dds, config_file, detector = "auto", model;
+  service::BusArguments bus;
+  std::string config_file, detector = "auto", model;
   std::vector<std::string> overrides;
-  int domain = -1;
   std::uint64_t frames = 0;  ///< of each run; 0 = all
   bool json = false;         ///< JSON on standard output instead of the table
   bool resume = false;       ///< keep finished runs of the same settings in out_dir

@@ -35,8 +35,7 @@ RunOptions run_options(const AblateOptions& options, const VariantTask& task, co
   run.source = task.source;
   run.pace = options.pace;
   run.filter_mode = task.variant.mode;
-  run.dds = options.dds;
-  run.domain = options.domain;
+  run.bus = options.bus;
   run.config_file = options.config_file;
   run.overrides = options.overrides;
   run.overrides.insert(run.overrides.end(), task.variant.settings.begin(), task.variant.settings.end());

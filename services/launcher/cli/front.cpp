@@ -52,8 +52,7 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command
       ->add_option("--filter", options.filter_mode, "off, semantic, geometry, epipolar, rtd-paper or rtd (default rtd)")
       ->check(CLI::IsMember(kFilterModes));
-  command->add_option("--dds", options.dds, "DDS implementation: fastdds (RTD_DDS)");
-  command->add_option("--domain", options.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
+  service::add_bus_options(*command, options.bus);
   command->add_option("--config", options.config_file, "YAML file with a section per service")
       ->check(CLI::ExistingFile);
   command->add_option("--set", options.overrides, "Override one key, e.g. --set filter.mode=geometry (repeatable)");
@@ -82,8 +81,7 @@ void add_demo_command(CLI::App& app, DemoOptions& options) {
   command->add_option("--dataset", options.dataset, "TUM RGB-D sequence to download, e.g. fr3_walking_xyz");
   command->add_option("--out", options.out_dir, "Folder for both runs and demo.html")->capture_default_str();
   command->add_option("--frames", options.frames, "End after so many frames");
-  command->add_option("--dds", options.dds, "DDS implementation: fastdds (RTD_DDS)");
-  command->add_option("--domain", options.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
+  service::add_bus_options(*command, options.bus);
 }
 
 std::string services_text() {

@@ -37,8 +37,7 @@ RunResult run_mode(const DemoOptions& options, const std::string& source, const 
   run_options.source = source;
   run_options.pace = "lockstep";
   run_options.filter_mode = mode;
-  run_options.dds = options.dds;
-  run_options.domain = options.domain;
+  run_options.bus = options.bus;
   run_options.frames = options.frames;
   run_options.out_dir = (fs::path(options.out_dir) / mode).string();
   return run(run_options);

@@ -5,14 +5,15 @@
 #include <cstdint>
 #include <string>
 
+#include "common/service/bus_arguments.hpp"
+
 namespace rtd::launcher {
 
 /// The command line of `rtd demo`.
 struct DemoOptions {
   std::string dataset;  ///< TUM sequence to download; empty: RTD_DATA_DIR's walk_xyz, else the synthetic office
   std::string out_dir = "rtd-demo";
-  std::string dds;
-  int domain = -1;
+  service::BusArguments bus;
   std::uint64_t frames = 0;
 };
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/service/bus_arguments.hpp"
+
 namespace rtd::launcher {
 
 /// From nothing to everything; what each is made of: docs/theory/dynamic_points.md "Modes".
@@ -20,8 +22,7 @@ struct RunOptions {
   std::string source;
   std::string pace = "realtime";
   std::string filter_mode;  ///< one of kFilterModes; empty: configuration, default rtd
-  std::string dds;          ///< empty: configuration, environment, default
-  int domain = -1;          ///< -1: configuration, environment, default
+  service::BusArguments bus;
   std::string config_file;
   std::vector<std::string> overrides;  ///< "key=value" for any service
   std::string detector = "auto";       ///< "auto": when weights are found and the filter mode needs them; "off"

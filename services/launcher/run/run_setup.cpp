@@ -42,12 +42,9 @@ void load_config(const RunOptions& options, RunSetup& setup) {
   service::ConfigBinder binder;
   binder.section("bus", bus);
   binder.section("launcher", setup.launcher);
-  service::apply_bus_environment(binder);
-  if (!options.config_file.empty()) binder.load_file(options.config_file, service::config_sections());
   check_sections(options.overrides);
-  for (const std::string& assignment : options.overrides) binder.set(assignment, service::config_sections());
-  if (!options.dds.empty()) binder.set("bus.vendor", options.dds, "--dds");
-  if (options.domain >= 0) binder.set("bus.domain", std::to_string(options.domain), "--domain");
+  service::load_config(binder, options.bus, {options.config_file, options.overrides});
+  setup.bus_words = service::to_words(options.bus);
   setup.bus = service::to_bus_options(bus, "rtd");
 }
 
@@ -120,8 +117,8 @@ std::string require_executable(const std::string& service) {
 }
 
 std::vector<std::string> common_arguments(const RunSetup& setup) {
-  std::vector<std::string> arguments = {"--pace",         setup.pace, "--dds",
-                                        setup.bus.vendor, "--domain", std::to_string(setup.bus.domain)};
+  std::vector<std::string> arguments = {"--pace", setup.pace};
+  arguments.insert(arguments.end(), setup.bus_words.begin(), setup.bus_words.end());
   if (!setup.config_file.empty()) arguments.insert(arguments.end(), {"--config", setup.config_file});
   for (const std::string& assignment : setup.overrides) arguments.insert(arguments.end(), {"--set", assignment});
   return arguments;

@@ -17,8 +17,9 @@ namespace rtd::launcher {
 struct RunSetup {
   LauncherConfig launcher;
   bus::BusOptions bus;
-  std::string source;              ///< URI
-  std::uint64_t total_frames = 0;  ///< 0 = unknown or endless
+  std::vector<std::string> bus_words;  ///< the same, for the services' command lines
+  std::string source;                  ///< URI
+  std::uint64_t total_frames = 0;      ///< 0 = unknown or endless
   std::string pace, filter_mode, out_dir;
   std::string model_path;       ///< empty: no detector in this run
   std::string detector_note;    ///< model file name, or "off (why)"

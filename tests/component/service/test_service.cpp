@@ -13,6 +13,7 @@
 namespace rtd::service {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using namespace std::chrono_literals;
 
@@ -119,6 +120,57 @@ TEST_F(RunServiceTest, wrong_use_ends_with_two) {
   EXPECT_EQ(run({"--dds", "inprocess", "--domain", "300"}), kUsageOrConfig);
   EXPECT_EQ(run({"--dds", "inprocess", "--set", "filter.count=11"}), kUsageOrConfig);
   EXPECT_EQ(run({"--dds", "inprocess", "--config", "/nonexistent.yaml"}), kUsageOrConfig);
+}
+
+/// What a service is given as bus options.
+class BusOptionsTest : public RunServiceTest {
+ protected:
+  bus::NetworkOptions network_of(std::vector<std::string> words) {
+    bus::NetworkOptions network;
+    body_ = [&network](Runtime& runtime) {
+      network = runtime.bus_options.network;
+      return kOk;
+    };
+    words.insert(words.begin(), {"--dds", "inprocess"});
+    EXPECT_EQ(run(words), kOk);
+    return network;
+  }
+};
+
+TEST_F(BusOptionsTest, a_profile_opens_the_network_and_cuts_datagrams) {
+  EXPECT_TRUE(network_of({}).loopback_only);
+  EXPECT_EQ(network_of({}).max_datagram_bytes, network_of({"--profile", "localhost"}).max_datagram_bytes);
+  for (const char* profile : {"lan", "wifi", "secure"}) {
+    const bus::NetworkOptions network = network_of({"--profile", profile});
+    EXPECT_FALSE(network.loopback_only) << profile;
+    EXPECT_LE(network.max_datagram_bytes, 1400) << profile;
+    EXPECT_EQ(network.multicast, std::string(profile) != "wifi") << profile;
+  }
+}
+
+TEST_F(BusOptionsTest, peers_and_interfaces_are_lists) {
+  const bus::NetworkOptions network =
+      network_of({"--profile", "lan", "--peers", "10.0.0.2:7410,gpubox", "--interface", "eth0,wlan0"});
+  EXPECT_THAT(network.peers, ElementsAre("10.0.0.2:7410", "gpubox"));
+  EXPECT_THAT(network.interfaces, ElementsAre("eth0", "wlan0"));
+}
+
+TEST_F(BusOptionsTest, a_file_wins_over_the_profile_and_own_options_over_both) {
+  const std::string path = ::testing::TempDir() + "/rtd_bus_options_test.yaml";
+  std::ofstream(path) << "bus: {network: {multicast: false, peers: [a]}}\n";
+  EXPECT_FALSE(network_of({"--profile", "lan", "--config", path}).multicast);
+  EXPECT_THAT(network_of({"--profile", path}).peers, ElementsAre("a"));
+  EXPECT_THAT(network_of({"--profile", path, "--set", "bus.network.peers=[b]"}).peers, ElementsAre("b"));
+  EXPECT_THAT(network_of({"--profile", path, "--set", "bus.network.peers=[b]", "--peers", "c"}).peers,
+              ElementsAre("c"));
+}
+
+TEST_F(BusOptionsTest, an_unknown_profile_names_those_there_are) {
+  for (const char* profile : {"lna", "/no/such.yaml", "/tmp"}) {
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(run({"--dds", "inprocess", "--profile", profile}), kUsageOrConfig);
+    EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("lan, localhost, secure, wifi")) << profile;
+  }
 }
 
 TEST_F(RunServiceTest, an_exception_is_a_failed_run) {
