@@ -28,7 +28,7 @@ packages=(
   cyclonedds-dev cyclonedds-tools
   libopencv-dev libeigen3-dev libceres-dev
   libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libtinyxml2-dev
-  zlib1g-dev libdeflate-dev libbz2-dev liblz4-dev libzstd-dev
+  zlib1g-dev libdeflate-dev libbz2-dev liblz4-dev libzstd-dev libssl-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   python3 python3-numpy python3-onnx python3-opencv
   python3-rosbag python3-sensor-msgs

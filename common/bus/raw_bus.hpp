@@ -50,6 +50,7 @@ struct TopicWriter {
   RawQos qos;
   bool own = false;            ///< belongs to this connection
   bool shared_memory = false;  ///< its samples, of a fixed size, stay in its shared memory for those who read there
+  std::string user_data;       ///< what it announces beside; ROS 2: "typehash=RIHS01_...;" (common/ros2/type_hash.hpp)
 };
 
 enum class WriterChange { kAppeared, kChanged, kGone };

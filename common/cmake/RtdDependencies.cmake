@@ -14,6 +14,7 @@ find_package(nlohmann_json REQUIRED)
 find_package(tinyxml2 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(zstd REQUIRED)
+find_package(OpenSSL REQUIRED)
 find_library(RTD_DEFLATE_LIBRARY deflate REQUIRED)  # Debian's packages of these two have no CMake file
 find_library(RTD_LZ4_LIBRARY lz4 REQUIRED)
 find_package(BZip2 REQUIRED)

@@ -3,11 +3,11 @@
 #include "common/ros2/type_definition.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <sstream>
 #include <vector>
 
 #include "common/ros2/definition_texts.hpp"
+#include "common/ros2/message_fields.hpp"
 #include "common/ros2/names.hpp"
 
 namespace rtd::ros2 {
@@ -16,28 +16,14 @@ namespace {
 constexpr const char* kOwnPackage = "rtd_msgs::msg::dds_::";
 const std::string kSeparator(80, '=');  // between the types of one text, as rosbag2 has it
 
-/// "package/Type" of every message type in a .msg text, in the order of the fields.
-std::vector<std::string> parts_of(const std::string& text, const std::string& package) {
-  std::vector<std::string> parts;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    const std::string type = line.substr(0, line.find_first_of(" ["));
-    if (type.find('/') != std::string::npos) {
-      parts.push_back(type);
-    } else if (!type.empty() && std::isupper(static_cast<unsigned char>(type[0])) != 0) {
-      parts.push_back(package + '/' + type);
-    }
-  }
-  return parts;
-}
-
 /// The types that one is made of, each once, the type itself first.
 std::vector<std::string> closure(const std::string& type) {
   std::vector<std::string> all{type};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string package = all[i].substr(0, all[i].find('/'));
-    for (const std::string& part : parts_of(message_texts().at(all[i]), package)) {
-      if (std::find(all.begin(), all.end(), part) == all.end()) all.push_back(part);
+    for (const MessageField& field : fields_of(message_texts().at(all[i]), package)) {
+      const bool known = std::find(all.begin(), all.end(), field.type) != all.end();
+      if (field.is_message() && !known) all.push_back(field.type);
     }
   }
   return all;

@@ -17,7 +17,8 @@ FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::uniq
       on_message_(std::move(on_message)),
       callbacks_(std::move(callbacks)),
       thread_([this] { return handle_one(); }) {
-  reader_ = participant_->subscriber().create_datareader(participant_->topic(topic, *codec_), qos, this);
+  dds::Topic* const known = participant_->topic(topic, *codec_);
+  reader_ = participant_->subscriber().create_datareader(known, with_type_hash(qos, known->get_type_name()), this);
   if (reader_ == nullptr) throw BusError("Fast DDS refused a reader on topic " + topic);
   thread_.wake();  // a sample may have come before reader_ was known
 }

@@ -15,7 +15,8 @@ FastddsWriter::FastddsWriter(std::shared_ptr<Participant> participant, std::uniq
                              const std::string& topic, const dds::DataWriterQos& qos, StatusCallbacks callbacks)
     : participant_(std::move(participant)), codec_(std::move(codec)), callbacks_(std::move(callbacks)) {
   if (callbacks_.on_matched || callbacks_.on_incompatible_qos || callbacks_.on_deadline_missed) thread_.emplace();
-  writer_ = participant_->publisher().create_datawriter(participant_->topic(topic, *codec_), qos, this);
+  dds::Topic* const known = participant_->topic(topic, *codec_);
+  writer_ = participant_->publisher().create_datawriter(known, with_type_hash(qos, known->get_type_name()), this);
   if (writer_ == nullptr) throw BusError("Fast DDS refused a writer on topic " + topic);
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/qos_mapping.hpp"
 
+#include "common/ros2/type_hash.hpp"
+
 namespace rtd::bus::fastdds {
 namespace {
 
@@ -53,6 +55,13 @@ Qos endpoint_qos(const QosSettings& settings, bool plain) {
   return qos;
 }
 
+template <class Qos>
+Qos hashed(Qos qos, const std::string& dds_type) {
+  const std::string text = ros2::user_data_of(dds_type);
+  qos.user_data().data_vec({text.begin(), text.end()});
+  return qos;
+}
+
 }  // namespace
 
 dds::DataWriterQos writer_qos(const QosSettings& settings, bool plain) {
@@ -76,6 +85,14 @@ dds::DataReaderQos reader_qos(const QosSettings& settings, bool plain) {
   qos.type_consistency().representation.m_value = {dds::XCDR_DATA_REPRESENTATION};
   qos.reliable_reader_qos().times.heartbeatResponseDelay = milliseconds(kResponseDelayMs);
   return qos;
+}
+
+dds::DataWriterQos with_type_hash(dds::DataWriterQos qos, const std::string& dds_type) {
+  return hashed(std::move(qos), dds_type);
+}
+
+dds::DataReaderQos with_type_hash(dds::DataReaderQos qos, const std::string& dds_type) {
+  return hashed(std::move(qos), dds_type);
 }
 
 std::string policy_name(dds::QosPolicyId_t id) {

@@ -15,6 +15,12 @@ namespace rtd::bus::fastdds {
 eprosima::fastdds::dds::DataWriterQos writer_qos(const QosSettings& settings, bool plain);
 eprosima::fastdds::dds::DataReaderQos reader_qos(const QosSettings& settings, bool plain);
 
+/// With the type's hash in the user data, for ROS 2 (common/ros2/type_hash.hpp).
+eprosima::fastdds::dds::DataWriterQos with_type_hash(eprosima::fastdds::dds::DataWriterQos qos,
+                                                     const std::string& dds_type);
+eprosima::fastdds::dds::DataReaderQos with_type_hash(eprosima::fastdds::dds::DataReaderQos qos,
+                                                     const std::string& dds_type);
+
 /// DDS name of a policy, e.g. "RELIABILITY".
 std::string policy_name(eprosima::fastdds::dds::QosPolicyId_t id);
 

@@ -61,6 +61,7 @@ TopicWriter to_topic_writer(const eprosima::fastrtps::rtps::WriterProxyData& dat
   writer.topic.name = data.topicName().to_string();
   writer.topic.type = data.typeName().to_string();
   writer.topic.keyed = data.topicKind() == eprosima::fastrtps::rtps::WITH_KEY;
+  writer.user_data.assign(offered.m_userData.begin(), offered.m_userData.end());
   writer.shared_memory = !offered.data_sharing.domain_ids().empty();
   writer.qos.reliable = offered.m_reliability.kind == dds::RELIABLE_RELIABILITY_QOS;
   writer.qos.durability = static_cast<RawQos::Durability>(offered.m_durability.kind);

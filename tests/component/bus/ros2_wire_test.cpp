@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What a ROS 2 node sees of our topics in discovery, and that its usual subscriptions are served.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "common/bus/raw_bus.hpp"
+#include "common/ros2/names.hpp"
+#include "common/ros2/type_hash.hpp"
+#include "tests/component/bus/collector.hpp"
+#include "tests/component/bus/peer_process.hpp"
+
+namespace rtd::bus {
+namespace {
+
+using namespace std::chrono_literals;
+
+class Ros2Wire : public ::testing::TestWithParam<std::string> {
+ protected:
+  BusOptions options(const char* name) const {
+    BusOptions options;
+    options.vendor = GetParam();
+    options.domain = test_domain();
+    options.participant_name = name;
+    return options;
+  }
+};
+
+std::vector<std::string> networked_vendors() {
+  std::vector<std::string> vendors = available_vendors();
+  std::erase(vendors, "inprocess");
+  return vendors;
+}
+
+/// The writer of that topic once it is known; with an empty name when it never is.
+TopicWriter writer_of(const RawBus& bus, const std::string& topic) {
+  for (int i = 0; i < 10000; ++i) {
+    for (const TopicWriter& writer : bus.writers()) {
+      if (writer.topic.name == topic && !writer.own) return writer;
+    }
+    std::this_thread::sleep_for(1ms);
+  }
+  return {};
+}
+
+void expect_as_ros2_wants_it(const TopicWriter& writer, bool latched) {
+  EXPECT_NE(ros2::ros_type(writer.topic.type), writer.topic.type) << "is a ROS 2 name: " << writer.topic.type;
+  EXPECT_EQ(ros2::ros_topic(writer.topic.name).substr(0, 1), "/") << writer.topic.name;
+  EXPECT_FALSE(writer.topic.keyed);
+  EXPECT_EQ(ros2::hash_in(writer.user_data), ros2::type_hash(writer.topic.type));
+  EXPECT_NE(ros2::type_hash(writer.topic.type), "") << writer.topic.type;
+  const RawQos& qos = writer.qos;
+  EXPECT_TRUE(qos.reliable);
+  EXPECT_EQ(qos.durability, latched ? RawQos::Durability::kTransientLocal : RawQos::Durability::kVolatile);
+  EXPECT_EQ(qos.deadline_ns, kUnlimitedNs);
+  EXPECT_EQ(qos.lifespan_ns, kUnlimitedNs);
+  EXPECT_EQ(qos.liveliness, RawQos::Liveliness::kAutomatic);
+  EXPECT_EQ(qos.liveliness_lease_ns, kUnlimitedNs);
+}
+
+TEST_P(Ros2Wire, topics_of_standard_types_announce_names_qos_and_hashes_of_ros2) {
+  const auto bus = connect(options("ros2-wire-typed"));
+  const auto raw = connect_raw(options("ros2-wire-raw"));
+  const auto check = [&](const auto& topic) {
+    const auto writer = bus->writer(topic);
+    const TopicWriter seen = writer_of(*raw, topic.name);
+    ASSERT_EQ(seen.topic.name, topic.name) << "discovered";
+    expect_as_ros2_wants_it(seen, topic.profile == QosProfile::kLatched);
+  };
+  using namespace topics;
+  check(kColorJpeg), check(kCameraInfo), check(kDetections), check(kDynamicMask), check(kOdometry), check(kPose);
+  check(kTf), check(kPath), check(kMapPoints), check(kDensePoints), check(kDiagnostics);
+}
+
+TEST_P(Ros2Wire, default_and_sensor_data_subscriptions_are_served) {
+  const auto bus = connect(options("ros2-wire-typed"));
+  const auto raw = connect_raw(options("ros2-wire-raw"));
+  auto writer = bus->writer(topics::kOdometry);
+  Collector<RawSample> reliable, best_effort;
+  const auto into = [](Collector<RawSample>& samples) {
+    RawHandlers handlers;
+    handlers.on_sample = [&samples](RawSample sample) {
+      samples.push(std::make_shared<const RawSample>(std::move(sample)));
+    };
+    return handlers;
+  };
+  const RawTopic topic{"rt/slam/odometry", "nav_msgs::msg::dds_::Odometry_"};
+  RawReaderOptions by_default, sensor_data;
+  by_default.depth = 10;
+  sensor_data.depth = 5;
+  sensor_data.reliable = false;
+  const auto first = raw->reader(topic, by_default, into(reliable));
+  const auto second = raw->reader(topic, sensor_data, into(best_effort));
+  for (int i = 0; i < 10000 && (writer.matched() < 2 || first->matched() + second->matched() < 2); ++i) {
+    std::this_thread::sleep_for(1ms);
+  }
+  ASSERT_EQ(writer.matched(), 2);
+  for (int i = 0; i < 20; ++i) {  // best effort: one of them may get lost
+    writer.write(msg::Odometry{});
+    std::this_thread::sleep_for(2ms);
+  }
+  EXPECT_NE(reliable.next(), nullptr);
+  EXPECT_NE(best_effort.next(), nullptr);
+}
+
+INSTANTIATE_TEST_SUITE_P(EachVendor, Ros2Wire, ::testing::ValuesIn(networked_vendors()),
+                         [](const auto& vendor) { return vendor.param; });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Ros2Wire);
+
+}  // namespace
+}  // namespace rtd::bus
