@@ -13,6 +13,7 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/host_checks.hpp"
+#include "common/bus/shm_leftovers.hpp"
 #include "common/service/bus_arguments.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/log.hpp"
@@ -63,10 +64,20 @@ class SignalWatcher {
   std::thread thread_;
 };
 
+/// What processes that were killed have left takes the memory that this one needs.
+void remove_leftovers(const bus::BusOptions& options) {
+  if (options.vendor == "inprocess") return;
+  const bus::CleanReport report = bus::remove_shm_leftovers();
+  if (report.removed.empty()) return;
+  SPDLOG_INFO("event=leftovers_removed folder=/dev/shm files={} mib={:.1f}", report.removed.size(),
+              static_cast<double>(report.removed_bytes()) / (1024 * 1024));
+}
+
 ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_config, Pace pace) {
   StopToken stop;
   const SignalWatcher signals(stop);
   const bus::BusOptions options = to_bus_options(bus_config, "rtd-" + definition.name);
+  remove_leftovers(options);
   const std::shared_ptr<bus::Bus> bus = bus::connect(options);
   for (const std::string& warning : bus::host_warnings(options)) SPDLOG_INFO("event=host_limit cause=\"{}\"", warning);
   ExitCode code = kOk;

@@ -38,6 +38,7 @@ struct Requests {
   InfoOptions info;
   DiffRequest diff;
   MapRequest map;
+  DoctorOptions doctor;
 };
 
 void add_run_command(CLI::App& app, RunOptions& options) {
@@ -115,7 +116,7 @@ int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("info")) return run_info(requests.info, std::cout, std::cerr);
   if (app.got_subcommand("diff")) return run_diff(requests.diff, std::cout, std::cerr);
   if (app.got_subcommand("map")) return run_map(requests.map, std::cout, std::cerr);
-  if (app.got_subcommand("doctor")) return doctor(std::cout);
+  if (app.got_subcommand("doctor")) return doctor(requests.doctor, std::cout);
   if (app.got_subcommand("version")) {
     std::cout << "rtd " << RTD_VERSION << '\n';
     return service::kOk;
@@ -144,7 +145,8 @@ int front(int argc, char** argv) {
   add_info_command(app, requests.info);
   add_diff_command(app, requests.diff);
   add_map_command(app, requests.map);
-  app.add_subcommand("doctor", "Check this host: shared memory, sockets, services, weights, data");
+  app.add_subcommand("doctor", "Check this host: shared memory, sockets, services, weights, data")
+      ->add_flag("--clean", requests.doctor.clean, "Remove from /dev/shm what killed processes left there");
   app.add_subcommand("version", "Print the version");
   app.add_subcommand("help", "Print this text");
   app.footer(services_text);

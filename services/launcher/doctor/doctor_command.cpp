@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/bus/host_checks.hpp"
+#include "common/bus/shm_leftovers.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/detector/core/model_locator.hpp"
@@ -68,6 +69,22 @@ void check_bus(Findings& findings) {
   }
 }
 
+/// A MiB count for people.
+std::string mib(std::uint64_t bytes) {
+  return std::to_string((bytes + (1U << 20) - 1) >> 20) + " MiB";
+}
+
+void check_leftovers(Findings& findings) {
+  const bus::CleanReport report = bus::remove_shm_leftovers({.dry_run = true});
+  findings.push_back(
+      report.removed.empty()
+          ? Finding{Verdict::kOk, "shared memory: no leftovers of killed processes"}
+          : Finding{Verdict::kWarn, "shared memory: " + std::to_string(report.removed.size()) + " files, " +
+                                        mib(report.removed_bytes()) +
+                                        " left by killed processes; 'rtd doctor --clean', or the next service that "
+                                        "starts, removes them"});
+}
+
 void check_weights(Findings& findings) {
   const detector::ModelSearch model = detector::find_model({}, detector::process_environment());
   findings.push_back(
@@ -87,11 +104,22 @@ void check_data(Findings& findings) {
   }
 }
 
+int clean(std::ostream& out) {
+  const bus::CleanReport report = bus::remove_shm_leftovers();
+  for (const bus::ShmFile& file : report.removed) out << "removed  " << file.name << "  " << mib(file.bytes) << '\n';
+  for (const bus::ShmFile& file : report.left) out << "left     " << file.name << "  " << file.reason << '\n';
+  out << report.removed.size() << " files removed from /dev/shm, " << mib(report.removed_bytes()) << " freed; "
+      << report.left.size() << " left\n";
+  return service::kOk;
+}
+
 }  // namespace
 
-int doctor(std::ostream& out) {
+int doctor(const DoctorOptions& options, std::ostream& out) {
+  if (options.clean) return clean(out);
   Findings findings;
   check_services(findings);
+  check_leftovers(findings);
   check_bus(findings);
   check_weights(findings);
   check_data(findings);

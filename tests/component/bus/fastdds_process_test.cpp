@@ -8,12 +8,16 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <map>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/shm_leftovers.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/patterns.hpp"
 #include "tests/component/bus/peer_process.hpp"
@@ -143,6 +147,55 @@ TEST(FastddsProcesses, killed_writer_is_noticed_and_its_successor_heard) {
   const PeerProcess second("send_heartbeats", test_domain());
   while (status.next()->pid == pid) {
   }
+}
+
+/// The files of shared memory that only this process maps, with their locks.
+std::set<std::string> shm_files_of(pid_t pid, const std::string& except) {
+  std::set<std::string> files;
+  std::ifstream maps("/proc/" + std::to_string(pid) + "/maps");
+  for (std::string line; std::getline(maps, line);) {
+    const std::size_t name = line.find("/dev/shm/");
+    if (name != std::string::npos && except.find(line.substr(name)) == std::string::npos)
+      files.insert(line.substr(name));
+  }
+  return files;
+}
+
+std::string maps_of(pid_t pid) {
+  std::ifstream maps("/proc/" + std::to_string(pid) + "/maps");
+  return {std::istreambuf_iterator<char>(maps), {}};
+}
+
+template <class Condition>
+bool eventually(Condition condition) {
+  for (int i = 0; i < 10'000; ++i) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(1ms);
+  }
+  return false;
+}
+
+bool exists(const std::string& path) {
+  return access(path.c_str(), F_OK) == 0;
+}
+
+TEST(FastddsProcesses, leftovers_of_a_killed_writer_are_cleaned_and_those_of_the_living_are_not) {
+  PeerProcess killed("flood_frames", test_domain()), living("send_heartbeats", test_domain());
+  const auto has_frames_in = [](pid_t pid) { return maps_of(pid).find("fast_datasharing") != std::string::npos; };
+  const auto has_segment = [](pid_t pid) { return maps_of(pid).find("fastrtps_port") != std::string::npos; };
+  ASSERT_TRUE(eventually([&] { return has_frames_in(killed.pid()) && has_segment(killed.pid()); }));
+  ASSERT_TRUE(eventually([&] { return has_segment(living.pid()); }));
+  const auto doomed = shm_files_of(killed.pid(), maps_of(living.pid()));
+  const auto needed = shm_files_of(living.pid(), {});
+  ASSERT_GE(doomed.size(), 3U);  // segment, port, frames
+
+  killed.kill_now();
+  for (const std::string& file : doomed) EXPECT_TRUE(exists(file)) << file;
+  EXPECT_TRUE(eventually([&] {
+    remove_shm_leftovers();  // what each service does at its start; the files are too young at first
+    return std::none_of(doomed.begin(), doomed.end(), exists);
+  }));
+  for (const std::string& file : needed) EXPECT_TRUE(exists(file)) << file;
 }
 
 /// Output and exit code of bus_peer in a mount namespace whose /dev/shm holds `size`; exit code 77: not permitted here.

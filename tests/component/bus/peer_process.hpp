@@ -32,6 +32,7 @@ class PeerProcess {
   PeerProcess& operator=(const PeerProcess&) = delete;
 
   void kill_now() { end_by(SIGKILL); }
+  pid_t pid() const { return pid_; }
 
  private:
   void end_by(int signal) {
