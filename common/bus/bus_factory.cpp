@@ -4,6 +4,7 @@
 
 #include "common/bus/inprocess/inprocess_backend.hpp"
 #include "common/bus/inprocess/inprocess_raw_bus.hpp"
+#include "common/bus/network.hpp"
 #include "common/bus/raw_bus.hpp"
 #ifdef RTD_HAVE_FASTDDS
 #include "common/bus/fastdds/fastdds_backend.hpp"
@@ -37,14 +38,16 @@ std::string join_names(const std::vector<std::string>& names) {
   return joined;
 }
 
-/// Throws BusError: no such vendor, or a domain out of range.
+/// Throws BusError: no such vendor, a domain out of range, a network that cannot be.
 const Vendor& vendor_of(const BusOptions& options) {
   if (options.domain > kMaxDomain) {
     throw BusError("domain " + std::to_string(options.domain) + " is out of range, allowed: 0.." +
                    std::to_string(kMaxDomain) + " (--domain, ROS_DOMAIN_ID)");
   }
   for (const Vendor& vendor : kVendors) {
-    if (options.vendor == vendor.name) return vendor;
+    if (options.vendor != vendor.name) continue;
+    if (options.vendor != "inprocess") require_network(options);
+    return vendor;
   }
   throw BusError("unknown bus '" + options.vendor + "', this build has: " + join_names(available_vendors()) +
                  " (--dds, RTD_DDS)");

@@ -12,13 +12,14 @@ FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::uniq
                              const std::string& topic, const dds::DataReaderQos& qos, ErasedCallback on_message,
                              StatusCallbacks callbacks)
     : participant_(std::move(participant)),
+      subscriber_(participant_->subscriber(topic)),
       codec_(std::move(codec)),
       depth_(qos.history().depth),
       on_message_(std::move(on_message)),
       callbacks_(std::move(callbacks)),
       thread_([this] { return handle_one(); }) {
   dds::Topic* const known = participant_->topic(topic, *codec_);
-  reader_ = participant_->subscriber().create_datareader(known, with_type_hash(qos, known->get_type_name()), this);
+  reader_ = subscriber_.create_datareader(known, with_type_hash(qos, known->get_type_name()), this);
   if (reader_ == nullptr) throw BusError("Fast DDS refused a reader on topic " + topic);
   thread_.wake();  // a sample may have come before reader_ was known
 }
@@ -27,7 +28,7 @@ FastddsReader::~FastddsReader() {
   dds::DataReader* const reader = reader_;
   reader->set_listener(nullptr);
   thread_.stop();  // waits for a running callback; only now nobody takes from the reader
-  participant_->subscriber().delete_datareader(reader);
+  subscriber_.delete_datareader(reader);
 }
 
 bool FastddsReader::handle_one() {

@@ -36,6 +36,7 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
   void on_sample_lost(dds::DataReader*, const dds::SampleLostStatus& status) override;
 
   std::shared_ptr<Participant> participant_;
+  dds::Subscriber& subscriber_;
   std::unique_ptr<Codec> codec_;
   const int depth_;
   int skipped_ = 0;  ///< used by the callback thread

@@ -13,16 +13,19 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 FastddsWriter::FastddsWriter(std::shared_ptr<Participant> participant, std::unique_ptr<Codec> codec,
                              const std::string& topic, const dds::DataWriterQos& qos, StatusCallbacks callbacks)
-    : participant_(std::move(participant)), codec_(std::move(codec)), callbacks_(std::move(callbacks)) {
+    : participant_(std::move(participant)),
+      publisher_(participant_->publisher(topic)),
+      codec_(std::move(codec)),
+      callbacks_(std::move(callbacks)) {
   if (callbacks_.on_matched || callbacks_.on_incompatible_qos || callbacks_.on_deadline_missed) thread_.emplace();
   dds::Topic* const known = participant_->topic(topic, *codec_);
-  writer_ = participant_->publisher().create_datawriter(known, with_type_hash(qos, known->get_type_name()), this);
+  writer_ = publisher_.create_datawriter(known, with_type_hash(qos, known->get_type_name()), this);
   if (writer_ == nullptr) throw BusError("Fast DDS refused a writer on topic " + topic);
 }
 
 FastddsWriter::~FastddsWriter() {
   writer_->set_listener(nullptr);
-  participant_->publisher().delete_datawriter(writer_);
+  publisher_.delete_datawriter(writer_);
 }
 
 bool FastddsWriter::write(const void* message) {

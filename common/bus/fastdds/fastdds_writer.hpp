@@ -38,6 +38,7 @@ class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
   void on_offered_incompatible_qos(dds::DataWriter*, const dds::OfferedIncompatibleQosStatus& status) override;
 
   std::shared_ptr<Participant> participant_;
+  dds::Publisher& publisher_;
   std::unique_ptr<Codec> codec_;
   const StatusCallbacks callbacks_;
   std::atomic<int> matched_{0};

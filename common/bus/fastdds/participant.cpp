@@ -6,10 +6,11 @@
 
 #include <atomic>
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
+
+#include "common/bus/fastdds/network_mapping.hpp"
+#include "common/bus/network.hpp"
 
 #ifdef __SANITIZE_ADDRESS__
 /// Fast DDS 2.9 deletes its statistics through a base class without virtual destructor; everything else stays checked.
@@ -22,9 +23,6 @@ extern "C" const char* __asan_default_options() {
 namespace rtd::bus::fastdds {
 namespace {
 
-namespace rtps = eprosima::fastrtps::rtps;
-
-constexpr std::uint32_t kMib = 1024 * 1024;
 constexpr std::uint32_t kMinSegmentMib = 8;  // below it one image does not fit and is repaired in 20 ms instead
 
 /// Fast DDS logs to stdout by default, which belongs to our programs' results.
@@ -37,32 +35,6 @@ void log_to_stderr_once() {
   });
 }
 
-std::shared_ptr<eprosima::fastdds::rtps::SharedMemTransportDescriptor> shared_memory_transport(
-    const BusOptions& options) {
-  auto transport = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
-  transport->segment_size(options.shm_segment_mib * kMib);
-  transport->max_message_size(options.shm_segment_mib * kMib);
-  return transport;
-}
-
-std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp_transport(const BusOptions& options,
-                                                                                 const HostLimits& limits) {
-  auto transport = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-  transport->receiveBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.rmem_max);
-  transport->sendBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.wmem_max);
-  if (options.network.loopback_only) transport->interfaceWhiteList.emplace_back("127.0.0.1");
-  return transport;
-}
-
-rtps::Locator_t udp_locator(std::uint8_t first_octet, std::uint8_t second_octet, std::uint8_t last_octet) {
-  rtps::Locator_t locator;  // port 0: the one that the domain and our participant id give
-  locator.kind = LOCATOR_KIND_UDPv4;
-  locator.address[12] = first_octet;
-  locator.address[13] = second_octet;
-  locator.address[15] = last_octet;
-  return locator;
-}
-
 /// Participant ids choose port numbers. A restarted process must not get the shared-memory port of its killed
 /// predecessor: the writers of others go on feeding the dead port for seconds. So the id follows the process id.
 std::int32_t next_participant_id() {
@@ -71,15 +43,11 @@ std::int32_t next_participant_id() {
   return (static_cast<std::int32_t>(getpid()) + participants_so_far++) % kIds;
 }
 
-dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostLimits& limits) {
+dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope) {
   dds::DomainParticipantQos qos;
   qos.name(options.participant_name.empty() ? "rtd" : options.participant_name.c_str());
-  qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports = {shared_memory_transport(options), udp_transport(options, limits)};
-  // Discovery over UDP only, samples over shared memory: the kernel closes the socket of a killed process at once.
+  map_network(options, limits, scope, qos);
   auto& builtin = qos.wire_protocol().builtin;
-  builtin.metatrafficUnicastLocatorList.push_back(udp_locator(0, 0, 0));
-  builtin.metatrafficMulticastLocatorList.push_back(udp_locator(239, 255, 1));
   // A killed process is forgotten after the lease; its heartbeat topic tells much earlier.
   builtin.discovery_config.leaseDuration = {5, 0};
   builtin.discovery_config.leaseDuration_announcementperiod = {0, 500'000'000};
@@ -88,7 +56,8 @@ dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostL
 
 dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factory, const BusOptions& options,
                                            const HostLimits& limits, dds::DomainParticipantListener* listener) {
-  dds::DomainParticipantQos qos = participant_qos(options, limits);
+  const DiscoveryScope scope = listener == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;
+  dds::DomainParticipantQos qos = participant_qos(options, limits, scope);
   constexpr int kAttempts = 5;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {  // an id may be taken by another connection of this process
     qos.wire_protocol().participant_id = next_participant_id();
@@ -112,8 +81,30 @@ Participant::Participant(const BusOptions& options, const HostLimits& limits,
   log_to_stderr_once();
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
   participant_ = create_participant(*factory_, options, limits, listener);
-  publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
-  subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
+  create_publishers(options.network);
+}
+
+/// Topics that stay on the host are in a partition of the host, so that nobody elsewhere is matched. Without a network
+/// they need none, and any DDS program of this host may read them; our readers look into both.
+void Participant::create_publishers(const NetworkOptions& network) {
+  const std::string host = host_partition();
+  dds::PublisherQos publisher = dds::PUBLISHER_QOS_DEFAULT;
+  publisher_ = participant_->create_publisher(publisher);
+  if (!network.loopback_only) publisher.partition().push_back(host.c_str());
+  host_publisher_ = participant_->create_publisher(publisher);
+  dds::SubscriberQos subscriber = dds::SUBSCRIBER_QOS_DEFAULT;
+  subscriber_ = participant_->create_subscriber(subscriber);
+  subscriber.partition().push_back("");
+  subscriber.partition().push_back(host.c_str());
+  host_subscriber_ = participant_->create_subscriber(subscriber);
+}
+
+dds::Publisher& Participant::publisher(const std::string& topic) {
+  return stays_on_host(topic) ? *host_publisher_ : *publisher_;
+}
+
+dds::Subscriber& Participant::subscriber(const std::string& topic) {
+  return stays_on_host(topic) ? *host_subscriber_ : *subscriber_;
 }
 
 Participant::~Participant() {

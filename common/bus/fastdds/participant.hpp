@@ -29,8 +29,9 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  dds::Publisher& publisher() { return *publisher_; }
-  dds::Subscriber& subscriber() { return *subscriber_; }
+  /// Who writes or reads the topic of that name: stays_on_host() decides.
+  dds::Publisher& publisher(const std::string& topic);
+  dds::Subscriber& subscriber(const std::string& topic);
   /// The topic of that name, created when new; lives as long as the participant.
   /// Throws BusError when it exists with another type.
   dds::Topic* topic(const std::string& name, const Codec& codec);
@@ -39,10 +40,12 @@ class Participant {
   const dds::DomainParticipant& vendor() const { return *participant_; }
 
  private:
+  void create_publishers(const NetworkOptions& network);
+
   std::shared_ptr<dds::DomainParticipantFactory> factory_;  // keeps the vendor's singleton alive
   dds::DomainParticipant* participant_ = nullptr;
-  dds::Publisher* publisher_ = nullptr;
-  dds::Subscriber* subscriber_ = nullptr;
+  dds::Publisher *publisher_ = nullptr, *host_publisher_ = nullptr;
+  dds::Subscriber *subscriber_ = nullptr, *host_subscriber_ = nullptr;
   std::mutex topics_mutex_;
 };
 

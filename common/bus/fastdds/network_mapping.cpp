@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/fastdds/network_mapping.hpp"
+
+#include <fastdds/rtps/attributes/ServerAttributes.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include "common/bus/network.hpp"
+
+namespace rtd::bus::fastdds {
+namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastdds::dds::DomainParticipantQos;
+using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+
+constexpr std::uint32_t kMib = 1024 * 1024;
+constexpr char kLoopback[] = "127.0.0.1", kAnyAddress[] = "0.0.0.0", kMulticastGroup[] = "239.255.0.1";
+/// Of the server that `fast-discovery-server -i 0` starts.
+constexpr char kServerGuidPrefix[] = "44.53.00.5f.45.50.52.4f.53.49.4d.41";
+
+/// Port 0: the one that the domain and a participant id give.
+rtps::Locator_t udp_locator(const std::string& address, std::uint32_t port = 0) {
+  rtps::Locator_t locator;
+  rtps::IPLocator::createLocator(LOCATOR_KIND_UDPv4, address, port, locator);
+  return locator;
+}
+
+std::shared_ptr<SharedMemTransportDescriptor> shared_memory_transport(const BusOptions& options) {
+  auto transport = std::make_shared<SharedMemTransportDescriptor>();
+  transport->segment_size(options.shm_segment_mib * kMib);
+  transport->max_message_size(options.shm_segment_mib * kMib);
+  return transport;
+}
+
+std::shared_ptr<UDPv4TransportDescriptor> udp_transport(const BusOptions& options, const HostLimits& limits) {
+  auto transport = std::make_shared<UDPv4TransportDescriptor>();
+  transport->receiveBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.rmem_max);
+  transport->sendBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.wmem_max);
+  transport->maxMessageSize = options.network.max_datagram_bytes;
+  transport->maxInitialPeersRange = kPeerParticipants;
+  transport->interfaceWhiteList = interface_addresses(options.network);
+  transport->interfaceWhiteList.emplace_back(kLoopback);
+  return transport;
+}
+
+/// The first free discovery port of those that peers try: Fast DDS itself goes on to the next while one is taken.
+/// It is not the participant's id that follows the process id (participant.cpp).
+void take_well_known_port(const BusOptions& options, rtps::BuiltinAttributes& builtin) {
+  const std::uint32_t first_port = rtps::PortParameters().getUnicastPort(options.domain, 0);
+  builtin.metatrafficUnicastLocatorList.push_back(udp_locator(kAnyAddress, first_port));
+  builtin.mutation_tries = kPeerParticipants - 1;
+}
+
+/// Multicast is always listened to: it costs nothing, and tools of this host that keep to loopback are heard.
+void find_by_announcements(const BusOptions& options, rtps::BuiltinAttributes& builtin) {
+  const NetworkOptions& network = options.network;
+  builtin.metatrafficMulticastLocatorList.push_back(udp_locator(kMulticastGroup));
+  if (network.loopback_only && network.multicast) {
+    builtin.metatrafficUnicastLocatorList.push_back(udp_locator(kAnyAddress));
+    return;
+  }
+  take_well_known_port(options, builtin);
+  if (network.multicast) builtin.initialPeersList.push_back(udp_locator(kMulticastGroup));
+  builtin.initialPeersList.push_back(udp_locator(kLoopback));
+  for (const std::string& peer : network.peers) {
+    const HostAddress host = resolve_host(peer, "--peers");
+    builtin.initialPeersList.push_back(udp_locator(host.address, host.port));
+  }
+}
+
+void find_by_server(const BusOptions& options, DiscoveryScope scope, rtps::BuiltinAttributes& builtin) {
+  const HostAddress host = resolve_host(options.network.discovery_server, "--discovery-server");
+  rtps::RemoteServerAttributes server;
+  server.ReadguidPrefix(kServerGuidPrefix);
+  server.metatrafficUnicastLocatorList.push_back(udp_locator(host.address, host.port));
+  builtin.discovery_config.discoveryProtocol =
+      scope == DiscoveryScope::kAll ? rtps::DiscoveryProtocol_t::SUPER_CLIENT : rtps::DiscoveryProtocol_t::CLIENT;
+  builtin.discovery_config.m_DiscoveryServers.push_back(server);
+  builtin.metatrafficUnicastLocatorList.push_back(udp_locator(kAnyAddress));
+}
+
+}  // namespace
+
+void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope, DomainParticipantQos& qos) {
+  qos.transport().use_builtin_transports = false;
+  qos.transport().user_transports = {shared_memory_transport(options), udp_transport(options, limits)};
+  // Discovery over UDP only, samples over shared memory: the kernel closes the socket of a killed process at once.
+  auto& builtin = qos.wire_protocol().builtin;
+  if (options.network.discovery_server.empty()) {
+    find_by_announcements(options, builtin);
+  } else {
+    find_by_server(options, scope, builtin);
+  }
+}
+
+}  // namespace rtd::bus::fastdds

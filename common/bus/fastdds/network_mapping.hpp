@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+
+#include "common/bus/bus_factory.hpp"
+#include "common/bus/host_checks.hpp"
+
+namespace rtd::bus::fastdds {
+
+/// How much a participant wants to know of others' endpoints from a Discovery Server.
+enum class DiscoveryScope {
+  kMatching,  ///< those of its own topics
+  kAll,       ///< all of the domain: recorders, tools
+};
+
+/// Transports and discovery as NetworkOptions say. Samples of a host go through shared memory in every profile; UDP on
+/// loopback and the chosen interfaces is for discovery and for other hosts, cut to max_datagram_bytes.
+void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope,
+                 eprosima::fastdds::dds::DomainParticipantQos& qos);
+
+}  // namespace rtd::bus::fastdds

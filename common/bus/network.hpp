@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/bus/bus_factory.hpp"
+
+/// What NetworkOptions mean on this host, the same for every vendor.
+namespace rtd::bus {
+
+/// Participants of a host that a peer without a port is asked for: those at the discovery ports of the first ids of a
+/// domain, 7410 + 250 * domain + 2 * id. On a network every participant of ours takes the first free one of them.
+inline constexpr int kPeerParticipants = 16;
+
+/// An IPv4 address; port 0: the discovery ports of the domain's first kPeerParticipants participants.
+struct HostAddress {
+  std::string address;
+  std::uint16_t port = 0;
+  bool operator==(const HostAddress&) const = default;
+};
+
+/// HOST or HOST:PORT, names resolved. Throws BusError naming `option` when it cannot be.
+HostAddress resolve_host(const std::string& text, const std::string& option);
+
+/// IPv4 addresses of the interfaces to use beside loopback: those named, or all that are up but bridges (those of
+/// containers and virtual machines). Empty with loopback_only. Throws BusError: no such interface, none is up.
+std::vector<std::string> interface_addresses(const NetworkOptions& network);
+
+/// Topics that no other host gets: raw frames and features, 1.5 and 0.1 MB thirty times a second. Their writers on a
+/// network are in the partition host_partition() only, our readers ask for it and for the default one.
+bool stays_on_host(std::string_view topic);
+
+/// The same text for all processes that share memory, another one elsewhere: "host-0123456789abcdef".
+std::string host_partition();
+
+/// All that can be checked without a vendor. Throws BusError: peers outside while only loopback is used, a peer that
+/// cannot be resolved, a Discovery Server with a vendor other than Fast DDS.
+void require_network(const BusOptions& options);
+
+}  // namespace rtd::bus
