@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <ctime>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/eval/eval_command.hpp"
 #include "services/launcher/eval_detector/eval_detector_command.hpp"
+#include "services/launcher/keystore/keystore_command.hpp"
 #include "services/launcher/map/map_command.hpp"
 #include "services/launcher/process/executable.hpp"
 #include "services/launcher/recording/diff_command.hpp"
@@ -25,8 +27,8 @@
 namespace rtd::launcher {
 namespace {
 
-const std::vector<std::string> kCommands = {"run",  "demo", "ablate", "convert", "eval",    "eval-detector",
-                                            "info", "diff", "map",    "doctor",  "version", "help"};
+const std::vector<std::string> kCommands = {"run",  "demo", "ablate",   "convert", "eval",    "eval-detector", "info",
+                                            "diff", "map",  "keystore", "doctor",  "version", "help"};
 
 struct Requests {
   RunOptions run;
@@ -39,6 +41,7 @@ struct Requests {
   DiffRequest diff;
   MapRequest map;
   DoctorOptions doctor;
+  KeystoreRequest keystore;
 };
 
 void add_run_command(CLI::App& app, RunOptions& options) {
@@ -117,6 +120,7 @@ int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("diff")) return run_diff(requests.diff, std::cout, std::cerr);
   if (app.got_subcommand("map")) return run_map(requests.map, std::cout, std::cerr);
   if (app.got_subcommand("doctor")) return doctor(requests.doctor, std::cout);
+  if (app.got_subcommand("keystore")) return run_keystore(requests.keystore, std::time(nullptr), std::cout, std::cerr);
   if (app.got_subcommand("version")) {
     std::cout << "rtd " << RTD_VERSION << '\n';
     return service::kOk;
@@ -147,6 +151,7 @@ int front(int argc, char** argv) {
   add_map_command(app, requests.map);
   app.add_subcommand("doctor", "Check this host: shared memory, sockets, services, weights, data")
       ->add_flag("--clean", requests.doctor.clean, "Remove from /dev/shm what killed processes left there");
+  add_keystore_command(app, requests.keystore);
   app.add_subcommand("version", "Print the version");
   app.add_subcommand("help", "Print this text");
   app.footer(services_text);

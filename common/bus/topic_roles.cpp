@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/topic_roles.hpp"
+
+#include <algorithm>
+
+#include "common/bus/topics.hpp"
+
+namespace rtd::bus {
+namespace {
+
+using Roles = std::vector<std::string_view>;
+
+const Roles kServices = {"camera", "detector", "filter", "slam", "dense", "record", "replay", "viewer"};
+/// They hear what comes out.
+const Roles kOnlookers = {"viewer", "observer"};
+
+Roles operator+(Roles roles, const Roles& further) {
+  roles.insert(roles.end(), further.begin(), further.end());
+  return roles;
+}
+
+bool has(const Roles& listed, const std::string& role) {
+  return std::find(listed.begin(), listed.end(), role) != listed.end();
+}
+
+}  // namespace
+
+const std::vector<TopicRoles>& topic_roles() {
+  using namespace topics;
+  static const std::vector<TopicRoles> kRoles = {
+      {kFrame.name, {"camera"}, {"filter", "detector", "dense", "launcher", "viewer"}},
+      {kColorJpeg.name, {"camera"}, Roles{"detector"} + kOnlookers},
+      {kCameraInfo.name, {"camera"}, kOnlookers},
+      {kDetections.name, {"detector"}, Roles{"filter"} + kOnlookers},
+      {kDynamicMask.name, {"filter"}, Roles{"dense"} + kOnlookers},
+      {kFeatures.name, {"filter"}, {"slam", "launcher", "viewer"}},
+      {kKeyframes.name, {"slam"}, {"filter", "dense", "viewer"}},
+      {kTracking.name, {"slam"}, {"camera", "filter", "dense", "detector", "launcher", "viewer"}},
+      {kStatus.name, kServices, kServices + Roles{"launcher", "observer"}},
+      {kOdometry.name, {"slam"}, kOnlookers},
+      {kPose.name, {"slam"}, kOnlookers},
+      {kTf.name, {"slam"}, kOnlookers},
+      {kPath.name, {"slam"}, kOnlookers},
+      {kMapPoints.name, {"slam"}, kOnlookers},
+      {kDensePoints.name, {"dense"}, kOnlookers},
+      {kDiagnostics.name, {"slam"}, kOnlookers},
+      // Whatever is recorded can be played again; both work without types.
+      {"rtd/*", {"replay"}, {"record", "replay", "topics"}},
+      {"rt/*", {"replay"}, {"record", "replay", "topics"}},
+      // What every ROS 2 node opens beside its own topics.
+      {"ros_discovery_info", {"observer"}, {"observer"}},
+      {"rt/rosout", {"observer"}, {}},
+      {"rt/parameter_events", {"observer"}, {"observer"}},
+      {"rq/*/*Request", {}, {"observer"}},
+      {"rr/*/*Reply", {"observer"}, {}},
+  };
+  return kRoles;
+}
+
+const std::vector<std::string>& roles() {
+  static const std::vector<std::string> kRoles = {"camera", "detector", "filter", "slam",   "dense",   "record",
+                                                  "replay", "launcher", "topics", "viewer", "observer"};
+  return kRoles;
+}
+
+RoleTopics topics_of(const std::string& role) {
+  RoleTopics topics;
+  for (const TopicRoles& entry : topic_roles()) {
+    if (has(entry.writers, role)) topics.writes.push_back(entry.topic);
+    if (has(entry.readers, role)) topics.reads.push_back(entry.topic);
+  }
+  return topics;
+}
+
+}  // namespace rtd::bus

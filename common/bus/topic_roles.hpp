@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rtd::bus {
+
+/// Who writes and who reads a topic, by the names of services ("filter"). Written down once: keystores are made from
+/// it, a test holds it against what the running services open.
+struct TopicRoles {
+  std::string topic;  ///< DDS name, or a pattern of names ("rt/*")
+  std::vector<std::string_view> writers, readers;
+};
+const std::vector<TopicRoles>& topic_roles();
+
+/// Who there is: services, launcher, `rtd topics`, observer (ROS 2 and others who read poses).
+const std::vector<std::string>& roles();
+
+/// The topics of one role.
+struct RoleTopics {
+  std::vector<std::string> writes, reads;
+};
+RoleTopics topics_of(const std::string& role);
+
+}  // namespace rtd::bus

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/security/openssl_handles.hpp"
+
+namespace rtd::security {
+
+/// From when to when, in seconds since 1970 (UTC).
+struct Validity {
+  std::int64_t not_before_s = 0, not_after_s = 0;
+};
+
+/// A certificate with its private key.
+struct Identity {
+  Certificate certificate;
+  Key key;
+};
+
+/// A new EC P-256 key with a certificate that it signs itself.
+Identity create_ca(const std::string& common_name, const Validity& validity);
+/// A new EC P-256 key with a certificate that the CA signs.
+Identity issue(const std::string& common_name, const Validity& validity, const Identity& ca);
+
+std::string to_pem(const X509& certificate);
+std::string to_pem(const EVP_PKEY& key);
+/// `origin`: file name for the error. Throw SecurityError.
+Certificate certificate_from_pem(const std::string& pem, const std::string& origin);
+Key key_from_pem(const std::string& pem, const std::string& origin);
+
+/// As DDS-Security compares it (RFC 2253): "CN=/rtd/slam".
+std::string subject_name(const X509& certificate);
+Validity validity_of(const X509& certificate);
+bool belongs_to(const EVP_PKEY& key, const X509& certificate);
+/// The CA has signed it, whatever the date.
+bool signed_by(const X509& certificate, const X509& ca);
+
+}  // namespace rtd::security

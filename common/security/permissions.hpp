@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/security/certificate.hpp"
+
+namespace rtd::security {
+
+/// DDS domains, both ends included.
+struct DomainRange {
+  int first = 0, last = 232;
+  bool holds(int domain) const { return first <= domain && domain <= last; }
+};
+
+/// DDS names of topics, or patterns as of the shell ("rt/*"), that somebody may publish and subscribe.
+struct TopicGrant {
+  std::vector<std::string> publish, subscribe;
+};
+bool matches_any(const std::vector<std::string>& patterns, const std::string& topic);
+
+/// What DDS-Security's permissions document says of one participant; everything else is denied.
+struct Permissions {
+  std::string subject;  ///< as subject_name()
+  Validity validity;
+  DomainRange domains;
+  TopicGrant topics;
+};
+
+std::string to_xml(const Permissions& permissions);
+/// Throws SecurityError naming `origin`.
+Permissions permissions_from_xml(const std::string& xml, const std::string& origin);
+
+/// "2026-11-21T20:00:00", UTC.
+std::string to_utc(std::int64_t time_s);
+
+}  // namespace rtd::security

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace rtd::launcher {
+
+/// What `rtd keystore` was asked.
+struct KeystoreRequest {
+  enum class Action { kCreate, kAdd, kRenew, kInfo };
+  Action action = Action::kInfo;
+  std::string folder;                 ///< empty: the default
+  std::vector<std::string> enclaves;  ///< to add or renew
+  int days = 365;
+  int domain = -1;              ///< the only one; -1 = all
+  bool encrypt_frames = false;  ///< also what stays in shared memory otherwise
+  std::string like;             ///< role whose topics a new enclave gets
+  std::vector<std::string> publish, subscribe;
+};
+
+/// Adds the subcommand `keystore` with `create`, `add`, `renew` and `info`; parsing fills `request`, which must
+/// outlive `parent`.
+CLI::App* add_keystore_command(CLI::App& parent, KeystoreRequest& request);
+
+/// Does it at the time `now_s` (seconds since 1970). Results to `out`, what prevents them to `err`. Returns the exit
+/// code: 0; 1 when `info` finds an enclave that cannot be used; 2 when it cannot be done.
+int run_keystore(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out, std::ostream& err);
+
+}  // namespace rtd::launcher

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/keystore/keystore_command.hpp"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "common/bus/topic_roles.hpp"
+#include "common/security/enclave.hpp"
+#include "tests/unit/security/sample_keystore.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using Action = KeystoreRequest::Action;
+using security::kDay_s;
+using security::kNow_s;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class KeystoreCommandTest : public security::KeystoreTest {
+ protected:
+  KeystoreCommandTest() { request_.folder = (scratch_ / "k").string(); }
+  int run(Action action, std::int64_t now_s = kNow_s) {
+    request_.action = action;
+    out_.str("");
+    err_.str("");
+    return run_keystore(request_, now_s, out_, err_);
+  }
+  KeystoreRequest request_;
+  std::ostringstream out_, err_;
+};
+
+TEST_F(KeystoreCommandTest, makes_an_enclave_for_each_role_with_the_topics_of_the_table) {
+  request_.days = 30;
+  request_.domain = 5;
+  ASSERT_EQ(run(Action::kCreate), 0) << err_.str();
+  for (const std::string& role : bus::roles()) {
+    const auto enclave = security::open_enclave(request_.folder, "/rtd/" + role, 5, kNow_s + 29 * kDay_s);
+    EXPECT_EQ(enclave.permissions.topics.publish, bus::topics_of(role).writes) << role;
+    EXPECT_EQ(enclave.permissions.topics.subscribe, bus::topics_of(role).reads) << role;
+  }
+}
+
+TEST_F(KeystoreCommandTest, a_second_one_is_refused) {
+  ASSERT_EQ(run(Action::kCreate), 0);
+  EXPECT_EQ(run(Action::kCreate), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("exists already"));
+}
+
+TEST_F(KeystoreCommandTest, info_tells_what_expired_and_renew_cures_it) {
+  ASSERT_EQ(run(Action::kCreate), 0);
+  EXPECT_EQ(run(Action::kInfo), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("ok    /rtd/slam"));
+  const std::int64_t later_s = kNow_s + 400 * kDay_s;
+  EXPECT_EQ(run(Action::kInfo, later_s), 1);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("FAIL  /rtd/slam"), HasSubstr("expired")));
+  EXPECT_EQ(run(Action::kRenew, later_s), 0) << err_.str();
+  EXPECT_EQ(run(Action::kInfo, later_s), 0) << out_.str();
+}
+
+TEST_F(KeystoreCommandTest, adds_an_enclave_like_another_with_further_topics) {
+  ASSERT_EQ(run(Action::kCreate), 0);
+  request_.enclaves = {"/rtd/observer2"};
+  request_.like = "observer";
+  request_.subscribe = {"rtd/features"};
+  ASSERT_EQ(run(Action::kAdd), 0) << err_.str();
+  const auto added = security::open_enclave(request_.folder, "/rtd/observer2", 0, kNow_s);
+  EXPECT_TRUE(security::matches_any(added.permissions.topics.subscribe, "rt/slam/pose"));
+  EXPECT_TRUE(security::matches_any(added.permissions.topics.subscribe, "rtd/features"));
+  EXPECT_FALSE(security::matches_any(added.permissions.topics.publish, "rt/slam/pose"));
+}
+
+TEST_F(KeystoreCommandTest, info_of_no_keystore_says_how_to_make_one) {
+  EXPECT_EQ(run(Action::kInfo), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("rtd keystore create"));
+}
+
+}  // namespace
+}  // namespace rtd::launcher
