@@ -11,7 +11,6 @@
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/launcher/core/evaluation/alignment.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
 namespace rtd::test_support {
@@ -19,42 +18,6 @@ namespace {
 
 constexpr std::int64_t kPeriodNs = 33'333'333;
 constexpr double kWrong_m = 0.10, kWrong_deg = 5;
-
-struct PosePair {
-  Eigen::Isometry3d estimate, truth;  ///< T_world_camera, each in its own world
-};
-
-double angle_deg(const Eigen::Isometry3d& T) {
-  return geometry::rotation_angle_rad(T) * 180 / std::numbers::pi;
-}
-
-/// Estimate and truth of the mapped part, and what follows from them for other poses.
-class Comparison {
- public:
-  void add(const PosePair& pair) { pairs_.push_back(pair); }
-  void align() {
-    Eigen::Matrix3Xd estimate(3, pairs_.size()), truth(3, pairs_.size());
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      estimate.col(static_cast<Eigen::Index>(i)) = pairs_[i].estimate.translation();
-      truth.col(static_cast<Eigen::Index>(i)) = pairs_[i].truth.translation();
-    }
-    alignment_ = eval::align(estimate, truth, eval::AlignmentKind::kRigid);
-  }
-  double error_m(const PosePair& pair) const {
-    return (alignment_ * pair.estimate.translation() - pair.truth.translation()).norm();
-  }
-  /// Against the turn from the nearest mapped pose: the truth's body need not be the camera's.
-  double error_deg(const PosePair& pair) const {
-    const auto nearest = std::min_element(pairs_.begin(), pairs_.end(), [&](const PosePair& a, const PosePair& b) {
-      return angle_deg(a.truth.inverse() * pair.truth) < angle_deg(b.truth.inverse() * pair.truth);
-    });
-    return angle_deg((nearest->estimate.inverse() * pair.estimate).inverse() * (nearest->truth.inverse() * pair.truth));
-  }
-
- private:
-  std::vector<PosePair> pairs_;
-  eval::Alignment alignment_;
-};
 
 /// Feeds frames at 30 a second, whatever stamps they had.
 class Player {
@@ -79,20 +42,25 @@ class Player {
   std::uint64_t next_ = 0;
 };
 
-std::optional<Eigen::Isometry3d> true_pose(const camera::SourceFrame& frame,
-                                           const std::vector<camera::StampedPose>& truth) {
-  constexpr std::int64_t kMaxGapNs = 10'000'000;
-  if (frame.T_world_camera) return frame.T_world_camera;
-  const auto gap = [&](const camera::StampedPose& pose) { return std::abs(pose.stamp_ns - frame.image.stamp_ns); };
-  const auto nearest =
-      std::min_element(truth.begin(), truth.end(), [&](const auto& a, const auto& b) { return gap(a) < gap(b); });
-  if (nearest == truth.end() || gap(*nearest) > kMaxGapNs) return std::nullopt;
-  return nearest->T_world_camera;
+/// The truth at a moment, between its two nearest poses.
+std::optional<Eigen::Isometry3d> true_pose(std::int64_t stamp_ns, const std::vector<camera::StampedPose>& truth) {
+  constexpr std::int64_t kMaxGapNs = 50'000'000;
+  const auto after = std::lower_bound(truth.begin(), truth.end(), stamp_ns,
+                                      [](const auto& pose, std::int64_t stamp) { return pose.stamp_ns < stamp; });
+  if (after == truth.begin() || after == truth.end()) return std::nullopt;
+  const auto before = std::prev(after);
+  if (after->stamp_ns - before->stamp_ns > kMaxGapNs) return std::nullopt;
+  const double share =
+      static_cast<double>(stamp_ns - before->stamp_ns) / static_cast<double>(after->stamp_ns - before->stamp_ns);
+  const Eigen::Isometry3d way = before->T_world_camera.inverse() * after->T_world_camera;
+  return before->T_world_camera * geometry::se3_exp(share * geometry::se3_log(way));
 }
 
 }  // namespace
 
-FeatureClip record_features(const std::string& source_uri, std::size_t first, std::size_t count, bool masks) {
+FeatureClip record_features(const std::string& source_uri, std::size_t first, std::size_t count, bool masks,
+                            double truth_offset_s) {
+  const auto offset_ns = static_cast<std::int64_t>(truth_offset_s * 1e9);
   const auto source = camera::make_source(source_uri);
   const auto front_end = make_front_end({.mode = masks ? "true-mask" : "off"});
   FeatureClip clip;
@@ -100,22 +68,63 @@ FeatureClip record_features(const std::string& source_uri, std::size_t first, st
   for (std::size_t i = 0; i < first + count && (frame = source->next()); ++i) {
     if (i < first) continue;
     clip.frames.push_back(make_feature_frame(frame->image, front_end->process(*frame).features));
-    clip.T_world_camera.push_back(true_pose(*frame, source->groundtruth()));
+    clip.T_world_camera.push_back(frame->T_world_camera
+                                      ? frame->T_world_camera
+                                      : true_pose(frame->image.stamp_ns + offset_ns, source->groundtruth()));
   }
   return clip;
 }
 
-RelocalizationOutcome run_relocalization(const FeatureClip& mapped, const FeatureClip& again,
-                                         const RelocalizationTrial& trial, const slam::SlamConfig& config,
-                                         slam::MappingMode mode) {
-  Player player(config, mode);
-  Comparison comparison;
-  for (std::size_t i = 0; i < trial.mapped && i < mapped.frames.size(); ++i) {
-    const msg::TrackingResult result = player.play(*mapped.frames[i]);
-    if (result.state != msg::TrackingState::kOk || !mapped.T_world_camera[i]) continue;
-    comparison.add({msg::to_isometry(result.T_world_camera), *mapped.T_world_camera[i]});
+WorldAlignment::WorldAlignment(const std::vector<PosePair>& pairs) {
+  Eigen::Matrix3Xd estimate(3, pairs.size()), truth(3, pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    estimate.col(static_cast<Eigen::Index>(i)) = pairs[i].estimate.translation();
+    truth.col(static_cast<Eigen::Index>(i)) = pairs[i].truth.translation();
   }
-  comparison.align();
+  positions_ = eval::align(estimate, truth, eval::AlignmentKind::kRigid);
+  R_truth_estimate_ = positions_.T_groundtruth_estimate.linear();
+  constexpr int kIterations = 20;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    Eigen::Affine3d body = Eigen::Affine3d::Identity(), world = Eigen::Affine3d::Identity();
+    body.linear().setZero();
+    world.linear().setZero();
+    for (const PosePair& pair : pairs) {
+      body.linear() += (R_truth_estimate_ * pair.estimate.linear()).transpose() * pair.truth.linear();
+    }
+    R_camera_body_ = body.rotation();
+    for (const PosePair& pair : pairs) {
+      world.linear() += pair.truth.linear() * (pair.estimate.linear() * R_camera_body_).transpose();
+    }
+    R_truth_estimate_ = world.rotation();
+  }
+}
+
+double WorldAlignment::error_m(const PosePair& pair) const {
+  return (positions_ * pair.estimate.translation() - pair.truth.translation()).norm();
+}
+
+double WorldAlignment::error_deg(const PosePair& pair) const {
+  const Eigen::AngleAxisd error(R_truth_estimate_ * pair.estimate.linear() * R_camera_body_ *
+                                pair.truth.linear().transpose());
+  return error.angle() * 180 / std::numbers::pi;
+}
+
+WorldAlignment align_worlds(const FeatureClip& clip, const slam::SlamConfig& config) {
+  Player player(config, slam::MappingMode::kSynchronous);
+  std::vector<PosePair> pairs;
+  for (std::size_t i = 0; i < clip.frames.size(); ++i) {
+    const msg::TrackingResult result = player.play(*clip.frames[i]);
+    if (result.state != msg::TrackingState::kOk || !clip.T_world_camera[i]) continue;
+    pairs.push_back({msg::to_isometry(result.T_world_camera), *clip.T_world_camera[i]});
+  }
+  return WorldAlignment(pairs);
+}
+
+RelocalizationOutcome run_relocalization(const FeatureClip& mapped, const FeatureClip& again,
+                                         const WorldAlignment& alignment, const RelocalizationTrial& trial,
+                                         const slam::SlamConfig& config, slam::MappingMode mode) {
+  Player player(config, mode);
+  for (std::size_t i = 0; i < trial.mapped && i < mapped.frames.size(); ++i) player.play(*mapped.frames[i]);
   auto covered = std::make_unique<msg::FeatureFrame>(*mapped.frames.front());
   covered->count = 0;
   RelocalizationOutcome outcome;
@@ -129,7 +138,7 @@ RelocalizationOutcome run_relocalization(const FeatureClip& mapped, const Featur
     if (trial.on_frame && !msg::has_pose(result.state)) trial.on_frame(result, 0, 0);
     if (!msg::has_pose(result.state) || !again.T_world_camera[i]) continue;
     const PosePair pair{msg::to_isometry(result.T_world_camera), *again.T_world_camera[i]};
-    const double error_m = comparison.error_m(pair), error_deg = comparison.error_deg(pair);
+    const double error_m = alignment.error_m(pair), error_deg = alignment.error_deg(pair);
     if (trial.on_frame) trial.on_frame(result, error_m, error_deg);
     if (result.map_id != 0 || error_m > kWrong_m || error_deg > kWrong_deg) ++outcome.wrong;
     if (result.state != msg::TrackingState::kOk) continue;

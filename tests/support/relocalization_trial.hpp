@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/msg/features.hpp"
+#include "services/launcher/core/evaluation/alignment.hpp"
 #include "services/slam/core/slam_system.hpp"
 
 namespace rtd::test_support {
@@ -19,8 +20,31 @@ struct FeatureClip {
   std::vector<std::optional<Eigen::Isometry3d>> T_world_camera;  ///< empty where the truth says nothing
 };
 
-/// ORB features of `count` frames of a source from `first` on; with `masks` without those on moving pixels.
-FeatureClip record_features(const std::string& source, std::size_t first, std::size_t count, bool masks);
+/// ORB features of `count` frames of a source from `first` on; with `masks` without those on moving pixels. The truth's
+/// clock shows `truth_offset_s` more than the images' stamps.
+FeatureClip record_features(const std::string& source, std::size_t first, std::size_t count, bool masks,
+                            double truth_offset_s = 0);
+
+struct PosePair {
+  Eigen::Isometry3d estimate, truth;  ///< T_world_camera, each in its own world
+};
+
+/// Where the truth has what the estimate tells. The truth's body (markers of a motion capture) is turned against the
+/// camera: R_truth = A R_estimate B; A and B are in turn the means over all poses. Positions alone, millimetres off on
+/// some decimetres of a path, leave degrees of A open.
+class WorldAlignment {
+ public:
+  explicit WorldAlignment(const std::vector<PosePair>& pairs);
+  double error_m(const PosePair& pair) const;
+  double error_deg(const PosePair& pair) const;
+
+ private:
+  eval::Alignment positions_;
+  Eigen::Matrix3d R_truth_estimate_, R_camera_body_;
+};
+
+/// From a run of the whole clip without any loss; its world is that of every run that begins alike.
+WorldAlignment align_worlds(const FeatureClip& clip, const slam::SlamConfig& config);
 
 /// The camera maps the frames [0, mapped), sees nothing for `covered` frames, and then what `again` shows from `resume`
 /// on. Frames are stamped anew, 30 a second.
@@ -41,7 +65,7 @@ struct RelocalizationOutcome {
 };
 
 RelocalizationOutcome run_relocalization(const FeatureClip& mapped, const FeatureClip& again,
-                                         const RelocalizationTrial& trial, const slam::SlamConfig& config,
-                                         slam::MappingMode mode);
+                                         const WorldAlignment& alignment, const RelocalizationTrial& trial,
+                                         const slam::SlamConfig& config, slam::MappingMode mode);
 
 }  // namespace rtd::test_support

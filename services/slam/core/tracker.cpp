@@ -20,6 +20,16 @@ double seconds_between(const Frame& earlier, const Frame& later) {
   return static_cast<double>(later.stamp_ns - earlier.stamp_ns) / kNanosecondsPerSecond;
 }
 
+/// Whether a camera that moved like `motion` can have got there in `gap_s`. If not, frames in between are missing or it
+/// was carried away: the way to there over the gap is nobody's velocity.
+bool is_steady(const CameraMotion& motion, const Eigen::Isometry3d& T_last_camera, double gap_s) {
+  constexpr double kMaxAcceleration_m_s2 = 50, kMaxAcceleration_rad_s2 = 200;  // a hand that is struck
+  const Eigen::Isometry3d T_expected_camera =
+      geometry::se3_exp(gap_s * motion.velocity_per_s).inverse() * T_last_camera;
+  return T_expected_camera.translation().norm() < kMaxAcceleration_m_s2 * gap_s * gap_s &&
+         geometry::rotation_angle_rad(T_expected_camera) < kMaxAcceleration_rad_s2 * gap_s * gap_s;
+}
+
 }  // namespace
 
 KeyframeId vote_reference(const LocalMap& map, const std::vector<LandmarkId>& landmarks) {
@@ -224,10 +234,11 @@ void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalization 
 void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking) {
   const double gap_s = last_.frame == nullptr ? 0 : seconds_between(*last_.frame, *frame);
   const bool entered = state_ == msg::TrackingState::kRelocalizing && confirmations_ >= 0;
-  const bool continuous = (msg::has_pose(state_) || entered) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
+  const bool in_time = (msg::has_pose(state_) || entered) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
+  const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * tracking.guess.T_world_camera;
+  const bool continuous = in_time && (!motion_ || is_steady(*motion_, T_last_camera, gap_s));
   motion_.reset();
   if (continuous) {
-    const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * tracking.guess.T_world_camera;
     motion_ = CameraMotion{tracking.guess.T_world_camera, geometry::se3_log(T_last_camera) / gap_s, gap_s,
                            tracking.guess.covariance};
   }

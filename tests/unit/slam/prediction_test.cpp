@@ -151,5 +151,22 @@ TEST(Prediction, fades_to_rest_and_doubts_more_the_faster_it_was) {
   EXPECT_LT(predict_motion(slow, 0.3, config).covariance(0, 0), predict_motion(fast, 0.3, config).covariance(0, 0));
 }
 
+/// Frames are missing, or the camera was carried on: the way to there is no velocity to undo a rolling shutter with.
+TEST(Prediction, jump_bends_no_frame) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  SlamConfig config;
+  config.sensor.readout_s = 0.02;
+  SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  for (std::uint64_t seq = 0; seq < 10; ++seq) slam.process(*world.view(seq, T_world_camera));
+  T_world_camera.translation().x() += 0.15;
+  for (std::uint64_t seq = 10; seq < 13; ++seq) {
+    const SlamOutput output = slam.process(*world.view(seq, T_world_camera));
+    ASSERT_EQ(output.result.state, TrackingState::kOk) << "frame " << seq;
+    const Eigen::Isometry3d T_estimate = msg::to_isometry(output.result.T_world_camera);
+    EXPECT_LT((T_estimate.translation() - T_world_camera.translation()).norm(), 0.003) << "frame " << seq;
+  }
+}
+
 }  // namespace
 }  // namespace rtd::slam
