@@ -6,6 +6,10 @@
 #include "common/bus/inprocess/inprocess_raw_bus.hpp"
 #include "common/bus/network.hpp"
 #include "common/bus/raw_bus.hpp"
+#ifdef RTD_HAVE_CYCLONEDDS
+#include "common/bus/cyclonedds/cyclonedds_backend.hpp"
+#include "common/bus/cyclonedds/cyclonedds_raw_bus.hpp"
+#endif
 #ifdef RTD_HAVE_FASTDDS
 #include "common/bus/fastdds/fastdds_backend.hpp"
 #include "common/bus/fastdds/fastdds_raw_bus.hpp"
@@ -27,6 +31,10 @@ const Vendor kVendors[] = {
 #ifdef RTD_HAVE_FASTDDS
     {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); },
      [](const BusOptions& options) { return fastdds::create_raw_bus(options); }},
+#endif
+#ifdef RTD_HAVE_CYCLONEDDS
+    {"cyclonedds", [](const BusOptions& options) { return cyclonedds::create_backend(options); },
+     [](const BusOptions& options) { return cyclonedds::create_raw_bus(options); }},
 #endif
     {"inprocess", [](const BusOptions& options) { return inprocess::create_backend(options.domain); },
      [](const BusOptions& options) { return inprocess::create_raw_bus(options.domain); }},

@@ -24,3 +24,6 @@ endif()
 if(RTD_BUILD_BENCH)
   find_package(benchmark REQUIRED)
 endif()
+if(RTD_WITH_CYCLONEDDS)
+  find_package(CycloneDDS 0.10 REQUIRED)  # found here, because tests use its idlc_generate() too
+endif()

@@ -5,9 +5,11 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
 #include "common/bus/fastdds/converted_type.hpp"
-#include "common/bus/fastdds/message_pool.hpp"
 #include "common/bus/fastdds/plain_type.hpp"
+#include "common/bus/message_pool.hpp"
 #include "common/bus/message_visit.hpp"
+#include "common/bus/plausible.hpp"
+#include "common/bus/type_names.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
@@ -15,38 +17,14 @@ namespace {
 namespace dds = eprosima::fastdds::dds;
 using eprosima::fastrtps::types::ReturnCode_t;
 
-template <class T>
-constexpr const char* kPlainTypeName = nullptr;
-template <>
-constexpr const char* kPlainTypeName<msg::RgbdFrame> = "rtd_msgs::msg::dds_::RgbdFrame_";
-template <>
-constexpr const char* kPlainTypeName<msg::FeatureFrame> = "rtd_msgs::msg::dds_::FeatureFrame_";
-template <>
-constexpr const char* kPlainTypeName<msg::KeyframeEvent> = "rtd_msgs::msg::dds_::KeyframeEvent_";
-template <>
-constexpr const char* kPlainTypeName<msg::TrackingResult> = "rtd_msgs::msg::dds_::TrackingResult_";
-
-/// Whether the counts in a message from outside stay within its arrays.
-bool is_plausible(const msg::RgbdFrame& frame) {
-  return frame.width > 0 && frame.width <= msg::kMaxFrameWidth && frame.height > 0 &&
-         frame.height <= msg::kMaxFrameHeight;
-}
-bool is_plausible(const msg::FeatureFrame& features) {
-  return features.count <= msg::kMaxFeatures;
-}
-bool is_plausible(const msg::KeyframeEvent&) {
-  return true;
-}
-bool is_plausible(const msg::TrackingResult&) {
-  return true;
-}
-
 /// Fixed-size messages: the plain struct itself goes through the bus.
 template <class T>
 class PlainCodec : public Codec {
  public:
   bool plain() const override { return true; }
-  dds::TypeSupport create_type() const override { return dds::TypeSupport(new PlainType<T>(kPlainTypeName<T>)); }
+  dds::TypeSupport create_type() const override {
+    return dds::TypeSupport(new PlainType<T>(dds_type_name(MessageTraits<T>::kId)));
+  }
   bool write(dds::DataWriter& writer, const void* message) const override {
     return writer.write(const_cast<void*>(message));  // the vendor only reads it
   }

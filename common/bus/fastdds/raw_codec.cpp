@@ -11,7 +11,7 @@
 #include <fastdds/dds/topic/TopicDataType.hpp>
 
 #include "common/bus/backend.hpp"
-#include "common/bus/fastdds/message_pool.hpp"
+#include "common/bus/message_pool.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {

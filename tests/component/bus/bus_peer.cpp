@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The other process of the bus tests: bus_peer ROLE DOMAIN [COUNT]. Roles below; runs until SIGTERM.
+// The other process of the bus tests: bus_peer VENDOR ROLE DOMAIN [COUNT]. Roles below; runs until SIGTERM.
 #include <signal.h>
 #include <unistd.h>
 
@@ -121,13 +121,14 @@ void send_heartbeats(Bus& bus, int) {
   while (!stop_asked(50ms)) writer.write(msg::ServiceStatus{.service = "peer", .pid = getpid()});
 }
 
-int run(const std::string& role, std::uint32_t domain, int count) {
+int run(const std::string& vendor, const std::string& role, std::uint32_t domain, int count) {
   static const std::map<std::string, std::function<void(Bus&, int)>> kRoles = {
       {"send_frames", send_frames},     {"flood_frames", flood_frames},   {"answer_features", answer_features},
       {"answer_frames", answer_frames}, {"leave_history", leave_history}, {"send_heartbeats", send_heartbeats}};
   const auto entry = kRoles.find(role);
   if (entry == kRoles.end()) return 2;
   BusOptions options;
+  options.vendor = vendor;
   options.domain = domain;
   options.participant_name = "bus-peer";
   entry->second(*connect(options), count);
@@ -138,10 +139,11 @@ int run(const std::string& role, std::uint32_t domain, int count) {
 }  // namespace rtd::bus
 
 int main(int argc, char** argv) try {
-  if (argc < 3) return 2;
+  if (argc < 4) return 2;
   const sigset_t set = rtd::bus::stop_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread exists
-  return rtd::bus::run(argv[1], static_cast<std::uint32_t>(std::atoi(argv[2])), argc > 3 ? std::atoi(argv[3]) : 0);
+  const auto domain = static_cast<std::uint32_t>(std::atoi(argv[3]));
+  return rtd::bus::run(argv[1], argv[2], domain, argc > 4 ? std::atoi(argv[4]) : 0);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "bus_peer: %s\n", error.what());
   return 2;

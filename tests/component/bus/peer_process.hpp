@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -10,6 +11,9 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
+
+#include "common/bus/bus_factory.hpp"
 
 extern char** environ;
 
@@ -20,9 +24,9 @@ namespace rtd::bus {
 /// notification.
 class PeerProcess {
  public:
-  PeerProcess(std::string role, std::uint32_t domain, int count = 0) {
+  PeerProcess(std::string vendor, std::string role, std::uint32_t domain, int count = 0) {
     std::string path = BUS_PEER_PATH, domain_text = std::to_string(domain), count_text = std::to_string(count);
-    char* argv[] = {path.data(), role.data(), domain_text.data(), count_text.data(), nullptr};
+    char* argv[] = {path.data(), vendor.data(), role.data(), domain_text.data(), count_text.data(), nullptr};
     if (posix_spawn(&pid_, path.c_str(), nullptr, nullptr, argv, environ) != 0) {
       throw std::runtime_error("cannot start " + path);
     }
@@ -48,6 +52,20 @@ class PeerProcess {
 /// A domain of this process's own, so that tests can run side by side.
 inline std::uint32_t test_domain() {
   return 100 + static_cast<std::uint32_t>(getpid()) % 100;
+}
+
+/// The vendors of this build that go over the network, for tests that hold for each of them.
+inline std::vector<std::string> dds_vendors() {
+  std::vector<std::string> names;
+  for (const std::string& name : available_vendors()) {
+    if (name != "inprocess") names.push_back(name);
+  }
+  return names;
+}
+
+/// The suffix of a test that is run for a vendor.
+inline std::string test_name(const testing::TestParamInfo<std::string>& test) {
+  return test.param;
 }
 
 }  // namespace rtd::bus

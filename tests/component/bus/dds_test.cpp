@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Two connections within one process.
+// Two connections within one process, with every vendor.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,9 +19,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::shared_ptr<Bus> connect_fastdds() {
+std::shared_ptr<Bus> connect_to(const std::string& vendor) {
   BusOptions options;
-  options.vendor = "fastdds";
+  options.vendor = vendor;
   options.domain = test_domain();
   options.participant_name = "bus-test";
   return connect(options);
@@ -35,12 +35,12 @@ void wait_for_reader(const Writer<T>& writer) {
   }
 }
 
-class FastddsBus : public testing::Test {
+class DdsBus : public testing::TestWithParam<std::string> {
  protected:
-  std::shared_ptr<Bus> here = connect_fastdds(), there = connect_fastdds();
+  std::shared_ptr<Bus> here = connect_to(GetParam()), there = connect_to(GetParam());
 };
 
-TEST_F(FastddsBus, delivers_every_kind_of_message) {
+TEST_P(DdsBus, delivers_every_kind_of_message) {
   Collector<msg::FeatureFrame> features;
   Collector<msg::Odometry> odometry;
   Collector<msg::ServiceStatus> status;
@@ -69,12 +69,12 @@ TEST_F(FastddsBus, delivers_every_kind_of_message) {
   EXPECT_EQ(status.next()->metrics.at(0).value, 3.0);
 }
 
-TEST_F(FastddsBus, takes_an_unwritten_loan_back) {
+TEST_P(DdsBus, takes_an_unwritten_loan_back) {
   auto writer = here->writer(topics::kFrame);
   for (int i = 0; i < 20; ++i) const auto loan = writer.loan();
 }
 
-TEST_F(FastddsBus, tells_both_sides_when_they_match_and_part) {
+TEST_P(DdsBus, tells_both_sides_when_they_match_and_part) {
   Collector<int> writer_peers, reader_peers;
   StatusCallbacks of_writer, of_reader;
   of_writer.on_matched = [&](int peers) { writer_peers.push(std::make_shared<int>(peers)); };
@@ -90,7 +90,7 @@ TEST_F(FastddsBus, tells_both_sides_when_they_match_and_part) {
   EXPECT_EQ(*reader_peers.next(), 0);
 }
 
-TEST_F(FastddsBus, names_the_policy_that_keeps_a_pair_apart) {
+TEST_P(DdsBus, names_the_policy_that_keeps_a_pair_apart) {
   Collector<std::string> by_writer, by_reader;
   StatusCallbacks of_writer, of_reader;
   of_writer.on_incompatible_qos = [&](const auto& policy) { by_writer.push(std::make_shared<std::string>(policy)); };
@@ -105,7 +105,7 @@ TEST_F(FastddsBus, names_the_policy_that_keeps_a_pair_apart) {
   EXPECT_EQ(writer.matched(), 0);
 }
 
-TEST_F(FastddsBus, tells_when_a_promised_heartbeat_stays_away) {
+TEST_P(DdsBus, tells_when_a_promised_heartbeat_stays_away) {
   Collector<int> missed;
   StatusCallbacks callbacks;
   callbacks.on_deadline_missed = [&] { missed.push(std::make_shared<int>(1)); };
@@ -118,7 +118,7 @@ TEST_F(FastddsBus, tells_when_a_promised_heartbeat_stays_away) {
   EXPECT_EQ(*missed.next(3s), 1);
 }
 
-TEST_F(FastddsBus, no_callback_runs_after_the_reader_is_gone) {
+TEST_P(DdsBus, no_callback_runs_after_the_reader_is_gone) {
   auto writer = here->writer(topics::kTracking);
   std::atomic<bool> stop{false};
   std::thread sender([&] {
@@ -139,18 +139,13 @@ TEST_F(FastddsBus, no_callback_runs_after_the_reader_is_gone) {
   sender.join();
 }
 
-TEST_F(FastddsBus, refuses_one_topic_with_two_types) {
+TEST_P(DdsBus, refuses_one_topic_with_two_types) {
   const auto reader = here->reader<msg::Odometry>(topics::kOdometry, [](auto) {});
   const Topic<msg::PoseStamped> same_name{topics::kOdometry.name, QosProfile::kPose};
   EXPECT_THROW(here->writer(same_name), BusError);
 }
 
-TEST(FastddsOptions, refuse_a_segment_that_no_image_fits_in) {
-  BusOptions options;
-  options.domain = test_domain();
-  options.shm_segment_mib = 1;
-  EXPECT_THROW(connect(options), BusError);
-}
+INSTANTIATE_TEST_SUITE_P(Vendors, DdsBus, testing::ValuesIn(dds_vendors()), test_name);
 
 }  // namespace
 }  // namespace rtd::bus

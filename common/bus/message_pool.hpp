@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace rtd::bus::fastdds {
+namespace rtd::bus {
 
 /// Lends uninitialised messages as shared pointers and takes their memory back: a fresh frame would cost 375 page
 /// faults. Messages may outlive the pool. Thread-safe.
@@ -44,4 +44,4 @@ class MessagePool {
   std::shared_ptr<Spares> spares_ = std::make_shared<Spares>();
 };
 
-}  // namespace rtd::bus::fastdds
+}  // namespace rtd::bus

@@ -21,8 +21,9 @@ using Samples = Collector<RawSample>;
 
 constexpr std::size_t kHeader = 4;
 
-BusOptions options_of_test() {
+BusOptions options_with(const std::string& vendor) {
   BusOptions options;
+  options.vendor = vendor;
   options.domain = test_domain();
   options.participant_name = "raw-test";
   return options;
@@ -47,20 +48,26 @@ TopicWriter wait_for_writer(const RawBus& bus, const std::string& topic) {
   throw std::runtime_error("nobody writes " + topic);
 }
 
-class RawFrames : public ::testing::TestWithParam<bool> {};
+/// Whether a vendor keeps frames in the writer's shared memory.
+bool shares_frames(const std::string& vendor) {
+  return vendor == "fastdds";
+}
+
+class RawFrames : public ::testing::TestWithParam<std::tuple<std::string, bool>> {};
 
 TEST_P(RawFrames, all_arrive_with_every_byte) {
+  const auto& [vendor, in_place] = GetParam();
   constexpr std::uint64_t kFrames = 60;
-  const auto typed = connect(options_of_test());
-  const auto bus = connect_raw(options_of_test());
+  const auto typed = connect(options_with(vendor));
+  const auto bus = connect_raw(options_with(vendor));
   auto go = typed->writer(topics::kTracking);
-  const PeerProcess peer("send_frames", test_domain(), kFrames);
+  const PeerProcess peer(vendor, "send_frames", test_domain(), kFrames);
   const TopicWriter camera = wait_for_writer(*bus, topics::kFrame.name);
   EXPECT_EQ(camera.topic.type, "rtd_msgs::msg::dds_::RgbdFrame_");
-  EXPECT_TRUE(camera.shared_memory);
+  EXPECT_EQ(camera.shared_memory, shares_frames(vendor));
   Samples samples;
   RawReaderOptions options;
-  options.in_place = GetParam();
+  options.in_place = in_place;
   const auto reader = bus->reader(camera.topic, options, into(samples));
   while (reader->matched() == 0 || go.matched() == 0) std::this_thread::sleep_for(1ms);
   go.write(msg::TrackingResult{});
@@ -77,12 +84,20 @@ TEST_P(RawFrames, all_arrive_with_every_byte) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, RawFrames, ::testing::Bool(),
-                         [](const auto& test) { return test.param ? "in_place" : "sent"; });
+INSTANTIATE_TEST_SUITE_P(Ways, RawFrames, ::testing::Combine(::testing::ValuesIn(dds_vendors()), ::testing::Bool()),
+                         [](const auto& test) {
+                           return std::get<0>(test.param) + (std::get<1>(test.param) ? "_in_place" : "_sent");
+                         });
 
-TEST(RawFastdds, history_of_our_latched_topics_reaches_a_late_reader) {
-  const PeerProcess peer("leave_history", test_domain(), 10);
-  const auto bus = connect_raw(options_of_test());
+class RawProcesses : public ::testing::TestWithParam<std::string> {
+ protected:
+  const std::string vendor = GetParam();
+};
+INSTANTIATE_TEST_SUITE_P(Vendors, RawProcesses, ::testing::ValuesIn(dds_vendors()), test_name);
+
+TEST_P(RawProcesses, history_of_our_latched_topics_reaches_a_late_reader) {
+  const PeerProcess peer(vendor, "leave_history", test_domain(), 10);
+  const auto bus = connect_raw(options_with(vendor));
   const TopicWriter slam = wait_for_writer(*bus, topics::kKeyframes.name);
   EXPECT_EQ(slam.qos.durability, RawQos::Durability::kTransientLocal);
   EXPECT_TRUE(slam.qos.reliable);
@@ -100,9 +115,9 @@ TEST(RawFastdds, history_of_our_latched_topics_reaches_a_late_reader) {
   }
 }
 
-TEST(RawFastdds, typed_readers_understand_raw_writers) {
-  const auto typed = connect(options_of_test());
-  const auto bus = connect_raw(options_of_test());
+TEST_P(RawProcesses, typed_readers_understand_raw_writers) {
+  const auto typed = connect(options_with(vendor));
+  const auto bus = connect_raw(options_with(vendor));
   Collector<msg::TrackingResult> results;
   const auto reader = typed->reader(topics::kTracking, results.callback());
   const auto writer = bus->writer({topics::kTracking.name, "rtd_msgs::msg::dds_::TrackingResult_"}, {});
@@ -116,9 +131,9 @@ TEST(RawFastdds, typed_readers_understand_raw_writers) {
   EXPECT_EQ(results.next()->seq, 42U);
 }
 
-TEST(RawFastdds, frames_from_a_raw_writer_reach_typed_readers_in_shared_memory) {
-  const auto typed = connect(options_of_test());
-  const auto bus = connect_raw(options_of_test());
+TEST_P(RawProcesses, frames_from_a_raw_writer_reach_typed_readers) {
+  const auto typed = connect(options_with(vendor));
+  const auto bus = connect_raw(options_with(vendor));
   Collector<msg::RgbdFrame> frames;
   const auto reader = typed->reader(topics::kFrame, frames.callback());
   RawWriterOptions options;
@@ -139,8 +154,8 @@ TEST(RawFastdds, frames_from_a_raw_writer_reach_typed_readers_in_shared_memory) 
   }
 }
 
-TEST(RawFastdds, one_topic_cannot_have_two_types) {
-  const auto bus = connect_raw(options_of_test());
+TEST_P(RawProcesses, one_topic_cannot_have_two_types) {
+  const auto bus = connect_raw(options_with(vendor));
   const auto first = bus->reader({"rt/a", "x::A_"}, {}, {});
   EXPECT_THROW((void)bus->reader({"rt/a", "x::B_"}, {}, {}), BusError);
 }

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/cyclonedds/cyclonedds_raw_bus.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/bus/cyclonedds/cyclonedds_reader.hpp"
+#include "common/bus/cyclonedds/cyclonedds_writer.hpp"
+#include "common/bus/cyclonedds/discovery.hpp"
+#include "common/bus/cyclonedds/qos_mapping.hpp"
+#include "common/bus/writer_registry.hpp"
+
+namespace rtd::bus::cyclonedds {
+namespace {
+
+SampleType raw_type(const RawTopic& topic) {
+  return {topic.type, topic.keyed, 0, true};
+}
+
+class RawCycloneReader : public RawReader {
+ public:
+  RawCycloneReader(std::shared_ptr<Participant> participant, const RawTopic& topic, const RawReaderOptions& options,
+                   RawHandlers handlers)
+      : reader_(std::move(participant), raw_type(topic), topic.name, raw_reader_qos(options), to_own(handlers)) {}
+  int matched() const override { return reader_.matched(); }
+
+ private:
+  static CycloneReader::Handlers to_own(const RawHandlers& handlers) {
+    CycloneReader::Handlers own;
+    own.on_sample = [on_sample = handlers.on_sample](const TakenSample& taken) {
+      if (!on_sample) return true;
+      on_sample({taken.origin.writer, taken.origin.sequence, taken.source_ns, taken.received_ns, taken.bytes});
+      return true;
+    };
+    own.on_gap = handlers.on_lost;
+    own.status = handlers.status;
+    return own;
+  }
+
+  CycloneReader reader_;
+};
+
+class RawCycloneWriter : public RawWriter {
+ public:
+  RawCycloneWriter(std::shared_ptr<Participant> participant, const RawTopic& topic, const RawWriterOptions& options,
+                   StatusCallbacks callbacks)
+      : fixed_bytes_(options.fixed_bytes),
+        writer_(std::move(participant), raw_type(topic), topic.name, writer_qos(options.qos), std::move(callbacks)) {}
+  bool write(std::span<const std::byte> cdr, std::int64_t source_ns) override {
+    const bool right_size = fixed_bytes_ == 0 || cdr.size() == fixed_bytes_;
+    if (cdr.size() < ByteBlock::kCdrHeaderBytes || !right_size) return false;
+    auto block = acquire_block(writer_.type(), cdr.size());
+    block->assign(cdr);
+    return writer_.write(std::move(block), source_ns);
+  }
+  int matched() const override { return writer_.matched(); }
+  bool wait_acknowledged(int timeout_ms) override { return writer_.wait_acknowledged(timeout_ms); }
+
+ private:
+  const std::uint32_t fixed_bytes_;
+  CycloneWriter writer_;
+};
+
+/// RTPS: the low bits of an entity's last byte tell a writer with key from one without.
+bool is_keyed(const WriterId& id) {
+  return (id.back() & 0x0f) == 0x02;
+}
+
+class CycloneRawBus : public RawBus {
+ public:
+  explicit CycloneRawBus(const BusOptions& options)
+      : participant_(std::make_shared<Participant>(options)),
+        watch_(*participant_, EndpointWatch::Direction::kWriters,
+               [this](const WriterId& id, const dds_builtintopic_endpoint_t* writer) { note(id, writer); }) {}
+
+  const std::string& vendor() const override { return vendor_; }
+  std::vector<TopicWriter> writers() const override { return registry_.writers(); }
+  void watch(Watcher watcher) override { registry_.watch(std::move(watcher)); }
+  std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
+                                    RawHandlers handlers) override {
+    return std::make_unique<RawCycloneReader>(participant_, topic, options, std::move(handlers));
+  }
+  std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options,
+                                    StatusCallbacks callbacks) override {
+    return std::make_unique<RawCycloneWriter>(participant_, topic, options, std::move(callbacks));
+  }
+
+ private:
+  void note(const WriterId& id, const dds_builtintopic_endpoint_t* endpoint) {
+    if (endpoint == nullptr) return registry_.note_gone(id);
+    TopicWriter writer;
+    writer.id = id;
+    writer.topic = {endpoint->topic_name, endpoint->type_name, is_keyed(id)};
+    writer.qos = from_vendor(*endpoint->qos);
+    writer.user_data = user_data(*endpoint->qos);
+    constexpr std::size_t kPrefix = 12;  // of the participant
+    writer.own = std::equal(id.begin(), id.begin() + kPrefix, participant_->id().begin());
+    registry_.note(writer);
+  }
+
+  const std::string vendor_ = "cyclonedds";
+  std::shared_ptr<Participant> participant_;
+  WriterRegistry registry_;
+  EndpointWatch watch_;  // last: it uses the others
+};
+
+}  // namespace
+
+std::shared_ptr<RawBus> create_raw_bus(const BusOptions& options) {
+  return std::make_shared<CycloneRawBus>(options);
+}
+
+}  // namespace rtd::bus::cyclonedds

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "common/bus/cyclonedds/domain.hpp"
+#include "common/bus/cyclonedds/sample_type.hpp"
+
+namespace rtd::bus::cyclonedds {
+
+struct VendorTopic {
+  dds_entity_t handle = 0;
+  const ddsi_sertype* type = nullptr;
+};
+
+/// Our presence in a domain, and its topics. Thread-safe.
+class Participant {
+ public:
+  /// Throws BusError when Cyclone refuses.
+  explicit Participant(const BusOptions& options);
+
+  dds_entity_t handle() const { return participant_.get(); }
+  const WriterId& id() const { return id_; }
+  bool shares_memory() const { return shares_memory_; }
+  /// The topic of that name, created when new; lives as long as the participant.
+  /// Throws BusError when it exists with another type.
+  VendorTopic topic(const std::string& name, const SampleType& type);
+
+ private:
+  struct KnownTopic {
+    SampleType type;
+    VendorTopic vendor;
+  };
+
+  std::shared_ptr<Domain> domain_;
+  Entity participant_;  // its topics and endpoints end with it
+  WriterId id_{};
+  const bool shares_memory_;
+  std::mutex mutex_;
+  std::map<std::string, KnownTopic> topics_;
+};
+
+/// Identity of an entity in its domain.
+WriterId guid_of(dds_entity_t entity);
+
+}  // namespace rtd::bus::cyclonedds

@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/cyclonedds/serdata.hpp"
+
+extern "C" {
+#include <dds/ddsi/ddsi_keyhash.h>
+#include <dds/ddsi/q_bswap.h>
+#include <dds/ddsi/q_misc.h>
+#include <dds/ddsi/q_protocol.h>
+#include <dds/ddsi/q_radmin.h>
+#ifdef DDS_HAS_SHM
+#include <dds/ddsi/ddsi_shm_transport.h>
+#endif
+}
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+
+namespace rtd::bus::cyclonedds {
+namespace {
+
+constexpr std::size_t kHeader = ByteBlock::kCdrHeaderBytes;
+
+Serdata& ours(ddsi_serdata* sample) {
+  return *static_cast<Serdata*>(sample);
+}
+const Serdata& ours(const ddsi_serdata* sample) {
+  return *static_cast<const Serdata*>(sample);
+}
+std::span<const std::byte> bytes_of(const ddsi_serdata* sample) {
+  return ours(sample).bytes ? std::as_const(*ours(sample).bytes).view() : std::span<const std::byte>();
+}
+
+std::shared_ptr<ByteBlock> block_of(const ddsi_sertype* type, std::size_t size) {
+  std::shared_ptr<ByteBlock> block = static_cast<const Sertype*>(type)->pool.acquire();
+  block->resize(size);
+  return block;
+}
+
+/// Writer and number stand in the headers of the packet that brought the first fragment. Cyclone keeps the packet and
+/// has turned its numbers to our byte order; the writer's id it turned as well.
+SampleOrigin origin_of(const nn_rdata& fragment) {
+  SampleOrigin origin;
+  const unsigned char* const packet = NN_RMSG_PAYLOAD(fragment.rmsg);
+  Header_t rtps;
+  Data_DataFrag_common_t data;
+  std::memcpy(&rtps, packet, sizeof(rtps));
+  std::memcpy(&data, packet + NN_RDATA_SUBMSG_OFF(&fragment), sizeof(data));
+  const ddsi_guid_t guid = nn_hton_guid({rtps.guid_prefix, data.writerId});
+  std::memcpy(origin.writer.data(), &guid, sizeof(guid));
+  origin.sequence = static_cast<std::int64_t>(fromSN(data.writerSN));
+  return origin;
+}
+
+/// Fragments may overlap.
+bool copy_fragments(const nn_rdata* fragment, std::span<std::byte> target) {
+  std::size_t copied = 0;
+  for (; fragment != nullptr; fragment = fragment->nextfrag) {
+    if (fragment->min > copied || fragment->maxp1 > target.size()) return false;
+    if (fragment->maxp1 <= copied) continue;
+    const unsigned char* const payload = NN_RMSG_PAYLOADOFF(fragment->rmsg, NN_RDATA_PAYLOAD_OFF(fragment));
+    std::memcpy(target.data() + copied, payload + (copied - fragment->min), fragment->maxp1 - copied);
+    copied = fragment->maxp1;
+  }
+  return copied == target.size();
+}
+
+ddsi_serdata* from_packets(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragments,
+                           std::size_t size) {
+  if (size < kHeader) return nullptr;
+  auto block = block_of(type, size);
+  if (!copy_fragments(fragments, block->bytes())) return nullptr;
+  Serdata* const sample = create_serdata(type, kind, std::move(block));
+  sample->origin = origin_of(*fragments);
+  sample->received_ns = dds_time();
+  return sample;
+}
+
+ddsi_serdata* from_pieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
+                          const ddsrt_iovec_t* pieces, std::size_t size) {
+  if (size < kHeader) return nullptr;
+  auto block = block_of(type, size);
+  std::size_t copied = 0;
+  for (ddsrt_msg_iovlen_t i = 0; i < count && copied < size; ++i) {
+    const std::size_t length = std::min<std::size_t>(pieces[i].iov_len, size - copied);
+    std::memcpy(block->bytes().data() + copied, pieces[i].iov_base, length);
+    copied += length;
+  }
+  return copied == size ? create_serdata(type, kind, std::move(block)) : nullptr;
+}
+
+ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) {
+  return create_serdata(type, SDK_KEY, nullptr);
+}
+
+std::shared_ptr<ByteBlock> block_from_plain(const ddsi_sertype* type, const void* plain) {
+  constexpr std::byte kLittleEndianCdr[kHeader] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  const std::size_t size = static_cast<const Sertype*>(type)->description.plain_bytes;
+  auto block = block_of(type, kHeader + size);
+  std::memcpy(block->bytes().data(), kLittleEndianCdr, kHeader);
+  std::memcpy(block->bytes().data() + kHeader, plain, size);
+  return block;
+}
+
+/// dds_write() of a plain message, which we call when it may go through iceoryx.
+ddsi_serdata* from_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* plain) {
+  const bool known = kind == SDK_DATA && static_cast<const Sertype*>(type)->description.plain_bytes > 0;
+  return known ? create_serdata(type, kind, block_from_plain(type, plain)) : nullptr;
+}
+
+std::uint32_t size(const ddsi_serdata* sample) {
+  return static_cast<std::uint32_t>(std::max(bytes_of(sample).size(), kHeader));
+}
+
+/// The range may end in the padding.
+const std::byte* range(const ddsi_serdata* sample, std::size_t offset) {
+  static const std::byte kEmptyCdr[kHeader] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  const auto bytes = bytes_of(sample);
+  return (bytes.empty() ? kEmptyCdr : bytes.data()) + offset;
+}
+void to_bytes(const ddsi_serdata* sample, std::size_t offset, std::size_t length, void* target) {
+  std::memcpy(target, range(sample, offset), length);
+}
+ddsi_serdata* lend_bytes(const ddsi_serdata* sample, std::size_t offset, std::size_t length, ddsrt_iovec_t* lent) {
+  lent->iov_base = const_cast<std::byte*>(range(sample, offset));
+  lent->iov_len = length;
+  return ddsi_serdata_ref(sample);
+}
+void return_bytes(ddsi_serdata* sample, const ddsrt_iovec_t*) {
+  ddsi_serdata_unref(sample);
+}
+
+// We take samples as they are, so none is ever made into a structure.
+bool to_sample(const ddsi_serdata*, void*, void**, void*) {
+  return false;
+}
+bool untyped_to_sample(const ddsi_sertype*, const ddsi_serdata*, void*, void**, void*) {
+  return false;
+}
+/// All samples of a topic are one instance: our types have no key, and of keyed ones we do not know it.
+ddsi_serdata* to_untyped(const ddsi_serdata* sample) {
+  Serdata* const untyped = create_serdata(sample->type, SDK_KEY, nullptr);
+  untyped->type = nullptr;
+  return untyped;
+}
+bool equal_key(const ddsi_serdata*, const ddsi_serdata*) {
+  return true;
+}
+void keyhash(const ddsi_serdata*, ddsi_keyhash* hash, bool) {
+  std::memset(hash->value, 0, sizeof(hash->value));
+}
+
+void free_sample(ddsi_serdata* sample) {
+#ifdef DDS_HAS_SHM
+  if (sample->iox_chunk != nullptr && sample->iox_subscriber != nullptr) {
+    free_iox_chunk(static_cast<iox_sub_t*>(sample->iox_subscriber), &sample->iox_chunk);
+  }
+#endif
+  delete &ours(sample);
+}
+
+std::size_t print(const ddsi_sertype*, const ddsi_serdata* sample, char* text, std::size_t capacity) {
+  return static_cast<std::size_t>(std::snprintf(text, capacity, "%zu bytes", bytes_of(sample).size()));
+}
+
+#ifdef DDS_HAS_SHM
+std::uint32_t sample_size(const ddsi_serdata* sample) {
+  return sample->type->iox_size;
+}
+
+/// A sample in iceoryx's memory: one of ours on its way out (no subscriber), or one that came. It stays there until it
+/// is taken, for Cyclone goes on reading the chunk's header.
+ddsi_serdata* from_shared_memory(const ddsi_sertype* type, ddsi_serdata_kind kind, void* subscriber, void* chunk) {
+  Serdata* const sample = create_serdata(type, kind, nullptr);
+  sample->iox_chunk = chunk;
+  sample->iox_subscriber = subscriber;
+  sample->received_ns = dds_time();
+  if (subscriber != nullptr) {
+    const ddsi_guid_t guid = nn_hton_guid(iceoryx_header_from_chunk(chunk)->guid);
+    std::memcpy(sample->origin.writer.data(), &guid, sizeof(guid));
+  }
+  return sample;
+}
+#endif
+
+constexpr ddsi_serdata_ops sample_ops() {
+  ddsi_serdata_ops ops{};
+  ops.eqkey = equal_key;
+  ops.get_size = size;
+  ops.from_ser = from_packets;
+  ops.from_ser_iov = from_pieces;
+  ops.from_keyhash = from_keyhash;
+  ops.from_sample = from_sample;
+  ops.to_ser = to_bytes;
+  ops.to_ser_ref = lend_bytes;
+  ops.to_ser_unref = return_bytes;
+  ops.to_sample = to_sample;
+  ops.to_untyped = to_untyped;
+  ops.untyped_to_sample = untyped_to_sample;
+  ops.free = free_sample;
+  ops.print = print;
+  ops.get_keyhash = keyhash;
+#ifdef DDS_HAS_SHM
+  ops.get_sample_size = sample_size;
+  ops.from_iox_buffer = from_shared_memory;
+#endif
+  return ops;
+}
+
+}  // namespace
+
+const ddsi_serdata_ops& serdata_ops() {
+  static constexpr ddsi_serdata_ops kOps = sample_ops();
+  return kOps;
+}
+
+Serdata* create_serdata(const ddsi_sertype* type, ddsi_serdata_kind kind, std::shared_ptr<ByteBlock> bytes) {
+  auto* const sample = new Serdata;
+  ddsi_serdata_init(sample, type, kind);
+  sample->hash = type->serdata_basehash;
+  sample->bytes = std::move(bytes);
+  return sample;
+}
+
+void leave_shared_memory(Serdata& sample) {
+#ifdef DDS_HAS_SHM
+  if (sample.iox_chunk == nullptr || sample.iox_subscriber == nullptr) return;
+  const auto* const header = iceoryx_header_from_chunk(sample.iox_chunk);
+  const bool raw = header->shm_data_state == IOX_CHUNK_CONTAINS_RAW_DATA;
+  if (raw && header->data_size == sample.type->iox_size) {
+    sample.bytes = block_from_plain(sample.type, sample.iox_chunk);
+  }
+  free_iox_chunk(static_cast<iox_sub_t*>(sample.iox_subscriber), &sample.iox_chunk);
+#else
+  (void)sample;
+#endif
+}
+
+}  // namespace rtd::bus::cyclonedds

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Between processes, with every vendor, and a peer that dies.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <string>
+#include <thread>
+
+#include "common/bus/bus_factory.hpp"
+#include "tests/component/bus/collector.hpp"
+#include "tests/component/bus/patterns.hpp"
+#include "tests/component/bus/peer_process.hpp"
+
+namespace rtd::bus {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::shared_ptr<Bus> connect_to(const std::string& vendor) {
+  BusOptions options;
+  options.vendor = vendor;
+  options.domain = test_domain();
+  options.participant_name = "bus-test";
+  return connect(options);
+}
+
+class DdsProcesses : public testing::TestWithParam<std::string> {};
+
+TEST_P(DdsProcesses, frames_arrive_whole_and_in_order) {
+  constexpr std::uint64_t kFrames = 60;
+  const auto bus = connect_to(GetParam());
+  Collector<msg::RgbdFrame> frames;
+  const auto reader = bus->reader(topics::kFrame, frames.callback());
+  auto go = bus->writer(topics::kTracking);
+  const PeerProcess peer(GetParam(), "send_frames", test_domain(), kFrames);
+  while (reader.matched() == 0 || go.matched() == 0) std::this_thread::sleep_for(1ms);
+  go.write(msg::TrackingResult{});
+
+  for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
+    const auto frame = frames.next();
+    ASSERT_EQ(frame->seq, seq);
+    ASSERT_TRUE(equals_pattern(*frame)) << "frame " << seq;
+  }
+}
+
+TEST_P(DdsProcesses, no_torn_frame_is_ever_delivered) {
+  const auto bus = connect_to(GetParam());
+  std::atomic<int> delivered{0}, torn{0};
+  const auto reader = bus->reader(topics::kFrame, [&](std::shared_ptr<const msg::RgbdFrame> frame) {
+    if (!equals_pattern(*frame)) ++torn;
+    ++delivered;
+    std::this_thread::sleep_for(3ms);  // slower than the writer: samples are overwritten while they are taken
+  });
+  const PeerProcess peer(GetParam(), "flood_frames", test_domain());
+
+  for (int i = 0; i < 10'000 && delivered < 200; ++i) std::this_thread::sleep_for(1ms);
+  EXPECT_GE(delivered, 20);
+  EXPECT_EQ(torn, 0);
+}
+
+TEST_P(DdsProcesses, nothing_is_lost_with_three_feature_frames_in_flight) {
+  constexpr std::uint64_t kMessages = 2000, kWindow = 3;
+  const auto bus = connect_to(GetParam());
+  Collector<msg::TrackingResult> results;
+  const auto reader = bus->reader(topics::kTracking, results.callback());
+  auto writer = bus->writer(topics::kFeatures);
+  const PeerProcess peer(GetParam(), "answer_features", test_domain());
+  while (writer.matched() == 0 || reader.matched() == 0) std::this_thread::sleep_for(1ms);
+
+  auto features = std::make_unique<msg::FeatureFrame>();
+  std::uint64_t sent = 0;
+  for (std::uint64_t answered = 0; answered < kMessages; ++answered) {
+    for (; sent < kMessages && sent < answered + kWindow; ++sent) {
+      fill_features(*features, sent);
+      ASSERT_TRUE(writer.write(*features));
+    }
+    const auto result = results.next();
+    ASSERT_EQ(result->seq, answered);
+    ASSERT_EQ(result->inliers, 1U) << "features " << answered << " arrived changed";
+  }
+}
+
+/// The writer's shared memory has five slots: one that gets lost now and then ends the stream.
+TEST_P(DdsProcesses, two_readers_get_every_frame_of_a_long_stream) {
+  constexpr std::uint64_t kFrames = 2000, kWindow = 3;
+  const auto bus = connect_to(GetParam());
+  Collector<msg::TrackingResult> results;
+  const auto reader = bus->reader(topics::kTracking, results.callback());
+  auto writer = bus->writer(topics::kFrame);
+  const PeerProcess filter(GetParam(), "answer_frames", test_domain(), 1),
+      detector(GetParam(), "answer_frames", test_domain(), 2);
+  while (writer.matched() < 2 || reader.matched() < 2) std::this_thread::sleep_for(1ms);
+
+  std::map<std::uint32_t, std::uint64_t> answered;  // by the peer's number
+  const auto answered_by_both = [&] {
+    return answered.size() < 2 ? 0 : std::min(answered.begin()->second, answered.rbegin()->second);
+  };
+  std::uint64_t sent = 0;
+  while (answered_by_both() < kFrames) {
+    for (; sent < kFrames && sent < answered_by_both() + kWindow; ++sent) {
+      auto frame = writer.loan();
+      fill_frame(*frame, sent);
+      ASSERT_TRUE(writer.write(std::move(frame))) << "frame " << sent;
+    }
+    const auto result = results.next();
+    ASSERT_EQ(result->seq, answered[result->landmarks]++);
+    ASSERT_EQ(result->inliers, 1U);
+  }
+}
+
+TEST_P(DdsProcesses, late_reader_gets_keyframes_and_camera_info) {
+  const PeerProcess peer(GetParam(), "leave_history", test_domain(), 40);
+  std::this_thread::sleep_for(300ms);  // not needed to pass, but makes sure that the reader is late
+  const auto bus = connect_to(GetParam());
+  Collector<msg::KeyframeEvent> keyframes;
+  Collector<msg::CameraInfo> info;
+  const auto keyframe_reader = bus->reader(topics::kKeyframes, keyframes.callback());
+  const auto info_reader = bus->reader(topics::kCameraInfo, info.callback());
+
+  for (std::uint64_t i = 0; i < 40; ++i) EXPECT_EQ(keyframes.next()->event_index, i);
+  const auto received = info.next();
+  EXPECT_EQ(received->width, 640U);
+  EXPECT_EQ(received->header.frame_id, "camera");
+}
+
+TEST_P(DdsProcesses, killed_writer_is_noticed_and_its_successor_heard) {
+  const auto bus = connect_to(GetParam());
+  Collector<msg::ServiceStatus> status;
+  Collector<int> alive;
+  StatusCallbacks callbacks;
+  callbacks.on_liveliness = [&](int writers) { alive.push(std::make_shared<int>(writers)); };
+  const auto reader = bus->reader(topics::kStatus, status.callback(), callbacks);
+
+  auto first = std::make_unique<PeerProcess>(GetParam(), "send_heartbeats", test_domain());
+  EXPECT_EQ(*alive.next(), 1);
+  const auto pid = status.next()->pid;
+  first->kill_now();
+  EXPECT_EQ(*alive.next(4s), 0);
+
+  const PeerProcess second(GetParam(), "send_heartbeats", test_domain());
+  while (status.next()->pid == pid) {
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Vendors, DdsProcesses, testing::ValuesIn(dds_vendors()), test_name);
+
+}  // namespace
+}  // namespace rtd::bus
