@@ -6,7 +6,8 @@ namespace rtd::detector {
 
 void ServiceConfig::bind(service::ConfigBinder& binder) {
   binder.field("model", model, "ONNX file: a path, or a name looked for in RTD_MODEL_DIR and the user's cache");
-  binder.choice("input", input, {"frame", "jpeg"}, "frames from shared memory, or JPEG images from the network");
+  binder.choice("input", input, {"auto", "frame", "jpeg"},
+                "raw frames of this host, JPEG images of the network, or auto: where the camera is");
   binder.field("input_width_px", input_width_px, {32, 4096}, "network input, when the file does not fix it");
   binder.field("input_height_px", input_height_px, {32, 4096}, "network input, when the file does not fix it");
   binder.field("confidence_threshold", confidence_threshold, {0.01, 1.0}, "least objectness x class score");

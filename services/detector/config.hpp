@@ -13,8 +13,8 @@ namespace rtd::detector {
 
 /// Section `detector` of the configuration. Defaults come from the core's DetectorConfig.
 struct ServiceConfig {
-  std::string model;            ///< file name or path, see model_locator.hpp
-  std::string input = "frame";  ///< "frame": rtd/frame, "jpeg": the compressed topic
+  std::string model;           ///< file name or path, see model_locator.hpp
+  std::string input = "auto";  ///< "auto", "frame" or "jpeg": image_input.hpp
   int input_width_px = DetectorConfig{}.input_width_px;
   int input_height_px = DetectorConfig{}.input_height_px;
   double confidence_threshold = DecodeConfig{}.confidence_threshold;

@@ -41,7 +41,8 @@ std::vector<std::unique_ptr<Detector>> load_detectors(const ServiceConfig& confi
 
 void DetectorService::add_options(CLI::App& app, Config& config) {
   app.add_option("--model", config.model, "ONNX file (detector.model)");
-  app.add_option("--input", config.input, "frame or jpeg (detector.input)")->check(CLI::IsMember({"frame", "jpeg"}));
+  app.add_option("--input", config.input, "auto, frame or jpeg (detector.input)")
+      ->check(CLI::IsMember({"auto", "frame", "jpeg"}));
   app.add_option("--max-rate", config.max_rate_hz, "Realtime pace: at most this many detections a second, 0 = no limit")
       ->check(CLI::Range(0.0, 1000.0));
   app.footer("rtd-detector --image FILE...  prints what it finds in image files and ends.");
@@ -56,19 +57,8 @@ DetectorService::DetectorService(const Config& config, service::Runtime& runtime
                     : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
       detections_(runtime.bus.writer(bus::topics::kDetections)) {
   runtime.stop.on_stop([arrivals = arrivals_] { arrivals->close(); });
-  if (config_.input == "jpeg") {
-    jpegs_ = runtime.bus.reader<msg::CompressedImage>(bus::topics::kColorJpeg,
-                                                      [this](std::shared_ptr<const msg::CompressedImage> jpeg) {
-                                                        const std::int64_t stamp_ns = msg::to_ns(jpeg->header.stamp);
-                                                        arrivals_->push({stamp_ns, nullptr, std::move(jpeg)});
-                                                      });
-  } else {
-    frames_ =
-        runtime.bus.reader<msg::RgbdFrame>(bus::topics::kFrame, [this](std::shared_ptr<const msg::RgbdFrame> frame) {
-          const std::int64_t stamp_ns = frame->stamp_ns;
-          arrivals_->push({stamp_ns, std::move(frame), nullptr});
-        });
-  }
+  input_ = std::make_unique<ImageInput>(runtime, config_.input,
+                                        [this](Arrival arrival) { arrivals_->push(std::move(arrival)); });
   if (config_.derotate == "on") {
     roll_ = std::make_shared<RollFeedback>(roll_config(config_));
     runtime_.stop.on_stop([roll = roll_] { roll->close(); });
@@ -192,12 +182,12 @@ void DetectorService::count(double detect_ms) {
 }
 
 bool DetectorService::peers_matched() const {
-  const int sources = config_.input == "jpeg" ? jpegs_.matched() : frames_.matched();
   const bool hears_slam = !roll_ || runtime_.pace != service::Pace::kLockstep || tracking_.matched() > 0;
-  return sources > 0 && detections_.matched() > 0 && hears_slam;
+  return input_->matched() > 0 && detections_.matched() > 0 && hears_slam;
 }
 
 void DetectorService::report_state() {
+  input_->update();
   if (!peers_matched()) {
     runtime_.heartbeat.set_state(msg::ServiceState::kStarting, "waits for a camera and a filter");
   } else {

@@ -19,6 +19,7 @@
 #include "common/service/runtime.hpp"
 #include "services/detector/config.hpp"
 #include "services/detector/core/detector.hpp"
+#include "services/detector/image_input.hpp"
 #include "services/detector/roll_feedback.hpp"
 
 namespace rtd::detector {
@@ -40,12 +41,6 @@ class DetectorService {
   service::ExitCode run();
 
  private:
-  /// An image as it came; the pixels are decoded by the worker.
-  struct Arrival {
-    std::int64_t stamp_ns = 0;
-    std::shared_ptr<const msg::RgbdFrame> frame;       ///< input "frame"
-    std::shared_ptr<const msg::CompressedImage> jpeg;  ///< input "jpeg"
-  };
   /// An image that a worker has taken, and its place in the order of answers.
   struct Taken {
     Arrival arrival;
@@ -70,8 +65,7 @@ class DetectorService {
   std::vector<std::unique_ptr<Detector>> detectors_;  ///< one for each worker
   std::shared_ptr<Arrivals> arrivals_;
   bus::Writer<msg::Detection2DArray> detections_;
-  bus::Reader<msg::RgbdFrame> frames_;
-  bus::Reader<msg::CompressedImage> jpegs_;
+  std::unique_ptr<ImageInput> input_;
   std::shared_ptr<RollFeedback> roll_;  ///< none: detector.derotate is off
   bus::Reader<msg::TrackingResult> tracking_;
   std::optional<std::int64_t> last_stamp_ns_;  ///< lockstep: of the image before, whose pose is waited for

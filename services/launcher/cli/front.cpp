@@ -60,8 +60,10 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--config", options.config_file, "YAML file with a section per service")
       ->check(CLI::ExistingFile);
   command->add_option("--set", options.overrides, "Override one key, e.g. --set filter.mode=geometry (repeatable)");
-  command->add_option("--detector", options.detector, "auto: when weights are found; off: geometry only")
-      ->check(CLI::IsMember({"auto", "off"}))
+  command
+      ->add_option("--detector", options.detector,
+                   "auto: when weights are found; off: geometry only; remote: on another host")
+      ->check(CLI::IsMember({"auto", "off", "remote"}))
       ->capture_default_str();
   command->add_option("--model", options.model,
                       "Detector weights, ONNX (default: RTD_MODEL_DIR, then the user's cache)");

@@ -61,9 +61,9 @@ bool Collector::connected(bool with_filter) const {
   return tracking_.matched() > 0 && (!with_filter || features_.matched() > 0);
 }
 
-std::string Collector::services_heard() const {
+std::string Collector::services_heard(bool without_detector) const {
   const std::lock_guard lock(mutex_);
-  return builder_.services_heard();
+  return builder_.services_heard(without_detector);
 }
 
 LiveStatus Collector::live() const {

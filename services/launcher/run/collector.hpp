@@ -31,7 +31,8 @@ class Collector {
 
   /// Slam is heard, and the filter where there is one: from now on no frame is missed.
   bool connected(bool with_filter = true) const;
-  std::string services_heard() const;
+  /// As RecordBuilder::services_heard.
+  std::string services_heard(bool without_detector = false) const;
   LiveStatus live() const;
   std::optional<std::string> take_notice();
   bool tracked_any() const;

@@ -33,8 +33,9 @@ void tell_setup(const RunSetup& setup, Terminal& terminal) {
   if (!setup.weights_advice.empty()) terminal.warn("rtd: geometry only: " + setup.weights_advice);
   terminal.say(fmt::format("source {}{}, pace {}, filter {}, detector {}, {} domain {}", setup.source,
                            setup.total_frames > 0 ? fmt::format(" ({} frames)", setup.total_frames) : "", setup.pace,
-                           setup.filter_mode, setup.model_path.empty() ? "off" : setup.detector_note, setup.bus.vendor,
-                           setup.bus.domain));
+                           setup.filter_mode,
+                           setup.model_path.empty() && !setup.remote_detector ? "off" : setup.detector_note,
+                           setup.bus.vendor, setup.bus.domain));
 }
 
 service::ExitCode exit_code(RunOutcome outcome, bool tracked_any) {

@@ -25,7 +25,7 @@ struct RunOptions {
   service::BusArguments bus;
   std::string config_file;
   std::vector<std::string> overrides;  ///< "key=value" for any service
-  std::string detector = "auto";       ///< "auto": when weights are found and the filter mode needs them; "off"
+  std::string detector = "auto";  ///< "auto": when weights are found and the filter mode needs them; "off"; "remote"
   std::string model;                   ///< ONNX file; empty: search
   std::string out_dir;
   std::string map;                         ///< map file to go on with; empty: a new map

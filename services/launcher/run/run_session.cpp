@@ -85,10 +85,13 @@ void RunSession::require_free_domain() {
   const milliseconds until = now() + milliseconds(setup_.launcher.domain_check_ms);
   while (now() < until) {
     host_.wait(kTick);
-    const std::string others = collector_.services_heard();
+    const std::string others = collector_.services_heard(setup_.remote_detector);
     if (others.empty()) continue;
-    throw service::ConfigError("DDS domain " + std::to_string(setup_.bus.domain) + " is taken by " + others +
-                               ": stop them first or choose another domain with --domain");
+    const bool only_detector = collector_.services_heard(true).empty();
+    throw service::ConfigError(
+        "DDS domain " + std::to_string(setup_.bus.domain) + " is taken by " + others +
+        (only_detector ? ": --detector remote takes its boxes; else stop it" : ": stop them first") +
+        " or choose another domain with --domain");
   }
 }
 

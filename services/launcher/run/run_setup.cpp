@@ -92,6 +92,13 @@ void choose_detector(const RunOptions& options, RunSetup& setup) {
     setup.detector_note = "off (asked for)";
     return;
   }
+  if (options.detector == "remote") {
+    if (setup.bus.network.loopback_only)
+      throw ConfigError("--detector remote: only this host is open, add --profile lan or wifi (docs/two-hosts.md)");
+    setup.remote_detector = true;
+    setup.detector_note = "on another host";
+    return;
+  }
   std::string configured = options.model.empty() ? peek(options, "detector", "model") : options.model;
   if (!options.model.empty() && fs::is_regular_file(options.model)) configured = fs::absolute(options.model).string();
   const detector::ModelSearch model = detector::find_model(configured, detector::process_environment());
@@ -173,7 +180,7 @@ std::vector<std::string> slam_arguments(const RunSetup& setup) {
 
 std::vector<std::string> filter_arguments(const RunSetup& setup) {
   std::vector<std::string> arguments = {"--set", "filter.mode=" + setup.filter_mode};
-  if (setup.model_path.empty() && !setup.replay.detections)
+  if (setup.model_path.empty() && !setup.replay.detections && !setup.remote_detector)
     arguments.insert(arguments.end(), {"--set", "filter.detector=off"});
   return arguments;
 }
@@ -253,6 +260,8 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
     if (setup.pace == "realtime" && (service.name == "detector" || service.name == "dense"))
       service.niceness = kRealtimeNiceness;
   }
+  // In realtime nobody waits for boxes: the run begins with geometry and takes them when they come.
+  if (setup.remote_detector && setup.pace != "realtime") wait_for.emplace_back("detector");
   if (setup.replay) {
     plans.push_back(plan(setup, "replay", ServiceRole::kSource, setup.replay.arguments(wait_for)));
   } else {

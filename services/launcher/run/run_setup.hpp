@@ -21,11 +21,12 @@ struct RunSetup {
   std::string source;                  ///< URI
   std::uint64_t total_frames = 0;      ///< 0 = unknown or endless
   std::string pace, filter_mode, out_dir;
-  std::string model_path;       ///< empty: no detector in this run
-  std::string detector_note;    ///< model file name, or "off (why)"
-  std::string weights_advice;   ///< the filter mode wants a detector, but there are no weights: where to get them
-  std::string map, save_map;    ///< map files that slam reads and writes; empty: none
-  bool save_map_asked = false;  ///< the user named the file
+  std::string model_path;        ///< empty: no detector in this run
+  std::string detector_note;     ///< model file name, or "off (why)"
+  bool remote_detector = false;  ///< it runs on another host and is not ours to start
+  std::string weights_advice;    ///< the filter mode wants a detector, but there are no weights: where to get them
+  std::string map, save_map;     ///< map files that slam reads and writes; empty: none
+  bool save_map_asked = false;   ///< the user named the file
   bool localize_only = false;
   bool dense = false;  ///< rtd-dense runs too
   std::string record;  ///< what rtd-record writes; empty: it does not run

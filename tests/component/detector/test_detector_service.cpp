@@ -154,6 +154,28 @@ TEST_F(DetectorServiceTest, skips_and_counts_a_broken_jpeg) {
   EXPECT_TRUE(wait_metric("frames_broken", 3));
 }
 
+TEST_F(DetectorServiceTest, asks_for_jpegs_while_the_camera_is_on_another_host) {
+  frames_ = {};  // no raw frames on this host
+  launch(service::Pace::kLockstep);
+  const auto eventually = [this](auto condition) {
+    for (int i = 0; i < 500 && !condition(); ++i) {
+      say("camera", msg::ServiceState::kReady);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return condition();
+  };
+  EXPECT_TRUE(eventually([this] { return jpegs_.matched() == 1; }));
+  std::vector<std::uint8_t> jpeg;
+  cv::imencode(".jpg", cv::Mat::zeros(64, 64, CV_8UC3), jpeg);
+  send_jpeg(1, jpeg);
+  EXPECT_TRUE(answer_box_.wait_count(1));
+  frames_ = bus_->writer(bus::topics::kFrame);  // the camera has come here
+  EXPECT_TRUE(eventually([this] { return jpegs_.matched() == 0; }));
+  send_frame(2);
+  EXPECT_TRUE(answer_box_.wait_count(2));
+  EXPECT_THAT(answered_stamps(), ElementsAre(1, 2));
+}
+
 TEST_F(DetectorServiceTest, skips_and_counts_a_frame_of_impossible_size) {
   start(service::Pace::kLockstep);
   auto frame = std::make_unique<msg::RgbdFrame>();

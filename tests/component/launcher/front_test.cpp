@@ -72,6 +72,16 @@ TEST_F(FrontTest, an_output_folder_that_cannot_be_made_is_named) {
   EXPECT_THAT(rtd_.output(), HasSubstr("--out /proc/nowhere: cannot be created"));
 }
 
+TEST_F(FrontTest, a_remote_detector_needs_a_network) {
+  EXPECT_EQ(rtd_.run({"run", "--source", "synthetic:office", "--out", scratch_ / "out", "--detector", "remote"}), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("--profile lan"));
+}
+
+TEST_F(FrontTest, an_unknown_profile_is_refused_with_those_there_are) {
+  EXPECT_EQ(rtd_.run({"run", "--source", "synthetic:office", "--out", scratch_ / "out", "--profile", "lna"}), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("lan, localhost, secure, wifi"));
+}
+
 TEST_F(FrontTest, a_corrupt_model_path_is_refused_before_anything_starts) {
   EXPECT_EQ(rtd_.run({"run", "--source", "synthetic:office", "--out", scratch_ / "out", "--model", "/no/such.onnx"}),
             2);

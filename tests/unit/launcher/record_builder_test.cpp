@@ -161,6 +161,9 @@ TEST(record_builder, names_the_services_that_are_heard_and_have_not_finished) {
   builder.add(finished);
   builder.add(status_of("record", 10, {}));
   EXPECT_EQ(builder.services_heard(), "filter (pid 7), slam (pid 8)") << "a recorder disturbs nobody";
+  builder.add(status_of("detector", 11, {}));
+  EXPECT_EQ(builder.services_heard(), "detector (pid 11), filter (pid 7), slam (pid 8)");
+  EXPECT_EQ(builder.services_heard(true), "filter (pid 7), slam (pid 8)") << "the detector of another host is expected";
 }
 
 std::vector<SampleFrame> run_samples(SampleKeeper& keeper, std::uint64_t frames) {

@@ -116,10 +116,11 @@ std::optional<std::string> RecordBuilder::take_notice() {
   return notice;
 }
 
-std::string RecordBuilder::services_heard() const {
+std::string RecordBuilder::services_heard(bool without_detector) const {
   std::string text;
   for (const auto& [name, service] : services_) {
     if (service.state == msg::ServiceState::kFinished || name == "record") continue;  // a recorder only listens
+    if (without_detector && name == "detector") continue;
     text += (text.empty() ? "" : ", ") + name + " (pid " + std::to_string(service.pid) + ")";
   }
   return text;

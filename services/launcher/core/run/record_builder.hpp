@@ -34,8 +34,8 @@ class RecordBuilder {
   std::optional<std::string> take_notice();
 
   /// "filter (pid 42), slam (pid 43)": every service heard that has not said goodbye; a recorder only
-  /// listens and does not count. Empty when there is none.
-  std::string services_heard() const;
+  /// listens and does not count, nor does a detector of another host if so asked. Empty when there is none.
+  std::string services_heard(bool without_detector = false) const;
 
   /// Writes frames, frames_in, frames_dropped and drops.
   void fill(RunRecord& record) const;

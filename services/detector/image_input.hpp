@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "common/bus/bus.hpp"
+#include "common/service/runtime.hpp"
+
+namespace rtd::detector {
+
+/// An image as it came; the pixels are decoded by the worker.
+struct Arrival {
+  std::int64_t stamp_ns = 0;
+  std::shared_ptr<const msg::RgbdFrame> frame;       ///< raw, of this host
+  std::shared_ptr<const msg::CompressedImage> jpeg;  ///< of any host
+};
+
+/// Where the images come from. Input "frame": shared memory; "jpeg": the network. "auto": raw frames, which never leave
+/// their host; while a camera is heard that has none here, it is on another host and its JPEGs are asked for, which the
+/// camera makes only then. Thread-safe.
+class ImageInput {
+ public:
+  using OnImage = std::function<void(Arrival)>;
+  ImageInput(service::Runtime& runtime, const std::string& input, OnImage on_image);
+
+  /// Looks again where the camera is; to be called now and then.
+  void update();
+  /// Number of cameras matched.
+  int matched() const;
+
+ private:
+  void read_jpegs();
+  bool camera_is_elsewhere();
+
+  service::Runtime& runtime_;
+  const OnImage on_image_;
+  const bool automatic_;
+  mutable std::mutex mutex_;
+  std::int64_t unmatched_since_ns_ = 0;  ///< a camera is heard, but there is no raw frame; 0: not so
+  bus::Reader<msg::RgbdFrame> frames_;
+  bus::Reader<msg::CompressedImage> jpegs_;
+};
+
+}  // namespace rtd::detector
