@@ -22,8 +22,10 @@ std::int64_t realtime_ns() {
 
 }  // namespace
 
-Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop) : stop_(stop) {
+Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop)
+    : stop_(stop), clocks_(service_name, PeerClocks::this_host_id()) {
   own_.service = std::move(service_name);
+  own_.metrics.push_back({"host_id", PeerClocks::this_host_id()});
   own_.pid = getpid();
   own_.started_ns = realtime_ns();
   writer_ = bus.writer(bus::topics::kStatus);
@@ -64,16 +66,22 @@ void Heartbeat::set_state(msg::ServiceState state, const std::string& message) {
 
 void Heartbeat::set_metric(const std::string& name, double value) {
   const std::lock_guard lock(mutex_);
-  const auto found =
-      std::find_if(own_.metrics.begin(), own_.metrics.end(), [&](const auto& metric) { return metric.name == name; });
+  set({name, value});
+}
+
+/// Under the lock.
+void Heartbeat::set(const msg::Metric& metric) {
+  const auto found = std::find_if(own_.metrics.begin(), own_.metrics.end(),
+                                  [&](const msg::Metric& own) { return own.name == metric.name; });
   if (found == own_.metrics.end()) {
-    own_.metrics.push_back({name, value});
+    own_.metrics.push_back(metric);
   } else {
-    found->value = value;
+    found->value = metric.value;
   }
 }
 
 void Heartbeat::receive(const msg::ServiceStatus& status) {
+  const std::int64_t arrival_ns = realtime_ns();
   std::function<void(const msg::ServiceStatus&)> callback;
   bool refused = false;
   {
@@ -91,6 +99,7 @@ void Heartbeat::receive(const msg::ServiceStatus& status) {
       Peer& peer = peers_[status.service];
       peer.status = status;
       peer.heard_ns = monotonic_ns();
+      for (const msg::Metric& metric : clocks_.received(status, arrival_ns)) set(metric);
       callback = callback_;
     }
   }

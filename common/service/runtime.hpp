@@ -14,6 +14,7 @@
 #include "common/bus/bus.hpp"
 #include "common/bus/bus_factory.hpp"
 #include "common/service/pace.hpp"
+#include "common/service/peer_clocks.hpp"
 #include "common/service/stop_token.hpp"
 
 namespace rtd::service {
@@ -45,8 +46,11 @@ class Heartbeat {
   void receive(const msg::ServiceStatus& status);
   void loop();
 
+  void set(const msg::Metric& metric);
+
   StopToken& stop_;
   mutable std::mutex mutex_;
+  PeerClocks clocks_;
   msg::ServiceStatus own_;
   std::map<std::string, Peer> peers_;
   std::function<void(const msg::ServiceStatus&)> callback_;

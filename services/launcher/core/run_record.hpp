@@ -36,6 +36,12 @@ struct ProcessUsage {
   int restarts = 0;
 };
 
+/// How far the clock of a service's host is ahead of the others' (common/service/clock_offsets.hpp).
+struct HostClock {
+  std::string service;
+  double offset_ms = 0, round_trip_ms = 0;
+};
+
 /// Removed features against the true moving pixels, over a run and without its first second: until then there is
 /// little to compare with.
 struct RunRemoval {
@@ -56,6 +62,7 @@ struct RunRecord {
   std::vector<FrameRecord> frames;   ///< ordered by seq
   std::vector<SampleFrame> samples;
   std::map<std::string, ProcessUsage> processes;
+  std::vector<HostClock> clocks;     ///< of services on other hosts
   std::vector<std::string> events;   ///< restarts, degraded modes, warnings, in order
   double duration_s = 0;
   std::optional<RunRemoval> removal;  ///< of sources that know what moves

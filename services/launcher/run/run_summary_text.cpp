@@ -36,6 +36,15 @@ std::string removal(const RunRemoval& removal) {
          "  (after 1 s: " + percent(removal.settled.precision()) + ", " + percent(removal.settled.recall()) + ")";
 }
 
+/// Up to some ms it is the measurement's own error.
+std::string clock(const HostClock& clock) {
+  constexpr double kWorthTellingMs = 10;
+  const bool differs = std::abs(clock.offset_ms) > kWorthTellingMs + clock.round_trip_ms / 2;
+  return fmt::format("host of {} is {:.1f} ms {}, round trip {:.1f} ms{}", clock.service, std::abs(clock.offset_ms),
+                     clock.offset_ms < 0 ? "behind" : "ahead", clock.round_trip_ms,
+                     differs ? ": WARNING, run chrony on both hosts before comparing their times" : "");
+}
+
 std::string usage(const RunRecord& record) {
   std::string text;
   double total_mb = 0;
@@ -63,6 +72,7 @@ std::string run_summary_text(const RunRecord& record, const RunSummary& summary,
   if (!record.static_map_path.empty()) {
     text += row("static map", fmt::format("{} points, {}", record.static_map_points, record.static_map_path));
   }
+  for (const HostClock& host : record.clocks) text += row("clock", clock(host));
   text += row("CPU time", usage(record));
   for (const std::string& note : summary.notes) text += row("note", note);
   text += row("report", out_dir + "/report.html");

@@ -166,6 +166,18 @@ TEST(record_builder, names_the_services_that_are_heard_and_have_not_finished) {
   EXPECT_EQ(builder.services_heard(true), "filter (pid 7), slam (pid 8)") << "the detector of another host is expected";
 }
 
+TEST(record_builder, knows_the_clocks_of_other_hosts_from_slam) {
+  RecordBuilder builder;
+  builder.add(status_of("slam", 8, {{"clock.detector.offset_ms", 250.5}, {"clock.detector.round_trip_ms", 0.75}}));
+  builder.add(status_of("detector", 9, {{"clock.slam.offset_ms", -250.5}, {"clock.slam.round_trip_ms", 0.75}}));
+  RunRecord record;
+  builder.fill(record);
+  ASSERT_EQ(record.clocks.size(), 1u);
+  EXPECT_EQ(record.clocks[0].service, "detector");
+  EXPECT_EQ(record.clocks[0].offset_ms, 250.5);
+  EXPECT_EQ(record.clocks[0].round_trip_ms, 0.75);
+}
+
 std::vector<SampleFrame> run_samples(SampleKeeper& keeper, std::uint64_t frames) {
   for (std::uint64_t seq = 0; seq < frames; ++seq) {
     if (keeper.wants(seq)) keeper.add_picture(seq, {1, 2, 3});

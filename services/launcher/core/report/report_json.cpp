@@ -68,6 +68,14 @@ Json lost_json(const RunSummary& summary) {
   return spans;
 }
 
+Json clocks_json(const RunRecord& record) {
+  Json clocks = Json::object();
+  for (const HostClock& host : record.clocks)
+    clocks[host.service] = {{"ahead_ms", number_or_null(host.offset_ms)},
+                            {"round_trip_ms", number_or_null(host.round_trip_ms)}};
+  return clocks;
+}
+
 Json drops_json(const RunRecord& record) {
   Json drops = Json::object();
   for (const auto& [place, count] : record.drops) drops[place] = number_or_null(count);
@@ -120,6 +128,7 @@ Json report_json(const RunRecord& record, const RunSummary& summary) {
                              : Json({{"path", record.static_map_path}, {"points", record.static_map_points}});
   report["lost_spans"] = lost_json(summary);
   report["drops"] = drops_json(record);
+  report["clocks"] = clocks_json(record);
   report["events"] = record.events;
   report["notes"] = summary.notes;
   report["evaluation"] = summary.final_trajectory ? eval::to_json(*summary.final_trajectory) : Json(nullptr);

@@ -134,6 +134,23 @@ void RecordBuilder::fill(RunRecord& record) const {
   record.frames_in = frames_in();
   record.frames_dropped = record.frames_in - record.frames.size();
   record.drops = drops();
+  record.clocks = clocks();
+}
+
+/// slam runs on the first host; what it says of services on other hosts stands for all of the first host.
+std::vector<HostClock> RecordBuilder::clocks() const {
+  const std::string prefix = "clock.", suffix = ".offset_ms";
+  const auto slam = services_.find("slam");
+  if (slam == services_.end()) return {};
+  std::vector<HostClock> clocks;
+  for (const auto& [name, counter] : slam->second.counters) {
+    if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
+    const std::string service = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
+    const auto round_trip = slam->second.counters.find(prefix + service + ".round_trip_ms");
+    if (round_trip != slam->second.counters.end())
+      clocks.push_back({service, counter.current, round_trip->second.current});
+  }
+  return clocks;
 }
 
 std::map<std::string, double> RecordBuilder::drops() const {

@@ -53,6 +53,7 @@ class RecordBuilder {
   };
 
   std::map<std::string, double> drops() const;
+  std::vector<HostClock> clocks() const;
   double camera_counter(const std::string& name) const;
 
   struct Frame {
