@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "common/service/monotonic_clock.hpp"
+#include "services/camera/core/live/live_source.hpp"
 #include "services/camera/core/trajectory_file.hpp"
+#include "services/camera/ros2_feed.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -24,9 +26,15 @@ constexpr std::int64_t kLastResultTimeoutNs = 2'000'000'000;  // pace realtime
 constexpr std::chrono::milliseconds kFarewell{300};           // the last heartbeats reach everybody
 constexpr int kReportEvery = 10;                              // frames
 
-std::unique_ptr<FrameSource> open_source(const std::string& uri) {
+std::shared_ptr<FrameSource> open_source(const ServiceConfig& config, const bus::BusOptions& bus,
+                                         std::function<void(const std::string&)> on_wait) {
   try {
-    return make_source(uri);
+    if (!is_live(config.source)) return make_source(config.source);
+    LiveOptions options = parse_live_options(config.source);
+    options.open_timeout_ns = static_cast<std::int64_t>(config.start_timeout_s * 1e9);
+    options.on_wait = std::move(on_wait);
+    auto feed = std::make_unique<Ros2Feed>(bus, options.topics);
+    return std::make_shared<LiveSource>(config.source, std::move(feed), std::move(options));
   } catch (const SourceError& error) {
     throw service::ConfigError(error.what());
   }
@@ -41,8 +49,9 @@ int readers_of(const std::string& service) {
 }  // namespace
 
 void CameraService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--source", config.source,
-                 "tum:FOLDER, bag:FILE, mcap:FILE or synthetic:SCENE[?key=value&...] (camera.source)");
+  app.add_option(
+      "--source", config.source,
+      "tum:FOLDER, bag:FILE, mcap:FILE, ros2:COLOR,DEPTH[,INFO] or synthetic:SCENE[?key=value&...] (camera.source)");
   app.add_option("--frames", config.frames, "Play at most N frames, 0 = all (camera.frames)")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--wait-for", config.wait_for,
@@ -56,9 +65,9 @@ void CameraService::add_options(CLI::App& app, Config& config) {
 CameraService::CameraService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
-      source_(open_source(config.source)),
+      source_(open_source(config, runtime.bus_options, [this](const std::string& what) { tell_wait(what); })),
       realtime_(runtime.pace == service::Pace::kRealtime),
-      pacer_(to_pacer_config(config, runtime.pace, source_->info().fps), service::monotonic_ns),
+      pacer_(to_pacer_config(config, runtime.pace, source_->info()), service::monotonic_ns),
       results_(std::make_shared<Results>(kResultQueue, concurrency::Overflow::kDropOldest)),
       changes_(std::make_shared<concurrency::BoundedQueue<bool>>(1, concurrency::Overflow::kDropOldest)),
       publisher_(runtime.bus, config.jpeg_quality,
@@ -69,13 +78,11 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
   cv::setNumThreads(1);
   config_.wait_for.erase(std::remove(config_.wait_for.begin(), config_.wait_for.end(), "none"), config_.wait_for.end());
   runtime.heartbeat.on_status([changes = changes_](const auto&) { changes->push(true); });
-  runtime.stop.on_stop([results = results_, changes = changes_] {
+  runtime.stop.on_stop([source = source_, results = results_, changes = changes_] {
+    source->stop();
     results->close();
     changes->close();
   });
-  const auto& camera = source_->info().camera.parameters();
-  SPDLOG_INFO("event=source_opened uri={} frames={} width={} height={} fx={} fps={}", source_->info().uri,
-              source_->info().frames, camera.width, camera.height, camera.fx, source_->info().fps);
 }
 
 CameraService::~CameraService() {
@@ -83,14 +90,39 @@ CameraService::~CameraService() {
 }
 
 service::ExitCode CameraService::run() {
-  Outcome outcome = wait_for_others();
+  Outcome outcome = open();
+  if (outcome == Outcome::kDone) outcome = wait_for_others();
   if (outcome == Outcome::kDone) {
     runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
+    playing_ = true;
     ReadAhead frames(*source_, kReadAhead, static_cast<std::uint64_t>(config_.frames));
     outcome = play(frames);
     if (outcome == Outcome::kDone) outcome = drain();
   }
   return finish(outcome);
+}
+
+CameraService::Outcome CameraService::open() {
+  try {
+    if (!source_->open()) return Outcome::kStopped;
+  } catch (const SourceError& error) {
+    return fail(fmt::format("source {}: {}", config_.source, error.what()));
+  }
+  const auto& camera = source_->info().camera.parameters();
+  SPDLOG_INFO("event=source_opened uri={} frames={} width={} height={} fx={} fps={}", source_->info().uri,
+              source_->info().frames, camera.width, camera.height, camera.fx, source_->info().fps);
+  return Outcome::kDone;
+}
+
+/// Called by the source: in open(), later in the thread that reads ahead.
+void CameraService::tell_wait(const std::string& what) {
+  if (what.empty()) {
+    if (playing_) runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
+    SPDLOG_INFO("event=camera_gives_frames");
+    return;
+  }
+  runtime_.heartbeat.set_state(playing_ ? msg::ServiceState::kDegraded : msg::ServiceState::kStarting, what);
+  if (wait_log_.pass()) SPDLOG_WARN("event=waiting_for_camera cause=\"{}\"", what);
 }
 
 CameraService::Outcome CameraService::wait_for_others() {
@@ -131,7 +163,7 @@ CameraService::Outcome CameraService::play(ReadAhead& frames) {
     if (!item->error.empty()) return fail("the source failed: " + item->error);
     frames_in_ += item->passed_over;
     passed_over_ += item->passed_over;
-    if (!item->frame) return Outcome::kDone;
+    if (!item->frame) return runtime_.stop.stop_requested() ? Outcome::kStopped : Outcome::kDone;
     if (const Outcome outcome = handle(std::move(*item->frame), frames); outcome != Outcome::kDone) return outcome;
     if (frames_in_ % kReportEvery == 0) report_counters();
   }

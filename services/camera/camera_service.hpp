@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <chrono>
 #include <deque>
 #include <memory>
@@ -29,7 +30,7 @@ class CameraService {
   using Config = ServiceConfig;
   static void add_options(CLI::App& app, Config& config);
 
-  /// Opens the source; throws ConfigError when it cannot be used.
+  /// Opens the source, but for a running camera, which run() waits for; throws ConfigError when it cannot be used.
   CameraService(const Config& config, service::Runtime& runtime);
   ~CameraService();
 
@@ -40,6 +41,9 @@ class CameraService {
   using Results = concurrency::BoundedQueue<std::uint64_t>;
   enum class Outcome { kDone, kStopped, kFailed };
 
+  /// Waits for the first frame of a running camera.
+  Outcome open();
+  void tell_wait(const std::string& what);
   Outcome wait_for_others();
   std::vector<std::string> missing() const;
   Outcome play(ReadAhead& frames);
@@ -64,7 +68,7 @@ class CameraService {
 
   Config config_;
   service::Runtime& runtime_;
-  std::unique_ptr<FrameSource> source_;
+  std::shared_ptr<FrameSource> source_;
   bool realtime_;
   Pacer pacer_;
   std::shared_ptr<Results> results_;                          ///< seq of every TrackingResult
@@ -75,8 +79,9 @@ class CameraService {
   SourceCounters counters_;
   std::uint64_t frames_in_ = 0, passed_over_ = 0, published_ = 0, refused_ = 0, last_seq_ = 0, newest_result_ = 0;
   bool any_result_ = false;
+  std::atomic<bool> playing_{false};
   service::RateLimit skip_log_{std::chrono::seconds(1)}, late_log_{std::chrono::seconds(1)},
-      refused_log_{std::chrono::seconds(1)};
+      refused_log_{std::chrono::seconds(1)}, wait_log_{std::chrono::seconds(5)};
 };
 
 }  // namespace rtd::camera

@@ -7,6 +7,7 @@
 
 #include "common/service/config.hpp"
 #include "common/service/pace.hpp"
+#include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/pacer.hpp"
 
 namespace rtd::camera {
@@ -28,7 +29,7 @@ struct ServiceConfig {
   void bind(service::ConfigBinder& binder);
 };
 
-/// What the pacer needs for a source of `fps` frames a second.
-PacerConfig to_pacer_config(const ServiceConfig& config, service::Pace pace, double fps);
+/// What the pacer needs for such a source.
+PacerConfig to_pacer_config(const ServiceConfig& config, service::Pace pace, const SourceInfo& source);
 
 }  // namespace rtd::camera

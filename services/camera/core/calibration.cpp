@@ -110,6 +110,12 @@ Calibration parse_calibration(const std::string& text, const std::string& origin
   return from_values(values, origin);
 }
 
+Calibration read_calibration(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) throw SourceError("calibration " + file + " cannot be read");
+  return parse_calibration({std::istreambuf_iterator<char>(stream), {}}, file);
+}
+
 std::optional<int> tum_family(const std::filesystem::path& folder) {
   const std::vector<std::filesystem::path> parts(folder.begin(), folder.end());
   for (auto part = parts.rbegin(); part != parts.rend(); ++part) {

@@ -22,6 +22,9 @@ struct Calibration {
 /// the frame type's.
 Calibration parse_calibration(const std::string& text, const std::string& origin);
 
+/// The same of a file. Throws SourceError also when it cannot be read.
+Calibration read_calibration(const std::string& file);
+
 /// Throws SourceError naming `origin` for images larger than the frame type.
 void check_frame_size(double width_px, double height_px, const std::string& origin);
 

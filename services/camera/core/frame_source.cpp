@@ -26,6 +26,8 @@ const char* to_string(SkipReason reason) {
       return "size_mismatch";
     case SkipReason::kDamagedRecord:
       return "damaged_record";
+    case SkipReason::kOverrun:
+      return "overrun";
   }
   return "unknown";
 }

@@ -31,8 +31,9 @@ enum class SkipReason {
   kDepthNot16Bit,    ///< 8-bit, float or several channels
   kSizeMismatch,     ///< colour, depth and calibration do not have one size
   kDamagedRecord,    ///< a piece of a recording that cannot be read
+  kOverrun,          ///< a running camera's: came faster than it was taken
 };
-inline constexpr std::size_t kSkipReasons = 9;
+inline constexpr std::size_t kSkipReasons = 10;
 
 /// "color_unreadable": for counters and logs.
 const char* to_string(SkipReason reason);
@@ -83,6 +84,7 @@ struct SourceInfo {
   double depth_scale_m = 0;  ///< metres of one depth unit
   double fps = 30;           ///< nominal rate, Hz
   std::uint64_t frames = 0;  ///< frames expected (an upper bound: broken ones are skipped); 0 = endless
+  bool live = false;         ///< a running camera: frames come when they come, camera and unit are known after open()
 };
 
 /// A sequence of RGB-D frames. Errors at opening throw SourceError; single bad frames are skipped and counted.
@@ -90,6 +92,10 @@ struct SourceInfo {
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
+  /// Waits until frames come; false when it was stopped before. What is played from a file is open from the start.
+  virtual bool open() { return true; }
+  /// Thread-safe: a running camera gives no more frames, open() and next() return.
+  virtual void stop() {}
   /// The next good frame; empty at the end.
   virtual std::optional<SourceFrame> next() = 0;
   /// Passes over the frames older than `stamp_ns` without the work of making them; they keep their seq. Returns how

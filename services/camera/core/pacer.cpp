@@ -20,6 +20,7 @@ PaceDecision Pacer::drain() {
 
 PaceDecision Pacer::by_stamp(std::int64_t stamp_ns, std::size_t newer_waiting) {
   PaceDecision decision;
+  if (config_.at_once) return decision;
   if (stamp_ns_ != stamp_ns) advance_timeline(stamp_ns, decision);
   const std::int64_t late_ns = now_ns_() - *due_ns_;
   if (late_ns < 0) {

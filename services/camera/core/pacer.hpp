@@ -13,6 +13,7 @@ namespace rtd::camera {
 struct PacerConfig {
   /// Frames that may be without a result at a time (1: lockstep, 3: asap). 0: by their stamps (realtime).
   int window = 0;
+  bool at_once = false;                             ///< realtime: a running camera, whose frames are never early
   std::int64_t period_ns = 33'333'333;              ///< realtime: a frame later than this is skipped for a newer one
   std::int64_t max_gap_ns = 1'000'000'000;          ///< realtime: longest pause between two stamps that is played
   std::int64_t max_lateness_ns = 500'000'000;       ///< realtime: beyond this the timeline is shifted, not skipped

@@ -8,13 +8,13 @@
 namespace rtd::camera {
 
 ReadAhead::ReadAhead(FrameSource& source, std::size_t depth, std::uint64_t max_frames)
-    : items_(depth, concurrency::Overflow::kBlock), max_frames_(max_frames) {
-  thread_ = std::thread([this, &source] { read_all(source); });
+    : source_(source), items_(depth, concurrency::Overflow::kBlock), max_frames_(max_frames) {
+  thread_ = std::thread([this] { read_all(); });
 }
 
-void ReadAhead::read_all(FrameSource& source) {
+void ReadAhead::read_all() {
   for (std::uint64_t frames_read = 0;;) {
-    ReadItem item = read(source, frames_read);
+    ReadItem item = read(frames_read);
     frames_read += item.passed_over + 1;
     const bool last = !item.frame;
     if (!items_.push(std::move(item)) || last) return;
@@ -26,17 +26,17 @@ ReadAhead::~ReadAhead() {
   thread_.join();
 }
 
-ReadItem ReadAhead::read(FrameSource& source, std::uint64_t frames_read) const {
+ReadItem ReadAhead::read(std::uint64_t frames_read) const {
   ReadItem item;
   try {
     const std::uint64_t left = max_frames_ == 0 ? std::numeric_limits<std::uint64_t>::max() : max_frames_ - frames_read;
-    item.passed_over = std::min(source.pass_over(oldest_wanted_ns_), left);
-    if (item.passed_over < left) item.frame = source.next();
+    item.passed_over = std::min(source_.pass_over(oldest_wanted_ns_), left);
+    if (item.passed_over < left) item.frame = source_.next();
   } catch (const std::exception& error) {
     item.error = error.what();
   }
-  item.skipped = source.take_skipped();
-  item.counters = source.counters();
+  item.skipped = source_.take_skipped();
+  item.counters = source_.counters();
   return item;
 }
 

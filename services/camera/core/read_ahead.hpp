@@ -25,7 +25,7 @@ struct ReadItem {
 };
 
 /// Reads a source in a thread of its own, a few frames ahead, so that decoding overlaps with everything else. The
-/// source belongs to that thread until it is joined. The consumer is one thread.
+/// source belongs to that thread until it is joined, but for stop(). The consumer is one thread.
 class ReadAhead {
  public:
   /// `max_frames` 0: as many as the source has.
@@ -41,12 +41,16 @@ class ReadAhead {
   /// Frames older than this need not be read any more. Thread-safe.
   void pass_over(std::int64_t stamp_ns) { oldest_wanted_ns_ = stamp_ns; }
   /// Ends the reading; thread-safe, wakes next().
-  void close() { items_.close(); }
+  void close() {
+    source_.stop();
+    items_.close();
+  }
 
  private:
-  void read_all(FrameSource& source);
-  ReadItem read(FrameSource& source, std::uint64_t frames_read) const;
+  void read_all();
+  ReadItem read(std::uint64_t frames_read) const;
 
+  FrameSource& source_;
   concurrency::BoundedQueue<ReadItem> items_;
   std::uint64_t max_frames_;
   std::atomic<std::int64_t> oldest_wanted_ns_{std::numeric_limits<std::int64_t>::min()};

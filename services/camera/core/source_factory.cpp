@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/source_factory.hpp"
 
+#include "services/camera/core/live/live_options.hpp"
 #include "services/camera/core/recording/bag_recording.hpp"
 #include "services/camera/core/recording/mcap_recording.hpp"
 #include "services/camera/core/recording/recording_source.hpp"
@@ -56,7 +57,13 @@ std::unique_ptr<FrameSource> make_source(const std::string& text) {
   if (uri.scheme == "tum") return make_tum_source(uri);
   if (uri.scheme == "synthetic") return std::make_unique<SyntheticSource>(uri.text, parse_synthetic_options(uri));
   if (uri.scheme == "bag" || uri.scheme == "mcap") return make_recording_source(uri);
-  throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme + "'; known: bag, mcap, synthetic, tum");
+  if (is_live(text)) {
+    throw SourceError(
+        "source '" + text +
+        "' is a running camera: only `rtd run` and rtd-camera play it; record it first (rtd record) and use mcap:FILE");
+  }
+  throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme +
+                    "'; known: bag, mcap, ros2, synthetic, tum");
 }
 
 }  // namespace rtd::camera

@@ -11,8 +11,9 @@ namespace rtd::camera {
 SourceUri parse_source_uri(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos || colon == 0) {
-    throw SourceError("source '" + text +
-                      "' has no scheme; write tum:FOLDER, bag:FILE, mcap:FILE or synthetic:NAME[?key=value&...]");
+    throw SourceError(
+        "source '" + text +
+        "' has no scheme; write tum:FOLDER, bag:FILE, mcap:FILE, ros2:TOPICS or synthetic:NAME[?key=value&...]");
   }
   SourceUri uri{text, text.substr(0, colon), text.substr(colon + 1), {}};
   const std::size_t question = uri.path.find('?');

@@ -13,6 +13,7 @@
 
 #include "common/service/bus_config.hpp"
 #include "common/service/pace.hpp"
+#include "services/camera/core/live/live_options.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/detector/core/model_locator.hpp"
 #include "services/launcher/process/executable.hpp"
@@ -74,6 +75,10 @@ std::string choose_filter_mode(const RunOptions& options) {
 }
 
 std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
+  if (camera::is_live(uri)) {
+    camera::parse_live_options(uri);
+    return limit;
+  }
   const std::uint64_t frames = camera::make_source(uri)->info().frames;
   if (limit == 0) return frames;
   return frames == 0 ? limit : std::min(frames, limit);

@@ -3,8 +3,7 @@
 #include "services/camera/core/recording/frame_pairer.hpp"
 
 #include <algorithm>
-
-#include "services/camera/core/tum_lists.hpp"
+#include <sstream>
 
 namespace rtd::camera {
 namespace {
@@ -17,6 +16,12 @@ std::vector<StampedFile> stamps_of(const std::deque<StampedMessage>& messages) {
 
 std::string name_of(const StampedMessage& color) {
   return color.message.topic + " at " + std::to_string(color.stamp_ns) + " ns";
+}
+
+std::string seconds_text(std::int64_t ns) {
+  std::ostringstream text;
+  text << static_cast<double>(ns) * 1e-9;
+  return text.str();
 }
 
 }  // namespace
@@ -44,13 +49,19 @@ void FramePairer::add_depth(StampedMessage depth) {
 }
 
 bool FramePairer::decided() const {
-  return finished_ || colors_.size() > kMaxPending ||
+  const bool settled = options_.at_once && !depths_.empty() && depths_.back().stamp_ns >= colors_.front().stamp_ns;
+  return settled || finished_ || colors_.size() > kMaxPending ||
          newest_recorded_ns_ - colors_.front().message.recorded_ns >= kLookaheadNs;
 }
 
 std::optional<std::size_t> FramePairer::partner_of_front() const {
-  const int partner = associate(stamps_of(colors_), stamps_of(depths_)).front();
+  const int partner = associate(stamps_of(colors_), stamps_of(depths_), options_.tolerance_ns).front();
   return partner < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(partner));
+}
+
+/// No colour image to come is as old.
+void FramePairer::forget_before(std::int64_t stamp_ns) {
+  while (!depths_.empty() && depths_.front().stamp_ns < stamp_ns) depths_.pop_front();
 }
 
 std::optional<FramePairer::Pair> FramePairer::next(SkipLog& skips) {
@@ -59,12 +70,14 @@ std::optional<FramePairer::Pair> FramePairer::next(SkipLog& skips) {
     StampedMessage color = std::move(colors_.front());
     colors_.pop_front();
     if (!partner) {
-      skips.add({SkipReason::kNoDepthPartner, name_of(color) + " has no depth image within 0.02 s"});
+      skips.add({SkipReason::kNoDepthPartner,
+                 name_of(color) + " has no depth image within " + seconds_text(options_.tolerance_ns) + " s"});
       continue;
     }
     const auto place = depths_.begin() + static_cast<std::ptrdiff_t>(*partner);
     Pair pair{std::move(color), std::move(*place)};
     depths_.erase(place);
+    forget_before(pair.color.stamp_ns - options_.tolerance_ns);
     return pair;
   }
   return std::nullopt;

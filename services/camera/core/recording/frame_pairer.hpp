@@ -7,6 +7,7 @@
 
 #include "services/camera/core/recording/recording.hpp"
 #include "services/camera/core/skip_log.hpp"
+#include "services/camera/core/tum_lists.hpp"
 
 namespace rtd::camera {
 
@@ -18,15 +19,23 @@ struct StampedMessage {
 
 /// Pairs colour with depth images of a stream as the lists of a TUM folder are paired (associate()): closest first,
 /// within 0.02 s, each depth image once. It decides on a colour image when everything recorded within kLookaheadNs
-/// after it has been seen, and so holds a few frames only.
+/// after it has been seen, and so holds a few frames only; of a running camera, whose images come in order, already
+/// when a depth image as new as the colour image has come.
 class FramePairer {
  public:
   static constexpr std::int64_t kLookaheadNs = 300'000'000;
   static constexpr std::size_t kMaxPending = 64;
 
+  struct Options {
+    std::int64_t tolerance_ns = kPairingToleranceNs;
+    bool at_once = false;  ///< a running camera's
+  };
   struct Pair {
     StampedMessage color, depth;
   };
+
+  FramePairer() = default;
+  explicit FramePairer(const Options& options) : options_(options) {}
 
   /// A colour image that is not newer than the one before is left out and counted.
   void add_color(StampedMessage color, SkipLog& skips);
@@ -39,7 +48,9 @@ class FramePairer {
  private:
   bool decided() const;
   std::optional<std::size_t> partner_of_front() const;
+  void forget_before(std::int64_t stamp_ns);
 
+  const Options options_;
   std::deque<StampedMessage> colors_, depths_;  ///< by stamp
   std::optional<std::int64_t> last_color_ns_;
   std::int64_t newest_recorded_ns_ = 0;

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/recording/image_pairs.hpp"
 
-#include <fstream>
-#include <iterator>
-
 #include "common/ros_codec/wire_reader.hpp"
 #include "services/camera/core/calibration.hpp"
 #include "services/camera/core/recording/camera_info.hpp"
@@ -15,12 +12,6 @@
 
 namespace rtd::camera {
 namespace {
-
-std::string read_text(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) throw SourceError("calibration " + file + " cannot be read");
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 double float_unit_of(const RecordedTopic& depth) {
   const auto factor = depth.metadata.find(kDepthFactor);
@@ -61,7 +52,7 @@ void ImagePairs::look_at_first_images(bool depth_named) {
 
 void ImagePairs::load_calibration(const RecordingOptions& options) {
   if (!options.calibration_file.empty()) {
-    const Calibration own = parse_calibration(read_text(options.calibration_file), options.calibration_file);
+    const Calibration own = read_calibration(options.calibration_file);
     info_.camera = own.camera;
     info_.depth_scale_m = own.depth_scale_m;
     return;

@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/live/live_source.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <utility>
+
+#include "common/ros_codec/wire_reader.hpp"
+#include "services/camera/core/calibration.hpp"
+#include "services/camera/core/recording/camera_info.hpp"
+#include "services/camera/core/recording/compressed_depth.hpp"
+#include "services/camera/core/recording/ros_images.hpp"
+#include "services/camera/core/source_parts.hpp"
+
+namespace rtd::camera {
+namespace {
+
+constexpr std::chrono::milliseconds kLook{100};        // between two looks at what is missing
+constexpr std::int64_t kQuietNs = 1'000'000'000;       // without a frame: worth telling
+constexpr std::int64_t kTellPeriodNs = 1'000'000'000;  // while it lasts
+constexpr std::uint64_t kSteppedImages = 30;           // in a row with a stamp before that of the last frame
+
+}  // namespace
+
+LiveSource::LiveSource(std::string uri, std::unique_ptr<LiveFeed> feed, LiveOptions options)
+    : options_(std::move(options)),
+      feed_(std::move(feed)),
+      pairer_({.tolerance_ns = options_.tolerance_ns, .at_once = true}) {
+  info_.uri = std::move(uri);
+  info_.live = true;
+  if (options_.calibration_file.empty()) return;
+  const Calibration own = read_calibration(options_.calibration_file);
+  info_.camera = own.camera;
+  info_.depth_scale_m = own.depth_scale_m;
+  calibrated_ = true;
+}
+
+bool LiveSource::open() {
+  const std::int64_t begin_ns = feed_->now_ns();
+  last_pair_ns_ = begin_ns;
+  while (!feed_->closed()) {
+    std::optional<LiveMessage> message = feed_->next(kLook);
+    if (message && try_to_open(std::move(*message))) {
+      tell_frames_come();
+      feed_->clear();
+      dropped_ = feed_->dropped();
+      return true;
+    }
+    if (feed_->now_ns() - begin_ns > options_.open_timeout_ns) {
+      throw SourceError(
+          fmt::format("no frame within {:g} s: {}", static_cast<double>(options_.open_timeout_ns) * 1e-9, missing()));
+    }
+    tell_wait();
+  }
+  return false;
+}
+
+/// True when a whole frame could be made of what has come.
+bool LiveSource::try_to_open(LiveMessage message) {
+  if (message.message.topic == options_.topics.info) {
+    take_calibration(message);
+  } else {
+    take(std::move(message));
+  }
+  const std::optional<FramePairer::Pair> pair = pairer_.next(skips_);
+  if (!pair || !calibrated_) return false;
+  check_first(*pair);
+  return decode(*pair).has_value();
+}
+
+void LiveSource::take_calibration(const LiveMessage& message) {
+  if (calibrated_) return;
+  try {
+    const auto info = ros::decode<msg::CameraInfo>(message.message.wire, message.message.bytes);
+    info_.camera = to_camera_model(info, options_.topics.color, "topic " + options_.topics.info);
+    check_frame_size(info.width, info.height, "topic " + options_.topics.info);
+    calibrated_ = true;
+  } catch (const ros::WireError& error) {
+    skips_.add({SkipReason::kDamagedRecord, name_of(message.message) + ": " + error.what()});
+  }
+}
+
+/// What would make every frame unusable is an error, not a skipped frame.
+void LiveSource::check_first(const FramePairer::Pair& pair) try {
+  const RecordedMessage& depth = pair.depth.message;
+  const double unit_m = depth_unit_m(depth, depth_.type, kFloatDepthUnitM);
+  if (options_.calibration_file.empty()) info_.depth_scale_m = unit_m;
+  const ImageRead color_image = decode_color(pair.color.message, color_.type);
+  const ImageRead depth_image = decode_depth(depth, depth_.type, kFloatDepthUnitM);
+  if (color_image.problem || depth_image.problem) return;
+  const auto mismatch = size_mismatch(options_.topics.color, color_image.image, depth_image.image, info_.camera);
+  if (!mismatch) return;
+  throw SourceError(mismatch->detail +
+                    "; the depth must be registered to the colour image (RealSense: align_depth.enable, topic "
+                    "aligned_depth_to_color)");
+} catch (const ros::WireError&) {
+  // decode() counts it
+}
+
+std::optional<SourceFrame> LiveSource::next() {
+  while (const std::optional<FramePairer::Pair> pair = next_pair()) {
+    std::optional<SourceFrame> frame = decode(*pair);
+    if (!frame) continue;
+    frame->image.seq = skips_.counters().frames++;
+    if (!frame->has_depth) ++skips_.counters().frames_without_depth;
+    tell_frames_come();
+    return frame;
+  }
+  return std::nullopt;
+}
+
+std::optional<FramePairer::Pair> LiveSource::next_pair() {
+  while (!feed_->closed()) {
+    if (std::optional<FramePairer::Pair> pair = pairer_.next(skips_)) return pair;
+    std::optional<LiveMessage> message = feed_->next(kLook);
+    if (message) take(std::move(*message));
+    refuse_stepped_clock();
+    count_dropped();
+    tell_wait();
+  }
+  return std::nullopt;
+}
+
+void LiveSource::take(LiveMessage message) {
+  const bool is_color = message.message.topic == options_.topics.color;
+  if (!is_color && message.message.topic != options_.topics.depth) return;
+  try {
+    const msg::Header header = ros::decode<msg::Header>(message.message.wire, message.message.bytes);
+    StampedMessage stamped{msg::to_ns(header.stamp), std::move(message.message)};
+    Images& images = is_color ? color_ : depth_;
+    images.type = std::move(message.type);
+    images.stamp_ns = stamped.stamp_ns;
+    images.heard_ns = feed_->now_ns();
+    is_color ? pairer_.add_color(std::move(stamped), skips_) : pairer_.add_depth(std::move(stamped));
+  } catch (const ros::WireError& error) {
+    skips_.add({SkipReason::kDamagedRecord, name_of(message.message) + ": " + error.what()});
+  }
+}
+
+std::optional<SourceFrame> LiveSource::decode(const FramePairer::Pair& pair) {
+  ImageRead color = decode_color(pair.color.message, color_.type);
+  if (color.problem) return skips_.add(*color.problem), std::nullopt;
+  ImageRead depth = decode_depth(pair.depth.message, depth_.type, kFloatDepthUnitM);
+  if (depth.problem) return skips_.add(*depth.problem), std::nullopt;
+  const auto mismatch = size_mismatch(name_of(pair.color.message), color.image, depth.image, info_.camera);
+  if (mismatch) return skips_.add(*mismatch), std::nullopt;
+  return to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info_);
+}
+
+/// A driver or a simulation that began again gives stamps of the past: no frame would ever follow.
+void LiveSource::refuse_stepped_clock() {
+  if (skips_.counters().of(SkipReason::kStampBackwards) - backwards_at_last_pair_ < kSteppedImages) return;
+  throw SourceError(
+      fmt::format("the stamps on {} went back to {:.3f} s: was the driver or its clock set anew? Start again",
+                  options_.topics.color, static_cast<double>(color_.stamp_ns) * 1e-9));
+}
+
+void LiveSource::count_dropped() {
+  for (const std::uint64_t now = feed_->dropped(); dropped_ < now; ++dropped_) {
+    skips_.add({SkipReason::kOverrun, "messages came faster than they were taken"});
+  }
+}
+
+void LiveSource::tell_wait() {
+  const std::int64_t now_ns = feed_->now_ns();
+  if (now_ns - last_pair_ns_ < kQuietNs || now_ns - told_ns_ < kTellPeriodNs) return;
+  waiting_ = true;
+  told_ns_ = now_ns;
+  options_.on_wait(missing());
+}
+
+void LiveSource::tell_frames_come() {
+  last_pair_ns_ = feed_->now_ns();
+  backwards_at_last_pair_ = skips_.counters().of(SkipReason::kStampBackwards);
+  if (std::exchange(waiting_, false)) options_.on_wait({});
+}
+
+std::string LiveSource::missing() const {
+  const auto no = [this](const char* what, const std::string& topic) {
+    return fmt::format("no {} on {}: {}", what, topic, feed_->state_of(topic));
+  };
+  if (silent(color_)) return no("colour image", options_.topics.color);
+  if (silent(depth_)) return no("depth image", options_.topics.depth);
+  if (!calibrated_) return no("sensor_msgs/CameraInfo", options_.topics.info);
+  return fmt::format(
+      "no pair of colour and depth: the newest stamps on {} and {} are {:.1f} ms apart, allowed are {:g} "
+      "(?tolerance_ms=)",
+      options_.topics.color, options_.topics.depth,
+      static_cast<double>(std::abs(color_.stamp_ns - depth_.stamp_ns)) * 1e-6,
+      static_cast<double>(options_.tolerance_ns) * 1e-6);
+}
+
+bool LiveSource::silent(const Images& images) const {
+  return images.type.empty() || feed_->now_ns() - images.heard_ns >= kQuietNs;
+}
+
+}  // namespace rtd::camera

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/ros2_feed.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/ros2/names.hpp"
+#include "common/service/log.hpp"
+
+namespace rtd::camera {
+namespace {
+
+constexpr std::size_t kQueue = 24;  // messages of three topics: a quarter of a second
+constexpr int kReaderDepth = 8;     // images that may wait for the reader's thread
+constexpr const char* kImage = "sensor_msgs/Image";
+constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
+constexpr const char* kInfo = "sensor_msgs/CameraInfo";
+
+std::string plain_dds_type(const bus::TopicWriter& writer) {
+  return plain_type(ros2::ros_type(writer.topic.type));
+}
+
+}  // namespace
+
+Ros2Feed::Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics)
+    : domain_(options.domain),
+      loopback_only_(options.network.loopback_only),
+      queue_(kQueue, concurrency::Overflow::kDropOldest),
+      lines_{Line{topics.color, {kImage, kCompressed}, {}, nullptr},
+             Line{topics.depth, {kImage, kCompressed}, {}, nullptr}, Line{topics.info, {kInfo}, {}, nullptr}},
+      bus_(bus::connect_raw(options)) {
+  bus_->watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { take_note(writer, change); });
+}
+
+Ros2Feed::~Ros2Feed() {
+  bus_->watch(nullptr);
+  for (Line& line : lines_) line.reader.reset();
+}
+
+void Ros2Feed::clear() {
+  while (queue_.pop_for(std::chrono::milliseconds(0))) {
+  }
+}
+
+std::int64_t Ros2Feed::now_ns() const {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
+void Ros2Feed::take_note(const bus::TopicWriter& writer, bus::WriterChange change) {
+  if (change == bus::WriterChange::kGone) return;
+  const std::string topic = ros2::ros_topic(writer.topic.name);
+  for (Line& line : lines_) {
+    if (line.topic != topic || !line.types.contains(plain_dds_type(writer))) continue;
+    try {
+      listen(line, writer);
+    } catch (const bus::BusError& error) {
+      SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", topic, error.what());
+    }
+  }
+}
+
+/// A reader that asks for less than the one before serves its writers too.
+void Ros2Feed::listen(Line& line, const bus::TopicWriter& writer) {
+  const std::lock_guard lock(mutex_);
+  Demand demand = line.demand;
+  demand.reliable = demand.reliable && writer.qos.reliable;
+  demand.latched = demand.latched && writer.qos.durability != bus::RawQos::Durability::kVolatile;
+  if (line.reader != nullptr && demand == line.demand) return;
+  line.demand = demand;
+  line.reader.reset();
+  bus::RawReaderOptions options;
+  options.reliable = demand.reliable;
+  options.transient_local = demand.latched;
+  options.depth = kReaderDepth;
+  line.reader = bus_->reader(writer.topic, options, handlers(line, writer));
+  SPDLOG_INFO("event=camera_topic topic={} type={} reliable={} latched={}", line.topic, plain_dds_type(writer),
+              demand.reliable, demand.latched);
+}
+
+bus::RawHandlers Ros2Feed::handlers(const Line& line, const bus::TopicWriter& writer) {
+  bus::RawHandlers handlers;
+  handlers.on_sample = [this, topic = line.topic, type = plain_dds_type(writer)](const bus::RawSample& sample) {
+    LiveMessage message;
+    message.type = type;
+    message.message.topic = topic;
+    message.message.recorded_ns = now_ns();
+    message.message.wire = ros::Wire::kCdr;
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(sample.cdr().data());
+    message.message.bytes.assign(bytes, bytes + sample.cdr().size());
+    queue_.push(std::move(message));
+  };
+  return handlers;
+}
+
+std::string Ros2Feed::state_of(const std::string& topic) const {
+  int writers = 0;
+  std::string other_type;
+  const auto line = std::find_if(lines_.begin(), lines_.end(), [&](const Line& one) { return one.topic == topic; });
+  for (const bus::TopicWriter& writer : bus_->writers()) {
+    if (ros2::ros_topic(writer.topic.name) != topic) continue;
+    if (line != lines_.end() && line->types.contains(plain_dds_type(writer))) {
+      ++writers;
+    } else {
+      other_type = ros2::ros_type(writer.topic.type);
+    }
+  }
+  if (writers > 0)
+    return fmt::format("{} of its type, but nothing comes", writers == 1 ? "one publisher" : "publishers");
+  if (!other_type.empty()) return fmt::format("it is published as {}, which is not read here", other_type);
+  return nobody_publishes();
+}
+
+std::string Ros2Feed::nobody_publishes() const {
+  std::set<std::string> images;
+  for (const bus::TopicWriter& writer : bus_->writers()) {
+    const std::string type = plain_dds_type(writer);
+    if (type == kImage || type == kCompressed) images.insert(ros2::ros_topic(writer.topic.name));
+  }
+  const std::string where = fmt::format("nobody publishes it in DDS domain {}", domain_);
+  if (!images.empty()) return fmt::format("{}; images come on {}", where, fmt::join(images, ", "));
+  return fmt::format("{}{}, nor any image; does the driver run, and in this ROS_DOMAIN_ID?", where,
+                     loopback_only_ ? " on this host (--profile lan: also on the network)" : "");
+}
+
+}  // namespace rtd::camera

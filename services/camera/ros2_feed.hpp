@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+
+#include "common/bus/raw_bus.hpp"
+#include "common/concurrency/bounded_queue.hpp"
+#include "services/camera/core/live/live_feed.hpp"
+
+namespace rtd::camera {
+
+/// The topics of a ROS 2 camera driver, over a connection of its own. Each topic is read as its writers offer it:
+/// reliable where all do, best effort where one does only that (ROS 2's sensor data profile), latched where it is.
+class Ros2Feed final : public LiveFeed {
+ public:
+  /// Throws BusError when the bus refuses.
+  Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics);
+  ~Ros2Feed() override;
+
+  std::optional<LiveMessage> next(std::chrono::milliseconds timeout) override { return queue_.pop_for(timeout); }
+  void clear() override;
+  void close() override { queue_.close(); }
+  bool closed() const override { return queue_.closed(); }
+  std::uint64_t dropped() const override { return queue_.dropped(); }
+  std::int64_t now_ns() const override;
+  std::string state_of(const std::string& topic) const override;
+
+ private:
+  /// What is asked of writers.
+  struct Demand {
+    bool reliable = true, latched = true;
+    bool operator==(const Demand&) const = default;
+  };
+  struct Line {
+    std::string topic;            ///< ROS name
+    std::set<std::string> types;  ///< that can be read, plain_type()
+    Demand demand;
+    std::unique_ptr<bus::RawReader> reader;
+  };
+
+  void take_note(const bus::TopicWriter& writer, bus::WriterChange change);
+  void listen(Line& line, const bus::TopicWriter& writer);
+  bus::RawHandlers handlers(const Line& line, const bus::TopicWriter& writer);
+  std::string nobody_publishes() const;
+
+  const std::uint32_t domain_;
+  const bool loopback_only_;
+  concurrency::BoundedQueue<LiveMessage> queue_;
+  std::array<Line, 3> lines_;
+  std::shared_ptr<bus::RawBus> bus_;
+  mutable std::mutex mutex_;  ///< guards the readers of lines_
+};
+
+}  // namespace rtd::camera

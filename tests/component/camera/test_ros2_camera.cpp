@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// rtd-camera with a ROS 2 camera driver: writers of other participants with the QoS and messages that drivers have.
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <future>
+#include <thread>
+
+#include "common/bus/raw_bus.hpp"
+#include "common/ros_codec/wire_writer.hpp"
+#include "services/camera/camera_service.hpp"
+#include "tests/support/inbox.hpp"
+
+namespace rtd::camera {
+namespace {
+
+using namespace std::chrono_literals;
+using test_support::Inbox;
+using ::testing::HasSubstr;
+
+constexpr int kWidth = 64, kHeight = 48;
+constexpr const char* kSource = "ros2:/cam/color/image_raw,/cam/aligned_depth_to_color/image_raw";
+
+/// A driver in a thread: 30 frames a second until it ends. Its stamps go on where those of the one before ended.
+class Driver {
+ public:
+  Driver(const bus::BusOptions& options, bool reliable, const std::string& depth_encoding = "16UC1")
+      : bus_(bus::connect_raw(options)), depth_encoding_(depth_encoding) {
+    color_ = writer("rt/cam/color/image_raw", "Image", reliable);
+    depth_ = writer("rt/cam/aligned_depth_to_color/image_raw", "Image", reliable);
+    info_ = writer("rt/cam/color/camera_info", "CameraInfo", reliable);
+    thread_ = std::thread([this] { run(); });
+  }
+  ~Driver() {
+    ended_ = true;
+    thread_.join();
+  }
+
+ private:
+  std::unique_ptr<bus::RawWriter> writer(const std::string& topic, const std::string& type, bool reliable) {
+    bus::RawWriterOptions options;
+    options.qos.reliable = reliable;
+    options.qos.depth = 5;
+    return bus_->writer({topic, "sensor_msgs::msg::dds_::" + type + "_"}, options);
+  }
+  template <class Message>
+  static void send(bus::RawWriter& writer, const Message& message) {
+    const std::vector<std::uint8_t> cdr = ros::encode<ros::Wire::kCdr>(message);
+    writer.write(std::as_bytes(std::span(cdr)));
+  }
+  static msg::Image image(const char* encoding, std::uint32_t pixel_bytes, std::uint8_t value) {
+    msg::Image image;
+    image.header = {msg::to_time(stamp_ns_), "camera_color_optical_frame"};
+    image.width = kWidth, image.height = kHeight;
+    image.encoding = encoding;
+    image.step = kWidth * pixel_bytes;
+    image.data.assign(std::size_t{image.step} * kHeight, value);
+    return image;
+  }
+  void run() {
+    for (; !ended_; stamp_ns_ += 33'000'000) {
+      msg::CameraInfo info;
+      info.header.stamp = msg::to_time(stamp_ns_);
+      info.width = kWidth, info.height = kHeight;
+      info.distortion_model = "plumb_bob";
+      info.k = {60, 0, 31.5, 0, 60, 23.5, 0, 0, 1};
+      send(*info_, info);
+      send(*color_, image("rgb8", 3, 77));
+      send(*depth_, image(depth_encoding_.c_str(), 2, 1));  // 257 mm
+      std::this_thread::sleep_for(33ms);
+    }
+  }
+
+  std::shared_ptr<bus::RawBus> bus_;
+  const std::string depth_encoding_;
+  std::unique_ptr<bus::RawWriter> color_, depth_, info_;
+  inline static std::int64_t stamp_ns_ = 1'000'000'000;
+  std::atomic<bool> ended_{false};
+  std::thread thread_;
+};
+
+class Ros2Camera : public ::testing::TestWithParam<std::string> {
+ protected:
+  Ros2Camera() {
+    static std::uint32_t domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
+    options_.vendor = GetParam();
+    options_.domain = domain++;
+    bus_ = bus::connect(options_);
+    frames_reader_ = bus_->reader<msg::RgbdFrame>(bus::topics::kFrame, [this](auto frame) { frames_.take(frame); });
+    statuses_reader_ = bus_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](auto status) {
+      if (status->service == "camera") statuses_.take(status);
+    });
+    config_.source = kSource;
+    config_.wait_for = {};
+  }
+  service::ExitCode run() {
+    service::Heartbeat heartbeat(*bus_, "camera", stop_);
+    service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kRealtime, options_};
+    return CameraService(config_, runtime).run();
+  }
+  std::future<service::ExitCode> start() {
+    return std::async(std::launch::async, [this] { return run(); });
+  }
+  bool said(msg::ServiceState state, const std::string& text) {
+    return statuses_.wait([&](const auto& all) {
+      return std::any_of(all.begin(), all.end(), [&](const auto& status) {
+        return status->state == state && status->message.find(text) != std::string::npos;
+      });
+    });
+  }
+  bool frames_come(std::size_t more = 5) {
+    const std::size_t before = frames_.all().size();
+    return frames_.wait([&](const auto& all) { return all.size() >= before + more; });
+  }
+
+  bus::BusOptions options_;
+  std::shared_ptr<bus::Bus> bus_;
+  service::StopToken stop_;
+  ServiceConfig config_;
+  Inbox<msg::RgbdFrame> frames_;
+  Inbox<msg::ServiceStatus> statuses_;
+  bus::Reader<msg::RgbdFrame> frames_reader_;
+  bus::Reader<msg::ServiceStatus> statuses_reader_;
+};
+
+TEST_P(Ros2Camera, plays_a_driver_that_sends_best_effort) {
+  const Driver driver(options_, false);
+  auto running = start();
+  ASSERT_TRUE(frames_come(10));
+  stop_.request_stop();
+  EXPECT_EQ(running.get(), service::kOk);
+  const auto frame = frames_.all().back();
+  EXPECT_EQ(frame->width, std::uint32_t{kWidth});
+  EXPECT_EQ(frame->color_bgr[100], 77);
+  EXPECT_EQ(frame->depth[5], 257);
+  EXPECT_DOUBLE_EQ(frame->depth_scale_m, 0.001);
+  EXPECT_DOUBLE_EQ(frame->intrinsics[0], 60);
+}
+
+TEST_P(Ros2Camera, waits_for_a_reliable_driver_bears_its_restart_and_stops_at_once) {
+  auto running = start();
+  EXPECT_TRUE(said(msg::ServiceState::kStarting, "nobody publishes it in DDS domain"));
+  auto driver = std::make_unique<Driver>(options_, true);
+  EXPECT_TRUE(frames_come());
+  driver.reset();
+  EXPECT_TRUE(said(msg::ServiceState::kDegraded, "no colour image on /cam/color/image_raw"));
+  driver = std::make_unique<Driver>(options_, false);
+  EXPECT_TRUE(frames_come());
+  stop_.request_stop();
+  EXPECT_EQ(running.get(), service::kOk);
+}
+
+TEST_P(Ros2Camera, ends_with_a_reason_for_an_encoding_that_it_cannot_read) {
+  const Driver driver(options_, true, "YUV422");
+  EXPECT_EQ(run(), service::kRunFailed);
+  EXPECT_TRUE(said(msg::ServiceState::kFailed, "'YUV422'"));
+}
+
+TEST_P(Ros2Camera, gives_up_in_time_and_stops_while_it_waits) {
+  config_.start_timeout_s = 0.3;
+  EXPECT_EQ(run(), service::kRunFailed);
+  EXPECT_TRUE(said(msg::ServiceState::kFailed, "no frame within 0.3 s"));
+  config_.start_timeout_s = 60;
+  auto running = start();
+  EXPECT_TRUE(said(msg::ServiceState::kStarting, "no colour image"));
+  stop_.request_stop();
+  EXPECT_EQ(running.get(), service::kOk);
+}
+
+std::vector<std::string> networked_vendors() {
+  std::vector<std::string> vendors = bus::available_vendors();
+  std::erase(vendors, "inprocess");
+  return vendors;
+}
+
+INSTANTIATE_TEST_SUITE_P(EachVendor, Ros2Camera, ::testing::ValuesIn(networked_vendors()),
+                         [](const auto& vendor) { return vendor.param; });
+
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Ros2Camera);
+
+}  // namespace
+}  // namespace rtd::camera

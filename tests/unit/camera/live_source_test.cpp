@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/live/live_source.hpp"
+
+#include <gmock/gmock.h>
+
+#include <deque>
+#include <limits>
+
+#include "services/camera/core/source_factory.hpp"
+#include "tests/unit/camera/image_bag.hpp"
+
+namespace rtd::camera {
+namespace {
+
+using test::ImageBag;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+constexpr const char* kUri = "ros2:/c,/d,/i";
+
+/// A camera that a test plays. An empty feed lets its clock go on, and closes after a minute.
+class PlayedFeed : public LiveFeed {
+ public:
+  struct Script {
+    std::deque<LiveMessage> messages;
+    std::uint64_t dropped = 0;
+    bool clears = false;  ///< as the real one; a test of one stream leaves it off
+  };
+  explicit PlayedFeed(Script& script) : script_(script) {}
+
+  std::optional<LiveMessage> next(std::chrono::milliseconds timeout) override {
+    if (script_.messages.empty()) {
+      now_ns_ += std::chrono::nanoseconds(timeout).count();
+      closed_ = closed_ || now_ns_ > 60'000'000'000;
+      return std::nullopt;
+    }
+    LiveMessage message = std::move(script_.messages.front());
+    script_.messages.pop_front();
+    now_ns_ += 1'000'000;
+    message.message.recorded_ns = now_ns_;
+    return message;
+  }
+  void clear() override {
+    if (script_.clears) script_.messages.clear();
+  }
+  void close() override { closed_ = true; }
+  bool closed() const override { return closed_; }
+  std::uint64_t dropped() const override { return script_.dropped; }
+  std::int64_t now_ns() const override { return now_ns_; }
+  std::string state_of(const std::string& topic) const override { return "state of " + topic; }
+
+ private:
+  Script& script_;
+  std::int64_t now_ns_ = 0;
+  bool closed_ = false;
+};
+
+class LiveSourceTest : public ::testing::Test {
+ protected:
+  template <class Message>
+  void add(const std::string& topic, const std::string& type, const Message& message) {
+    LiveMessage live;
+    live.type = type;
+    live.message.topic = topic;
+    live.message.wire = ros::Wire::kCdr;
+    live.message.bytes = ros::encode<ros::Wire::kCdr>(message);
+    script_.messages.push_back(std::move(live));
+  }
+  void info(const msg::CameraInfo& info = ImageBag::camera_info()) { add("/i", "sensor_msgs/CameraInfo", info); }
+  void color(double stamp_s, const cv::Mat& pixels = ImageBag::color(), const std::string& encoding = "bgr8") {
+    add("/c", "sensor_msgs/Image", ImageBag::image(pixels, encoding, stamp_s));
+  }
+  void depth(double stamp_s, const cv::Mat& pixels = ImageBag::depth(), const std::string& encoding = "16UC1") {
+    add("/d", "sensor_msgs/Image", ImageBag::image(pixels, encoding, stamp_s));
+  }
+  LiveSource source(const std::string& uri = kUri) {
+    LiveOptions options = parse_live_options(uri);
+    options.on_wait = [this](const std::string& what) { told_.push_back(what); };
+    return {uri, std::make_unique<PlayedFeed>(script_), options};
+  }
+  /// The frame made of one pair of images.
+  static SourceFrame only_frame(LiveSource& source) {
+    EXPECT_TRUE(source.open());
+    return source.next().value();
+  }
+
+  PlayedFeed::Script script_;
+  std::vector<std::string> told_;
+};
+
+TEST_F(LiveSourceTest, pairs_by_stamp_as_soon_as_both_are_there_and_keeps_the_drivers_calibration) {
+  info(), color(1.0), depth(1.0);  // for open()
+  color(1.1), depth(1.105), depth(1.2), color(1.2);
+  LiveSource played = source();
+  ASSERT_TRUE(played.open());
+  EXPECT_TRUE(played.info().live);
+  EXPECT_EQ(played.info().camera.parameters().fy, 31);
+  EXPECT_DOUBLE_EQ(played.info().depth_scale_m, 0.001);
+  const SourceFrame first = played.next().value(), second = played.next().value();
+  EXPECT_EQ(first.image.seq, 0U);
+  EXPECT_EQ(first.image.stamp_ns, 1'100'000'000);
+  EXPECT_EQ(second.image.stamp_ns, 1'200'000'000);
+  EXPECT_EQ(second.image.depth.at<std::uint16_t>(3, 3), 1500);
+  EXPECT_EQ(played.counters().frames, 2U);
+  EXPECT_EQ(played.counters().skipped_total(), 0U);
+}
+
+TEST_F(LiveSourceTest, colour_without_depth_in_time_is_left_out) {
+  info(), color(1.0), depth(1.0);
+  color(1.1), color(1.2), depth(1.2), color(1.3), depth(1.35);
+  LiveSource played = source(std::string(kUri) + "?tolerance_ms=60");
+  ASSERT_TRUE(played.open());
+  EXPECT_EQ(played.next()->image.stamp_ns, 1'200'000'000);
+  EXPECT_EQ(played.next()->image.stamp_ns, 1'300'000'000) << "within 60 ms";
+  EXPECT_EQ(played.counters().of(SkipReason::kNoDepthPartner), 1U);
+}
+
+TEST_F(LiveSourceTest, every_encoding_becomes_bgr_and_depth_of_16_bit) {
+  const cv::Mat rgb(24, 32, CV_8UC3, cv::Scalar(1, 2, 3)), grey(24, 32, CV_8UC1, cv::Scalar(9));
+  cv::Mat metres(24, 32, CV_32FC1, cv::Scalar(1.5F));
+  metres.at<float>(0, 0) = std::numeric_limits<float>::quiet_NaN();
+  metres.at<float>(0, 1) = std::numeric_limits<float>::infinity();
+  info(), color(1.0, rgb, "rgb8"), depth(1.0, metres, "32FC1");
+  color(1.1, rgb, "rgb8"), depth(1.1, metres, "32FC1"), color(1.2, grey, "mono8"), depth(1.2, metres, "32FC1");
+  LiveSource played = source();
+  const SourceFrame first = only_frame(played), second = played.next().value();
+  EXPECT_EQ(first.image.color_bgr.at<cv::Vec3b>(5, 5), cv::Vec3b(3, 2, 1));
+  EXPECT_EQ(second.image.color_bgr.at<cv::Vec3b>(5, 5), cv::Vec3b(9, 9, 9));
+  EXPECT_NEAR(first.image.depth.at<std::uint16_t>(5, 5) * first.image.depth_scale_m, 1.5, 1e-4);
+  EXPECT_EQ(first.image.depth.at<std::uint16_t>(0, 0), 0) << "NaN";
+  EXPECT_EQ(first.image.depth.at<std::uint16_t>(0, 1), 0) << "infinity";
+}
+
+TEST_F(LiveSourceTest, rows_may_have_bytes_behind_their_pixels) {
+  msg::Image padded = ImageBag::image(ImageBag::depth(), "16UC1", 1.1);
+  msg::Image wide = padded;
+  wide.step = padded.step + 6;
+  wide.data.assign(std::size_t{wide.step} * wide.height, 0xEE);
+  for (std::size_t row = 0; row < padded.height; ++row) {
+    std::copy_n(padded.data.begin() + static_cast<std::ptrdiff_t>(row * padded.step), padded.step,
+                wide.data.begin() + static_cast<std::ptrdiff_t>(row * wide.step));
+  }
+  info(), color(1.0), depth(1.0), color(1.1);
+  add("/d", "sensor_msgs/Image", wide);
+  LiveSource played = source();
+  EXPECT_EQ(only_frame(played).image.depth.at<std::uint16_t>(23, 31), 1500);
+}
+
+TEST_F(LiveSourceTest, refuses_encodings_sizes_and_byte_orders_by_name) {
+  const auto refusal = [&](const auto& put, const char* text) {
+    script_.messages.clear();
+    put();
+    LiveSource played = source();
+    EXPECT_THAT([&] { played.open(); }, ThrowsMessage<SourceError>(HasSubstr(text)));
+  };
+  refusal([&] { info(), color(1, ImageBag::color(), "bayer_rggb8"), depth(1); }, "'bayer_rggb8'");
+  refusal([&] { info(), color(1), depth(1, ImageBag::depth(), "8UC1"); }, "'8UC1'");
+  refusal([&] { info(), color(1), depth(1, cv::Mat(12, 16, CV_16UC1, cv::Scalar(1))); }, "depth 16 x 12");
+  refusal([&] { info(ImageBag::camera_info(0)); }, "not calibrated");
+  refusal(
+      [&] {
+        msg::CameraInfo large = ImageBag::camera_info();
+        large.width = 1280, large.height = 720;
+        info(large);
+      },
+      "1280 x 720 px, but a frame carries at most 640 x 480");
+  refusal(
+      [&] {
+        msg::Image big_endian = ImageBag::image(ImageBag::depth(), "16UC1", 1);
+        big_endian.is_bigendian = 1;
+        info(), color(1);
+        add("/d", "sensor_msgs/Image", big_endian);
+      },
+      "big endian");
+}
+
+TEST_F(LiveSourceTest, says_what_it_waits_for_and_gives_up) {
+  LiveSource nothing = source();
+  EXPECT_THAT([&] { nothing.open(); },
+              ThrowsMessage<SourceError>(AllOf(HasSubstr("no frame within 30 s"), HasSubstr("colour image on /c"))));
+  ASSERT_FALSE(told_.empty());
+  EXPECT_THAT(told_.front(), HasSubstr("no colour image on /c: state of /c"));
+
+  told_.clear();
+  for (int i = 0; i < 1500; ++i) color(1.0 + 0.033 * i), depth(1.0 + 0.033 * i);
+  LiveSource no_info = source();
+  EXPECT_THROW(no_info.open(), SourceError);
+  EXPECT_THAT(told_.front(), HasSubstr("no sensor_msgs/CameraInfo on /i: state of /i"));
+}
+
+TEST_F(LiveSourceTest, says_when_stamps_do_not_pair) {
+  info();
+  for (int i = 0; i < 1500; ++i) color(1.0 + 0.033 * i), depth(1001.0 + 0.033 * i);
+  LiveSource played = source();
+  EXPECT_THROW(played.open(), SourceError);
+  ASSERT_FALSE(told_.empty());
+  EXPECT_THAT(told_.front(), AllOf(HasSubstr("no pair"), HasSubstr(" ms apart, allowed are 20"), HasSubstr("tolerance_ms")));
+}
+
+TEST_F(LiveSourceTest, tells_of_a_pause_and_of_its_end) {
+  info(), color(1.0), depth(1.0), color(1.1), depth(1.1);
+  LiveSource played = source();
+  only_frame(played);
+  EXPECT_EQ(played.next(), std::nullopt) << "the feed closes after a minute";
+  ASSERT_FALSE(told_.empty());
+  EXPECT_THAT(told_.front(), HasSubstr("no colour image on /c"));
+}
+
+TEST_F(LiveSourceTest, a_clock_that_steps_back_is_an_error_not_silence) {
+  info(), color(100.0), depth(100.0), color(100.1), depth(100.1);
+  for (int i = 0; i < 40; ++i) color(1.0 + 0.033 * i), depth(1.0 + 0.033 * i);
+  LiveSource played = source();
+  only_frame(played);
+  EXPECT_THAT([&] { played.next(); }, ThrowsMessage<SourceError>(HasSubstr("went back")));
+}
+
+TEST_F(LiveSourceTest, broken_messages_and_drops_are_counted) {
+  info(), color(1.0), depth(1.0);
+  color(1.1), depth(1.1);
+  script_.messages.back().message.bytes.resize(30);
+  color(1.2), depth(1.2);
+  LiveSource played = source();
+  ASSERT_TRUE(played.open());
+  script_.dropped = 2;
+  EXPECT_EQ(played.next()->image.stamp_ns, 1'200'000'000);
+  EXPECT_EQ(played.counters().of(SkipReason::kDepthUnreadable), 1U);
+  EXPECT_EQ(played.counters().of(SkipReason::kOverrun), 2U);
+}
+
+TEST_F(LiveSourceTest, what_came_while_it_opened_is_old) {
+  script_.clears = true;
+  info(), color(1.0), depth(1.0), color(1.1), depth(1.1);
+  LiveSource played = source();
+  ASSERT_TRUE(played.open());
+  EXPECT_TRUE(script_.messages.empty());
+}
+
+TEST(LiveOptionsTest, name_their_topics) {
+  const LiveOptions options = parse_live_options("ros2:/cam/color/image_raw/compressed,cam/depth?tolerance_ms=5");
+  EXPECT_EQ(options.topics.color, "/cam/color/image_raw/compressed");
+  EXPECT_EQ(options.topics.depth, "/cam/depth");
+  EXPECT_EQ(options.topics.info, "/cam/color/camera_info");
+  EXPECT_EQ(options.tolerance_ns, 5'000'000);
+  EXPECT_EQ(parse_live_options("ros2:/a/x,/b,/c").topics.info, "/c");
+  for (const char* uri : {"ros2:", "ros2:/a", "ros2:/a,/b,/c,/d", "ros2:/a,,/c", "ros2:/a,/a"}) {
+    EXPECT_THAT([&] { parse_live_options(uri); }, ThrowsMessage<SourceError>(HasSubstr("ros2:COLOR_TOPIC,DEPTH_TOPIC")))
+        << uri;
+  }
+  EXPECT_THAT([] { parse_live_options("ros2:/a,/b?tolerance_ms=x"); }, ThrowsMessage<SourceError>(HasSubstr("'x'")));
+  EXPECT_THAT([] { parse_live_options("ros2:/a,/b?fps=3"); }, ThrowsMessage<SourceError>(HasSubstr("'fps'")));
+  EXPECT_THAT([] { make_source("ros2:/a,/b"); }, ThrowsMessage<SourceError>(HasSubstr("running camera")));
+}
+
+}  // namespace
+}  // namespace rtd::camera
