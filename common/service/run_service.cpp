@@ -64,21 +64,46 @@ class SignalWatcher {
   std::thread thread_;
 };
 
-/// What processes that were killed have left takes the memory that this one needs.
-void remove_leftovers(const bus::BusOptions& options) {
-  if (options.vendor == "inprocess") return;
+/// What processes that were killed have left takes memory.
+void remove_leftovers() {
   const bus::CleanReport report = bus::remove_shm_leftovers();
   if (report.removed.empty()) return;
   SPDLOG_INFO("event=leftovers_removed folder=/dev/shm files={} mib={:.1f}", report.removed.size(),
               static_cast<double>(report.removed_bytes()) / (1024 * 1024));
 }
 
+/// Cleans beside the work: joining the bus is what a restarted service must be quick at.
+class Cleaner {
+ public:
+  explicit Cleaner(const bus::BusOptions& options) {
+    if (options.vendor != "inprocess") thread_ = std::thread(remove_leftovers);
+  }
+  ~Cleaner() {
+    if (thread_.joinable()) thread_.join();
+  }
+  Cleaner(const Cleaner&) = delete;
+  Cleaner& operator=(const Cleaner&) = delete;
+
+ private:
+  std::thread thread_;
+};
+
+/// Leftovers may be all that is in the way.
+std::shared_ptr<bus::Bus> join_bus(const bus::BusOptions& options) {
+  try {
+    return bus::connect(options);
+  } catch (const bus::BusError&) {
+    if (options.vendor == "inprocess" || bus::remove_shm_leftovers().removed.empty()) throw;
+    return bus::connect(options);
+  }
+}
+
 ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_config, Pace pace) {
   StopToken stop;
   const SignalWatcher signals(stop);
   const bus::BusOptions options = to_bus_options(bus_config, "rtd-" + definition.name);
-  remove_leftovers(options);
-  const std::shared_ptr<bus::Bus> bus = bus::connect(options);
+  const std::shared_ptr<bus::Bus> bus = join_bus(options);
+  const Cleaner cleaner(options);
   for (const std::string& warning : bus::host_warnings(options)) SPDLOG_INFO("event=host_limit cause=\"{}\"", warning);
   ExitCode code = kOk;
   std::string duplicate;

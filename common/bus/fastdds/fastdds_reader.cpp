@@ -19,6 +19,12 @@ FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::uniq
       callbacks_(std::move(callbacks)),
       thread_([this] { return handle_one(); }) {
   dds::Topic* const known = participant_->topic(topic, *codec_);
+  if (callbacks_.on_type_mismatch) {
+    const std::string type = codec_->create_type().get_type_name();
+    types_.emplace(participant_->types(), topic, type, [this](const std::string& foreign_type) {
+      thread_.post([this, foreign_type] { callbacks_.on_type_mismatch(foreign_type); });
+    });
+  }
   reader_ = subscriber_.create_datareader(known, with_type_hash(qos, known->get_type_name()), this);
   if (reader_ == nullptr) throw BusError("Fast DDS refused a reader on topic " + topic);
   thread_.wake();  // a sample may have come before reader_ was known
@@ -27,6 +33,7 @@ FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::uniq
 FastddsReader::~FastddsReader() {
   dds::DataReader* const reader = reader_;
   reader->set_listener(nullptr);
+  types_.reset();
   thread_.stop();  // waits for a running callback; only now nobody takes from the reader
   subscriber_.delete_datareader(reader);
 }
@@ -83,6 +90,11 @@ void FastddsReader::on_liveliness_changed(dds::DataReader*, const dds::Livelines
 void FastddsReader::on_requested_incompatible_qos(dds::DataReader*, const dds::RequestedIncompatibleQosStatus& status) {
   if (!callbacks_.on_incompatible_qos) return;
   thread_.post([this, policy = policy_name(status.last_policy_id)] { callbacks_.on_incompatible_qos(policy); });
+}
+
+void FastddsReader::on_sample_rejected(dds::DataReader*, const eprosima::fastrtps::SampleRejectedStatus& status) {
+  if (!callbacks_.on_samples_rejected) return;
+  thread_.post([this, total = status.total_count] { callbacks_.on_samples_rejected(total); });
 }
 
 void FastddsReader::on_sample_lost(dds::DataReader*, const dds::SampleLostStatus& status) {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
@@ -33,6 +34,7 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
   void on_requested_deadline_missed(dds::DataReader*, const dds::RequestedDeadlineMissedStatus&) override;
   void on_liveliness_changed(dds::DataReader*, const dds::LivelinessChangedStatus& status) override;
   void on_requested_incompatible_qos(dds::DataReader*, const dds::RequestedIncompatibleQosStatus& status) override;
+  void on_sample_rejected(dds::DataReader*, const eprosima::fastrtps::SampleRejectedStatus& status) override;
   void on_sample_lost(dds::DataReader*, const dds::SampleLostStatus& status) override;
 
   std::shared_ptr<Participant> participant_;
@@ -46,6 +48,7 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
   std::atomic<int> lost_in_transit_{0}, unusable_{0};
   std::atomic<dds::DataReader*> reader_{nullptr};
   CallbackThread thread_;
+  std::optional<TopicTypes::Watch> types_;
 };
 
 }  // namespace rtd::bus::fastdds

@@ -17,7 +17,14 @@ FastddsWriter::FastddsWriter(std::shared_ptr<Participant> participant, std::uniq
       publisher_(participant_->publisher(topic)),
       codec_(std::move(codec)),
       callbacks_(std::move(callbacks)) {
-  if (callbacks_.on_matched || callbacks_.on_incompatible_qos || callbacks_.on_deadline_missed) thread_.emplace();
+  const bool anybody_listens = callbacks_.on_matched || callbacks_.on_incompatible_qos ||
+                               callbacks_.on_deadline_missed || callbacks_.on_type_mismatch;
+  if (anybody_listens) thread_.emplace();
+  if (callbacks_.on_type_mismatch) {
+    types_.emplace(
+        participant_->types(), topic, codec_->create_type().get_type_name(),
+        [this](const std::string& type) { thread_->post([this, type] { callbacks_.on_type_mismatch(type); }); });
+  }
   dds::Topic* const known = participant_->topic(topic, *codec_);
   writer_ = publisher_.create_datawriter(known, with_type_hash(qos, known->get_type_name()), this);
   if (writer_ == nullptr) throw BusError("Fast DDS refused a writer on topic " + topic);

@@ -43,6 +43,7 @@ class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
   const StatusCallbacks callbacks_;
   std::atomic<int> matched_{0};
   std::optional<CallbackThread> thread_;  ///< only when there are callbacks
+  std::optional<TopicTypes::Watch> types_;
   std::map<void*, std::shared_ptr<void>> loans_;
   dds::DataWriter* writer_ = nullptr;
 };

@@ -55,8 +55,8 @@ dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostL
 }
 
 dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factory, const BusOptions& options,
-                                           const HostLimits& limits, dds::DomainParticipantListener* listener) {
-  const DiscoveryScope scope = listener == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;
+                                           const HostLimits& limits, DiscoveryScope scope,
+                                           dds::DomainParticipantListener* listener) {
   dds::DomainParticipantQos qos = participant_qos(options, limits, scope);
   constexpr int kAttempts = 5;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {  // an id may be taken by another connection of this process
@@ -72,15 +72,17 @@ dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factor
 
 }  // namespace
 
-Participant::Participant(const BusOptions& options, const HostLimits& limits,
-                         dds::DomainParticipantListener* listener) {
+Participant::Participant(const BusOptions& options, const HostLimits& limits, dds::DomainParticipantListener* listener)
+    : watch_(listener) {
   if (options.shm_segment_mib < kMinSegmentMib || options.shm_segment_mib > 1024) {
     throw BusError("shared-memory segment of " + std::to_string(options.shm_segment_mib) +
                    " MiB, allowed: " + std::to_string(kMinSegmentMib) + "..1024");
   }
   log_to_stderr_once();
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
-  participant_ = create_participant(*factory_, options, limits, listener);
+  participant_ = create_participant(*factory_, options, limits,
+                                    listener == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll, &watch_);
+  watch_.greeter().start(*participant_);
   create_publishers(options.network);
 }
 
@@ -109,6 +111,7 @@ dds::Subscriber& Participant::subscriber(const std::string& topic) {
 
 Participant::~Participant() {
   if (participant_ == nullptr) return;
+  watch_.greeter().stop();
   participant_->delete_contained_entities();
   factory_->delete_participant(participant_);
 }

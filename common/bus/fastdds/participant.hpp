@@ -13,6 +13,7 @@
 #include <string>
 
 #include "common/bus/fastdds/codec.hpp"
+#include "common/bus/fastdds/participant_watch.hpp"
 #include "common/bus/host_checks.hpp"
 
 namespace rtd::bus::fastdds {
@@ -35,6 +36,8 @@ class Participant {
   /// The topic of that name, created when new; lives as long as the participant.
   /// Throws BusError when it exists with another type.
   dds::Topic* topic(const std::string& name, const Codec& codec);
+  /// Tells endpoints of ours when somebody uses the topic's name with another type.
+  TopicTypes& types() { return watch_.types(); }
   /// No listener is called any more.
   void silence() { participant_->set_listener(nullptr); }
   const dds::DomainParticipant& vendor() const { return *participant_; }
@@ -42,6 +45,7 @@ class Participant {
  private:
   void create_publishers(const NetworkOptions& network);
 
+  ParticipantWatch watch_;
   std::shared_ptr<dds::DomainParticipantFactory> factory_;  // keeps the vendor's singleton alive
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher *publisher_ = nullptr, *host_publisher_ = nullptr;

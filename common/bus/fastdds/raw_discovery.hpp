@@ -14,10 +14,10 @@ class RawDiscovery : public eprosima::fastdds::dds::DomainParticipantListener {
   std::vector<TopicWriter> writers() const { return registry_.writers(); }
   void watch(RawBus::Watcher watcher) { registry_.watch(std::move(watcher)); }
 
- private:
   void on_publisher_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
 
+ private:
   WriterRegistry registry_;
 };
 

@@ -69,6 +69,35 @@ TEST_P(DdsBus, delivers_every_kind_of_message) {
   EXPECT_EQ(status.next()->metrics.at(0).value, 3.0);
 }
 
+/// The same name with another type, as only a foreign program would use it.
+constexpr Topic<msg::PoseStamped> kOdometryMistaken{"rt/slam/odometry", QosProfile::kPose};
+
+TEST_P(DdsBus, tells_both_sides_of_another_type_on_the_topic) {
+  if (GetParam() == "cyclonedds") GTEST_SKIP() << "Cyclone DDS itself does not tell";
+  Collector<std::string> told_writer, told_reader;
+  StatusCallbacks of_writer, of_reader;
+  of_writer.on_type_mismatch = [&](const std::string& type) { told_writer.push(std::make_shared<std::string>(type)); };
+  of_reader.on_type_mismatch = [&](const std::string& type) { told_reader.push(std::make_shared<std::string>(type)); };
+  const auto writer = here->writer(topics::kOdometry, of_writer);
+  const auto reader = there->reader(
+      kOdometryMistaken, [](const auto&) {}, of_reader);
+  EXPECT_EQ(*told_writer.next(), "geometry_msgs::msg::dds_::PoseStamped_");
+  EXPECT_EQ(*told_reader.next(), "nav_msgs::msg::dds_::Odometry_");
+}
+
+TEST_P(DdsBus, tells_a_late_endpoint_of_another_type_that_was_there_before) {
+  if (GetParam() == "cyclonedds") GTEST_SKIP() << "Cyclone DDS itself does not tell";
+  const auto reader = there->reader(kOdometryMistaken, [](const auto&) {});
+  Collector<std::string> told;
+  const auto right_reader = here->reader(topics::kPose, [](const auto&) {});  // meet first
+  const auto right_writer = there->writer(topics::kPose);
+  wait_for_reader(right_writer);
+  StatusCallbacks callbacks;
+  callbacks.on_type_mismatch = [&](const std::string& type) { told.push(std::make_shared<std::string>(type)); };
+  const auto writer = here->writer(topics::kOdometry, callbacks);
+  EXPECT_EQ(*told.next(), "geometry_msgs::msg::dds_::PoseStamped_");
+}
+
 TEST_P(DdsBus, takes_an_unwritten_loan_back) {
   auto writer = here->writer(topics::kFrame);
   for (int i = 0; i < 20; ++i) const auto loan = writer.loan();
