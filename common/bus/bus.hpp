@@ -11,6 +11,7 @@
 #include "common/bus/backend.hpp"
 #include "common/bus/message_types.hpp"
 #include "common/bus/qos.hpp"
+#include "common/bus/topic_counters.hpp"
 #include "common/bus/topics.hpp"
 
 namespace rtd::bus {
@@ -51,8 +52,9 @@ class Writer {
   /// A slot to build a fixed-size message in place. Its content is undefined until filled: fill every field.
   Loan<T> loan() requires MessageTraits<T>::kPlain { return Loan<T>(backend_.get(), backend_->loan()); }
   bool write(Loan<T>&& loan) { return backend_->write_loaned(loan.release()); }
-  /// Number of readers matched now. Each side matches on its own: on a volatile topic, what is written before the reader too
-  /// has matched may never reach it, so wait for the other side's word (its heartbeat) where the first message matters.
+  /// Number of readers matched now. Each side matches on its own: on a volatile topic, what is written before the
+  /// reader too has matched may never reach it, so wait for the other side's word (its heartbeat) where the first
+  /// message matters.
   int matched() const { return backend_->matched(); }
   /// Blocks until every reliable reader has acknowledged what was written, at most timeout_ms. True when all did.
   bool wait_acknowledged(int timeout_ms) { return backend_->wait_acknowledged(timeout_ms); }
@@ -85,7 +87,8 @@ class Bus {
 
   template <class T>
   Writer<T> writer(const Topic<T>& topic, StatusCallbacks callbacks = {}) {
-    return Writer<T>(backend_->create_writer(MessageTraits<T>::kId, topic.name, topic.profile, std::move(callbacks)));
+    return Writer<T>(backend_->create_writer(MessageTraits<T>::kId, topic.name, topic.profile,
+                                             counters_.count(topic.name, std::move(callbacks))));
   }
 
   template <class T>
@@ -96,12 +99,15 @@ class Bus {
       on_message(std::static_pointer_cast<const T>(std::move(message)));
     };
     return Reader<T>(backend_->create_reader(MessageTraits<T>::kId, topic.name, topic.profile, std::move(erased),
-                                             std::move(callbacks)));
+                                             counters_.count(topic.name, std::move(callbacks))));
   }
 
   const std::string& vendor() const { return backend_->vendor(); }
+  /// Topics on which samples were lost or rejected or peers refused since the connection began.
+  std::map<std::string, TopicTrouble> troubles() const { return counters_.troubles(); }
 
  private:
+  TopicCounters counters_;
   std::shared_ptr<BusBackend> backend_;
 };
 

@@ -34,6 +34,7 @@ struct BusOptions {
   std::string vendor = "fastdds";          ///< "fastdds", "cyclonedds" or "inprocess"; `--dds`, RTD_DDS
   std::uint32_t domain = 0;                ///< DDS domain 0..232; `--domain`, ROS_DOMAIN_ID
   std::string participant_name;            ///< shown by DDS tools, e.g. "rtd-filter"
+  bool shared_memory = true;               ///< Fast DDS: false sends over UDP on one host too, where /dev/shm is tiny
   std::uint32_t shm_segment_mib = 16;      ///< shared-memory segment of this process, >= 8
   std::uint32_t socket_buffer_kib = 4096;  ///< asked UDP buffer, capped by net.core.rmem_max
   NetworkOptions network;

@@ -54,7 +54,7 @@ HostLimits read_host_limits(const std::string& shm_dir, const std::string& sysct
 }
 
 void require_shared_memory(const BusOptions& options, const HostLimits& limits) {
-  if (limits.shm_total == 0) return;
+  if (limits.shm_total == 0 || !options.shared_memory) return;
   const std::uint64_t needed = options.shm_segment_mib * kMib + frame_pool_bytes();
   if (limits.shm_free >= needed) return;
   const std::uint64_t sufficient_mib =

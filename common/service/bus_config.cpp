@@ -18,6 +18,7 @@ void NetworkConfig::bind(ConfigBinder& binder) {
 void BusConfig::bind(ConfigBinder& binder) {
   binder.field("vendor", vendor, "DDS implementation (--dds, RTD_DDS)");
   binder.field("domain", domain, {0, 232}, "DDS domain (--domain, ROS_DOMAIN_ID)");
+  binder.field("shared_memory", shared_memory, "false: Fast DDS sends over UDP on one host too");
   binder.field("shm_segment_mib", shm_segment_mib, {8, 1024}, "shared-memory segment of each process");
   binder.field("socket_buffer_kib", socket_buffer_kib, {64, 65536}, "wanted UDP buffers, capped by the kernel");
   binder.section("network", network);
@@ -33,6 +34,7 @@ bus::BusOptions to_bus_options(const BusConfig& config, const std::string& parti
   options.vendor = config.vendor;
   options.domain = static_cast<std::uint32_t>(config.domain);
   options.participant_name = participant_name;
+  options.shared_memory = config.shared_memory;
   options.shm_segment_mib = static_cast<std::uint32_t>(config.shm_segment_mib);
   options.socket_buffer_kib = static_cast<std::uint32_t>(config.socket_buffer_kib);
   options.network.loopback_only = config.network.loopback_only;

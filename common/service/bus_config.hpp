@@ -26,6 +26,7 @@ struct NetworkConfig {
 struct BusConfig {
   std::string vendor = bus::BusOptions{}.vendor;
   int domain = static_cast<int>(bus::BusOptions{}.domain);
+  bool shared_memory = bus::BusOptions{}.shared_memory;
   int shm_segment_mib = static_cast<int>(bus::BusOptions{}.shm_segment_mib);
   int socket_buffer_kib = static_cast<int>(bus::BusOptions{}.socket_buffer_kib);
   NetworkConfig network;

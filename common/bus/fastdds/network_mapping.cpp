@@ -87,7 +87,8 @@ void find_by_server(const BusOptions& options, DiscoveryScope scope, rtps::Built
 
 void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope, DomainParticipantQos& qos) {
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports = {shared_memory_transport(options), udp_transport(options, limits)};
+  if (options.shared_memory) qos.transport().user_transports.push_back(shared_memory_transport(options));
+  qos.transport().user_transports.push_back(udp_transport(options, limits));
   // Discovery over UDP only, samples over shared memory: the kernel closes the socket of a killed process at once.
   auto& builtin = qos.wire_protocol().builtin;
   if (options.network.discovery_server.empty()) {
