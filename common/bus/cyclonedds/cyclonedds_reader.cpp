@@ -14,6 +14,7 @@ CycloneReader::CycloneReader(std::shared_ptr<Participant> participant, const Sam
     : participant_(std::move(participant)), handlers_(std::move(handlers)), thread_([this] { return handle_one(); }) {
   const VendorTopic vendor = participant_->topic(topic, type);
   set_type_hash(*qos, type.name);
+  participant_->set_reader_partition(topic, *qos);
   const Listener heard = listener();
   const dds_entity_t reader = dds_create_reader(participant_->handle(), vendor.handle, qos.get(), heard.get());
   if (reader < 0) throw BusError("Cyclone DDS refused a reader on topic " + topic + ": " + dds_strretcode(reader));

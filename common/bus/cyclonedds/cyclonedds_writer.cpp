@@ -14,6 +14,7 @@ CycloneWriter::CycloneWriter(std::shared_ptr<Participant> participant, const Sam
     : participant_(std::move(participant)), callbacks_(std::move(callbacks)), topic_(participant_->topic(topic, type)) {
   if (callbacks_.on_matched || callbacks_.on_incompatible_qos || callbacks_.on_deadline_missed) thread_.emplace();
   set_type_hash(*qos, type.name);
+  participant_->set_writer_partition(topic, *qos);
   const Listener heard = listener();
   writer_ = dds_create_writer(participant_->handle(), topic_.handle, qos.get(), heard.get());
   if (writer_ < 0) throw BusError("Cyclone DDS refused a writer on topic " + topic + ": " + dds_strretcode(writer_));

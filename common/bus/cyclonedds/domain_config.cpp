@@ -2,14 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/cyclonedds/domain_config.hpp"
 
-#include <arpa/inet.h>
-#include <ifaddrs.h>
-#include <net/if.h>
-
 #include <algorithm>
-#include <memory>
 
 #include "common/bus/backend.hpp"
+#include "common/bus/network.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
@@ -19,20 +15,6 @@ constexpr std::uint32_t kLeastDatagram = 576, kLargestDatagram = 65000;
 /// RTPS and submessage headers, and with security its prefix, tag and postfix.
 constexpr std::uint32_t kOverhead = 100, kSecureOverhead = 300;
 
-/// Throws BusError unless the text can stand in an XML attribute as host, address or interface.
-const std::string& checked(const std::string& text, const char* what) {
-  const bool good = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '.' || c == ':' || c == '-' || c == '_' || c == '%' || c == '@';
-  });
-  if (!good) throw BusError(std::string(what) + " '" + text + "' is none: use a host name, an IPv4 address or a name");
-  return text;
-}
-
-bool is_address(const std::string& text) {
-  in_addr address{};
-  return inet_pton(AF_INET, text.c_str(), &address) == 1;
-}
-
 std::string element(const std::string& name, const std::string& content) {
   return "<" + name + ">" + content + "</" + name + ">";
 }
@@ -41,21 +23,20 @@ std::string bytes(std::uint64_t number) {
   return std::to_string(number) + " B";
 }
 
+std::string interface(const std::string& address, const char* multicast) {
+  return "<NetworkInterface address=\"" + address + "\" multicast=\"" + multicast + "\"/>";
+}
+
 /// Loopback has no multicast flag in Linux, but carries it; so does Fast DDS on 127.0.0.1.
 std::string interfaces(const NetworkOptions& network) {
-  const std::string multicast = network.multicast ? "true" : "false";
-  std::string all = R"(<NetworkInterface address="127.0.0.1" multicast=")" + multicast + R"("/>)";
-  if (network.loopback_only) return element("Interfaces", all);
-  const std::vector<std::string> names = network.interfaces.empty() ? network_interfaces() : network.interfaces;
-  if (names.size() >= kMostInterfaces) {
-    throw BusError("Cyclone DDS uses at most " + std::to_string(kMostInterfaces - 1) + " network interfaces, " +
-                   std::to_string(names.size()) + " are named (bus.network.interfaces)");
+  std::vector<std::string> addresses = interface_addresses(network);
+  if (addresses.size() >= kMostInterfaces && !network.interfaces.empty()) {
+    throw BusError("--interface: Cyclone DDS uses at most " + std::to_string(kMostInterfaces - 1) + ", " +
+                   std::to_string(addresses.size()) + " are named");
   }
-  for (const std::string& name : names) {
-    all += "<NetworkInterface " + std::string(is_address(name) ? "address" : "name") + "=\"" +
-           checked(name, "network interface") + R"(" multicast=")" + (network.multicast ? "default" : "false") +
-           R"("/>)";
-  }
+  addresses.resize(std::min(addresses.size(), kMostInterfaces - 1));
+  std::string all = interface("127.0.0.1", network.multicast ? "true" : "false");
+  for (const std::string& address : addresses) all += interface(address, network.multicast ? "default" : "false");
   return element("Interfaces", all);
 }
 
@@ -71,14 +52,18 @@ std::string general(const BusOptions& options) {
                      element("MaxMessageSize", bytes(datagram)) + element("FragmentSize", bytes(datagram - overhead)));
 }
 
-/// Peers are asked at the ports of the participant numbers 0 to 60, and we take one of these: Fast DDS's as well.
+/// As Fast DDS of ours does: on a network everybody takes one of the ports that peers without a port are asked at.
 std::string discovery(const NetworkOptions& network) {
   std::string text = element("SPDPInterval", "500 ms") + element("LeaseDuration", "5 s");
-  if (network.multicast && network.peers.empty()) return element("Discovery", text);
+  if (network.loopback_only && network.multicast && network.peers.empty()) return element("Discovery", text);
   std::string peers = R"(<Peer address="127.0.0.1"/>)";
-  for (const std::string& peer : network.peers) peers += "<Peer address=\"" + checked(peer, "peer") + "\"/>";
-  text += element("Peers", peers) + element("ParticipantIndex", "auto") + element("MaxAutoParticipantIndex", "60");
-  return element("Discovery", text);
+  for (const std::string& peer : network.peers) {
+    const HostAddress host = resolve_host(peer, "--peers");
+    peers += "<Peer address=\"" + host.address + (host.port == 0 ? "" : ":" + std::to_string(host.port)) + "\"/>";
+  }
+  text +=
+      element("ParticipantIndex", "auto") + element("MaxAutoParticipantIndex", std::to_string(kPeerParticipants - 1));
+  return element("Discovery", text + element("Peers", peers));
 }
 
 /// A lost sample is noticed and repaired within some ms. No writer waits for a slow or dead reader: histories are
@@ -97,20 +82,6 @@ std::string internal(const BusOptions& options, const HostLimits& limits) {
 }
 
 }  // namespace
-
-std::vector<std::string> network_interfaces() {
-  ifaddrs* first = nullptr;
-  if (getifaddrs(&first) != 0) return {};
-  const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> all(first, freeifaddrs);
-  std::vector<std::string> names;
-  for (const ifaddrs* one = first; one != nullptr; one = one->ifa_next) {
-    const bool up = (one->ifa_flags & IFF_UP) != 0 && (one->ifa_flags & IFF_LOOPBACK) == 0;
-    if (!up || one->ifa_addr == nullptr || one->ifa_addr->sa_family != AF_INET) continue;
-    if (std::find(names.begin(), names.end(), one->ifa_name) == names.end()) names.emplace_back(one->ifa_name);
-  }
-  names.resize(std::min(names.size(), kMostInterfaces - 1));
-  return names;
-}
 
 std::string domain_config(const BusOptions& options, const HostLimits& limits) {
   std::string text = general(options) + discovery(options.network) + internal(options, limits);

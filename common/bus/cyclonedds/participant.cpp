@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/bus/cyclonedds/log_capture.hpp"
+#include "common/bus/network.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
@@ -34,7 +35,20 @@ Participant::Participant(const BusOptions& options)
     : domain_(join_domain(options)),
       participant_(create_participant(options)),
       id_(guid_of(participant_.get())),
-      shares_memory_(options.iceoryx) {}
+      shares_memory_(options.iceoryx),
+      loopback_only_(options.network.loopback_only) {}
+
+void Participant::set_writer_partition(const std::string& topic, dds_qos_t& qos) const {
+  if (loopback_only_ || !stays_on_host(topic)) return;
+  dds_qset_partition1(&qos, host_partition().c_str());
+}
+
+void Participant::set_reader_partition(const std::string& topic, dds_qos_t& qos) const {
+  if (!stays_on_host(topic)) return;
+  const std::string host = host_partition();
+  const char* both[] = {"", host.c_str()};
+  dds_qset_partition(&qos, 2, both);
+}
 
 VendorTopic Participant::topic(const std::string& name, const SampleType& type) {
   const std::lock_guard lock(mutex_);

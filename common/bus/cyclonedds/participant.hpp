@@ -26,6 +26,10 @@ class Participant {
   dds_entity_t handle() const { return participant_.get(); }
   const WriterId& id() const { return id_; }
   bool shares_memory() const { return shares_memory_; }
+  /// Where writers of the topic are heard and readers look: topics that stay on the host are in a partition of the
+  /// host, so that nobody elsewhere is matched. Without a network they need none.
+  void set_writer_partition(const std::string& topic, dds_qos_t& qos) const;
+  void set_reader_partition(const std::string& topic, dds_qos_t& qos) const;
   /// The topic of that name, created when new; lives as long as the participant.
   /// Throws BusError when it exists with another type.
   VendorTopic topic(const std::string& name, const SampleType& type);
@@ -39,7 +43,7 @@ class Participant {
   std::shared_ptr<Domain> domain_;
   Entity participant_;  // its topics and endpoints end with it
   WriterId id_{};
-  const bool shares_memory_;
+  const bool shares_memory_, loopback_only_;
   std::mutex mutex_;
   std::map<std::string, KnownTopic> topics_;
 };
