@@ -69,6 +69,12 @@ std::vector<std::string> available_vendors() {
   return names;
 }
 
+std::vector<std::string> dds_vendors() {
+  std::vector<std::string> names = available_vendors();
+  std::erase(names, "inprocess");
+  return names;
+}
+
 std::shared_ptr<Bus> connect(const BusOptions& options) {
   return std::make_shared<Bus>(vendor_of(options).create(options));
 }

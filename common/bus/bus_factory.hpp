@@ -29,9 +29,12 @@ struct SecurityOptions {
   bool enabled() const { return !keystore.empty(); }
 };
 
+/// Fast DDS where it is built in, else Cyclone DDS.
+std::string default_vendor();
+
 /// How a process joins the bus. Defaults: Fast DDS, loopback only.
 struct BusOptions {
-  std::string vendor = "fastdds";          ///< "fastdds", "cyclonedds" or "inprocess"; `--dds`, RTD_DDS
+  std::string vendor = default_vendor();   ///< "fastdds", "cyclonedds" or "inprocess"; `--dds`, RTD_DDS
   std::uint32_t domain = 0;                ///< DDS domain 0..232; `--domain`, ROS_DOMAIN_ID
   std::string participant_name;            ///< shown by DDS tools, e.g. "rtd-filter"
   bool shared_memory = true;               ///< Fast DDS: false sends over UDP on one host too, where /dev/shm is tiny
@@ -51,5 +54,7 @@ std::shared_ptr<Bus> connect(const BusOptions& options);
 
 /// Names accepted as BusOptions::vendor in this build.
 std::vector<std::string> available_vendors();
+/// Those of them that go from process to process.
+std::vector<std::string> dds_vendors();
 
 }  // namespace rtd::bus

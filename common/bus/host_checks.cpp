@@ -70,7 +70,7 @@ std::vector<std::string> host_warnings(const BusOptions& options, const HostLimi
   std::vector<std::string> warnings;
   if (options.vendor == "inprocess") return warnings;
   const std::uint64_t wanted_shm = kProcesses * options.shm_segment_mib * kMib + frame_pool_bytes();
-  if (limits.shm_total != 0 && limits.shm_total < wanted_shm) {
+  if (options.vendor == "fastdds" && limits.shm_total != 0 && limits.shm_total < wanted_shm) {
     warnings.push_back("/dev/shm holds " + std::to_string(limits.shm_total / kMib) +
                        " MiB, all processes together may need " + std::to_string(round_up_mib(wanted_shm)) +
                        " MiB; sudo mount -o remount,size=256m /dev/shm, or " +

@@ -55,7 +55,9 @@ void add_bus_options(CLI::App& app, BusArguments& arguments) {
       ->delimiter(',');
   app.add_option("--discovery-server", arguments.discovery_server,
                  "HOST:PORT of a Fast DDS Discovery Server (bus.network.discovery_server)");
-  app.add_option("--dds", arguments.vendor, "DDS implementation: fastdds (RTD_DDS)");
+  app.add_option("--dds", arguments.vendor,
+                 fmt::format("DDS implementation: {} (RTD_DDS; default: {})", fmt::join(bus::dds_vendors(), " or "),
+                             bus::default_vendor()));
   app.add_option("--domain", arguments.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
 }
 

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/cyclonedds/cyclonedds_raw_bus.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "common/bus/cyclonedds/cyclonedds_reader.hpp"
 #include "common/bus/cyclonedds/cyclonedds_writer.hpp"
-#include "common/bus/cyclonedds/discovery.hpp"
+#include "common/bus/cyclonedds/endpoint_watch.hpp"
 #include "common/bus/cyclonedds/qos_mapping.hpp"
 #include "common/bus/writer_registry.hpp"
 
@@ -71,7 +70,7 @@ class CycloneRawBus : public RawBus {
  public:
   explicit CycloneRawBus(const BusOptions& options)
       : participant_(std::make_shared<Participant>(options)),
-        watch_(*participant_, EndpointWatch::Direction::kWriters,
+        watch_(participant_->handle(), EndpointWatch::Direction::kWriters,
                [this](const WriterId& id, const dds_builtintopic_endpoint_t* writer) { note(id, writer); }) {}
 
   const std::string& vendor() const override { return vendor_; }
@@ -94,8 +93,7 @@ class CycloneRawBus : public RawBus {
     writer.topic = {endpoint->topic_name, endpoint->type_name, is_keyed(id)};
     writer.qos = from_vendor(*endpoint->qos);
     writer.user_data = user_data(*endpoint->qos);
-    constexpr std::size_t kPrefix = 12;  // of the participant
-    writer.own = std::equal(id.begin(), id.begin() + kPrefix, participant_->id().begin());
+    writer.own = participant_->is_own(id);
     registry_.note(writer);
   }
 

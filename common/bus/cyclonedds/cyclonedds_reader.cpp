@@ -19,10 +19,16 @@ CycloneReader::CycloneReader(std::shared_ptr<Participant> participant, const Sam
   const dds_entity_t reader = dds_create_reader(participant_->handle(), vendor.handle, qos.get(), heard.get());
   if (reader < 0) throw BusError("Cyclone DDS refused a reader on topic " + topic + ": " + dds_strretcode(reader));
   reader_ = reader;
+  if (handlers_.status.on_type_mismatch) {
+    types_.emplace(participant_->types(), topic, type.name, [this](const std::string& foreign_type) {
+      thread_.post([this, foreign_type] { handlers_.status.on_type_mismatch(foreign_type); });
+    });
+  }
   thread_.wake();  // a sample may have come before reader_ was known
 }
 
 CycloneReader::~CycloneReader() {
+  types_.reset();
   dds_set_listener(reader_, nullptr);  // waits for a running one
   thread_.stop();                      // waits for a running callback; only now nobody takes from the reader
   dds_delete(reader_);

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/bus/callback_thread.hpp"
@@ -40,6 +41,7 @@ class CycloneReader : public ReaderBackend {
   std::uint64_t missing_ = 0, unusable_ = 0;  // as well
   std::atomic<int> matched_{0};
   std::atomic<dds_entity_t> reader_{0};
+  std::optional<TopicTypes::Watch> types_;
   CallbackThread thread_;
 };
 

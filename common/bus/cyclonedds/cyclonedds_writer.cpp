@@ -12,16 +12,24 @@ namespace rtd::bus::cyclonedds {
 CycloneWriter::CycloneWriter(std::shared_ptr<Participant> participant, const SampleType& type, const std::string& topic,
                              Qos qos, StatusCallbacks callbacks)
     : participant_(std::move(participant)), callbacks_(std::move(callbacks)), topic_(participant_->topic(topic, type)) {
-  if (callbacks_.on_matched || callbacks_.on_incompatible_qos || callbacks_.on_deadline_missed) thread_.emplace();
+  const bool anybody_listens = callbacks_.on_matched || callbacks_.on_incompatible_qos ||
+                               callbacks_.on_deadline_missed || callbacks_.on_type_mismatch;
+  if (anybody_listens) thread_.emplace();
   set_type_hash(*qos, type.name);
   participant_->set_writer_partition(topic, *qos);
   const Listener heard = listener();
   writer_ = dds_create_writer(participant_->handle(), topic_.handle, qos.get(), heard.get());
   if (writer_ < 0) throw BusError("Cyclone DDS refused a writer on topic " + topic + ": " + dds_strretcode(writer_));
   last_.writer = guid_of(writer_);
+  if (callbacks_.on_type_mismatch) {
+    types_.emplace(participant_->types(), topic, type.name, [this](const std::string& foreign_type) {
+      thread_->post([this, foreign_type] { callbacks_.on_type_mismatch(foreign_type); });
+    });
+  }
 }
 
 CycloneWriter::~CycloneWriter() {
+  types_.reset();
   dds_set_listener(writer_, nullptr);  // waits for a running one
   dds_delete(writer_);
 }

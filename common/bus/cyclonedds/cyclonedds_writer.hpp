@@ -40,6 +40,7 @@ class CycloneWriter {
   std::mutex mutex_;
   SampleOrigin last_;  ///< as Cyclone counts, for readers in this process
   dds_entity_t writer_ = 0;
+  std::optional<TopicTypes::Watch> types_;
 };
 
 }  // namespace rtd::bus::cyclonedds

@@ -66,7 +66,8 @@ std::string discovery(const NetworkOptions& network) {
   return element("Discovery", text + element("Peers", peers));
 }
 
-/// A lost sample is noticed and repaired within some ms. No writer waits for a slow or dead reader: histories are
+/// A volatile reader begins with the first heartbeat of a foreign writer, for which it asks at once. A lost sample is
+/// noticed and repaired within some ms. No writer waits for a slow or dead reader: histories are
 /// short, so the limit on bytes not yet acknowledged may be out of reach.
 std::string internal(const BusOptions& options, const HostLimits& limits) {
   const auto buffer = [](const char* name, std::uint32_t size) {
@@ -76,7 +77,8 @@ std::string internal(const BusOptions& options, const HostLimits& limits) {
                  buffer("SocketReceiveBufferSize", socket_buffer_bytes(options.socket_buffer_kib, limits.rmem_max)) +
                      buffer("SocketSendBufferSize", socket_buffer_bytes(options.socket_buffer_kib, limits.wmem_max)) +
                      R"(<HeartbeatInterval min="5 ms" minsched="20 ms" max="1 s">20 ms</HeartbeatInterval>)" +
-                     element("NackDelay", "5 ms") + element("AutoReschedNackDelay", "200 ms") +
+                     element("PreEmptiveAckDelay", "1 ms") + element("NackDelay", "5 ms") +
+                     element("AutoReschedNackDelay", "200 ms") +
                      element("Watermarks", element("WhcHigh", "1 GB") + element("WhcHighInit", "1 GB") +
                                                element("WhcAdaptive", "false")));
 }

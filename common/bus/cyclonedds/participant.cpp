@@ -66,4 +66,21 @@ VendorTopic Participant::topic(const std::string& name, const SampleType& type) 
   return topics_.emplace(name, KnownTopic{type, {handle, vendor_type}}).first->second.vendor;
 }
 
+TopicTypes& Participant::types() {
+  const std::lock_guard lock(mutex_);
+  const auto note = [this](const WriterId& id, const dds_builtintopic_endpoint_t* endpoint) {
+    if (endpoint == nullptr) return types_.gone(to_string(id));
+    if (!is_own(id)) types_.appeared(to_string(id), endpoint->topic_name, endpoint->type_name);
+  };
+  using Direction = EndpointWatch::Direction;
+  if (!writers_) writers_ = std::make_unique<EndpointWatch>(participant_.get(), Direction::kWriters, note);
+  if (!readers_) readers_ = std::make_unique<EndpointWatch>(participant_.get(), Direction::kReaders, note);
+  return types_;
+}
+
+bool Participant::is_own(const WriterId& endpoint) const {
+  constexpr std::ptrdiff_t kPrefix = 12;  // of the participant
+  return std::equal(endpoint.begin(), endpoint.begin() + kPrefix, id_.begin());
+}
+
 }  // namespace rtd::bus::cyclonedds

@@ -8,7 +8,9 @@
 #include <string>
 
 #include "common/bus/cyclonedds/domain.hpp"
+#include "common/bus/cyclonedds/endpoint_watch.hpp"
 #include "common/bus/cyclonedds/sample_type.hpp"
+#include "common/bus/topic_types.hpp"
 
 namespace rtd::bus::cyclonedds {
 
@@ -25,6 +27,8 @@ class Participant {
 
   dds_entity_t handle() const { return participant_.get(); }
   const WriterId& id() const { return id_; }
+  /// Whether an endpoint of that identity belongs to us.
+  bool is_own(const WriterId& endpoint) const;
   bool shares_memory() const { return shares_memory_; }
   /// Where writers of the topic are heard and readers look: topics that stay on the host are in a partition of the
   /// host, so that nobody elsewhere is matched. Without a network they need none.
@@ -33,6 +37,8 @@ class Participant {
   /// The topic of that name, created when new; lives as long as the participant.
   /// Throws BusError when it exists with another type.
   VendorTopic topic(const std::string& name, const SampleType& type);
+  /// Tells endpoints of ours when somebody uses the topic's name with another type.
+  TopicTypes& types();
 
  private:
   struct KnownTopic {
@@ -46,6 +52,8 @@ class Participant {
   const bool shares_memory_, loopback_only_;
   std::mutex mutex_;
   std::map<std::string, KnownTopic> topics_;
+  TopicTypes types_;
+  std::unique_ptr<EndpointWatch> writers_, readers_;  ///< once somebody wants to know types; they end first
 };
 
 /// Identity of an entity in its domain.

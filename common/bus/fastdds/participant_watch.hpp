@@ -5,7 +5,7 @@
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 
 #include "common/bus/fastdds/greeter.hpp"
-#include "common/bus/fastdds/topic_types.hpp"
+#include "common/bus/topic_types.hpp"
 
 namespace rtd::bus::fastdds {
 

@@ -75,6 +75,7 @@ dds::DataWriterQos writer_qos(const QosSettings& settings, bool plain) {
   }
   qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
   qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
+  qos.reliable_writer_qos().times.initialHeartbeatDelay = milliseconds(1);  // where Cyclone's volatile readers begin
   qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(kHeartbeatPeriodMs);
   qos.reliable_writer_qos().times.nackResponseDelay = milliseconds(kResponseDelayMs);
   return qos;

@@ -52,15 +52,35 @@ void check_services(Findings& findings) {
   }
 }
 
+/// As the environment says.
+bus::BusOptions bus_options() {
+  service::BusConfig config;
+  service::ConfigBinder binder;
+  binder.section("bus", config);
+  service::apply_bus_environment(binder);
+  return service::to_bus_options(config, "rtd-doctor");
+}
+
+/// The vendor in use must work; another one that does not is worth a word.
+void check_vendor(Findings& findings, bus::BusOptions options, const std::string& vendor) {
+  const bool used = options.vendor == vendor;
+  options.vendor = vendor;
+  try {
+    const std::shared_ptr<bus::Bus> bus = bus::connect(options);
+    findings.push_back({Verdict::kOk, "bus: " + bus->vendor() + " joins domain " + std::to_string(options.domain) +
+                                          (used ? "" : " (--dds " + vendor + ")")});
+  } catch (const std::exception& error) {
+    findings.push_back({used ? Verdict::kFail : Verdict::kWarn, "bus: " + vendor + ": " + error.what()});
+  }
+}
+
 void check_bus(Findings& findings) {
   try {
-    service::BusConfig config;
-    service::ConfigBinder binder;
-    binder.section("bus", config);
-    service::apply_bus_environment(binder);
-    const bus::BusOptions options = service::to_bus_options(config, "rtd-doctor");
-    const std::shared_ptr<bus::Bus> bus = bus::connect(options);
-    findings.push_back({Verdict::kOk, "bus: " + bus->vendor() + " joins domain " + std::to_string(options.domain)});
+    const bus::BusOptions options = bus_options();
+    check_vendor(findings, options, options.vendor);
+    for (const std::string& vendor : bus::dds_vendors()) {
+      if (vendor != options.vendor) check_vendor(findings, options, vendor);
+    }
     const std::vector<std::string> warnings = bus::host_warnings(options);
     for (const std::string& warning : warnings) findings.push_back({Verdict::kWarn, "host: " + warning});
     if (warnings.empty()) findings.push_back({Verdict::kOk, "host: /dev/shm and socket buffers are large enough"});

@@ -54,15 +54,6 @@ inline std::uint32_t test_domain() {
   return 100 + static_cast<std::uint32_t>(getpid()) % 100;
 }
 
-/// The vendors of this build that go over the network, for tests that hold for each of them.
-inline std::vector<std::string> dds_vendors() {
-  std::vector<std::string> names;
-  for (const std::string& name : available_vendors()) {
-    if (name != "inprocess") names.push_back(name);
-  }
-  return names;
-}
-
 /// The suffix of a test that is run for a vendor.
 inline std::string test_name(const testing::TestParamInfo<std::string>& test) {
   return test.param;

@@ -30,12 +30,6 @@ class Ros2Wire : public ::testing::TestWithParam<std::string> {
   }
 };
 
-std::vector<std::string> networked_vendors() {
-  std::vector<std::string> vendors = available_vendors();
-  std::erase(vendors, "inprocess");
-  return vendors;
-}
-
 /// The writer of that topic once it is known; with an empty name when it never is.
 TopicWriter writer_of(const RawBus& bus, const std::string& topic) {
   for (int i = 0; i < 10000; ++i) {
@@ -107,7 +101,7 @@ TEST_P(Ros2Wire, default_and_sensor_data_subscriptions_are_served) {
   EXPECT_NE(best_effort.next(), nullptr);
 }
 
-INSTANTIATE_TEST_SUITE_P(EachVendor, Ros2Wire, ::testing::ValuesIn(networked_vendors()),
+INSTANTIATE_TEST_SUITE_P(EachVendor, Ros2Wire, ::testing::ValuesIn(dds_vendors()),
                          [](const auto& vendor) { return vendor.param; });
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Ros2Wire);
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/fastdds/topic_types.hpp"
+#include "common/bus/topic_types.hpp"
 
 #include <utility>
 
-namespace rtd::bus::fastdds {
+namespace rtd::bus {
 
 TopicTypes::Watch::Watch(TopicTypes& types, const std::string& topic, const std::string& type, OnMismatch on_mismatch)
     : types_(types), topic_(topic), type_(type), on_mismatch_(std::move(on_mismatch)) {
@@ -37,4 +37,4 @@ void TopicTypes::gone(const std::string& endpoint) {
   endpoints_.erase(endpoint);
 }
 
-}  // namespace rtd::bus::fastdds
+}  // namespace rtd::bus

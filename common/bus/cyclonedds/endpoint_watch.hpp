@@ -3,8 +3,10 @@
 #pragma once
 
 #include <functional>
+#include <mutex>
 
-#include "common/bus/cyclonedds/participant.hpp"
+#include "common/bus/cyclonedds/entity.hpp"
+#include "common/bus/raw_bus.hpp"
 
 namespace rtd::bus::cyclonedds {
 
@@ -16,7 +18,7 @@ class EndpointWatch {
   /// there.
   using Note = std::function<void(const WriterId& id, const dds_builtintopic_endpoint_t* endpoint)>;
 
-  EndpointWatch(const Participant& participant, Direction direction, Note note);
+  EndpointWatch(dds_entity_t participant, Direction direction, Note note);
   ~EndpointWatch();
   EndpointWatch(const EndpointWatch&) = delete;
   EndpointWatch& operator=(const EndpointWatch&) = delete;

@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/cyclonedds/discovery.hpp"
+#include "common/bus/cyclonedds/endpoint_watch.hpp"
 
 #include <algorithm>
 #include <utility>
 
 namespace rtd::bus::cyclonedds {
 
-EndpointWatch::EndpointWatch(const Participant& participant, Direction direction, Note note) : note_(std::move(note)) {
+EndpointWatch::EndpointWatch(dds_entity_t participant, Direction direction, Note note) : note_(std::move(note)) {
   const Listener heard(dds_create_listener(this));
   dds_lset_data_available(heard.get(), [](dds_entity_t, void* self) { static_cast<EndpointWatch*>(self)->take_all(); });
   const dds_entity_t topic =
       direction == Direction::kWriters ? DDS_BUILTIN_TOPIC_DCPSPUBLICATION : DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION;
-  const dds_entity_t reader = dds_create_reader(participant.handle(), topic, nullptr, heard.get());
+  const dds_entity_t reader = dds_create_reader(participant, topic, nullptr, heard.get());
   if (reader < 0) throw BusError(std::string("Cyclone DDS tells nothing of others: ") + dds_strretcode(reader));
   {
     const std::lock_guard lock(mutex_);

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <string>
 
-namespace rtd::bus::fastdds {
+namespace rtd::bus {
 
 /// Finds endpoints of others that use the name of one of our topics with another type: DDS never matches them, and
 /// says nothing. Thread-safe.
@@ -46,4 +46,4 @@ class TopicTypes {
   std::list<const Watch*> watches_;
 };
 
-}  // namespace rtd::bus::fastdds
+}  // namespace rtd::bus
