@@ -58,6 +58,8 @@ void add_run_command(CLI::App& app, RunOptions& options) {
       ->add_option("--filter", options.filter_mode, "off, semantic, geometry, epipolar, rtd-paper or rtd (default rtd)")
       ->check(CLI::IsMember(kFilterModes));
   service::add_bus_options(*command, options.bus);
+  command->add_option("--dds-of", options.dds_of,
+                      "Another DDS for one service, e.g. detector=cyclonedds (repeatable): all understand each other");
   command->add_option("--config", options.config_file, "YAML file with a section per service")
       ->check(CLI::ExistingFile);
   command->add_option("--set", options.overrides, "Override one key, e.g. --set filter.mode=geometry (repeatable)");

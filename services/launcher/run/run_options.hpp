@@ -23,10 +23,11 @@ struct RunOptions {
   std::string pace = "realtime";
   std::string filter_mode;  ///< one of kFilterModes; empty: configuration, default rtd
   service::BusArguments bus;
+  std::vector<std::string> dds_of;  ///< "SERVICE=VENDOR": another DDS for one service
   std::string config_file;
   std::vector<std::string> overrides;  ///< "key=value" for any service
   std::string detector = "auto";  ///< "auto": when weights are found and the filter mode needs them; "off"; "remote"
-  std::string model;                   ///< ONNX file; empty: search
+  std::string model;              ///< ONNX file; empty: search
   std::string out_dir;
   std::string map;                         ///< map file to go on with; empty: a new map
   std::string save_map;                    ///< map file to write; empty: map.rtdmap in out_dir

@@ -45,8 +45,25 @@ void load_config(const RunOptions& options, RunSetup& setup) {
   binder.section("launcher", setup.launcher);
   check_sections(options.overrides);
   service::load_config(binder, options.bus, {options.config_file, options.overrides});
-  setup.bus_words = service::to_words(options.bus);
+  setup.bus_arguments = options.bus;
   setup.bus = service::to_bus_options(bus, "rtd");
+}
+
+/// Whoever is not named uses the vendor of --dds.
+void choose_vendors(const RunOptions& options, RunSetup& setup) {
+  const std::vector<std::string> services = {"camera", "detector", "filter", "slam", "dense", "record", "replay"};
+  const std::vector<std::string> vendors = bus::dds_vendors();
+  for (const std::string& pair : options.dds_of) {
+    const std::size_t equals = pair.find('=');
+    const std::string name = pair.substr(0, equals);
+    const std::string vendor = equals == std::string::npos ? "" : pair.substr(equals + 1);
+    if (std::find(services.begin(), services.end(), name) == services.end() ||
+        std::find(vendors.begin(), vendors.end(), vendor) == vendors.end()) {
+      throw ConfigError(fmt::format("--dds-of {}: write SERVICE=VENDOR with a service of {} and a vendor of {}", pair,
+                                    fmt::join(services, ", "), fmt::join(vendors, ", ")));
+    }
+    setup.vendors_of[name] = vendor;
+  }
 }
 
 /// The value of another service's key as that service will see it; empty when neither --set nor the file names it.
@@ -128,9 +145,12 @@ std::string require_executable(const std::string& service) {
   return path;
 }
 
-std::vector<std::string> common_arguments(const RunSetup& setup) {
+std::vector<std::string> common_arguments(const RunSetup& setup, const std::string& service) {
   std::vector<std::string> arguments = {"--pace", setup.pace};
-  arguments.insert(arguments.end(), setup.bus_words.begin(), setup.bus_words.end());
+  service::BusArguments bus = setup.bus_arguments;
+  if (const auto own = setup.vendors_of.find(service); own != setup.vendors_of.end()) bus.vendor = own->second;
+  const std::vector<std::string> bus_words = service::to_words(bus);
+  arguments.insert(arguments.end(), bus_words.begin(), bus_words.end());
   if (!setup.config_file.empty()) arguments.insert(arguments.end(), {"--config", setup.config_file});
   for (const std::string& assignment : setup.overrides) arguments.insert(arguments.end(), {"--set", assignment});
   return arguments;
@@ -139,7 +159,7 @@ std::vector<std::string> common_arguments(const RunSetup& setup) {
 ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole role,
                  const std::vector<std::string>& own_arguments) {
   ServicePlan plan{name, {require_executable(name)}, role};
-  const std::vector<std::string> common = common_arguments(setup);
+  const std::vector<std::string> common = common_arguments(setup, name);
   plan.command.insert(plan.command.end(), common.begin(), common.end());
   plan.command.insert(plan.command.end(), own_arguments.begin(), own_arguments.end());
   return plan;
@@ -212,6 +232,7 @@ std::string complete_uri(const std::string& source) {
 RunSetup prepare_run(const RunOptions& options) {
   RunSetup setup;
   load_config(options, setup);
+  choose_vendors(options, setup);
   setup.pace = service::to_string(service::parse_pace(options.pace));
   setup.filter_mode = choose_filter_mode(options);
   setup.config_file = options.config_file;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,10 @@ namespace rtd::launcher {
 struct RunSetup {
   LauncherConfig launcher;
   bus::BusOptions bus;
-  std::vector<std::string> bus_words;  ///< the same, for the services' command lines
-  std::string source;                  ///< URI
-  std::uint64_t total_frames = 0;      ///< 0 = unknown or endless
+  service::BusArguments bus_arguments;            ///< the same, for the services' command lines
+  std::map<std::string, std::string> vendors_of;  ///< services that use another DDS
+  std::string source;                             ///< URI
+  std::uint64_t total_frames = 0;                 ///< 0 = unknown or endless
   std::string pace, filter_mode, out_dir;
   std::string model_path;        ///< empty: no detector in this run
   std::string detector_note;     ///< model file name, or "off (why)"
