@@ -24,15 +24,16 @@ class EndToEndTest : public testing::Test {
     return all;
   }
   nlohmann::json report() { return nlohmann::json::parse(text_of(out_ + "/report.json")); }
-  /// Waits until the camera's log says that frames are being sent.
-  bool wait_for_frames() {
+  bool wait_for_log(const std::string& service, const std::string& text) {
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (std::chrono::steady_clock::now() < give_up) {
       rtd_.wait_for("never printed", std::chrono::milliseconds(50));
-      if (text_of(out_ + "/logs/camera.log").find("event=all_ready") != std::string::npos) return true;
+      if (text_of(out_ + "/logs/" + service + ".log").find(text) != std::string::npos) return true;
     }
     return false;
   }
+  /// Waits until the camera's log says that frames are being sent.
+  bool wait_for_frames() { return wait_for_log("camera", "event=all_ready"); }
   pid_t pid_of(const std::string& service) {
     std::smatch found;
     const std::string log = text_of(out_ + "/logs/" + service + ".log");
@@ -82,6 +83,36 @@ TEST_F(EndToEndTest, a_dense_map_and_a_recording_change_nothing_of_the_run) {
   EXPECT_GT(report()["cpu_s"]["dense"], 0.0);
   EXPECT_GT(fs::file_size(scratch_ / "run.mcap"), 30U * 640 * 480 * 5) << "with all raw frames";
   EXPECT_THAT(text_of(out_ + "/logs/record.log"), HasSubstr("topic=rtd/frame messages=30 lost_in_transit=0"));
+}
+
+TEST_F(EndToEndTest, a_slam_killed_during_the_run_goes_on_with_its_last_checkpoint) {
+  rtd_.start(
+      arguments(130, "synthetic:office?frames=180", {"--detector", "off", "--set", "slam.map.checkpoint_s=0.2"}));
+  ASSERT_TRUE(wait_for_frames()) << rtd_.output();
+  ASSERT_TRUE(wait_for_log("slam", "event=map_saved")) << rtd_.output();
+  ASSERT_EQ(::kill(pid_of("slam"), SIGKILL), 0);
+  EXPECT_EQ(rtd_.wait(), 0) << rtd_.output();
+  EXPECT_THAT(rtd_.output(), HasSubstr("the map with its last checkpoint"));
+  const std::string log = text_of(out_ + "/logs/slam.log");
+  EXPECT_THAT(log, AllOf(HasSubstr("event=map_loaded"), HasSubstr("event=relocalized"), HasSubstr("occasion=end")));
+  EXPECT_GT(report()["frames_tracked"], 60) << "before and after";
+}
+
+TEST_F(EndToEndTest, a_second_run_finds_its_place_in_the_map_of_the_first) {
+  const std::vector<std::string> quick = {"--pace", "lockstep", "--detector", "off"};
+  ASSERT_EQ(rtd_.run(arguments(131, "synthetic:office?frames=30", quick)), 0) << rtd_.output();
+  const std::string map = out_ + "/map.rtdmap", before = text_of(map);
+  RtdCommand info, second;
+  EXPECT_EQ(info.run({"map", "info", map}), 0) << info.output();
+  EXPECT_THAT(info.output(), HasSubstr("checksums all right"));
+  std::vector<std::string> command = arguments(131, "synthetic:office?frames=30", quick);
+  command.insert(command.end(), {"--map", map, "--localize-only"});  // the same folder: the map is not cleared away
+  ASSERT_EQ(second.run(command), 0) << second.output();
+  EXPECT_GE(report()["coverage"], 0.93) << "two of 30 frames may go by until a place is believed";
+  EXPECT_EQ(text_of(map), before);
+  RtdCommand refused;
+  EXPECT_EQ(refused.run(arguments(131, "synthetic:office?frames=30", {"--map", scratch_ / "none.rtdmap"})), 2);
+  EXPECT_THAT(refused.output(), HasSubstr("none.rtdmap: there is no such file"));
 }
 
 TEST_F(EndToEndTest, a_filter_killed_during_the_run_is_restarted_and_the_run_completes) {
