@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/bus_factory.hpp"
 
+#include <utility>
+
 #include "common/bus/inprocess/inprocess_backend.hpp"
 #include "common/bus/inprocess/inprocess_raw_bus.hpp"
 #include "common/bus/network.hpp"
 #include "common/bus/raw_bus.hpp"
+#include "common/bus/security_guard.hpp"
 #ifdef RTD_HAVE_CYCLONEDDS
 #include "common/bus/cyclonedds/cyclonedds_backend.hpp"
 #include "common/bus/cyclonedds/cyclonedds_raw_bus.hpp"
@@ -24,20 +27,21 @@ struct Vendor {
   const char* name;
   std::shared_ptr<BusBackend> (*create)(const BusOptions&);
   std::shared_ptr<RawBus> (*create_raw)(const BusOptions&);
+  bool secures;  ///< honours BusOptions::security
 };
 
 /// A new vendor is a folder beside this file and one entry here.
 const Vendor kVendors[] = {
 #ifdef RTD_HAVE_FASTDDS
     {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); },
-     [](const BusOptions& options) { return fastdds::create_raw_bus(options); }},
+     [](const BusOptions& options) { return fastdds::create_raw_bus(options); }, true},
 #endif
 #ifdef RTD_HAVE_CYCLONEDDS
     {"cyclonedds", [](const BusOptions& options) { return cyclonedds::create_backend(options); },
-     [](const BusOptions& options) { return cyclonedds::create_raw_bus(options); }},
+     [](const BusOptions& options) { return cyclonedds::create_raw_bus(options); }, false},
 #endif
     {"inprocess", [](const BusOptions& options) { return inprocess::create_backend(options.domain); },
-     [](const BusOptions& options) { return inprocess::create_raw_bus(options.domain); }},
+     [](const BusOptions& options) { return inprocess::create_raw_bus(options.domain); }, false},
 };
 
 std::string join_names(const std::vector<std::string>& names) {
@@ -55,6 +59,9 @@ const Vendor& vendor_of(const BusOptions& options) {
   for (const Vendor& vendor : kVendors) {
     if (options.vendor != vendor.name) continue;
     if (options.vendor != "inprocess") require_network(options);
+    if (options.security.enabled() && !vendor.secures)
+      throw BusError("bus '" + options.vendor +
+                     "' knows no DDS-Security: leave --secure out or choose another (--dds)");
     return vendor;
   }
   throw BusError("unknown bus '" + options.vendor + "', this build has: " + join_names(available_vendors()) +
@@ -76,11 +83,17 @@ std::vector<std::string> dds_vendors() {
 }
 
 std::shared_ptr<Bus> connect(const BusOptions& options) {
-  return std::make_shared<Bus>(vendor_of(options).create(options));
+  const Vendor& vendor = vendor_of(options);
+  if (!options.security.enabled()) return std::make_shared<Bus>(vendor.create(options));
+  security::Enclave enclave = require_enclave(options);
+  return std::make_shared<Bus>(guard(vendor.create(options), std::move(enclave)));
 }
 
 std::shared_ptr<RawBus> connect_raw(const BusOptions& options) {
-  return vendor_of(options).create_raw(options);
+  const Vendor& vendor = vendor_of(options);
+  if (!options.security.enabled()) return vendor.create_raw(options);
+  security::Enclave enclave = require_enclave(options);
+  return guard(vendor.create_raw(options), std::move(enclave));
 }
 
 }  // namespace rtd::bus

@@ -21,7 +21,11 @@ std::string topics_xml(const char* action, const std::vector<std::string>& topic
   if (topics.empty()) return {};
   std::string xml = fmt::format("        <{}>\n          <topics>\n", action);
   for (const std::string& topic : topics) xml += fmt::format("            <topic>{}</topic>\n", topic);
-  return xml + fmt::format("          </topics>\n        </{}>\n", action);
+  // Any partition, also none: topics that stay on a host are in a partition of its own.
+  return xml + fmt::format(
+                   "          </topics>\n          <partitions>\n            <partition>*</partition>\n"
+                   "          </partitions>\n        </{}>\n",
+                   action);
 }
 
 std::vector<std::string> topics_of(const XMLElement& rule, const char* action) {

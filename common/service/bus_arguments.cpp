@@ -59,6 +59,9 @@ void add_bus_options(CLI::App& app, BusArguments& arguments) {
                  fmt::format("DDS implementation: {} (RTD_DDS; default: {})", fmt::join(bus::dds_vendors(), " or "),
                              bus::default_vendor()));
   app.add_option("--domain", arguments.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
+  app.add_flag("--secure", arguments.secure, "DDS-Security: only who has keys of the keystore (bus.security.enabled)");
+  app.add_option("--keystore", arguments.keystore,
+                 "Keystore of 'rtd keystore create', with --secure (RTD_KEYSTORE, ROS_SECURITY_KEYSTORE)");
 }
 
 void load_config(ConfigBinder& binder, const BusArguments& arguments, const ConfigSources& sources) {
@@ -73,6 +76,8 @@ void load_config(ConfigBinder& binder, const BusArguments& arguments, const Conf
     binder.set("bus.network.discovery_server", "\"" + arguments.discovery_server + "\"", "--discovery-server");
   if (!arguments.vendor.empty()) binder.set("bus.vendor", arguments.vendor, "--dds");
   if (arguments.domain >= 0) binder.set("bus.domain", std::to_string(arguments.domain), "--domain");
+  if (!arguments.keystore.empty()) binder.set("bus.security.keystore", "\"" + arguments.keystore + "\"", "--keystore");
+  if (arguments.secure || !arguments.keystore.empty()) binder.set("bus.security.enabled", "true", "--secure");
 }
 
 std::vector<std::string> to_words(const BusArguments& arguments) {
@@ -86,6 +91,8 @@ std::vector<std::string> to_words(const BusArguments& arguments) {
   add("--discovery-server", arguments.discovery_server);
   add("--dds", arguments.vendor);
   if (arguments.domain >= 0) add("--domain", std::to_string(arguments.domain));
+  if (arguments.secure) words.emplace_back("--secure");
+  add("--keystore", arguments.keystore);
   return words;
 }
 

@@ -18,6 +18,8 @@ struct BusArguments {
   std::string discovery_server;
   std::string vendor;
   int domain = -1;
+  bool secure = false;
+  std::string keystore;  ///< names the keystore and means --secure
 };
 
 void add_bus_options(CLI::App& app, BusArguments& arguments);

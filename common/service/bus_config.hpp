@@ -22,6 +22,14 @@ struct NetworkConfig {
   void bind(ConfigBinder& binder);
 };
 
+/// DDS-Security. Defaults: off; the keystore is found, the enclave named after the service.
+struct SecurityConfig {
+  bool enabled = false;
+  std::string keystore, enclave;
+
+  void bind(ConfigBinder& binder);
+};
+
 /// Settings of the bus as config keys; defaults come from BusOptions and the environment.
 struct BusConfig {
   std::string vendor = bus::BusOptions{}.vendor;
@@ -30,6 +38,7 @@ struct BusConfig {
   int shm_segment_mib = static_cast<int>(bus::BusOptions{}.shm_segment_mib);
   int socket_buffer_kib = static_cast<int>(bus::BusOptions{}.socket_buffer_kib);
   NetworkConfig network;
+  SecurityConfig security;
 
   void bind(ConfigBinder& binder);
 };

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <mutex>
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
@@ -98,20 +99,46 @@ std::shared_ptr<bus::Bus> join_bus(const bus::BusOptions& options) {
   }
 }
 
+/// What keeps others from meeting us: in the log, and counted in the heartbeat while there is one.
+class BusProblems {
+ public:
+  void add(const std::string& problem) {
+    constexpr int kLogged = 50;  // strangers must not fill the disk
+    const std::lock_guard lock(mutex_);
+    if (++count_ <= kLogged) SPDLOG_WARN("event=bus_problem cause=\"{}\"", problem);
+    if (heartbeat_ != nullptr) heartbeat_->set_metric("bus_problems", count_);
+  }
+  void tell(Heartbeat* heartbeat) {
+    const std::lock_guard lock(mutex_);
+    heartbeat_ = heartbeat;
+    if (heartbeat_ != nullptr && count_ > 0) heartbeat_->set_metric("bus_problems", count_);
+  }
+
+ private:
+  std::mutex mutex_;
+  Heartbeat* heartbeat_ = nullptr;
+  int count_ = 0;
+};
+
 ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_config, Pace pace) {
   StopToken stop;
   const SignalWatcher signals(stop);
-  const bus::BusOptions options = to_bus_options(bus_config, "rtd-" + definition.name);
+  bus::BusOptions options = to_bus_options(bus_config, "rtd-" + definition.name);
+  BusProblems problems;
+  options.on_problem = [&problems](const std::string& problem) { problems.add(problem); };
   const std::shared_ptr<bus::Bus> bus = join_bus(options);
+  options.on_problem = {};  // a further connection would say the same again
   const Cleaner cleaner(options);
   for (const std::string& warning : bus::host_warnings(options)) SPDLOG_INFO("event=host_limit cause=\"{}\"", warning);
   ExitCode code = kOk;
   std::string duplicate;
   {
     Heartbeat heartbeat(*bus, definition.name, stop);
+    problems.tell(&heartbeat);
+    const std::shared_ptr<void> at_end(nullptr, [&problems](void*) { problems.tell(nullptr); });
     Runtime runtime{*bus, heartbeat, stop, pace, options};
-    SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}", bus->vendor(), bus_config.domain, to_string(pace),
-                getpid());
+    SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), bus_config.domain, to_string(pace),
+                getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");
     code = definition.run(runtime);
     duplicate = heartbeat.duplicate();
   }

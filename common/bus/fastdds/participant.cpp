@@ -47,6 +47,7 @@ dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostL
   dds::DomainParticipantQos qos;
   qos.name(options.participant_name.empty() ? "rtd" : options.participant_name.c_str());
   map_network(options, limits, scope, qos);
+  map_security(options.security, qos);
   auto& builtin = qos.wire_protocol().builtin;
   // A killed process is forgotten after the lease; its heartbeat topic tells much earlier.
   builtin.discovery_config.leaseDuration = {5, 0};
@@ -80,8 +81,13 @@ Participant::Participant(const BusOptions& options, const HostLimits& limits, dd
   }
   log_to_stderr_once();
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
-  participant_ = create_participant(*factory_, options, limits,
-                                    listener == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll, &watch_);
+  dds::DomainParticipantListener* heard = &watch_;
+  if (options.security.enabled()) {
+    security_ = std::make_unique<SecurityWatch>(options, heard);
+    heard = security_.get();
+  }
+  const DiscoveryScope scope = listener == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;
+  participant_ = create_participant(*factory_, options, limits, scope, heard);
   watch_.greeter().start(*participant_);
   create_publishers(options.network);
 }
@@ -112,6 +118,7 @@ dds::Subscriber& Participant::subscriber(const std::string& topic) {
 Participant::~Participant() {
   if (participant_ == nullptr) return;
   watch_.greeter().stop();
+  silence();
   participant_->delete_contained_entities();
   factory_->delete_participant(participant_);
 }

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "common/bus/fastdds/codec.hpp"
+#include "common/bus/fastdds/participant_security.hpp"
 #include "common/bus/fastdds/participant_watch.hpp"
 #include "common/bus/host_checks.hpp"
 
@@ -47,6 +48,7 @@ class Participant {
 
   ParticipantWatch watch_;
   std::shared_ptr<dds::DomainParticipantFactory> factory_;  // keeps the vendor's singleton alive
+  std::unique_ptr<SecurityWatch> security_;                 // outlives the participant, which calls it
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher *publisher_ = nullptr, *host_publisher_ = nullptr;
   dds::Subscriber *subscriber_ = nullptr, *host_subscriber_ = nullptr;
