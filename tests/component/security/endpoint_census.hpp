@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+
+#include "common/bus/fastdds/participant.hpp"
+
+namespace rtd::bus {
+
+/// Who opens which writers and readers in a domain, by participant name: "rtd-slam" writes "rtd/tracking".
+class EndpointCensus : private fastdds::dds::DomainParticipantListener {
+ public:
+  explicit EndpointCensus(std::uint32_t domain) : participant_(options(domain), read_host_limits(), this) {}
+  ~EndpointCensus() override { participant_.silence(); }
+
+  struct Topics {
+    std::set<std::string> writes, reads;
+  };
+  std::map<std::string, Topics> by_participant() const;
+
+ private:
+  using Guid = eprosima::fastrtps::rtps::GuidPrefix_t;
+  static BusOptions options(std::uint32_t domain);
+  void on_participant_discovery(fastdds::dds::DomainParticipant*,
+                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+  void on_publisher_discovery(fastdds::dds::DomainParticipant*,
+                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+  void on_subscriber_discovery(fastdds::dds::DomainParticipant*,
+                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+
+  mutable std::mutex mutex_;
+  std::map<Guid, std::string> names_;
+  std::map<Guid, Topics> topics_;
+  fastdds::Participant participant_;  // last: calls the others
+};
+
+}  // namespace rtd::bus

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The real services: what they open is what the table of roles says, and secured they do the same work.
+#include <gmock/gmock.h>
+
+#include "common/bus/topic_roles.hpp"
+#include "common/bus/topics.hpp"
+#include "tests/component/launcher/rtd_command.hpp"
+#include "tests/component/security/endpoint_census.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class SecuredServicesTest : public ::testing::Test {
+ protected:
+  std::vector<std::string> run_command(const std::string& name, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> command = {
+        "run",     "--source", "synthetic:office?frames=30", "--out",    scratch_ / name,        "--pace", "lockstep",
+        "--dense", "--record", scratch_ / (name + ".mcap"),  "--domain", std::to_string(domain_)};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  }
+  static std::set<std::string> set_of(const std::vector<std::string>& topics) { return {topics.begin(), topics.end()}; }
+
+  const std::uint32_t domain_ = 130 + static_cast<std::uint32_t>(getpid()) % 60;
+  ScratchFolder scratch_;
+  RtdCommand rtd_;
+};
+
+TEST_F(SecuredServicesTest, services_open_what_the_table_of_roles_says_and_nothing_else) {
+  const bus::EndpointCensus census(domain_);
+  ASSERT_EQ(rtd_.run(run_command("census")), 0) << rtd_.output();
+  auto opened = census.by_participant();
+  for (const std::string role : {"camera", "filter", "slam", "dense", "launcher"}) {
+    const bus::RoleTopics table = bus::topics_of(role);
+    const auto& topics = opened[role == "launcher" ? "rtd" : "rtd-" + role];
+    EXPECT_EQ(topics.writes, set_of(table.writes)) << role;
+    EXPECT_EQ(topics.reads, set_of(table.reads)) << role;
+  }
+  auto detector = opened.find("rtd-detector");
+  if (detector == opened.end()) return;  // no weights
+  std::set<std::string> reads = set_of(bus::topics_of("detector").reads);
+  reads.erase(bus::topics::kColorJpeg.name);  // in place of the frame on another host
+  EXPECT_EQ(detector->second.writes, set_of(bus::topics_of("detector").writes));
+  for (const std::string& topic : detector->second.reads) EXPECT_TRUE(reads.contains(topic)) << topic;
+}
+
+TEST_F(SecuredServicesTest, a_secured_run_does_what_a_run_in_the_clear_does) {
+  const std::string keystore = scratch_ / "keystore";
+  RtdCommand create;
+  ASSERT_EQ(create.run({"keystore", "create", keystore}), 0) << create.output();
+  ASSERT_EQ(rtd_.run(run_command("secured", {"--secure", "--keystore", keystore})), 0) << rtd_.output();
+  EXPECT_THAT(text_of(scratch_ / "secured/logs/slam.log"), HasSubstr("enclave=/rtd/slam"));
+  EXPECT_THAT(text_of(scratch_ / "secured/logs/record.log"),
+              HasSubstr("topic=rtd/frame messages=30 lost_in_transit=0"));
+  for (const char* service : {"camera", "filter", "slam", "dense", "record"}) {
+    const std::string log = text_of(scratch_ / (std::string("secured/logs/") + service + ".log"));
+    EXPECT_THAT(log, Not(HasSubstr("SECURITY Error"))) << service;
+    EXPECT_THAT(log, Not(HasSubstr("bus_problem"))) << service;
+  }
+  RtdCommand clear;
+  ASSERT_EQ(clear.run(run_command("clear")), 0) << clear.output();
+  EXPECT_EQ(text_of(scratch_ / "secured/trajectory.txt"), text_of(scratch_ / "clear/trajectory.txt"))
+      << "byte for byte";
+}
+
+TEST_F(SecuredServicesTest, secure_never_falls_back_to_clear) {
+  EXPECT_EQ(rtd_.run(run_command("none", {"--secure", "--keystore", scratch_ / "none"})), 2);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("there is none"), HasSubstr("rtd keystore create")));
+  RtdCommand service;
+  EXPECT_EQ(service.run({"slam", "--secure", "--keystore", scratch_ / "none"}), 2);
+  EXPECT_THAT(service.output(), HasSubstr("rtd keystore create"));
+}
+
+TEST_F(SecuredServicesTest, a_topic_without_permission_is_named) {
+  const std::string keystore = scratch_ / "keystore";
+  RtdCommand create;
+  ASSERT_EQ(create.run({"keystore", "create", keystore}), 0) << create.output();
+  EXPECT_EQ(rtd_.run({"slam", "--keystore", keystore, "--set", "bus.security.enclave=/rtd/observer", "--domain",
+                      std::to_string(domain_)}),
+            2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("enclave /rtd/observer may not publish topic rtd/status"));
+}
+
+}  // namespace
+}  // namespace rtd::launcher
