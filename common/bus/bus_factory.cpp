@@ -38,7 +38,7 @@ const Vendor kVendors[] = {
 #endif
 #ifdef RTD_HAVE_CYCLONEDDS
     {"cyclonedds", [](const BusOptions& options) { return cyclonedds::create_backend(options); },
-     [](const BusOptions& options) { return cyclonedds::create_raw_bus(options); }, false},
+     [](const BusOptions& options) { return cyclonedds::create_raw_bus(options); }, true},
 #endif
     {"inprocess", [](const BusOptions& options) { return inprocess::create_backend(options.domain); },
      [](const BusOptions& options) { return inprocess::create_raw_bus(options.domain); }, false},

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/bus/cyclonedds/log_capture.hpp"
+#include "common/bus/cyclonedds/participant_security.hpp"
 #include "common/bus/network.hpp"
 
 namespace rtd::bus::cyclonedds {
@@ -13,6 +14,7 @@ namespace {
 Entity create_participant(const BusOptions& options) {
   const Qos qos(dds_create_qos());
   dds_qset_entity_name(qos.get(), options.participant_name.empty() ? "rtd" : options.participant_name.c_str());
+  map_security(options.security, qos);
   const LogCapture log;
   const dds_entity_t handle = dds_create_participant(options.domain, qos.get(), nullptr);
   if (handle < 0) {

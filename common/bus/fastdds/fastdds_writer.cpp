@@ -28,6 +28,7 @@ FastddsWriter::FastddsWriter(std::shared_ptr<Participant> participant, std::uniq
   dds::Topic* const known = participant_->topic(topic, *codec_);
   writer_ = publisher_.create_datawriter(known, with_type_hash(qos, known->get_type_name()), this);
   if (writer_ == nullptr) throw BusError("Fast DDS refused a writer on topic " + topic);
+  participant_->writer_created();
 }
 
 FastddsWriter::~FastddsWriter() {

@@ -41,6 +41,10 @@ class Participant {
   TopicTypes& types() { return watch_.types(); }
   /// No listener is called any more.
   void silence() { participant_->set_listener(nullptr); }
+  /// To be called when a writer has been created: secured, its shared memory is for our user only.
+  void writer_created() {
+    if (security_) hide_shared_memory();
+  }
   const dds::DomainParticipant& vendor() const { return *participant_; }
 
  private:

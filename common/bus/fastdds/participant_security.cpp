@@ -5,6 +5,7 @@
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <utility>
 
@@ -55,6 +56,17 @@ void map_security(const SecurityOptions& security, eprosima::fastdds::dds::Domai
   file("access.builtin.Access-Permissions.governance", files.governance());
   file("access.builtin.Access-Permissions.permissions", files.permissions());
   add("crypto.plugin", "builtin.AES-GCM-GMAC");
+}
+
+void hide_shared_memory() {
+  namespace fs = std::filesystem;
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    const std::size_t at = line.find("/dev/shm/fast");
+    if (at == std::string::npos || line.ends_with(" (deleted)")) continue;
+    std::error_code not_ours;  // what another user has mapped for us is his
+    fs::permissions(line.substr(at), fs::perms::owner_read | fs::perms::owner_write, not_ours);
+  }
 }
 
 SecurityWatch::SecurityWatch(const BusOptions& options, eprosima::fastdds::dds::DomainParticipantListener* next)

@@ -15,6 +15,10 @@ namespace rtd::bus::fastdds {
 /// The enclave's files as Fast DDS's built-in plugins want them. No change without security.
 void map_security(const SecurityOptions& security, eprosima::fastdds::dds::DomainParticipantQos& qos);
 
+/// Leaves the shared memory that this process uses to its user. Fast DDS lets every user of the host read it, and the
+/// raw frames in it are not encrypted.
+void hide_shared_memory();
+
 /// Tells BusOptions::on_problem, once each, of participants that a secured one cannot meet. Passes all that it hears on
 /// to `next`.
 class SecurityWatch : public eprosima::fastdds::dds::DomainParticipantListener {
@@ -28,8 +32,7 @@ class SecurityWatch : public eprosima::fastdds::dds::DomainParticipantListener {
                                    eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
   void on_publisher_discovery(Participant* participant, eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
 
-  void on_subscriber_discovery(Participant* participant,
-                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+  void on_subscriber_discovery(Participant* participant, eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
   void look_at(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
 
   const std::uint32_t domain_;

@@ -99,7 +99,7 @@ void add_days(CLI::App& sub, KeystoreRequest& request) {
 }
 
 void add_domain(CLI::App& sub, KeystoreRequest& request) {
-  sub.add_option("--domain", request.domain, "Only this DDS domain (default: all)")->check(CLI::Range(0, 232));
+  sub.add_option("--domain", request.domain, "Only this DDS domain (default: all)")->check(CLI::Range(0, 230));
 }
 
 void add_topics(CLI::App& sub, KeystoreRequest& request) {

@@ -62,6 +62,12 @@ void choose_vendors(const RunOptions& options, RunSetup& setup) {
       throw ConfigError(fmt::format("--dds-of {}: write SERVICE=VENDOR with a service of {} and a vendor of {}", pair,
                                     fmt::join(services, ", "), fmt::join(vendors, ", ")));
     }
+    if (setup.bus.security.enabled() && vendor != setup.bus.vendor) {
+      throw ConfigError(fmt::format(
+          "--secure with --dds-of {}: {} and {} cannot agree on keys, a secured domain needs one vendor; leave one of "
+          "the two options out",
+          pair, setup.bus.vendor, vendor));
+    }
     setup.vendors_of[name] = vendor;
   }
 }

@@ -4,6 +4,8 @@
 // The real services: what they open is what the table of roles says, and secured they do the same work.
 #include <gmock/gmock.h>
 
+#include <regex>
+
 #include "common/bus/topic_roles.hpp"
 #include "common/bus/topics.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
@@ -20,12 +22,29 @@ class SecuredServicesTest : public ::testing::Test {
  protected:
   std::vector<std::string> run_command(const std::string& name, const std::vector<std::string>& more = {}) const {
     std::vector<std::string> command = {
-        "run",     "--source", "synthetic:office?frames=30", "--out",    scratch_ / name,        "--pace", "lockstep",
+        "run",     "--source", "synthetic:office?frames=12", "--out",    scratch_ / name,        "--pace", "lockstep",
         "--dense", "--record", scratch_ / (name + ".mcap"),  "--domain", std::to_string(domain_)};
     command.insert(command.end(), more.begin(), more.end());
     return command;
   }
   static std::set<std::string> set_of(const std::vector<std::string>& topics) { return {topics.begin(), topics.end()}; }
+
+  /// The raw frames' shared memory is for its user only. Waits for it to appear.
+  bool frames_are_hidden(const std::string& camera_log) {
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (std::chrono::steady_clock::now() < give_up) {
+      rtd_.wait_for("never printed", std::chrono::milliseconds(20));
+      std::smatch pid, memory;
+      const std::string log = text_of(camera_log);
+      if (!std::regex_search(log, pid, std::regex("event=started .*pid=([0-9]+)"))) continue;
+      const std::string maps = text_of("/proc/" + pid[1].str() + "/maps");
+      if (!std::regex_search(maps, memory, std::regex("/dev/shm/fast_datasharing_\\S+"))) continue;
+      const auto others = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
+      const auto perms = std::filesystem::status(memory.str()).permissions();
+      if ((perms & others) == std::filesystem::perms::none) return true;
+    }
+    return false;
+  }
 
   const std::uint32_t domain_ = 130 + static_cast<std::uint32_t>(getpid()) % 60;
   ScratchFolder scratch_;
@@ -54,10 +73,12 @@ TEST_F(SecuredServicesTest, a_secured_run_does_what_a_run_in_the_clear_does) {
   const std::string keystore = scratch_ / "keystore";
   RtdCommand create;
   ASSERT_EQ(create.run({"keystore", "create", keystore}), 0) << create.output();
-  ASSERT_EQ(rtd_.run(run_command("secured", {"--secure", "--keystore", keystore})), 0) << rtd_.output();
+  rtd_.start(run_command("secured", {"--secure", "--keystore", keystore}));
+  EXPECT_TRUE(frames_are_hidden(scratch_ / "secured/logs/camera.log"));
+  ASSERT_EQ(rtd_.wait(), 0) << rtd_.output();
   EXPECT_THAT(text_of(scratch_ / "secured/logs/slam.log"), HasSubstr("enclave=/rtd/slam"));
   EXPECT_THAT(text_of(scratch_ / "secured/logs/record.log"),
-              HasSubstr("topic=rtd/frame messages=30 lost_in_transit=0"));
+              HasSubstr("topic=rtd/frame messages=12 lost_in_transit=0"));
   for (const char* service : {"camera", "filter", "slam", "dense", "record"}) {
     const std::string log = text_of(scratch_ / (std::string("secured/logs/") + service + ".log"));
     EXPECT_THAT(log, Not(HasSubstr("SECURITY Error"))) << service;
@@ -70,12 +91,19 @@ TEST_F(SecuredServicesTest, a_secured_run_does_what_a_run_in_the_clear_does) {
 }
 
 TEST_F(SecuredServicesTest, secure_never_falls_back_to_clear) {
-  EXPECT_EQ(rtd_.run(run_command("none", {"--secure", "--keystore", scratch_ / "none"})), 2);
+  EXPECT_EQ(rtd_.run(run_command("none", {"--secure", "--keystore", scratch_ / "missing"})), 2);
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("there is none"), HasSubstr("rtd keystore create")));
   RtdCommand service;
-  EXPECT_EQ(service.run({"slam", "--secure", "--keystore", scratch_ / "none"}), 2);
+  EXPECT_EQ(service.run({"slam", "--secure", "--keystore", scratch_ / "missing"}), 2);
   EXPECT_THAT(service.output(), HasSubstr("rtd keystore create"));
 }
+
+#ifdef RTD_HAVE_CYCLONEDDS
+TEST_F(SecuredServicesTest, a_secured_run_of_two_vendors_is_refused) {
+  EXPECT_EQ(rtd_.run(run_command("mixed", {"--secure", "--dds", "fastdds", "--dds-of", "slam=cyclonedds"})), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("a secured domain needs one vendor"));
+}
+#endif
 
 TEST_F(SecuredServicesTest, a_topic_without_permission_is_named) {
   const std::string keystore = scratch_ / "keystore";

@@ -3,6 +3,9 @@
 #include "tests/component/security/vendor_bus.hpp"
 
 #include "common/bus/backend.hpp"
+#ifdef RTD_HAVE_CYCLONEDDS
+#include "common/bus/cyclonedds/cyclonedds_raw_bus.hpp"
+#endif
 #ifdef RTD_HAVE_FASTDDS
 #include "common/bus/fastdds/fastdds_raw_bus.hpp"
 #endif
@@ -10,6 +13,9 @@
 namespace rtd::bus {
 
 std::shared_ptr<RawBus> connect_unchecked(const BusOptions& options) {
+#ifdef RTD_HAVE_CYCLONEDDS
+  if (options.vendor == "cyclonedds") return cyclonedds::create_raw_bus(options);
+#endif
 #ifdef RTD_HAVE_FASTDDS
   if (options.vendor == "fastdds") return fastdds::create_raw_bus(options);
 #endif
