@@ -62,6 +62,10 @@ const Vendor& vendor_of(const BusOptions& options) {
     if (options.security.enabled() && !vendor.secures)
       throw BusError("bus '" + options.vendor +
                      "' knows no DDS-Security: leave --secure out or choose another (--dds)");
+    if (options.iceoryx && options.vendor != "cyclonedds") {
+      throw BusError("bus.iceoryx is a way of Cyclone DDS: add --dds cyclonedds, or leave it out (" + options.vendor +
+                     " needs no daemon for its shared memory)");
+    }
     return vendor;
   }
   throw BusError("unknown bus '" + options.vendor + "', this build has: " + join_names(available_vendors()) +

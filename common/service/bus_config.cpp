@@ -31,6 +31,7 @@ void BusConfig::bind(ConfigBinder& binder) {
   binder.field("shared_memory", shared_memory, "false: Fast DDS sends over UDP on one host too");
   binder.field("shm_segment_mib", shm_segment_mib, {8, 1024}, "shared-memory segment of each process");
   binder.field("socket_buffer_kib", socket_buffer_kib, {64, 65536}, "wanted UDP buffers, capped by the kernel");
+  binder.field("iceoryx", iceoryx, "Cyclone DDS: frames and features through a running iox-roudi");
   binder.section("network", network);
   binder.section("security", security);
 }
@@ -63,6 +64,7 @@ bus::BusOptions to_bus_options(const BusConfig& config, const std::string& parti
   options.shared_memory = config.shared_memory;
   options.shm_segment_mib = static_cast<std::uint32_t>(config.shm_segment_mib);
   options.socket_buffer_kib = static_cast<std::uint32_t>(config.socket_buffer_kib);
+  options.iceoryx = config.iceoryx;
   options.network.loopback_only = config.network.loopback_only;
   options.network.interfaces = config.network.interfaces;
   options.network.multicast = config.network.multicast;

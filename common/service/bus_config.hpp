@@ -37,6 +37,7 @@ struct BusConfig {
   bool shared_memory = bus::BusOptions{}.shared_memory;
   int shm_segment_mib = static_cast<int>(bus::BusOptions{}.shm_segment_mib);
   int socket_buffer_kib = static_cast<int>(bus::BusOptions{}.socket_buffer_kib);
+  bool iceoryx = bus::BusOptions{}.iceoryx;
   NetworkConfig network;
   SecurityConfig security;
 

@@ -2,44 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/cyclonedds/cyclonedds_backend.hpp"
 
-#include <map>
 #include <utility>
 
 #include "common/bus/cyclonedds/codec.hpp"
 #include "common/bus/cyclonedds/cyclonedds_reader.hpp"
-#include "common/bus/cyclonedds/cyclonedds_writer.hpp"
 #include "common/bus/cyclonedds/qos_mapping.hpp"
+#include "common/bus/cyclonedds/typed_writer.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
-
-/// A loan is the sample's own memory: write_loaned() copies nothing.
-class TypedWriter : public WriterBackend {
- public:
-  TypedWriter(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic, Qos qos,
-              StatusCallbacks callbacks)
-      : id_(id), writer_(std::move(participant), sample_type(id), topic, std::move(qos), std::move(callbacks)) {}
-
-  bool write(const void* message) override { return writer_.write(encode(id_, writer_.type(), message)); }
-  void* loan() override {
-    std::shared_ptr<ByteBlock> block = plain_block(id_, writer_.type());
-    void* const slot = block->bytes().data() + ByteBlock::kCdrHeaderBytes;
-    loans_.emplace(slot, std::move(block));
-    return slot;
-  }
-  bool write_loaned(void* slot) override {
-    auto node = loans_.extract(slot);
-    return !node.empty() && writer_.write(std::move(node.mapped()));
-  }
-  void discard_loan(void* slot) override { loans_.erase(slot); }
-  int matched() const override { return writer_.matched(); }
-  bool wait_acknowledged(int timeout_ms) override { return writer_.wait_acknowledged(timeout_ms); }
-
- private:
-  const MessageId id_;
-  CycloneWriter writer_;
-  std::map<void*, std::shared_ptr<ByteBlock>> loans_;
-};
 
 CycloneReader::Handlers typed_handlers(MessageId id, ErasedCallback on_message, StatusCallbacks callbacks) {
   CycloneReader::Handlers handlers;

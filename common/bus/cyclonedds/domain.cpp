@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "common/bus/cyclonedds/domain_config.hpp"
+#include "common/bus/cyclonedds/iceoryx.hpp"
 #include "common/bus/cyclonedds/log_capture.hpp"
 
 namespace rtd::bus::cyclonedds {
@@ -17,6 +18,7 @@ std::mutex& domains_mutex() {
 }
 
 std::shared_ptr<Domain> create_domain(const BusOptions& options, const std::string& config) {
+  if (options.iceoryx) require_roudi();
   const LogCapture log;
   const dds_entity_t handle = dds_create_domain(options.domain, config.c_str());
   if (handle < 0) {

@@ -11,7 +11,7 @@ namespace rtd::bus::cyclonedds {
 namespace {
 
 constexpr std::size_t kMostInterfaces = 4;  // of Cyclone DDS 0.10, loopback included
-constexpr std::uint32_t kLeastDatagram = 576, kLargestDatagram = 65000;
+constexpr std::uint32_t kLeastDatagram = 512, kLargestDatagram = 65000;
 /// RTPS and submessage headers, and with security its prefix, tag and postfix.
 constexpr std::uint32_t kOverhead = 100, kSecureOverhead = 300;
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The other process of the bus tests: bus_peer VENDOR ROLE DOMAIN [COUNT]. Roles below; runs until SIGTERM.
+// The other process of the bus tests: bus_peer VENDOR|iceoryx ROLE DOMAIN [COUNT]. Roles below; runs until SIGTERM.
 #include <signal.h>
 #include <unistd.h>
 
@@ -57,6 +57,7 @@ void send_frames(Bus& bus, int count) {
   while (!go && !stop_asked()) std::this_thread::sleep_for(1ms);
   wait_for_reader(writer);
   for (int seq = 0; seq < count && !stop_asked(); ++seq) {
+    { const auto unwritten = writer.loan(); }  // must be given back, or there would be none left
     auto frame = writer.loan();
     fill_frame(*frame, static_cast<std::uint64_t>(seq));
     writer.write(std::move(frame));
@@ -128,7 +129,8 @@ int run(const std::string& vendor, const std::string& role, std::uint32_t domain
   const auto entry = kRoles.find(role);
   if (entry == kRoles.end()) return 2;
   BusOptions options;
-  options.vendor = vendor;
+  options.iceoryx = vendor == "iceoryx";
+  options.vendor = options.iceoryx ? "cyclonedds" : vendor;
   options.domain = domain;
   options.participant_name = "bus-peer";
   entry->second(*connect(options), count);

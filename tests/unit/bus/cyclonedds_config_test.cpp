@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "common/bus/backend.hpp"
+#include "common/bus/cyclonedds/domain_config.hpp"
+#include "common/bus/cyclonedds/iceoryx.hpp"
+
+namespace rtd::bus::cyclonedds {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+const HostLimits kLimits{0, 0, 4'194'304, 212'992};
+
+TEST(CycloneConfig, keeps_to_loopback_with_multicast_for_discovery_only) {
+  EXPECT_THAT(domain_config({}, kLimits),
+              AllOf(HasSubstr(R"(<NetworkInterface address="127.0.0.1" multicast="true"/></Interfaces>)"),
+                    HasSubstr("<AllowMulticast>spdp</AllowMulticast>"), Not(HasSubstr("<Peers>")),
+                    Not(HasSubstr("SharedMemory"))));
+}
+
+TEST(CycloneConfig, asks_for_no_more_buffer_than_the_kernel_grants) {
+  EXPECT_THAT(domain_config({}, kLimits),
+              AllOf(HasSubstr(R"(<SocketReceiveBufferSize min="default" max="4194304 B"/>)"),
+                    HasSubstr(R"(<SocketSendBufferSize min="default" max="212992 B"/>)")));
+}
+
+TEST(CycloneConfig, cuts_samples_so_that_datagrams_stay_whole) {
+  BusOptions options;
+  options.network.max_datagram_bytes = 1400;
+  EXPECT_THAT(domain_config(options, kLimits), AllOf(HasSubstr("<MaxMessageSize>1400 B</MaxMessageSize>"),
+                                                     HasSubstr("<FragmentSize>1300 B</FragmentSize>")));
+  options.security = {"/keys", "/rtd/slam"};  // its headers need room, too
+  EXPECT_THAT(domain_config(options, kLimits), HasSubstr("<FragmentSize>1100 B</FragmentSize>"));
+}
+
+TEST(CycloneConfig, asks_peers_at_the_ports_that_ours_take) {
+  BusOptions options;
+  options.network.multicast = false;
+  options.network.peers = {"127.0.0.1:7410", "127.0.0.2"};
+  EXPECT_THAT(
+      domain_config(options, kLimits),
+      AllOf(HasSubstr("<AllowMulticast>false</AllowMulticast>"), HasSubstr(R"(<Peer address="127.0.0.1:7410"/>)"),
+            HasSubstr(R"(<Peer address="127.0.0.2"/>)"), HasSubstr("<ParticipantIndex>auto</ParticipantIndex>")));
+}
+
+TEST(CycloneConfig, refuses_a_peer_that_is_no_host) {
+  BusOptions options;
+  options.network.peers = {"\"/><Peer address=\"192.0.2.1"};
+  EXPECT_THROW(domain_config(options, kLimits), BusError);
+}
+
+TEST(Roudi, is_told_from_a_socket_that_it_left_behind) {
+  const std::string missing = testing::TempDir() + "no_roudi_here", stale = testing::TempDir() + "stale_roudi";
+  fclose(fopen(stale.c_str(), "w"));
+  EXPECT_THROW(require_roudi(missing), BusError);
+  EXPECT_THROW(require_roudi(stale), BusError);
+  std::remove(stale.c_str());
+}
+
+}  // namespace
+}  // namespace rtd::bus::cyclonedds
