@@ -7,7 +7,7 @@
 
 #include "common/bus/cyclonedds/domain_config.hpp"
 #include "common/bus/cyclonedds/iceoryx.hpp"
-#include "common/bus/cyclonedds/log_capture.hpp"
+#include "common/bus/cyclonedds/vendor_log.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "common/bus/cyclonedds/log_capture.hpp"
 #include "common/bus/cyclonedds/participant_security.hpp"
+#include "common/bus/cyclonedds/vendor_log.hpp"
 #include "common/bus/network.hpp"
 
 namespace rtd::bus::cyclonedds {

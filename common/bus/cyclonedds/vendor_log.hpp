@@ -8,11 +8,15 @@
 
 namespace rtd::bus::cyclonedds {
 
-/// While it lives, Cyclone's errors come here instead of on stderr: they say why a call failed.
+/// From now on Cyclone's warnings and errors go to stderr in short lines, and only so many in ten seconds: it has one
+/// for each malformed packet.
+void limit_log();
+
+/// While it lives, Cyclone's errors come here instead: they say why a call failed. Then the limit holds again.
 class LogCapture {
  public:
   LogCapture() { dds_set_log_sink(note, this); }
-  ~LogCapture() { dds_set_log_sink(nullptr, nullptr); }
+  ~LogCapture() { limit_log(); }
   LogCapture(const LogCapture&) = delete;
   LogCapture& operator=(const LogCapture&) = delete;
 
@@ -20,12 +24,7 @@ class LogCapture {
   std::string reason() const { return text_.empty() ? "" : ": " + text_; }
 
  private:
-  static void note(void* self, const dds_log_data_t* line) {
-    std::string& text = static_cast<LogCapture*>(self)->text_;
-    if (text.size() > 2000) return;
-    text += (text.empty() ? "" : "; ") + std::string(line->message, line->size);
-    while (!text.empty() && text.back() == '\n') text.pop_back();
-  }
+  static void note(void* self, const dds_log_data_t* line);
 
   std::string text_;
 };
