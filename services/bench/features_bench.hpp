@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "services/bench/percentile.hpp"
 #include "services/camera/core/frame_source.hpp"
 
 namespace rtd::bench {
@@ -34,9 +35,6 @@ struct FeaturesResult {
 /// undistorts, reads depth and spreads the features. Throws SourceError. `on_frame` is told how many are done.
 FeaturesResult bench_features(camera::FrameSource& source, const FeaturesOptions& options,
                               const std::function<void(std::uint64_t)>& on_frame);
-
-/// Value below which `percent` of the samples lie; 0 without samples.
-double percentile(std::vector<double> samples, double percent);
 
 /// A table for people, and the same as JSON text.
 std::string features_table(const FeaturesResult& result, const FeaturesOptions& options, const std::string& source);

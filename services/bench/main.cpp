@@ -7,6 +7,7 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"
 #include "services/bench/features_bench.hpp"
+#include "services/bench/transport/transport_command.hpp"
 #include "services/camera/core/source_factory.hpp"
 
 namespace {
@@ -17,6 +18,7 @@ struct Options {
   std::string source = "synthetic:office";
   bench::FeaturesOptions features;
   bool json = false;
+  bench::TransportRequest transport;
 };
 
 int run_features(const Options& options) {
@@ -51,11 +53,13 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 2000))
       ->capture_default_str();
   features->add_flag("--json", options.json, "Report as JSON");
-  app.footer("Exit codes: 0 done, 2 the source cannot be read or the options are wrong");
+  bench::add_transport_commands(app, options.transport);
+  app.footer("Exit codes: 0 done, 1 a case gave no numbers, 2 the source cannot be read or the options are wrong");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? service::kOk : service::kUsageOrConfig;
   }
+  if (const auto code = bench::run_transport(app, options.transport)) return *code;
   return run_features(options);
 }

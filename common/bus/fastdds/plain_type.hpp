@@ -8,6 +8,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "common/bus/message_copy.hpp"
+
 namespace rtd::bus::fastdds {
 
 /// Type support of a plain struct whose bytes in memory are its XCDR1 bytes on the wire (little endian):
@@ -33,14 +35,14 @@ class PlainType : public eprosima::fastdds::dds::TopicDataType {
     payload->encapsulation = CDR_LE;
     constexpr unsigned char kCdrLittleEndian[kHeaderBytes] = {0, 1, 0, 0};
     std::memcpy(payload->data, kCdrLittleEndian, kHeaderBytes);
-    std::memcpy(payload->data + kHeaderBytes, data, sizeof(T));
+    copy_message(payload->data + kHeaderBytes, data, sizeof(T));
     payload->length = kWireBytes;
     return true;
   }
   bool deserialize(Payload* payload, void* data) override {
     const bool little_endian = payload->length >= kHeaderBytes && payload->data[1] == 1;
     if (!little_endian || payload->length < kWireBytes) return false;
-    std::memcpy(data, payload->data + kHeaderBytes, sizeof(T));
+    copy_message(data, payload->data + kHeaderBytes, sizeof(T));
     return true;
   }
   std::function<std::uint32_t()> getSerializedSizeProvider(void*) override {
