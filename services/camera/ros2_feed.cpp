@@ -30,15 +30,15 @@ Ros2Feed::Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics)
     : domain_(options.domain),
       loopback_only_(options.network.loopback_only),
       queue_(kQueue, concurrency::Overflow::kDropOldest),
-      lines_{Line{topics.color, {kImage, kCompressed}, {}, nullptr},
-             Line{topics.depth, {kImage, kCompressed}, {}, nullptr}, Line{topics.info, {kInfo}, {}, nullptr}},
-      bus_(bus::connect_raw(options)) {
+      bus_(bus::connect_raw(options)),
+      lines_{Line{topics.color, {kImage, kCompressed}, nullptr}, Line{topics.depth, {kImage, kCompressed}, nullptr},
+             Line{topics.info, {kInfo}, nullptr}} {
   bus_->watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { take_note(writer, change); });
 }
 
 Ros2Feed::~Ros2Feed() {
   bus_->watch(nullptr);
-  for (Line& line : lines_) line.reader.reset();
+  for (Line& line : lines_) line.listener.reset();
 }
 
 void Ros2Feed::clear() {
@@ -64,22 +64,13 @@ void Ros2Feed::take_note(const bus::TopicWriter& writer, bus::WriterChange chang
   }
 }
 
-/// A reader that asks for less than the one before serves its writers too.
 void Ros2Feed::listen(Line& line, const bus::TopicWriter& writer) {
-  const std::lock_guard lock(mutex_);
-  Demand demand = line.demand;
-  demand.reliable = demand.reliable && writer.qos.reliable;
-  demand.latched = demand.latched && writer.qos.durability != bus::RawQos::Durability::kVolatile;
-  if (line.reader != nullptr && demand == line.demand) return;
-  line.demand = demand;
-  line.reader.reset();
-  bus::RawReaderOptions options;
-  options.reliable = demand.reliable;
-  options.transient_local = demand.latched;
-  options.depth = kReaderDepth;
-  line.reader = bus_->reader(writer.topic, options, handlers(line, writer));
+  if (line.listener == nullptr) {
+    line.listener = std::make_unique<bus::TopicListener>(*bus_, handlers(line, writer), false, kReaderDepth);
+  }
+  line.listener->add(writer);
   SPDLOG_INFO("event=camera_topic topic={} type={} reliable={} latched={}", line.topic, plain_dds_type(writer),
-              demand.reliable, demand.latched);
+              line.listener->reliable(), line.listener->latched());
 }
 
 bus::RawHandlers Ros2Feed::handlers(const Line& line, const bus::TopicWriter& writer) {

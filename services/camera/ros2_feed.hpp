@@ -4,18 +4,17 @@
 
 #include <array>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 
-#include "common/bus/raw_bus.hpp"
+#include "common/bus/topic_listener.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "services/camera/core/live/live_feed.hpp"
 
 namespace rtd::camera {
 
-/// The topics of a ROS 2 camera driver, over a connection of its own. Each topic is read as its writers offer it:
-/// reliable where all do, best effort where one does only that (ROS 2's sensor data profile), latched where it is.
+/// The topics of a ROS 2 camera driver, over a connection of its own. Each topic is read as its writers offer it
+/// (TopicListener): best effort where one does only that, ROS 2's sensor data profile.
 class Ros2Feed final : public LiveFeed {
  public:
   /// Throws BusError when the bus refuses.
@@ -31,16 +30,10 @@ class Ros2Feed final : public LiveFeed {
   std::string state_of(const std::string& topic) const override;
 
  private:
-  /// What is asked of writers.
-  struct Demand {
-    bool reliable = true, latched = true;
-    bool operator==(const Demand&) const = default;
-  };
   struct Line {
     std::string topic;            ///< ROS name
     std::set<std::string> types;  ///< that can be read, plain_type()
-    Demand demand;
-    std::unique_ptr<bus::RawReader> reader;
+    std::unique_ptr<bus::TopicListener> listener;
   };
 
   void take_note(const bus::TopicWriter& writer, bus::WriterChange change);
@@ -51,9 +44,8 @@ class Ros2Feed final : public LiveFeed {
   const std::uint32_t domain_;
   const bool loopback_only_;
   concurrency::BoundedQueue<LiveMessage> queue_;
-  std::array<Line, 3> lines_;
   std::shared_ptr<bus::RawBus> bus_;
-  mutable std::mutex mutex_;  ///< guards the readers of lines_
+  std::array<Line, 3> lines_;  ///< listeners: changed by the thread of the bus's watcher only
 };
 
 }  // namespace rtd::camera

@@ -23,12 +23,13 @@
 #include "services/launcher/recording/diff_command.hpp"
 #include "services/launcher/recording/info_command.hpp"
 #include "services/launcher/run/run_command.hpp"
+#include "services/launcher/topics/topics_command.hpp"
 
 namespace rtd::launcher {
 namespace {
 
-const std::vector<std::string> kCommands = {"run",  "demo", "ablate",   "convert", "eval",    "eval-detector", "info",
-                                            "diff", "map",  "keystore", "doctor",  "version", "help"};
+const std::vector<std::string> kCommands = {"run",  "demo", "ablate",   "convert", "eval",   "eval-detector", "info",
+                                            "diff", "map",  "keystore", "topics",  "doctor", "version",       "help"};
 
 struct Requests {
   RunOptions run;
@@ -42,6 +43,7 @@ struct Requests {
   MapRequest map;
   DoctorOptions doctor;
   KeystoreRequest keystore;
+  TopicsRequest topics;
 };
 
 void add_run_command(CLI::App& app, RunOptions& options) {
@@ -126,6 +128,7 @@ int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("map")) return run_map(requests.map, std::cout, std::cerr);
   if (app.got_subcommand("doctor")) return doctor(requests.doctor, std::cout);
   if (app.got_subcommand("keystore")) return run_keystore(requests.keystore, std::time(nullptr), std::cout, std::cerr);
+  if (app.got_subcommand("topics")) return run_topics(requests.topics, std::cout, std::cerr);
   if (app.got_subcommand("version")) {
     std::cout << "rtd " << RTD_VERSION << '\n';
     return service::kOk;
@@ -157,6 +160,7 @@ int front(int argc, char** argv) {
   app.add_subcommand("doctor", "Check this host: shared memory, sockets, services, weights, data")
       ->add_flag("--clean", requests.doctor.clean, "Remove from /dev/shm what killed processes left there");
   add_keystore_command(app, requests.keystore);
+  add_topics_command(app, requests.topics);
   app.add_subcommand("version", "Print the version");
   app.add_subcommand("help", "Print this text");
   app.footer(services_text);

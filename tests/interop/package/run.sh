@@ -46,7 +46,8 @@ for vendor in "$@"; do
     expect_poses "$example, $vendor" "$work/run/$example.txt" 5
   done
   if [ "$vendor" = fastdds ]; then
-    kill -INT "$record_pid" && wait "$record_pid"
+    kill -INT "$record_pid"
+    wait "$record_pid" || [ $? -eq 3 ]  # 3: a message was lost on a busy host
   fi
   kill "$source_pid"
   wait "$source_pid" 2>/dev/null || true

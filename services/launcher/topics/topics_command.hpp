@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "common/service/bus_arguments.hpp"
+
+namespace rtd::launcher {
+
+/// What `rtd topics` was asked.
+struct TopicsRequest {
+  std::string action;  ///< list, hz, echo
+  service::BusArguments bus;
+  std::vector<std::string> topics;  ///< hz: empty = all; echo: one. ROS or DDS names
+  double wait_s = 3;                ///< list: longest look at an empty domain
+  double duration_s = -1;           ///< hz: 5; echo: 0 = until Ctrl-C
+  std::uint64_t count = 0;          ///< messages (of each topic), 0 = any number
+  std::uint64_t max_array = 24;     ///< echo: values shown of an array, 0 = all
+  bool once = false, json = false;
+};
+
+/// Adds the subcommand `topics`; parsing fills `request`, which must outlive `parent`.
+void add_topics_command(CLI::App& parent, TopicsRequest& request);
+
+/// Results go to `out`, what hinders to `err`. Exit code 0; 1: nothing was found or came; 2: cannot be done (bus,
+/// unknown type); 3: some messages could not be read.
+int run_topics(const TopicsRequest& request, std::ostream& out, std::ostream& err);
+
+}  // namespace rtd::launcher
