@@ -17,7 +17,7 @@ Duration_t milliseconds(int ms) {
 }
 
 /// A lost sample is noticed and repaired within some ms, not after Fast DDS's default 3 s.
-constexpr int kHeartbeatPeriodMs = 50, kResponseDelayMs = 1;
+constexpr int kHeartbeatPeriodMs = 10, kResponseDelayMs = 1;
 
 /// What DataWriterQos and DataReaderQos have in common.
 template <class Qos>
