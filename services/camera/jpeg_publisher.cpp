@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/jpeg_publisher.hpp"
 
+#include <sched.h>
+
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
@@ -14,11 +16,18 @@ namespace {
 constexpr std::size_t kMaxWaiting = 2;
 constexpr int kNicer = 5;  // than the filter and slam, and before the detector
 
+/// Niceness orders no real-time threads: in a process that was started as such this one leaves them.
+void yield_to_poses() {
+  const sched_param ordinary{};
+  if (sched_getscheduler(0) != SCHED_OTHER) sched_setscheduler(0, SCHED_OTHER, &ordinary);
+  concurrency::lower_thread_priority(kNicer);
+}
+
 }  // namespace
 
 JpegPublisher::JpegPublisher(bus::Writer<msg::CompressedImage> writer, int quality, concurrency::Overflow overflow)
     : writer_(std::move(writer)), quality_(quality), waiting_(kMaxWaiting, overflow), thread_([this] {
-        concurrency::lower_thread_priority(kNicer);
+        yield_to_poses();
         while (const auto image = waiting_.pop()) publish(*image);
       }) {}
 
