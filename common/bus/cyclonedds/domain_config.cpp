@@ -23,11 +23,13 @@ std::string bytes(std::uint64_t number) {
   return std::to_string(number) + " B";
 }
 
-std::string interface(const std::string& address, const char* multicast) {
-  return "<NetworkInterface address=\"" + address + "\" multicast=\"" + multicast + "\"/>";
+std::string interface(const std::string& address, const std::string& attributes) {
+  return "<NetworkInterface address=\"" + address + "\" " + attributes + "/>";
 }
 
-/// Loopback has no multicast flag in Linux, but carries it; so does Fast DDS on 127.0.0.1.
+/// Loopback has no multicast flag in Linux, but carries it; so does Fast DDS on 127.0.0.1. Peers are asked through the
+/// interface of the highest priority, whatever their address: by default that is loopback, from where nobody else is
+/// reached.
 std::string interfaces(const NetworkOptions& network) {
   std::vector<std::string> addresses = interface_addresses(network);
   if (addresses.size() >= kMostInterfaces && !network.interfaces.empty()) {
@@ -35,8 +37,10 @@ std::string interfaces(const NetworkOptions& network) {
                    std::to_string(addresses.size()) + " are named");
   }
   addresses.resize(std::min(addresses.size(), kMostInterfaces - 1));
-  std::string all = interface("127.0.0.1", network.multicast ? "true" : "false");
-  for (const std::string& address : addresses) all += interface(address, network.multicast ? "default" : "false");
+  std::string all = interface("127.0.0.1", network.multicast ? R"(multicast="true")" : R"(multicast="false")");
+  for (const std::string& address : addresses)
+    all += interface(address,
+                     network.multicast ? R"(multicast="default" priority="10")" : R"(multicast="false" priority="10")");
   return element("Interfaces", all);
 }
 
