@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/ros2/message_json.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 
@@ -13,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Kind = MessageField::Kind;
 
-constexpr std::size_t kValuesOfMessage = 8;
+constexpr std::size_t kValuesOfMessage = 4;
 
 ros::Bytes body_of(ros::Bytes cdr) {
   constexpr std::size_t kHeaderBytes = 4;
@@ -79,7 +81,7 @@ class Walk {
   template <class T>
   static Json real(Walk& walk) {
     const T value = walk.number<T>();
-    if (std::isfinite(value)) return value;
+    if (std::isfinite(value)) return std::stod(fmt::format("{}", value));  // 0.1F is 0.1, not 0.10000000149
     return std::isnan(value) ? "nan" : (value > 0 ? "inf" : "-inf");
   }
   static Json truth(Walk& walk) { return walk.number<std::uint8_t>() != 0; }

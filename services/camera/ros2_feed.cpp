@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/bus/topics.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/log.hpp"
 
@@ -19,6 +20,11 @@ constexpr int kReaderDepth = 8;     // images that may wait for the reader's thr
 constexpr const char* kImage = "sensor_msgs/Image";
 constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
 constexpr const char* kInfo = "sensor_msgs/CameraInfo";
+
+/// What rtd itself publishes is no camera's.
+bool is_ours(const std::string& dds_topic) {
+  return dds_topic == bus::topics::kColorJpeg.name || dds_topic == bus::topics::kDynamicMask.name;
+}
 
 std::string plain_dds_type(const bus::TopicWriter& writer) {
   return plain_type(ros2::ros_type(writer.topic.type));
@@ -110,6 +116,7 @@ std::string Ros2Feed::nobody_publishes() const {
   std::set<std::string> images;
   for (const bus::TopicWriter& writer : bus_->writers()) {
     const std::string type = plain_dds_type(writer);
+    if (is_ours(writer.topic.name)) continue;
     if (type == kImage || type == kCompressed) images.insert(ros2::ros_topic(writer.topic.name));
   }
   const std::string where = fmt::format("nobody publishes it in DDS domain {}", domain_);

@@ -52,7 +52,7 @@ void add_topics_command(CLI::App& parent, TopicsRequest& request) {
 }
 
 int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err) {
-  constexpr double kSettledS = 0.8;  // nobody new for so long
+  constexpr double kSettledS = 1.2;  // nobody new for so long
   std::size_t found = 0;
   double last_new_s = 0;
   while (session.seconds() < request.wait_s && !(found > 0 && session.seconds() - last_new_s > kSettledS)) {

@@ -19,7 +19,7 @@ struct TopicsRequest {
   double wait_s = 3;                ///< list: longest look at an empty domain
   double duration_s = -1;           ///< hz: 5; echo: 0 = until Ctrl-C
   std::uint64_t count = 0;          ///< messages (of each topic), 0 = any number
-  std::uint64_t max_array = 24;     ///< echo: values shown of an array, 0 = all
+  std::uint64_t max_array = 36;     ///< echo: values shown of an array, 0 = all
   bool once = false, json = false;
 };
 
