@@ -162,6 +162,23 @@ TEST_P(DdsProcesses, killed_writer_is_noticed_and_its_successor_heard) {
   }
 }
 
+TEST_P(DdsProcesses, a_frozen_reader_does_not_hold_up_the_writer) {
+  constexpr int kMessages = 100;
+  const auto bus = connect_to(GetParam());
+  auto writer = bus->writer(topics::kFeatures);
+  PeerProcess peer(GetParam(), "answer_features", test_domain());
+  for (int i = 0; i < 10'000 && writer.matched() == 0; ++i) std::this_thread::sleep_for(1ms);
+  ASSERT_EQ(writer.matched(), 1);
+  kill(peer.pid(), SIGSTOP);
+  auto features = std::make_unique<msg::FeatureFrame>();
+  fill_features(*features, 1);
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < kMessages; ++i) EXPECT_TRUE(writer.write(*features));
+  const auto took = std::chrono::steady_clock::now() - start;
+  kill(peer.pid(), SIGCONT);
+  EXPECT_LT(took, kMessages * 50ms) << "each write waits for the reader, 100 ms at most";
+}
+
 INSTANTIATE_TEST_SUITE_P(Vendors, DdsProcesses, testing::ValuesIn(dds_vendors()), test_name);
 
 }  // namespace
