@@ -85,8 +85,8 @@ void TwoHosts::heal() {
   run("ip -n " + name('a') + " link set eth0 up");
 }
 
-std::uint64_t TwoHosts::sent_by_a() const {
-  return std::stoull(run("ip netns exec " + name('a') + " cat /sys/class/net/eth0/statistics/tx_bytes"));
+std::uint64_t TwoHosts::sent_by_a(const std::string& interface) const {
+  return std::stoull(run("ip netns exec " + name('a') + " cat /sys/class/net/" + interface + "/statistics/tx_bytes"));
 }
 
 }  // namespace rtd::test_support

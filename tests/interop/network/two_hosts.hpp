@@ -29,8 +29,8 @@ class TwoHosts {
   /// As if the cable were pulled out and put in again.
   void cut();
   void heal();
-  /// Bytes that host a has sent over the link.
-  std::uint64_t sent_by_a() const;
+  /// Bytes that host a has sent through an interface: "eth0" is the link, "lo" its own loopback.
+  std::uint64_t sent_by_a(const std::string& interface) const;
 
  private:
   std::string name(char host) const;

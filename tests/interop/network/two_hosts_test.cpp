@@ -40,7 +40,7 @@ struct Scale {
   double back_within_s, least_pose_rate;
 };
 Scale scale() {
-  return campaign() ? Scale{30, 60, 10, 10, 2.0, 0.97} : Scale{10, 4, 6, 1, 4.0, 0.6};
+  return campaign() ? Scale{30, 40, 10, 5, 2.0, 0.97} : Scale{10, 4, 6, 1, 4.0, 0.6};
 }
 
 /// What link_listener wrote.
@@ -68,9 +68,11 @@ struct Heard {
       }
     }
   }
-  std::size_t poses_within(std::int64_t from_ns, std::int64_t to_ns) const {
-    return static_cast<std::size_t>(std::count_if(
-        poses_ns.begin(), poses_ns.end(), [&](std::int64_t at_ns) { return at_ns > from_ns && at_ns < to_ns; }));
+  /// Poses in a span of time, for each frame that the camera has in it.
+  double pose_rate(std::int64_t from_ns, std::int64_t to_ns) const {
+    const auto poses = std::count_if(poses_ns.begin(), poses_ns.end(),
+                                     [&](std::int64_t at_ns) { return at_ns > from_ns && at_ns < to_ns; });
+    return static_cast<double>(poses) * kNsPerS / static_cast<double>(to_ns - from_ns) / scale().fps;
   }
   double first_detection_after_s(std::int64_t from_ns) const {
     const auto next =
@@ -163,30 +165,34 @@ TEST_P(TwoHostsTest, boxes_cross_a_lossy_link_and_come_back_after_a_cut) {
   const std::int64_t healed_ns = service::monotonic_ns();
   EXPECT_TRUE(near_.wait_for("detections are back", std::chrono::seconds(15))) << detector_.output();
   watch_for(scale().after_s);
-  const std::uint64_t sent_bytes = hosts_->sent_by_a();
+  const auto sent_bytes = static_cast<double>(hosts_->sent_by_a("eth0"));
+  const auto loopback_bytes = static_cast<double>(hosts_->sent_by_a("lo"));
   for (RtdCommand* command : {&run_, &detector_, &near_, &far_}) end(*command);
 
   const Heard near(scratch_ / "near.txt"), far(scratch_ / "far.txt");
   const int took = answered(), arrived = static_cast<int>(near.stamps_ns.size());
   const double back_s = near.first_detection_after_s(healed_ns);
-  const double pose_rate = static_cast<double>(near.poses_within(cut_ns, healed_ns)) * kNsPerS /
-                           static_cast<double>(healed_ns - cut_ns) / scale().fps;
+  const double rate_before = near.pose_rate(cut_ns - std::int64_t{4} * 1'000'000'000, cut_ns);
+  const double rate_in_cut = near.pose_rate(cut_ns, healed_ns);
   std::printf(
-      "took %d, arrived %d, back after %.2f s, poses in the cut %.1f %% of the frames, p50 %.1f ms, p99 %.1f ms, "
-      "%.1f MB sent\n",
-      took, arrived, back_s, 100 * pose_rate, near.latency_ms(0.5), near.latency_ms(0.99),
-      static_cast<double>(sent_bytes) / 1e6);
+      "took %d, arrived %d, back after %.2f s, poses of %.1f %% of the frames in the cut (%.1f %% before), p50 %.1f "
+      "ms, "
+      "p99 %.1f ms, %.1f MB sent\n",
+      took, arrived, back_s, 100 * rate_in_cut, 100 * rate_before, near.latency_ms(0.5), near.latency_ms(0.99),
+      sent_bytes / 1e6);
 
   constexpr int kLostInTheCut = 3;  // answered while nobody could hear it
   EXPECT_GE(arrived + kLostInTheCut, 0.99 * took) << detector_.output();
   EXPECT_GT(took, scale().lossy_s * 3);
   EXPECT_LE(back_s, scale().back_within_s);
-  EXPECT_GE(pose_rate, scale().least_pose_rate);
+  EXPECT_GE(rate_in_cut, scale().least_pose_rate * std::min(1.0, rate_before));
 
   EXPECT_EQ(far.frames, 0) << "raw frames or features crossed the link";
   EXPECT_EQ(far.matched, 0);
   const double raw_bytes = 1.5e6 * static_cast<double>(near.poses_ns.size());
-  EXPECT_LT(static_cast<double>(sent_bytes), 0.2 * raw_bytes);
+  EXPECT_LT(sent_bytes, 0.2 * raw_bytes);
+  if (std::string(GetParam().first_host) == "fastdds")
+    EXPECT_LT(loopback_bytes, 0.1 * raw_bytes) << "the first host's own samples left shared memory";
 
   const auto report = nlohmann::json::parse(text_of(scratch_ / "out/report.json"));
   EXPECT_NEAR(report["clocks"]["detector"]["ahead_ms"].get<double>(), kClockShiftMs, 20) << report["clocks"];
