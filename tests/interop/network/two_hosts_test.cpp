@@ -191,8 +191,9 @@ TEST_P(TwoHostsTest, boxes_cross_a_lossy_link_and_come_back_after_a_cut) {
   EXPECT_EQ(far.matched, 0);
   const double raw_bytes = 1.5e6 * static_cast<double>(near.poses_ns.size());
   EXPECT_LT(sent_bytes, 0.2 * raw_bytes);
-  if (std::string(GetParam().first_host) == "fastdds")
+  if (std::string(GetParam().first_host) == "fastdds") {
     EXPECT_LT(loopback_bytes, 0.1 * raw_bytes) << "the first host's own samples left shared memory";
+  }
 
   const auto report = nlohmann::json::parse(text_of(scratch_ / "out/report.json"));
   EXPECT_NEAR(report["clocks"]["detector"]["ahead_ms"].get<double>(), kClockShiftMs, 20) << report["clocks"];
