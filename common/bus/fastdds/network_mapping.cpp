@@ -7,6 +7,9 @@
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include <algorithm>
+#include <filesystem>
+
 #include "common/bus/network.hpp"
 
 namespace rtd::bus::fastdds {
@@ -36,11 +39,29 @@ std::shared_ptr<SharedMemTransportDescriptor> shared_memory_transport(const BusO
   return transport;
 }
 
+std::uint64_t size_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  return error ? 0 : bytes;
+}
+
+/// With security participants first send each other certificate and permissions, in messages that Fast DDS does not
+/// cut: datagrams are then as large as these need (6 to 8 kB), and IP cuts them.
+std::uint32_t datagram_bytes(const BusOptions& options) {
+  constexpr std::uint64_t kKeysAndHeaders = 4096;
+  const std::uint32_t asked = options.network.max_datagram_bytes;
+  if (!options.security.enabled()) return asked;
+  const std::filesystem::path enclave = options.security.keystore + "/enclaves/" + options.security.enclave;
+  const std::uint64_t handshake =
+      size_of(enclave / "cert.pem") + size_of(enclave / "permissions.p7s") + kKeysAndHeaders;
+  return std::max(asked, static_cast<std::uint32_t>(std::min<std::uint64_t>(handshake, 65000)));
+}
+
 std::shared_ptr<UDPv4TransportDescriptor> udp_transport(const BusOptions& options, const HostLimits& limits) {
   auto transport = std::make_shared<UDPv4TransportDescriptor>();
   transport->receiveBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.rmem_max);
   transport->sendBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.wmem_max);
-  transport->maxMessageSize = options.network.max_datagram_bytes;
+  transport->maxMessageSize = datagram_bytes(options);
   transport->maxInitialPeersRange = kPeerParticipants;
   transport->interfaceWhiteList = interface_addresses(options.network);
   transport->interfaceWhiteList.emplace_back(kLoopback);

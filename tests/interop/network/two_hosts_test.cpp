@@ -200,6 +200,27 @@ TEST_P(TwoHostsTest, boxes_cross_a_lossy_link_and_come_back_after_a_cut) {
   EXPECT_THAT(run_.output(), testing::HasSubstr("ms ahead"));
 }
 
+TEST_P(TwoHostsTest, boxes_cross_a_lossy_link_encrypted) {
+  if (!campaign()) GTEST_SKIP() << "only in the campaign: set RTD_NETWORK_CAMPAIGN=1";
+  if (std::string(GetParam().first_host) != GetParam().detector) GTEST_SKIP() << "vendors agree on no keys";
+  const std::string keys = scratch_ / "keys";
+  RtdCommand keystore;
+  ASSERT_EQ(keystore.run({"keystore", "create", keys}), 0) << keystore.output();
+  const std::vector<std::string> secured = {"--profile", "secure", "--keystore", keys,
+                                            "--domain",  kDomain,  "--dds",      GetParam().detector};
+  std::vector<std::string> detector = {RTD_EXECUTABLE, "detector", "--max-rate", "8", "--peers", TwoHosts::kAddressA};
+  std::vector<std::string> run = {RTD_EXECUTABLE, "run",           "--detector",
+                                  "remote",       "--source",      "synthetic:office?frames=300",
+                                  "--out",        scratch_ / "out"};
+  for (auto* command : {&detector, &run}) command->insert(command->end(), secured.begin(), secured.end());
+  detector_.start(hosts_->on('b', detector));
+  run_.start(hosts_->on('a', run));
+  EXPECT_EQ(run_.wait(), 0) << run_.output();
+  end(detector_);
+  EXPECT_GT(answered(), 20) << detector_.output();
+  EXPECT_THAT(text_of(scratch_ / "out/logs/filter.log"), testing::HasSubstr("event=detector_heard"));
+}
+
 INSTANTIATE_TEST_SUITE_P(Vendors, TwoHostsTest,
                          testing::Values(Vendors{"fastdds", "fastdds"}, Vendors{"cyclonedds", "cyclonedds"},
                                          Vendors{"fastdds", "cyclonedds"}, Vendors{"cyclonedds", "fastdds"}),
