@@ -12,7 +12,7 @@
 namespace rtd::service {
 namespace {
 
-constexpr std::chrono::milliseconds kPeriod{200};
+constexpr std::chrono::milliseconds kPeriod{200}, kLookPeriod{100};
 constexpr std::int64_t kGoneAfterNs = 700'000'000;  // three heartbeats missed, with a margin for a busy host
 
 std::int64_t realtime_ns() {
@@ -23,7 +23,7 @@ std::int64_t realtime_ns() {
 }  // namespace
 
 Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop)
-    : stop_(stop), clocks_(service_name, PeerClocks::this_host_id()) {
+    : bus_(bus), stop_(stop), clocks_(service_name, PeerClocks::this_host_id()) {
   own_.service = std::move(service_name);
   own_.metrics.push_back({"host_id", PeerClocks::this_host_id()});
   own_.pid = getpid();
@@ -37,21 +37,22 @@ Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop)
 Heartbeat::~Heartbeat() {
   ended_.request_stop();
   thread_.join();
+  say_goodbye();
 }
 
+/// Looks after the others twice as often as it speaks; news are told at once.
 void Heartbeat::loop() {
-  while (!ended_.wait_for(kPeriod)) publish();
+  for (int turn = 0; !ended_.wait_for(kLookPeriod); ++turn) {
+    bool news = check_peers();
+    news = check_progress() || news;
+    news = check_topics() || news;
+    if (news || turn % (kPeriod / kLookPeriod) == 0) publish();
+  }
 }
 
 void Heartbeat::publish() {
   const std::lock_guard publish_lock(publish_mutex_);
-  msg::ServiceStatus status;
-  {
-    const std::lock_guard lock(mutex_);
-    own_.stamp_ns = realtime_ns();
-    status = own_;
-  }
-  writer_.write(status);
+  writer_.write(current_status());
 }
 
 void Heartbeat::set_state(msg::ServiceState state, const std::string& message) {
@@ -111,7 +112,7 @@ bool Heartbeat::alive(const std::string& service) const {
   const std::lock_guard lock(mutex_);
   const auto found = peers_.find(service);
   return found != peers_.end() && found->second.status.state != msg::ServiceState::kFinished &&
-         monotonic_ns() - found->second.heard_ns < kGoneAfterNs;
+         found->second.health == PeerHealth::kAlive && monotonic_ns() - found->second.heard_ns < kGoneAfterNs;
 }
 
 bool Heartbeat::ready(const std::string& service) const {

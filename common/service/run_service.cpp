@@ -65,6 +65,9 @@ class SignalWatcher {
   std::thread thread_;
 };
 
+/// A worker that makes no progress for so long is stuck. Offline one frame may take its time, closing loops and all.
+constexpr std::chrono::milliseconds kStuckAfter{1500}, kStuckAfterOffline{30'000};
+
 /// What processes that were killed have left takes memory.
 void remove_leftovers() {
   const bus::CleanReport report = bus::remove_shm_leftovers();
@@ -136,6 +139,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     Heartbeat heartbeat(*bus, definition.name, stop);
     problems.tell(&heartbeat);
     const std::shared_ptr<void> at_end(nullptr, [&problems](void*) { problems.tell(nullptr); });
+    heartbeat.watch_progress(pace == Pace::kRealtime ? kStuckAfter : kStuckAfterOffline);
     Runtime runtime{*bus, heartbeat, stop, pace, options};
     SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), bus_config.domain, to_string(pace),
                 getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -15,6 +16,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/service/pace.hpp"
 #include "common/service/peer_clocks.hpp"
+#include "common/service/peer_health.hpp"
 #include "common/service/stop_token.hpp"
 
 namespace rtd::service {
@@ -29,7 +31,13 @@ class Heartbeat {
   void set_state(msg::ServiceState state, const std::string& message = {});
   /// A number shown in the heartbeat; the same name overwrites.
   void set_metric(const std::string& name, double value);
-  /// Newest status of another service; a service not heard for 0.5 s counts as gone.
+  /// A worker loop calls it in each round. Stuck for longer than the limit: the heartbeat says so, state degraded.
+  void tick();
+  /// The worker waits on purpose until the next tick.
+  void idle();
+  /// 0, the default: a worker is never taken for stuck.
+  void watch_progress(std::chrono::milliseconds limit);
+  /// False for a service that is dead, hung, or not heard for 0.7 s.
   bool alive(const std::string& service) const;
   bool ready(const std::string& service) const;  ///< alive and in state kReady, kRunning or kDegraded
   /// Called on a bus thread for every heartbeat of another service.
@@ -41,13 +49,20 @@ class Heartbeat {
   struct Peer {
     msg::ServiceStatus status;
     std::int64_t heard_ns = 0;
+    PeerHealth health = PeerHealth::kAlive;
   };
   void publish();
+  void say_goodbye();
+  bool check_peers();
+  bool check_progress();
+  bool check_topics();
+  msg::ServiceStatus current_status();
   void receive(const msg::ServiceStatus& status);
   void loop();
 
   void set(const msg::Metric& metric);
 
+  bus::Bus& bus_;
   StopToken& stop_;
   mutable std::mutex mutex_;
   PeerClocks clocks_;
@@ -55,6 +70,9 @@ class Heartbeat {
   std::map<std::string, Peer> peers_;
   std::function<void(const msg::ServiceStatus&)> callback_;
   std::string duplicate_;
+  ProgressWatch progress_;
+  bool stuck_ = false;
+  std::map<std::string, bus::TopicTrouble> troubles_;
   std::mutex publish_mutex_;
   bus::Writer<msg::ServiceStatus> writer_;
   bus::Reader<msg::ServiceStatus> reader_;

@@ -131,8 +131,10 @@ CameraService::Outcome CameraService::wait_for_others() {
   while (!absent.empty()) {
     if (runtime_.stop.stop_requested()) return Outcome::kStopped;
     if (service::monotonic_ns() > deadline_ns) {
-      return fail(fmt::format("not ready within {:g} s: {}; start them, or leave them out with --wait-for",
-                              config_.start_timeout_s, fmt::join(absent, "; ")));
+      return fail(
+          fmt::format("not ready within {:g} s: {}; start them in this DDS domain, {} (--domain, ROS_DOMAIN_ID), or "
+                      "leave them out with --wait-for",
+                      config_.start_timeout_s, fmt::join(absent, "; "), runtime_.bus_options.domain));
     }
     runtime_.heartbeat.set_state(msg::ServiceState::kReady, fmt::format("waits for {}", fmt::join(absent, "; ")));
     changes_->pop_for(kReadinessCheck);
@@ -179,7 +181,9 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
     if (decision.late_ns > 0) frames.pass_over(frame.image.stamp_ns + decision.late_ns);
     if (decision.action == PaceAction::kSkipLate) return Outcome::kDone;
     if (decision.action == PaceAction::kSend) {
+      runtime_.heartbeat.tick();
       send(frame.image);
+      runtime_.heartbeat.idle();  // until the next frame, whenever it comes
       last_seq_ = frame.image.seq;
       if (realtime_) return Outcome::kDone;
       pacer_.sent(frame.image.seq);

@@ -45,6 +45,7 @@ DenseService::DenseService(const Config& config, service::Runtime& runtime)
 
 service::ExitCode DenseService::run() {
   while (!runtime_.stop.stop_requested()) {
+    runtime_.heartbeat.tick();
     report_state();
     if (const auto joined = joiner_->take(kStatePeriod)) integrate(*joined);
     publish_cloud();

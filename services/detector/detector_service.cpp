@@ -90,6 +90,7 @@ service::ExitCode DetectorService::run() {
 /// Answers images until the end. Several workers share the queue; their answers go out in the order of the images.
 void DetectorService::work(Detector& detector) {
   while (!runtime_.stop.stop_requested()) {
+    runtime_.heartbeat.tick();
     report_state();
     const std::optional<Taken> taken = take();
     if (!taken) continue;
@@ -201,7 +202,9 @@ void DetectorService::keep_rate(std::int64_t started_ns) const {
   if (runtime_.pace != service::Pace::kRealtime || config_.max_rate_hz <= 0) return;
   const auto period_ns = static_cast<std::int64_t>(kNsPerS / config_.max_rate_hz);
   const std::int64_t left_ns = started_ns + period_ns - service::monotonic_ns();
-  if (left_ns > 0) runtime_.stop.wait_for(std::chrono::nanoseconds(left_ns));
+  if (left_ns <= 0) return;
+  runtime_.heartbeat.idle();
+  runtime_.stop.wait_for(std::chrono::nanoseconds(left_ns));
 }
 
 }  // namespace rtd::detector

@@ -65,6 +65,7 @@ FilterService::~FilterService() {
 
 service::ExitCode FilterService::run() {
   while (!runtime_.stop.stop_requested()) {
+    runtime_.heartbeat.tick();
     report_state();
     const auto frame = frames_->pop_for(kStatePeriod);
     watch_detector();
@@ -182,6 +183,7 @@ void FilterService::wait_for_detections(const msg::RgbdFrame& frame) {
   const std::int64_t since_ns = service::monotonic_ns();
   const auto give_up = [&] {
     const std::int64_t waited_ns = service::monotonic_ns() - since_ns;
+    runtime_.heartbeat.tick();
     return waited_ns > std::int64_t{config_.detections_timeout_ms} * 1'000'000 ||
            (waited_ns > kPatienceNs && !runtime_.heartbeat.alive("detector"));
   };

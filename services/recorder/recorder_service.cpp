@@ -141,6 +141,7 @@ void RecorderService::record() {
 
 void RecorderService::record_until_stopped() {
   while (!runtime_.stop.stop_requested() && failure_.empty()) {
+    runtime_.heartbeat.tick();
     queue_.wait_for(kPatience);
     while (const auto message = queue_.pop()) recording_->write(*message, service::monotonic_ns());
     const std::int64_t now_ns = service::monotonic_ns();

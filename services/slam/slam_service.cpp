@@ -100,6 +100,7 @@ bool SlamService::check_camera(const msg::FeatureFrame& frame) {
 
 service::ExitCode SlamService::run() {
   while (!runtime_.stop.stop_requested()) {
+    runtime_.heartbeat.tick();
     report_state();
     const auto frame = arrivals_->pop_for(kStatePeriod);
     if (frame && counters_.frames == 0 && !check_camera(**frame)) return service::kUsageOrConfig;

@@ -140,6 +140,28 @@ TEST(record_builder, live_status_follows_the_newest_frame) {
   EXPECT_DOUBLE_EQ(status.latency_ms, 20.0);
 }
 
+TEST(record_builder, tells_a_dead_peer_once_until_it_is_heard_again) {
+  RecordBuilder builder;
+  msg::ServiceStatus filter{.service = "filter"}, slam{.service = "slam"};
+  filter.metrics = slam.metrics = {{"peer.detector.dead", 1}};
+  builder.add(filter);
+  builder.add(slam);
+  EXPECT_EQ(builder.take_notice(), "detector is dead: no heartbeat");
+  EXPECT_EQ(builder.take_notice(), std::nullopt);
+
+  builder.add(msg::ServiceStatus{.service = "detector"});
+  builder.add(filter);
+  EXPECT_EQ(builder.take_notice(), "detector is dead: no heartbeat") << "again";
+}
+
+TEST(record_builder, tells_refused_endpoints_by_service_and_topic) {
+  RecordBuilder builder;
+  builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.incompatible_qos", 1}}});
+  builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.incompatible_qos", 2}}});
+  EXPECT_EQ(builder.take_notice(), "slam: rtd/features: incompatible_qos");
+  EXPECT_EQ(builder.take_notice(), std::nullopt);
+}
+
 TEST(record_builder, tells_a_degraded_service_once) {
   RecordBuilder builder;
   msg::ServiceStatus status = status_of("filter", 7, {});

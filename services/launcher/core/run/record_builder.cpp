@@ -71,11 +71,32 @@ void RecordBuilder::add(const msg::ServiceStatus& status) {
   }
   for (const msg::Metric& metric : status.metrics) service.counters[metric.name].current = metric.value;
 
+  note_troubles(status);
   const bool degraded = status.state == msg::ServiceState::kDegraded;  // one that failed ends, and says why itself
   const bool news = service.state != status.state || service.message != status.message;
   if (degraded && news && !status.message.empty()) notices_.push_back(status.service + ": " + status.message);
   service.state = status.state;
   service.message = status.message;
+}
+
+/// Several services may tell the same of a peer; it is news again once the peer was heard.
+void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
+  const auto tell_once = [this](const std::string& about, const std::string& text) {
+    if (troubles_.emplace(about, text).second) notices_.push_back(text);
+  };
+  troubles_.erase(status.service);
+  for (const msg::Metric& metric : status.metrics) {
+    const auto& name = metric.name;
+    const std::string what = name.substr(name.rfind('.') + 1);
+    if (name.starts_with("peer.") && (what == "dead" || what == "hung")) {
+      const std::string peer = name.substr(5, name.size() - 6 - what.size());
+      tell_once(peer, peer + " is " + what + ": no heartbeat");
+    } else if (name.starts_with("topic.") &&
+               (what == "rejected" || what == "incompatible_qos" || what == "type_mismatch")) {
+      const std::string topic = name.substr(6, name.size() - 7 - what.size());
+      tell_once(status.service + ' ' + name, status.service + ": " + topic + ": " + what);
+    }
+  }
 }
 
 std::uint64_t RecordBuilder::frames_in() const {
@@ -91,8 +112,8 @@ LiveStatus RecordBuilder::live() const {
   status.frames = end_of_seen_;
   status.total = static_cast<std::uint64_t>(camera_counter("frames_total"));
   for (const auto& [place, count] : drops()) {
-    const bool on_the_way_to_the_pose =
-        place.rfind("detector.", 0) != 0;  // the detector's job is the newest frame only
+    const bool on_the_way_to_the_pose = place.rfind("detector.", 0) != 0 &&
+                                        place.find(".topic.") == std::string::npos;  // its job is the newest frame only
     if (on_the_way_to_the_pose) status.dropped += static_cast<std::uint64_t>(count);
   }
   if (const auto camera = services_.find("camera"); camera != services_.end()) {

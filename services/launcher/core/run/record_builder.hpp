@@ -54,6 +54,7 @@ class RecordBuilder {
 
   std::map<std::string, double> drops() const;
   std::vector<HostClock> clocks() const;
+  void note_troubles(const msg::ServiceStatus& status);
   double camera_counter(const std::string& name) const;
 
   struct Frame {
@@ -63,6 +64,7 @@ class RecordBuilder {
   std::map<std::uint64_t, Frame> frames_;  ///< by seq
   std::map<std::string, Service> services_;
   std::deque<std::string> notices_;
+  std::map<std::string, std::string> troubles_;  ///< told: by the service or the counter concerned
   std::deque<msg::TrackingResult> recent_;
   std::uint64_t end_of_seen_ = 0;  ///< highest seq seen + 1
   bool tracked_any_ = false;

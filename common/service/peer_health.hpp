@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace rtd::service {
+
+enum class ProcessState { kUnknown, kRunning, kStopped, kGone };
+enum class PeerHealth {
+  kAlive,
+  kDead,  ///< its process is gone, or nothing is heard of another host
+  kHung   ///< its process is there and says nothing: stopped, or stuck
+};
+
+/// What is known of a service that was heard before.
+struct PeerEvidence {
+  std::int64_t silent_ns = 0;                     ///< since its last heartbeat
+  ProcessState process = ProcessState::kUnknown;  ///< kUnknown: on another host
+};
+
+/// Heartbeats come five times a second. A process that is gone counts after one and a half, so that the others know
+/// within 0.5 s; a silent one that is still there may only wait for the processor, and has 1.2 s.
+PeerHealth judge(const PeerEvidence& evidence);
+/// Silence from which on it is worth to look at the process.
+constexpr std::int64_t kSuspectAfterNs = 300'000'000;
+
+/// From /proc/PID/stat; a zombie is gone.
+ProcessState process_state(std::int64_t pid, const std::string& proc_dir = "/proc");
+
+const char* to_string(PeerHealth health);
+
+/// Whether a worker loop goes on: it ticks in each round. Silence while it waits on purpose does not count. Times are
+/// given. Not thread-safe.
+class ProgressWatch {
+ public:
+  /// 0: never hung.
+  void set_limit(std::int64_t limit_ns) { limit_ns_ = limit_ns; }
+  void tick(std::int64_t now_ns) { ticked_ns_ = now_ns; }
+  void idle() { ticked_ns_ = 0; }  ///< until the next tick
+  /// How long the worker has been stuck; 0: it goes on, or has not begun.
+  std::int64_t stuck_ns(std::int64_t now_ns) const {
+    const bool stuck = limit_ns_ > 0 && ticked_ns_ > 0 && now_ns - ticked_ns_ > limit_ns_;
+    return stuck ? now_ns - ticked_ns_ : 0;
+  }
+
+ private:
+  std::int64_t limit_ns_ = 0, ticked_ns_ = 0;
+};
+
+}  // namespace rtd::service

@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Dead and hung peers, a stuck worker and refused endpoints as others see them on rtd/status.
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "common/bus/bus_factory.hpp"
+#include "common/service/runtime.hpp"
+
+extern char** environ;
+
+namespace rtd::service {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+class Health : public ::testing::TestWithParam<std::string> {
+ protected:
+  static std::uint32_t domain() { return 100 + static_cast<std::uint32_t>(getpid()) % 100; }
+  std::shared_ptr<bus::Bus> join() const {
+    bus::BusOptions options;
+    options.vendor = GetParam();
+    options.domain = domain();
+    return bus::connect(options);
+  }
+
+  /// The newest status of a service as somebody else hears it.
+  std::optional<msg::ServiceStatus> heard(const std::string& service) {
+    const std::lock_guard lock(mutex_);
+    const auto found = heard_.find(service);
+    return found == heard_.end() ? std::nullopt : std::optional(found->second);
+  }
+  bool tells(const std::string& service, const std::string& metric) {
+    const auto status = heard(service);
+    if (!status) return false;
+    for (const auto& entry : status->metrics) {
+      if (entry.name == metric) return true;
+    }
+    return false;
+  }
+  /// Seconds until the condition holds; 15 when it did not.
+  template <class Condition>
+  static double seconds_until(Condition condition) {
+    const auto begin = Clock::now();
+    while (!condition() && Clock::now() - begin < 15s) std::this_thread::sleep_for(5ms);
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+
+  std::mutex mutex_;
+  std::map<std::string, msg::ServiceStatus> heard_;
+  std::shared_ptr<bus::Bus> here_ = join(), listener_ = join();
+  bus::Reader<msg::ServiceStatus> statuses_ =
+      listener_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](const auto& status) {
+        const std::lock_guard lock(mutex_);
+        heard_[status->service] = *status;
+      });
+  StopToken stop_;
+};
+
+/// A service of its own process.
+class PeerService {
+ public:
+  PeerService(std::string vendor, std::uint32_t domain) {
+    std::string path = HEARTBEAT_PEER_PATH, number = std::to_string(domain);
+    char* argv[] = {path.data(), vendor.data(), number.data(), nullptr};
+    if (posix_spawn(&pid_, path.c_str(), nullptr, nullptr, argv, environ) != 0) throw std::runtime_error(path);
+  }
+  ~PeerService() { end(); }
+  PeerService(const PeerService&) = delete;
+  PeerService& operator=(const PeerService&) = delete;
+  void signal(int number) const { kill(pid_, number); }
+  void end() {
+    if (pid_ > 0) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+    }
+    pid_ = 0;
+  }
+
+ private:
+  pid_t pid_ = 0;
+};
+
+/// A busy host may be slower than the 0.5 s and 2 s that are asked; the measured times are printed.
+constexpr double kPatienceS = 5;
+
+TEST_P(Health, a_killed_peer_is_named_dead_and_its_successor_takes_that_back) {
+  Heartbeat filter(*here_, "filter", stop_);
+  PeerService peer(GetParam(), domain());
+  ASSERT_LT(seconds_until([&] { return filter.alive("detector"); }), 15);
+
+  peer.end();
+  const double dead_s = seconds_until([&] { return tells("filter", "peer.detector.dead"); });
+  std::printf("%s: killed peer named after %.2f s\n", GetParam().c_str(), dead_s);
+  EXPECT_LT(dead_s, kPatienceS);
+  EXPECT_FALSE(filter.alive("detector"));
+
+  const PeerService successor(GetParam(), domain());
+  EXPECT_LT(seconds_until([&] { return filter.alive("detector") && !tells("filter", "peer.detector.dead"); }), 15);
+}
+
+TEST_P(Health, a_stopped_peer_is_named_hung_until_it_goes_on) {
+  Heartbeat filter(*here_, "filter", stop_);
+  const PeerService peer(GetParam(), domain());
+  ASSERT_LT(seconds_until([&] { return filter.alive("detector"); }), 15);
+
+  peer.signal(SIGSTOP);
+  const double hung_s = seconds_until([&] { return tells("filter", "peer.detector.hung"); });
+  std::printf("%s: stopped peer named after %.2f s\n", GetParam().c_str(), hung_s);
+  EXPECT_LT(hung_s, kPatienceS);
+
+  peer.signal(SIGCONT);
+  EXPECT_LT(seconds_until([&] { return filter.alive("detector") && !tells("filter", "peer.detector.hung"); }), 15);
+}
+
+TEST_P(Health, a_stuck_worker_is_told_by_its_own_heartbeat) {
+  Heartbeat slam(*here_, "slam", stop_);
+  slam.set_state(msg::ServiceState::kRunning);
+  slam.watch_progress(1500ms);
+  slam.tick();  // and no more
+  const double hung_s = seconds_until([&] { return tells("slam", "hung"); });
+  std::printf("%s: stuck worker told after %.2f s\n", GetParam().c_str(), hung_s);
+  EXPECT_LT(hung_s, kPatienceS);
+  EXPECT_EQ(heard("slam")->state, msg::ServiceState::kDegraded);
+
+  slam.tick();
+  EXPECT_LT(seconds_until([&] { return heard("slam")->state == msg::ServiceState::kRunning; }), 15);
+}
+
+TEST_P(Health, an_orderly_end_is_no_death) {
+  Heartbeat filter(*here_, "filter", stop_);
+  {
+    Heartbeat slam(*listener_, "slam", stop_);
+    ASSERT_LT(seconds_until([&] { return filter.alive("slam"); }), 15);
+  }
+  EXPECT_LT(seconds_until([&] { return !filter.alive("slam"); }), 15);
+  std::this_thread::sleep_for(600ms);  // the time in which a death would be told
+  EXPECT_FALSE(tells("filter", "peer.slam.dead"));
+}
+
+TEST_P(Health, refused_peers_are_counted_by_topic) {
+  Heartbeat filter(*here_, "filter", stop_);
+  const auto writer = here_->writer(bus::topics::kFeatures);  // volatile
+  const bus::Topic<msg::FeatureFrame> asks_for_more{bus::topics::kFeatures.name, bus::QosProfile::kKeyframes};
+  const auto reader = listener_->reader<msg::FeatureFrame>(asks_for_more, [](const auto&) {});
+  EXPECT_LT(seconds_until([&] { return tells("filter", "topic.rtd/features.incompatible_qos"); }), kPatienceS);
+}
+
+TEST_P(Health, another_type_on_a_topic_is_counted) {
+  if (GetParam() == "cyclonedds") GTEST_SKIP() << "Cyclone DDS itself does not tell";
+  Heartbeat slam(*here_, "slam", stop_);
+  const auto writer = here_->writer(bus::topics::kOdometry);
+  const bus::Topic<msg::PoseStamped> mistaken{bus::topics::kOdometry.name, bus::QosProfile::kPose};
+  const auto reader = listener_->reader<msg::PoseStamped>(mistaken, [](const auto&) {});
+  EXPECT_LT(seconds_until([&] { return tells("slam", "topic.rt/slam/odometry.type_mismatch"); }), kPatienceS);
+}
+
+std::vector<std::string> vendors() {
+  std::vector<std::string> all = bus::available_vendors();
+  all.erase(std::remove(all.begin(), all.end(), "inprocess"), all.end());
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Vendors, Health, ::testing::ValuesIn(vendors()), [](const auto& parameter) { return parameter.param; });
+
+}  // namespace
+}  // namespace rtd::service

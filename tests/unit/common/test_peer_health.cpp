@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "common/service/peer_health.hpp"
+
+namespace rtd::service {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+TEST(PeerHealth, a_gone_process_is_dead_before_the_others_wait_half_a_second) {
+  EXPECT_EQ(judge({250 * kMs, ProcessState::kGone}), PeerHealth::kAlive) << "its last word is fresh";
+  EXPECT_EQ(judge({350 * kMs, ProcessState::kGone}), PeerHealth::kDead);
+}
+
+TEST(PeerHealth, a_silent_process_that_is_there_is_hung_within_two_seconds) {
+  EXPECT_EQ(judge({900 * kMs, ProcessState::kRunning}), PeerHealth::kAlive) << "may wait for the processor";
+  EXPECT_EQ(judge({1500 * kMs, ProcessState::kRunning}), PeerHealth::kHung);
+  EXPECT_EQ(judge({1500 * kMs, ProcessState::kStopped}), PeerHealth::kHung);
+}
+
+TEST(PeerHealth, silence_from_another_host_is_death) {
+  EXPECT_EQ(judge({900 * kMs, ProcessState::kUnknown}), PeerHealth::kAlive);
+  EXPECT_EQ(judge({1500 * kMs, ProcessState::kUnknown}), PeerHealth::kDead);
+}
+
+TEST(PeerHealth, the_state_of_a_process_is_read) {
+  EXPECT_EQ(process_state(getpid()), ProcessState::kRunning);
+  const pid_t child = fork();
+  if (child == 0) {
+    while (true) pause();
+  }
+  kill(child, SIGSTOP);
+  waitpid(child, nullptr, WUNTRACED);
+  EXPECT_EQ(process_state(child), ProcessState::kStopped);
+  kill(child, SIGKILL);
+  siginfo_t ended{};
+  waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT);
+  EXPECT_EQ(process_state(child), ProcessState::kGone) << "a zombie";
+  waitpid(child, nullptr, 0);
+  EXPECT_EQ(process_state(child), ProcessState::kGone);
+}
+
+TEST(ProgressWatch, only_a_worker_that_has_begun_and_does_not_wait_gets_stuck) {
+  ProgressWatch watch;
+  watch.tick(1);
+  EXPECT_EQ(watch.stuck_ns(9'000 * kMs), 0) << "no limit";
+  watch.set_limit(1500 * kMs);
+  watch.tick(1000 * kMs);
+  EXPECT_EQ(watch.stuck_ns(2000 * kMs), 0);
+  EXPECT_EQ(watch.stuck_ns(2600 * kMs), 1600 * kMs);
+  watch.idle();
+  EXPECT_EQ(watch.stuck_ns(9000 * kMs), 0);
+}
+
+}  // namespace
+}  // namespace rtd::service
