@@ -46,10 +46,11 @@ void apply_bus_environment(ConfigBinder& binder) {
 
 namespace {
 
-/// "rtd-slam" is the enclave /rtd/slam, the launcher "rtd" is /rtd/launcher.
+/// "rtd-slam" is the enclave /rtd/slam, the launcher "rtd" with its commands is /rtd/launcher.
 bus::SecurityOptions security_options(const SecurityConfig& config, const std::string& participant_name) {
   if (!config.enabled) return {};
-  const std::string role = participant_name.starts_with("rtd-") ? participant_name.substr(4) : "launcher";
+  const bool own = participant_name.starts_with("rtd-") && participant_name != "rtd-doctor";
+  const std::string role = own ? participant_name.substr(4) : "launcher";
   return {config.keystore.empty() ? security::default_keystore() : config.keystore,
           config.enclave.empty() ? "/rtd/" + role : config.enclave};
 }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "common/bus/fastdds/screening_transport.hpp"
 #include "common/bus/network.hpp"
 
 namespace rtd::bus::fastdds {
@@ -109,7 +110,7 @@ void find_by_server(const BusOptions& options, DiscoveryScope scope, rtps::Built
 void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope, DomainParticipantQos& qos) {
   qos.transport().use_builtin_transports = false;
   if (options.shared_memory) qos.transport().user_transports.push_back(shared_memory_transport(options));
-  qos.transport().user_transports.push_back(udp_transport(options, limits));
+  qos.transport().user_transports.push_back(screened(udp_transport(options, limits), options.on_problem));
   // Discovery over UDP only, samples over shared memory: the kernel closes the socket of a killed process at once.
   auto& builtin = qos.wire_protocol().builtin;
   if (options.network.discovery_server.empty()) {

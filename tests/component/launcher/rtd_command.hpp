@@ -53,6 +53,7 @@ class RtdCommand {
     return output_.find(text) != std::string::npos;
   }
   const std::string& output() const { return output_; }
+  ProcessId process() const { return process_; }
 
  private:
   std::string executable_, output_;

@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Malformed RTPS datagrams at each service of a real run: what the services say to each other is captured, changed and
+// sent to them again; and well-formed RTPS with malformed samples. RTD_FUZZ_PACKETS: how many at each service and on
+// each topic (default 300); RTD_FUZZ_SEED.
+#include <gmock/gmock.h>
+
+#include <cstdio>
+#include <mutex>
+
+#include "common/bus/backend.hpp"
+#include "common/bus/raw_bus.hpp"
+#include "tests/fuzz/mcap/mutation.hpp"
+#include "tests/fuzz/rtps/loopback_capture.hpp"
+#include "tests/fuzz/rtps/service_run.hpp"
+#include "tests/fuzz/rtps/udp_target.hpp"
+
+namespace rtd::fuzz {
+namespace {
+
+std::uint64_t number(const char* variable, std::uint64_t otherwise) {
+  const char* const text = std::getenv(variable);
+  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
+}
+
+/// Reads every topic, in another vendor where there is one: then the samples too go over UDP, and can be captured.
+class Listener {
+ public:
+  explicit Listener(const std::string& vendor, std::uint32_t domain) {
+    bus::BusOptions options;
+    const std::vector<std::string> vendors = bus::available_vendors();
+    const std::string other = vendor == "fastdds" ? "cyclonedds" : "fastdds";
+    const bool there = std::find(vendors.begin(), vendors.end(), other) != vendors.end();
+    options.vendor = there ? other : vendor;
+    options.domain = domain;
+    options.participant_name = "fuzz-listener";
+    bus_ = bus::connect_raw(options);
+    bus_->watch([this](const bus::TopicWriter& writer, bus::WriterChange change) {
+      if (change != bus::WriterChange::kAppeared || topics_.contains(writer.topic.name)) return;
+      try {
+        topics_[writer.topic.name] = bus_->reader(writer.topic, {.reliable = writer.qos.reliable}, {});
+      } catch (const bus::BusError&) {  // two types on a topic: one is enough
+      }
+    });
+  }
+  ~Listener() { bus_->watch(nullptr); }
+
+ private:
+  std::shared_ptr<bus::RawBus> bus_;
+  std::map<std::string, std::unique_ptr<bus::RawReader>> topics_;
+};
+
+Bytes malformed(const std::vector<Bytes>& seeds, std::mt19937_64& random) {
+  Bytes datagram = seeds[random() % seeds.size()];
+  address_to_anybody(datagram, random);
+  if (random() % 3 != 0) mutate_submessages(datagram, random);
+  if (random() % 3 == 0) datagram = mcap::mutate(datagram, seeds[random() % seeds.size()], random);
+  if (datagram.size() > 65000) datagram.resize(65000);
+  return datagram;
+}
+
+class FuzzRtps : public ::testing::TestWithParam<std::string> {
+ protected:
+  /// Returns how many were sent.
+  std::uint64_t attack(ServiceRun& run, const std::string& service, const std::vector<Bytes>& seeds,
+                       std::uint64_t packets) {
+    constexpr std::uint64_t kBurst = 500;
+    const std::uint32_t first = 7400 + 250 * domain_;
+    std::uint64_t sent = 0;
+    while (sent < packets) {
+      if (!run.wait_until_alive(service, std::chrono::seconds(20))) return sent;
+      const UdpTarget target(run.pid_of(service), first, first + 249);
+      while (sent < packets && run.lives(service) && !target.ports().empty()) {
+        for (std::uint64_t i = 0; i < kBurst && sent < packets; ++i, ++sent)
+          target.send(malformed(seeds, random_), target.ports()[random_() % target.ports().size()]);
+        target.wait_until_read();
+        run.let_run(std::chrono::milliseconds(0));
+      }
+      if (target.ports().empty()) run.let_run(std::chrono::milliseconds(100));
+    }
+    return sent;
+  }
+
+  const std::uint32_t domain_ = 150 + static_cast<std::uint32_t>(getpid()) % 40;
+  std::mt19937_64 random_{number("RTD_FUZZ_SEED", 1)};
+};
+
+/// The suite has time for one of these.
+bool asked_for() {
+  return std::getenv("RTD_FUZZ_PACKETS") != nullptr;
+}
+
+TEST_P(FuzzRtps, services_survive_malformed_datagrams_or_are_restarted) {
+  if (GetParam() != bus::dds_vendors().front() && !asked_for()) GTEST_SKIP() << "takes long: set RTD_FUZZ_PACKETS";
+  LoopbackCapture capture(domain_);
+  if (!capture.permitted()) GTEST_SKIP() << "capturing on the loopback interface needs root (CAP_NET_RAW)";
+  ServiceRun run(GetParam(), domain_);
+  ASSERT_TRUE(run.wait_for_frames()) << run.output();
+  std::vector<Bytes> seeds;
+  {
+    const Listener listener(GetParam(), domain_);
+    seeds = capture.listen(std::chrono::seconds(3), 3000);
+  }
+  ASSERT_GT(seeds.size(), 100U) << "nothing to mutate";
+
+  const std::uint64_t packets = number("RTD_FUZZ_PACKETS", 300);
+  for (const std::string& service : run.services()) {
+    const std::uint64_t sent = attack(run, service, seeds, packets);
+    EXPECT_EQ(sent, packets) << service << " did not come back\n" << run.output();
+    std::printf("%s: %llu malformed datagrams of %zu seeds, %s\n", service.c_str(),
+                static_cast<unsigned long long>(sent), seeds.size(), run.lives(service) ? "lives" : "died");
+    std::fflush(stdout);
+  }
+  for (const std::string& service : run.services())
+    EXPECT_TRUE(run.wait_until_alive(service, std::chrono::seconds(20))) << service << "\n" << run.output();
+  for (const std::string& line : run.deaths()) std::printf("  %s\n", line.c_str());
+  run.end();
+}
+
+/// Genuine samples of each topic, by a reader of bytes.
+class Samples {
+ public:
+  explicit Samples(bus::RawBus& bus) : bus_(bus) {
+    bus_.watch([this](const bus::TopicWriter& writer, bus::WriterChange change) {
+      if (change != bus::WriterChange::kAppeared || writer.own) return;
+      const std::lock_guard lock(mutex_);
+      Topic& topic = topics_[writer.topic.name];
+      if (topic.reader != nullptr) return;
+      topic.writer = writer;
+      bus::RawHandlers handlers;
+      handlers.on_sample = [this, &topic](const bus::RawSample& sample) {
+        const std::lock_guard sample_lock(mutex_);
+        if (topic.samples.size() < 20) topic.samples.emplace_back(sample.cdr().begin(), sample.cdr().end());
+      };
+      topic.reader = bus_.reader(
+          writer.topic, {.transient_local = writer.qos.durability != bus::RawQos::Durability::kVolatile}, handlers);
+    });
+  }
+  ~Samples() { stop(); }
+
+  struct Topic {
+    bus::TopicWriter writer;
+    std::vector<Bytes> samples;
+    std::unique_ptr<bus::RawReader> reader;
+  };
+  /// The samples so far; no more come.
+  std::map<std::string, Topic>& stop() {
+    bus_.watch(nullptr);
+    for (auto& [name, topic] : topics_) topic.reader.reset();
+    return topics_;
+  }
+
+ private:
+  bus::RawBus& bus_;
+  std::mutex mutex_;
+  std::map<std::string, Topic> topics_;
+};
+
+/// Writes changed samples on the topic, no faster than its readers take them. Returns how many.
+std::uint64_t write_malformed(bus::RawBus& bus, const Samples::Topic& topic, std::uint64_t count, ServiceRun& run,
+                              std::mt19937_64& random) {
+  bus::RawWriterOptions options{.qos = topic.writer.qos};
+  options.qos.depth = 16;
+  const auto writer = bus.writer(topic.writer.topic, options);
+  for (int i = 0; i < 30 && writer->matched() == 0; ++i) run.let_run(std::chrono::milliseconds(50));
+  if (writer->matched() == 0) return 0;  // nobody listens
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const Bytes& sample = topic.samples[random() % topic.samples.size()];
+    Bytes changed = mcap::mutate(sample, topic.samples[random() % topic.samples.size()], random);
+    if (changed.size() < 4) changed.resize(4);
+    if (random() % 8 != 0) std::copy_n(sample.begin(), 4, changed.begin());  // mostly with a right header
+    writer->write(changed);
+    if (i % 16 != 15) continue;
+    writer->wait_acknowledged(200);
+    run.let_run(std::chrono::milliseconds(0));
+  }
+  writer->wait_acknowledged(2000);
+  return count;
+}
+
+TEST_P(FuzzRtps, services_drop_malformed_samples_and_go_on) {
+  if (!asked_for()) GTEST_SKIP() << "takes long: set RTD_FUZZ_PACKETS";
+  ServiceRun run(GetParam(), domain_);
+  ASSERT_TRUE(run.wait_for_frames()) << run.output();
+  bus::BusOptions options;
+  options.vendor = GetParam();
+  options.domain = domain_;
+  options.participant_name = "fuzz-writer";
+  const auto bus = bus::connect_raw(options);
+  Samples samples(*bus);
+  run.let_run(std::chrono::seconds(4));
+  const std::uint64_t packets = number("RTD_FUZZ_PACKETS", 300);
+  std::uint64_t topics = 0;
+  for (auto& [name, topic] : samples.stop()) {
+    if (topic.samples.empty()) continue;
+    constexpr std::uint64_t kLargeBytes = 1 << 20;  // of raw frames fewer: 1.5 MB each
+    const std::uint64_t asked = topic.samples.front().size() > kLargeBytes ? 1 + packets / 50 : packets;
+    const std::uint64_t written = write_malformed(*bus, topic, asked, run, random_);
+    topics += written > 0 ? 1 : 0;
+    std::printf("%s: %llu malformed samples\n", name.c_str(), static_cast<unsigned long long>(written));
+    std::fflush(stdout);
+  }
+  EXPECT_GE(topics, 5U) << "on fewer topics than services read";
+  for (const std::string& service : run.services())
+    EXPECT_TRUE(run.wait_until_alive(service, std::chrono::seconds(20))) << service << "\n" << run.output();
+  for (const std::string& line : run.deaths()) std::printf("  %s\n", line.c_str());
+  run.end();
+}
+
+INSTANTIATE_TEST_SUITE_P(Vendors, FuzzRtps, ::testing::Values(RTD_FUZZ_VENDORS),
+                         [](const auto& vendor) { return vendor.param; });
+
+}  // namespace
+}  // namespace rtd::fuzz

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <span>
+#include <vector>
+
+namespace rtd::fuzz {
+
+using Bytes = std::vector<std::byte>;
+
+/// Makes the datagram one for whoever gets it: the participant in INFO_DESTINATION becomes "any", and so do the readers
+/// that DATA, DATA_FRAG, HEARTBEAT and GAP name, half of the time. Otherwise a receiver drops it unread.
+void address_to_anybody(Bytes& datagram, std::mt19937_64& random);
+
+/// Changes what RTPS parsers trust: submessage lengths and flags, sequence numbers and bitmap sizes, fragment numbers,
+/// lengths and contents of parameters, CDR headers; or the order and number of submessages.
+void mutate_submessages(Bytes& datagram, std::mt19937_64& random);
+
+}  // namespace rtd::fuzz
