@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -66,8 +67,9 @@ class ScratchFolder {
  public:
   ScratchFolder() {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(testing::TempDir()) /
-            ("rtd_" + std::string(test->name()) + "_" + std::to_string(getpid()));
+    std::string name = test->name();
+    std::replace(name.begin(), name.end(), '/', '_');  // of a test with parameters
+    path_ = std::filesystem::path(testing::TempDir()) / ("rtd_" + name + "_" + std::to_string(getpid()));
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
