@@ -7,6 +7,7 @@
 #include "common/bus/inprocess/inprocess_backend.hpp"
 #include "common/bus/inprocess/inprocess_raw_bus.hpp"
 #include "common/bus/network.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/bus/security_guard.hpp"
 #ifdef RTD_HAVE_CYCLONEDDS
@@ -72,6 +73,10 @@ const Vendor& vendor_of(const BusOptions& options) {
                  " (--dds, RTD_DDS)");
 }
 
+void require_ports(const BusOptions& options) {
+  if (options.vendor != "inprocess" && options.network.multicast) require_discovery_port(options.domain);
+}
+
 }  // namespace
 
 std::vector<std::string> available_vendors() {
@@ -88,6 +93,7 @@ std::vector<std::string> dds_vendors() {
 
 std::shared_ptr<Bus> connect(const BusOptions& options) {
   const Vendor& vendor = vendor_of(options);
+  require_ports(options);
   if (!options.security.enabled()) return std::make_shared<Bus>(vendor.create(options));
   security::Enclave enclave = require_enclave(options);
   return std::make_shared<Bus>(guard(vendor.create(options), std::move(enclave)));
@@ -95,6 +101,7 @@ std::shared_ptr<Bus> connect(const BusOptions& options) {
 
 std::shared_ptr<RawBus> connect_raw(const BusOptions& options) {
   const Vendor& vendor = vendor_of(options);
+  require_ports(options);
   if (!options.security.enabled()) return vendor.create_raw(options);
   security::Enclave enclave = require_enclave(options);
   return guard(vendor.create_raw(options), std::move(enclave));
