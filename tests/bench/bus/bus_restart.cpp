@@ -144,6 +144,8 @@ class Campaign {
     for (int i = 0; i < options_.restarts; ++i) {
       Clock::time_point last = hear(*publisher, std::chrono::milliseconds(500 + random() % 500));
       doomed_.merge(shm_files_of(publisher->pid()));
+      // At any time between two frames: hear() ends just when one has come, its writer perhaps still about it.
+      std::this_thread::sleep_for(std::chrono::microseconds(random() % 33'333));
       publisher->kill_now();
       while (const auto late = arrivals_.pop_for(0ms)) last = late->time;  // was under way
       publisher = std::make_unique<Publisher>(options_);
