@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "common/service/monotonic_clock.hpp"
@@ -70,6 +71,20 @@ void Heartbeat::set_metric(const std::string& name, double value) {
   set({name, value});
 }
 
+namespace {
+
+constexpr std::size_t kMostPeers = 100;  // whoever may write to the bus could make up names without end
+
+bool is_name(const std::string& service) {
+  constexpr std::size_t kLongest = 64;
+  return !service.empty() && service.size() <= kLongest &&
+         std::all_of(service.begin(), service.end(), [](unsigned char c) {
+           return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '/' || c == '.';
+         });
+}
+
+}  // namespace
+
 /// Under the lock.
 void Heartbeat::set(const msg::Metric& metric) {
   const auto found = std::find_if(own_.metrics.begin(), own_.metrics.end(),
@@ -82,6 +97,7 @@ void Heartbeat::set(const msg::Metric& metric) {
 }
 
 void Heartbeat::receive(const msg::ServiceStatus& status) {
+  if (!is_name(status.service)) return;
   const std::int64_t arrival_ns = realtime_ns();
   std::function<void(const msg::ServiceStatus&)> callback;
   bool refused = false;
@@ -90,13 +106,17 @@ void Heartbeat::receive(const msg::ServiceStatus& status) {
     if (status.service == own_.service) {
       const bool self = status.pid == own_.pid && status.started_ns == own_.started_ns;
       // Heartbeats are volatile: whoever is heard is alive. The older instance stays, the younger one ends.
-      if (!self && status.state != msg::ServiceState::kFinished && status.started_ns < own_.started_ns) {
+      // One heartbeat is not believed: it may be anybody's.
+      const bool older = !self && status.state != msg::ServiceState::kFinished && status.started_ns < own_.started_ns;
+      const bool again = older && twin_ == std::pair(status.pid, status.started_ns);
+      if (older) twin_ = {status.pid, status.started_ns};
+      if (again) {
         duplicate_ = fmt::format(
             "another {} (pid {}) already runs in this DDS domain: stop it first or choose another domain with --domain",
             status.service, status.pid);
         refused = true;
       }
-    } else {
+    } else if (peers_.size() < kMostPeers || peers_.contains(status.service)) {
       Peer& peer = peers_[status.service];
       peer.status = status;
       peer.heard_ns = monotonic_ns();

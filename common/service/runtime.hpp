@@ -11,6 +11,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/bus_factory.hpp"
@@ -73,6 +74,7 @@ class Heartbeat {
   ProgressWatch progress_;
   bool stuck_ = false;
   std::map<std::string, bus::TopicTrouble> troubles_;
+  std::pair<std::int64_t, std::int64_t> twin_{};  ///< pid and start of an older instance that was heard once
   std::mutex publish_mutex_;
   bus::Writer<msg::ServiceStatus> writer_;
   bus::Reader<msg::ServiceStatus> reader_;
