@@ -32,6 +32,7 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev
   python3 python3-numpy python3-onnx python3-opencv
   python3-rosbag python3-sensor-msgs
+  iproute2 nftables
   curl ca-certificates
 )
 
