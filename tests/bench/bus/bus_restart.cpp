@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -52,6 +53,7 @@ std::shared_ptr<Bus> connect_bench(const Options& options) {
 
 /// The process that is killed: cleans and joins as a service does.
 int publish(const Options& options) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // not to be heard in the next campaign
   const auto bus = connect_bench(options);
   std::thread([] { remove_shm_leftovers(); }).detach();
   auto frames = bus->writer(topics::kFrame);
