@@ -89,7 +89,7 @@ void MappingWorker::finish() {
   thread_.join();
   const std::lock_guard mapper_lock(mapper_mutex_);
   mapper_.finish_adjustment();
-  publish();
+  if (!mapper_.map().keyframes().empty()) publish();
 }
 
 void MappingWorker::read(const std::function<void(const Map&)>& look) const {

@@ -85,6 +85,15 @@ TEST(SlamSystem, gives_the_same_bits_twice) {
   EXPECT_EQ(texts[0], texts[1]);
 }
 
+TEST(SlamSystem, ends_without_having_seen_a_frame) {
+  for (const MappingMode mode : {MappingMode::kSynchronous, MappingMode::kThreaded}) {
+    SlamSystem slam = make_slam(mode);
+    slam.finish();
+    EXPECT_TRUE(slam.trajectory().empty());
+    EXPECT_TRUE(slam.map_points().empty());
+  }
+}
+
 TEST(SlamSystem, maps_in_a_thread_as_well) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam(MappingMode::kThreaded);
