@@ -4,6 +4,7 @@
 // Raw endpoints among themselves, with every vendor.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
@@ -28,7 +29,7 @@ std::vector<std::byte> cdr(std::uint32_t number, std::size_t size = 64) {
   std::vector<std::byte> bytes(size, std::byte{0x5a});
   const std::uint8_t header[] = {0, 1, 0, 0};
   std::memcpy(bytes.data(), header, sizeof(header));
-  std::memcpy(bytes.data() + 4, &number, sizeof(number));
+  std::memcpy(bytes.data() + 4, &number, std::min(sizeof(number), size - 4));
   return bytes;
 }
 
