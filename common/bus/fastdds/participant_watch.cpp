@@ -28,8 +28,9 @@ void note_type(const eprosima::fastdds::dds::DomainParticipant& participant, con
 
 }  // namespace
 
-void ParticipantWatch::on_participant_discovery(Participant*, rtps::ParticipantDiscoveryInfo&& info) {
+void ParticipantWatch::on_participant_discovery(Participant* participant, rtps::ParticipantDiscoveryInfo&& info) {
   if (info.status == rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) greeter_.greet();
+  if (next_ != nullptr) next_->on_participant_discovery(participant, std::move(info));
 }
 
 void ParticipantWatch::on_publisher_discovery(Participant* participant, rtps::WriterDiscoveryInfo&& info) {

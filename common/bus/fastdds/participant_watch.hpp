@@ -12,7 +12,7 @@ namespace rtd::bus::fastdds {
 /// Hears of the other participants of a domain and of their endpoints.
 class ParticipantWatch : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
-  /// `next`, if any, hears of endpoints too.
+  /// `next`, if any, hears all of it too.
   explicit ParticipantWatch(eprosima::fastdds::dds::DomainParticipantListener* next) : next_(next) {}
   Greeter& greeter() { return greeter_; }
   TopicTypes& types() { return types_; }
