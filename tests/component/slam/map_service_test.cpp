@@ -120,6 +120,7 @@ TEST_F(MapServiceTest, says_that_it_looks_for_its_place) {
   empty->count = 0;
   ASSERT_TRUE(features_.write(*empty));
   ASSERT_TRUE(wait_state(msg::ServiceState::kDegraded, "relocalizing"));
+  ASSERT_TRUE(results_.wait_count(1));  // comes on another topic than the state
   EXPECT_EQ(results_.all().back()->state, msg::TrackingState::kRelocalizing);
 }
 
