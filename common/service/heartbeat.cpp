@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/realtime_clock.hpp"
 #include "common/service/runtime.hpp"
 
 namespace rtd::service {
@@ -15,10 +16,14 @@ namespace {
 
 constexpr std::chrono::milliseconds kPeriod{200}, kLookPeriod{100};
 constexpr std::int64_t kGoneAfterNs = 700'000'000;  // three heartbeats missed, with a margin for a busy host
+constexpr std::size_t kMostPeers = 100;             // whoever may write to the bus could make up names without end
 
-std::int64_t realtime_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
+bool is_name(const std::string& service) {
+  constexpr std::size_t kLongest = 64;
+  return !service.empty() && service.size() <= kLongest &&
+         std::all_of(service.begin(), service.end(), [](unsigned char c) {
+           return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '/' || c == '.';
+         });
 }
 
 }  // namespace
@@ -70,20 +75,6 @@ void Heartbeat::set_metric(const std::string& name, double value) {
   const std::lock_guard lock(mutex_);
   set({name, value});
 }
-
-namespace {
-
-constexpr std::size_t kMostPeers = 100;  // whoever may write to the bus could make up names without end
-
-bool is_name(const std::string& service) {
-  constexpr std::size_t kLongest = 64;
-  return !service.empty() && service.size() <= kLongest &&
-         std::all_of(service.begin(), service.end(), [](unsigned char c) {
-           return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '/' || c == '.';
-         });
-}
-
-}  // namespace
 
 /// Under the lock.
 void Heartbeat::set(const msg::Metric& metric) {

@@ -4,26 +4,14 @@
 // The part of the heartbeat that looks after the health of all: peers, the own worker, the topics.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/realtime_clock.hpp"
 #include "common/service/runtime.hpp"
+#include "common/service/status_metrics.hpp"
 
 namespace rtd::service {
 namespace {
-
-std::int64_t realtime_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
-double metric_of(const msg::ServiceStatus& status, const char* name) {
-  for (const msg::Metric& metric : status.metrics) {
-    if (metric.name == name) return metric.value;
-  }
-  return 0;
-}
 
 void add_troubles(const std::string& topic, const bus::TopicTrouble& trouble, std::vector<msg::Metric>& metrics) {
   const auto add = [&](const char* what, std::uint64_t count) {
@@ -66,11 +54,11 @@ void Heartbeat::watch_progress(std::chrono::milliseconds limit) {
 bool Heartbeat::check_peers() {
   const std::lock_guard lock(mutex_);
   const std::int64_t now_ns = monotonic_ns();
-  const double own_host = metric_of(own_, "host_id");
+  const double own_host = find_metric(own_, "host_id").value_or(0);
   bool news = false;
   for (auto& [name, peer] : peers_) {
     PeerEvidence evidence{now_ns - peer.heard_ns, ProcessState::kUnknown};
-    const bool here = metric_of(peer.status, "host_id") == own_host;
+    const bool here = find_metric(peer.status, "host_id").value_or(0) == own_host;
     if (evidence.silent_ns >= kSuspectAfterNs && here) evidence.process = process_state(peer.status.pid);
     const bool ended = peer.status.state == msg::ServiceState::kFinished;
     const PeerHealth health = ended ? PeerHealth::kAlive : judge(evidence);

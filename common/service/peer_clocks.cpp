@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -12,17 +11,12 @@
 
 #include "common/bus/network.hpp"
 #include "common/service/log.hpp"
+#include "common/service/status_metrics.hpp"
 
 namespace rtd::service {
 namespace {
 
 constexpr double kWorthTellingMs = 10;  // above, latencies across hosts and stamps of different hosts mislead
-
-std::optional<double> metric(const msg::ServiceStatus& status, const std::string& name) {
-  const auto found = std::find_if(status.metrics.begin(), status.metrics.end(),
-                                  [&](const msg::Metric& candidate) { return candidate.name == name; });
-  return found == status.metrics.end() ? std::nullopt : std::optional(found->value);
-}
 
 }  // namespace
 
@@ -36,12 +30,12 @@ double PeerClocks::this_host_id() {
 }
 
 std::vector<msg::Metric> PeerClocks::received(const msg::ServiceStatus& status, std::int64_t arrival_ns) {
-  const std::optional<double> host_id = metric(status, "host_id");
+  const std::optional<double> host_id = find_metric(status, "host_id");
   if (!host_id || *host_id == own_host_id_) return {};
   clocks_.heard(status.service, status.stamp_ns, arrival_ns);
   const std::string prefix = "clock." + status.service + ".";
   std::vector<msg::Metric> told = {{prefix + "heard_ms", *clocks_.heard_ms(status.service)}};
-  const std::optional<double> peer_hears_ms = metric(status, "clock." + own_service_ + ".heard_ms");
+  const std::optional<double> peer_hears_ms = find_metric(status, "clock." + own_service_ + ".heard_ms");
   if (!peer_hears_ms) return told;
   const ClockOffset offset = *clocks_.offset(status.service, *peer_hears_ms);
   told.push_back({prefix + "offset_ms", offset.offset_ms});

@@ -19,14 +19,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::shared_ptr<Bus> connect_to(const std::string& vendor) {
-  BusOptions options;
-  options.vendor = vendor;
-  options.domain = test_domain();
-  options.participant_name = "bus-test";
-  return connect(options);
-}
-
 template <class T>
 void wait_for_reader(const Writer<T>& writer) {
   for (int i = 0; writer.matched() == 0; ++i) {

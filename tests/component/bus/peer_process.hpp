@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -52,6 +53,15 @@ class PeerProcess {
 /// A domain of this process's own, so that tests can run side by side.
 inline std::uint32_t test_domain() {
   return 100 + static_cast<std::uint32_t>(getpid()) % 100;
+}
+
+/// A connection to that domain.
+inline std::shared_ptr<Bus> connect_to(const std::string& vendor) {
+  BusOptions options;
+  options.vendor = vendor;
+  options.domain = test_domain();
+  options.participant_name = "bus-test";
+  return connect(options);
 }
 
 /// The suffix of a test that is run for a vendor.

@@ -23,14 +23,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::shared_ptr<Bus> connect_to(const std::string& vendor) {
-  BusOptions options;
-  options.vendor = vendor;
-  options.domain = test_domain();
-  options.participant_name = "bus-test";
-  return connect(options);
-}
-
 class DdsProcesses : public testing::TestWithParam<std::string> {};
 
 TEST_P(DdsProcesses, frames_arrive_whole_and_in_order) {
