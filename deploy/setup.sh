@@ -24,7 +24,7 @@ root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 # Why each one is needed: docs/dependencies.md
 packages=(
   build-essential cmake ninja-build
-  libfastrtps-dev libfastcdr-dev fastddsgen default-jre-headless
+  libfastrtps-dev libfastcdr-dev fastddsgen fastdds-tools default-jre-headless
   cyclonedds-dev cyclonedds-tools
   libopencv-dev libeigen3-dev libceres-dev
   libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libtinyxml2-dev

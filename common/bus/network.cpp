@@ -138,4 +138,13 @@ void require_network(const BusOptions& options) {
                    ": without a port, write HOST:PORT (fast-discovery-server takes 11811)");
 }
 
+std::string no_server_problem(const BusOptions& options) {
+  const std::string& server = options.network.discovery_server;
+  const std::size_t colon = server.find(':');
+  const std::string host = server.substr(0, colon), port = colon == std::string::npos ? "" : server.substr(colon + 1);
+  return "no Discovery Server answers at " + server + ", without which nobody is found: start it there with " +
+         "'fast-discovery-server -i 0 -l " + host + " -p " + port + "' (id 0), let UDP port " + port +
+         " through the firewall, or correct --discovery-server";
+}
+
 }  // namespace rtd::bus

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -40,5 +41,10 @@ std::string host_partition();
 /// All that can be checked without a vendor. Throws BusError: peers outside while only loopback is used, a peer that
 /// cannot be resolved, a Discovery Server with a vendor other than Fast DDS.
 void require_network(const BusOptions& options);
+
+/// How long a Discovery Server may take until it is called missing. It answers within some ms; ours ask every 0.5 s.
+inline constexpr std::chrono::milliseconds kServerPatience{3000};
+/// What to tell then.
+std::string no_server_problem(const BusOptions& options);
 
 }  // namespace rtd::bus

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 #include "common/bus/fastdds/screening_transport.hpp"
 #include "common/bus/network.hpp"
@@ -106,6 +107,12 @@ void find_by_server(const BusOptions& options, DiscoveryScope scope, rtps::Built
 }
 
 }  // namespace
+
+rtps::GuidPrefix_t server_prefix() {
+  rtps::GuidPrefix_t prefix;
+  std::istringstream(kServerGuidPrefix) >> prefix;
+  return prefix;
+}
 
 void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope, DomainParticipantQos& qos) {
   qos.transport().use_builtin_transports = false;

@@ -20,4 +20,7 @@ enum class DiscoveryScope {
 void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope,
                  eprosima::fastdds::dds::DomainParticipantQos& qos);
 
+/// Whose Discovery Server is asked: that of `fast-discovery-server -i 0`.
+eprosima::fastrtps::rtps::GuidPrefix_t server_prefix();
+
 }  // namespace rtd::bus::fastdds

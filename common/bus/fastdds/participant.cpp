@@ -89,6 +89,7 @@ Participant::Participant(const BusOptions& options, const HostLimits& limits, dd
   const DiscoveryScope scope = listener == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;
   participant_ = create_participant(*factory_, options, limits, scope, heard);
   watch_.greeter().start(*participant_);
+  watch_.server().start(options);
   create_publishers(options.network);
 }
 
@@ -118,6 +119,7 @@ dds::Subscriber& Participant::subscriber(const std::string& topic) {
 Participant::~Participant() {
   if (participant_ == nullptr) return;
   watch_.greeter().stop();
+  watch_.server().stop();
   silence();
   participant_->delete_contained_entities();
   factory_->delete_participant(participant_);

@@ -29,7 +29,10 @@ void note_type(const eprosima::fastdds::dds::DomainParticipant& participant, con
 }  // namespace
 
 void ParticipantWatch::on_participant_discovery(Participant* participant, rtps::ParticipantDiscoveryInfo&& info) {
-  if (info.status == rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) greeter_.greet();
+  if (info.status == rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) {
+    greeter_.greet();
+    server_.heard(info.info.m_guid.guidPrefix);
+  }
   if (next_ != nullptr) next_->on_participant_discovery(participant, std::move(info));
 }
 

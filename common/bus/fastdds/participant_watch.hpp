@@ -5,6 +5,7 @@
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 
 #include "common/bus/fastdds/greeter.hpp"
+#include "common/bus/fastdds/server_watch.hpp"
 #include "common/bus/topic_types.hpp"
 
 namespace rtd::bus::fastdds {
@@ -15,6 +16,7 @@ class ParticipantWatch : public eprosima::fastdds::dds::DomainParticipantListene
   /// `next`, if any, hears all of it too.
   explicit ParticipantWatch(eprosima::fastdds::dds::DomainParticipantListener* next) : next_(next) {}
   Greeter& greeter() { return greeter_; }
+  ServerWatch& server() { return server_; }
   TopicTypes& types() { return types_; }
 
  private:
@@ -26,6 +28,7 @@ class ParticipantWatch : public eprosima::fastdds::dds::DomainParticipantListene
 
   eprosima::fastdds::dds::DomainParticipantListener* const next_;
   Greeter greeter_;
+  ServerWatch server_;
   TopicTypes types_;
 };
 
