@@ -74,7 +74,9 @@ const Vendor& vendor_of(const BusOptions& options) {
 }
 
 void require_ports(const BusOptions& options) {
-  if (options.vendor != "inprocess" && options.network.multicast) require_discovery_port(options.domain);
+  if (options.vendor == "inprocess") return;
+  if (options.network.multicast) require_discovery_port(options.domain);
+  if (takes_participant_port(options)) require_participant_port(options.domain);
 }
 
 }  // namespace

@@ -8,9 +8,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
+#include <fstream>
+#include <set>
 #include <string>
 
 #include "common/bus/backend.hpp"
+#include "common/bus/network.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -30,6 +34,19 @@ bool taken(std::uint16_t port) {
   return refused;
 }
 
+/// A line: "  sl: ADDRESS:PORT ...", in hexadecimal, below a heading.
+std::set<int> ports_in_use(const std::string& udp_table) {
+  std::set<int> ports;
+  std::ifstream table(udp_table);
+  std::string line, slot, address;
+  std::getline(table, line);
+  while (table >> slot >> address && std::getline(table, line)) {
+    const std::size_t colon = address.find(':');
+    if (colon != std::string::npos) ports.insert(static_cast<int>(std::strtol(&address[colon + 1], nullptr, 16)));
+  }
+  return ports;
+}
+
 }  // namespace
 
 void require_discovery_port(std::uint32_t domain) {
@@ -39,6 +56,30 @@ void require_discovery_port(std::uint32_t domain) {
   throw BusError("UDP port " + number + ", on which DDS domain " + std::to_string(domain) +
                  " finds its members, is in use by a program that does not share it: see who with 'ss -ulpn sport = :" +
                  number + "' and end it, or choose another domain (--domain, ROS_DOMAIN_ID)");
+}
+
+bool takes_participant_port(const BusOptions& options) {
+  const NetworkOptions& network = options.network;
+  if (!network.discovery_server.empty()) return false;
+  const bool cyclone_peers = options.vendor == "cyclonedds" && !network.peers.empty();
+  return !network.loopback_only || !network.multicast || cyclone_peers;
+}
+
+int free_participant_ports(std::uint32_t domain, const std::string& udp_table) {
+  const std::set<int> in_use = ports_in_use(udp_table);
+  int free = 0;
+  for (int id = 0; id < kPeerParticipants; ++id) free += in_use.contains(participant_port(domain, id)) ? 0 : 1;
+  return free;
+}
+
+void require_participant_port(std::uint32_t domain) {
+  if (free_participant_ports(domain) > 0) return;
+  throw BusError("all " + std::to_string(kPeerParticipants) + " UDP ports from " +
+                 std::to_string(participant_port(domain, 0)) + " to " +
+                 std::to_string(participant_port(domain, kPeerParticipants - 1)) +
+                 ", at which peers look for DDS domain " + std::to_string(domain) +
+                 ", are in use: see by whom with 'ss -ulpn' and end one, or choose another domain (--domain, "
+                 "ROS_DOMAIN_ID)");
 }
 
 }  // namespace rtd::bus

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "common/bus/bus_factory.hpp"
+
 namespace rtd::bus {
 
 /// UDP port on which the participants of a domain hear each other's announcements (RTPS 2.2, 9.6.1.1). They share it.
@@ -14,5 +16,17 @@ constexpr std::uint16_t discovery_port(std::uint32_t domain) {
 /// Throws BusError when another program has the domain's discovery port and does not share it: Fast DDS would start
 /// and hear nobody, without a word.
 void require_discovery_port(std::uint32_t domain);
+
+/// UDP port of the domain's participant with this id: what others write to it to find it.
+constexpr std::uint16_t participant_port(std::uint32_t domain, int id) {
+  return static_cast<std::uint16_t>(discovery_port(domain) + 10 + 2 * id);
+}
+
+/// Whether a process with these options takes one of the ports that peers ask: of the ids below kPeerParticipants.
+bool takes_participant_port(const BusOptions& options);
+/// How many of them nobody has; nothing is opened. `udp_table`: for tests.
+int free_participant_ports(std::uint32_t domain, const std::string& udp_table = "/proc/self/net/udp");
+/// Throws BusError when no such port is free.
+void require_participant_port(std::uint32_t domain);
 
 }  // namespace rtd::bus

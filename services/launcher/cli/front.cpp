@@ -95,6 +95,17 @@ void add_demo_command(CLI::App& app, DemoOptions& options) {
   service::add_bus_options(*command, options.bus);
 }
 
+void add_doctor_command(CLI::App& app, DoctorOptions& options) {
+  CLI::App* command = app.add_subcommand(
+      "doctor",
+      "Check this host: services, shared memory, network and keys as these options ask for them, weights, data");
+  command->add_flag("--clean", options.clean, "Remove from /dev/shm what killed processes left there");
+  service::add_bus_options(*command, options.bus);
+  command->add_option("--config", options.config.file, "YAML file with a section per service")
+      ->check(CLI::ExistingFile);
+  command->add_option("--set", options.config.overrides, "Override one key of bus, e.g. --set bus.domain=5");
+}
+
 std::string services_text() {
   std::string text = "Services (each with its own --help):";
   for (const std::string& service : installed_services()) text += "\n  rtd " + service;
@@ -126,7 +137,7 @@ int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("info")) return run_info(requests.info, std::cout, std::cerr);
   if (app.got_subcommand("diff")) return run_diff(requests.diff, std::cout, std::cerr);
   if (app.got_subcommand("map")) return run_map(requests.map, std::cout, std::cerr);
-  if (app.got_subcommand("doctor")) return doctor(requests.doctor, std::cout);
+  if (app.got_subcommand("doctor")) return doctor(requests.doctor, std::cout, std::cerr);
   if (app.got_subcommand("keystore")) return run_keystore(requests.keystore, std::time(nullptr), std::cout, std::cerr);
   if (app.got_subcommand("topics")) return run_topics(requests.topics, std::cout, std::cerr);
   if (app.got_subcommand("version")) {
@@ -157,8 +168,7 @@ int front(int argc, char** argv) {
   add_info_command(app, requests.info);
   add_diff_command(app, requests.diff);
   add_map_command(app, requests.map);
-  app.add_subcommand("doctor", "Check this host: shared memory, sockets, services, weights, data")
-      ->add_flag("--clean", requests.doctor.clean, "Remove from /dev/shm what killed processes left there");
+  add_doctor_command(app, requests.doctor);
   add_keystore_command(app, requests.keystore);
   add_topics_command(app, requests.topics);
   app.add_subcommand("version", "Print the version");

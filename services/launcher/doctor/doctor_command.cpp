@@ -2,30 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/doctor/doctor_command.hpp"
 
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
+#include <mutex>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "common/bus/host_checks.hpp"
+#include "common/bus/network.hpp"
 #include "common/bus/shm_leftovers.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/detector/core/model_locator.hpp"
+#include "services/launcher/doctor/findings.hpp"
+#include "services/launcher/doctor/keystore_checks.hpp"
+#include "services/launcher/doctor/network_checks.hpp"
 #include "services/launcher/process/executable.hpp"
 
 namespace rtd::launcher {
 namespace fs = std::filesystem;
 namespace {
-
-enum class Verdict { kOk, kWarn, kFail };
-
-struct Finding {
-  Verdict verdict;
-  std::string text;
-};
-using Findings = std::vector<Finding>;
 
 const char* to_string(Verdict verdict) {
   switch (verdict) {
@@ -52,41 +53,83 @@ void check_services(Findings& findings) {
   }
 }
 
-/// As the environment says.
-bus::BusOptions bus_options() {
+/// As the services are going to have them.
+service::BusConfig bus_config(const DoctorOptions& options) {
   service::BusConfig config;
   service::ConfigBinder binder;
   binder.section("bus", config);
-  service::apply_bus_environment(binder);
-  return service::to_bus_options(config, "rtd-doctor");
+  service::load_config(binder, options.bus, options.config);
+  return config;
+}
+
+/// What the bus tells of its troubles while it is joined.
+class Problems {
+ public:
+  void add(const std::string& problem) {
+    const std::lock_guard lock(mutex_);
+    if (std::find(all_.begin(), all_.end(), problem) == all_.end()) all_.push_back(problem);
+    changed_.notify_all();
+  }
+  /// Waits for the first.
+  std::vector<std::string> wait(std::chrono::milliseconds most) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, most, [this] { return !all_.empty(); });
+    return all_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::string> all_;
+};
+
+/// A Discovery Server is known to be missing only after a while, strangers in a secured domain are heard by and by.
+std::chrono::milliseconds patience(const bus::BusOptions& options) {
+  if (!options.network.discovery_server.empty()) return bus::kServerPatience + std::chrono::milliseconds(500);
+  return std::chrono::milliseconds(options.security.enabled() ? 1000 : 0);
 }
 
 /// The vendor in use must work; another one that does not is worth a word.
 void check_vendor(Findings& findings, bus::BusOptions options, const std::string& vendor) {
   const bool used = options.vendor == vendor;
   options.vendor = vendor;
+  Problems problems;
+  options.on_problem = [&problems](const std::string& problem) { problems.add(problem); };
   try {
     const std::shared_ptr<bus::Bus> bus = bus::connect(options);
     findings.push_back({Verdict::kOk, "bus: " + bus->vendor() + " joins domain " + std::to_string(options.domain) +
                                           (used ? "" : " (--dds " + vendor + ")")});
+    for (const std::string& problem : problems.wait(patience(options)))
+      findings.push_back({Verdict::kFail, "bus: " + problem});
   } catch (const std::exception& error) {
     findings.push_back({used ? Verdict::kFail : Verdict::kWarn, "bus: " + vendor + ": " + error.what()});
   }
 }
 
-void check_bus(Findings& findings) {
-  try {
-    const bus::BusOptions options = bus_options();
-    check_vendor(findings, options, options.vendor);
-    for (const std::string& vendor : bus::dds_vendors()) {
-      if (vendor != options.vendor) check_vendor(findings, options, vendor);
-    }
-    const std::vector<std::string> warnings = bus::host_warnings(options);
-    for (const std::string& warning : warnings) findings.push_back({Verdict::kWarn, "host: " + warning});
-    if (warnings.empty()) findings.push_back({Verdict::kOk, "host: /dev/shm and socket buffers are large enough"});
-  } catch (const std::exception& error) {
-    findings.push_back({Verdict::kFail, std::string("bus: ") + error.what()});
+void check_vendors(const bus::BusOptions& options, Findings& findings) {
+  check_vendor(findings, options, options.vendor);
+  const bool bound = options.security.enabled() || !options.network.discovery_server.empty();  // to that vendor
+  if (bound) return;
+  for (const std::string& vendor : bus::dds_vendors()) {
+    if (vendor != options.vendor) check_vendor(findings, options, vendor);
   }
+}
+
+void check_host(const bus::BusOptions& options, Findings& findings) {
+  const std::vector<std::string> warnings = bus::host_warnings(options);
+  for (const std::string& warning : warnings) findings.push_back({Verdict::kWarn, "host: " + warning});
+  if (warnings.empty()) findings.push_back({Verdict::kOk, "host: /dev/shm and socket buffers are large enough"});
+}
+
+void check_bus(bus::BusOptions options, Findings& findings) {
+  check_network(options, findings);
+  bool joinable = true;
+  if (options.security.enabled()) {
+    options.security.enclave = check_keystore(options, std::time(nullptr), findings);
+    joinable = !options.security.enclave.empty();
+  }
+  if (joinable) check_vendors(options, findings);
+  check_host(options, findings);
 }
 
 /// A MiB count for people.
@@ -135,12 +178,13 @@ int clean(std::ostream& out) {
 
 }  // namespace
 
-int doctor(const DoctorOptions& options, std::ostream& out) {
+int doctor(const DoctorOptions& options, std::ostream& out, std::ostream& err) try {
   if (options.clean) return clean(out);
+  const bus::BusOptions bus = service::to_bus_options(bus_config(options), "rtd-doctor");
   Findings findings;
   check_services(findings);
   check_leftovers(findings);
-  check_bus(findings);
+  check_bus(bus, findings);
   check_weights(findings);
   check_data(findings);
   bool failed = false;
@@ -149,6 +193,9 @@ int doctor(const DoctorOptions& options, std::ostream& out) {
     failed = failed || finding.verdict == Verdict::kFail;
   }
   return failed ? service::kRunFailed : service::kOk;
+} catch (const service::ConfigError& error) {
+  err << "rtd doctor: " << error.what() << '\n';
+  return service::kUsageOrConfig;
 }
 
 }  // namespace rtd::launcher

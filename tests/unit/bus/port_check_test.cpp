@@ -8,22 +8,28 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <vector>
+
 #include "common/bus/backend.hpp"
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/network.hpp"
 
 namespace rtd::bus {
 namespace {
 
 using ::testing::HasSubstr;
 
-/// Holds a domain's port; -1 when somebody else has it.
+/// Holds a UDP port.
 class Holder {
  public:
-  Holder(std::uint32_t domain, int shared) : socket_(socket(AF_INET, SOCK_DGRAM, 0)) {
+  explicit Holder(std::uint16_t port, int shared = 0) : socket_(socket(AF_INET, SOCK_DGRAM, 0)) {
     setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &shared, sizeof(shared));
     sockaddr_in address{};
     address.sin_family = AF_INET;
-    address.sin_port = htons(discovery_port(domain));
+    address.sin_port = htons(port);
     held_ = bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
   }
   ~Holder() { close(socket_); }
@@ -41,7 +47,7 @@ std::uint32_t domain() {
 }
 
 TEST(PortCheck, a_port_that_is_not_shared_is_named_with_the_way_out) {
-  const Holder other(domain(), 0);
+  const Holder other(discovery_port(domain()), 0);
   if (!other.held()) GTEST_SKIP() << "the port of domain " << domain() << " is in use";
   for (const std::string& vendor : available_vendors()) {
     if (vendor == "inprocess") continue;
@@ -59,12 +65,45 @@ TEST(PortCheck, a_port_that_is_not_shared_is_named_with_the_way_out) {
 }
 
 TEST(PortCheck, a_shared_port_is_no_trouble) {
-  const Holder other(domain(), 1);
+  const Holder other(discovery_port(domain()), 1);
   if (!other.held()) GTEST_SKIP() << "the port of domain " << domain() << " is in use";
   EXPECT_NO_THROW(require_discovery_port(domain()));
 }
 
+TEST(PortCheck, ports_of_participants_are_read_from_the_kernel_table) {
+  const std::string path = ::testing::TempDir() + "rtd_udp_table_" + std::to_string(getpid());
+  std::ofstream(path) << "  sl  local_address rem_address   st tx_queue rx_queue\n"
+                      << "  10: 0100007F:1CF2 00000000:0000 07 0:0 00:0 0 0 0 1\n"   // 7410
+                      << "  11: 00000000:1CF3 00000000:0000 07 0:0 00:0 0 0 0 2\n"   // 7411: of data
+                      << "  12: 0200000A:1D10 00000000:0000 07 0:0 00:0 0 0 0 3\n";  // 7440
+  EXPECT_EQ(free_participant_ports(0, path), kPeerParticipants - 2);
+  EXPECT_EQ(free_participant_ports(1, path), kPeerParticipants);
+  EXPECT_EQ(free_participant_ports(0, "/no/such/table"), kPeerParticipants);
+  std::remove(path.c_str());
+}
+
+TEST(PortCheck, without_a_free_port_for_peers_nobody_joins_a_network) {
+  std::vector<std::unique_ptr<Holder>> others;
+  for (int id = 0; id < kPeerParticipants; ++id)
+    others.push_back(std::make_unique<Holder>(participant_port(domain(), id)));
+  for (const std::string& vendor : dds_vendors()) {
+    BusOptions options;
+    options.vendor = vendor;
+    options.domain = domain();
+    EXPECT_NO_THROW(connect(options)) << "no need of them on this host alone";
+    options.network.multicast = false;
+    try {
+      connect(options);
+      ADD_FAILURE() << vendor << " joined without a port";
+    } catch (const BusError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("UDP ports from " + std::to_string(participant_port(domain(), 0))));
+      EXPECT_THAT(error.what(), HasSubstr("--domain"));
+    }
+  }
+}
+
 TEST(PortCheck, ports_follow_the_standard) {
+  EXPECT_EQ(participant_port(1, 2), 7664);
   EXPECT_EQ(discovery_port(0), 7400);
   EXPECT_EQ(discovery_port(232), 65400);
 }

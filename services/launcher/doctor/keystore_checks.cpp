@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/doctor/keystore_checks.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "common/security/enclave.hpp"
+#include "common/security/security_error.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+constexpr std::int64_t kDayS = 24 * 3600, kWarnDays = 30;  // as the services warn
+const std::vector<std::string> kServices = {"/rtd/camera", "/rtd/detector", "/rtd/filter",  "/rtd/slam",
+                                            "/rtd/dense",  "/rtd/record",   "/rtd/launcher"};
+
+/// The enclaves that can join, and what is wrong with the others.
+std::vector<security::Enclave> usable(const bus::BusOptions& options, const std::vector<std::string>& names,
+                                      std::int64_t now_s, Findings& findings) {
+  std::vector<security::Enclave> good;
+  for (const std::string& name : names) {
+    try {
+      good.push_back(security::open_enclave(options.security.keystore, name, static_cast<int>(options.domain), now_s));
+    } catch (const security::SecurityError& error) {
+      findings.push_back({Verdict::kFail, std::string("keystore: ") + error.what()});
+    }
+  }
+  return good;
+}
+
+void tell_missing(const std::vector<std::string>& there, Findings& findings) {
+  std::vector<std::string> missing;
+  for (const std::string& service : kServices)
+    if (std::find(there.begin(), there.end(), service) == there.end()) missing.push_back(service);
+  if (missing.empty()) return;
+  findings.push_back({Verdict::kWarn, fmt::format("keystore: no enclave {}: that cannot run on this host; copy it here "
+                                                  "from the keystore where it was made, if it shall",
+                                                  fmt::join(missing, ", "))});
+}
+
+}  // namespace
+
+std::string check_keystore(const bus::BusOptions& options, std::int64_t now_s, Findings& findings) {
+  const std::string& folder = options.security.keystore;
+  const security::KeystoreLayout layout{folder};
+  std::error_code error;
+  if (!std::filesystem::is_directory(layout.enclaves(), error)) {
+    findings.push_back({Verdict::kFail, fmt::format("keystore: {} is none: make one with 'rtd keystore create {}', or "
+                                                    "name another with --keystore",
+                                                    folder, folder)});
+    return {};
+  }
+  const std::vector<std::string> names = security::enclaves_in(layout);
+  const std::vector<security::Enclave> good = usable(options, names, now_s, findings);
+  tell_missing(names, findings);
+  if (good.empty()) {
+    findings.push_back({Verdict::kFail, fmt::format("keystore: {} holds no enclave that can join DDS domain {}: 'rtd "
+                                                    "keystore info {}'",
+                                                    folder, options.domain, folder)});
+    return {};
+  }
+  const auto first = std::min_element(
+      good.begin(), good.end(), [](const auto& a, const auto& b) { return a.valid_until_s() < b.valid_until_s(); });
+  const std::int64_t days = (first->valid_until_s() - now_s) / kDayS;
+  findings.push_back(
+      {days < kWarnDays ? Verdict::kWarn : Verdict::kOk,
+       fmt::format("keystore: {}, {} enclaves; {} is the first to expire, in {} days{}", folder, good.size(),
+                   first->name, days, days < kWarnDays ? fmt::format(": 'rtd keystore renew {}'", folder) : "")});
+  const auto asked = std::find_if(good.begin(), good.end(), [&](const security::Enclave& enclave) {
+    return enclave.name == options.security.enclave;
+  });
+  return asked != good.end() ? asked->name : good.front().name;
+}
+
+}  // namespace rtd::launcher

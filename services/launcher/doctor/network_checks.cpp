@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/launcher/doctor/network_checks.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "common/bus/network.hpp"
+#include "common/bus/port_check.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+/// camera, detector, filter, slam, dense, record and rtd itself.
+constexpr int kProcessesOfRun = 7;
+
+/// Whether the kernel knows a way there; sends nothing.
+bool has_route(const std::string& address) {
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (probe < 0) return true;
+  sockaddr_in target{};
+  target.sin_family = AF_INET;
+  target.sin_port = htons(7400);
+  inet_pton(AF_INET, address.c_str(), &target.sin_addr);
+  const bool unreachable =
+      connect(probe, reinterpret_cast<const sockaddr*>(&target), sizeof(target)) != 0 && errno == ENETUNREACH;
+  close(probe);
+  return !unreachable;
+}
+
+Finding interfaces(const bus::NetworkOptions& network) try {
+  if (network.loopback_only) return {Verdict::kOk, "network: this host only; --profile lan or wifi: also others"};
+  return {Verdict::kOk, fmt::format("network: {} beside loopback, {}", fmt::join(interface_addresses(network), ", "),
+                                    network.multicast ? "multicast" : "no multicast: who joins must name a peer")};
+} catch (const bus::BusError& error) {
+  return {Verdict::kFail, std::string("network: ") + error.what()};
+}
+
+Finding named_host(const std::string& host, const std::string& option) try {
+  const std::string address = bus::resolve_host(host, option).address;
+  if (has_route(address)) return {Verdict::kOk, fmt::format("network: {} {} is {}", option, host, address)};
+  return {Verdict::kFail, fmt::format("network: {} {}: no route to {}; connect this host to its network (ip route)",
+                                      option, host, address)};
+} catch (const bus::BusError& error) {
+  return {Verdict::kFail, std::string("network: ") + error.what()};
+}
+
+/// Of peers outside with loopback only, or a server with the wrong vendor.
+void contradictions(const bus::BusOptions& options, Findings& findings) try {
+  bus::require_network(options);
+} catch (const bus::BusError& error) {
+  const std::string text = std::string("network: ") + error.what();
+  for (const Finding& known : findings)
+    if (known.text == text) return;
+  findings.push_back({Verdict::kFail, text});
+}
+
+Finding participant_ports(std::uint32_t domain) {
+  const int free = bus::free_participant_ports(domain);
+  const std::string text = fmt::format("ports: {} of {} are free from UDP {} on, one for each process of DDS domain {}",
+                                       free, bus::kPeerParticipants, bus::participant_port(domain, 0), domain);
+  if (free >= kProcessesOfRun) return {Verdict::kOk, text};
+  return {free == 0 ? Verdict::kFail : Verdict::kWarn,
+          text + fmt::format("; a run takes up to {}: see who has them with 'ss -ulpn', or choose another --domain",
+                             kProcessesOfRun)};
+}
+
+void ports(const bus::BusOptions& options, Findings& findings) {
+  if (options.network.multicast) {
+    try {
+      bus::require_discovery_port(options.domain);
+      findings.push_back({Verdict::kOk, fmt::format("ports: UDP {} is shared by all of DDS domain {}",
+                                                    bus::discovery_port(options.domain), options.domain)});
+    } catch (const bus::BusError& error) {
+      findings.push_back({Verdict::kFail, std::string("ports: ") + error.what()});
+    }
+  }
+  if (bus::takes_participant_port(options)) findings.push_back(participant_ports(options.domain));
+}
+
+}  // namespace
+
+void check_network(const bus::BusOptions& options, Findings& findings) {
+  const bus::NetworkOptions& network = options.network;
+  findings.push_back(interfaces(network));
+  for (const std::string& peer : network.peers) findings.push_back(named_host(peer, "--peers"));
+  if (!network.discovery_server.empty()) findings.push_back(named_host(network.discovery_server, "--discovery-server"));
+  contradictions(options, findings);
+  ports(options, findings);
+}
+
+}  // namespace rtd::launcher
