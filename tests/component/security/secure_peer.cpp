@@ -3,11 +3,13 @@
 //
 // A participant of the security tests, honest or not: secure_peer VENDOR DOMAIN KEYSTORE|- ENCLAVE TAG TOPIC...
 // It goes past our own checks of keystore and permissions, straight to the vendor. On each topic it writes "TAG N"
-// fifty times a second and prints, five times a second, "sent N" and for each tag that it reads "got TAG N".
+// fifty times a second, followed by "marker-TAG", and prints, five times a second, "sent N" and for each tag that it
+// reads "got TAG N".
 #include <signal.h>
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -47,7 +49,7 @@ class Peer {
 
   void run() {
     for (int n = 0; g_stop == 0; ++n) {
-      for (const auto& writer : writers_) writer->write(to_cdr(tag_ + " " + std::to_string(n)));
+      for (const auto& writer : writers_) writer->write(to_cdr(tag_ + " " + std::to_string(n) + " marker-" + tag_));
       if (n % 10 == 0) report(writers_.empty() ? 0 : n + 1);
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -95,6 +97,7 @@ int main(int argc, char** argv) try {
   options.domain = static_cast<std::uint32_t>(std::stoi(argv[2]));
   options.participant_name = argv[5];
   if (std::strcmp(argv[3], "-") != 0) options.security = {argv[3], argv[4]};
+  options.shared_memory = std::getenv("SECURE_PEER_UDP") == nullptr;  // set: everything goes over the wire
   options.on_problem = [](const std::string& problem) { std::printf("problem %s\n", problem.c_str()); };
   rtd::bus::Peer(options, argv[5], {argv + 6, argv + argc}).run();
   return 0;

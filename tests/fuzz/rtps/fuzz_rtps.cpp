@@ -12,7 +12,7 @@
 #include "common/bus/backend.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "tests/fuzz/mcap/mutation.hpp"
-#include "tests/fuzz/rtps/loopback_capture.hpp"
+#include "tests/fuzz/rtps/datagram_seeds.hpp"
 #include "tests/fuzz/rtps/service_run.hpp"
 #include "tests/fuzz/rtps/udp_target.hpp"
 
@@ -93,14 +93,14 @@ bool asked_for() {
 
 TEST_P(FuzzRtps, services_survive_malformed_datagrams_or_are_restarted) {
   if (GetParam() != bus::dds_vendors().front() && !asked_for()) GTEST_SKIP() << "takes long: set RTD_FUZZ_PACKETS";
-  LoopbackCapture capture(domain_);
+  test_support::LoopbackCapture capture;
   if (!capture.permitted()) GTEST_SKIP() << "capturing on the loopback interface needs root (CAP_NET_RAW)";
   ServiceRun run(GetParam(), domain_);
   ASSERT_TRUE(run.wait_for_frames()) << run.output();
   std::vector<Bytes> seeds;
   {
     const Listener listener(GetParam(), domain_);
-    seeds = capture.listen(std::chrono::seconds(3), 3000);
+    seeds = datagram_seeds(capture, domain_, std::chrono::seconds(3), 3000);
   }
   ASSERT_GT(seeds.size(), 100U) << "nothing to mutate";
 

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What an eavesdropper on the wire reads of an encrypted topic: nothing, where without security he reads all of it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+#include "common/bus/bus_factory.hpp"
+#include "tests/component/security/peer_group.hpp"
+#include "tests/support/loopback_capture.hpp"
+
+namespace rtd::security {
+namespace {
+
+using test_support::LoopbackCapture;
+
+constexpr int kSamples = 50;
+const std::string kTopic = "rt/secret", kType = "std_msgs::msg::dds_::String_";
+
+/// Datagrams that hold what.
+struct Heard {
+  int payload = 0, topic = 0, type = 0;
+  int of_writer = 0;    ///< any that its participant has sent
+  int permissions = 0;  ///< its permissions: the first messages of two participants, before they have keys
+};
+
+/// Goes through all datagrams of loopback while a writer and a reader exchange samples over UDP alone.
+class Eavesdropper {
+ public:
+  explicit Eavesdropper(std::string writer) : writer_(std::move(writer)) {}
+
+  bool permitted() const { return capture_.permitted(); }
+  void listen() {
+    while (const auto packet = capture_.next(std::chrono::milliseconds(0))) look_at(packet->payload);
+  }
+  const Heard& heard() const { return heard_; }
+  unsigned missed() { return capture_.lost(); }
+
+ private:
+  static constexpr std::size_t kPrefixBegin = 8, kPrefixEnd = 20;  // of the sender, in RTPS's header
+
+  void look_at(const std::vector<std::byte>& bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const auto holds = [&](const std::string& what) { return text.find(what) != std::string_view::npos; };
+    heard_.payload += holds("marker-" + writer_);
+    if (!text.starts_with("RTPS") || text.size() < kPrefixEnd) return;
+    const std::string_view sender = text.substr(kPrefixBegin, kPrefixEnd - kPrefixBegin);
+    if (writer_prefix_.empty() && holds(writer_) && !holds("marker-")) writer_prefix_ = sender;  // it tells its name
+    if (writer_prefix_ != sender) return;
+    ++heard_.of_writer;
+    if (holds("c.perm")) return static_cast<void>(++heard_.permissions);
+    heard_.topic += holds(kTopic);
+    heard_.type += holds(kType);
+  }
+
+  const std::string writer_;
+  std::string writer_prefix_;
+  LoopbackCapture capture_;
+  Heard heard_;
+};
+
+class WireTest : public ::testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    if (!eavesdropper_.permitted()) GTEST_SKIP() << "needs CAP_NET_RAW to hear the loopback interface: run it as root";
+  }
+  /// Shared memory is off: all that the reader gets has been on the wire.
+  Heard exchange(const std::string& keystore) {
+    peers_.start(writer_, keystore, "/rtd/writer", {kTopic}, {"SECURE_PEER_UDP=1"});
+    peers_.start("reader", keystore, "/rtd/reader", {kTopic}, {"SECURE_PEER_UDP=1"});
+    EXPECT_TRUE(peers_.wait_until([&] {
+      eavesdropper_.listen();
+      return peers_.got("reader", writer_) >= kSamples;
+    })) << peers_.log();
+    EXPECT_EQ(eavesdropper_.missed(), 0U);
+    const Heard heard = eavesdropper_.heard();
+    std::printf(
+        "%s: %d samples received; of %d datagrams of the writer %d hold the topic, %d the type, %d its "
+        "permissions; %d of all hold the payload\n",
+        GetParam().c_str(), peers_.got("reader", writer_), heard.of_writer, heard.topic, heard.type, heard.permissions,
+        heard.payload);
+    return heard;
+  }
+
+  const std::string writer_ = "writer" + std::to_string(getpid());  // of nobody else on this host
+  Eavesdropper eavesdropper_{writer_};
+  PeerGroup peers_{GetParam()};
+};
+
+TEST_P(WireTest, without_security_everything_can_be_read) {
+  const Heard heard = exchange("-");
+  EXPECT_GE(heard.payload, kSamples);
+  EXPECT_GT(heard.topic, 0);
+  EXPECT_GT(heard.type, 0);
+}
+
+TEST_P(WireTest, secured_neither_payload_nor_topic_nor_type_is_on_the_wire) {
+  const Heard heard = exchange(Keystores(peers_.scratch()).good());
+  EXPECT_GE(heard.of_writer, kSamples) << "the samples did not go this way";
+  EXPECT_EQ(heard.payload, 0);
+  EXPECT_EQ(heard.topic, 0);
+  EXPECT_EQ(heard.type, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Vendors, WireTest, ::testing::ValuesIn(bus::dds_vendors()),
+                         [](const auto& vendor) { return vendor.param; });
+
+}  // namespace
+}  // namespace rtd::security
