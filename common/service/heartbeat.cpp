@@ -90,8 +90,7 @@ void Heartbeat::set(const msg::Metric& metric) {
 void Heartbeat::receive(const msg::ServiceStatus& status) {
   if (!is_name(status.service)) return;
   const std::int64_t arrival_ns = realtime_ns();
-  std::function<void(const msg::ServiceStatus&)> callback;
-  bool refused = false;
+  bool refused = false, known = false;
   {
     const std::lock_guard lock(mutex_);
     if (status.service == own_.service) {
@@ -112,11 +111,13 @@ void Heartbeat::receive(const msg::ServiceStatus& status) {
       peer.status = status;
       peer.heard_ns = monotonic_ns();
       for (const msg::Metric& metric : clocks_.received(status, arrival_ns)) set(metric);
-      callback = callback_;
+      known = true;
     }
   }
   if (refused) stop_.request_stop();
-  if (callback) callback(status);
+  if (!known) return;
+  const std::lock_guard callback_lock(callback_mutex_);
+  if (callback_) callback_(status);
 }
 
 bool Heartbeat::alive(const std::string& service) const {
@@ -135,7 +136,7 @@ bool Heartbeat::ready(const std::string& service) const {
 }
 
 void Heartbeat::on_status(std::function<void(const msg::ServiceStatus&)> callback) {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(callback_mutex_);
   callback_ = std::move(callback);
 }
 

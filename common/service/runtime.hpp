@@ -41,7 +41,8 @@ class Heartbeat {
   /// False for a service that is dead, hung, or not heard for 0.7 s.
   bool alive(const std::string& service) const;
   bool ready(const std::string& service) const;  ///< alive and in state kReady, kRunning or kDegraded
-  /// Called on a bus thread for every heartbeat of another service.
+  /// Called on a bus thread for every heartbeat of another service. A call that runs is waited for: afterwards the
+  /// one before is used no more. Not from the callback itself.
   void on_status(std::function<void(const msg::ServiceStatus&)> callback);
   /// Message when an older instance of the same service runs in this domain; empty otherwise.
   std::string duplicate() const;
@@ -69,6 +70,7 @@ class Heartbeat {
   PeerClocks clocks_;
   msg::ServiceStatus own_;
   std::map<std::string, Peer> peers_;
+  std::mutex callback_mutex_;  ///< guards the callback, also while it runs
   std::function<void(const msg::ServiceStatus&)> callback_;
   std::string duplicate_;
   ProgressWatch progress_;

@@ -4,7 +4,9 @@
 
 #include <csignal>
 #include <fstream>
+#include <future>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
@@ -60,8 +62,8 @@ TEST(Heartbeat, the_younger_of_two_equal_services_ends) {
 TEST(Heartbeat, metrics_travel) {
   const auto bus = bus::connect(domain(3));
   StopToken stop;
-  Heartbeat slam(*bus, "slam", stop);
   std::atomic<double> seen{0};
+  Heartbeat slam(*bus, "slam", stop);
   slam.on_status([&](const msg::ServiceStatus& status) {
     for (const auto& metric : status.metrics) {
       if (metric.name == "frames_dropped") seen = metric.value;
@@ -71,6 +73,29 @@ TEST(Heartbeat, metrics_travel) {
   filter.set_metric("frames_dropped", 1);
   filter.set_metric("frames_dropped", 7);
   EXPECT_TRUE(eventually([&] { return seen == 7; }));
+}
+
+TEST(Heartbeat, whoever_takes_the_callback_back_waits_for_a_call_that_runs) {
+  const auto bus = bus::connect(domain(4));
+  StopToken stop;
+  std::promise<void> entered, leave;
+  std::atomic<bool> left{false};
+  Heartbeat slam(*bus, "slam", stop);
+  slam.on_status([&, first = true](const msg::ServiceStatus&) mutable {
+    if (!std::exchange(first, false)) return;
+    entered.set_value();
+    leave.get_future().wait();
+    left = true;
+  });
+  Heartbeat filter(*bus, "filter", stop);
+  ASSERT_EQ(entered.get_future().wait_for(5s), std::future_status::ready);
+  auto taken_back = std::async(std::launch::async, [&] {
+    slam.on_status({});
+    return left.load();
+  });
+  EXPECT_EQ(taken_back.wait_for(50ms), std::future_status::timeout);
+  leave.set_value();
+  EXPECT_TRUE(taken_back.get());
 }
 
 /// Runs a service definition with command-line words.
