@@ -50,8 +50,15 @@ void limit_log() {
   dds_set_log_sink(print_some, &limit);
 }
 
+std::string LogCapture::reason() const {
+  const std::lock_guard lock(mutex_);
+  return text_.empty() ? "" : ": " + text_;
+}
+
 void LogCapture::note(void* self, const dds_log_data_t* line) {
-  std::string& text = static_cast<LogCapture*>(self)->text_;
+  LogCapture& capture = *static_cast<LogCapture*>(self);
+  const std::lock_guard lock(capture.mutex_);
+  std::string& text = capture.text_;
   if (text.size() < 2000) text += (text.empty() ? "" : "; ") + text_of(*line);
 }
 

@@ -4,6 +4,7 @@
 
 #include <dds/ddsrt/log.h>
 
+#include <mutex>
 #include <string>
 
 namespace rtd::bus::cyclonedds {
@@ -21,11 +22,12 @@ class LogCapture {
   LogCapture& operator=(const LogCapture&) = delete;
 
   /// ": what it said", or nothing.
-  std::string reason() const { return text_.empty() ? "" : ": " + text_; }
+  std::string reason() const;
 
  private:
   static void note(void* self, const dds_log_data_t* line);
 
+  mutable std::mutex mutex_;  ///< Cyclone logs from any of its threads
   std::string text_;
 };
 
