@@ -6,6 +6,7 @@
 #include <fastrtps/utils/IPLocator.h>
 
 #include <atomic>
+#include <mutex>
 #include <span>
 #include <utility>
 
@@ -35,7 +36,10 @@ class ScreeningTransport : public rtps::ChainingTransport {
   }
   void receive(rtps::TransportReceiverInterface* next, const octet* data, std::uint32_t size, const Locator_t& local,
                const Locator_t& remote) override {
-    if (is_rtps_message(std::as_bytes(std::span(data, size)))) return next->OnDataReceived(data, size, local, remote);
+    if (is_rtps_message(std::as_bytes(std::span(data, size)))) {
+      const std::lock_guard one_at_a_time(mutex_);
+      return next->OnDataReceived(data, size, local, remote);
+    }
     if (on_problem_ && !told_.exchange(true))
       on_problem_("malformed RTPS datagrams come from " + IPLocator::toIPv4string(remote) + " and are dropped");
   }
@@ -48,6 +52,7 @@ class ScreeningTransport : public rtps::ChainingTransport {
   } descriptor_;
   const OnProblem on_problem_;
   std::atomic<bool> told_{false};
+  std::mutex mutex_;
 };
 
 class ScreeningDescriptor : public rtps::ChainingTransportDescriptor {

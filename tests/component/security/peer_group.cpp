@@ -126,7 +126,7 @@ void PeerGroup::listen(const std::string& peer, const std::string& line) {
     words >> tag;
     words >> said.got[tag];
   } else {
-    said.refused = said.refused || word == "refused" || line.starts_with("no writer");
+    said.refused = said.refused || word == "refused";
     if (word == "problem") said.problems += line + "\n";
     log_ += peer + ": " + line + "\n";
   }

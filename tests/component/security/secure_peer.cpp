@@ -73,6 +73,7 @@ class Peer {
   }
   void report(int sent) {
     const std::lock_guard lock(mutex_);
+    if (writers_.empty()) std::printf("refused every topic\n");  // again, as the vendor's log may break into a line
     std::printf("sent %d\n", sent);
     for (const auto& [tag, count] : got_) std::printf("got %s %d\n", tag.c_str(), count);
     std::fflush(stdout);
