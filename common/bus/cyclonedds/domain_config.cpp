@@ -91,6 +91,9 @@ std::string internal(const BusOptions& options, const HostLimits& limits) {
 
 std::string domain_config(const BusOptions& options, const HostLimits& limits) {
   std::string text = general(options) + discovery(options.network) + internal(options, limits);
+  // The trace of discovery goes to StrangerWatch; the file is only to be one that can be opened.
+  if (options.security.enabled())
+    text += element("Tracing", element("Category", "discovery") + element("OutputFile", "/dev/null"));
   if (options.iceoryx) text += element("SharedMemory", element("Enable", "true") + element("LogLevel", "warn"));
   return R"(<CycloneDDS><Domain Id="any">)" + text + "</Domain></CycloneDDS>";
 }

@@ -34,7 +34,8 @@ WriterId guid_of(dds_entity_t entity) {
 }
 
 Participant::Participant(const BusOptions& options)
-    : domain_(join_domain(options)),
+    : strangers_(StrangerWatch::start(options)),
+      domain_(join_domain(options)),
       participant_(create_participant(options)),
       id_(guid_of(participant_.get())),
       shares_memory_(options.iceoryx),

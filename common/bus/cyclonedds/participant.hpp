@@ -10,6 +10,7 @@
 #include "common/bus/cyclonedds/domain.hpp"
 #include "common/bus/cyclonedds/endpoint_watch.hpp"
 #include "common/bus/cyclonedds/sample_type.hpp"
+#include "common/bus/cyclonedds/stranger_watch.hpp"
 #include "common/bus/topic_types.hpp"
 
 namespace rtd::bus::cyclonedds {
@@ -46,6 +47,7 @@ class Participant {
     VendorTopic vendor;
   };
 
+  std::unique_ptr<StrangerWatch> strangers_;  ///< secured: hears from the first one on, to the last
   std::shared_ptr<Domain> domain_;
   Entity participant_;  // its topics and endpoints end with it
   WriterId id_{};

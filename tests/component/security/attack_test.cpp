@@ -12,7 +12,9 @@ namespace rtd::security {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// "open": access only, as the raw frames; "secret": encrypted.
 const std::vector<std::string> kTopics = {"rt/open", "rt/secret"};
@@ -55,8 +57,12 @@ TEST_P(AttackTest, only_the_rightful_hear_and_are_heard) {
     EXPECT_EQ(peers_.got(attacker, "writer"), 0) << attacker << " hears";
   }
   // Of a refused handshake only the side that checks first knows.
-  if (GetParam() == "fastdds") {
-    EXPECT_THAT(peers_.problems("reader"), HasSubstr("'clear'"));
+  for (const char* rightful : {"writer", "reader"}) {
+    const std::string problems = peers_.problems(rightful);
+    EXPECT_THAT(problems, ContainsRegex("participant 'clear' [0-9a-f.]+ in secured domain [0-9]+ has no certificate"));
+    EXPECT_THAT(problems, Not(HasSubstr("'writer'")));
+    EXPECT_THAT(problems, Not(HasSubstr("'reader'")));
+    EXPECT_EQ(problems.find("'clear'"), problems.rfind("'clear'")) << "told twice: " << problems;
   }
   if (std::getenv("RTD_SHOW_PEERS") != nullptr) std::cout << peers_.log();
   std::cout << "reader got " << peers_.got("reader", "writer") << " samples of the writer; attackers sent clear "
@@ -93,7 +99,9 @@ TEST(MixedVendorsTest, the_other_vendor_in_a_secured_domain_is_named) {
   const std::string good = Keystores(peers.scratch()).good();
   peers.start("writer", good, "/rtd/writer", kTopics);
   peers.start("reader", good, "/rtd/reader", kTopics, {}, "cyclonedds");
-  EXPECT_TRUE(peers.wait_until([&] { return !peers.problems("writer").empty(); })) << peers.log();
+  EXPECT_TRUE(peers.wait_until([&] { return !peers.problems("writer").empty() && !peers.problems("reader").empty(); }))
+      << peers.log();
+  EXPECT_THAT(peers.problems("reader"), AllOf(HasSubstr("Fast DDS"), HasSubstr("the same --dds")));
   EXPECT_THAT(peers.problems("writer"), AllOf(HasSubstr("Cyclone DDS"), HasSubstr("the same --dds")));
 }
 #endif
