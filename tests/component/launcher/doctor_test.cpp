@@ -134,6 +134,8 @@ TEST_F(DoctorTest, keys_that_expire_soon_are_told_and_expired_ones_fail) {
   EXPECT_THAT(soon, Contains(AllOf(Field(&Finding::verdict, Verdict::kWarn),
                                    Field(&Finding::text, HasSubstr("'rtd keystore renew ")))));
   EXPECT_EQ(check_keystore(options, std::time(nullptr) + 70 * kDayS, late), "");
+  ASSERT_EQ(rtd_.run({"keystore", "create", scratch_ / "short", "--days", "5"}), 0) << rtd_.output();
+  EXPECT_EQ(doctor({"--secure", "--keystore", scratch_ / "short"}), 0) << "still good: " << rtd_.output();
   EXPECT_THAT(late,
               Contains(AllOf(Field(&Finding::verdict, Verdict::kFail), Field(&Finding::text, HasSubstr("expired")))));
 }
