@@ -11,39 +11,43 @@
 
 namespace rtd::test_support {
 
-/// Keeps what a reader was given; tests wait for it. Thread-safe.
+/// Keeps what a reader was given; tests wait for it. Copies are the same inbox: a reader with one of its own may
+/// outlive the test's. Thread-safe.
 template <class T>
 class Inbox {
  public:
-  void take(std::shared_ptr<const T> message) {
+  void take(std::shared_ptr<const T> message) const {
     {
-      const std::lock_guard lock(mutex_);
-      messages_.push_back(std::move(message));
+      const std::lock_guard lock(content_->mutex);
+      content_->messages.push_back(std::move(message));
     }
-    arrived_.notify_all();
+    content_->arrived.notify_all();
   }
   /// True once `ready(messages)` holds, false when it never did within the time.
   template <class Predicate>
-  bool wait(Predicate ready, std::chrono::milliseconds patience = std::chrono::seconds(20)) {
-    std::unique_lock lock(mutex_);
-    return arrived_.wait_for(lock, patience, [&] { return ready(messages_); });
+  bool wait(Predicate ready, std::chrono::milliseconds patience = std::chrono::seconds(20)) const {
+    std::unique_lock lock(content_->mutex);
+    return content_->arrived.wait_for(lock, patience, [&] { return ready(content_->messages); });
   }
-  bool wait_count(std::size_t count, std::chrono::milliseconds patience = std::chrono::seconds(20)) {
+  bool wait_count(std::size_t count, std::chrono::milliseconds patience = std::chrono::seconds(20)) const {
     return wait([count](const auto& messages) { return messages.size() >= count; }, patience);
   }
   std::shared_ptr<const T> at(std::size_t index) const {
-    const std::lock_guard lock(mutex_);
-    return messages_.at(index);
+    const std::lock_guard lock(content_->mutex);
+    return content_->messages.at(index);
   }
   std::vector<std::shared_ptr<const T>> all() const {
-    const std::lock_guard lock(mutex_);
-    return messages_;
+    const std::lock_guard lock(content_->mutex);
+    return content_->messages;
   }
 
  private:
-  mutable std::mutex mutex_;
-  std::condition_variable arrived_;
-  std::vector<std::shared_ptr<const T>> messages_;
+  struct Content {
+    std::mutex mutex;
+    std::condition_variable arrived;
+    std::vector<std::shared_ptr<const T>> messages;
+  };
+  std::shared_ptr<Content> content_ = std::make_shared<Content>();
 };
 
 }  // namespace rtd::test_support

@@ -83,9 +83,9 @@ class ServiceFixture : public ::testing::Test {
   }
   /// Listens until the end of the test.
   template <class T>
-  void hear(const bus::Topic<T>& topic, Inbox<T>& inbox) {
+  void hear(const bus::Topic<T>& topic, const Inbox<T>& inbox) {
     readers_.push_back(std::make_shared<bus::Reader<T>>(bus_->template reader<T>(
-        topic, [&inbox](std::shared_ptr<const T> message) { inbox.take(std::move(message)); })));
+        topic, [inbox](std::shared_ptr<const T> message) { inbox.take(std::move(message)); })));
   }
   /// But for the heartbeat.
   void hear_no_more() { readers_.clear(); }
