@@ -34,15 +34,19 @@ bool taken(std::uint16_t port) {
   return refused;
 }
 
-/// A line: "  sl: ADDRESS:PORT ...", in hexadecimal, below a heading.
-std::set<int> ports_in_use(const std::string& udp_table) {
+/// A line: "  sl: ADDRESS:PORT ...", in hexadecimal, below a heading. `of_all`: only those that are heard at any
+/// address or at the group of DDS, 239.255.0.1.
+std::set<int> ports_in_use(const std::string& udp_table, bool of_all) {
   std::set<int> ports;
   std::ifstream table(udp_table);
   std::string line, slot, address;
   std::getline(table, line);
   while (table >> slot >> address && std::getline(table, line)) {
     const std::size_t colon = address.find(':');
-    if (colon != std::string::npos) ports.insert(static_cast<int>(std::strtol(&address[colon + 1], nullptr, 16)));
+    if (colon == std::string::npos ||
+        (of_all && !address.starts_with("00000000:") && !address.starts_with("0100FFEF:")))
+      continue;
+    ports.insert(static_cast<int>(std::strtol(&address[colon + 1], nullptr, 16)));
   }
   return ports;
 }
@@ -58,6 +62,23 @@ void require_discovery_port(std::uint32_t domain) {
                  number + "' and end it, or choose another domain (--domain, ROS_DOMAIN_ID)");
 }
 
+std::vector<std::uint32_t> domains_in_use(const std::string& udp_table) {
+  constexpr std::uint32_t kDomains = 233;
+  const std::set<int> ports = ports_in_use(udp_table, true);
+  std::vector<std::uint32_t> domains;
+  for (std::uint32_t domain = 0; domain < kDomains; ++domain)
+    if (ports.contains(discovery_port(domain))) domains.push_back(domain);
+  return domains;
+}
+
+std::string other_domains_hint(std::uint32_t domain, const std::string& udp_table) {
+  std::string others;
+  for (const std::uint32_t other : domains_in_use(udp_table))
+    if (other != domain) others += (others.empty() ? "" : ", ") + std::to_string(other);
+  if (others.empty()) return {};
+  return ", but on this host DDS runs in domain " + others + ": give all the same with --domain or ROS_DOMAIN_ID";
+}
+
 bool takes_participant_port(const BusOptions& options) {
   const NetworkOptions& network = options.network;
   if (!network.discovery_server.empty()) return false;
@@ -66,7 +87,7 @@ bool takes_participant_port(const BusOptions& options) {
 }
 
 int free_participant_ports(std::uint32_t domain, const std::string& udp_table) {
-  const std::set<int> in_use = ports_in_use(udp_table);
+  const std::set<int> in_use = ports_in_use(udp_table, false);
   int free = 0;
   for (int id = 0; id < kPeerParticipants; ++id) free += in_use.contains(participant_port(domain, id)) ? 0 : 1;
   return free;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "common/bus/bus_factory.hpp"
 
@@ -26,6 +28,10 @@ constexpr std::uint16_t participant_port(std::uint32_t domain, int id) {
 bool takes_participant_port(const BusOptions& options);
 /// How many of them nobody has; nothing is opened. `udp_table`: for tests.
 int free_participant_ports(std::uint32_t domain, const std::string& udp_table = "/proc/self/net/udp");
+/// DDS domains of which somebody on this host hears the announcements, in order.
+std::vector<std::uint32_t> domains_in_use(const std::string& udp_table = "/proc/self/net/udp");
+/// For somebody who is alone in his domain: ", but on this host DDS runs in domain 0: ..."; empty when it does not.
+std::string other_domains_hint(std::uint32_t domain, const std::string& udp_table = "/proc/self/net/udp");
 /// Throws BusError when no such port is free.
 void require_participant_port(std::uint32_t domain);
 

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <ostream>
+#include <set>
 
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
@@ -34,7 +35,7 @@ void add_topics_command(CLI::App& parent, TopicsRequest& request) {
   CLI::App* command = parent.add_subcommand("topics", "List the topics of a DDS domain, measure rates, print messages");
   command->require_subcommand(1);
   add_action(*command, request, "list", "Topics, types and what their writers offer")
-      ->add_option("--wait", request.wait_s, "Longest look, s, while nothing is found")
+      ->add_option("--wait", request.wait_s, "Longest look, s; ends when nobody new has come for 2 s")
       ->check(CLI::Range(0.1, kMaxSeconds))
       ->capture_default_str();
   CLI::App* hz = add_action(*command, request, "hz", "Rate, jitter, size and losses of topics");
@@ -51,16 +52,21 @@ void add_topics_command(CLI::App& parent, TopicsRequest& request) {
   echo->add_option("--max-array", request.max_array, "Values shown of an array, 0 = all")->capture_default_str();
 }
 
-int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err) {
-  constexpr double kSettledS = 1.2;  // nobody new for so long
-  std::size_t found = 0;
+/// Until nobody new has come for a while: participants announce themselves twice a second, and each then tells of its
+/// writers by and by. Who finds nobody looks as long as allowed.
+void look_around(double longest_s, TopicsSession& session) {
+  constexpr double kSettledS = 2;
+  std::set<bus::WriterId> known;
   double last_new_s = 0;
-  while (session.seconds() < request.wait_s && !(found > 0 && session.seconds() - last_new_s > kSettledS)) {
-    if (!session.goes_on(50ms)) break;
-    const std::size_t now = session.writers().size();
-    if (now != found) last_new_s = session.seconds();
-    found = now;
+  while (session.seconds() < longest_s && session.goes_on(50ms)) {
+    for (const bus::TopicWriter& writer : session.writers())
+      if (known.insert(writer.id).second) last_new_s = session.seconds();
+    if (!known.empty() && session.seconds() - last_new_s > kSettledS) return;
   }
+}
+
+int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err) {
+  look_around(request.wait_s, session);
   const std::vector<topics::TopicRow> rows = topics::rows_of(session.writers());
   if (request.json) {
     out << topics::list_json(rows).dump(2) << '\n';
@@ -68,7 +74,7 @@ int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostre
     out << topics::list_text(rows);
   }
   if (!rows.empty()) return service::kOk;
-  err << fmt::format("rtd topics: no topic within {:.1f} s in {}\n", session.seconds(), session.place());
+  err << fmt::format("rtd topics: no topic within {:.1f} s in {}\n", session.seconds(), session.empty_place());
   return service::kRunFailed;
 }
 

@@ -16,7 +16,7 @@ struct TopicsRequest {
   std::string action;  ///< list, hz, echo
   service::BusArguments bus;
   std::vector<std::string> topics;  ///< hz: empty = all; echo: one. ROS or DDS names
-  double wait_s = 3;                ///< list: longest look at an empty domain
+  double wait_s = 6;                ///< list: longest look
   double duration_s = -1;           ///< hz: 5; echo: 0 = until Ctrl-C
   std::uint64_t count = 0;          ///< messages (of each topic), 0 = any number
   std::uint64_t max_array = 36;     ///< echo: values shown of an array, 0 = all

@@ -119,7 +119,7 @@ int measure_topics(const TopicsRequest& request, TopicsSession& session, std::os
   }
   int code = rows.empty() ? service::kRunFailed : service::kOk;
   if (rows.empty() && request.topics.empty()) {
-    err << fmt::format("rtd topics: no topic within {:.1f} s in {}\n", seconds, session.place());
+    err << fmt::format("rtd topics: no topic within {:.1f} s in {}\n", seconds, session.empty_place());
   }
   for (const std::string& name : request.topics) {
     if (std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return is_called(row.topic, name); })) continue;

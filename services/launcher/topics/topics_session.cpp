@@ -8,6 +8,7 @@
 
 #include <set>
 
+#include "common/bus/port_check.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/bus_config.hpp"
 
@@ -53,11 +54,15 @@ std::string TopicsSession::place() const {
       options_.network.loopback_only ? "this host only; --profile lan: also the network" : "this host and the network");
 }
 
+std::string TopicsSession::empty_place() const {
+  return place() + bus::other_domains_hint(options_.domain);
+}
+
 std::string TopicsSession::nobody_publishes(const std::string& topic) const {
   std::set<std::string> names;
   for (const bus::TopicWriter& writer : writers()) names.insert(ros2::ros_topic(writer.topic.name));
-  const std::string found =
-      names.empty() ? "nothing is published" : fmt::format("published are {}", fmt::join(names, ", "));
+  const std::string found = names.empty() ? "nothing is published" + bus::other_domains_hint(options_.domain)
+                                          : fmt::format("published are {}", fmt::join(names, ", "));
   return fmt::format("nobody publishes {} in {}; {}", topic, place(), found);
 }
 

@@ -33,6 +33,8 @@ class TopicsSession {
   std::vector<bus::TopicWriter> writers() const;
   /// "DDS domain 0 (fastdds, this host only; --profile lan: also the network)".
   std::string place() const;
+  /// The same for somebody who finds nothing there: also in which domains of this host DDS runs.
+  std::string empty_place() const;
   /// Who publishes what, for somebody who asked for a topic that nobody publishes.
   std::string nobody_publishes(const std::string& topic) const;
 

@@ -21,6 +21,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -100,6 +101,31 @@ TEST_P(Topics, of_an_empty_domain_are_none_and_the_message_says_where) {
   EXPECT_EQ(run("hz"), service::kRunFailed);
   EXPECT_EQ(run("echo", {"/slam/pose"}), service::kRunFailed);
   EXPECT_THAT(err_.str(), AllOf(HasSubstr("nobody publishes /slam/pose"), HasSubstr("nothing is published")));
+}
+
+TEST_P(Topics, of_another_domain_are_hinted_at) {
+  publish();
+  request_.bus.domain = static_cast<int>(options_.domain + 1);
+  request_.wait_s = 0.3;
+  EXPECT_EQ(run("list"), service::kRunFailed);
+  EXPECT_THAT(err_.str(),
+              ContainsRegex("on this host DDS runs in domain ([0-9]+, )*" + std::to_string(options_.domain) + "[,:]"));
+}
+
+TEST_P(Topics, whose_writers_come_one_after_the_other_are_all_listed) {
+  constexpr int kWriters = 3;
+  const auto bus = bus::connect_raw(options_);
+  std::vector<std::unique_ptr<bus::RawWriter>> writers;
+  std::thread latecomers([&] {
+    for (int i = 0; i < kWriters; ++i) {
+      writers.push_back(bus->writer({"rt/late" + std::to_string(i), "other_msgs::msg::dds_::Thing_"}, {}));
+      std::this_thread::sleep_for(1300ms);
+    }
+  });
+  request_.wait_s = 30;
+  EXPECT_EQ(run("list"), service::kOk) << err_.str();
+  latecomers.join();
+  for (int i = 0; i < kWriters; ++i) EXPECT_THAT(out_.str(), HasSubstr("/late" + std::to_string(i)));
 }
 
 TEST_P(Topics, have_a_rate) {

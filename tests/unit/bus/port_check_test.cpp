@@ -20,6 +20,7 @@
 namespace rtd::bus {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// Holds a UDP port.
@@ -72,11 +73,19 @@ TEST(PortCheck, a_shared_port_is_no_trouble) {
 
 TEST(PortCheck, ports_of_participants_are_read_from_the_kernel_table) {
   const std::string path = ::testing::TempDir() + "rtd_udp_table_" + std::to_string(getpid());
-  std::ofstream(path) << "  sl  local_address rem_address   st tx_queue rx_queue\n"
-                      << "  10: 0100007F:1CF2 00000000:0000 07 0:0 00:0 0 0 0 1\n"   // 7410
-                      << "  11: 00000000:1CF3 00000000:0000 07 0:0 00:0 0 0 0 2\n"   // 7411: of data
-                      << "  12: 0200000A:1D10 00000000:0000 07 0:0 00:0 0 0 0 3\n";  // 7440
+  std::ofstream(path)
+      << "  sl  local_address rem_address   st tx_queue rx_queue\n"
+      << "  10: 0100007F:1CF2 00000000:0000 07 0:0 00:0 0 0 0 1\n"  // 7410
+      << "  11: 00000000:1CF3 00000000:0000 07 0:0 00:0 0 0 0 2\n"  // 7411: of data
+      << "  12: 0200000A:1D10 00000000:0000 07 0:0 00:0 0 0 0 3\n"
+      << "  13: 00000000:1DE2 00000000:0000 07 0:0 00:0 0 0 0 4\n"
+      << "  15: 0100FFEF:1EDC 00000000:0000 07 0:0 00:0 0 0 0 6\n"   // 7900: all of domain 2   // 7650: all of domain 1
+      << "  14: 0100007F:1FD6 00000000:0000 07 0:0 00:0 0 0 0 5\n";  // 7440
   EXPECT_EQ(free_participant_ports(0, path), kPeerParticipants - 2);
+  EXPECT_THAT(domains_in_use(path), ElementsAre(1U, 2U));
+  EXPECT_THAT(other_domains_hint(0, path), HasSubstr("on this host DDS runs in domain 1, 2: "));
+  EXPECT_THAT(other_domains_hint(1, path), HasSubstr("in domain 2: "));
+  EXPECT_EQ(other_domains_hint(0, "/no/such/table"), "");
   EXPECT_EQ(free_participant_ports(1, path), kPeerParticipants);
   EXPECT_EQ(free_participant_ports(0, "/no/such/table"), kPeerParticipants);
   std::remove(path.c_str());
