@@ -127,6 +127,11 @@ bool Heartbeat::alive(const std::string& service) const {
          found->second.health == PeerHealth::kAlive && monotonic_ns() - found->second.heard_ns < kGoneAfterNs;
 }
 
+bool Heartbeat::alone() const {
+  const std::lock_guard lock(mutex_);
+  return peers_.empty();
+}
+
 bool Heartbeat::ready(const std::string& service) const {
   if (!alive(service)) return false;
   const std::lock_guard lock(mutex_);

@@ -15,6 +15,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/host_checks.hpp"
 #include "common/bus/shm_leftovers.hpp"
+#include "common/service/alone_hint.hpp"
 #include "common/service/bus_arguments.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/log.hpp"
@@ -140,6 +141,8 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     problems.tell(&heartbeat);
     const std::shared_ptr<void> at_end(nullptr, [&problems](void*) { problems.tell(nullptr); });
     heartbeat.watch_progress(pace == Pace::kRealtime ? kStuckAfter : kStuckAfterOffline);
+    const AloneHint alone(heartbeat, options,
+                          [](const std::string& cause) { SPDLOG_WARN("event=nobody_heard cause=\"{}\"", cause); });
     Runtime runtime{*bus, heartbeat, stop, pace, options};
     SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), bus_config.domain, to_string(pace),
                 getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");

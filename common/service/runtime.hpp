@@ -41,6 +41,7 @@ class Heartbeat {
   /// False for a service that is dead, hung, or not heard for 0.7 s.
   bool alive(const std::string& service) const;
   bool ready(const std::string& service) const;  ///< alive and in state kReady, kRunning or kDegraded
+  bool alone() const;                            ///< no other service has been heard yet
   /// Called on a bus thread for every heartbeat of another service. A call that runs is waited for: afterwards the
   /// one before is used no more. Not from the callback itself.
   void on_status(std::function<void(const msg::ServiceStatus&)> callback);

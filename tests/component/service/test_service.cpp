@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/service/alone_hint.hpp"
 #include "common/service/run_service.hpp"
 
 namespace rtd::service {
@@ -96,6 +97,31 @@ TEST(Heartbeat, whoever_takes_the_callback_back_waits_for_a_call_that_runs) {
   EXPECT_EQ(taken_back.wait_for(50ms), std::future_status::timeout);
   leave.set_value();
   EXPECT_TRUE(taken_back.get());
+}
+
+TEST(AloneHint, tells_who_hears_nobody_where_he_is) {
+  const auto bus = bus::connect(domain(5));
+  StopToken stop;
+  std::promise<std::string> told;
+  const Heartbeat slam(*bus, "slam", stop);
+  const AloneHint hint(
+      slam, domain(5), [&](const std::string& cause) { told.set_value(cause); }, 50ms);
+  auto cause = told.get_future();
+  ASSERT_EQ(cause.wait_for(5s), std::future_status::ready);
+  EXPECT_THAT(cause.get(), HasSubstr("no other service is in DDS domain 5"));
+}
+
+TEST(AloneHint, is_silent_in_company_and_at_the_end) {
+  const auto bus = bus::connect(domain(6));
+  StopToken stop;
+  std::atomic<bool> told{false};
+  const Heartbeat slam(*bus, "slam", stop), filter(*bus, "filter", stop);
+  ASSERT_TRUE(eventually([&] { return !slam.alone(); }));
+  const auto say = [&](const std::string&) { told = true; };
+  { const AloneHint ends(slam, domain(6), say); }
+  const AloneHint hint(slam, domain(6), say, 1ms);
+  std::this_thread::sleep_for(50ms);
+  EXPECT_FALSE(told);
 }
 
 /// Runs a service definition with command-line words.
