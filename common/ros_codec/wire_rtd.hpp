@@ -19,6 +19,15 @@ void fields(auto& archive, Is<msg::ServiceStatus> auto& status) {
   archive(status.service, status.pid, status.started_ns, status.stamp_ns, status.state, status.message, status.metrics);
 }
 
+template <class T>
+concept IsUnaligned = Is<T, msg::Unaligned<typename T::Number>>;
+
+template <IsUnaligned T>
+void fields(auto& archive, T& value) {
+  auto number = static_cast<typename T::Number>(value);
+  archive(number);
+  if constexpr (!std::is_const_v<T>) value = number;
+}
 void fields(auto& archive, Is<msg::RgbdFrame> auto& frame) {
   archive(frame.seq, frame.stamp_ns, frame.published_ns, frame.intrinsics, frame.distortion, frame.depth_scale_m,
           frame.width, frame.height, frame.source_id, frame.color_bgr, frame.depth);

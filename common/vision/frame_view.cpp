@@ -22,14 +22,14 @@ std::string defect(const msg::RgbdFrame& frame) {
     return fmt::format("size {}x{} is not within 1x1 .. {}x{}", frame.width, frame.height, msg::kMaxFrameWidth,
                        msg::kMaxFrameHeight);
   }
-  const auto& [fx, fy, cx, cy] = frame.intrinsics;
+  const auto [fx, fy, cx, cy] = msg::aligned(frame.intrinsics);
   if (!positive(fx) || !positive(fy) || !std::isfinite(cx) || !std::isfinite(cy)) {
     return fmt::format("intrinsics fx {} fy {} cx {} cy {} are not a camera", fx, fy, cx, cy);
   }
   const bool finite =
       std::all_of(frame.distortion.begin(), frame.distortion.end(), [](double k) { return std::isfinite(k); });
   if (!finite) return "distortion is not finite";
-  if (!positive(frame.depth_scale_m)) return fmt::format("depth scale {} m is not positive", frame.depth_scale_m);
+  if (!positive(frame.depth_scale_m)) return fmt::format("depth scale {} m is not positive", frame.depth_scale_m.value());
   return {};
 }
 
@@ -42,8 +42,8 @@ RgbdImage view_image(const msg::RgbdFrame& frame) {
   image.color_bgr = cv::Mat(rows, cols, CV_8UC3, const_cast<std::uint8_t*>(frame.color_bgr.data()));
   image.depth = cv::Mat(rows, cols, CV_16UC1, const_cast<std::uint16_t*>(frame.depth.data()));
   image.depth_scale_m = frame.depth_scale_m;
-  const auto& [fx, fy, cx, cy] = frame.intrinsics;
-  image.camera = geometry::CameraModel({fx, fy, cx, cy, frame.distortion, cols, rows});
+  const auto [fx, fy, cx, cy] = msg::aligned(frame.intrinsics);
+  image.camera = geometry::CameraModel({fx, fy, cx, cy, msg::aligned(frame.distortion), cols, rows});
   return image;
 }
 

@@ -43,7 +43,7 @@ void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::in
   frame.stamp_ns = image.stamp_ns;
   frame.published_ns = published_ns;
   frame.intrinsics = {p.fx, p.fy, p.cx, p.cy};
-  frame.distortion = p.distortion;
+  frame.distortion = msg::unaligned(p.distortion);
   frame.depth_scale_m = image.depth_scale_m;
   frame.width = static_cast<std::uint32_t>(image.color_bgr.cols);
   frame.height = static_cast<std::uint32_t>(image.color_bgr.rows);

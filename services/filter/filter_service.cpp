@@ -113,7 +113,7 @@ bool FilterService::accept(const msg::RgbdFrame& frame) {
   }
   if (frame.stamp_ns <= message_->stamp_ns) {
     forget(frame, "time went back");
-  } else if (frame.intrinsics != message_->intrinsics) {
+  } else if (msg::aligned(frame.intrinsics) != message_->intrinsics) {
     forget(frame, "another calibration");
   }
   return true;
@@ -121,8 +121,8 @@ bool FilterService::accept(const msg::RgbdFrame& frame) {
 
 /// What was seen before cannot be compared with this frame.
 void FilterService::forget(const msg::RgbdFrame& frame, const char* cause) {
-  SPDLOG_WARN("event=views_forgotten frame={} stamp_ns={} last_stamp_ns={} cause=\"{}\"", frame.seq, frame.stamp_ns,
-              message_->stamp_ns, cause);
+  SPDLOG_WARN("event=views_forgotten frame={} stamp_ns={} last_stamp_ns={} cause=\"{}\"", frame.seq.value(),
+              frame.stamp_ns.value(), message_->stamp_ns, cause);
   filter_.reset();
   detections_->clear();
 }
@@ -130,7 +130,7 @@ void FilterService::forget(const msg::RgbdFrame& frame, const char* cause) {
 /// The others wait for every frame: a frame that cannot be used has no features.
 void FilterService::answer_defective(const msg::RgbdFrame& frame, const std::string& cause) {
   runtime_.heartbeat.set_metric("frames_defective", static_cast<double>(++defective_));
-  if (defect_log_.pass()) SPDLOG_ERROR("event=frame_defective frame={} cause=\"{}\"", frame.seq, cause);
+  if (defect_log_.pass()) SPDLOG_ERROR("event=frame_defective frame={} cause=\"{}\"", frame.seq.value(), cause);
   fill_message(frame, {}, msg::DetectionUse::kNone, *message_);
   writer_.write(*message_);
 }
@@ -189,7 +189,7 @@ void FilterService::wait_for_detections(const msg::RgbdFrame& frame) {
   };
   if (detections_->wait_for(frame.stamp_ns, give_up) || runtime_.stop.stop_requested()) return;
   ++unpaired_;
-  if (wait_log_.pass()) SPDLOG_WARN("event=no_detections frame={} total={}", frame.seq, unpaired_);
+  if (wait_log_.pass()) SPDLOG_WARN("event=no_detections frame={} total={}", frame.seq.value(), unpaired_);
 }
 
 msg::DetectionUse FilterService::use_of(const DetectorWord& word, const FilterResult& result,

@@ -19,7 +19,7 @@ void fill_message(const msg::RgbdFrame& frame, const FilterResult& result, msg::
   message.seq = frame.seq;
   message.stamp_ns = frame.stamp_ns;
   message.published_ns = frame.published_ns;
-  message.intrinsics = frame.intrinsics;
+  message.intrinsics = msg::aligned(frame.intrinsics);
   message.width = frame.width;
   message.height = frame.height;
   message.objects = static_cast<std::uint32_t>(result.objects.size());

@@ -29,6 +29,7 @@ class PlainCodec : public Codec {
     return writer.write(const_cast<void*>(message));  // the vendor only reads it
   }
   TakenSample take(dds::DataReader& reader) override;
+  bool in_place() const override { return alignof(T) <= PlainType<T>::kHeaderBytes; }
   std::shared_ptr<void> allocate() const override { return pool_.acquire(); }
 
  private:
@@ -67,6 +68,7 @@ class ConvertedCodec : public Codec {
     FromVendor{}(*message, received_);
     return {TakenSample::Kind::kMessage, std::move(message)};
   }
+  bool in_place() const override { return false; }
   std::shared_ptr<void> allocate() const override {
     throw BusError(create_type().get_type_name() + " is of variable size and cannot be loaned");
   }

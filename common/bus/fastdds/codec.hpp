@@ -28,6 +28,8 @@ class Codec {
   virtual bool write(eprosima::fastdds::dds::DataWriter& writer, const void* message) const = 0;
   /// For one thread.
   virtual TakenSample take(eprosima::fastdds::dds::DataReader& reader) = 0;
+  /// Whether a sample in the vendor's memory, 4 bytes behind a multiple of 8, may be used as the message itself.
+  virtual bool in_place() const = 0;
   /// An uninitialised message to fill in. Plain types only. Thread-safe.
   virtual std::shared_ptr<void> allocate() const = 0;
 };

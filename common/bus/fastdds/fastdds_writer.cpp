@@ -26,6 +26,7 @@ FastddsWriter::FastddsWriter(std::shared_ptr<Participant> participant, std::uniq
         [this](const std::string& type) { thread_->post([this, type] { callbacks_.on_type_mismatch(type); }); });
   }
   dds::Topic* const known = participant_->topic(topic, *codec_);
+  lends_own_memory_ = codec_->in_place() && qos.data_sharing().kind() != dds::OFF;
   writer_ = publisher_.create_datawriter(known, with_type_hash(qos, known->get_type_name()), this);
   if (writer_ == nullptr) throw BusError("Fast DDS refused a writer on topic " + topic);
   participant_->writer_created();
@@ -41,17 +42,30 @@ bool FastddsWriter::write(const void* message) {
 }
 
 void* FastddsWriter::loan() {
+  void* lent = nullptr;
+  if (lends_own_memory_ && writer_->loan_sample(lent) == ReturnCode_t::RETCODE_OK) {
+    return *vendor_loans_.insert(lent).first;
+  }
   std::shared_ptr<void> slot = codec_->allocate();
   return loans_.emplace(slot.get(), slot).first->first;
 }
 
 bool FastddsWriter::write_loaned(void* slot) {
+  if (vendor_loans_.erase(slot) > 0) {
+    if (writer_->write(slot)) return true;
+    writer_->discard_loan(slot);  // a failed write leaves it lent
+    return false;
+  }
   const auto node = loans_.extract(slot);
   return !node.empty() && write(slot);
 }
 
 void FastddsWriter::discard_loan(void* slot) {
-  loans_.erase(slot);
+  if (vendor_loans_.erase(slot) > 0) {
+    writer_->discard_loan(slot);
+  } else {
+    loans_.erase(slot);
+  }
 }
 
 bool FastddsWriter::wait_acknowledged(int timeout_ms) {

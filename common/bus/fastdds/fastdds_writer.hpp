@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
@@ -16,9 +17,9 @@
 
 namespace rtd::bus::fastdds {
 
-/// One DataWriter. A loan is an aligned slot of our own, copied into the writer's shared memory by write_loaned() (90
-/// us for a frame): Fast DDS's own slots begin 4 bytes behind an aligned address, after the CDR header, where no struct
-/// with 64-bit members may lie.
+/// One DataWriter. A loan of a message without 64-bit members is a slot of the writer's own shared memory, which
+/// write_loaned() does not copy. Fast DDS's slots begin 4 bytes behind an aligned address, after the CDR header; other
+/// messages are lent memory of our own.
 class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
  public:
   FastddsWriter(std::shared_ptr<Participant> participant, std::unique_ptr<Codec> codec, const std::string& topic,
@@ -45,6 +46,8 @@ class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
   std::optional<CallbackThread> thread_;  ///< only when there are callbacks
   std::optional<TopicTypes::Watch> types_;
   std::map<void*, std::shared_ptr<void>> loans_;
+  bool lends_own_memory_ = false;  ///< of the data-sharing pool
+  std::set<void*> vendor_loans_;
   dds::DataWriter* writer_ = nullptr;
 };
 
