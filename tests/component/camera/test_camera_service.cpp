@@ -301,9 +301,10 @@ TEST_F(CameraServiceTest, WaitsForThoseItWasToldTo) {
   config_.source = std::string(kTinyScene) + "3";
   FakeTracker tracker(*bus_);
   auto running = start(service::Pace::kLockstep);
+  wait_until([this] { return last_status().message.find("slam") != std::string::npos; });
+  EXPECT_THAT(last_status().message, HasSubstr("slam"));
   EXPECT_EQ(running.wait_for(std::chrono::milliseconds(300)), std::future_status::timeout);
   EXPECT_THAT(tracker.seqs(), SizeIs(0));
-  EXPECT_THAT(last_status().message, HasSubstr("slam"));
   slam.set_state(msg::ServiceState::kReady);
   EXPECT_EQ(running.get(), service::kOk);
   EXPECT_THAT(tracker.seqs(), SizeIs(3));
