@@ -26,7 +26,6 @@ std::vector<std::uint8_t> encode_jpeg(const msg::RgbdFrame& frame) {
 
 Collector::Collector(bus::Bus& bus, const Options& options)
     : samples_(options.samples, options.total), total_(options.total), keep_features_(options.keep_features) {
-  encoder_ = std::thread([this] { encode_samples(); });
   tracking_ = bus.reader<msg::TrackingResult>(bus::topics::kTracking, [this](const auto& result) {
     const std::lock_guard lock(mutex_);
     builder_.add(*result);
@@ -50,6 +49,7 @@ Collector::Collector(bus::Bus& bus, const Options& options)
     }
     pictures_.push(frame);
   });
+  encoder_ = std::thread([this] { encode_samples(); });  // last: the bus may refuse a reader
 }
 
 Collector::~Collector() {
