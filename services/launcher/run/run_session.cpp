@@ -20,6 +20,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kTick{50};
 constexpr milliseconds kMemoryPeriod{250};
 constexpr std::size_t kShownTailLines = 6;
+constexpr std::size_t kJudgedWhenInterrupted = 50;
 
 milliseconds now() {
   return milliseconds(service::monotonic_ns() / 1'000'000);
@@ -200,16 +201,29 @@ RunRecord RunSession::record() const {
     record.static_map_points = geometry::ply_vertices(map).value_or(0);
   collector_.fill(record);
   record.events = events_;
-  try {
-    record.removal = judge_removal(setup_.source, collector_.judged_frames());
-  } catch (const std::exception& error) {
-    record.events.push_back(std::string("masks unusable: ") + error.what());
-  }
+  judge(record);
   record.duration_s = span_s(record.frames);
   record.processes = usage_.usage();
   record.processes["launcher"] = own_usage();
   record.processes["launcher"].cpu_s -= own_cpu_before_s_;  // of an earlier run of the same launcher (demo)
   return record;
+}
+
+/// Nobody waits long for the end of what he has interrupted, and Ctrl-C goes on to count here.
+void RunSession::judge(RunRecord& record) const {
+  const bool interrupted = supervisor_.outcome() == RunOutcome::kInterrupted;
+  JudgeLimits limits;
+  if (interrupted) limits.most_frames = kJudgedWhenInterrupted;
+  limits.go_on = [this] { return signals_.take() == 0; };
+  const std::vector<JudgedFrame> frames = collector_.judged_frames();
+  try {
+    record.removal = judge_removal(setup_.source, frames, limits);
+  } catch (const std::exception& error) {
+    record.events.push_back(std::string("masks unusable: ") + error.what());
+  }
+  if (record.removal && record.removal->frames < frames.size() && interrupted)
+    record.events.push_back("interrupted: removal judged on " + std::to_string(record.removal->frames) + " of " +
+                            std::to_string(frames.size()) + " frames");
 }
 
 }  // namespace rtd::launcher

@@ -44,6 +44,7 @@ class RunSession {
   void stop_when_decided(Milliseconds now);
   void sample_memory(Milliseconds now);
   void note(const std::string& text);
+  void judge(RunRecord& record) const;
 
   const RunSetup& setup_;
   InterruptSignals& signals_;

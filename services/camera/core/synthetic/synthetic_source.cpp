@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <sstream>
 
 #include "common/msg/rgbd_frame.hpp"
@@ -135,6 +136,12 @@ std::optional<SourceFrame> SyntheticSource::next() {
 
 std::uint64_t SyntheticSource::pass_over(std::int64_t stamp_ns) {
   const std::uint64_t before = counters_.frames;
+  // A stamp may lie centuries ahead: near it in one step, and never where the next frame's stamp has no number.
+  constexpr std::int64_t kLastNs = std::numeric_limits<std::int64_t>::max() - 3'600'000'000'000;
+  stamp_ns = std::min(stamp_ns, kLastNs);
+  const double near = (static_cast<double>(stamp_ns) - static_cast<double>(kFirstStampNs)) * 1e-9 * options_.fps - 2;
+  if (near > static_cast<double>(before)) counters_.frames = static_cast<std::uint64_t>(near);
+  if (options_.frames != 0) counters_.frames = std::min(counters_.frames, std::max(before, options_.frames));
   while (!at_end() && this->stamp_ns(counters_.frames) < stamp_ns) ++counters_.frames;
   return counters_.frames - before;
 }

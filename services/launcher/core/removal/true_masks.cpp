@@ -54,9 +54,11 @@ MaskOf masks_of_folder(const fs::path& folder) {
 /// Plays the scene again: the same options give the same bits.
 MaskOf masks_of_scene(const std::string& uri) {
   const std::shared_ptr<camera::FrameSource> source = camera::make_source(uri);
-  return [source](std::int64_t stamp_ns) -> std::optional<cv::Mat> {
-    source->pass_over(stamp_ns);
-    const auto frame = source->next();
+  return [source, frame = source->next()](std::int64_t stamp_ns) mutable -> std::optional<cv::Mat> {
+    if (frame && frame->image.stamp_ns < stamp_ns) {
+      source->pass_over(stamp_ns);
+      frame = source->next();
+    }
     if (!frame || frame->image.stamp_ns != stamp_ns) return std::nullopt;
     return frame->dynamic_mask;
   };
@@ -70,17 +72,21 @@ bool has_true_masks(const std::string& source_uri) {
   return is_synthetic(source_uri) || (!folder.empty() && fs::is_directory(folder, error));
 }
 
-std::optional<RunRemoval> judge_removal(const std::string& source_uri, const std::vector<JudgedFrame>& frames) {
-  if (frames.empty() || !has_true_masks(source_uri)) return std::nullopt;
+std::optional<RunRemoval> judge_removal(const std::string& source_uri, const std::vector<JudgedFrame>& frames,
+                                        const JudgeLimits& limits) {
+  if (frames.empty() || limits.most_frames == 0 || !has_true_masks(source_uri)) return std::nullopt;
   const MaskOf mask_of =
       is_synthetic(source_uri) ? masks_of_scene(source_uri) : masks_of_folder(mask_folder(source_uri));
   RunRemoval removal;
-  for (const JudgedFrame& frame : frames) {
+  std::int64_t first_ns = 0;
+  const std::size_t step = 1 + (frames.size() - 1) / limits.most_frames;
+  for (std::size_t i = 0; i < frames.size() && (!limits.go_on || limits.go_on()); i += step) {
+    const JudgedFrame& frame = frames[i];
     const std::optional<cv::Mat> mask = mask_of(frame.stamp_ns);
     if (!mask) continue;
-    ++removal.frames;
+    if (removal.frames++ == 0) first_ns = frame.stamp_ns;
     removal.all.count(frame.features, *mask);
-    if (frame.stamp_ns - frames.front().stamp_ns >= kSettledNs) removal.settled.count(frame.features, *mask);
+    if (frame.stamp_ns - first_ns >= kSettledNs) removal.settled.count(frame.features, *mask);
   }
   if (removal.frames == 0) return std::nullopt;
   return removal;

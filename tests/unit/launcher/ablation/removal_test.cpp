@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -76,6 +77,37 @@ TEST(TrueMasks, of_a_synthetic_scene_are_rendered_again) {
   EXPECT_GT(removal->all.removed_rightly, 100U);
   EXPECT_GT(removal->all.removed_wrongly, removal->all.removed_rightly) << "most of the room rests";
   EXPECT_FALSE(has_true_masks("openni:0"));
+}
+
+/// Stamps come from other processes.
+TEST(TrueMasks, of_an_endless_scene_are_not_looked_for_at_the_end_of_time) {
+  constexpr std::int64_t kEnd = std::numeric_limits<std::int64_t>::max();
+  const std::vector<eval::JudgedFeature> moving{{150, 150, true}};
+  const auto removal =
+      judge_removal("synthetic:office?frames=0", {{-kEnd, moving}, {1'000'000'000'000, moving}, {kEnd - 7, moving}});
+  ASSERT_TRUE(removal);
+  EXPECT_EQ(removal->frames, 1U);
+}
+
+TEST(TrueMasks, are_looked_at_evenly_spread_or_until_somebody_loses_patience) {
+  const fs::path folder = fs::path(testing::TempDir()) / ("rtd_limits_" + std::to_string(getpid()));
+  fs::create_directories(folder / "mask");
+  std::vector<JudgedFrame> frames;
+  for (int second = 10; second < 17; ++second) {
+    cv::imwrite((folder / "mask" / (std::to_string(second) + ".000000.png")).string(), square());
+    frames.push_back({second * 1'000'000'000LL, {{150, 150, second % 3 == 1}}});  // removed in 10, 13 and 16
+  }
+  const std::string uri = "tum:" + folder.string();
+  JudgeLimits limits;
+  limits.most_frames = 3;
+  const auto spread = judge_removal(uri, frames, limits);
+  ASSERT_TRUE(spread);
+  EXPECT_EQ(spread->frames, 3U);
+  EXPECT_EQ(spread->all.removed_rightly, 3U) << "every third";
+  int asked = 0;
+  limits = {.go_on = [&asked] { return ++asked < 3; }};
+  EXPECT_EQ(judge_removal(uri, frames, limits)->frames, 2U);
+  fs::remove_all(folder);
 }
 
 }  // namespace
