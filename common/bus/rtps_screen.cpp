@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "common/bus/rtps_numbers.hpp"
+
 namespace rtd::bus {
 namespace {
 
@@ -40,6 +42,14 @@ bool is_rtps_message(std::span<const std::byte> datagram) {
     at += length;
   }
   return true;
+}
+
+bool RtpsScreen::passes(std::span<const std::byte> datagram) {
+  if (!is_rtps_message(datagram)) return false;
+  const std::vector<WriterNumber> numbers = sequence_numbers_of(datagram);
+  const std::lock_guard lock(mutex_);
+  return std::all_of(numbers.begin(), numbers.end(),
+                     [this](const WriterNumber& named) { return guard_.plausible(named.writer, named.number); });
 }
 
 }  // namespace rtd::bus

@@ -3,12 +3,26 @@
 #pragma once
 
 #include <cstddef>
+#include <mutex>
 #include <span>
+
+#include "common/bus/sequence_guard.hpp"
 
 namespace rtd::bus {
 
 /// Whether a datagram has the frame of an RTPS message: header, known submessages one behind the other, each of a whole
 /// number of words, the last one ending with the datagram. What is in the submessages is not looked at.
 bool is_rtps_message(std::span<const std::byte> datagram);
+
+/// Looks at the datagrams of a participant, from any thread.
+class RtpsScreen {
+ public:
+  /// Whether it is an RTPS message whose sequence numbers are plausible.
+  bool passes(std::span<const std::byte> datagram);
+
+ private:
+  std::mutex mutex_;
+  SequenceGuard guard_;
+};
 
 }  // namespace rtd::bus

@@ -36,7 +36,7 @@ class ScreeningTransport : public rtps::ChainingTransport {
   }
   void receive(rtps::TransportReceiverInterface* next, const octet* data, std::uint32_t size, const Locator_t& local,
                const Locator_t& remote) override {
-    if (is_rtps_message(std::as_bytes(std::span(data, size)))) {
+    if (screen_.passes(std::as_bytes(std::span(data, size)))) {
       const std::lock_guard one_at_a_time(mutex_);
       return next->OnDataReceived(data, size, local, remote);
     }
@@ -51,6 +51,7 @@ class ScreeningTransport : public rtps::ChainingTransport {
     rtps::TransportInterface* create_transport() const override { return nullptr; }
   } descriptor_;
   const OnProblem on_problem_;
+  RtpsScreen screen_;
   std::atomic<bool> told_{false};
   std::mutex mutex_;
 };

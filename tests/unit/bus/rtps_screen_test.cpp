@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/bus/rtps_numbers.hpp"
+
 #include <cstdint>
 #include <vector>
 
@@ -59,6 +61,86 @@ TEST(RtpsScreenTest, refuses_lengths_that_lie) {
 
 TEST(RtpsScreenTest, refuses_a_vendors_submessage_before_the_end) {
   EXPECT_FALSE(passes(message(join(statistics(), kInfoTimestamp))));
+}
+
+std::vector<std::uint8_t> number(std::uint64_t value) {
+  std::vector<std::uint8_t> octets;
+  for (const int shift : {32, 40, 48, 56, 0, 8, 16, 24}) octets.push_back(static_cast<std::uint8_t>(value >> shift));
+  return octets;
+}
+
+/// Of the writer with entity id 4, 5, 6, 7.
+std::vector<std::uint8_t> heartbeat(std::uint64_t first, std::uint64_t last) {
+  std::vector<std::uint8_t> submessage = {0x07, 1, 28, 0, 0, 0, 0, 0, 4, 5, 6, 7};
+  return join(join(join(submessage, number(first)), number(last)), {1, 0, 0, 0});
+}
+
+std::vector<std::uint8_t> data(std::uint64_t value) {
+  return join({0x15, 1, 20, 0, 0, 0, 16, 0, 0, 0, 0, 0, 4, 5, 6, 7}, number(value));
+}
+
+std::vector<WriterNumber> numbers(const std::vector<std::uint8_t>& datagram) {
+  return sequence_numbers_of(std::as_bytes(std::span(datagram)));
+}
+
+TEST(RtpsNumbersTest, finds_the_largest_number_of_each_writer) {
+  EXPECT_TRUE(numbers(message(kInfoTimestamp)).empty());
+  const auto found = numbers(message(join(join(data(7), heartbeat(3, 0x500000009)), kInfoTimestamp)));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].number, 0x500000009U);
+  EXPECT_EQ(found[0].writer[15], std::byte{7});
+  const auto info_source = join({0x0c, 1, 20, 0}, std::vector<std::uint8_t>(20, 9));
+  const auto two = numbers(message(join(join(data(7), info_source), data(8))));
+  ASSERT_EQ(two.size(), 2U) << "the same entity of another participant";
+  EXPECT_EQ(two[1].writer[0], std::byte{9});
+}
+
+TEST(RtpsNumbersTest, reads_big_endian_and_leaves_out_what_is_too_short) {
+  const auto found = numbers(message({0x15, 0, 0, 20, 0, 0, 0, 16, 0, 0, 0, 0, 4, 5, 6, 7, 0, 0, 0, 0, 0, 0, 1, 2}));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].number, 258U);
+  EXPECT_TRUE(numbers(message({0x15, 1, 8, 0, 1, 2, 3, 4, 5, 6, 7, 8})).empty());
+  EXPECT_TRUE(numbers(message({0x15, 1, 0, 0, 9, 9, 9})).empty()) << "length 0: to the end";
+}
+
+TEST(SequenceGuardTest, believes_in_steps_and_in_who_insists) {
+  constexpr std::uint64_t kFar = SequenceGuard::kFar, kDays = 40 * kFar;
+  const WriterGuid writer{std::byte{1}}, other{std::byte{2}};
+  SequenceGuard guard;
+  EXPECT_TRUE(guard.plausible(writer, 1));
+  EXPECT_TRUE(guard.plausible(writer, kFar));
+  EXPECT_TRUE(guard.plausible(writer, 2 * kFar));
+  EXPECT_FALSE(guard.plausible(other, 2 * kFar)) << "each by itself";
+  EXPECT_FALSE(guard.plausible(writer, ~std::uint64_t{0}));
+  for (int i = 1; i < SequenceGuard::kMessages; ++i) EXPECT_FALSE(guard.plausible(writer, kDays + 30));
+  EXPECT_TRUE(guard.plausible(writer, 17)) << "a right one in between";
+  for (std::uint64_t i = 1; i < SequenceGuard::kMessages; ++i) EXPECT_FALSE(guard.plausible(writer, kDays + i));
+  EXPECT_TRUE(guard.plausible(writer, kDays)) << "it has been writing for days";
+  EXPECT_TRUE(guard.plausible(writer, kDays + kFar));
+  EXPECT_TRUE(guard.plausible(writer, 18)) << "old ones are asked for again";
+}
+
+TEST(SequenceGuardTest, remembers_no_more_writers_than_it_says) {
+  SequenceGuard guard;
+  WriterGuid writer{};
+  for (std::size_t i = 0; i < 3 * SequenceGuard::kWriters; ++i) {
+    writer[0] = static_cast<std::byte>(i);
+    writer[1] = static_cast<std::byte>(i >> 8);
+    EXPECT_TRUE(guard.plausible(writer, SequenceGuard::kFar));
+  }
+  EXPECT_FALSE(guard.plausible(WriterGuid{}, 2 * SequenceGuard::kFar + 1)) << "the first one was forgotten";
+}
+
+TEST(RtpsScreenTest, refuses_numbers_that_would_be_counted_to_for_hours) {
+  const auto heard = [](RtpsScreen& screen, const std::vector<std::uint8_t>& datagram) {
+    return screen.passes(std::as_bytes(std::span(datagram)));
+  };
+  RtpsScreen screen;
+  EXPECT_TRUE(heard(screen, message(heartbeat(1, 5))));
+  EXPECT_FALSE(heard(screen, message(heartbeat(0x7fffffff, 0x7fffffff))));
+  EXPECT_FALSE(heard(screen, message(join(kInfoTimestamp, data(std::uint64_t{1} << 33)))));
+  EXPECT_TRUE(heard(screen, message(data(6))));
+  EXPECT_FALSE(heard(screen, {'R', 'T', 'P', 'S'}));
 }
 
 }  // namespace
