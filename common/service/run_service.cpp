@@ -16,6 +16,7 @@
 #include "common/bus/host_checks.hpp"
 #include "common/bus/shm_leftovers.hpp"
 #include "common/service/alone_hint.hpp"
+#include "common/service/bounded_end.hpp"
 #include "common/service/bus_arguments.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/log.hpp"
@@ -68,6 +69,7 @@ class SignalWatcher {
 
 /// A worker that makes no progress for so long is stuck. Offline one frame may take its time, closing loops and all.
 constexpr std::chrono::milliseconds kStuckAfter{1500}, kStuckAfterOffline{30'000};
+constexpr std::chrono::milliseconds kEndOfBus{5000};
 
 /// What processes that were killed have left takes memory.
 void remove_leftovers() {
@@ -130,6 +132,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   bus::BusOptions options = to_bus_options(bus_config, "rtd-" + definition.name);
   BusProblems problems;
   options.on_problem = [&problems](const std::string& problem) { problems.add(problem); };
+  BoundedEnd end("rtd-" + definition.name, kEndOfBus);
   const std::shared_ptr<bus::Bus> bus = join_bus(options);
   options.on_problem = {};  // a further connection would say the same again
   const Cleaner cleaner(options);
@@ -148,6 +151,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
                 getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");
     code = definition.run(runtime);
     duplicate = heartbeat.duplicate();
+    end.begin(duplicate.empty() ? code : kUsageOrConfig);
   }
   if (!duplicate.empty()) throw ConfigError(duplicate);
   SPDLOG_INFO("event=ended exit={}", static_cast<int>(code));

@@ -10,6 +10,7 @@
 #include <iostream>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/service/bounded_end.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/launcher/core/report/report.hpp"
 #include "services/launcher/core/run/online_trajectory.hpp"
@@ -19,6 +20,8 @@
 
 namespace rtd::launcher {
 namespace {
+
+constexpr std::chrono::milliseconds kEndOfBus{2000};
 
 Terminal open_terminal(bool quiet) {
   Terminal::Options options;
@@ -68,6 +71,7 @@ void write_results(const RunSetup& setup, RunResult& result) {
 RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& plans, bool quiet) {
   InterruptSignals signals;
   Terminal terminal = open_terminal(quiet);
+  service::BoundedEnd end("rtd run", kEndOfBus);
   const std::shared_ptr<bus::Bus> bus = bus::connect(setup.bus);
   tell_setup(setup, terminal);
   RunSession session(setup, *bus, signals, terminal);
@@ -80,7 +84,9 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   write_results(setup, result);
   if (!quiet) std::cout << run_summary_text(result.record, *result.summary, setup.out_dir) << std::flush;
   if (outcome == RunOutcome::kComplete && !session.tracked_any()) terminal.warn("rtd: no frame got a pose");
-  if (outcome == RunOutcome::kInterrupted) terminal.say("rtd: interrupted, partial results are in " + setup.out_dir);
+  if (outcome != RunOutcome::kInterrupted) return result;
+  terminal.say("rtd: interrupted, partial results are in " + setup.out_dir);
+  end.begin(result.code);
   return result;
 }
 

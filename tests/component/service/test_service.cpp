@@ -11,6 +11,7 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/service/alone_hint.hpp"
+#include "common/service/bounded_end.hpp"
 #include "common/service/run_service.hpp"
 
 namespace rtd::service {
@@ -236,6 +237,18 @@ TEST_F(RunServiceTest, sigterm_asks_the_service_to_stop) {
     return runtime.stop.wait_for(5s) ? kOk : kRunFailed;
   };
   EXPECT_EQ(run({"--dds", "inprocess"}), kOk);
+}
+
+TEST(BoundedEndTest, ends_the_process_only_when_its_time_is_up) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto hang = [] {
+    BoundedEnd end("rtd-slam", 50ms);
+    end.begin(7);
+    std::this_thread::sleep_for(60s);
+  };
+  EXPECT_EXIT(hang(), ::testing::ExitedWithCode(7), "rtd-slam: the bus did not end within 50 ms");
+  BoundedEnd end("rtd-slam", 60s);
+  end.begin(7);
 }
 
 TEST_F(RunServiceTest, print_config_does_not_run_the_service) {
