@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "common/bus/rtps_fragments.hpp"
 #include "common/bus/rtps_numbers.hpp"
 
 namespace rtd::bus {
@@ -45,7 +46,7 @@ bool is_rtps_message(std::span<const std::byte> datagram) {
 }
 
 bool RtpsScreen::passes(std::span<const std::byte> datagram) {
-  if (!is_rtps_message(datagram)) return false;
+  if (!is_rtps_message(datagram) || !has_whole_fragments(datagram)) return false;
   const std::vector<WriterNumber> numbers = sequence_numbers_of(datagram);
   const std::lock_guard lock(mutex_);
   return std::all_of(numbers.begin(), numbers.end(),

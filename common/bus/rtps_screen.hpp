@@ -17,7 +17,7 @@ bool is_rtps_message(std::span<const std::byte> datagram);
 /// Looks at the datagrams of a participant, from any thread.
 class RtpsScreen {
  public:
-  /// Whether it is an RTPS message whose sequence numbers are plausible.
+  /// Whether it is an RTPS message whose fragments are whole and whose sequence numbers are plausible.
   bool passes(std::span<const std::byte> datagram);
 
  private:

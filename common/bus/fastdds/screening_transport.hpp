@@ -11,8 +11,8 @@
 namespace rtd::bus::fastdds {
 
 /// A transport that passes on only what an RtpsScreen passes: Fast DDS 2.9 as Debian builds it ends the process (an
-/// assertion) on some datagrams that are no RTPS messages, and stands still while it counts to a sequence number that
-/// is far away. Tells `on_problem` of the first one.
+/// assertion) on some datagrams that are no RTPS messages, reads fragments that are not there, and stands still while
+/// it counts to a sequence number that is far away. Tells `on_problem` of the first one.
 ///
 /// One datagram at a time, though each socket has a thread of its own: in a secured domain Fast DDS 2.9 connects the
 /// handshake of two participants that it discovers at once, by multicast and unicast, through one unguarded scratch

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/bus/rtps_fragments.hpp"
 #include "common/bus/rtps_numbers.hpp"
 
 #include <cstdint>
@@ -101,6 +102,51 @@ TEST(RtpsNumbersTest, reads_big_endian_and_leaves_out_what_is_too_short) {
   EXPECT_EQ(found[0].number, 258U);
   EXPECT_TRUE(numbers(message({0x15, 1, 8, 0, 1, 2, 3, 4, 5, 6, 7, 8})).empty());
   EXPECT_TRUE(numbers(message({0x15, 1, 0, 0, 9, 9, 9})).empty()) << "length 0: to the end";
+}
+
+struct Fragments {
+  std::uint8_t first = 1, count = 1, size = 8, sample = 8, octets = 8, flags = 1;
+  std::vector<std::uint8_t> qos = {};
+};
+
+std::vector<std::uint8_t> data_frag(const Fragments& f) {
+  auto body = join(join({0, 0, 28, 0, 0, 0, 0, 0, 4, 5, 6, 7}, number(9)), {f.first, 0, 0, 0, f.count, 0, f.size, 0});
+  body = join(join(join(body, {f.sample, 0, 0, 0}), f.qos), std::vector<std::uint8_t>(f.octets, 1));
+  return join({0x16, f.flags, static_cast<std::uint8_t>(body.size()), 0}, body);
+}
+
+bool whole(const std::vector<std::uint8_t>& datagram) {
+  return has_whole_fragments(std::as_bytes(std::span(datagram)));
+}
+
+bool whole(const Fragments& fragments) {
+  return whole(message(data_frag(fragments)));
+}
+
+TEST(RtpsFragmentsTest, are_all_there) {
+  EXPECT_TRUE(whole(Fragments{}));
+  EXPECT_TRUE(whole(Fragments{.first = 2, .count = 2, .sample = 100, .octets = 16}));
+  EXPECT_TRUE(whole(Fragments{.first = 2, .sample = 10, .octets = 4}))
+      << "the last one is shorter, then filled to a word";
+  const std::vector<std::uint8_t> qos = {2, 0, 4, 0, 9, 9, 9, 9, 1, 0, 0, 0};
+  EXPECT_TRUE(whole(Fragments{.flags = 3, .qos = qos}));
+  EXPECT_TRUE(whole(message(kInfoTimestamp)));
+}
+
+TEST(RtpsFragmentsTest, or_the_message_is_refused) {
+  EXPECT_FALSE(whole(Fragments{.octets = 4}));
+  EXPECT_FALSE(whole(Fragments{.count = 12, .sample = 90, .octets = 16})) << "to the last one: more than is there";
+  EXPECT_FALSE(whole(Fragments{.first = 0}));
+  EXPECT_FALSE(whole(Fragments{.count = 0}));
+  EXPECT_FALSE(whole(Fragments{.size = 0}));
+  EXPECT_FALSE(whole(Fragments{.sample = 0}));
+  EXPECT_FALSE(whole(Fragments{.first = 2})) << "behind the end of the sample";
+  EXPECT_FALSE(whole(Fragments{.count = 2, .octets = 16})) << "half behind it";
+  EXPECT_FALSE(whole(Fragments{.flags = 3})) << "a list of QoS without end";
+  EXPECT_FALSE(whole(message({0x16, 1, 4, 0, 0, 0, 28, 0})));
+  std::vector<std::uint8_t> huge = message(data_frag({.size = 255, .octets = 255 - 60}));
+  huge[20 + 4 + 31] = 0xff;
+  EXPECT_FALSE(whole(huge)) << "4 GB";
 }
 
 TEST(SequenceGuardTest, believes_in_steps_and_in_who_insists) {
