@@ -53,6 +53,8 @@ class RtdCommand {
     }
     return output_.find(text) != std::string::npos;
   }
+  /// Takes what it has printed; nobody else does, and with a full pipe it would stand still.
+  void take_output() { host_.wait(std::chrono::milliseconds(0)); }
   const std::string& output() const { return output_; }
   ProcessId process() const { return process_; }
 

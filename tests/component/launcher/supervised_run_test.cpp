@@ -96,6 +96,16 @@ TEST_F(SupervisedRunTest, a_killed_service_is_named_and_restarted_and_the_others
   EXPECT_THAT(rtd_.output(), Not(HasSubstr("filter died")));
 }
 
+TEST_F(SupervisedRunTest, a_crashed_service_is_restarted_and_the_report_says_why) {
+  const std::string marker = scratch_ / "crashed";
+  script("filter", "if [ ! -e " + marker + " ]; then touch " + marker + "; kill -SEGV $$; fi; " + kServe);
+  script("camera", "sleep 1");
+  rtd_.run(arguments());
+  for (const std::string& told : {rtd_.output(), text_of(scratch_ / "out/report.json")})
+    EXPECT_THAT(told, AllOf(HasSubstr("filter died: killed by signal 11 (SIGSEGV), restart in 200 ms"),
+                            HasSubstr("filter restarted (1. time)")));
+}
+
 TEST_F(SupervisedRunTest, a_service_that_keeps_dying_fails_the_run) {
   script("slam", "exit 3");
   script("camera", kServe);

@@ -11,8 +11,8 @@
 
 namespace rtd::fuzz {
 
-/// Different RTPS datagrams to the ports of a DDS domain in the next while, at most `count`; fragments of IP are left
-/// out.
+/// Different RTPS datagrams to the ports of a DDS domain in the next while, at most `count` and few of a kind;
+/// fragments of IP are left out.
 std::vector<Bytes> datagram_seeds(test_support::LoopbackCapture& capture, std::uint32_t domain,
                                   std::chrono::milliseconds duration, std::size_t count);
 

@@ -9,7 +9,8 @@ namespace rtd::fuzz {
 namespace {
 
 constexpr std::size_t kRtpsHeader = 20, kSubmessageHeader = 4;
-constexpr int kGap = 0x08, kHeartbeat = 0x07, kInfoDestination = 0x0e, kData = 0x15, kDataFrag = 0x16;
+constexpr int kAckNack = 0x06, kNackFrag = 0x12, kHeartbeatFrag = 0x13, kGap = 0x08, kHeartbeat = 0x07,
+              kInfoDestination = 0x0e, kData = 0x15, kDataFrag = 0x16;
 
 struct Submessage {
   int id;
@@ -70,6 +71,17 @@ void repeat(Bytes& datagram, const Submessage& submessage, std::mt19937_64& rand
 }
 
 }  // namespace
+
+std::string kind_of(const Bytes& datagram) {
+  std::string kind;
+  for (const Submessage& submessage : submessages_of(datagram)) {
+    kind += static_cast<char>(submessage.id);
+    const bool of_reader = submessage.id == kAckNack || submessage.id == kNackFrag || submessage.id == kHeartbeatFrag;
+    const std::size_t at = of_reader ? submessage.at + kSubmessageHeader : reader_at(submessage);
+    if (at != 0 && at + 8 <= submessage.end) kind.append(reinterpret_cast<const char*>(&datagram[at]), 8);
+  }
+  return kind;
+}
 
 void address_to_anybody(Bytes& datagram, std::mt19937_64& random) {
   const bool any_reader = random() % 2 == 0;

@@ -6,11 +6,15 @@
 #include <cstdint>
 #include <random>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace rtd::fuzz {
 
 using Bytes = std::vector<std::byte>;
+
+/// What it says and whose it is: the submessages with reader and writer. Alike for the fragments of a stream of images.
+std::string kind_of(const Bytes& datagram);
 
 /// Makes the datagram one for whoever gets it: the participant in INFO_DESTINATION becomes "any", and so do the readers
 /// that DATA, DATA_FRAG, HEARTBEAT and GAP name, half of the time. Otherwise a receiver drops it unread.

@@ -61,29 +61,39 @@ bool ServiceRun::wait_until_alive(const std::string& service, std::chrono::milli
 }
 
 void ServiceRun::let_run(std::chrono::milliseconds time) {
-  recorder_.wait_for("never printed", std::chrono::milliseconds(0));
+  recorder_.take_output();
+  rtd_.take_output();
   rtd_.wait_for("never printed", time);
 }
 
 void ServiceRun::end() {
+  std::vector<std::string> left = services();
   recorder_.interrupt();
   rtd_.interrupt();
-  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while ((lives("record") || lives("launcher")) && std::chrono::steady_clock::now() < give_up)
-    let_run(std::chrono::milliseconds(50));
-  for (const char* process : {"record", "launcher"}) {
-    if (!lives(process)) continue;
-    std::printf("  %s did not end within 20 s of being asked and was killed\n", process);
+  const auto asked = std::chrono::steady_clock::now(), give_up = asked + std::chrono::seconds(20);
+  do {
+    let_run(std::chrono::milliseconds(20));
+    std::erase_if(left, [this](const std::string& service) { return !lives(service); });
+  } while (!left.empty() && std::chrono::steady_clock::now() < give_up);
+  for (const std::string& process : left) {
+    std::printf("  %s did not end within 20 s of being asked and was killed\n", process.c_str());
     ::kill(pid_of(process), SIGKILL);
   }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - asked;
+  std::printf("  ended within %.1f s of Ctrl-C\n", took.count());
+  std::istringstream output(rtd_.output());
+  for (std::string line; std::getline(output, line);)
+    if (line.find("did not end when asked") != std::string::npos) std::printf("  %s\n", line.c_str());
 }
 
-std::vector<std::string> ServiceRun::deaths() const {
+std::vector<std::string> ServiceRun::take_deaths() {
   std::vector<std::string> lines;
   std::istringstream output(rtd_.output());
   for (std::string line; std::getline(output, line);)
     if (line.find(" died: ") != std::string::npos || line.find("restarted (") != std::string::npos)
       lines.push_back(line);
+  lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(deaths_told_));
+  deaths_told_ += lines.size();
   return lines;
 }
 

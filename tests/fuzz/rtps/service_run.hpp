@@ -30,13 +30,14 @@ class ServiceRun {
   /// others have spoilt is not under test.
   void end();
   const std::string& output() const { return rtd_.output(); }
-  /// Lines of the launcher about deaths and restarts.
-  std::vector<std::string> deaths() const;
+  /// Lines of the launcher about deaths and restarts, each once.
+  std::vector<std::string> take_deaths();
 
  private:
   launcher::ScratchFolder scratch_;
   const std::string out_;
   launcher::RtdCommand rtd_, recorder_;
+  std::size_t deaths_told_ = 0;
 };
 
 }  // namespace rtd::fuzz

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 struct UdpSocket {
   std::uint32_t port = 0;
-  unsigned long queued_bytes = 0, inode = 0;
+  unsigned long queued_bytes = 0, inode = 0, drops = 0;
 };
 
 std::vector<UdpSocket> udp_sockets() {
@@ -32,8 +32,8 @@ std::vector<UdpSocket> udp_sockets() {
   for (std::string line; std::getline(table, line);) {
     UdpSocket socket;
     unsigned long sent = 0;
-    if (std::sscanf(line.c_str(), " %*d: %*x:%x %*x:%*x %*x %lx:%lx %*x:%*x %*x %*u %*d %lu", &socket.port, &sent,
-                    &socket.queued_bytes, &socket.inode) == 4)
+    if (std::sscanf(line.c_str(), " %*d: %*x:%x %*x:%*x %*x %lx:%lx %*x:%*x %*x %*u %*d %lu %*d %*x %lu", &socket.port,
+                    &sent, &socket.queued_bytes, &socket.inode, &socket.drops) == 5)
       sockets.push_back(socket);
   }
   return sockets;
@@ -57,6 +57,7 @@ UdpTarget::UdpTarget(pid_t process, std::uint32_t first, std::uint32_t last)
     const bool own = files.contains("socket:[" + std::to_string(socket.inode) + "]");
     if (own && socket.port >= first && socket.port <= last) ports_.push_back(static_cast<std::uint16_t>(socket.port));
   }
+  drops_before_ = drops_of_ports();
 }
 
 UdpTarget::~UdpTarget() {
@@ -72,7 +73,7 @@ void UdpTarget::send(const Bytes& datagram, std::uint16_t port) const {
 }
 
 bool UdpTarget::wait_until_read() const {
-  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while (std::chrono::steady_clock::now() < give_up && ::kill(process_, 0) == 0) {
     unsigned long waiting = 0;
     for (const UdpSocket& socket : udp_sockets())
@@ -81,6 +82,18 @@ bool UdpTarget::wait_until_read() const {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return false;
+}
+
+std::uint64_t UdpTarget::drops_of_ports() const {
+  std::uint64_t drops = 0;
+  for (const UdpSocket& socket : udp_sockets())
+    if (std::find(ports_.begin(), ports_.end(), socket.port) != ports_.end()) drops += socket.drops;
+  return drops;
+}
+
+std::uint64_t UdpTarget::dropped() const {
+  const std::uint64_t drops = drops_of_ports();
+  return drops > drops_before_ ? drops - drops_before_ : 0;  // of a dead process the ports are gone
 }
 
 }  // namespace rtd::fuzz

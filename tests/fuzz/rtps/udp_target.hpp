@@ -24,9 +24,14 @@ class UdpTarget {
   void send(const Bytes& datagram, std::uint16_t port) const;
   /// Waits until its sockets have been read empty, at most a while. False when they are not or the process is gone.
   bool wait_until_read() const;
+  /// Datagrams that found no room in its sockets so far.
+  std::uint64_t dropped() const;
 
  private:
+  std::uint64_t drops_of_ports() const;
+
   const pid_t process_;
+  std::uint64_t drops_before_ = 0;
   std::vector<std::uint16_t> ports_;
   int socket_;
 };
