@@ -69,7 +69,7 @@ class SignalWatcher {
 
 /// A worker that makes no progress for so long is stuck. Offline one frame may take its time, closing loops and all.
 constexpr std::chrono::milliseconds kStuckAfter{1500}, kStuckAfterOffline{30'000};
-constexpr std::chrono::milliseconds kEndOfBus{5000};
+constexpr std::chrono::milliseconds kEndOfBus{10'000};
 
 /// What processes that were killed have left takes memory.
 void remove_leftovers() {

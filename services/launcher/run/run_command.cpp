@@ -21,7 +21,7 @@
 namespace rtd::launcher {
 namespace {
 
-constexpr std::chrono::milliseconds kEndOfBus{2000};
+constexpr std::chrono::milliseconds kEndOfBus{4000};
 
 Terminal open_terminal(bool quiet) {
   Terminal::Options options;
