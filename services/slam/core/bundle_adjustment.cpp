@@ -62,6 +62,7 @@ class SparseBundle {
     if (ceres_problem.NumResidualBlocks() == 0) return {};
 
     solver.linear_solver_type = ceres::SPARSE_SCHUR;
+    solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // not CHOLMOD, parts of which are GPL
     solver.max_num_iterations = iterations;
     solver.num_threads = options_.threads;
     solver.logging_type = ceres::SILENT;

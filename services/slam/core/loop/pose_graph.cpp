@@ -144,6 +144,7 @@ PoseGraphSummary optimize_pose_graph(PoseGraph& graph, const PoseGraphOptions& o
   }
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;  // not CHOLMOD, parts of which are GPL
   solver.max_num_iterations = options.max_iterations;
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
