@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t kMostInterfaces = 4;  // of Cyclone DDS 0.10, loopback included
 constexpr std::uint32_t kLeastDatagram = 512, kLargestDatagram = 65000;
-/// RTPS and submessage headers, and with security its prefix, tag and postfix.
-constexpr std::uint32_t kOverhead = 100, kSecureOverhead = 300;
+/// RTPS and submessage headers, a heartbeat that rides along, and with security its prefix, tag and postfix.
+constexpr std::uint32_t kOverhead = 160, kSecureOverhead = 360;
 
 std::string element(const std::string& name, const std::string& content) {
   return "<" + name + ">" + content + "</" + name + ">";

@@ -22,7 +22,7 @@ using eprosima::fastdds::dds::DomainParticipantQos;
 using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
-constexpr std::uint32_t kMib = 1024 * 1024;
+constexpr std::uint32_t kMib = 1024 * 1024, kLargestDatagram = 65500;
 constexpr char kLoopback[] = "127.0.0.1", kAnyAddress[] = "0.0.0.0", kMulticastGroup[] = "239.255.0.1";
 /// Of the server that `fast-discovery-server -i 0` starts.
 constexpr char kServerGuidPrefix[] = "44.53.00.5f.45.50.52.4f.53.49.4d.41";
@@ -56,14 +56,14 @@ std::uint32_t datagram_bytes(const BusOptions& options) {
   const std::filesystem::path enclave = options.security.keystore + "/enclaves/" + options.security.enclave;
   const std::uint64_t handshake =
       size_of(enclave / "cert.pem") + size_of(enclave / "permissions.p7s") + kKeysAndHeaders;
-  return std::max(asked, static_cast<std::uint32_t>(std::min<std::uint64_t>(handshake, 65000)));
+  return std::max(asked, static_cast<std::uint32_t>(std::min<std::uint64_t>(handshake, kLargestDatagram)));
 }
 
 std::shared_ptr<UDPv4TransportDescriptor> udp_transport(const BusOptions& options, const HostLimits& limits) {
   auto transport = std::make_shared<UDPv4TransportDescriptor>();
   transport->receiveBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.rmem_max);
   transport->sendBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.wmem_max);
-  transport->maxMessageSize = datagram_bytes(options);
+  transport->maxMessageSize = kLargestDatagram;  // to receive
   transport->maxInitialPeersRange = kPeerParticipants;
   transport->interfaceWhiteList = interface_addresses(options.network);
   transport->interfaceWhiteList.emplace_back(kLoopback);
@@ -117,7 +117,8 @@ rtps::GuidPrefix_t server_prefix() {
 void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope, DomainParticipantQos& qos) {
   qos.transport().use_builtin_transports = false;
   if (options.shared_memory) qos.transport().user_transports.push_back(shared_memory_transport(options));
-  qos.transport().user_transports.push_back(screened(udp_transport(options, limits), options.on_problem));
+  qos.transport().user_transports.push_back(
+      screened(udp_transport(options, limits), datagram_bytes(options), options.on_problem));
   // Discovery over UDP only, samples over shared memory: the kernel closes the socket of a killed process at once.
   auto& builtin = qos.wire_protocol().builtin;
   if (options.network.discovery_server.empty()) {

@@ -24,10 +24,23 @@ using eprosima::fastrtps::rtps::SenderResource;
 
 using OnProblem = std::function<void(const std::string&)>;
 
+class ScreeningDescriptor : public rtps::ChainingTransportDescriptor {
+ public:
+  ScreeningDescriptor(std::shared_ptr<rtps::TransportDescriptorInterface> transport, std::uint32_t largest_sent,
+                      OnProblem problem)
+      : ChainingTransportDescriptor(std::move(transport)), on_problem(std::move(problem)) {
+    maxMessageSize = largest_sent;
+  }
+  std::uint32_t max_message_size() const override { return maxMessageSize; }
+  rtps::TransportInterface* create_transport() const override;
+
+  const OnProblem on_problem;
+};
+
 class ScreeningTransport : public rtps::ChainingTransport {
  public:
-  ScreeningTransport(const rtps::ChainingTransportDescriptor& descriptor, OnProblem on_problem)
-      : ChainingTransport(descriptor), descriptor_(descriptor), on_problem_(std::move(on_problem)) {}
+  explicit ScreeningTransport(const ScreeningDescriptor& descriptor)
+      : ChainingTransport(descriptor), descriptor_(descriptor) {}
 
   rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
   bool send(SenderResource* sender, const octet* data, std::uint32_t size, LocatorsIterator* begin,
@@ -40,37 +53,27 @@ class ScreeningTransport : public rtps::ChainingTransport {
       const std::lock_guard one_at_a_time(mutex_);
       return next->OnDataReceived(data, size, local, remote);
     }
-    if (on_problem_ && !told_.exchange(true))
-      on_problem_("malformed RTPS datagrams come from " + IPLocator::toIPv4string(remote) + " and are dropped");
+    if (descriptor_.on_problem && !told_.exchange(true))
+      descriptor_.on_problem("malformed RTPS datagrams come from " + IPLocator::toIPv4string(remote) +
+                             " and are dropped");
   }
 
  private:
-  struct Configuration : rtps::ChainingTransportDescriptor {
-    using ChainingTransportDescriptor::ChainingTransportDescriptor;
-    explicit Configuration(const rtps::ChainingTransportDescriptor& other) : ChainingTransportDescriptor(other) {}
-    rtps::TransportInterface* create_transport() const override { return nullptr; }
-  } descriptor_;
-  const OnProblem on_problem_;
+  ScreeningDescriptor descriptor_;
   RtpsScreen screen_;
   std::atomic<bool> told_{false};
   std::mutex mutex_;
 };
 
-class ScreeningDescriptor : public rtps::ChainingTransportDescriptor {
- public:
-  ScreeningDescriptor(std::shared_ptr<rtps::TransportDescriptorInterface> transport, OnProblem on_problem)
-      : ChainingTransportDescriptor(std::move(transport)), on_problem_(std::move(on_problem)) {}
-  rtps::TransportInterface* create_transport() const override { return new ScreeningTransport(*this, on_problem_); }
-
- private:
-  const OnProblem on_problem_;
-};
+rtps::TransportInterface* ScreeningDescriptor::create_transport() const {
+  return new ScreeningTransport(*this);
+}
 
 }  // namespace
 
 std::shared_ptr<rtps::TransportDescriptorInterface> screened(
-    std::shared_ptr<rtps::TransportDescriptorInterface> transport, OnProblem on_problem) {
-  return std::make_shared<ScreeningDescriptor>(std::move(transport), std::move(on_problem));
+    std::shared_ptr<rtps::TransportDescriptorInterface> transport, std::uint32_t largest_sent, OnProblem on_problem) {
+  return std::make_shared<ScreeningDescriptor>(std::move(transport), largest_sent, std::move(on_problem));
 }
 
 }  // namespace rtd::bus::fastdds

@@ -35,9 +35,9 @@ TEST(CycloneConfig, cuts_samples_so_that_datagrams_stay_whole) {
   BusOptions options;
   options.network.max_datagram_bytes = 1400;
   EXPECT_THAT(domain_config(options, kLimits), AllOf(HasSubstr("<MaxMessageSize>1400 B</MaxMessageSize>"),
-                                                     HasSubstr("<FragmentSize>1300 B</FragmentSize>")));
+                                                     HasSubstr("<FragmentSize>1240 B</FragmentSize>")));
   options.security = {"/keys", "/rtd/slam"};  // its headers need room, too
-  EXPECT_THAT(domain_config(options, kLimits), HasSubstr("<FragmentSize>1100 B</FragmentSize>"));
+  EXPECT_THAT(domain_config(options, kLimits), HasSubstr("<FragmentSize>1040 B</FragmentSize>"));
 }
 
 TEST(CycloneConfig, asks_peers_at_the_ports_that_ours_take) {
