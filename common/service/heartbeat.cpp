@@ -15,8 +15,9 @@ namespace rtd::service {
 namespace {
 
 constexpr std::chrono::milliseconds kPeriod{200}, kLookPeriod{100};
-constexpr std::int64_t kGoneAfterNs = 700'000'000;  // three heartbeats missed, with a margin for a busy host
-constexpr std::size_t kMostPeers = 100;             // whoever may write to the bus could make up names without end
+constexpr std::int64_t kGoneAfterNs = 700'000'000;      // three heartbeats missed, with a margin for a busy host
+constexpr std::int64_t kNewcomerForNs = 5'000'000'000;  // who has run for longer does not end for anybody's word
+constexpr std::size_t kMostPeers = 100;                 // whoever may write to the bus could make up names without end
 
 bool is_name(const std::string& service) {
   constexpr std::size_t kLongest = 64;
@@ -97,7 +98,9 @@ void Heartbeat::receive(const msg::ServiceStatus& status) {
       const bool self = status.pid == own_.pid && status.started_ns == own_.started_ns;
       // Heartbeats are volatile: whoever is heard is alive. The older instance stays, the younger one ends.
       // One heartbeat is not believed: it may be anybody's.
-      const bool older = !self && status.state != msg::ServiceState::kFinished && status.started_ns < own_.started_ns;
+      const bool newcomer = arrival_ns - own_.started_ns < kNewcomerForNs;
+      const bool older =
+          newcomer && !self && status.state != msg::ServiceState::kFinished && status.started_ns < own_.started_ns;
       const bool again = older && twin_ == std::pair(status.pid, status.started_ns);
       if (older) twin_ = {status.pid, status.started_ns};
       if (again) {

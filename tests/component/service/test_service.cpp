@@ -61,6 +61,19 @@ TEST(Heartbeat, the_younger_of_two_equal_services_ends) {
   EXPECT_FALSE(stop_first.stop_requested());
 }
 
+/// Malformed or malicious heartbeats end no service at work.
+TEST(Heartbeat, a_service_that_has_run_for_a_while_ends_for_nobody) {
+  const auto bus = bus::connect(domain(11));
+  StopToken stop;
+  Heartbeat camera(*bus, "camera", stop);
+  auto writer = bus->writer(bus::topics::kStatus);
+  msg::ServiceStatus older{.service = "camera", .pid = 1, .started_ns = 1, .state = msg::ServiceState::kRunning};
+  std::this_thread::sleep_for(std::chrono::milliseconds(5200));
+  for (int i = 0; i < 5; ++i) writer.write(older);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_FALSE(stop.stop_requested()) << camera.duplicate();
+}
+
 TEST(Heartbeat, metrics_travel) {
   const auto bus = bus::connect(domain(3));
   StopToken stop;
