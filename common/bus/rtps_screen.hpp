@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <mutex>
 #include <span>
 
 #include "common/bus/sequence_guard.hpp"
@@ -14,14 +13,13 @@ namespace rtd::bus {
 /// number of words, the last one ending with the datagram. What is in the submessages is not looked at.
 bool is_rtps_message(std::span<const std::byte> datagram);
 
-/// Looks at the datagrams of a participant, from any thread.
+/// Looks at the datagrams of a participant, one at a time.
 class RtpsScreen {
  public:
   /// Whether it is an RTPS message whose fragments are whole and whose sequence numbers are plausible.
   bool passes(std::span<const std::byte> datagram);
 
  private:
-  std::mutex mutex_;
   SequenceGuard guard_;
 };
 

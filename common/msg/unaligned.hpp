@@ -20,8 +20,8 @@ class Unaligned {
 
   Unaligned() = default;                                             ///< not initialised, like a plain number
   Unaligned(T value) { std::memcpy(bytes_, &value, sizeof value); }  // NOLINT(google-explicit-constructor)
-  operator T() const { return value(); }
-  T value() const {  // NOLINT(google-explicit-constructor)
+  operator T() const { return value(); }                             // NOLINT(google-explicit-constructor)
+  T value() const {
     T value;
     std::memcpy(&value, bytes_, sizeof value);
     return value;

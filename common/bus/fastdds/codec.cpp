@@ -68,7 +68,6 @@ class ConvertedCodec : public Codec {
     FromVendor{}(*message, received_);
     return {TakenSample::Kind::kMessage, std::move(message)};
   }
-  bool in_place() const override { return false; }
   std::shared_ptr<void> allocate() const override {
     throw BusError(create_type().get_type_name() + " is of variable size and cannot be loaned");
   }

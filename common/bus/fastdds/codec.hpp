@@ -29,7 +29,7 @@ class Codec {
   /// For one thread.
   virtual TakenSample take(eprosima::fastdds::dds::DataReader& reader) = 0;
   /// Whether a sample in the vendor's memory, 4 bytes behind a multiple of 8, may be used as the message itself.
-  virtual bool in_place() const = 0;
+  virtual bool in_place() const { return false; }
   /// An uninitialised message to fill in. Plain types only. Thread-safe.
   virtual std::shared_ptr<void> allocate() const = 0;
 };

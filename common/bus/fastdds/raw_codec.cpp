@@ -84,7 +84,6 @@ class RawCodec : public Codec {
   }
   bool write(dds::DataWriter& writer, const void* message) const override;
   TakenSample take(dds::DataReader& reader) override;
-  bool in_place() const override { return false; }
   std::shared_ptr<void> allocate() const override { throw BusError("a raw writer lends no memory"); }
 
  private:

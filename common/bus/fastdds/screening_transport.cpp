@@ -49,10 +49,9 @@ class ScreeningTransport : public rtps::ChainingTransport {
   }
   void receive(rtps::TransportReceiverInterface* next, const octet* data, std::uint32_t size, const Locator_t& local,
                const Locator_t& remote) override {
-    if (screen_.passes(std::as_bytes(std::span(data, size)))) {
-      const std::lock_guard one_at_a_time(mutex_);
-      return next->OnDataReceived(data, size, local, remote);
-    }
+    std::unique_lock one_at_a_time(mutex_);
+    if (screen_.passes(std::as_bytes(std::span(data, size)))) return next->OnDataReceived(data, size, local, remote);
+    one_at_a_time.unlock();
     if (descriptor_.on_problem && !told_.exchange(true))
       descriptor_.on_problem("malformed RTPS datagrams come from " + IPLocator::toIPv4string(remote) +
                              " and are dropped");
