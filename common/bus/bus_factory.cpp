@@ -4,10 +4,10 @@
 
 #include <utility>
 
+#include "common/bus/host/port_check.hpp"
 #include "common/bus/inprocess/inprocess_backend.hpp"
 #include "common/bus/inprocess/inprocess_raw_bus.hpp"
 #include "common/bus/network.hpp"
-#include "common/bus/port_check.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/bus/security_guard.hpp"
 #ifdef RTD_HAVE_CYCLONEDDS

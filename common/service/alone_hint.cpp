@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "common/bus/port_check.hpp"
+#include "common/bus/host/port_check.hpp"
 
 namespace rtd::service {
 

@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
-#include "common/bus/host_checks.hpp"
-#include "common/bus/shm_leftovers.hpp"
+#include "common/bus/host/host_checks.hpp"
+#include "common/bus/host/shm_leftovers.hpp"
 #include "common/service/alone_hint.hpp"
 #include "common/service/bounded_end.hpp"
 #include "common/service/bus_arguments.hpp"

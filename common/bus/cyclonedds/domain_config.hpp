@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "common/bus/host_checks.hpp"
+#include "common/bus/host/host_checks.hpp"
 
 namespace rtd::bus::cyclonedds {
 

@@ -8,7 +8,7 @@
 #include "common/bus/fastdds/fastdds_writer.hpp"
 #include "common/bus/fastdds/participant.hpp"
 #include "common/bus/fastdds/qos_mapping.hpp"
-#include "common/bus/host_checks.hpp"
+#include "common/bus/host/host_checks.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {

@@ -9,7 +9,7 @@
 #include "common/bus/fastdds/raw_codec.hpp"
 #include "common/bus/fastdds/raw_discovery.hpp"
 #include "common/bus/fastdds/raw_qos.hpp"
-#include "common/bus/host_checks.hpp"
+#include "common/bus/host/host_checks.hpp"
 #include "common/bus/sequence_gaps.hpp"
 
 namespace rtd::bus::fastdds {

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "common/bus/fastdds/screening_transport.hpp"
+#include "common/bus/fastdds/screening/screening_transport.hpp"
 #include "common/bus/network.hpp"
 
 namespace rtd::bus::fastdds {

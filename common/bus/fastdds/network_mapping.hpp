@@ -5,7 +5,7 @@
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
 #include "common/bus/bus_factory.hpp"
-#include "common/bus/host_checks.hpp"
+#include "common/bus/host/host_checks.hpp"
 
 namespace rtd::bus::fastdds {
 

@@ -15,7 +15,7 @@
 #include "common/bus/fastdds/codec.hpp"
 #include "common/bus/fastdds/participant_security.hpp"
 #include "common/bus/fastdds/participant_watch.hpp"
-#include "common/bus/host_checks.hpp"
+#include "common/bus/host/host_checks.hpp"
 
 namespace rtd::bus::fastdds {
 

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/host_checks.hpp"
+#include "common/bus/host/host_checks.hpp"
+#include "common/bus/host/shm_leftovers.hpp"
 #include "common/bus/network.hpp"
-#include "common/bus/shm_leftovers.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/detector/core/model_locator.hpp"

@@ -11,8 +11,8 @@
 
 #include <cerrno>
 
+#include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
-#include "common/bus/port_check.hpp"
 
 namespace rtd::launcher {
 namespace {

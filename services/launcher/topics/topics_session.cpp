@@ -8,7 +8,7 @@
 
 #include <set>
 
-#include "common/bus/port_check.hpp"
+#include "common/bus/host/port_check.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/bus_config.hpp"
 

@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
-#include "common/bus/shm_leftovers.hpp"
+#include "common/bus/host/shm_leftovers.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 
 extern char** environ;

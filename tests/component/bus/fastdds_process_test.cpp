@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "common/bus/bus_factory.hpp"
-#include "common/bus/shm_leftovers.hpp"
+#include "common/bus/host/shm_leftovers.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/patterns.hpp"
 #include "tests/component/bus/peer_process.hpp"

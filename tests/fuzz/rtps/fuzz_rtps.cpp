@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "common/bus/backend.hpp"
+#include "common/bus/fastdds/screening/rtps_screen.hpp"
 #include "common/bus/raw_bus.hpp"
-#include "common/bus/rtps_screen.hpp"
 #include "tests/fuzz/mcap/mutation.hpp"
 #include "tests/fuzz/rtps/datagram_seeds.hpp"
 #include "tests/fuzz/rtps/service_run.hpp"

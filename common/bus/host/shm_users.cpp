@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/shm_users.hpp"
+#include "common/bus/host/shm_users.hpp"
 
 #include <dirent.h>
 #include <sys/stat.h>

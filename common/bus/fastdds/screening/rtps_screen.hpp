@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "common/bus/sequence_guard.hpp"
+#include "common/bus/fastdds/screening/sequence_guard.hpp"
 
 namespace rtd::bus {
 

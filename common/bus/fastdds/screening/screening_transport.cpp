@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/fastdds/screening_transport.hpp"
+#include "common/bus/fastdds/screening/screening_transport.hpp"
 
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastrtps/utils/IPLocator.h>
@@ -10,7 +10,7 @@
 #include <span>
 #include <utility>
 
-#include "common/bus/rtps_screen.hpp"
+#include "common/bus/fastdds/screening/rtps_screen.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/rtps_submessage.hpp"
+#include "common/bus/fastdds/screening/rtps_submessage.hpp"
 
 #include <algorithm>
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/rtps_screen.hpp"
+#include "common/bus/fastdds/screening/rtps_screen.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 
-#include "common/bus/rtps_fragments.hpp"
-#include "common/bus/rtps_numbers.hpp"
+#include "common/bus/fastdds/screening/rtps_fragments.hpp"
+#include "common/bus/fastdds/screening/rtps_numbers.hpp"
 
 namespace rtd::bus {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/host_checks.hpp"
+#include "common/bus/host/host_checks.hpp"
 
 #include <sys/statvfs.h>
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/bus/sequence_guard.hpp"
+#include "common/bus/fastdds/screening/sequence_guard.hpp"
 
 namespace rtd::bus {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/shm_leftovers.hpp"
+#include "common/bus/host/shm_leftovers.hpp"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -16,7 +16,7 @@
 #include <memory>
 #include <thread>
 
-#include "common/bus/shm_users.hpp"
+#include "common/bus/host/shm_users.hpp"
 
 namespace rtd::bus {
 namespace {
