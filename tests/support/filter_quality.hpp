@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <functional>
 
+#include "services/evaluation/core/removal/removal_quality.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
-#include "services/launcher/core/removal/removal_quality.hpp"
 #include "tests/support/evaluation_clip.hpp"
 
 namespace rtd::test_support {

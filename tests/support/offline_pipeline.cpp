@@ -12,8 +12,8 @@
 
 #include "common/geometry/se3.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/launcher/core/evaluation/ate.hpp"
-#include "services/launcher/core/evaluation/rpe.hpp"
+#include "services/evaluation/core/trajectory/ate.hpp"
+#include "services/evaluation/core/trajectory/rpe.hpp"
 
 namespace rtd::test_support {
 namespace {

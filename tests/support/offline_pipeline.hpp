@@ -13,9 +13,9 @@
 #include "common/msg/tracking.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/frame_source.hpp"
+#include "services/evaluation/core/removal/removal_quality.hpp"
+#include "services/evaluation/core/trajectory/trajectory.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
-#include "services/launcher/core/evaluation/trajectory.hpp"
-#include "services/launcher/core/removal/removal_quality.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/simulated_detector.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "services/bench/percentile.hpp"
 #include "services/bench/transport/transport_bench.hpp"
-#include "services/launcher/core/plot/chart.hpp"
-#include "services/launcher/core/plot/colour.hpp"
+#include "services/evaluation/core/plot/chart.hpp"
+#include "services/evaluation/core/plot/colour.hpp"
 
 namespace rtd::bench {
 namespace {

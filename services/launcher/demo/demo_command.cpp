@@ -11,7 +11,7 @@
 
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
-#include "services/launcher/core/report/report.hpp"
+#include "services/evaluation/core/report/report.hpp"
 #include "services/launcher/demo/tum_dataset.hpp"
 #include "services/launcher/run/run_command.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
-#include "services/launcher/core/removal/true_masks.hpp"
+#include "services/evaluation/core/removal/true_masks.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/sample_keeper.hpp"
 

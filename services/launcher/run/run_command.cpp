@@ -12,7 +12,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/service/bounded_end.hpp"
 #include "services/camera/core/frame_source.hpp"
-#include "services/launcher/core/report/report.hpp"
+#include "services/evaluation/core/report/report.hpp"
 #include "services/launcher/core/run/online_trajectory.hpp"
 #include "services/launcher/run/run_session.hpp"
 #include "services/launcher/run/run_setup.hpp"

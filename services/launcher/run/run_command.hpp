@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "common/service/exit_code.hpp"
-#include "services/launcher/core/report/run_summary.hpp"
-#include "services/launcher/core/run_record.hpp"
+#include "services/evaluation/core/report/run_summary.hpp"
+#include "services/evaluation/record/run_record.hpp"
 #include "services/launcher/run/run_options.hpp"
 
 namespace rtd::launcher {

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "services/launcher/core/report/run_summary.hpp"
-#include "services/launcher/core/run_record.hpp"
+#include "services/evaluation/core/report/run_summary.hpp"
+#include "services/evaluation/record/run_record.hpp"
 
 namespace rtd::launcher {
 

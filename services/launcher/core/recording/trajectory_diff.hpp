@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "services/launcher/core/evaluation/trajectory.hpp"
+#include "services/evaluation/core/trajectory/trajectory.hpp"
 
 namespace rtd::recording {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "services/launcher/core/run_record.hpp"
+#include "services/evaluation/record/run_record.hpp"
 
 namespace rtd::launcher {
 

@@ -11,8 +11,8 @@
 #include "common/msg/features.hpp"
 #include "common/msg/status.hpp"
 #include "common/msg/tracking.hpp"
+#include "services/evaluation/record/run_record.hpp"
 #include "services/launcher/core/run/live_status.hpp"
-#include "services/launcher/core/run_record.hpp"
 
 namespace rtd::launcher {
 

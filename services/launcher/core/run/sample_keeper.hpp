@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/msg/features.hpp"
-#include "services/launcher/core/run_record.hpp"
+#include "services/evaluation/record/run_record.hpp"
 
 namespace rtd::launcher {
 

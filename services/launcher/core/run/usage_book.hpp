@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
+#include "services/evaluation/record/run_record.hpp"
 #include "services/launcher/core/run/process_host.hpp"
-#include "services/launcher/core/run_record.hpp"
 
 namespace rtd::launcher {
 

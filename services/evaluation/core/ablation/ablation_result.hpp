@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/evaluation/core/ablation/ablation_plan.hpp"
+
+namespace rtd::launcher {
+
+/// One run of one variant on one source. Doubles are NaN where unknown.
+struct Measurement {
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  std::string source, variant;
+  int run = 1;
+  std::string failure;  ///< why it counts for nothing; empty = it counts
+  double ate_m = kUnknown, rpe_m = kUnknown, rpe_deg = kUnknown, coverage = kUnknown;
+  double precision = kUnknown, recall = kUnknown;  ///< after the first second, of the whole run when it is shorter
+  double filter_ms = kUnknown;                     ///< median, ORB extraction included
+  double duration_s = 0;                           ///< what it took, for the estimate of the remaining time
+  std::string trajectory;                          ///< file
+};
+
+/// What `rtd run` left in `folder`; empty without a readable report.json.
+std::optional<Measurement> read_measurement(const std::filesystem::path& folder);
+
+/// Median and extremes of the known values.
+struct Spread {
+  double median = Measurement::kUnknown, min = Measurement::kUnknown, max = Measurement::kUnknown;
+};
+Spread spread_of(const std::vector<double>& values);
+
+/// All runs of a variant on a source.
+struct AblationRow {
+  std::string source;
+  Variant variant;
+  int runs = 0, failed = 0;
+  std::string failure;  ///< of the last run that failed
+  Spread ate_m, rpe_m, rpe_deg, coverage, precision, recall, filter_ms;
+  double ratio = Measurement::kUnknown;  ///< ATE to the baseline's on the same source
+  bool unlike = false;                   ///< runs that should have been the same left different trajectories
+};
+
+/// What an ablation is about and has measured so far.
+struct Ablation {
+  std::string version, pace;
+  int runs = 1;
+  std::vector<std::string> sources;       ///< as given
+  std::vector<std::string> source_names;  ///< short, one per source
+  AblationPlan plan;
+  std::vector<Measurement> measurements;
+  std::vector<std::string> notes;
+  bool complete = false;
+};
+
+/// One row per source and variant that was run, in the order of the plan.
+std::vector<AblationRow> summarize(const Ablation& ablation);
+
+/// Seconds that the runs which remain will take, by the runs of the same source so far; empty before the first.
+std::optional<double> remaining_s(const Ablation& ablation);
+
+}  // namespace rtd::launcher

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "services/evaluation/core/ablation/ablation_result.hpp"
+
+namespace rtd::launcher {
+
+/// Headings and cells of one row of the table; "-" = unknown. With several unequal runs: median (min..max).
+std::vector<std::string> ablation_head();
+std::vector<std::string> ablation_cells(const AblationRow& row);
+
+/// What the reader must know beside the table: what was left out, what failed, what is not as it should be.
+std::vector<std::string> ablation_notes(const Ablation& ablation, const std::vector<AblationRow>& rows);
+
+/// Tables for the terminal, aligned.
+std::string ablation_text(const Ablation& ablation);
+/// ablation.md
+std::string ablation_markdown(const Ablation& ablation);
+/// ablation.json (keys: docs/evaluation.md)
+nlohmann::ordered_json ablation_json(const Ablation& ablation);
+
+}  // namespace rtd::launcher

@@ -1,0 +1,227 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/core/report/report_html.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "services/evaluation/core/plot/colour.hpp"
+#include "services/evaluation/core/report/report_parts.hpp"
+#include "services/evaluation/core/report/run_charts.hpp"
+#include "services/evaluation/core/report/trajectory_plot.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using html::Card;
+using html::Tone;
+namespace palette = plot::palette;
+
+constexpr std::size_t kShownSamples = 6;
+constexpr std::size_t kShownLostSpans = 20;
+
+Tone coverage_tone(double coverage) {
+  if (!std::isfinite(coverage)) return Tone::kNeutral;
+  if (coverage >= 0.99) return Tone::kGood;
+  return coverage >= 0.9 ? Tone::kWarn : Tone::kBad;
+}
+
+const char* why_no_error(const RunSummary& summary) {
+  if (summary.groundtruth.empty()) return "no ground truth to compare with";
+  return summary.estimate.empty() ? "no poses to compare" : "poses and ground truth share no time";
+}
+
+Card accuracy_card(const RunSummary& summary) {
+  if (!summary.final_trajectory) return {"unknown", "ATE RMSE", why_no_error(summary)};
+  const auto& ate = summary.final_trajectory->ate.error_m;
+  std::string detail = "as published: ";
+  detail += summary.online_trajectory ? length_text(summary.online_trajectory->ate.error_m.rmse) : "unknown";
+  return {length_text(ate.rmse), "ATE RMSE", detail, Tone::kNeutral};
+}
+
+Card drift_card(const RunSummary& summary) {
+  if (!summary.final_trajectory) return {"unknown", "RPE per second", why_no_error(summary)};
+  const eval::RpeResult& rpe = summary.final_trajectory->rpe_per_second;
+  return {length_text(rpe.translation_m.rmse), "RPE per second",
+          number_text(rpe.rotation_rad.rmse * 180 / std::numbers::pi, 2, "deg") + " rotation"};
+}
+
+Card latency_card(const RunSummary& summary) {
+  const TimeSummary& latency = summary.latency_ms;
+  if (latency.count == 0) return {"unknown", "latency p50", "no frame was timed"};
+  return {number_text(latency.p50, 1, "ms"), "latency p50",
+          "camera to pose; p99 " + number_text(latency.p99, 1, "ms") + ", max " + number_text(latency.max, 1, "ms")};
+}
+
+Card removed_card(const RunSummary& summary) {
+  const double per_frame = summary.kept_mean + summary.removed_mean;
+  if (!(per_frame > 0)) return {"unknown", "features removed", "no features were seen"};
+  return {percent_text(summary.removed_mean / per_frame), "features removed",
+          number_text(summary.removed_mean, 0, "") + " of " + number_text(per_frame, 0, "") + " a frame"};
+}
+
+std::string summary_cards(const RunRecord& record, const RunSummary& summary) {
+  const Card coverage{
+      percent_text(summary.coverage), "frames with pose",
+      fmt::format("{} of {}, {} dropped", summary.frames_tracked, record.frames_in, record.frames_dropped),
+      coverage_tone(summary.coverage)};
+  const Card speed{number_text(summary.fps, 1, "fps"), "frames per second",
+                   number_text(record.duration_s, 1, "s") + " from start to end"};
+  return html::cards(
+      {accuracy_card(summary), coverage, drift_card(summary), latency_card(summary), speed, removed_card(summary)});
+}
+
+eval::Trajectory truth_during(const RunSummary& summary, const RunTime& time) {
+  const auto end_ns = time.start_ns + std::llround(time.duration_s * 1e9);
+  return within(summary.groundtruth, time.start_ns, end_ns);
+}
+
+std::string trajectory_section(const RunSummary& summary, const RunTime& time) {
+  if (summary.final_trajectory) {
+    const eval::Trajectory truth = truth_during(summary, time);
+    const double height = fitting_height({path_of(truth)}, 700);
+    plot::Svg svg(700, height, "Trajectory coloured by error");
+    draw_error_path(svg, {0, 0, 700, height}, summary.final_trajectory->ate, truth);
+    return html::section("Trajectory against ground truth",
+                         "Final trajectory (trajectory.txt) aligned to the ground truth by one rigid motion, seen "
+                         "along the axis in which the "
+                         "path extends least.",
+                         html::columns(svg.str(), html::table(accuracy_table(*summary.final_trajectory))));
+  }
+  if (summary.estimate.empty()) return html::section("Trajectory", "The run has no poses to show.", "");
+  PathCurve path = path_of(summary.estimate);
+  path.label = "estimate";
+  path.colour = palette::kBlue;
+  path.stroke.width = 2.2;
+  plot::Svg svg(700, fitting_height({path}, 700), "Trajectory");
+  draw_paths(svg, {0, 0, 700, svg.height()}, {path});
+  return html::section("Trajectory",
+                       "Without ground truth at these times the error is unknown. World frame: the first camera frame.",
+                       html::columns(svg.str(), ""));
+}
+
+std::string error_section(const RunSummary& summary, const RunTime& time) {
+  if (!summary.final_trajectory) return "";
+  std::vector<ErrorCurve> curves;
+  if (summary.online_trajectory) curves.push_back({"as published", palette::kAmber, &summary.online_trajectory->ate});
+  curves.push_back({"final trajectory", palette::kBlue, &summary.final_trajectory->ate});
+  plot::Svg svg(1080, 300, "Position error over time");
+  draw_errors_over_time(svg, {6, 0, 1074, 300}, curves, time.start_ns, time.duration_s);
+  return html::section("Error over time",
+                       "As published: the pose that a robot had at that moment. Final: after later bundle adjustments.",
+                       svg.str());
+}
+
+std::string removal_note(const RunRecord& record) {
+  if (!record.removal) return "";
+  const auto words = [](const eval::RemovalQuality& quality) {
+    return percent_text(quality.precision()) + " of the removed points were on something that moved, " +
+           percent_text(quality.recall()) + " of the points there were removed";
+  };
+  return " Against the source's true moving pixels (grown by 3 px): " + words(record.removal->all) +
+         "; after the first second: " + words(record.removal->settled) + ".";
+}
+
+std::string features_section(const RunRecord& record, const RunSummary& summary) {
+  if (record.frames.empty()) return "";
+  return html::section(
+      "Static and dynamic points",
+      "Removed points were judged to lie on something that moves; tracking never uses them." + removal_note(record),
+      points_chart(record, summary));
+}
+
+std::string latency_section(const RunRecord& record, const RunSummary& summary) {
+  if (summary.latency_ms.count == 0) return "";
+  return html::section("Latency", "From handing the frame to the bus until its pose is ready.",
+                       latency_chart(record, summary));
+}
+
+std::string stage_section(const RunSummary& summary) {
+  for (const StageSummary& stage : summary.stages) {
+    if (stage.ms.count > 0) return html::section("Stage times", "", stage_chart(summary));
+  }
+  return "";
+}
+
+std::string samples_section(const RunRecord& record) {
+  const std::vector<html::Figure> figures = sample_figures(record, kShownSamples);
+  if (figures.empty()) return "";
+  return html::section("Sample frames", "Green: kept as static. Red: removed as dynamic.", html::gallery(figures));
+}
+
+std::string processes_section(const RunRecord& record) {
+  if (record.processes.empty()) return "";
+  html::Table table{{"process", "CPU time [s]", "of one core [%]", "peak memory [MB]", "restarts"}, {}};
+  double cpu_s = 0, rss_mb = 0;
+  const auto share = [&](double seconds) {
+    return record.duration_s > 0 ? number_text(100 * seconds / record.duration_s, 0, "") : std::string("unknown");
+  };
+  for (const auto& [name, usage] : record.processes) {
+    table.rows.push_back({name, number_text(usage.cpu_s, 1, ""), share(usage.cpu_s),
+                          number_text(usage.peak_rss_mb, 0, ""), fmt::format("{}", usage.restarts)});
+    cpu_s += usage.cpu_s;
+    rss_mb += usage.peak_rss_mb;
+  }
+  table.rows.push_back({"together", number_text(cpu_s, 1, ""), share(cpu_s), number_text(rss_mb, 0, ""), ""});
+  return html::section("Processes",
+                       "Memory together is the sum of the peaks; shared memory counts in every process that maps it.",
+                       html::table(table));
+}
+
+std::string losses_section(const RunRecord& record, const RunSummary& summary) {
+  std::vector<std::string> lines;
+  for (const auto& [place, count] : record.drops) lines.push_back(fmt::format("{}: {:g} frames", place, count));
+  for (std::size_t i = 0; i < std::min(summary.lost.size(), kShownLostSpans); ++i) {
+    const LostFrames& span = summary.lost[i];
+    lines.push_back(span.frames() == 1 ? fmt::format("frame {} without pose, at {:.2f} s", span.first_seq, span.start_s)
+                                       : fmt::format("frames {} to {} without pose, from {:.2f} s", span.first_seq,
+                                                     span.last_seq, span.start_s));
+  }
+  if (summary.lost.size() > kShownLostSpans) {
+    lines.push_back(
+        fmt::format("and {} more spans without pose (all in report.json)", summary.lost.size() - kShownLostSpans));
+  }
+  return html::section("Drops and lost spans", "", lines.empty() ? "<p class=\"note\">None.</p>\n" : html::list(lines));
+}
+
+std::string events_section(const RunRecord& record, const RunSummary& summary) {
+  std::vector<std::string> lines = record.events;
+  for (const std::string& note : summary.notes) lines.push_back("not computed: " + note);
+  if (lines.empty()) return "";
+  return html::section("Events", "", html::list(lines));
+}
+
+std::string static_map_note(const RunRecord& record) {
+  return record.static_map_path.empty() ? std::string() : fmt::format("{} points", record.static_map_points);
+}
+
+std::string header_badges(const RunRecord& record, const RunSummary& summary) {
+  return "<div style=\"margin:-8px 0 18px\">" +
+         html::badges({{"filter", record.filter_mode},
+                       {"detector", record.detector},
+                       {"pace", record.pace},
+                       {"dds", record.dds},
+                       {"keyframes", fmt::format("{}", summary.keyframes)},
+                       {"landmarks", fmt::format("{}", summary.landmarks)},
+                       {"static map", static_map_note(record)},
+                       {"version", summary.version}}) +
+         "</div>\n";
+}
+
+}  // namespace
+
+std::string report_html(const RunRecord& record, const RunSummary& summary) {
+  const RunTime time = run_time(record, summary);
+  // What went wrong stands first when something did.
+  const bool poor = !(summary.coverage >= 0.9);
+  const std::string events = events_section(record, summary);
+  return html::page("RTD-SLAM run report", record.source,
+                    header_badges(record, summary) + summary_cards(record, summary) + (poor ? events : "") +
+                        trajectory_section(summary, time) + error_section(summary, time) + samples_section(record) +
+                        features_section(record, summary) + latency_section(record, summary) + stage_section(summary) +
+                        processes_section(record) + losses_section(record, summary) + (poor ? "" : events));
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "services/evaluation/core/report/run_summary.hpp"
+
+namespace rtd::launcher {
+
+/// The time axis that all charts of a run share.
+struct RunTime {
+  std::int64_t start_ns = 0;  ///< stamp of the first frame
+  double duration_s = 0;      ///< to the last frame, source time
+};
+RunTime run_time(const RunRecord& record, const RunSummary& summary);
+
+/// Features kept and removed per frame as stacked areas, inliers of tracking as a line, frames without pose as red
+/// bands.
+std::string points_chart(const RunRecord& record, const RunSummary& summary);
+
+/// Latency of every frame over time with its distribution, p50 and p99.
+std::string latency_chart(const RunRecord& record, const RunSummary& summary);
+
+/// One row per stage that ran: bar to the median, whisker to the 99th percentile.
+std::string stage_chart(const RunSummary& summary);
+
+/// A kept frame with its features drawn on it: green kept, red removed. Empty when the JPEG cannot be read.
+std::string sample_picture(const SampleFrame& sample);
+
+}  // namespace rtd::launcher

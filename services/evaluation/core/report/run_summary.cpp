@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/core/report/run_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/msg/transform_eigen.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+constexpr std::array<const char*, msg::kStageFilterTotal + 1> kFilterStageNames{
+    "filter.wait_detections", "filter.extract", "filter.masks", "filter.ego_motion",
+    "filter.depth_check",     "filter.fuse",    "filter.total"};
+constexpr std::array<const char*, msg::kStageSlamTotal + 1> kSlamStageNames{
+    "slam.match", "slam.local_map", "slam.pose", "slam.keyframe", "slam.mapping", "slam.total"};
+
+constexpr float kRanMs = 0.01F;  // a shorter time is that of asking whether there is anything to do
+
+bool is_tracked(const FrameRecord& frame) {
+  return frame.tracking.state == msg::TrackingState::kOk;
+}
+
+double mean_of(const std::vector<double>& values) {
+  return eval::summarize(values).mean;
+}
+
+std::vector<double> latencies_ms(const RunRecord& record) {
+  std::vector<double> latencies;
+  for (const FrameRecord& frame : record.frames) {
+    if (const auto latency = latency_ms(frame)) latencies.push_back(*latency);
+  }
+  return latencies;
+}
+
+template <std::size_t N, typename TimesOf>
+void append_stages(const RunRecord& record, const std::array<const char*, N>& names, TimesOf times_of,
+                   std::vector<StageSummary>& stages) {
+  for (std::size_t stage = 0; stage < N; ++stage) {
+    std::vector<double> times_ms;
+    for (const FrameRecord& frame : record.frames) {
+      if (const float ms = times_of(frame)[stage]; ms >= kRanMs) times_ms.push_back(ms);
+    }
+    stages.push_back({names[stage], summarize_times(times_ms)});
+  }
+}
+
+std::vector<LostFrames> lost_frames(const RunRecord& record) {
+  std::vector<LostFrames> lost;
+  if (record.frames.empty()) return lost;
+  const std::int64_t start_ns = record.frames.front().tracking.stamp_ns;
+  const auto add = [&](std::uint64_t first_seq, std::uint64_t last_seq, std::int64_t stamp_ns) {
+    if (!lost.empty() && lost.back().last_seq + 1 == first_seq) {
+      lost.back().last_seq = last_seq;
+    } else {
+      lost.push_back({first_seq, last_seq, static_cast<double>(stamp_ns - start_ns) * 1e-9});
+    }
+  };
+  std::uint64_t next_seq = record.frames.front().tracking.seq;
+  std::int64_t before_ns = start_ns;
+  for (const FrameRecord& frame : record.frames) {
+    const auto& tracking = frame.tracking;
+    if (tracking.seq > next_seq) add(next_seq, tracking.seq - 1, before_ns);
+    if (!is_tracked(frame)) add(tracking.seq, tracking.seq, tracking.stamp_ns);
+    next_seq = tracking.seq + 1;
+    before_ns = tracking.stamp_ns;
+  }
+  return lost;
+}
+
+void count_features(const RunRecord& record, RunSummary& summary) {
+  std::vector<double> kept, removed;
+  for (const FrameRecord& frame : record.frames) {
+    kept.push_back(frame.tracking.features_static);
+    removed.push_back(frame.tracking.features_removed);
+  }
+  summary.kept_mean = mean_of(kept);
+  summary.removed_mean = mean_of(removed);
+}
+
+eval::Trajectory read_or_note(const std::string& what, const std::string& path, std::vector<std::string>& notes) {
+  if (path.empty()) {
+    notes.push_back("no " + what);
+    return {};
+  }
+  try {
+    return eval::read_tum_trajectory(std::filesystem::path(path));
+  } catch (const eval::TrajectoryError& error) {
+    notes.push_back(what + " unusable: " + error.what());
+    return {};
+  }
+}
+
+std::optional<eval::Evaluation> evaluate_or_note(const std::string& what, const eval::Trajectory& estimate,
+                                                 const eval::Trajectory& groundtruth, std::vector<std::string>& notes) {
+  if (estimate.empty() || groundtruth.empty()) return std::nullopt;
+  eval::Evaluation evaluation = eval::evaluate(estimate, groundtruth);
+  if (evaluation.ate.error_m.count == 0) {
+    notes.push_back(what + ": no pose lies within 0.02 s of the ground truth");
+    return std::nullopt;
+  }
+  if (!evaluation.ate.alignment.unique) {
+    notes.push_back(what + ": poses lie on one line or point, so the alignment is one of many and the ATE optimistic");
+  }
+  return evaluation;
+}
+
+}  // namespace
+
+std::optional<double> latency_ms(const FrameRecord& frame) {
+  const auto& tracking = frame.tracking;
+  if (!is_tracked(frame) || tracking.published_ns <= 0 || tracking.finished_ns < tracking.published_ns)
+    return std::nullopt;
+  return static_cast<double>(tracking.finished_ns - tracking.published_ns) * 1e-6;
+}
+
+TimeSummary summarize_times(const std::vector<double>& times_ms) {
+  std::vector<double> finite;
+  std::copy_if(times_ms.begin(), times_ms.end(), std::back_inserter(finite), [](double t) { return std::isfinite(t); });
+  const eval::Statistics s = eval::summarize(finite);
+  return {finite.size(), s.mean, eval::percentile(finite, 0.5), eval::percentile(finite, 0.99), s.max};
+}
+
+eval::Trajectory online_trajectory(const RunRecord& record) {
+  eval::Trajectory trajectory;
+  for (const FrameRecord& frame : record.frames) {
+    const auto& tracking = frame.tracking;
+    if (!is_tracked(frame)) continue;
+    const Eigen::Isometry3d T_world_camera = msg::to_isometry(tracking.T_world_camera);
+    if (!T_world_camera.matrix().allFinite()) continue;
+    if (!trajectory.empty() && tracking.stamp_ns <= trajectory.back().stamp_ns) continue;
+    trajectory.push_back({tracking.stamp_ns, T_world_camera});
+  }
+  return trajectory;
+}
+
+RunSummary summarize_run(const RunRecord& record) {
+  RunSummary summary;
+  summary.version = RTD_VERSION;
+  summary.frames_tracked =
+      static_cast<std::uint64_t>(std::count_if(record.frames.begin(), record.frames.end(), is_tracked));
+  if (record.frames_in > 0) {
+    summary.coverage = static_cast<double>(summary.frames_tracked) / static_cast<double>(record.frames_in);
+    if (record.duration_s > 0) summary.fps = static_cast<double>(record.frames_in) / record.duration_s;
+  }
+  summary.latency_ms = summarize_times(latencies_ms(record));
+  append_stages(
+      record, kFilterStageNames, [](const FrameRecord& f) -> auto& { return f.filter_stage_ms; }, summary.stages);
+  append_stages(
+      record, kSlamStageNames, [](const FrameRecord& f) -> auto& { return f.tracking.stage_ms; }, summary.stages);
+  summary.lost = lost_frames(record);
+  count_features(record, summary);
+  if (!record.frames.empty()) {
+    summary.keyframes = record.frames.back().tracking.keyframes;
+    summary.landmarks = record.frames.back().tracking.landmarks;
+  }
+  summary.groundtruth = read_or_note("ground truth", record.groundtruth_path, summary.notes);
+  summary.estimate = read_or_note("trajectory", record.trajectory_path, summary.notes);
+  summary.final_trajectory = evaluate_or_note("trajectory", summary.estimate, summary.groundtruth, summary.notes);
+  summary.online_trajectory =
+      evaluate_or_note("published poses", online_trajectory(record), summary.groundtruth, summary.notes);
+  return summary;
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/evaluation/core/trajectory/evaluation.hpp"
+#include "services/evaluation/record/run_record.hpp"
+
+namespace rtd::launcher {
+
+/// Times in ms; NaN when nothing was measured.
+struct TimeSummary {
+  std::size_t count = 0;
+  double mean = std::numeric_limits<double>::quiet_NaN();
+  double p50 = std::numeric_limits<double>::quiet_NaN();
+  double p99 = std::numeric_limits<double>::quiet_NaN();
+  double max = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// One stage of filter or slam, over the frames in which it ran.
+struct StageSummary {
+  std::string name;  ///< "filter.extract", "slam.pose", ...
+  TimeSummary ms;
+};
+
+/// Consecutive frames without pose.
+struct LostFrames {
+  std::uint64_t first_seq = 0, last_seq = 0;
+  double start_s = 0;  ///< since the first frame
+  std::uint64_t frames() const { return last_seq - first_seq + 1; }
+};
+
+/// The numbers of a run, ready to be written. Doubles are NaN where unknown.
+struct RunSummary {
+  std::string version;
+  std::uint64_t frames_tracked = 0;
+  double coverage = std::numeric_limits<double>::quiet_NaN();  ///< frames with pose / frames in
+  double fps = std::numeric_limits<double>::quiet_NaN();       ///< frames in / duration of the run
+  TimeSummary latency_ms;                                      ///< camera published -> pose ready
+  std::vector<StageSummary> stages;
+  std::vector<LostFrames> lost;
+  double kept_mean = std::numeric_limits<double>::quiet_NaN();     ///< features offered to tracking, per frame
+  double removed_mean = std::numeric_limits<double>::quiet_NaN();  ///< features judged dynamic, per frame
+  std::uint32_t keyframes = 0, landmarks = 0;                      ///< at the end
+  eval::Trajectory estimate, groundtruth;             ///< final trajectory and ground truth; empty when there is none
+  std::optional<eval::Evaluation> final_trajectory;   ///< trajectory.txt against ground truth
+  std::optional<eval::Evaluation> online_trajectory;  ///< poses as they were published, frame by frame
+  std::vector<std::string> notes;                     ///< what could not be computed, and why
+};
+
+/// Reads the trajectories that the record names and computes everything. Never throws on bad data: that becomes a note.
+RunSummary summarize_run(const RunRecord& record);
+
+/// The poses of the tracked frames as published, in order.
+eval::Trajectory online_trajectory(const RunRecord& record);
+
+/// Camera to pose, ms; nothing when the frame has no pose or was not timed.
+std::optional<double> latency_ms(const FrameRecord& frame);
+
+/// Summary of the finite values.
+TimeSummary summarize_times(const std::vector<double>& times_ms);
+
+}  // namespace rtd::launcher

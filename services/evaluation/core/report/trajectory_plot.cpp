@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/core/report/trajectory_plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "services/evaluation/core/plot/colour.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using plot::Anchor;
+using plot::Area;
+using plot::Chart;
+using plot::Point;
+namespace palette = plot::palette;
+
+constexpr double kMaxGapS = 0.5;  // longer times without poses interrupt a line
+constexpr std::size_t kMaxPathPoints = 4000;
+constexpr int kColourSteps = 32;
+constexpr std::array<const char*, 3> kAxisNames{"x [m]", "y [m]", "z [m]"};
+
+double seconds(std::int64_t ns) {
+  return static_cast<double>(ns) * 1e-9;
+}
+
+std::vector<double> coordinate(const std::vector<Eigen::Vector3d>& points_m, int axis) {
+  std::vector<double> values;
+  for (const Eigen::Vector3d& p : points_m) values.push_back(p[axis]);
+  return values;
+}
+
+plot::Range padded(const plot::Range& range) {
+  const double margin = 0.05 * range.span();
+  return {range.min - margin, range.max + margin};
+}
+
+Chart path_chart(plot::Svg& svg, const Area& area, const std::vector<Eigen::Vector3d>& all_m, PlaneView plane) {
+  Chart chart = Chart::equal_aspect(svg, area, padded(plot::range_of(coordinate(all_m, plane.horizontal))),
+                                    padded(plot::range_of(coordinate(all_m, plane.vertical))));
+  chart.draw_axes(
+      {kAxisNames[static_cast<std::size_t>(plane.horizontal)], kAxisNames[static_cast<std::size_t>(plane.vertical)]});
+  return chart;
+}
+
+/// Draws a path, interrupted where it has no poses and thinned to what a picture can show.
+void draw_path(plot::Svg& svg, const Chart& chart, const PathCurve& curve, PlaneView plane) {
+  const std::size_t stride = curve.points_m.size() / kMaxPathPoints + 1;
+  std::vector<Point> run;
+  std::int64_t before_ns = 0;
+  for (std::size_t i = 0; i < curve.points_m.size(); i += stride) {
+    if (!run.empty() && seconds(curve.stamps_ns[i] - before_ns) > kMaxGapS * static_cast<double>(stride)) {
+      svg.polyline(run, curve.stroke);
+      run.clear();
+    }
+    run.push_back(chart.at(curve.points_m[i][plane.horizontal], curve.points_m[i][plane.vertical]));
+    before_ns = curve.stamps_ns[i];
+  }
+  if (!run.empty()) svg.polyline(run, curve.stroke);
+}
+
+/// Neighbouring points of about the same error share one line element.
+void draw_coloured_path(plot::Svg& svg, const Chart& chart, const eval::AteResult& ate, PlaneView plane, double max_m) {
+  const std::size_t stride = ate.points.size() / kMaxPathPoints + 1;
+  std::vector<Point> run;
+  int run_step = -1;
+  const auto finish = [&] {
+    if (run.size() > 1) svg.polyline(run, {plot::error_colour((run_step + 0.5) / kColourSteps), 2.6});
+    run.clear();
+  };
+  std::int64_t before_ns = 0;
+  for (std::size_t i = 0; i < ate.points.size(); i += stride) {
+    const eval::AtePoint& point = ate.points[i];
+    const Point at = chart.at(point.estimate_m[plane.horizontal], point.estimate_m[plane.vertical]);
+    const int step = std::min(kColourSteps - 1, static_cast<int>(point.error_m / max_m * kColourSteps));
+    const bool gap = i > 0 && seconds(point.stamp_ns - before_ns) > kMaxGapS * static_cast<double>(stride);
+    if (gap) finish();
+    if (!run.empty() && step != run_step) {
+      run.push_back(at);
+      finish();
+    }
+    run.push_back(at);
+    run_step = step;
+    before_ns = point.stamp_ns;
+  }
+  finish();
+}
+
+void mark_ends(plot::Svg& svg, Point start, Point end) {
+  svg.circle(start, 5, "#ffffff", {palette::kInk, 2});
+  svg.text({start.x + 9, start.y - 7}, "start", {palette::kInk, 12, Anchor::kStart, true});
+  svg.rect({end.x - 4.5, end.y - 4.5, 9, 9}, palette::kInk, 1, 1.5);
+  svg.text({end.x + 9, end.y + 14}, "end", {palette::kInk, 12, Anchor::kStart, true});
+}
+
+/// A few extreme errors must not paint everything else blue: the scale then ends above the 95th percentile.
+double colour_scale_end_m(const eval::AteResult& ate) {
+  std::vector<double> errors_m;
+  for (const eval::AtePoint& point : ate.points) errors_m.push_back(point.error_m);
+  const double p95_m = eval::percentile(errors_m, 0.95);
+  const double end_m = ate.error_m.max > 2.5 * p95_m ? 1.5 * p95_m : ate.error_m.max;
+  return std::isfinite(end_m) ? std::max(end_m, 1e-6) : 1e-6;
+}
+
+std::vector<double> errors_in(const eval::AteResult& ate, const LengthUnit& unit) {
+  std::vector<double> errors;
+  for (const eval::AtePoint& point : ate.points) errors.push_back(point.error_m * unit.per_metre);
+  return errors;
+}
+
+std::vector<double> times_since(const eval::AteResult& ate, std::int64_t start_ns) {
+  std::vector<double> times;
+  for (const eval::AtePoint& point : ate.points) times.push_back(seconds(point.stamp_ns - start_ns));
+  return times;
+}
+
+}  // namespace
+
+LengthUnit length_unit(double largest_m) {
+  if (largest_m < 0.02) return {"mm", 1000};
+  if (largest_m < 1.0) return {"cm", 100};
+  return {"m", 1};
+}
+
+std::string length_text(double length_m) {
+  if (!std::isfinite(length_m)) return "unknown";
+  const LengthUnit unit = length_unit(length_m);
+  return fmt::format("{:.2f} {}", length_m * unit.per_metre, unit.name);
+}
+
+PlaneView widest_plane(const std::vector<Eigen::Vector3d>& points_m) {
+  std::array<int, 3> axes{0, 1, 2};
+  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) {
+    return plot::range_of(coordinate(points_m, a)).span() > plot::range_of(coordinate(points_m, b)).span();
+  });
+  return {axes[0], axes[1]};
+}
+
+PathCurve path_of(const eval::Trajectory& trajectory) {
+  PathCurve curve;
+  curve.stamps_ns = eval::stamps_of(trajectory);
+  for (const eval::StampedPose& pose : trajectory) curve.points_m.push_back(pose.T_world_body.translation());
+  return curve;
+}
+
+eval::Trajectory within(const eval::Trajectory& trajectory, std::int64_t first_ns, std::int64_t last_ns) {
+  eval::Trajectory part;
+  std::copy_if(trajectory.begin(), trajectory.end(), std::back_inserter(part),
+               [&](const eval::StampedPose& p) { return p.stamp_ns >= first_ns && p.stamp_ns <= last_ns; });
+  return part;
+}
+
+double fitting_height(const std::vector<PathCurve>& curves, double width) {
+  constexpr double kMarginX = 150, kMarginY = 76, kLowest = 400, kHighest = 640;
+  std::vector<Eigen::Vector3d> all_m;
+  for (const PathCurve& curve : curves) all_m.insert(all_m.end(), curve.points_m.begin(), curve.points_m.end());
+  const PlaneView plane = curves.empty() ? PlaneView{} : widest_plane(curves.front().points_m);
+  const double across = plot::range_of(coordinate(all_m, plane.horizontal)).span();
+  const double up = plot::range_of(coordinate(all_m, plane.vertical)).span();
+  return std::clamp(kMarginY + (width - kMarginX) * 1.1 * up / across, kLowest, kHighest);
+}
+
+void draw_error_path(plot::Svg& svg, const Area& area, const eval::AteResult& ate,
+                     const eval::Trajectory& groundtruth) {
+  PathCurve truth = path_of(groundtruth);
+  truth.stroke = {palette::kTruth, 2.2};
+  std::vector<Eigen::Vector3d> all_m = truth.points_m;
+  for (const eval::AtePoint& point : ate.points) all_m.push_back(point.estimate_m);
+  const PlaneView plane = widest_plane(all_m);
+
+  const Area frame{area.x + 58, area.y + 30, area.width - 58 - 92, area.height - 30 - 46};
+  const Chart chart = path_chart(svg, frame, all_m, plane);
+  draw_path(svg, chart, truth, plane);
+  const double max_m = colour_scale_end_m(ate);
+  draw_coloured_path(svg, chart, ate, plane, max_m);
+  const auto end_point = [&](const eval::AtePoint& p) {
+    return chart.at(p.estimate_m[plane.horizontal], p.estimate_m[plane.vertical]);
+  };
+  if (!ate.points.empty()) mark_ends(svg, end_point(ate.points.front()), end_point(ate.points.back()));
+
+  plot::draw_legend(svg, {frame.x, area.y + 14},
+                    {{"ground truth", palette::kTruth}, {"estimate, coloured by error", plot::error_colour(0.1)}});
+  const LengthUnit unit = length_unit(max_m);
+  plot::draw_error_scale(svg, {frame.x + frame.width + 24, frame.y + 24, 14, frame.height - 24},
+                         {max_m * unit.per_metre, fmt::format("error [{}]", unit.name), ate.error_m.max > max_m});
+}
+
+void draw_paths(plot::Svg& svg, const Area& area, const std::vector<PathCurve>& curves) {
+  std::vector<Eigen::Vector3d> all_m;
+  std::vector<plot::LegendEntry> legend;
+  for (const PathCurve& curve : curves) {
+    all_m.insert(all_m.end(), curve.points_m.begin(), curve.points_m.end());
+    if (!curve.points_m.empty()) legend.push_back({curve.label, curve.colour});
+  }
+  const PlaneView plane = curves.empty() ? PlaneView{} : widest_plane(curves.front().points_m);
+  const Area frame{area.x + 58, area.y + 30, area.width - 58 - 14, area.height - 30 - 46};
+  const Chart chart = path_chart(svg, frame, all_m, plane);
+  for (PathCurve curve : curves) {
+    curve.stroke.colour = curve.colour;
+    draw_path(svg, chart, curve, plane);
+  }
+  plot::draw_legend(svg, {frame.x, area.y + 14}, legend);
+}
+
+void draw_errors_over_time(plot::Svg& svg, const Area& area, const std::vector<ErrorCurve>& curves,
+                           std::int64_t start_ns, double duration_s) {
+  double max_m = 0;
+  std::vector<plot::LegendEntry> legend;
+  for (const ErrorCurve& curve : curves) {
+    if (curve.ate->error_m.count > 0) max_m = std::max(max_m, curve.ate->error_m.max);
+    legend.push_back({curve.label, curve.colour});
+  }
+  const LengthUnit unit = length_unit(max_m);
+  const Area frame{area.x + 58, area.y + 30, area.width - 58 - 106, area.height - 30 - 46};
+  Chart chart(svg, frame, {0, std::max(duration_s, 1e-3)}, {0, std::max(max_m, 1e-6) * unit.per_metre * 1.06});
+  chart.draw_axes({"time since the first frame [s]", std::string("position error [") + unit.name + "]"});
+  for (const ErrorCurve& curve : curves) {
+    chart.curve(times_since(*curve.ate, start_ns), errors_in(*curve.ate, unit), {curve.colour, 1.6}, kMaxGapS);
+  }
+  std::vector<plot::Level> levels;
+  for (const ErrorCurve& curve : curves) {
+    const double rmse = curve.ate->error_m.rmse * unit.per_metre;
+    levels.push_back({rmse, fmt::format("RMSE {:.3g} {}", rmse, unit.name), {curve.colour, 1.2, "6 4"}});
+  }
+  chart.levels(levels);
+  plot::draw_legend(svg, {frame.x, area.y + 14}, legend);
+}
+
+std::string evaluation_svg(const eval::AteResult& ate, const eval::Trajectory& groundtruth, const std::string& title) {
+  plot::Svg svg(900, 960, title);
+  svg.text({20, 32}, title, {palette::kInk, 18, Anchor::kStart, true});
+  svg.text({20, 54},
+           fmt::format("ATE RMSE {}, median {}, max {}, {} pairs", length_text(ate.error_m.rmse),
+                       length_text(ate.error_m.median), length_text(ate.error_m.max), ate.error_m.count),
+           {palette::kMuted, 13});
+  if (ate.points.empty()) return svg.document();
+  const std::int64_t first_ns = ate.points.front().stamp_ns, last_ns = ate.points.back().stamp_ns;
+  draw_error_path(svg, {10, 76, 880, 590}, ate, within(groundtruth, first_ns, last_ns));
+  draw_errors_over_time(svg, {10, 680, 880, 270}, {{"position error", palette::kBlue, &ate}}, first_ns,
+                        seconds(last_ns - first_ns));
+  return svg.document();
+}
+
+}  // namespace rtd::launcher

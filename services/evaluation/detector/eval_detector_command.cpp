@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/detector/eval_detector_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+
+#include "common/service/exit_code.hpp"
+#include "services/evaluation/detector/detector_json.hpp"
+#include "services/evaluation/detector/detector_plots.hpp"
+#include "services/evaluation/detector/detector_tables.hpp"
+#include "services/evaluation/detector/evaluate.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+/// "0:180:15" -> 0, 15 .. 180; "90" -> 90.
+RollRange parse_roll(const std::string& text) {
+  RollRange roll;
+  char rest = 0;
+  const int numbers = std::sscanf(text.c_str(), "%lf:%lf:%lf%c", &roll.from_deg, &roll.to_deg, &roll.step_deg, &rest);
+  if (numbers == 1) roll.to_deg = roll.from_deg;
+  const bool one = numbers == 1 && text.find(':') == std::string::npos;
+  if ((numbers != 3 && !one) || roll.to_deg < roll.from_deg || roll.step_deg < 1 || roll.from_deg < -360 ||
+      roll.to_deg > 360) {
+    throw CLI::ValidationError("--roll", "'" + text + "' is not FROM:TO:STEP in degrees (-360..360, step 1 or more)");
+  }
+  return roll;
+}
+
+void write_file(const std::filesystem::path& path, const std::string& content, const std::string& option) {
+  std::ofstream file(path, std::ios::binary);
+  file << content;
+  file.flush();
+  if (!file)
+    throw EvalDetectorError(option + " " + path.string() + ": cannot be written; check that its folder exists");
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw EvalDetectorError("--out " + folder + ": cannot be created: " + error.message());
+}
+
+/// Before the long work, so that it is not in vain.
+void check_outputs(const EvalDetectorOptions& options) {
+  if (!options.out_dir.empty()) make_folder(options.out_dir);
+  if (!options.json.empty()) write_file(options.json, "", "--json");
+}
+
+void run_on_labels(const EvalDetectorOptions& options, std::ostream& out, std::ostream& err) {
+  const LabelledResults results = evaluate_labels(options, err);
+  err << input_lines(results.input, "without label file (no objects)");
+  out << labelled_table(results);
+  if (!options.json.empty()) write_file(options.json, to_json(results).dump(2) + "\n", "--json");
+  if (options.out_dir.empty()) return;
+  write_file(options.out_dir + "/thresholds.svg", threshold_plot(results).document(), "--out");
+  write_file(options.out_dir + "/detector.html", labelled_html(results), "--out");
+}
+
+void run_on_masks(const EvalDetectorOptions& options, std::ostream& out, std::ostream& err) {
+  const MaskResults results = evaluate_masks(options, err);
+  err << input_lines(results.input, "without mask (left out)");
+  out << mask_table(results);
+  if (!options.json.empty()) write_file(options.json, to_json(results).dump(2) + "\n", "--json");
+  if (options.out_dir.empty()) return;
+  write_file(options.out_dir + "/recall_over_roll.svg", roll_plot(results).document(), "--out");
+  write_file(options.out_dir + "/detector.html", mask_html(results), "--out");
+}
+
+void add_mask_options(CLI::App& command, EvalDetectorOptions& options) {
+  command.add_option("--masks", options.masks, "Folder of masks named like the images, white = object: recall");
+  command.add_flag("--dark-masks", options.dark_masks, "Masks: objects are black");
+  command.add_option("--class", options.class_name, "Masks: the class that they show")->capture_default_str();
+  command.add_option("--confidence", options.thresholds, "Masks: confidence thresholds")
+      ->check(CLI::Range(0.001, 1.0))
+      ->capture_default_str();
+  command.add_option_function<std::string>(
+      "--roll", [&options](const std::string& text) { options.roll = parse_roll(text); },
+      "Masks: turn image and mask, degrees FROM:TO:STEP, e.g. 0:180:15");
+  command.add_flag("--derotate", options.derotate, "Masks: also detect on the image turned upright by the true roll");
+}
+
+}  // namespace
+
+CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& options) {
+  CLI::App* command = parent.add_subcommand("eval-detector",
+                                            "Average precision, recall and time of detector models on labelled images");
+  command->add_option("--images", options.images, "Folder of images")->required();
+  CLI::Option* labels =
+      command->add_option("--labels", options.labels, "Folder of labels named like the images: YOLO .txt, VOC .xml");
+  command->add_option("--label-format", options.label_format, "auto, yolo or voc")
+      ->check(CLI::IsMember({"auto", "yolo", "voc"}))
+      ->capture_default_str();
+  command->add_option("--names", options.names_file, "Class names, one a line (default: those of the model)");
+  command->add_option("--model", options.models, "ONNX files, compared side by side (default: the usual model)");
+  command->add_option("--recall", options.wanted_recall, "Wanted recall of the high motion level")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  command->add_option("--step", options.step, "Every n-th image")->check(CLI::Range(1, 100000))->capture_default_str();
+  command->add_option("--json", options.json, "Write all figures here");
+  command->add_option("--out", options.out_dir, "Write plots (SVG) and a page (HTML) into this folder");
+  add_mask_options(*command, options);
+  labels->excludes("--masks");
+  return command;
+}
+
+int run_eval_detector(const EvalDetectorOptions& options, std::ostream& out, std::ostream& err) {
+  try {
+    if (options.labels.empty() && options.masks.empty()) {
+      throw EvalDetectorError("say --labels DIR (average precision) or --masks DIR (recall)");
+    }
+    check_outputs(options);
+    options.labels.empty() ? run_on_masks(options, out, err) : run_on_labels(options, out, err);
+    return service::kOk;
+  } catch (const EvalDetectorError& error) {
+    err << "rtd eval-detector: " << error.what() << '\n';
+    return service::kUsageOrConfig;
+  }
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <numbers>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+#include "common/service/progress.hpp"
+#include "services/evaluation/detector/evaluate.hpp"
+#include "services/evaluation/detector/image_folder.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+constexpr int kGrey = 114;
+
+struct MaskedImage {
+  cv::Mat image, mask;
+};
+
+/// What a camera rolled by this angle sees: the content turns counter-clockwise, about the centre; what was never in
+/// the picture is grey and not marked.
+MaskedImage rolled(const MaskedImage& upright, double roll_deg) {
+  if (roll_deg == 0) return upright;
+  const cv::Size size = upright.image.size();
+  const cv::Point2f centre(0.5F * static_cast<float>(size.width - 1), 0.5F * static_cast<float>(size.height - 1));
+  const cv::Mat turn = cv::getRotationMatrix2D(centre, roll_deg, 1.0);
+  MaskedImage result;
+  cv::warpAffine(upright.image, result.image, turn, size, cv::INTER_LINEAR, cv::BORDER_CONSTANT,
+                 cv::Scalar::all(kGrey));
+  cv::warpAffine(upright.mask, result.mask, turn, size, cv::INTER_NEAREST, cv::BORDER_CONSTANT, cv::Scalar(0));
+  return result;
+}
+
+std::vector<double> angles_of(const RollRange& range) {
+  std::vector<double> angles;
+  for (int i = 0; range.from_deg + i * range.step_deg <= range.to_deg + 1e-9; ++i)
+    angles.push_back(range.from_deg + i * range.step_deg);
+  return angles;
+}
+
+void add_recall(const MaskedImage& image, const std::vector<vision::Detection>& found,
+                const EvalDetectorOptions& options, std::map<double, detector::MaskRecall>& by_threshold) {
+  for (const double threshold : options.thresholds) {
+    std::vector<vision::Detection> boxes;
+    std::copy_if(found.begin(), found.end(), std::back_inserter(boxes), [&](const vision::Detection& box) {
+      return box.class_name == options.class_name && box.score >= threshold;
+    });
+    by_threshold[threshold] += detector::measure_mask_recall(image.mask, boxes);
+  }
+}
+
+std::optional<MaskedImage> read_pair(const std::filesystem::path& path, const EvalDetectorOptions& options,
+                                     InputReport& input) {
+  const std::filesystem::path mask_path = partner_of(path, options.masks, {".png", ".jpg", ".bmp"});
+  if (mask_path.empty()) {
+    ++input.without_partner;
+    return std::nullopt;
+  }
+  MaskedImage pair{cv::imread(path.string()), cv::imread(mask_path.string(), cv::IMREAD_GRAYSCALE)};
+  const auto reject = [&](const std::string& problem) {
+    ++input.not_decoded;
+    input.problems.push_back(problem + ", left out");
+  };
+  if (pair.image.empty()) return reject(path.filename().string() + ": is no image"), std::nullopt;
+  if (pair.mask.empty()) return reject(mask_path.filename().string() + ": is no image"), std::nullopt;
+  if (pair.mask.size() != pair.image.size()) {
+    reject(mask_path.filename().string() + ": is " + std::to_string(pair.mask.cols) + " x " +
+           std::to_string(pair.mask.rows) + " px, its image is " + std::to_string(pair.image.cols) + " x " +
+           std::to_string(pair.image.rows));
+    return std::nullopt;
+  }
+  pair.mask = options.dark_masks ? pair.mask < 128 : pair.mask >= 128;
+  return pair;
+}
+
+}  // namespace
+
+MaskResults evaluate_masks(const EvalDetectorOptions& options, std::ostream& err) {
+  const std::vector<std::filesystem::path> images = images_in(options.images, "--images", options.step);
+  require_folder(options.masks, "--masks");
+  std::vector<ModelUnderTest> models =
+      load_models(options, *std::min_element(options.thresholds.begin(), options.thresholds.end()));
+  const std::vector<double> angles_deg = angles_of(options.roll);
+  MaskResults results;
+  results.models.resize(models.size());
+  service::Progress progress(err, "images", images.size());
+  for (const std::filesystem::path& path : images) {
+    const std::optional<MaskedImage> pair = read_pair(path, options, results.input);
+    progress.advance();
+    if (!pair) continue;
+    ++results.input.images;
+    for (const double roll_deg : angles_deg) {
+      const MaskedImage seen = rolled(*pair, roll_deg);
+      const double roll_rad = roll_deg * std::numbers::pi / 180;
+      for (std::size_t m = 0; m < models.size(); ++m) {
+        add_recall(seen, models[m].detect(seen.image), options, results.models[m].as_seen[roll_deg]);
+        if (!options.derotate) continue;
+        add_recall(seen, models[m].detect(seen.image, roll_rad), options, results.models[m].upright[roll_deg]);
+      }
+    }
+  }
+  if (results.input.images == 0) {
+    throw EvalDetectorError("--masks " + options.masks + ": no mask there belongs to an image of --images " +
+                            options.images + " (same name, same size)");
+  }
+  for (std::size_t m = 0; m < models.size(); ++m) results.models[m].model = models[m].facts();
+  return results;
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/detector/model_under_test.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "services/detector/core/model_locator.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+namespace fs = std::filesystem;
+
+double thread_cpu_ms() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string locate(const std::string& name) {
+  const fs::path given(name);
+  std::error_code ignored;
+  if (fs::is_regular_file(given, ignored)) return name;
+  const detector::ModelSearch model = detector::find_model(name, detector::process_environment());
+  if (!model) throw EvalDetectorError(model.message);
+  return model.path;
+}
+
+detector::DetectorConfig config_of(const std::string& path, const std::vector<std::string>& class_names) {
+  detector::DetectorConfig config;
+  config.model_path = path;
+  config.class_names = class_names;
+  return config;
+}
+
+detector::DetectorConfig keep_from(detector::DetectorConfig config, double least_score) {
+  config.decode.confidence_threshold = config.decode.objectness_threshold = least_score;
+  return config;
+}
+
+}  // namespace
+
+ModelUnderTest::ModelUnderTest(const std::string& path, double least_score, const std::vector<std::string>& class_names)
+    : facts_{.name = fs::path(path).filename().string()},
+      detector_(keep_from(config_of(path, class_names), least_score)),
+      timed_(config_of(path, class_names)) {
+  const std::string bytes = read_file(path);
+  const detector::OnnxFile file =
+      detector::read_onnx_file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  facts_.size_mb = static_cast<double>(bytes.size()) * 1e-6;
+  facts_.parameters_m = static_cast<double>(file.parameters) * 1e-6;
+  facts_.input_width_px = detector_.input_size().width_px;
+  facts_.input_height_px = detector_.input_size().height_px;
+}
+
+std::vector<vision::Detection> ModelUnderTest::detect(const cv::Mat& image, double roll_rad) {
+  return detector_.detect_upright(image, roll_rad);
+}
+
+void ModelUnderTest::take_time(const cv::Mat& image) {
+  const double started_ms = thread_cpu_ms();
+  timed_.detect(image);
+  ms_.push_back(thread_cpu_ms() - started_ms);
+}
+
+ModelFacts ModelUnderTest::facts() const {
+  ModelFacts facts = facts_;
+  std::vector<double> ms = ms_;
+  if (ms.empty()) return facts;
+  const auto middle = ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2);
+  std::nth_element(ms.begin(), middle, ms.end());
+  facts.median_ms = *middle;
+  return facts;
+}
+
+std::vector<ModelUnderTest> load_models(const EvalDetectorOptions& options, double least_score) {
+  std::vector<std::string> class_names;
+  if (!options.names_file.empty()) {
+    class_names = detector::split_lines(read_file(options.names_file));
+    if (class_names.empty()) throw EvalDetectorError("--names " + options.names_file + ": is missing or empty");
+  }
+  std::vector<ModelUnderTest> models;
+  for (const std::string& name : options.models.empty() ? std::vector<std::string>{""} : options.models) {
+    try {
+      models.emplace_back(locate(name), least_score, class_names);
+    } catch (const detector::ModelError& error) {
+      throw EvalDetectorError(error.what());
+    }
+  }
+  return models;
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/commands/eval_command.hpp"
+
+#include <gmock/gmock.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/unit/evaluation/eval_paths.hpp"
+#include "tests/unit/evaluation/temporary_folder.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using eval::testing_support::moved;
+using eval::testing_support::read_text;
+using eval::testing_support::some_transform;
+using eval::testing_support::TemporaryFolder;
+using eval::testing_support::tum_text;
+using eval::testing_support::winding_path;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+class EvalCommand : public testing::Test {
+ protected:
+  EvalCommand() {
+    const eval::Trajectory truth = winding_path(60, 0.1);
+    eval::Trajectory estimate = moved(truth, some_transform(), 0.5);
+    estimate.erase(estimate.begin() + 20, estimate.begin() + 30);
+    truth_ = folder_.write("groundtruth.txt", tum_text(truth));
+    estimate_ = folder_.write("trajectory.txt", tum_text(estimate));
+  }
+
+  Outcome run(const std::vector<std::string>& arguments) const {
+    CLI::App app;
+    EvalOptions options;
+    add_eval_command(app, options);
+    std::vector<std::string> reversed{arguments.rbegin(), arguments.rend()};
+    reversed.push_back("eval");
+    app.parse(reversed);
+    std::ostringstream out, err;
+    const int code = run_eval(options, out, err);
+    return {code, out.str(), err.str()};
+  }
+
+  TemporaryFolder folder_;
+  std::string truth_, estimate_;
+};
+
+TEST_F(EvalCommand, prints_a_table_with_all_errors_and_units) {
+  const Outcome outcome = run({estimate_, truth_});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("ATE (SE(3))"), HasSubstr("RPE per second"), HasSubstr("RPE per frame"),
+                                 HasSubstr("RPE per metre"), HasSubstr("deg"), HasSubstr("(50 poses)")));
+  EXPECT_THAT(outcome.out, HasSubstr("without poses        1.90 s to 3.00 s after the start"));
+}
+
+TEST_F(EvalCommand, scale_option_aligns_with_a_similarity) {
+  const auto rigid = nlohmann::json::parse(run({estimate_, truth_, "--json"}).out);
+  const auto similar = nlohmann::json::parse(run({estimate_, truth_, "--json", "--scale"}).out);
+  EXPECT_GT(rigid["ate_m"]["rmse"].get<double>(), 0.1);
+  EXPECT_LT(similar["ate_m"]["rmse"].get<double>(), 1e-6);
+  EXPECT_NEAR(similar["alignment"]["scale"].get<double>(), 2.0, 1e-6);
+}
+
+TEST_F(EvalCommand, json_has_every_measure) {
+  const Outcome outcome = run({estimate_, truth_, "--json"});
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["ate_m"]["count"], 50);
+  EXPECT_EQ(json["estimate_poses"], 50);
+  EXPECT_EQ(json["groundtruth_poses"], 60);
+  for (const char* unit : {"per_second", "per_frame", "per_metre"}) {
+    EXPECT_TRUE(json["rpe"][unit]["translation_m"]["rmse"].is_number()) << unit;
+    EXPECT_TRUE(json["rpe"][unit]["rotation_deg"]["rmse"].is_number()) << unit;
+  }
+  EXPECT_EQ(json["coverage"]["of"], "groundtruth_span");
+  EXPECT_NEAR(json["coverage"]["fraction"].get<double>(), 48.0 / 59, 1e-6);
+  EXPECT_EQ(json["coverage"]["lost_spans"].size(), 1U);
+}
+
+TEST_F(EvalCommand, frame_list_gives_the_coverage_of_frames) {
+  std::string list = "# colour images\n";
+  for (int i = 0; i < 60; ++i)
+    list += std::to_string(100 + i / 10) + "." + std::to_string(i % 10) + " rgb/" + std::to_string(i) + ".png\n";
+  const std::string frames = folder_.write("rgb.txt", list);
+  const auto json = nlohmann::json::parse(run({estimate_, truth_, "--json", "--frames", frames}).out);
+  EXPECT_EQ(json["coverage"]["frames"], 60);
+  EXPECT_EQ(json["coverage"]["tracked"], 50);
+  EXPECT_EQ(json["coverage"]["lost_spans"][0]["frames"], 10);
+}
+
+TEST_F(EvalCommand, offset_moves_the_estimate_in_time) {
+  eval::Trajectory late = winding_path(60, 0.1);
+  for (auto& pose : late) pose.stamp_ns += 7'000'000'000'000;
+  const std::string estimate = folder_.write("late.txt", tum_text(late));
+  EXPECT_EQ(run({estimate, truth_}).code, 1);
+  EXPECT_EQ(run({estimate, truth_, "--offset", "-7000"}).code, 0);
+}
+
+TEST_F(EvalCommand, no_pairs_is_exit_1_and_tells_both_spans_and_options) {
+  eval::Trajectory other = winding_path(10, 0.1);
+  for (auto& pose : other) pose.stamp_ns += 5'000'000'000'000;
+  const Outcome outcome = run({folder_.write("other.txt", tum_text(other)), truth_});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("5100.000000 to 5100.900000"), HasSubstr("100.000000 to 105.900000"),
+                                 HasSubstr("--offset"), HasSubstr("-5000.000000 s")));
+}
+
+TEST_F(EvalCommand, missing_and_malformed_files_are_exit_2_with_cause_and_place) {
+  const Outcome missing = run({folder_.file("nowhere.txt"), truth_});
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_THAT(missing.err, AllOf(HasSubstr("nowhere.txt"), HasSubstr("no such file")));
+  const Outcome malformed = run({estimate_, folder_.write("bad.txt", "1 0 0 0 0 0 0 1\n2 0 0\n")});
+  EXPECT_EQ(malformed.code, 2);
+  EXPECT_THAT(malformed.err, AllOf(HasSubstr("bad.txt:2"), HasSubstr("3 columns instead of 8")));
+}
+
+TEST_F(EvalCommand, plot_is_a_standalone_svg) {
+  const std::string plot = folder_.file("plot.svg");
+  EXPECT_EQ(run({estimate_, truth_, "--plot", plot}).code, 0);
+  const std::string svg = read_text(plot);
+  EXPECT_THAT(svg, AllOf(HasSubstr("<?xml"), HasSubstr("<polyline"), HasSubstr("ground truth"), HasSubstr("</svg>"),
+                         Not(HasSubstr("nan")), Not(HasSubstr("href"))));
+}
+
+TEST_F(EvalCommand, plot_that_cannot_be_written_is_exit_2) {
+  EXPECT_EQ(run({estimate_, truth_, "--plot", folder_.file("no_folder/plot.svg")}).code, 2);
+  const Outcome other_kind = run({estimate_, truth_, "--plot", folder_.file("plot.pdf")});
+  EXPECT_EQ(other_kind.code, 2);
+  EXPECT_THAT(other_kind.err, HasSubstr(".svg"));
+}
+
+TEST_F(EvalCommand, refuses_a_negative_time_limit) {
+  EXPECT_THROW(run({estimate_, truth_, "--max-difference", "-1"}), CLI::ValidationError);
+}
+
+TEST_F(EvalCommand, line_shaped_paths_are_told_to_be_ambiguous) {
+  eval::Trajectory line;
+  for (int i = 0; i < 20; ++i)
+    line.push_back({(100 + i) * 1'000'000'000LL, Eigen::Isometry3d(Eigen::Translation3d(i, 0, 0))});
+  const std::string path = folder_.write("line.txt", tum_text(line));
+  EXPECT_THAT(run({path, path}).out, HasSubstr("one of many"));
+}
+
+}  // namespace
+}  // namespace rtd::launcher

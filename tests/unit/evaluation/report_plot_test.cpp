@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/core/plot/chart.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "services/evaluation/core/plot/colour.hpp"
+
+namespace rtd::plot {
+namespace {
+
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::Pointwise;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(NiceTicks, are_round_and_inside_the_range) {
+  EXPECT_THAT(nice_ticks({0, 10}, 5), ElementsAre(0, 2, 4, 6, 8, 10));
+  EXPECT_THAT(nice_ticks({-0.31, 0.72}, 5), Pointwise(DoubleNear(1e-12), {-0.2, 0.0, 0.2, 0.4, 0.6}));
+  EXPECT_THAT(nice_ticks({0.0012, 0.0049}, 4), Pointwise(DoubleNear(1e-12), {0.002, 0.003, 0.004}));
+  EXPECT_THAT(nice_ticks({1, 1}, 5), IsEmpty());
+  EXPECT_THAT(nice_ticks({0, kNan}, 5), IsEmpty());
+}
+
+TEST(TickLabel, has_the_decimals_of_its_step) {
+  EXPECT_EQ(tick_label(0.5, 0.5), "0.5");
+  EXPECT_EQ(tick_label(20, 10), "20");
+  EXPECT_EQ(tick_label(0.002, 0.001), "0.002");
+  EXPECT_EQ(tick_label(2, 2), "2");
+}
+
+TEST(RangeOf, ignores_values_that_are_not_finite) {
+  const Range range = range_of({3, kNan, -1, std::numeric_limits<double>::infinity(), 2});
+  EXPECT_EQ(range.min, -1);
+  EXPECT_EQ(range.max, 3);
+}
+
+TEST(RangeOf, is_never_empty) {
+  EXPECT_GT(range_of({}).span(), 0);
+  EXPECT_GT(range_of({5, 5, 5}).span(), 0);
+  EXPECT_GT(range_of({1e12, 1e12}).span(), 0);
+  EXPECT_EQ(range_from_zero({0, 0}).max, 1);
+  EXPECT_EQ(range_from_zero({2, 50}).min, 0);
+}
+
+TEST(Chart, maps_data_with_y_upwards) {
+  Svg svg(100, 100, "test");
+  const Chart chart(svg, {10, 20, 80, 60}, {0, 4}, {-1, 1});
+  EXPECT_EQ(chart.at(0, -1).x, 10);
+  EXPECT_EQ(chart.at(0, -1).y, 80);
+  EXPECT_EQ(chart.at(4, 1).x, 90);
+  EXPECT_EQ(chart.at(4, 1).y, 20);
+}
+
+TEST(Chart, equal_aspect_shows_a_square_as_a_square) {
+  Svg svg(400, 100, "test");
+  const Chart chart = Chart::equal_aspect(svg, {0, 0, 400, 100}, {2, 3}, {-1, 0});
+  const Point low = chart.at(2, -1), high = chart.at(3, 0);
+  EXPECT_NEAR(high.x - low.x, low.y - high.y, 1e-9);
+  EXPECT_NEAR((high.x + low.x) / 2, 200, 1e-9);
+}
+
+TEST(Chart, curve_is_interrupted_at_gaps_and_at_missing_values) {
+  Svg svg(100, 100, "test");
+  Chart chart(svg, {0, 0, 100, 100}, {0, 10}, {0, 1});
+  const auto lines = [](const std::string& text) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find("<polyline"); at != std::string::npos; at = text.find("<polyline", at + 1)) ++count;
+    return count;
+  };
+  chart.curve({0, 1, 2, 6, 7}, {0, 0, 0, 1, 1}, {"#000000"}, 2);
+  EXPECT_EQ(lines(svg.str()), 2U);
+  Svg other(100, 100, "test");
+  Chart(other, {0, 0, 100, 100}, {0, 10}, {0, 1}).curve({0, 1, 2, 3, 4}, {0, 0, kNan, 1, 1}, {"#000000"}, 2);
+  EXPECT_EQ(lines(other.str()), 2U);
+}
+
+TEST(Svg, leaves_out_what_is_not_finite) {
+  Svg svg(100, 100, "test");
+  svg.line({0, kNan}, {1, 1}, {"#000000"});
+  svg.circle({kNan, 0}, 3, "#000000");
+  svg.text({0, kNan}, "lost");
+  svg.rect({0, 0, kNan, 1}, "#000000");
+  svg.polyline({{0, 0}, {kNan, 1}, {2, 2}}, {"#000000"});
+  svg.dots({{kNan, 1}}, 3, "#000000");
+  EXPECT_THAT(svg.str(), Not(HasSubstr("nan")));
+  EXPECT_THAT(svg.str(), HasSubstr("points=\"0,0 2,2\""));
+  EXPECT_THAT(svg.str(), Not(HasSubstr("lost")));
+}
+
+TEST(Svg, escapes_text) {
+  Svg svg(100, 100, "a<b");
+  svg.text({0, 0}, "<script>\"&'");
+  EXPECT_THAT(svg.str(), HasSubstr("&lt;script&gt;&quot;&amp;&#39;"));
+  EXPECT_THAT(svg.str(), HasSubstr("aria-label=\"a&lt;b\""));
+}
+
+TEST(ErrorColour, runs_from_blue_to_red_and_clamps) {
+  EXPECT_EQ(error_colour(0), "#2350a0");
+  EXPECT_EQ(error_colour(1), "#c42026");
+  EXPECT_EQ(error_colour(-3), error_colour(0));
+  EXPECT_EQ(error_colour(7), error_colour(1));
+  EXPECT_EQ(error_colour(kNan), error_colour(1));
+  EXPECT_NE(error_colour(0.4), error_colour(0.6));
+}
+
+std::vector<unsigned char> bytes(const std::string& text) {
+  return {text.begin(), text.end()};
+}
+
+TEST(Base64, matches_rfc_4648) {
+  EXPECT_EQ(base64({}), "");
+  EXPECT_EQ(base64(bytes("f")), "Zg==");
+  EXPECT_EQ(base64(bytes("fo")), "Zm8=");
+  EXPECT_EQ(base64(bytes("foo")), "Zm9v");
+  EXPECT_EQ(base64(bytes("foobar")), "Zm9vYmFy");
+  EXPECT_EQ(base64({0xFF, 0xFE, 0xFD}), "//79");
+}
+
+TEST(JpegSize, is_read_from_the_frame_header) {
+  // Start of image, one comment segment of 4 bytes, baseline frame header of 640x480.
+  const std::vector<unsigned char> jpeg{0xFF, 0xD8, 0xFF, 0xFE, 0x00, 0x04, 'h',  'i',  0xFF, 0xC0, 0x00,
+                                        0x11, 0x08, 0x01, 0xE0, 0x02, 0x80, 0x03, 0x01, 0x22, 0x00};
+  EXPECT_EQ(jpeg_size(jpeg).width, 640);
+  EXPECT_EQ(jpeg_size(jpeg).height, 480);
+  for (std::size_t length = 0; length < 17; ++length) {
+    EXPECT_EQ(jpeg_size({jpeg.begin(), jpeg.begin() + static_cast<std::ptrdiff_t>(length)}).width, 0) << length;
+  }
+  const std::vector<unsigned char> huffman_first{0xFF, 0xD8, 0xFF, 0xC4, 0x00, 0x08, 9,    9,    9,
+                                                 9,    9,    9,    0xFF, 0xC0, 0x00, 0x11, 0x08, 0x01,
+                                                 0xE0, 0x02, 0x80, 0x03, 0x01, 0x22, 0x00};
+  EXPECT_EQ(jpeg_size(huffman_first).width, 640);
+  EXPECT_EQ(jpeg_size(bytes("this is no picture at all")).width, 0);
+}
+
+}  // namespace
+}  // namespace rtd::plot

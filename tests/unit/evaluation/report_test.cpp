@@ -1,0 +1,291 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/core/report/report.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "services/evaluation/core/report/comparison_html.hpp"
+#include "services/evaluation/core/report/report_html.hpp"
+#include "services/evaluation/core/report/report_json.hpp"
+#include "tests/unit/evaluation/fabricated_run.hpp"
+#include "tests/unit/evaluation/temporary_folder.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using eval::testing_support::moved;
+using eval::testing_support::read_text;
+using eval::testing_support::some_transform;
+using eval::testing_support::TemporaryFolder;
+using eval::testing_support::tum_text;
+using eval::testing_support::winding_path;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+using testing_support::fabricated_run;
+using testing_support::fabricated_sample;
+
+/// The fabricated run with files: ground truth, and a final trajectory that is too large by 10 %.
+class Report : public testing::Test {
+ protected:
+  Report() : record_(fabricated_run()) {
+    const eval::Trajectory truth = winding_path(100, 0.1);
+    record_.groundtruth_path = folder_.write("groundtruth.txt", tum_text(truth));
+    record_.trajectory_path = folder_.write("trajectory.txt", tum_text(moved(truth, some_transform(), 1.1)));
+    record_.samples = {fabricated_sample(3), fabricated_sample(50)};
+  }
+
+  nlohmann::ordered_json json() const { return report_json(record_, summarize_run(record_)); }
+  std::string page() const { return report_html(record_, summarize_run(record_)); }
+
+  TemporaryFolder folder_;
+  RunRecord record_;
+};
+
+TEST_F(Report, json_has_the_promised_keys_with_the_right_values) {
+  const auto report = json();
+  EXPECT_EQ(report["frames_in"], 100);
+  EXPECT_EQ(report["frames_tracked"], 94);
+  EXPECT_EQ(report["frames_dropped"], 1);
+  EXPECT_DOUBLE_EQ(report["coverage"], 0.94);
+  EXPECT_DOUBLE_EQ(report["frames_per_s"], 8.0);
+  EXPECT_EQ(report["cpu_s"]["slam"], 3.5);
+  EXPECT_EQ(report["peak_rss_mb"]["filter"], 80);
+  EXPECT_EQ(report["restarts"]["filter"], 1);
+  EXPECT_EQ(report["drops"]["camera.late"], 1);
+  EXPECT_EQ(report["source"], "synthetic:office");
+  EXPECT_EQ(report["pace"], "lockstep");
+  EXPECT_EQ(report["filter_mode"], "rtd");
+  EXPECT_EQ(report["detector"], "v5lite-s");
+  EXPECT_EQ(report["dds"], "fastdds");
+  EXPECT_EQ(report["events"][0], "filter restarted");
+  EXPECT_THAT(report["version"].get<std::string>(), testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+  EXPECT_EQ(report["features"]["removed_mean"], 30);
+  EXPECT_EQ(report["map"]["keyframes"], 7);
+}
+
+TEST_F(Report, latency_is_from_published_to_pose) {
+  const auto latency = json()["latency_ms"];
+  EXPECT_EQ(latency["count"], 94);                        // frames with pose only
+  EXPECT_NEAR(latency["p50"].get<double>(), 52.5, 1e-9);  // 1..100 ms without 41..45 and 61
+  EXPECT_NEAR(latency["p99"].get<double>(), 99.07, 1e-9);
+  EXPECT_NEAR(latency["max"].get<double>(), 100, 1e-9);
+}
+
+TEST_F(Report, stage_times_count_the_frames_in_which_the_stage_ran) {
+  for (FrameRecord& frame : record_.frames) {
+    if (frame.tracking.stage_ms[msg::kStageMapping] == 0) frame.tracking.stage_ms[msg::kStageMapping] = 0.0004F;
+  }
+  const auto stages = json()["stage_ms"];
+  EXPECT_EQ(stages["slam.mapping"]["count"], 9);  // every tenth frame, frame 60 is missing
+  EXPECT_EQ(stages["slam.mapping"]["p50"], 20);
+  EXPECT_EQ(stages["filter.extract"]["count"], 99);
+  EXPECT_EQ(stages["filter.extract"]["p99"], 11);
+  EXPECT_TRUE(stages["filter.masks"]["p50"].is_null());
+}
+
+TEST_F(Report, lost_spans_join_lost_and_missing_frames) {
+  const auto spans = json()["lost_spans"];
+  ASSERT_EQ(spans.size(), 2U);
+  EXPECT_EQ(spans[0]["first_seq"], 40);
+  EXPECT_EQ(spans[0]["last_seq"], 44);
+  EXPECT_EQ(spans[0]["frames"], 5);
+  EXPECT_NEAR(spans[0]["start_s"].get<double>(), 4.0, 1e-9);
+  EXPECT_EQ(spans[1]["first_seq"], 60);
+  EXPECT_EQ(spans[1]["frames"], 1);
+}
+
+TEST_F(Report, a_missing_frame_next_to_lost_ones_makes_one_span) {
+  record_.frames[60].tracking.state = msg::TrackingState::kLost;  // seq 61, right behind the missing 60
+  const auto spans = json()["lost_spans"];
+  ASSERT_EQ(spans.size(), 2U);
+  EXPECT_EQ(spans[1]["first_seq"], 60);
+  EXPECT_EQ(spans[1]["last_seq"], 61);
+}
+
+TEST_F(Report, final_and_published_trajectories_are_judged_apart) {
+  const auto report = json();
+  EXPECT_GT(report["ate_rmse_m"].get<double>(), 0.01);
+  EXPECT_LT(report["ate_online_rmse_m"].get<double>(), 1e-9);
+  EXPECT_GT(report["rpe_trans_rmse_m"].get<double>(), 0.001);
+  EXPECT_LT(report["rpe_rot_rmse_deg"].get<double>(), 1e-3);
+  EXPECT_EQ(report["evaluation"]["ate_m"]["count"], 100);
+}
+
+TEST_F(Report, without_ground_truth_errors_are_null_and_said_to_be_unknown) {
+  record_.groundtruth_path.clear();
+  const auto report = json();
+  for (const char* key : {"ate_rmse_m", "ate_online_rmse_m", "rpe_trans_rmse_m", "rpe_rot_rmse_deg", "evaluation"}) {
+    EXPECT_TRUE(report.contains(key) && report[key].is_null()) << key;
+  }
+  EXPECT_THAT(report["notes"], Contains("no ground truth"));
+  EXPECT_EQ(report["frames_tracked"], 94);
+  EXPECT_THAT(page(), AllOf(HasSubstr("no ground truth to compare with"), Not(HasSubstr("nan"))));
+}
+
+TEST_F(Report, unusable_files_become_notes) {
+  record_.groundtruth_path = folder_.write("bad.txt", "1 2 3\n");
+  record_.trajectory_path = folder_.file("gone.txt");
+  const auto report = json();
+  EXPECT_TRUE(report["ate_rmse_m"].is_null());
+  EXPECT_THAT(report["notes"].dump(), AllOf(HasSubstr("bad.txt:1"), HasSubstr("gone.txt: no such file")));
+}
+
+TEST_F(Report, ground_truth_of_another_time_is_a_note) {
+  eval::Trajectory other = winding_path(100, 0.1);
+  for (auto& pose : other) pose.stamp_ns += 900'000'000'000'000;
+  record_.groundtruth_path = folder_.write("other.txt", tum_text(other));
+  EXPECT_TRUE(json()["ate_rmse_m"].is_null());
+  EXPECT_THAT(json()["notes"].dump(), HasSubstr("no pose lies within 0.02 s"));
+}
+
+TEST_F(Report, events_come_first_when_the_run_went_badly) {
+  const auto events_before_trajectory = [&] { return page().find("<h2>Events") < page().find("<h2>Trajectory"); };
+  EXPECT_FALSE(events_before_trajectory());
+  record_.frames_in = 200;
+  EXPECT_TRUE(events_before_trajectory());
+}
+
+TEST_F(Report, page_is_self_contained) {
+  const std::string html = page();
+  EXPECT_THAT(html, Not(HasSubstr("http:")));
+  EXPECT_THAT(html, Not(HasSubstr("https:")));
+  EXPECT_THAT(html, Not(HasSubstr("<script")));
+  EXPECT_THAT(html, Not(HasSubstr("<link")));
+  const std::regex reference("(src|href)=\"(?!data:image/jpeg;base64,)");
+  EXPECT_FALSE(std::regex_search(html, reference));
+  EXPECT_THAT(html, HasSubstr("data:image/jpeg;base64,/9j/"));
+}
+
+TEST_F(Report, page_shows_every_section) {
+  const std::string html = page();
+  for (const char* text :
+       {"ATE RMSE", "94.00 %", "94 of 100, 1 dropped", "Trajectory against ground truth", "Error over time",
+        "Static and dynamic points", "Latency", "Stage times", "slam.mapping", "Sample frames",
+        "frame 50: 1 kept, 1 removed", "Processes", "peak memory", "camera.late: 1 frames",
+        "frames 40 to 44 without pose", "filter restarted", "synthetic:office"}) {
+    EXPECT_THAT(html, HasSubstr(text)) << text;
+  }
+}
+
+TEST_F(Report, sample_draws_kept_and_removed_points_where_the_camera_saw_them) {
+  const std::string html = page();
+  EXPECT_TRUE(std::regex_search(html, std::regex("M10 12h0\"[^>]*stroke=\"#35e07a\"")));
+  EXPECT_TRUE(std::regex_search(html, std::regex("M30 32h0\"[^>]*stroke=\"#f5222d\"")));
+  EXPECT_FALSE(std::regex_search(html, std::regex("M30 32h0\"[^>]*stroke=\"#35e07a\"")));
+}
+
+TEST_F(Report, text_from_outside_is_escaped) {
+  record_.source = "tum:<b>&\"x\"";
+  record_.events = {"<img src=x>"};
+  EXPECT_THAT(page(), AllOf(HasSubstr("tum:&lt;b&gt;&amp;&quot;x&quot;"), Not(HasSubstr("<img"))));
+}
+
+TEST_F(Report, broken_sample_pictures_are_left_out) {
+  record_.samples[0].jpeg = {1, 2, 3};
+  const std::string html = page();
+  EXPECT_THAT(html, Not(HasSubstr("frame 3: ")));
+  EXPECT_THAT(html, HasSubstr("frame 50: "));
+}
+
+TEST_F(Report, numbers_that_are_not_finite_do_not_spoil_anything) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  record_.frames[5].tracking.stage_ms[msg::kStagePose] = std::numeric_limits<float>::infinity();
+  record_.frames[6].filter_stage_ms[msg::kStageExtract] = nan;
+  record_.frames[7].tracking.T_world_camera.translation_m[0] = nan;
+  record_.frames[8].tracking.T_world_camera.rotation_xyzw = {0, 0, 0, 0};
+  record_.frames[9].tracking.finished_ns = 0;
+  record_.frames[10].tracking.published_ns = 0;
+  record_.processes["slam"].peak_rss_mb = nan;
+  record_.duration_s = nan;
+  record_.samples[0].features[0].u_raw_px = nan;
+  const auto report = json();
+  EXPECT_EQ(report["stage_ms"]["slam.pose"]["max"], 2);
+  EXPECT_EQ(report["stage_ms"]["filter.extract"]["count"], 98);
+  EXPECT_EQ(report["latency_ms"]["count"], 92);
+  EXPECT_LT(report["ate_online_rmse_m"].get<double>(), 1e-9);
+  EXPECT_TRUE(report["peak_rss_mb"]["slam"].is_null());
+  EXPECT_TRUE(report["duration_s"].is_null());
+  EXPECT_THAT(page(), AllOf(Not(HasSubstr("nan")), Not(HasSubstr("inf\""))));
+}
+
+TEST_F(Report, files_are_written_and_parse) {
+  const RunSummary summary = write_report(record_, folder_.path());
+  EXPECT_EQ(summary.frames_tracked, 94U);
+  EXPECT_EQ(nlohmann::json::parse(read_text(folder_.file("report.json")))["frames_in"], 100);
+  EXPECT_THAT(read_text(folder_.file("report.html")), testing::EndsWith("</html>\n"));
+}
+
+TEST_F(Report, folder_that_does_not_exist_is_named) {
+  try {
+    write_report(record_, folder_.path() / "nowhere");
+    FAIL() << "no error";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("nowhere/report.json"));
+  }
+}
+
+TEST(EmptyRun, still_gives_a_valid_report) {
+  TemporaryFolder folder;
+  write_report(RunRecord{}, folder.path());
+  const auto report = nlohmann::json::parse(read_text(folder.file("report.json")));
+  EXPECT_EQ(report["frames_in"], 0);
+  EXPECT_TRUE(report["coverage"].is_null());
+  EXPECT_TRUE(report["latency_ms"]["p50"].is_null());
+  EXPECT_TRUE(report["source"].is_null());
+  EXPECT_THAT(read_text(folder.file("report.html")), AllOf(HasSubstr("unknown"), Not(HasSubstr("nan"))));
+}
+
+TEST(EmptyRun, invalid_utf8_in_texts_does_not_stop_the_report) {
+  TemporaryFolder folder;
+  RunRecord record;
+  record.source = "tum:/\xff\xfe";
+  write_report(record, folder.path());
+  EXPECT_TRUE(nlohmann::json::parse(read_text(folder.file("report.json"))).contains("source"));
+}
+
+TEST_F(Report, long_runs_give_small_pages) {
+  const FrameRecord last = record_.frames.back();
+  for (int i = 1; i <= 50'000; ++i) {
+    record_.frames.push_back(last);
+    record_.frames.back().tracking.seq += static_cast<std::uint64_t>(i);
+    record_.frames.back().tracking.stamp_ns += i * 100'000'000LL;
+  }
+  record_.samples.clear();
+  EXPECT_LT(page().size(), 400'000U);
+}
+
+TEST_F(Report, comparison_names_both_runs_their_errors_and_the_ratio) {
+  RunRecord good = record_;
+  good.trajectory_path = folder_.write("good.txt", tum_text(moved(winding_path(100, 0.1), some_transform(), 1.01)));
+  record_.filter_mode = "off";
+  const std::string html = comparison_html({{"filter off", record_}, {"filter rtd", good}});
+  const std::string off = std::to_string(summarize_run(record_).final_trajectory->ate.error_m.rmse * 100).substr(0, 4);
+  EXPECT_THAT(html,
+              AllOf(HasSubstr("ATE RMSE, filter off"), HasSubstr("ATE RMSE, filter rtd"), HasSubstr(off + " cm"),
+                    HasSubstr("10 times less than filter off"), HasSubstr("ground truth"), Not(HasSubstr("nan"))));
+  EXPECT_THAT(html, AllOf(Not(HasSubstr("http:")), Not(HasSubstr("https:")), Not(HasSubstr("<script"))));
+}
+
+TEST_F(Report, comparison_tells_a_worse_and_an_equal_run_apart) {
+  RunRecord worse = record_;
+  worse.trajectory_path = folder_.write("worse.txt", tum_text(moved(winding_path(100, 0.1), some_transform(), 1.2)));
+  EXPECT_THAT(comparison_html({{"a", record_}, {"b", worse}}), HasSubstr("2 times more than a"));
+  EXPECT_THAT(comparison_html({{"a", record_}, {"b", record_}}), HasSubstr("as much as a"));
+}
+
+TEST_F(Report, comparison_without_ground_truth_or_runs_is_still_a_page) {
+  record_.groundtruth_path.clear();
+  EXPECT_THAT(comparison_html({{"a", record_}, {"b", RunRecord{}}}),
+              AllOf(HasSubstr("unknown"), Not(HasSubstr("nan"))));
+  EXPECT_THAT(comparison_html({}), HasSubstr("no runs to compare"));
+}
+
+}  // namespace
+}  // namespace rtd::launcher
