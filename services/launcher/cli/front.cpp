@@ -14,16 +14,16 @@
 #include "services/evaluation/commands/ablate_command.hpp"
 #include "services/evaluation/commands/eval_command.hpp"
 #include "services/evaluation/detector/eval_detector_command.hpp"
-#include "services/launcher/convert/convert_command.hpp"
+#include "services/recorder/convert/convert_command.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
-#include "services/launcher/keystore/keystore_command.hpp"
-#include "services/launcher/map/map_command.hpp"
+#include "services/keystore/keystore_command.hpp"
+#include "services/slam/map_tool/map_command.hpp"
 #include "services/launcher/process/executable.hpp"
-#include "services/launcher/recording/diff_command.hpp"
-#include "services/launcher/recording/info_command.hpp"
+#include "services/recorder/inspect/diff_command.hpp"
+#include "services/recorder/inspect/info_command.hpp"
 #include "services/launcher/run/run_command.hpp"
-#include "services/launcher/topics/topics_command.hpp"
+#include "services/topics/topics_command.hpp"
 
 namespace rtd::launcher {
 namespace {

@@ -12,7 +12,7 @@
 #include "common/mcap/indexed_reader.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/config.hpp"
-#include "services/launcher/recording/recording_file.hpp"
+#include "services/recorder/inspect/recording_file.hpp"
 
 namespace rtd::launcher {
 namespace {

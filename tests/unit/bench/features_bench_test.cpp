@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/bench/features_bench.hpp"
+#include "tests/bench/rtd_bench/features_bench.hpp"
 
 #include <gmock/gmock.h>
 

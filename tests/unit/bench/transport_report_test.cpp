@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "services/bench/transport/transport_bench.hpp"
+#include "tests/bench/rtd_bench/transport/transport_bench.hpp"
 
 namespace rtd::bench {
 namespace {

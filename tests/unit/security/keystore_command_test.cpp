@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/keystore/keystore_command.hpp"
+#include "services/keystore/keystore_command.hpp"
 
 #include <gmock/gmock.h>
 

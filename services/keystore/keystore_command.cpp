@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/keystore/keystore_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <ostream>
+
+#include "common/bus/topic_roles.hpp"
+#include "common/bus/topics.hpp"
+#include "common/security/keystore.hpp"
+#include "common/security/keystore_location.hpp"
+#include "common/security/security_error.hpp"
+#include "common/service/exit_code.hpp"
+#include "services/keystore/keystore_info.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+constexpr std::int64_t kDay_s = 24 * 3600;
+constexpr std::int64_t kClockMargin_s = 3600;  // the clocks of two hosts may differ
+constexpr int kCaDays = 3650;
+
+security::Validity from_now(std::int64_t now_s, int days) {
+  return {now_s - kClockMargin_s, now_s + days * kDay_s};
+}
+
+security::DomainRange domains_of(const KeystoreRequest& request) {
+  if (request.domain < 0) return {};
+  return {request.domain, request.domain};
+}
+
+std::string folder_of(const KeystoreRequest& request) {
+  return request.folder.empty() ? security::default_keystore() : request.folder;
+}
+
+security::EnclaveRequest enclave_of(const std::string& role) {
+  const bus::RoleTopics topics = bus::topics_of(role);
+  return {"/rtd/" + role, {topics.writes, topics.reads}};
+}
+
+void create(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out) {
+  const std::string folder = folder_of(request);
+  security::KeystoreOptions options{
+      from_now(now_s, request.days), from_now(now_s, std::max(kCaDays, request.days)), {domains_of(request), {}}};
+  if (!request.encrypt_frames) options.governance.access_only = {bus::topics::kFrame.name};
+  security::create_keystore(folder, options);
+  std::vector<security::EnclaveRequest> enclaves;
+  for (const std::string& role : bus::roles()) enclaves.push_back(enclave_of(role));
+  security::add_enclaves(folder, enclaves, options.validity, options.governance.domains);
+  out << fmt::format(
+      "{}: CA, governance and {} enclaves, until {}\nUse it with --secure --keystore {}; other hosts need enclaves/ "
+      "and public/, not private/.\n",
+      folder, enclaves.size(), security::to_utc(options.validity.not_after_s).substr(0, 10), folder);
+}
+
+void add(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out) {
+  security::EnclaveRequest enclave;
+  if (!request.like.empty()) enclave = enclave_of(request.like);
+  enclave.name = request.enclaves.front();
+  auto& [publish, subscribe] = enclave.topics;
+  publish.insert(publish.end(), request.publish.begin(), request.publish.end());
+  subscribe.insert(subscribe.end(), request.subscribe.begin(), request.subscribe.end());
+  if (publish.empty() && subscribe.empty())
+    throw security::SecurityError("enclave " + enclave.name +
+                                  ": name its topics with --like, --publish or --subscribe");
+  security::add_enclaves(folder_of(request), {enclave}, from_now(now_s, request.days), domains_of(request));
+  out << fmt::format("{}: may publish {}; may subscribe {}\n", enclave.name, fmt::join(publish, " "),
+                     fmt::join(subscribe, " "));
+}
+
+void renew(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out) {
+  const std::string folder = folder_of(request);
+  const std::vector<std::string> enclaves =
+      request.enclaves.empty() ? security::enclaves_in({folder}) : request.enclaves;
+  const security::Validity validity = from_now(now_s, request.days);
+  for (const std::string& name : enclaves)
+    security::renew_enclave(folder, name, validity, {request.publish, request.subscribe});
+  out << fmt::format("{}: {} until {}\n", folder, fmt::join(enclaves, " "),
+                     security::to_utc(validity.not_after_s).substr(0, 10));
+}
+
+CLI::App* add_action(CLI::App& command, KeystoreRequest& request, KeystoreRequest::Action action,
+                     const std::string& name, const std::string& help) {
+  CLI::App* const sub = command.add_subcommand(name, help);
+  sub->add_option("dir", request.folder,
+                  "Keystore (default: RTD_KEYSTORE, ROS_SECURITY_KEYSTORE, ~/.config/rtd/keystore)");
+  sub->callback([&request, action] { request.action = action; });
+  return sub;
+}
+
+void add_days(CLI::App& sub, KeystoreRequest& request) {
+  sub.add_option("--days", request.days, "Days that certificates and permissions are valid")
+      ->check(CLI::Range(1, 36500))
+      ->capture_default_str();
+}
+
+void add_domain(CLI::App& sub, KeystoreRequest& request) {
+  sub.add_option("--domain", request.domain, "Only this DDS domain (default: all)")->check(CLI::Range(0, 230));
+}
+
+void add_topics(CLI::App& sub, KeystoreRequest& request) {
+  sub.add_option("--publish", request.publish, "Further DDS topics or patterns to publish, e.g. 'rt/my/*'");
+  sub.add_option("--subscribe", request.subscribe, "Further DDS topics or patterns to subscribe");
+}
+
+}  // namespace
+
+CLI::App* add_keystore_command(CLI::App& parent, KeystoreRequest& request) {
+  using Action = KeystoreRequest::Action;
+  CLI::App* const command =
+      parent.add_subcommand("keystore", "Keys and permissions for --secure (docs/security.md), laid out as by sros2");
+  command->require_subcommand(1);
+  CLI::App* const create =
+      add_action(*command, request, Action::kCreate, "create", "A CA and an enclave for each service");
+  add_days(*create, request);
+  add_domain(*create, request);
+  create->add_flag("--encrypt-frames", request.encrypt_frames,
+                   "Encrypt raw frames too: they then leave shared memory (docs/security.md tells the cost)");
+  CLI::App* const add = add_action(*command, request, Action::kAdd, "add", "One more enclave");
+  add->get_option("dir")->required();
+  add->add_option("enclave", request.enclaves, "Its name, e.g. /rtd/observer2")->required()->expected(1);
+  add->add_option("--like", request.like, "With the topics of this role")->check(CLI::IsMember(bus::roles()));
+  add_topics(*add, request);
+  add_days(*add, request);
+  add_domain(*add, request);
+  CLI::App* const renew =
+      add_action(*command, request, Action::kRenew, "renew", "New keys and dates; topics and domains stay");
+  renew->add_option("enclaves", request.enclaves, "Which (default: all)");
+  add_topics(*renew, request);
+  add_days(*renew, request);
+  add_action(*command, request, Action::kInfo, "info", "Who may do what until when, and what cannot be used");
+  command->footer("Exit code: 0 done, 1 info found an enclave that cannot be used, 2 it cannot be done");
+  return command;
+}
+
+int run_keystore(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out, std::ostream& err) {
+  using Action = KeystoreRequest::Action;
+  try {
+    if (request.action == Action::kInfo)
+      return print_keystore_info(folder_of(request), now_s, out) ? service::kOk : service::kRunFailed;
+    if (request.action == Action::kCreate) create(request, now_s, out);
+    if (request.action == Action::kAdd) add(request, now_s, out);
+    if (request.action == Action::kRenew) renew(request, now_s, out);
+    return service::kOk;
+  } catch (const security::SecurityError& error) {
+    err << "rtd keystore: " << error.what() << '\n';
+    return service::kUsageOrConfig;
+  }
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/recorder/convert/convert_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "common/service/exit_code.hpp"
+#include "common/service/progress.hpp"
+#include "services/camera/core/mcap_export.hpp"
+#include "services/camera/core/source_factory.hpp"
+#include "services/camera/core/source_uri.hpp"
+#include "services/launcher/run/run_setup.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using camera::SkipReason;
+using camera::SourceError;
+
+enum class Format { kTum, kMcap };
+
+struct Destination {
+  Format format{};
+  std::string path;
+};
+
+Destination parse_destination(const std::string& text) {
+  for (const auto& [scheme, format] : {std::pair{"tum:", Format::kTum}, std::pair{"mcap:", Format::kMcap}}) {
+    if (text.starts_with(scheme)) return {format, text.substr(std::string_view(scheme).size())};
+  }
+  if (text.ends_with(".mcap")) return {Format::kMcap, text};
+  if (text.starts_with("bag:") || text.ends_with(".bag")) {
+    throw SourceError("destination '" + text + "': bags are read, not written; write FILE.mcap or tum:DIR");
+  }
+  return {Format::kTum, text};
+}
+
+/// What is missing in the result although the source once had it.
+std::uint64_t lost(const camera::SourceCounters& counters) {
+  return counters.of(SkipReason::kColorUnreadable) + counters.of(SkipReason::kDepthUnreadable) +
+         counters.of(SkipReason::kDepthNot16Bit) + counters.of(SkipReason::kSizeMismatch) +
+         counters.of(SkipReason::kDamagedRecord) + counters.of(SkipReason::kMalformedLine);
+}
+
+std::uint64_t write(camera::FrameSource& source, const ConvertOptions& options, std::ostream& err) {
+  const Destination destination = parse_destination(options.destination);
+  const std::uint64_t expected = source.info().frames;
+  const std::uint64_t total = options.frames == 0 ? expected : std::min(options.frames, expected);
+  service::Progress progress(err, "frames", total);
+  const camera::OnFrame on_frame = [&progress](std::uint64_t frames) { progress.reach(frames); };
+  if (destination.format == Format::kTum) {
+    return camera::export_tum(source, destination.path, options.frames, on_frame);
+  }
+  const auto compression = mcap::compression_of(options.compression == "none" ? "" : options.compression);
+  return camera::export_mcap(source, destination.path, compression.value(), options.frames, on_frame);
+}
+
+nlohmann::json to_json(const ConvertOptions& options, std::uint64_t frames, const camera::SourceCounters& counters) {
+  nlohmann::json left_out = nlohmann::json::object();
+  for (std::size_t i = 0; i < camera::kSkipReasons; ++i) {
+    if (counters.skipped[i] > 0) left_out[to_string(static_cast<SkipReason>(i))] = counters.skipped[i];
+  }
+  return {{"source", options.source},
+          {"destination", options.destination},
+          {"frames", frames},
+          {"left_out", left_out},
+          {"lost", lost(counters)}};
+}
+
+void tell(const ConvertOptions& options, std::uint64_t frames, camera::FrameSource& source, std::ostream& out,
+          std::ostream& err) {
+  constexpr std::size_t kMostLines = 10;
+  const std::vector<camera::SkippedInput> skipped = source.take_skipped();
+  for (std::size_t i = 0; i < std::min(kMostLines, skipped.size()); ++i) {
+    err << "rtd convert: left out (" << to_string(skipped[i].reason) << "): " << skipped[i].detail << '\n';
+  }
+  if (skipped.size() > kMostLines) err << "rtd convert: ... and " << skipped.size() - kMostLines << " more\n";
+  if (options.json) {
+    out << to_json(options, frames, source.counters()).dump(2) << '\n';
+  } else {
+    out << frames << " frames written to " << options.destination << ", " << source.counters().skipped_total()
+        << " pieces of the source left out\n";
+  }
+}
+
+}  // namespace
+
+void add_convert_command(CLI::App& app, ConvertOptions& options) {
+  CLI::App* command = app.add_subcommand("convert", "A recording as another: bag, MCAP or TUM folder to TUM or MCAP");
+  command->add_option("source", options.source, "bag:FILE, mcap:FILE, tum:FOLDER or any other source; FILE.bag")
+      ->required();
+  command->add_option("destination", options.destination, "New tum:FOLDER or FILE.mcap; nothing is overwritten")
+      ->required();
+  command->add_option("--frames", options.frames, "At most so many frames, 0 = all");
+  command->add_option("--compress", options.compression, "Chunks of an MCAP file: none, lz4, zstd")
+      ->check(CLI::IsMember({"none", "lz4", "zstd"}))
+      ->capture_default_str();
+  command->add_flag("--json", options.json, "Print the summary as JSON");
+  command->footer(
+      "Exit codes: 0 done, 1 failed on the way, 2 nothing was written, 3 done but part of the source was damaged");
+}
+
+int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& err) {
+  try {
+    const auto source = camera::make_source(complete_uri(options.source));
+    const std::uint64_t frames = write(*source, options, err);
+    tell(options, frames, *source, out, err);
+    return lost(source->counters()) > 0 ? service::kPartialLoss : service::kOk;
+  } catch (const SourceError& error) {
+    err << "rtd convert: " << error.what() << '\n';
+    return service::kUsageOrConfig;
+  } catch (const std::exception& error) {
+    err << "rtd convert: " << error.what() << '\n';
+    return service::kRunFailed;
+  }
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/recorder/inspect/diff_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <ostream>
+
+#include "common/service/exit_code.hpp"
+#include "common/service/progress.hpp"
+#include "services/recorder/inspect/recording_diff.hpp"
+#include "services/recorder/inspect/report_text.hpp"
+#include "services/recorder/inspect/recording_file.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+recording::Contents read(const mcap::FileSource& source, const std::string& path, std::ostream& err) {
+  service::Progress progress(err, "reading " + path, source.size());
+  return recording::contents_of(source, [&](std::uint64_t bytes) { progress.reach(bytes); });
+}
+
+void warn(const recording::Contents& contents, const std::string& path, std::ostream& err) {
+  constexpr std::size_t kShownProblems = 5;
+  if (contents.data_lost)
+    err << "rtd diff: " << path << " is damaged, compared is what can be read:"
+        << recording::problems_text(contents.problems, contents.problems.size(), kShownProblems);
+}
+
+template <class Diff>
+void print(const Diff& diff, bool json, std::ostream& out) {
+  if (json) {
+    out << recording::to_json(diff).dump(2) << "\n";
+  } else {
+    out << recording::to_text(diff);
+  }
+}
+
+int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream& err) {
+  const mcap::FileSource a = open_recording(request.a), b = open_recording(request.b);
+  const recording::Contents in_a = read(a, request.a, err), in_b = read(b, request.b, err);
+  const auto ignored = [&](const char* what) { return std::ranges::count(request.ignore, what) > 0; };
+  recording::RecordingDiff diff =
+      recording::diff(in_a, in_b, {.ignore_run_fields = ignored("run"), .ignore_stamps = ignored("stamps")});
+  recording::explain(diff, a, b);
+  warn(in_a, request.a, err);
+  warn(in_b, request.b, err);
+  print(diff, request.json, out);
+  if (!diff.equal()) return service::kRunFailed;
+  return in_a.data_lost || in_b.data_lost ? service::kPartialLoss : service::kOk;
+}
+
+int diff_trajectories(const DiffRequest& request, std::ostream& out) {
+  const recording::TrajectoryDiff diff =
+      recording::diff(eval::read_tum_trajectory(request.a), eval::read_tum_trajectory(request.b), request.tolerance);
+  print(diff, request.json, out);
+  return diff.equal() ? service::kOk : service::kRunFailed;
+}
+
+}  // namespace
+
+CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
+  CLI::App* command = parent.add_subcommand("diff", "Compare two recordings (MCAP) or two trajectories (TUM format)");
+  command->add_option("a", request.a, "Recording or trajectory")->required();
+  command->add_option("b", request.b, "Another of the same kind")->required();
+  command->add_flag("--json", request.json, "Print JSON instead of text");
+  command
+      ->add_option("--ignore", request.ignore,
+                   "Recordings: stamps (publish times), run (fields that say when or by which process a message was "
+                   "made: published_ns, finished_ns, stage_ms, source_id)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"stamps", "run"}));
+  command->add_option("--stamp-tolerance", request.tolerance.stamp_s, "Trajectories: stamps of a pair are closer [s]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--tolerance-m", request.tolerance.translation_m, "Trajectories: not more is equal [m]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--tolerance-deg", request.tolerance.rotation_deg, "Trajectories: not more is equal [deg]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->footer("Exit code: 0 equal, 1 different, 2 a file cannot be used, 3 equal as far as damage lets it be seen");
+  return command;
+}
+
+int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
+  try {
+    const bool a = looks_like_recording(request.a), b = looks_like_recording(request.b);
+    if (a != b)
+      throw RecordingFileError((a ? request.a : request.b) + " is a recording, " + (a ? request.b : request.a) +
+                               " is not: compare two of a kind");
+    return a ? diff_recordings(request, out, err) : diff_trajectories(request, out);
+  } catch (const RecordingFileError& error) {
+    err << "rtd diff: " << error.what() << "\n";
+  } catch (const eval::TrajectoryError& error) {
+    err << "rtd diff: " << error.what() << "\n";
+  }
+  return service::kUsageOrConfig;
+}
+
+}  // namespace rtd::launcher

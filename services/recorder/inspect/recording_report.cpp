@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/recorder/inspect/recording_report.hpp"
+
+#include <algorithm>
+
+#include "common/mcap/decode.hpp"
+#include "common/mcap/encode.hpp"
+#include "common/mcap/indexed_reader.hpp"
+#include "common/mcap/stream_reader.hpp"
+
+namespace rtd::recording {
+namespace {
+
+using mcap::ChannelId;
+using mcap::Timestamp;
+
+/// Collects what becomes a report.
+struct Collected {
+  struct PerChannel {
+    std::vector<Timestamp> times_ns;
+    std::uint64_t payload_bytes = 0;
+    SequenceCount sequences;
+  };
+  std::map<ChannelId, PerChannel> channels;
+};
+
+void take(RecordingReport& report, const mcap::Problems& problems) {
+  report.problems = problems.listed();
+  report.problem_count = problems.total();
+  report.data_lost = problems.data_lost();
+}
+
+/// Everything about the channels, where the definitions and the times are known.
+void add_channels(RecordingReport& report, Collected& collected, const std::map<ChannelId, mcap::Channel>& channels,
+                  const std::map<mcap::SchemaId, mcap::Schema>& schemas) {
+  for (const auto& [id, channel] : channels) {
+    ChannelReport entry{channel, {}, {}, false, {}, {}, {}};
+    if (const auto schema = schemas.find(channel.schema_id); schema != schemas.end()) {
+      entry.type = schema->second.name;
+      entry.schema_encoding = schema->second.encoding;
+      entry.schema_text = !schema->second.data.empty();
+    }
+    Collected::PerChannel& heard = collected.channels[id];
+    if (report.read_all) {
+      entry.payload_bytes = heard.payload_bytes;
+      entry.sequences = heard.sequences;
+    }
+    entry.timing = timing_of(std::move(heard.times_ns));
+    report.messages += entry.timing.messages;
+    report.channels.push_back(std::move(entry));
+  }
+  std::ranges::stable_sort(report.channels, {}, [](const ChannelReport& entry) { return entry.channel.topic; });
+  for (const ChannelReport& entry : report.channels) {
+    if (entry.timing.messages == 0) continue;
+    report.start_ns = report.end_ns == 0 ? entry.timing.first_ns : std::min(report.start_ns, entry.timing.first_ns);
+    report.end_ns = std::max(report.end_ns, entry.timing.last_ns);
+  }
+}
+
+void add_chunk(RecordingReport& report, const std::string& compression, std::uint64_t bytes, std::uint64_t uncompressed,
+               bool has_crc) {
+  ChunkReport& chunks = report.chunks[compression];
+  ++chunks.chunks;
+  chunks.bytes += bytes;
+  chunks.uncompressed_bytes += uncompressed;
+  chunks.without_crc += has_crc ? 0 : 1;
+}
+
+/// The times of the messages of one chunk, from the indexes behind it; false where these cannot be read.
+bool read_index(const mcap::ByteSource& source, const mcap::ChunkIndex& chunk, Collected& collected) {
+  const std::uint64_t offset = chunk.chunk_start_offset + chunk.chunk_length;
+  if (offset > source.size() || chunk.message_index_length > source.size() - offset) return false;
+  std::vector<std::byte> bytes(chunk.message_index_length);
+  if (source.read(offset, bytes) != bytes.size()) return false;
+  mcap::RecordCursor records(bytes);
+  while (const std::optional<mcap::InnerRecord> record = records.next()) {
+    const auto index = mcap::decode<mcap::MessageIndex>(record->content);
+    if (record->opcode != mcap::Opcode::kMessageIndex || !index) return false;
+    std::vector<Timestamp>& times_ns = collected.channels[index->channel_id].times_ns;
+    for (const auto& [log_time, position] : index->records) times_ns.push_back(log_time);
+  }
+  return !records.cut();
+}
+
+/// False when the indexes do not tell of every message: then the file has to be read.
+bool report_from_summary(const mcap::ByteSource& source, RecordingReport& report) {
+  mcap::IndexedReader reader(source);
+  const mcap::Summary& summary = reader.summary();
+  if (summary.scanned || !summary.statistics) return false;
+  Collected collected;
+  for (const mcap::ChunkIndex& chunk : summary.chunk_indexes) {
+    if (!read_index(source, chunk, collected)) return false;
+    add_chunk(report, chunk.compression, chunk.compressed_size, chunk.uncompressed_size, true);
+  }
+  add_channels(report, collected, summary.channels, summary.schemas);
+  if (report.messages != summary.statistics->message_count) return false;
+  report.has_summary = true;
+  report.header = summary.header;
+  report.attachments = summary.attachment_indexes;
+  for (const mcap::MetadataIndex& index : summary.metadata_indexes)
+    if (const std::optional<mcap::Metadata> metadata = reader.metadata(index)) report.metadata.push_back(*metadata);
+  take(report, reader.problems());
+  return true;
+}
+
+/// One record of a file that is read from the start.
+void add_record(RecordingReport& report, Collected& collected, const mcap::Record& record, std::uint64_t offset) {
+  if (const auto* message = std::get_if<mcap::Message>(&record)) {
+    Collected::PerChannel& channel = collected.channels[message->channel_id];
+    channel.times_ns.push_back(message->log_time);
+    channel.payload_bytes += message->data.size();
+    channel.sequences.add(message->sequence);
+  } else if (const auto* chunk = std::get_if<mcap::Chunk>(&record)) {
+    add_chunk(report, chunk->compression, chunk->records.size(), chunk->uncompressed_size,
+              chunk->uncompressed_crc != 0 || chunk->uncompressed_size == 0);
+  } else if (const auto* header = std::get_if<mcap::Header>(&record)) {
+    report.header = *header;
+  } else if (const auto* metadata = std::get_if<mcap::Metadata>(&record)) {
+    report.metadata.push_back(*metadata);
+  } else if (const auto* attachment = std::get_if<mcap::Attachment>(&record)) {
+    report.attachments.push_back({offset, 0, attachment->log_time, attachment->create_time, attachment->data.size(),
+                                  attachment->name, attachment->media_type});
+  }
+}
+
+void report_from_everything(const mcap::ByteSource& source, const ReportOptions& options, RecordingReport& report) {
+  mcap::Problems ignored(0);  // the reader below finds the same
+  const std::optional<mcap::Summary> summary = mcap::read_summary(source, {}, ignored);
+  mcap::StreamReader reader(source);
+  if (summary) reader.assume(summary->schemas, summary->channels);
+  report.has_summary = summary.has_value();
+  report.read_all = true;
+  Collected collected;
+  while (const mcap::Record* record = reader.next()) {
+    add_record(report, collected, *record, reader.location().record.offset);
+    if (options.on_progress) options.on_progress(reader.bytes_read());
+  }
+  add_channels(report, collected, reader.channels(), reader.schemas());
+  take(report, reader.problems());
+}
+
+bool is_damage(const mcap::Problem& problem, bool being_written) {
+  switch (problem.kind) {
+    case mcap::ProblemKind::kUnknownRecord:
+    case mcap::ProblemKind::kNoSummary:
+      return problem.data_lost;
+    case mcap::ProblemKind::kTruncated:
+      return !being_written;
+    default:
+      return true;
+  }
+}
+
+}  // namespace
+
+std::map<std::string, std::string> RecordingReport::losses() const {
+  constexpr char kLosses[] = "rtd:losses";
+  const auto found = std::ranges::find(metadata, kLosses, &mcap::Metadata::name);
+  return found == metadata.end() ? std::map<std::string, std::string>{} : found->metadata;
+}
+
+bool RecordingReport::damaged() const {
+  return (data_lost && !being_written) ||
+         std::ranges::any_of(problems, [this](const mcap::Problem& p) { return is_damage(p, being_written); });
+}
+
+RecordingReport report_on(const mcap::ByteSource& source, const ReportOptions& options) {
+  RecordingReport report;
+  report.file_bytes = source.size();
+  if (!options.check && source.size() > options.small_file_bytes && report_from_summary(source, report)) return report;
+  report = {};
+  report.file_bytes = source.size();
+  report_from_everything(source, options, report);
+  return report;
+}
+
+}  // namespace rtd::recording

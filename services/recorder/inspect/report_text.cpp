@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/recorder/inspect/report_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "services/recorder/inspect/units_text.hpp"
+
+namespace rtd::recording {
+namespace {
+
+constexpr std::size_t kShownProblems = 10;
+
+std::string head_row(const char* name, const std::string& text) {
+  return text.empty() ? "" : fmt::format("{:<12} {}\n", name, text);
+}
+
+std::string time_row(const RecordingReport& report) {
+  if (report.messages == 0) return head_row("time", "no messages");
+  return head_row("time",
+                  fmt::format("{} for {}", time_text(report.start_ns), seconds_text(report.end_ns - report.start_ns)));
+}
+
+std::string chunk_rows(const RecordingReport& report) {
+  std::string text;
+  for (const auto& [compression, chunks] : report.chunks) {
+    const double ratio =
+        static_cast<double>(chunks.bytes) / static_cast<double>(std::max<std::uint64_t>(1, chunks.uncompressed_bytes));
+    text += head_row(
+        "chunks", fmt::format("{} {}, {}{}", chunks.chunks, compression.empty() ? "not compressed" : compression,
+                              bytes_text(chunks.bytes),
+                              compression.empty() ? ""
+                                                  : fmt::format(" of {} ({:.0f} %)",
+                                                                bytes_text(chunks.uncompressed_bytes), 100 * ratio)));
+  }
+  return text;
+}
+
+std::string summary_row(const RecordingReport& report) {
+  if (report.being_written) return head_row("summary", "not yet: the file is being written");
+  return head_row("summary", report.has_summary ? "there" : "missing or unusable: the file was read from the start");
+}
+
+std::string metadata_rows(const RecordingReport& report) {
+  std::string text;
+  for (const mcap::Metadata& metadata : report.metadata) {
+    if (metadata.metadata == report.losses()) continue;  // has rows of its own
+    std::string values;
+    for (const auto& [key, value] : metadata.metadata)
+      values += fmt::format("{}{}={}", values.empty() ? "" : ", ", key, value);
+    constexpr std::size_t kLongest = 200;
+    if (values.size() > kLongest) values = values.substr(0, kLongest) + "... (--json has all)";
+    text += head_row("metadata", metadata.name + ": " + values);
+  }
+  for (const mcap::AttachmentIndex& attachment : report.attachments)
+    text += head_row("attachment", fmt::format("{} ({}), {}", attachment.name, attachment.media_type,
+                                               bytes_text(attachment.data_size)));
+  return text;
+}
+
+/// Losses that the recorder knows of.
+std::string loss_rows(const RecordingReport& report) {
+  std::string text;
+  for (const auto& [topic, lost] : report.losses()) {
+    if (topic == "total") continue;
+    text += head_row("lost", topic + ": " + lost);
+  }
+  if (text.empty() && !report.losses().empty()) text = head_row("lost", "nothing, says the recorder");
+  return text;
+}
+
+std::string missing_text(const ChannelReport& channel) {
+  if (!channel.sequences || !channel.sequences->numbered()) return "-";
+  const std::optional<std::uint64_t> missing = channel.sequences->missing();
+  return missing ? std::to_string(*missing) : "-";
+}
+
+std::string channel_row(const ChannelReport& channel, std::size_t topic_width, std::size_t type_width) {
+  const Timing& timing = channel.timing;
+  return fmt::format("{:<{}} {:<{}} {:>8} {:>9.2f} {:>10.1f} {:>10.1f} {:>5} {:>6} {:>9}\n", channel.channel.topic,
+                     topic_width, channel.type.empty() ? "(no schema)" : channel.type, type_width, timing.messages,
+                     timing.rate_hz, static_cast<double>(timing.median_period_ns) * 1e-6,
+                     static_cast<double>(timing.largest_gap_ns) * 1e-6, timing.gaps, missing_text(channel),
+                     channel.payload_bytes ? bytes_text(*channel.payload_bytes) : "-");
+}
+
+std::string channel_table(const RecordingReport& report) {
+  if (report.channels.empty()) return "";
+  std::size_t topic_width = 5, type_width = 11;
+  for (const ChannelReport& channel : report.channels) {
+    topic_width = std::max(topic_width, channel.channel.topic.size());
+    type_width = std::max(type_width, channel.type.size());
+  }
+  std::string text =
+      fmt::format("\n{:<{}} {:<{}} {:>8} {:>9} {:>10} {:>10} {:>5} {:>6} {:>9}\n", "topic", topic_width, "type",
+                  type_width, "messages", "rate Hz", "median ms", "longest ms", "gaps", "lost", "size");
+  for (const ChannelReport& channel : report.channels) text += channel_row(channel, topic_width, type_width);
+  return text +
+         fmt::format("gaps: periods above {} medians; lost: numbers missing in the sequence, - where several wrote{}\n",
+                     kGapPeriods, report.read_all ? "" : " (--check counts them)");
+}
+
+}  // namespace
+
+std::string checksum_text(const RecordingReport& report) {
+  if (!report.read_all) return "those of the summary are right; --check reads the rest";
+  std::uint64_t chunks = 0, without = 0;
+  for (const auto& [compression, of_one] : report.chunks) {
+    chunks += of_one.chunks;
+    without += of_one.without_crc;
+  }
+  const auto wrong = std::ranges::count(report.problems, mcap::ProblemKind::kCrcMismatch, &mcap::Problem::kind);
+  if (wrong > 0) return fmt::format("{} WRONG, see below", wrong);
+  return fmt::format("all right, {} chunks{}", chunks, without > 0 ? fmt::format(", {} of them without", without) : "");
+}
+
+std::string problems_text(const std::vector<mcap::Problem>& problems, std::uint64_t count, std::size_t most) {
+  if (problems.empty()) return "";
+  std::string text = fmt::format("\n{} problem{}:\n", count, count == 1 ? "" : "s");
+  for (std::size_t i = 0; i < std::min(problems.size(), most); ++i) text += "  " + mcap::to_string(problems[i]) + "\n";
+  if (problems.size() > most) text += fmt::format("  ... and more (--json lists {})\n", problems.size());
+  return text;
+}
+
+std::string to_text(const RecordingReport& report, const std::string& name) {
+  const std::string profile = report.header.profile.empty() ? "" : ", profile " + report.header.profile;
+  const std::string library = report.header.library.empty() ? "" : ", written by " + report.header.library;
+  std::string text = head_row("file", fmt::format("{}, {}{}{}", name, bytes_text(report.file_bytes), profile, library));
+  text += time_row(report);
+  text += head_row("messages", fmt::format("{} on {} topics", report.messages, report.channels.size()));
+  text += chunk_rows(report) + summary_row(report) + head_row("checksums", checksum_text(report));
+  return text + loss_rows(report) + metadata_rows(report) + channel_table(report) +
+         problems_text(report.problems, report.problem_count, kShownProblems);
+}
+
+}  // namespace rtd::recording

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/topics/core/topic_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "common/ros2/message_json.hpp"
+#include "common/ros2/names.hpp"
+#include "common/ros2/type_hash.hpp"
+#include "services/recorder/inspect/units_text.hpp"
+
+namespace rtd::topics {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using bus::RawQos;
+using recording::bytes_text;
+
+bool latched(const bus::TopicWriter& writer) {
+  return writer.qos.durability != RawQos::Durability::kVolatile;
+}
+
+/// "reliable", "best effort, latched", or "mixed" where writers differ.
+std::string qos_text(const TopicRow& row) {
+  const auto text = [](const bus::TopicWriter& writer) {
+    return std::string(writer.qos.reliable ? "reliable" : "best effort") + (latched(writer) ? ", latched" : "");
+  };
+  const std::string first = text(row.writers.front());
+  const bool same =
+      std::all_of(row.writers.begin(), row.writers.end(), [&](const auto& w) { return text(w) == first; });
+  return same ? first : "mixed";
+}
+
+struct Widths {
+  std::size_t topic = 5, type = 4;
+  explicit Widths(const std::vector<TopicRow>& rows) {
+    for (const TopicRow& row : rows) {
+      topic = std::max(topic, ros2::ros_topic(row.topic.name).size());
+      type = std::max(type, ros2::ros_type(row.topic.type).size());
+    }
+  }
+};
+
+/// At the measured rate.
+std::string per_second(const Rate& rate) {
+  if (rate.messages < 2) return "-";
+  return bytes_text(
+      static_cast<std::uint64_t>(rate.hz * static_cast<double>(rate.bytes) / static_cast<double>(rate.messages)));
+}
+
+Json names_json(const TopicRow& row) {
+  return {{"topic", ros2::ros_topic(row.topic.name)},
+          {"dds_topic", row.topic.name},
+          {"type", ros2::ros_type(row.topic.type)},
+          {"dds_type", row.topic.type}};
+}
+
+Json writer_json(const bus::TopicWriter& writer) {
+  const auto time = [](std::int64_t ns) { return ns == bus::kUnlimitedNs ? Json() : Json(ns); };
+  const std::string hash = ros2::hash_in(writer.user_data);
+  return {{"id", bus::to_string(writer.id)},
+          {"reliable", writer.qos.reliable},
+          {"latched", latched(writer)},
+          {"deadline_ns", time(writer.qos.deadline_ns)},
+          {"lifespan_ns", time(writer.qos.lifespan_ns)},
+          {"liveliness_lease_ns", time(writer.qos.liveliness_lease_ns)},
+          {"shared_memory", writer.shared_memory},
+          {"type_hash", hash.empty() ? Json() : Json(hash)}};
+}
+
+}  // namespace
+
+std::vector<TopicRow> rows_of(const std::vector<bus::TopicWriter>& writers) {
+  std::map<std::pair<std::string, std::string>, TopicRow> rows;
+  for (const bus::TopicWriter& writer : writers) {
+    TopicRow& row = rows[{ros2::ros_topic(writer.topic.name), writer.topic.type}];
+    row.topic = writer.topic;
+    row.writers.push_back(writer);
+  }
+  std::vector<TopicRow> sorted;
+  for (auto& [name, row] : rows) sorted.push_back(std::move(row));
+  return sorted;
+}
+
+std::string list_text(const std::vector<TopicRow>& rows) {
+  const Widths width(rows);
+  std::string text = fmt::format("{:<{}}  {:<{}}  writers  offers\n", "topic", width.topic, "type", width.type);
+  bool unknown = false;
+  for (const TopicRow& row : rows) {
+    const bool known = ros2::can_read(row.topic.type);
+    unknown = unknown || !known;
+    text +=
+        fmt::format("{:<{}}  {:<{}}  {:>7}  {}{}\n", ros2::ros_topic(row.topic.name), width.topic,
+                    ros2::ros_type(row.topic.type), width.type, row.writers.size(), qos_text(row), known ? "" : "  *");
+  }
+  return text + (unknown ? "* a type that `rtd topics echo` cannot read\n" : "");
+}
+
+Json list_json(const std::vector<TopicRow>& rows) {
+  Json list = Json::array();
+  for (const TopicRow& row : rows) {
+    Json one = names_json(row);
+    one["readable"] = ros2::can_read(row.topic.type);
+    one["writers"] = Json::array();
+    for (const bus::TopicWriter& writer : row.writers) one["writers"].push_back(writer_json(writer));
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+std::string rate_text(const std::vector<TopicRow>& rows, double seconds) {
+  const Widths width(rows);
+  constexpr const char* kRow = "{:<{}}  {:>8}  {:>7}  {:>7}  {:>7}  {:>8}  {:>4}  {:>8}  {:>8}\n";
+  std::string text = fmt::format(fmt::runtime(kRow), "topic", width.topic, "rate Hz", "+- ms", "min ms", "max ms",
+                                 "messages", "lost", "size", "per s");
+  for (const TopicRow& row : rows) {
+    const Rate& rate = row.rate;
+    const auto number = [&](double value) {
+      return rate.messages < 2 ? std::string("-") : fmt::format("{:.2f}", value);
+    };
+    text += fmt::format(fmt::runtime(kRow), ros2::ros_topic(row.topic.name), width.topic, number(rate.hz),
+                        number(rate.deviation_ms), number(rate.shortest_ms), number(rate.longest_ms), rate.messages,
+                        rate.lost, rate.messages > 0 ? bytes_text(rate.bytes / rate.messages) : "-", per_second(rate));
+  }
+  return text + fmt::format("over {:.1f} s\n", seconds);
+}
+
+Json rate_json(const std::vector<TopicRow>& rows, double seconds) {
+  Json list = Json::array();
+  for (const TopicRow& row : rows) {
+    const Rate& rate = row.rate;
+    Json one = names_json(row);
+    one.update(Json{{"messages", rate.messages},
+                    {"lost", rate.lost},
+                    {"bytes", rate.bytes},
+                    {"rate_hz", rate.hz},
+                    {"mean_ms", rate.mean_ms},
+                    {"deviation_ms", rate.deviation_ms},
+                    {"min_ms", rate.shortest_ms},
+                    {"max_ms", rate.longest_ms}});
+    list.push_back(std::move(one));
+  }
+  return {{"seconds", seconds}, {"topics", std::move(list)}};
+}
+
+}  // namespace rtd::topics

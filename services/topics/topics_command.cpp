@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/topics/topics_command.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <ostream>
+#include <set>
+
+#include "common/service/config.hpp"
+#include "common/service/exit_code.hpp"
+#include "services/topics/core/topic_report.hpp"
+#include "services/topics/topics_session.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kMaxSeconds = 1e6;
+
+CLI::App* add_action(CLI::App& command, TopicsRequest& request, const char* name, const char* description) {
+  CLI::App* action = command.add_subcommand(name, description);
+  action->callback([&request, name] { request.action = name; });
+  service::add_bus_options(*action, request.bus);
+  action->add_flag("--json", request.json, "Print JSON instead of text");
+  return action;
+}
+
+}  // namespace
+
+void add_topics_command(CLI::App& parent, TopicsRequest& request) {
+  CLI::App* command = parent.add_subcommand("topics", "List the topics of a DDS domain, measure rates, print messages");
+  command->require_subcommand(1);
+  add_action(*command, request, "list", "Topics, types and what their writers offer")
+      ->add_option("--wait", request.wait_s, "Longest look, s; ends when nobody new has come for 2 s")
+      ->check(CLI::Range(0.1, kMaxSeconds))
+      ->capture_default_str();
+  CLI::App* hz = add_action(*command, request, "hz", "Rate, jitter, size and losses of topics");
+  hz->add_option("topics", request.topics, "Topics by ROS or DDS name (default: all)");
+  hz->add_option("--duration", request.duration_s, "Measure so long, s (default: 5)")
+      ->check(CLI::Range(0.1, kMaxSeconds));
+  hz->add_option("--count", request.count, "End when each topic had so many messages");
+  CLI::App* echo = add_action(*command, request, "echo", "Messages of a topic, field by field");
+  echo->add_option("topic", request.topics, "Topic by ROS or DDS name")->required()->expected(1);
+  echo->add_flag("--once", request.once, "End after one message");
+  echo->add_option("--count", request.count, "End after so many messages");
+  echo->add_option("--duration", request.duration_s, "End after so long, s (default: at Ctrl-C)")
+      ->check(CLI::Range(0.0, kMaxSeconds));
+  echo->add_option("--max-array", request.max_array, "Values shown of an array, 0 = all")->capture_default_str();
+}
+
+/// Until nobody new has come for a while: participants announce themselves twice a second, and each then tells of its
+/// writers by and by. Who finds nobody looks as long as allowed.
+void look_around(double longest_s, TopicsSession& session) {
+  constexpr double kSettledS = 2;
+  std::set<bus::WriterId> known;
+  double last_new_s = 0;
+  while (session.seconds() < longest_s && session.goes_on(50ms)) {
+    for (const bus::TopicWriter& writer : session.writers())
+      if (known.insert(writer.id).second) last_new_s = session.seconds();
+    if (!known.empty() && session.seconds() - last_new_s > kSettledS) return;
+  }
+}
+
+int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err) {
+  look_around(request.wait_s, session);
+  const std::vector<topics::TopicRow> rows = topics::rows_of(session.writers());
+  if (request.json) {
+    out << topics::list_json(rows).dump(2) << '\n';
+  } else if (!rows.empty()) {
+    out << topics::list_text(rows);
+  }
+  if (!rows.empty()) return service::kOk;
+  err << fmt::format("rtd topics: no topic within {:.1f} s in {}\n", session.seconds(), session.empty_place());
+  return service::kRunFailed;
+}
+
+int run_topics(const TopicsRequest& request, std::ostream& out, std::ostream& err) {
+  try {
+    TopicsSession session(request.bus);
+    if (request.action == "list") return list_topics(request, session, out, err);
+    if (request.action == "hz") return measure_topics(request, session, out, err);
+    return echo_topic(request, session, out, err);
+  } catch (const service::ConfigError& error) {
+    err << "rtd topics: " << error.what() << '\n';
+  } catch (const bus::BusError& error) {
+    err << "rtd topics: " << error.what() << '\n';
+  }
+  return service::kUsageOrConfig;
+}
+
+}  // namespace rtd::launcher

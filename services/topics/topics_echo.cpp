@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <ostream>
+
+#include "common/bus/topic_listener.hpp"
+#include "common/concurrency/bounded_queue.hpp"
+#include "common/ros2/message_json.hpp"
+#include "common/ros2/names.hpp"
+#include "common/service/exit_code.hpp"
+#include "services/topics/core/message_text.hpp"
+#include "services/topics/topics_session.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using namespace std::chrono_literals;
+using Queue = concurrency::BoundedQueue<bus::RawSample>;
+
+constexpr std::size_t kQueue = 256;
+constexpr int kDepth = 64;
+constexpr double kHintS = 3;  // without a writer: say so
+
+/// Prints samples of one topic.
+class Printer {
+ public:
+  Printer(const TopicsRequest& request, std::ostream& out, std::ostream& err)
+      : request_(request), out_(out), err_(err) {}
+
+  void print(const bus::RawTopic& topic, const bus::RawSample& sample) try {
+    const auto bytes = reinterpret_cast<const std::uint8_t*>(sample.cdr().data());
+    const auto message = ros2::message_json(topic.type, {bytes, sample.cdr().size()}, request_.max_array);
+    if (request_.json) {
+      const nlohmann::ordered_json line{{"topic", ros2::ros_topic(topic.name)}, {"type", ros2::ros_type(topic.type)},
+                                        {"sequence", sample.sequence},          {"sent_ns", sample.source_ns},
+                                        {"received_ns", sample.received_ns},    {"message", message}};
+      out_ << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << std::endl;
+    } else {
+      out_ << topics::message_text(message) << std::flush;
+    }
+    ++printed_;
+  } catch (const ros::WireError& error) {
+    ++unreadable_;
+    err_ << fmt::format("rtd topics: message {} of {} is no {}: {}\n", sample.sequence, ros2::ros_topic(topic.name),
+                        ros2::ros_type(topic.type), error.what());
+  }
+  std::uint64_t printed() const { return printed_; }
+  std::uint64_t unreadable() const { return unreadable_; }
+
+ private:
+  const TopicsRequest& request_;
+  std::ostream &out_, &err_;
+  std::uint64_t printed_ = 0, unreadable_ = 0;
+};
+
+std::optional<bus::TopicWriter> writer_called(const TopicsSession& session, const std::string& name) {
+  for (const bus::TopicWriter& writer : session.writers()) {
+    if (is_called(writer.topic, name)) return writer;
+  }
+  return std::nullopt;
+}
+
+bool in_time(const TopicsRequest& request, const TopicsSession& session) {
+  return request.duration_s <= 0 || session.seconds() < request.duration_s;
+}
+
+/// The topic's first writer; empty when none came until the end.
+std::optional<bus::TopicWriter> wait_for_writer(const TopicsRequest& request, TopicsSession& session,
+                                                std::ostream& err) {
+  bool hinted = false;
+  while (in_time(request, session) && session.goes_on(20ms)) {
+    if (auto writer = writer_called(session, request.topics.front())) return writer;
+    if (!hinted && session.seconds() > kHintS) {
+      hinted = true;
+      err << "rtd topics: " << session.nobody_publishes(request.topics.front()) << "; waiting\n";
+    }
+  }
+  if (!hinted) err << "rtd topics: " << session.nobody_publishes(request.topics.front()) << '\n';
+  return std::nullopt;
+}
+
+void print_until_end(const TopicsRequest& request, TopicsSession& session, const bus::RawTopic& topic, Queue& queue,
+                     Printer& printer) {
+  const std::uint64_t most = request.once ? 1 : request.count;
+  while (in_time(request, session) && session.goes_on(0ms)) {
+    if (most > 0 && printer.printed() >= most) return;
+    if (const auto sample = queue.pop_for(50ms)) printer.print(topic, *sample);
+  }
+}
+
+}  // namespace
+
+int echo_topic(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err) {
+  const std::optional<bus::TopicWriter> first = wait_for_writer(request, session, err);
+  if (!first) return service::kRunFailed;
+  const bus::RawTopic topic = first->topic;
+  if (!ros2::can_read(topic.type)) {
+    err << fmt::format(
+        "rtd topics: {} bears type {}, whose fields are not known here; `rtd topics hz` and `rtd record` take any "
+        "type\n",
+        request.topics.front(), ros2::ros_type(topic.type));
+    return service::kUsageOrConfig;
+  }
+  Queue queue(kQueue, concurrency::Overflow::kDropOldest);
+  bus::RawHandlers handlers;
+  handlers.on_sample = [&queue](bus::RawSample sample) { queue.push(std::move(sample)); };
+  bus::TopicListener listener(session.bus(), std::move(handlers), true, kDepth);
+  std::string refused;  // of the watcher's thread until watch(nullptr)
+  session.bus().watch([&](const bus::TopicWriter& writer, bus::WriterChange change) {
+    if (change != bus::WriterChange::kAppeared || writer.own || writer.topic != topic) return;
+    try {
+      listener.add(writer);
+    } catch (const bus::BusError& error) {
+      refused = error.what();
+    }
+  });
+  Printer printer(request, out, err);
+  print_until_end(request, session, topic, queue, printer);
+  session.bus().watch(nullptr);
+  if (queue.dropped() > 0) {
+    err << fmt::format("rtd topics: {} messages left out, they came faster than they were printed\n", queue.dropped());
+  }
+  if (!refused.empty()) err << "rtd topics: " << refused << '\n';
+  if (printer.unreadable() > 0) return service::kPartialLoss;
+  if (printer.printed() > 0) return service::kOk;
+  err << fmt::format("rtd topics: {} has a publisher, but no message came within {:.1f} s\n", request.topics.front(),
+                     session.seconds());
+  return service::kRunFailed;
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <ostream>
+
+#include "common/bus/topic_listener.hpp"
+#include "common/service/exit_code.hpp"
+#include "services/topics/core/topic_report.hpp"
+#include "services/topics/topics_session.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kDepth = 64;
+constexpr double kUsualDurationS = 5;
+
+/// Listens to topics as their writers appear and measures each.
+class Meters {
+ public:
+  Meters(TopicsSession& session, const std::vector<std::string>& wanted) : session_(session), wanted_(wanted) {
+    session_.bus().watch([this](const bus::TopicWriter& writer, bus::WriterChange change) {
+      if (change == bus::WriterChange::kAppeared && !writer.own && wants(writer.topic)) listen(writer);
+    });
+  }
+  ~Meters() { stop(); }
+
+  void stop() {
+    session_.bus().watch(nullptr);
+    const std::lock_guard lock(mutex_);
+    for (auto& [key, meter] : meters_) meter.listener.reset();
+  }
+  /// Every topic that is heard, and each of those asked for by name, has had so many messages.
+  bool all_reached(std::uint64_t count) {
+    const std::lock_guard lock(mutex_);
+    const bool complete = std::all_of(wanted_.begin(), wanted_.end(), [this](const std::string& name) {
+      return std::any_of(meters_.begin(), meters_.end(), [&](const auto& one) { return is_called(one.first, name); });
+    });
+    return complete && !meters_.empty() && std::all_of(meters_.begin(), meters_.end(), [count](auto& one) {
+             const std::lock_guard meter_lock(one.second.mutex);
+             return one.second.rate.messages() >= count;
+           });
+  }
+  std::vector<topics::TopicRow> rows() {
+    std::vector<bus::TopicWriter> writers = session_.writers();
+    std::erase_if(writers, [this](const bus::TopicWriter& writer) { return !wants(writer.topic); });
+    std::vector<topics::TopicRow> rows = topics::rows_of(writers);
+    const std::lock_guard lock(mutex_);
+    for (topics::TopicRow& row : rows) {
+      const auto meter = meters_.find(row.topic);
+      if (meter != meters_.end()) row.rate = meter->second.rate.rate();
+    }
+    return rows;
+  }
+
+ private:
+  struct ByName {
+    bool operator()(const bus::RawTopic& a, const bus::RawTopic& b) const {
+      return std::tie(a.name, a.type) < std::tie(b.name, b.type);
+    }
+  };
+  struct Meter {
+    std::mutex mutex;
+    topics::RateMeter rate;
+    std::unique_ptr<bus::TopicListener> listener;
+  };
+
+  bool wants(const bus::RawTopic& topic) const {
+    return wanted_.empty() ||
+           std::any_of(wanted_.begin(), wanted_.end(), [&](const std::string& name) { return is_called(topic, name); });
+  }
+  void listen(const bus::TopicWriter& writer) try {
+    const std::lock_guard lock(mutex_);
+    Meter& meter = meters_[writer.topic];
+    if (meter.listener == nullptr) {
+      bus::RawHandlers handlers;
+      handlers.on_sample = [&meter](const bus::RawSample& sample) {
+        const std::lock_guard meter_lock(meter.mutex);
+        meter.rate.add(sample.received_ns, sample.cdr().size());
+      };
+      handlers.on_lost = [&meter](const bus::RawLoss& loss) {
+        const std::lock_guard meter_lock(meter.mutex);
+        meter.rate.add_lost(loss.count);
+      };
+      meter.listener = std::make_unique<bus::TopicListener>(session_.bus(), std::move(handlers), true, kDepth);
+    }
+    meter.listener->add(writer);
+  } catch (const bus::BusError&) {
+    // a second type on one name: its row stays empty
+  }
+
+  TopicsSession& session_;
+  const std::vector<std::string>& wanted_;
+  std::mutex mutex_;
+  std::map<bus::RawTopic, Meter, ByName> meters_;
+};
+
+}  // namespace
+
+int measure_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err) {
+  const double duration_s = request.duration_s > 0 ? request.duration_s : kUsualDurationS;
+  err << fmt::format("measuring for {:g} s, Ctrl-C ends it\n", duration_s);
+  Meters meters(session, request.topics);
+  while (session.seconds() < duration_s && session.goes_on(50ms)) {
+    if (request.count > 0 && meters.all_reached(request.count)) break;
+  }
+  const double seconds = session.seconds();
+  std::vector<topics::TopicRow> rows = meters.rows();
+  meters.stop();
+  if (request.json) {
+    out << topics::rate_json(rows, seconds).dump(2) << '\n';
+  } else if (!rows.empty()) {
+    out << topics::rate_text(rows, seconds);
+  }
+  int code = rows.empty() ? service::kRunFailed : service::kOk;
+  if (rows.empty() && request.topics.empty()) {
+    err << fmt::format("rtd topics: no topic within {:.1f} s in {}\n", seconds, session.empty_place());
+  }
+  for (const std::string& name : request.topics) {
+    if (std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return is_called(row.topic, name); })) continue;
+    err << "rtd topics: " << session.nobody_publishes(name) << '\n';
+    code = service::kRunFailed;
+  }
+  return code;
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/topics/topics_session.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <poll.h>
+
+#include <set>
+
+#include "common/bus/host/port_check.hpp"
+#include "common/ros2/names.hpp"
+#include "common/service/bus_config.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+bus::BusOptions options_of(const service::BusArguments& arguments) {
+  service::BusConfig config;
+  service::ConfigBinder binder;
+  binder.section("bus", config);
+  service::load_config(binder, arguments, {});
+  return service::to_bus_options(config, "rtd-topics");
+}
+
+}  // namespace
+
+bool is_called(const bus::RawTopic& topic, const std::string& name) {
+  return topic.name == name || ros2::ros_topic(topic.name) == name || ros2::ros_topic(topic.name) == '/' + name;
+}
+
+TopicsSession::TopicsSession(const service::BusArguments& arguments)
+    : options_(options_of(arguments)), bus_(bus::connect_raw(options_)) {}
+
+bool TopicsSession::goes_on(std::chrono::milliseconds moment) {
+  pollfd descriptor{signals_.fd(), POLLIN, 0};
+  if (!interrupted_ && poll(&descriptor, 1, static_cast<int>(moment.count())) > 0) interrupted_ = signals_.take() > 0;
+  return !interrupted_;
+}
+
+double TopicsSession::seconds() const {
+  return std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+std::vector<bus::TopicWriter> TopicsSession::writers() const {
+  std::vector<bus::TopicWriter> writers = bus_->writers();
+  std::erase_if(writers, [](const bus::TopicWriter& writer) { return writer.own; });
+  return writers;
+}
+
+std::string TopicsSession::place() const {
+  return fmt::format(
+      "DDS domain {} ({}, {})", options_.domain, bus_->vendor(),
+      options_.network.loopback_only ? "this host only; --profile lan: also the network" : "this host and the network");
+}
+
+std::string TopicsSession::empty_place() const {
+  return place() + bus::other_domains_hint(options_.domain);
+}
+
+std::string TopicsSession::nobody_publishes(const std::string& topic) const {
+  std::set<std::string> names;
+  for (const bus::TopicWriter& writer : writers()) names.insert(ros2::ros_topic(writer.topic.name));
+  const std::string found = names.empty() ? "nothing is published" + bus::other_domains_hint(options_.domain)
+                                          : fmt::format("published are {}", fmt::join(names, ", "));
+  return fmt::format("nobody publishes {} in {}; {}", topic, place(), found);
+}
+
+}  // namespace rtd::launcher

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/bus/raw_bus.hpp"
+#include "services/launcher/process/interrupt_signals.hpp"
+#include "services/topics/topics_command.hpp"
+
+namespace rtd::launcher {
+
+/// Whether a topic is meant by this name, its ROS or its DDS name.
+bool is_called(const bus::RawTopic& topic, const std::string& name);
+
+/// A look at a domain from a terminal, until it is interrupted.
+class TopicsSession {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// Throws ConfigError and BusError.
+  explicit TopicsSession(const service::BusArguments& arguments);
+
+  bus::RawBus& bus() { return *bus_; }
+  /// Waits a moment for a signal; false from the first one on.
+  bool goes_on(std::chrono::milliseconds moment);
+  double seconds() const;  ///< since the start
+  /// Writers of others.
+  std::vector<bus::TopicWriter> writers() const;
+  /// "DDS domain 0 (fastdds, this host only; --profile lan: also the network)".
+  std::string place() const;
+  /// The same for somebody who finds nothing there: also in which domains of this host DDS runs.
+  std::string empty_place() const;
+  /// Who publishes what, for somebody who asked for a topic that nobody publishes.
+  std::string nobody_publishes(const std::string& topic) const;
+
+ private:
+  InterruptSignals signals_;  // first: before any thread
+  bus::BusOptions options_;
+  Clock::time_point start_ = Clock::now();
+  bool interrupted_ = false;
+  std::shared_ptr<bus::RawBus> bus_;
+};
+
+int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err);
+int measure_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err);
+int echo_topic(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err);
+
+}  // namespace rtd::launcher

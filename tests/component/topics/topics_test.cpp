@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// `rtd topics` in a domain where somebody publishes.
+#include "services/topics/topics_command.hpp"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "common/bus/raw_bus.hpp"
+#include "common/bus/topics.hpp"
+#include "common/service/exit_code.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class Topics : public ::testing::TestWithParam<std::string> {
+ protected:
+  Topics() {
+    static std::uint32_t domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
+    options_.vendor = GetParam();
+    options_.domain = domain++;
+    request_.bus.vendor = options_.vendor;
+    request_.bus.domain = static_cast<int>(options_.domain);
+  }
+  ~Topics() override {
+    ended_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+
+  /// A pose 50 times a second, until the end of the test, and what is latched.
+  void publish() {
+    bus_ = bus::connect(options_);
+    poses_ = bus_->writer(bus::topics::kPose);
+    infos_ = bus_->writer(bus::topics::kCameraInfo);
+    msg::CameraInfo info;
+    info.distortion_model = "plumb_bob";
+    infos_.write(info);
+    thread_ = std::thread([this] {
+      msg::PoseStamped pose;
+      pose.header.frame_id = "map";
+      for (; !ended_; ++pose.header.stamp.sec) {
+        poses_.write(pose);
+        std::this_thread::sleep_for(20ms);
+      }
+    });
+  }
+  int run(const std::string& action, const std::vector<std::string>& topics = {}) {
+    request_.action = action;
+    request_.topics = topics;
+    out_.str({});
+    err_.str({});
+    return run_topics(request_, out_, err_);
+  }
+
+  bus::BusOptions options_;
+  TopicsRequest request_;
+  std::ostringstream out_, err_;
+
+ private:
+  std::shared_ptr<bus::Bus> bus_;
+  bus::Writer<msg::PoseStamped> poses_;
+  bus::Writer<msg::CameraInfo> infos_;
+  std::atomic<bool> ended_{false};
+  std::thread thread_;
+};
+
+TEST_P(Topics, are_listed_with_their_types) {
+  publish();
+  request_.wait_s = 20;
+  ASSERT_EQ(run("list"), service::kOk) << err_.str();
+  EXPECT_THAT(out_.str(), AllOf(StartsWith("topic"), HasSubstr("/camera/color/camera_info  sensor_msgs/msg/CameraInfo"),
+                                HasSubstr("reliable, latched"), HasSubstr("/slam/pose")));
+  request_.json = true;
+  ASSERT_EQ(run("list"), service::kOk);
+  const auto list = nlohmann::json::parse(out_.str());
+  ASSERT_EQ(list.size(), 2U);
+  EXPECT_EQ(list[1]["dds_type"], "geometry_msgs::msg::dds_::PoseStamped_");
+  EXPECT_THAT(list[1]["writers"][0]["type_hash"].get<std::string>(), StartsWith("RIHS01_10f3786d"));
+}
+
+TEST_P(Topics, of_an_empty_domain_are_none_and_the_message_says_where) {
+  request_.wait_s = 0.3;
+  EXPECT_EQ(run("list"), service::kRunFailed);
+  EXPECT_THAT(err_.str(),
+              AllOf(HasSubstr("no topic within 0.3"), HasSubstr("DDS domain " + std::to_string(options_.domain)),
+                    HasSubstr(options_.vendor), HasSubstr("this host only")));
+  EXPECT_EQ(out_.str(), "");
+  request_.duration_s = 0.3;
+  EXPECT_EQ(run("hz"), service::kRunFailed);
+  EXPECT_EQ(run("echo", {"/slam/pose"}), service::kRunFailed);
+  EXPECT_THAT(err_.str(), AllOf(HasSubstr("nobody publishes /slam/pose"), HasSubstr("nothing is published")));
+}
+
+TEST_P(Topics, of_another_domain_are_hinted_at) {
+  publish();
+  request_.bus.domain = static_cast<int>(options_.domain + 1);
+  request_.wait_s = 0.3;
+  EXPECT_EQ(run("list"), service::kRunFailed);
+  EXPECT_THAT(err_.str(),
+              ContainsRegex("on this host DDS runs in domain ([0-9]+, )*" + std::to_string(options_.domain) + "[,:]"));
+}
+
+TEST_P(Topics, whose_writers_come_one_after_the_other_are_all_listed) {
+  constexpr int kWriters = 3;
+  const auto bus = bus::connect_raw(options_);
+  std::vector<std::unique_ptr<bus::RawWriter>> writers;
+  std::thread latecomers([&] {
+    for (int i = 0; i < kWriters; ++i) {
+      writers.push_back(bus->writer({"rt/late" + std::to_string(i), "other_msgs::msg::dds_::Thing_"}, {}));
+      std::this_thread::sleep_for(1300ms);
+    }
+  });
+  request_.wait_s = 30;
+  EXPECT_EQ(run("list"), service::kOk) << err_.str();
+  latecomers.join();
+  for (int i = 0; i < kWriters; ++i) EXPECT_THAT(out_.str(), HasSubstr("/late" + std::to_string(i)));
+}
+
+TEST_P(Topics, have_a_rate) {
+  publish();
+  request_.duration_s = 30;
+  request_.count = 20;
+  request_.json = true;
+  ASSERT_EQ(run("hz", {"/slam/pose"}), service::kOk) << err_.str();
+  const auto report = nlohmann::json::parse(out_.str());
+  ASSERT_EQ(report["topics"].size(), 1U);
+  EXPECT_GE(report["topics"][0]["messages"], 20);
+  EXPECT_GT(report["topics"][0]["rate_hz"], 5.0);
+  EXPECT_LT(report["topics"][0]["rate_hz"], 60.0);
+  EXPECT_EQ(report["topics"][0]["lost"], 0);
+}
+
+TEST_P(Topics, are_printed_field_by_field) {
+  publish();
+  request_.duration_s = 20;
+  request_.once = true;
+  ASSERT_EQ(run("echo", {"/camera/color/camera_info"}), service::kOk) << err_.str();
+  EXPECT_THAT(out_.str(),
+              AllOf(HasSubstr("distortion_model: \"plumb_bob\"\n"), HasSubstr("k: [0, 0, 0, 0, 0, 0, 0, 0, 0]\n")));
+  request_.once = false;
+  request_.count = 2;
+  request_.json = true;
+  ASSERT_EQ(run("echo", {"rt/slam/pose"}), service::kOk) << err_.str();
+  std::istringstream lines(out_.str());
+  std::string line;
+  std::vector<int> stamps;
+  while (std::getline(lines, line)) {
+    const auto message = nlohmann::json::parse(line);
+    EXPECT_EQ(message["topic"], "/slam/pose");
+    stamps.push_back(message["message"]["header"]["stamp"]["sec"]);
+  }
+  ASSERT_EQ(stamps.size(), 2U);
+  EXPECT_EQ(stamps[1], stamps[0] + 1);
+}
+
+TEST_P(Topics, of_unknown_types_are_listed_and_measured_but_not_printed) {
+  const auto bus = bus::connect_raw(options_);
+  const auto writer = bus->writer({"rt/thing", "other_msgs::msg::dds_::Thing_"}, {});
+  request_.wait_s = 20;
+  request_.duration_s = 20;
+  ASSERT_EQ(run("list"), service::kOk) << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr("/thing  other_msgs/msg/Thing        1  reliable  *"));
+  EXPECT_EQ(run("echo", {"/thing"}), service::kUsageOrConfig);
+  EXPECT_THAT(err_.str(), HasSubstr("other_msgs/msg/Thing, whose fields are not known here"));
+}
+
+std::vector<std::string> networked_vendors() {
+  std::vector<std::string> vendors = bus::available_vendors();
+  std::erase(vendors, "inprocess");
+  return vendors;
+}
+
+INSTANTIATE_TEST_SUITE_P(EachVendor, Topics, ::testing::ValuesIn(networked_vendors()),
+                         [](const auto& vendor) { return vendor.param; });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Topics);
+
+}  // namespace
+}  // namespace rtd::launcher

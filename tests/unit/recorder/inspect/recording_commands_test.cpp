@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "services/recorder/inspect/diff_command.hpp"
+#include "services/recorder/inspect/info_command.hpp"
+#include "tests/unit/recorder/inspect/sample_recording.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using recording::recording_of;
+using recording::regular_messages;
+using testing::HasSubstr;
+
+class RecordingCommandsTest : public testing::Test {
+ protected:
+  RecordingCommandsTest() { std::filesystem::create_directories(folder_); }
+  ~RecordingCommandsTest() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  std::string file(const std::string& name, const mcap::Bytes& bytes) const {
+    const std::string path = (folder_ / name).string();
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    return path;
+  }
+  std::string file(const std::string& name, const std::string& text) const {
+    const mcap::ByteView view = mcap::bytes_of(text);
+    return file(name, mcap::Bytes(view.begin(), view.end()));
+  }
+  int info(const std::string& path, bool json = false) { return run_info({path, json}, out_, err_); }
+  int diff(const std::string& a, const std::string& b) { return run_diff({a, b}, out_, err_); }
+
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / ("rtd_rec_" + std::to_string(getpid()));
+  std::ostringstream out_, err_;
+};
+
+TEST_F(RecordingCommandsTest, info_of_a_good_file_is_exit_code_0) {
+  EXPECT_EQ(info(file("a.mcap", recording_of(regular_messages("/pose", 5)))), 0);
+  EXPECT_THAT(out_.str(), testing::AllOf(HasSubstr("/pose"), HasSubstr("100.00"), HasSubstr("all right")));
+}
+
+TEST_F(RecordingCommandsTest, info_of_a_cut_file_is_exit_code_3_behind_what_can_be_read) {
+  mcap::Bytes bytes = recording_of(regular_messages("/pose", 5));
+  bytes.resize(bytes.size() - 10);
+  EXPECT_EQ(info(file("a.mcap", bytes), true), 3);
+  EXPECT_THAT(out_.str(), HasSubstr("\"messages\": 5"));
+}
+
+TEST_F(RecordingCommandsTest, what_is_no_recording_is_named_with_a_way_out) {
+  EXPECT_EQ(info(file("a.bag", std::string("#ROSBAG V2.0\nxxx"))), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("rtd convert"));
+  EXPECT_EQ(info(file("a.txt", std::string("hello"))), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("no MCAP file"));
+  EXPECT_EQ(info(file("empty.mcap", std::string())), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("empty"));
+  EXPECT_EQ(info("/nonexistent/a.mcap"), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("/nonexistent/a.mcap"));
+}
+
+TEST_F(RecordingCommandsTest, a_folder_stands_for_the_only_recording_in_it) {
+  EXPECT_EQ(info(folder_.string()), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("holds no .mcap file"));
+  file("a_0.mcap", recording_of(regular_messages("/pose", 5)));
+  EXPECT_EQ(info(folder_.string()), 0);
+  EXPECT_EQ(diff(folder_.string(), folder_.string()), 0);
+  file("a_1.mcap", recording_of(regular_messages("/pose", 5)));
+  EXPECT_EQ(info(folder_.string()), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("name one of them"));
+}
+
+TEST_F(RecordingCommandsTest, diff_says_equal_and_different_by_its_exit_code) {
+  std::vector<recording::SampleMessage> messages = regular_messages("/pose", 5);
+  const std::string a = file("a.mcap", recording_of(messages));
+  EXPECT_EQ(diff(a, a), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("equal"));
+  messages[2].payload = "other";
+  EXPECT_EQ(diff(a, file("b.mcap", recording_of(messages))), 1);
+  EXPECT_THAT(out_.str(), HasSubstr("/pose: first different payload: message 2 in A"));
+}
+
+TEST_F(RecordingCommandsTest, diff_of_a_damaged_recording_is_no_clean_bill) {
+  mcap::WriterOptions options;
+  options.chunk_size = 100;
+  mcap::Bytes bytes = recording_of(regular_messages("/pose", 5), options);
+  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  bytes[text.find("payload 2")] ^= std::byte{1};
+  const std::string damaged = file("a.mcap", bytes);
+  EXPECT_EQ(diff(damaged, damaged), 3);
+  EXPECT_THAT(err_.str(), HasSubstr("damaged"));
+}
+
+TEST_F(RecordingCommandsTest, diff_compares_trajectories_and_no_two_kinds) {
+  const std::string a = file("a.txt", std::string("1.0 0 0 0 0 0 0 1\n1.1 1 0 0 0 0 0 1\n"));
+  const std::string b = file("b.txt", std::string("1.0 0 0 0 0 0 0 1\n1.1 1 0 0.5 0 0 0 1\n"));
+  EXPECT_EQ(diff(a, a), 0);
+  EXPECT_EQ(diff(a, b), 1);
+  EXPECT_THAT(out_.str(), HasSubstr("1.100000000  0.5 m"));
+  EXPECT_EQ(diff(a, file("a.mcap", recording_of(regular_messages("/pose", 5)))), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("two of a kind"));
+}
+
+}  // namespace
+}  // namespace rtd::launcher

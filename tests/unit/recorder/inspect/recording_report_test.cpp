@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/recorder/inspect/recording_report.hpp"
+
+#include <gmock/gmock.h>
+
+#include "services/recorder/inspect/report_text.hpp"
+#include "tests/unit/recorder/inspect/sample_recording.hpp"
+
+namespace rtd::recording {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr mcap::WriterOptions small_chunks(mcap::Compression compression = mcap::Compression::kNone) {
+  mcap::WriterOptions options;
+  options.compression = compression;
+  options.chunk_size = 300;
+  return options;
+}
+
+/// 20 poses with number 8 and 9 lost, and one frame.
+std::vector<SampleMessage> messages_with_a_gap() {
+  std::vector<SampleMessage> messages = regular_messages("/pose", 20);
+  messages.erase(messages.begin() + 7, messages.begin() + 9);
+  messages.push_back({"/frame", 1'500'000'000, std::string(400, 'f')});
+  return messages;
+}
+
+const ChannelReport& channel(const RecordingReport& report, const std::string& topic) {
+  for (const ChannelReport& entry : report.channels)
+    if (entry.channel.topic == topic) return entry;
+  throw std::runtime_error("no " + topic);
+}
+
+RecordingReport report_of(const mcap::Bytes& file, const ReportOptions& options = {}) {
+  return report_on(mcap::MemorySource(file), options);
+}
+
+void expect_the_gap(const RecordingReport& report) {
+  EXPECT_EQ(report.messages, 19U);
+  EXPECT_EQ(report.end_ns - report.start_ns, 500'000'000U);
+  const ChannelReport& pose = channel(report, "/pose");
+  EXPECT_EQ(pose.type, "test_msgs/msg/pose");
+  EXPECT_EQ(pose.timing.messages, 18U);
+  EXPECT_EQ(pose.timing.median_period_ns, 10'000'000U);
+  EXPECT_EQ(pose.timing.largest_gap_ns, 30'000'000U);
+  EXPECT_EQ(pose.timing.gaps, 1U);
+  EXPECT_TRUE(report.has_summary);
+  EXPECT_FALSE(report.damaged());
+  ASSERT_EQ(report.metadata.size(), 1U);
+  EXPECT_EQ(report.metadata[0].metadata.at("made_by"), "test");
+}
+
+TEST(RecordingReport, tells_all_of_a_small_file) {
+  const RecordingReport report = report_of(recording_of(messages_with_a_gap(), small_chunks()));
+  expect_the_gap(report);
+  EXPECT_TRUE(report.read_all);
+  EXPECT_EQ(channel(report, "/pose").sequences->missing(), 2U);
+  EXPECT_EQ(channel(report, "/frame").payload_bytes, 400U);
+  EXPECT_GT(report.chunks.at("").chunks, 2U);
+}
+
+TEST(RecordingReport, tells_the_same_of_a_big_file_from_its_summary_and_indexes) {
+  ReportOptions big;
+  big.small_file_bytes = 0;
+  const RecordingReport report =
+      report_of(recording_of(messages_with_a_gap(), small_chunks(mcap::Compression::kZstd)), big);
+  expect_the_gap(report);
+  EXPECT_FALSE(report.read_all);
+  EXPECT_FALSE(channel(report, "/pose").sequences.has_value());
+  EXPECT_GT(report.chunks.at("zstd").chunks, 2U);
+}
+
+TEST(RecordingReport, reads_everything_where_the_indexes_are_missing) {
+  mcap::WriterOptions options = small_chunks();
+  options.use_message_index = false;
+  ReportOptions big;
+  big.small_file_bytes = 0;
+  EXPECT_TRUE(report_of(recording_of(messages_with_a_gap(), options), big).read_all);
+}
+
+TEST(RecordingReport, a_cut_file_gives_what_is_readable_and_what_is_wrong) {
+  mcap::Bytes file = recording_of(messages_with_a_gap(), small_chunks());
+  file.resize(file.size() / 2);
+  const RecordingReport report = report_of(file);
+  EXPECT_GT(report.messages, 0U);
+  EXPECT_LT(report.messages, 19U);
+  EXPECT_FALSE(report.has_summary);
+  EXPECT_TRUE(report.damaged());
+  EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("problem"));
+}
+
+TEST(RecordingReport, names_the_chunk_whose_checksum_is_wrong) {
+  mcap::Bytes file = recording_of(messages_with_a_gap(), small_chunks());
+  const std::string text(reinterpret_cast<const char*>(file.data()), file.size());
+  file[text.find("/pose payload 3")] ^= std::byte{1};
+  const RecordingReport report = report_of(file);
+  EXPECT_TRUE(report.damaged());
+  EXPECT_THAT(checksum_text(report), HasSubstr("WRONG"));
+  EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("Chunk"));
+}
+
+TEST(RecordingReport, the_end_that_a_file_being_written_does_not_have_is_no_damage) {
+  mcap::MemorySink sink;
+  mcap::Writer writer(sink);
+  const mcap::ChannelId id = writer.add(mcap::Channel{0, 0, "/pose", "cdr", {}});
+  writer.write(mcap::Message{id, 1, 10, 10, mcap::bytes_of("abc")});
+  writer.end_chunk();
+  RecordingReport report = report_of(sink.bytes());
+  EXPECT_TRUE(report.damaged());
+  report.being_written = true;
+  EXPECT_FALSE(report.damaged());
+  EXPECT_EQ(report.messages, 1U);
+  EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("being written"));
+}
+
+TEST(RecordingReport, tells_what_the_recorder_knows_to_be_lost) {
+  RecordingReport report;
+  EXPECT_TRUE(report.losses().empty());
+  report.metadata.push_back({"rtd:losses", {{"total", "0"}}});
+  EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("nothing, says the recorder"));
+  report.metadata[0].metadata = {{"/pose", "in_transit=3 in_queue=0"}, {"total", "3"}};
+  EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("/pose: in_transit=3 in_queue=0"));
+}
+
+TEST(RecordingReport, json_has_what_the_text_has) {
+  const nlohmann::json json = to_json(report_of(recording_of(messages_with_a_gap(), small_chunks())), "x.mcap");
+  EXPECT_EQ(json["messages"], 19);
+  EXPECT_EQ(json["topics"].size(), 2U);
+  EXPECT_EQ(json["topics"][1]["topic"], "/pose");
+  EXPECT_EQ(json["topics"][1]["sequence"]["missing"], 2);
+  EXPECT_EQ(json["metadata"][0]["values"]["made_by"], "test");
+  EXPECT_EQ(json["damaged"], false);
+}
+
+}  // namespace
+}  // namespace rtd::recording

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/map_tool/map_command.hpp"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "services/slam/map_file.hpp"
+#include "tests/support/sample_map.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class MapCommand : public ::testing::Test {
+ protected:
+  MapCommand() {
+    std::filesystem::create_directories(folder_);
+    slam::save_map_file(file_, slam::take_snapshot(map_));
+  }
+  ~MapCommand() override { std::filesystem::remove_all(folder_); }
+
+  /// Exit code of `rtd map ...`; -1 when the command line is refused.
+  int run(std::vector<std::string> arguments) {
+    CLI::App app;
+    MapRequest request;
+    add_map_command(app, request);
+    arguments.insert(arguments.begin(), "map");
+    std::reverse(arguments.begin(), arguments.end());
+    try {
+      app.parse(arguments);
+    } catch (const CLI::ParseError&) {
+      return -1;
+    }
+    out_.str({});
+    err_.str({});
+    return run_map(request, out_, err_);
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string text_of(const std::string& name) const {
+    std::ifstream file(folder_ / name);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(::testing::TempDir()) / ("rtd_map_command_" + std::to_string(getpid()));
+  const std::string file_ = path("room.rtdmap");
+  const slam::Map map_ = test_support::sample_map({.keyframes = 12});
+  std::ostringstream out_, err_;
+};
+
+TEST_F(MapCommand, info_tells_what_is_in_the_file) {
+  ASSERT_EQ(run({"info", file_}), 0) << err_.str();
+  EXPECT_THAT(out_.str(), HasSubstr("keyframes    11 with 440 features; 2 removed"));
+  EXPECT_THAT(out_.str(), HasSubstr(std::to_string(map_.landmark_count()) + " seen"));
+  EXPECT_THAT(out_.str(), HasSubstr("640x480, fx 520.00"));
+  EXPECT_THAT(out_.str(), HasSubstr("version      1, checksums all right"));
+  EXPECT_THAT(out_.str(), HasSubstr("map 0        10 keyframes"));
+  EXPECT_THAT(out_.str(), HasSubstr("map 1        1 keyframes, 5 landmarks"));
+}
+
+TEST_F(MapCommand, info_tells_it_to_programs) {
+  ASSERT_EQ(run({"info", file_, "--json"}), 0);
+  const auto json = nlohmann::json::parse(out_.str());
+  EXPECT_EQ(json["keyframes"], 11);
+  EXPECT_EQ(json["bytes"], std::filesystem::file_size(file_));
+  EXPECT_EQ(json["maps"].size(), 2U);
+  EXPECT_EQ(json["cameras"].size(), 1U);
+  EXPECT_NEAR(json["maps"][0]["path_m"].get<double>(), 1.1, 0.05);
+  EXPECT_NEAR((json["maps"][0]["last_stamp_ns"].get<double>() - json["maps"][0]["first_stamp_ns"].get<double>()) * 1e-9,
+              11.0 / 3, 1e-3);
+  EXPECT_LT(json["maps"][0]["extent_m"]["min"][2], json["maps"][0]["extent_m"]["max"][2]);
+}
+
+TEST_F(MapCommand, exports_landmarks_and_poses_of_one_map) {
+  ASSERT_EQ(run({"export", file_, "--format", "ply", "-o", path("a.ply")}), 0) << err_.str();
+  EXPECT_THAT(err_.str(), HasSubstr("2 maps"));
+  EXPECT_THAT(text_of("a.ply"), HasSubstr("element vertex " + std::to_string(map_.landmark_count() - 5)));
+  ASSERT_EQ(run({"export", file_, "--format", "pcd", "-o", path("a.pcd"), "--map-id", "1"}), 0);
+  EXPECT_THAT(text_of("a.pcd"), HasSubstr("POINTS 5\nDATA ascii\n0.00000 0.00000 2.00000 "));
+  ASSERT_EQ(run({"export", file_, "--format", "tum", "-o", path("a.txt")}), 0);
+  const std::string poses = text_of("a.txt");
+  EXPECT_EQ(std::count(poses.begin(), poses.end(), '\n'), 10);
+  EXPECT_THAT(poses, StartsWith("1700000000.000000 0.000000000 "));
+}
+
+TEST_F(MapCommand, says_what_prevents_an_export) {
+  EXPECT_EQ(run({"export", file_, "--format", "ply", "-o", file_}), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("exists already"));
+  EXPECT_EQ(run({"export", file_, "--format", "ply", "-o", path("none/a.ply")}), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("cannot write"));
+  EXPECT_EQ(run({"export", file_, "--format", "ply", "-o", path("a.ply"), "--map-id", "7"}), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("rtd map info"));
+  EXPECT_EQ(run({"export", file_, "--format", "obj", "-o", path("a.obj")}), -1);
+}
+
+TEST_F(MapCommand, tells_damage_from_other_files) {
+  EXPECT_EQ(run({"info", path("missing.rtdmap")}), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("No such file"));
+  std::ofstream(folder_ / "text") << "a text";
+  EXPECT_EQ(run({"info", path("text")}), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("no map file"));
+  std::filesystem::resize_file(file_, std::filesystem::file_size(file_) - 100);
+  EXPECT_EQ(run({"info", file_}), 3);
+  EXPECT_THAT(err_.str(), HasSubstr("damaged at byte"));
+}
+
+}  // namespace
+}  // namespace rtd::launcher
