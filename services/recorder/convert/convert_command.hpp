@@ -16,7 +16,7 @@ namespace rtd::launcher {
 struct ConvertOptions {
   std::string source, destination;
   std::string compression = "zstd";  ///< of an MCAP file: none, lz4 or zstd
-  std::uint64_t frames = 0;         ///< at most so many, 0 = all
+  std::uint64_t frames = 0;          ///< at most so many, 0 = all
   bool json = false;
 };
 

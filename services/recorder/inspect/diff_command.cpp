@@ -9,8 +9,8 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"
 #include "services/recorder/inspect/recording_diff.hpp"
-#include "services/recorder/inspect/report_text.hpp"
 #include "services/recorder/inspect/recording_file.hpp"
+#include "services/recorder/inspect/report_text.hpp"
 
 namespace rtd::launcher {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"
+#include "services/slam/map_file.hpp"
 #include "services/slam/map_tool/map_export.hpp"
 #include "services/slam/map_tool/map_report.hpp"
-#include "services/slam/map_file.hpp"
 
 namespace rtd::launcher {
 namespace {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "services/slam/map_tool/map_report.hpp"
 #include "services/recorder/inspect/units_text.hpp"
+#include "services/slam/map_tool/map_report.hpp"
 
 namespace rtd::launcher {
 namespace {

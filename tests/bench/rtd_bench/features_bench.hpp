@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/bench/rtd_bench/percentile.hpp"
 #include "services/camera/core/frame_source.hpp"
+#include "tests/bench/rtd_bench/percentile.hpp"
 
 namespace rtd::bench {
 

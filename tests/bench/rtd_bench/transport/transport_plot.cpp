@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/bench/rtd_bench/percentile.hpp"
-#include "tests/bench/rtd_bench/transport/transport_bench.hpp"
 #include "services/evaluation/core/plot/chart.hpp"
 #include "services/evaluation/core/plot/colour.hpp"
+#include "tests/bench/rtd_bench/percentile.hpp"
+#include "tests/bench/rtd_bench/transport/transport_bench.hpp"
 
 namespace rtd::bench {
 namespace {
