@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "services/slam/core/map.hpp"
+#include "services/slam/core/map/map.hpp"
 
 namespace rtd::slam {
 

@@ -10,7 +10,7 @@
 
 #include "common/msg/ros.hpp"
 #include "common/msg/tracking.hpp"
-#include "services/slam/core/trajectory.hpp"
+#include "services/slam/core/map/trajectory.hpp"
 
 namespace rtd::slam {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "services/slam/core/bundle_adjustment.hpp"
+#include "services/slam/core/optimize/bundle_adjustment.hpp"
 
 namespace rtd::test_support {
 

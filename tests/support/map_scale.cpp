@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "services/slam/core/keyframe_policy.hpp"
-#include "services/slam/core/tracker.hpp"
-#include "services/slam/core/trajectory.hpp"
+#include "services/slam/core/map/trajectory.hpp"
+#include "services/slam/core/tracking/keyframe_policy.hpp"
+#include "services/slam/core/tracking/tracker.hpp"
 
 namespace rtd::test_support {
 namespace {

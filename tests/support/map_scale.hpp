@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "services/slam/core/slam_config.hpp"
-#include "services/slam/core/tracking_steps.hpp"
+#include "services/slam/core/tracking/tracking_steps.hpp"
 #include "tests/support/walk_world.hpp"
 
 namespace rtd::test_support {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "services/slam/core/map.hpp"
+#include "services/slam/core/map/map.hpp"
 
 namespace rtd::test_support {
 

@@ -8,12 +8,12 @@
 
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
-#include "services/slam/core/keyframe_news.hpp"
-#include "services/slam/core/mapping_worker.hpp"
-#include "services/slam/core/odometry_frame.hpp"
-#include "services/slam/core/readout_estimator.hpp"
-#include "services/slam/core/tracker.hpp"
-#include "services/slam/core/trajectory.hpp"
+#include "services/slam/core/map/trajectory.hpp"
+#include "services/slam/core/mapping/keyframe_news.hpp"
+#include "services/slam/core/mapping/mapping_worker.hpp"
+#include "services/slam/core/tracking/odometry_frame.hpp"
+#include "services/slam/core/tracking/readout_estimator.hpp"
+#include "services/slam/core/tracking/tracker.hpp"
 
 namespace rtd::slam {
 

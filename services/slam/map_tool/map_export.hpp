@@ -4,7 +4,7 @@
 
 #include <iosfwd>
 
-#include "services/slam/core/trajectory.hpp"
+#include "services/slam/core/map/trajectory.hpp"
 
 namespace rtd::launcher {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "services/slam/core/map.hpp"
+#include "services/slam/core/map/map.hpp"
 
 namespace rtd::launcher {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/bundle_adjustment.hpp"
+#include "services/slam/core/optimize/bundle_adjustment.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

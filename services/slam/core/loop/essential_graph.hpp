@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "services/slam/core/loop/loop_edge.hpp"
-#include "services/slam/core/loop/pose_graph.hpp"
+#include "services/slam/core/optimize/pose_graph.hpp"
 
 namespace rtd::slam {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "services/slam/core/loop/essential_graph.hpp"
-#include "services/slam/core/scale_pyramid.hpp"
+#include "services/slam/core/map/scale_pyramid.hpp"
 
 namespace rtd::slam {
 namespace {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "services/slam/core/bundle_adjustment.hpp"
-#include "services/slam/core/map.hpp"
+#include "services/slam/core/map/map.hpp"
+#include "services/slam/core/optimize/bundle_adjustment.hpp"
 
 namespace rtd::slam {
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "services/slam/core/map.hpp"
+#include "services/slam/core/map/map.hpp"
 
 namespace rtd::slam {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "services/slam/core/landmark_fusion.hpp"
+#include "services/slam/core/mapping/landmark_fusion.hpp"
 
 namespace rtd::slam {
 namespace {

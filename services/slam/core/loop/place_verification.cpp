@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "services/slam/core/tracker.hpp"
+#include "services/slam/core/tracking/tracker.hpp"
 
 namespace rtd::slam {
 namespace {

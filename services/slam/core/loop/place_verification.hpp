@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "services/slam/core/map.hpp"
+#include "services/slam/core/map/map.hpp"
 #include "services/slam/core/slam_config.hpp"
 
 namespace rtd::slam {

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "services/slam/core/map.hpp"
+#include "services/slam/core/map/map.hpp"
 #include "services/slam/core/place/bag_of_words.hpp"
 
 namespace rtd::slam {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "services/slam/core/map.hpp"
+#include "services/slam/core/map/map.hpp"
 
 /// The numbers of a map file, docs/map_file.md. All little-endian.
 namespace rtd::slam::map_format {

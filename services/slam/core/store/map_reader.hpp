@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "common/mcap/byte_source.hpp"
-#include "services/slam/core/map.hpp"
+#include "services/slam/core/map/map.hpp"
 #include "services/slam/core/store/map_file_error.hpp"
 
 namespace rtd::slam {

@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/map/frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/slam/core/map/rolling_shutter.hpp"
+#include "services/slam/core/map/scale_pyramid.hpp"
+
+namespace rtd::slam {
+namespace {
+
+bool usable_intrinsics(const msg::FeatureFrame& message) {
+  const auto& [fx, fy, cx, cy] = message.intrinsics;
+  return std::isfinite(fx) && std::isfinite(fy) && std::isfinite(cx) && std::isfinite(cy) && fx > 1 && fy > 1;
+}
+
+std::size_t count_usable(const msg::FeatureFrame& message) {
+  const auto end = message.features.begin() + message.count;
+  return static_cast<std::size_t>(std::count_if(message.features.begin(), end, [](const msg::Feature& feature) {
+    return (feature.flags & msg::kFeatureRemoved) == 0 && usable(feature);
+  }));
+}
+
+}  // namespace
+
+bool usable(const msg::Feature& feature) {
+  return std::isfinite(feature.u_px) && std::isfinite(feature.v_px) && std::isfinite(feature.angle_rad) &&
+         std::isfinite(feature.depth_m) && feature.depth_m >= 0 && feature.static_probability >= 0 &&
+         feature.static_probability <= 1 && feature.octave < kOctaves;
+}
+
+Eigen::Vector3d Frame::unproject(std::size_t feature) const {
+  const msg::Feature& f = features[feature];
+  return {(f.u_px - camera.cx) / camera.fx * f.depth_m, (f.v_px - camera.cy) / camera.fy * f.depth_m, f.depth_m};
+}
+
+FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config, RemovedFeatures removed,
+                      const ShutterMotion& motion) {
+  FrameInput input;
+  if (!usable_intrinsics(message)) {
+    input.error = "intrinsics are zero or not finite";
+    return input;
+  }
+  if (message.width == 0 || message.height == 0 || message.count > msg::kMaxFeatures) {
+    input.error = "image size or feature count out of range";
+    return input;
+  }
+  auto frame = std::make_shared<Frame>();
+  frame->seq = message.seq;
+  frame->stamp_ns = message.stamp_ns;
+  frame->camera = {message.intrinsics[0], message.intrinsics[1], message.intrinsics[2], message.intrinsics[3],
+                   config.disparity_px_m};
+  frame->width_px = static_cast<int>(message.width);
+  frame->height_px = static_cast<int>(message.height);
+  frame->features.reserve(count_usable(message));  // exactly: keyframes keep their features
+  for (std::uint32_t i = 0; i < message.count; ++i) {
+    msg::Feature feature = message.features[i];
+    if ((feature.flags & msg::kFeatureRemoved) != 0) {
+      ++input.removed;
+      if (removed == RemovedFeatures::kKeep && usable(feature)) frame->removed.push_back(feature);
+    } else if (!usable(feature)) {
+      ++input.invalid;
+    } else {
+      if (feature.depth_m > config.max_depth_m) feature.depth_m = 0;
+      if (motion.readout_s != 0) feature = undo_rolling_shutter(feature, frame->camera, frame->height_px, motion);
+      frame->features.push_back(feature);
+    }
+  }
+  frame->grid = vision::FeatureGrid(frame->features, frame->width_px, frame->height_px);
+  if (removed == RemovedFeatures::kKeep)
+    frame->removed_grid = vision::FeatureGrid(frame->removed, frame->width_px, frame->height_px);
+  input.frame = std::move(frame);
+  return input;
+}
+
+}  // namespace rtd::slam

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/map/trajectory.hpp"
+
+#include <array>
+#include <cinttypes>
+#include <cstdio>
+#include <ostream>
+
+#include "common/geometry/ply.hpp"
+
+namespace rtd::slam {
+namespace {
+
+constexpr std::size_t kLineLength = 256;
+
+/// Seconds with six decimals, from the integer: a double would lose the last digits of today's stamps.
+void append_stamp(std::array<char, kLineLength>& line, std::int64_t stamp_ns) {
+  const std::int64_t microseconds = (stamp_ns + (stamp_ns >= 0 ? 500 : -500)) / 1000;
+  const std::int64_t magnitude = microseconds < 0 ? -microseconds : microseconds;
+  std::snprintf(line.data(), line.size(), "%s%" PRId64 ".%06" PRId64, microseconds < 0 ? "-" : "",
+                magnitude / 1'000'000, magnitude % 1'000'000);
+}
+
+}  // namespace
+
+std::vector<StampedPose> compose_trajectory(const Map& map, const std::vector<FrameRecord>& frames, MapId id) {
+  std::vector<StampedPose> poses;
+  poses.reserve(frames.size());
+  for (const FrameRecord& frame : frames) {
+    if (map.map_of(frame.reference) != id) continue;
+    poses.push_back({frame.stamp_ns, map.T_world_keyframe(frame.reference) * frame.T_reference_camera});
+  }
+  return poses;
+}
+
+std::vector<StampedPose> keyframe_trajectory(const Map& map, MapId id) {
+  std::vector<StampedPose> poses;
+  for (const auto& [keyframe_id, keyframe] : map.keyframes()) {
+    if (keyframe.map == id) poses.push_back({keyframe.frame->stamp_ns, keyframe.T_world_camera});
+  }
+  return poses;
+}
+
+std::vector<MapPoint> map_points(const Map& map, MapId id) {
+  std::vector<MapPoint> points;
+  points.reserve(map.landmark_count());
+  append_map_points(map, id, map.landmark_ids(), points);
+  return points;
+}
+
+void append_map_points(const Map& map, MapId id, std::span<const LandmarkId> landmarks, std::vector<MapPoint>& points) {
+  for (const LandmarkId landmark_id : landmarks) {
+    const Landmark* landmark = map.find_landmark(landmark_id);
+    if (landmark == nullptr || map.map_of(landmark->reference) != id) continue;
+    points.push_back({landmark->position.cast<float>(), static_cast<float>(landmark->static_probability)});
+  }
+}
+
+void write_tum_trajectory(std::ostream& out, const std::vector<StampedPose>& poses) {
+  std::array<char, kLineLength> line{};
+  for (const StampedPose& pose : poses) {
+    append_stamp(line, pose.stamp_ns);
+    out << line.data();
+    const Eigen::Vector3d& t = pose.T_world_camera.translation();
+    Eigen::Quaterniond q(pose.T_world_camera.linear());
+    q.normalize();
+    if (q.w() < 0) q.coeffs() = -q.coeffs();
+    std::snprintf(line.data(), line.size(), " %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", t.x(), t.y(), t.z(), q.x(), q.y(),
+                  q.z(), q.w());
+    out << line.data();
+  }
+}
+
+void write_ply(std::ostream& out, const std::vector<MapPoint>& points) {
+  geometry::write_ply_header(out, geometry::PlyFormat::kAscii, "RTD-SLAM landmarks, world frame, metres", points.size(),
+                             {{"float", "x"}, {"float", "y"}, {"float", "z"}, {"float", "static_probability"}});
+  std::array<char, kLineLength> line{};
+  for (const MapPoint& point : points) {
+    std::snprintf(line.data(), line.size(), "%.5f %.5f %.5f %.3f\n", static_cast<double>(point.position.x()),
+                  static_cast<double>(point.position.y()), static_cast<double>(point.position.z()),
+                  static_cast<double>(point.static_probability));
+    out << line.data();
+  }
+}
+
+}  // namespace rtd::slam

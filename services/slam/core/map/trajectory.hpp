@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <iosfwd>
+#include <span>
+#include <vector>
+
+#include "services/slam/core/map/map.hpp"
+
+namespace rtd::slam {
+
+/// A tracked frame, hung on a keyframe so that it follows when the map is corrected.
+struct FrameRecord {
+  std::uint64_t seq = 0;
+  std::int64_t stamp_ns = 0;
+  KeyframeId reference = kNoKeyframe;
+  Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
+};
+
+struct StampedPose {
+  std::int64_t stamp_ns = 0;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+};
+
+struct MapPoint {
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< p_world, m
+  float static_probability = 1;
+};
+
+/// Final poses of the recorded frames: T_world_reference (as corrected by now) * T_reference_camera.
+/// Those of one map: each has a world frame of its own.
+std::vector<StampedPose> compose_trajectory(const Map& map, const std::vector<FrameRecord>& frames, MapId id = 0);
+/// Poses of the keyframes still in the map, oldest first.
+std::vector<StampedPose> keyframe_trajectory(const Map& map, MapId id = 0);
+/// All landmarks of one map, by id.
+std::vector<MapPoint> map_points(const Map& map, MapId id = 0);
+/// Those of `landmarks` that are in this map.
+void append_map_points(const Map& map, MapId id, std::span<const LandmarkId> landmarks, std::vector<MapPoint>& points);
+
+/// TUM format, one "stamp tx ty tz qx qy qz qw" a line, "%.6f" and "%.9f", qw >= 0.
+void write_tum_trajectory(std::ostream& out, const std::vector<StampedPose>& poses);
+/// ASCII PLY: x y z and static_probability per vertex.
+void write_ply(std::ostream& out, const std::vector<MapPoint>& points);
+
+}  // namespace rtd::slam

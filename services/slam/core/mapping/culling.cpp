@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/mapping/culling.hpp"
+
+#include <algorithm>
+
+namespace rtd::slam {
+namespace {
+
+/// Seen by three other keyframes in an octave that is at most one coarser.
+bool seen_by_others(const Map& map, const Landmark& landmark, KeyframeId keyframe, int octave) {
+  constexpr int kOthers = 3;
+  int others = 0;
+  for (const Observation& observation : landmark.observations) {
+    if (observation.keyframe == keyframe) continue;
+    const msg::Feature& feature = map.find_keyframe(observation.keyframe)->frame->features[observation.feature];
+    if (feature.octave <= octave + 1 && ++others == kOthers) return true;
+  }
+  return false;
+}
+
+bool is_close_landmark(const Keyframe& keyframe, std::size_t feature, double close_depth_m) {
+  const float depth_m = keyframe.frame->features[feature].depth_m;
+  return keyframe.landmarks[feature] != kNoLandmark && depth_m > 0 && depth_m <= close_depth_m;
+}
+
+}  // namespace
+
+void RecentLandmarks::add(const std::vector<LandmarkId>& landmarks) {
+  landmarks_.insert(landmarks_.end(), landmarks.begin(), landmarks.end());
+}
+
+int RecentLandmarks::cull(Map& map, KeyframeId newest, double min_found_ratio) {
+  constexpr KeyframeId kConfirmAfter = 2, kProbation = 3;
+  constexpr int kMinWeight = 3;
+  int removed = 0;
+  std::vector<LandmarkId> remaining;
+  for (const LandmarkId id : landmarks_) {
+    const Landmark* landmark = map.find_landmark(id);
+    if (landmark == nullptr) continue;
+    const KeyframeId age = newest - landmark->first_keyframe;
+    const bool rarely_found = landmark->found < min_found_ratio * landmark->visible;
+    const bool unconfirmed = age >= kConfirmAfter && landmark->observation_weight <= kMinWeight;
+    if (rarely_found || unconfirmed) {
+      map.remove_landmark(id);
+      ++removed;
+    } else if (age < kProbation) {
+      remaining.push_back(id);
+    }
+  }
+  landmarks_ = std::move(remaining);
+  return removed;
+}
+
+bool is_redundant_keyframe(const Map& map, KeyframeId id, double redundant_ratio, double close_depth_m) {
+  const Keyframe& keyframe = *map.find_keyframe(id);
+  if (keyframe.is_origin()) return false;
+  int close = 0;
+  for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    if (is_close_landmark(keyframe, i, close_depth_m)) ++close;
+  }
+  // Most keyframes are not redundant, which shows before all landmarks are looked at.
+  int seen = close;
+  for (std::size_t i = 0; i < keyframe.landmarks.size() && seen > redundant_ratio * close; ++i) {
+    if (!is_close_landmark(keyframe, i, close_depth_m)) continue;
+    if (!seen_by_others(map, *map.find_landmark(keyframe.landmarks[i]), id, keyframe.frame->features[i].octave)) --seen;
+  }
+  return seen > redundant_ratio * close;
+}
+
+}  // namespace rtd::slam

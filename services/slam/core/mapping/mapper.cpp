@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/mapping/mapper.hpp"
+
+#include <algorithm>
+
+#include "common/geometry/se3.hpp"
+#include "services/slam/core/mapping/landmark_creation.hpp"
+#include "services/slam/core/mapping/landmark_fusion.hpp"
+#include "services/slam/core/mapping/local_bundle_adjustment.hpp"
+#include "services/slam/core/place/built_in_vocabulary.hpp"
+
+namespace rtd::slam {
+namespace {
+
+std::shared_ptr<const Vocabulary> choose_vocabulary(const SlamConfig& config) {
+  if (!config.techniques.place_recognition) return nullptr;
+  return config.place.vocabulary != nullptr ? config.place.vocabulary : built_in_vocabulary();
+}
+
+}  // namespace
+
+Mapper::Mapper(const SlamConfig& config)
+    : config_(config),
+      map_(config.techniques.landmark_belief ? ProbabilityRule::kBelief : ProbabilityRule::kMeanOfObservations),
+      vocabulary_(choose_vocabulary(config)),
+      loop_closer_(config),
+      adjuster_(GlobalBundleOptions{config.loop.global_iterations, 1, {}}) {}
+
+void Mapper::restore(MapContents contents) {
+  const ProbabilityRule rule = map_.probability_rule();
+  if (rule == ProbabilityRule::kBelief && contents.probability_rule != rule) {
+    for (Landmark& landmark : contents.landmarks) landmark.log_odds = initial_log_odds(landmark.static_probability);
+  }
+  contents.probability_rule = rule;
+  map_ = Map(std::move(contents));
+  if (vocabulary_ == nullptr) return;
+  for (const auto& [id, keyframe] : map_.keyframes()) places_.add(id, vocabulary_->describe(keyframe.frame->features));
+}
+
+KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<bool()>& interrupted) {
+  const auto busy = [&] { return interrupted && interrupted(); };
+  apply_adjustment();
+  count_statistics(proposal.statistics);
+  const KeyframeId keyframe = add_keyframe(proposal);
+  recent_.cull(map_, keyframe, config_.mapper.min_found_ratio);
+  create_landmarks(keyframe);
+  if (!busy()) fuse_landmarks(map_, keyframe, config_.mapper.neighbours);
+  std::vector<KeyframeId> adjusted;
+  if (!busy() && map_.keyframe_count(map_.find_keyframe(keyframe)->map) > 2) {
+    adjusted = adjust_local_map(map_, keyframe, config_.mapper, interrupted);
+  }
+  cull_keyframes(keyframe);
+  if (vocabulary_ != nullptr) places_.add(keyframe, vocabulary_->describe(proposal.frame->features));
+  close_loop(keyframe);
+  const Keyframe& created = *map_.find_keyframe(keyframe);
+  announced_[keyframe] = created.T_world_camera;
+  changes_.push_back(
+      {KeyframeChange::Kind::kCreated, keyframe, created.frame->seq, created.frame->stamp_ns, created.T_world_camera});
+  note_moved_keyframes(std::move(adjusted));
+  return keyframe;
+}
+
+KeyframeId Mapper::add_keyframe(const KeyframeProposal& proposal) {
+  const bool first = proposal.reference == kNoKeyframe;
+  const Eigen::Isometry3d T_world_camera =
+      first ? proposal.T_reference_camera : map_.T_world_keyframe(proposal.reference) * proposal.T_reference_camera;
+  KeyframeId parent = proposal.reference;
+  while (!first && map_.find_keyframe(parent) == nullptr) parent = map_.parent_of_removed(parent);
+  const KeyframeId id = map_.add_keyframe(proposal.frame, geometry::normalized(T_world_camera), parent);
+  for (std::uint32_t feature = 0; feature < proposal.landmarks.size(); ++feature) {
+    const LandmarkId landmark = proposal.landmarks[feature];
+    if (landmark == kNoLandmark || map_.find_landmark(landmark) == nullptr) continue;
+    if (map_.add_observation(landmark, {id, feature})) map_.refresh_landmark(landmark);
+  }
+  return id;
+}
+
+void Mapper::count_statistics(const std::vector<LandmarkStatistics>& statistics) {
+  for (const LandmarkStatistics& entry : statistics) {
+    Landmark* landmark = map_.find_landmark(entry.landmark);
+    if (landmark == nullptr) continue;
+    landmark->visible += entry.visible;
+    landmark->found += entry.found;
+    if (!config_.techniques.landmark_belief) continue;
+    landmark->log_odds += bounded_change(landmark->log_odds, entry.log_odds, config_.belief.max_log_odds);
+    landmark->static_probability = to_probability(landmark->log_odds);
+    if (landmark->static_probability < config_.belief.min_probability) map_.remove_landmark(entry.landmark);
+  }
+}
+
+void Mapper::create_landmarks(KeyframeId keyframe) {
+  // The first keyframe of a map has nothing but its depth: all of it is used.
+  const bool first = map_.find_keyframe(keyframe)->is_origin();
+  recent_.add(create_from_depth(map_, keyframe, first ? config_.sensor.max_depth_m : config_.sensor.close_depth_m));
+  recent_.add(create_by_triangulation(map_, keyframe, config_.mapper.neighbours));
+}
+
+void Mapper::cull_keyframes(KeyframeId newest) {
+  for (const KeyframeId id : map_.best_covisible(newest, kMaxRedundancyCandidates)) {
+    if (!is_redundant_keyframe(map_, id, config_.mapper.redundant_ratio, config_.sensor.close_depth_m)) continue;
+    const Keyframe& keyframe = *map_.find_keyframe(id);
+    if (announced_.erase(id) > 0) {
+      changes_.push_back(
+          {KeyframeChange::Kind::kRemoved, id, keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera});
+    }
+    places_.remove(id);
+    map_.remove_keyframe(id);
+  }
+}
+
+/// docs/theory/loop_closing.md.
+void Mapper::close_loop(KeyframeId newest) {
+  if (!config_.techniques.loop_closing || vocabulary_ == nullptr) return;
+  const std::optional<LoopClosure> closure = loop_closer_.close(map_, places_, newest);
+  if (!closure) return;
+  loops_.push_back(*closure);
+  note_all_moved_keyframes();
+  if (config_.loop.global_iterations == 0) return;
+  adjuster_.start(copy_global_problem(map_, closure->map));
+  apply_adjustment();
+}
+
+void Mapper::apply_adjustment() {
+  const std::optional<GlobalProblem> adjusted = adjuster_.take();
+  if (!adjusted) return;
+  apply_global_problem(map_, *adjusted);
+  note_all_moved_keyframes();
+}
+
+void Mapper::finish_adjustment() {
+  adjuster_.wait();
+  apply_adjustment();
+}
+
+/// After a correction of the whole map; whoever publishes the changes portions them out.
+void Mapper::note_all_moved_keyframes() {
+  std::vector<KeyframeId> all;
+  all.reserve(announced_.size());
+  for (const auto& [id, T_world_camera] : announced_) all.push_back(id);
+  for (const KeyframeId id : all) note_if_moved(id);
+}
+
+/// Looks at the adjusted keyframes, and at some of the others in turn: what a larger correction moved is told bit by
+/// bit, and the cost does not grow with the map.
+void Mapper::note_moved_keyframes(std::vector<KeyframeId> adjusted) {
+  constexpr int kOthers = 40;  // with the adjusted ones fewer than readers of the topic keep
+  auto next = announced_.lower_bound(next_checked_);
+  for (int i = 0; i < kOthers && !announced_.empty(); ++i) {
+    if (next == announced_.end()) next = announced_.begin();
+    adjusted.push_back((next++)->first);
+  }
+  next_checked_ = next == announced_.end() ? 0 : next->first;
+  std::sort(adjusted.begin(), adjusted.end());
+  adjusted.erase(std::unique(adjusted.begin(), adjusted.end()), adjusted.end());
+  for (const KeyframeId id : adjusted) note_if_moved(id);
+}
+
+void Mapper::note_if_moved(KeyframeId id) {
+  const auto announced = announced_.find(id);
+  if (announced == announced_.end()) return;  // culled meanwhile
+  const Keyframe& keyframe = *map_.find_keyframe(id);
+  const Eigen::Isometry3d T_announced_now = announced->second.inverse() * keyframe.T_world_camera;
+  if (T_announced_now.translation().norm() < config_.mapper.correction_m &&
+      geometry::rotation_angle_rad(T_announced_now) < config_.mapper.correction_rad) {
+    return;
+  }
+  announced->second = keyframe.T_world_camera;
+  changes_.push_back(
+      {KeyframeChange::Kind::kCorrected, id, keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera});
+}
+
+LocalMapPtr Mapper::local_map(KeyframeId centre) {
+  while (map_.find_keyframe(centre) == nullptr) centre = map_.parent_of_removed(centre);
+  return make_local_map(map_, centre, ++snapshots_);
+}
+
+std::vector<LocalMapPtr> Mapper::places_like(const Frame& frame, std::size_t first, std::size_t count) {
+  constexpr std::size_t kKeyframes = 20;  // of a place: enough to confirm a pose, quickly copied
+  if (vocabulary_ == nullptr) return {};
+  PlaceQuery query;
+  query.max_candidates = static_cast<std::size_t>(config_.place.candidates);
+  const auto candidates = find_places(places_, map_, vocabulary_->describe(frame.features), query);
+  std::vector<LocalMapPtr> places;
+  for (std::size_t i = 0; i < std::min(count, candidates.size()); ++i) {
+    const KeyframeId keyframe = candidates[(first + i) % candidates.size()].keyframe;
+    places.push_back(make_local_map(map_, keyframe, ++snapshots_, kKeyframes));
+  }
+  return places;
+}
+
+std::vector<KeyframeChange> Mapper::take_changes() {
+  return std::exchange(changes_, {});
+}
+
+}  // namespace rtd::slam

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "common/concurrency/bounded_queue.hpp"
+#include "services/slam/core/mapping/mapper.hpp"
+
+namespace rtd::slam {
+
+enum class MappingMode : std::uint8_t {
+  kSynchronous,  ///< in the caller's thread: same input, same map
+  kThreaded,     ///< beside tracking
+};
+
+/// Runs a Mapper in the caller's thread or in one of its own, and hands out what tracking needs of it.
+/// restore(), insert(), begin_map(), recentre(), places_like(), finish(): one thread (tracking). snapshot(),
+/// take_changes(), room(), idle(), read(): any.
+class MappingWorker {
+ public:
+  /// `on_thread_start` runs first in the mapper's own thread (priority, name); may be empty.
+  MappingWorker(const SlamConfig& config, MappingMode mode, std::function<void()> on_thread_start);
+  ~MappingWorker();
+
+  /// Goes on with a map that was saved; before the first keyframe.
+  void restore(MapContents contents);
+  /// Room for another keyframe; idle: nothing queued or in work. Synchronous: both always true.
+  bool room() const;
+  bool idle() const { return pending_ == 0; }
+  /// Hands a keyframe over.
+  void insert(KeyframeProposal proposal);
+  /// Inserts the first keyframe of a map before it returns, in both modes; snapshots are taken around it from now on.
+  LocalMapPtr begin_map(KeyframeProposal first);
+  /// Asks for snapshots around this keyframe from now on.
+  void recentre(KeyframeId centre);
+  /// Parts of the map around places that look like this frame; every `attempt` of a search, counted from 0, tries
+  /// others. Synchronous: at once. Threaded: never waits; the answer is that to an earlier frame, empty when it has
+  /// been given out or is not there yet.
+  std::vector<LocalMapPtr> places_like(const FramePtr& frame, std::size_t attempt);
+  /// Newest snapshot; null before the first keyframe.
+  LocalMapPtr snapshot() const;
+  std::vector<KeyframeChange> take_changes();
+  /// Loops closed so far, from the `first` on.
+  std::vector<LoopClosure> loops(std::size_t first = 0) const;
+  /// Works off what is queued and ends the thread; later calls of insert() do nothing.
+  void finish();
+  /// Looks at the whole map between two keyframes: may wait for a bundle adjustment.
+  void read(const std::function<void(const Map&)>& look) const;
+
+ private:
+  struct Recentre {};         ///< on wanted_centre_
+  struct ApplyAdjustment {};  ///< of global bundle adjustment
+  struct PlaceQuestion {
+    FramePtr frame;
+    std::size_t attempt;
+  };
+  using Command = std::variant<KeyframeProposal, Recentre, PlaceQuestion, ApplyAdjustment>;
+  LocalMapPtr run(const Command& command);
+  void work(const KeyframeProposal& proposal);
+  void work(Recentre command);
+  void work(ApplyAdjustment command);
+  LocalMapPtr publish();
+  void find_places(const PlaceQuestion& question);
+  void loop();
+
+  const MappingMode mode_;
+  const std::size_t places_per_frame_;
+  mutable std::mutex mapper_mutex_;  ///< held while the mapper works
+  Mapper mapper_;
+  KeyframeId centre_ = 0;
+  mutable std::mutex output_mutex_;  ///< guards the three below, held briefly
+  LocalMapPtr snapshot_;
+  std::vector<KeyframeChange> changes_;
+  std::vector<LocalMapPtr> places_;
+  std::vector<LoopClosure> loops_;
+  std::atomic<int> pending_{0};
+  std::atomic<bool> place_wanted_{false};
+  std::atomic<KeyframeId> wanted_centre_{0};
+  std::atomic<bool> recentre_queued_{false};
+  concurrency::BoundedQueue<Command> queue_;
+  std::thread thread_;
+};
+
+}  // namespace rtd::slam

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "services/slam/core/map/frame.hpp"
+
+namespace rtd::slam {
+
+/// A point that should be visible in an image: where to look for it and what it looks like.
+struct SearchPoint {
+  vision::SearchWindow window;
+  float inverse_depth_per_m = 0;  ///< predicted 1/z, compared with the feature's depth where there is one
+  const msg::Descriptor* descriptor = nullptr;
+  float angle_rad = 0;    ///< orientation where it was last seen; used by RotationCheck::kOn
+  std::uint32_t tag = 0;  ///< the caller's index
+};
+
+enum class RotationCheck : std::uint8_t { kOff, kOn };
+
+struct MatchRules {
+  int max_hamming = 100;   ///< of 256 bits
+  double max_ratio = 1.0;  ///< best / second best of the same octave; 1 = no such check
+  RotationCheck rotation = RotationCheck::kOff;
+  double disparity_px_m = 40.0;  ///< depth gate: |b/z - b/depth| must be within the search radius
+};
+
+struct Match {
+  std::uint32_t feature = 0;  ///< in the frame
+  std::uint32_t tag = 0;      ///< of the search point, or feature of the other frame
+  int hamming = 0;
+};
+
+/// Guided matching: for each point the most similar feature in its window. A feature goes to the point that it is most
+/// similar to; features marked in `taken` (per feature; may be empty) are left alone. Ordered by feature.
+std::vector<Match> match_projected(const Frame& frame, std::span<const SearchPoint> points,
+                                   const std::vector<char>& taken, const MatchRules& rules);
+
+/// Unguided matching of chosen features of `other` with all of `frame`: mutual nearest with ratio and rotation check.
+/// For tracking after a jump and for recovery; quadratic. `tag` is the feature in `other`.
+std::vector<Match> match_by_descriptor(const Frame& frame, const Frame& other,
+                                       std::span<const std::uint32_t> other_features, const MatchRules& rules);
+
+/// Keeps the matches whose change of orientation agrees with the crowd's: the three fullest of 30 bins.
+std::vector<Match> keep_consistent_rotation(const std::vector<Match>& matches, std::span<const float> change_rad);
+
+}  // namespace rtd::slam

@@ -1,0 +1,324 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/tracking/tracker.hpp"
+
+#include <algorithm>
+
+#include "services/slam/core/tracking/landmark_belief.hpp"
+
+namespace rtd::slam {
+namespace {
+
+constexpr double kNanosecondsPerSecond = 1e9;
+constexpr double kMaxPredictionGap_s = 0.5;  ///< a longer gap says nothing about the motion
+
+float to_ms(std::int64_t duration_ns) {
+  return static_cast<float>(static_cast<double>(duration_ns) * 1e-6);
+}
+
+double seconds_between(const Frame& earlier, const Frame& later) {
+  return static_cast<double>(later.stamp_ns - earlier.stamp_ns) / kNanosecondsPerSecond;
+}
+
+/// Whether a camera that moved like `motion` can have got there in `gap_s`. If not, frames in between are missing or it
+/// was carried away: the way to there over the gap is nobody's velocity.
+bool is_steady(const CameraMotion& motion, const Eigen::Isometry3d& T_last_camera, double gap_s) {
+  constexpr double kMaxAcceleration_m_s2 = 50, kMaxAcceleration_rad_s2 = 200;  // a hand that is struck
+  const Eigen::Isometry3d T_expected_camera =
+      geometry::se3_exp(gap_s * motion.velocity_per_s).inverse() * T_last_camera;
+  return T_expected_camera.translation().norm() < kMaxAcceleration_m_s2 * gap_s * gap_s &&
+         geometry::rotation_angle_rad(T_expected_camera) < kMaxAcceleration_rad_s2 * gap_s * gap_s;
+}
+
+}  // namespace
+
+KeyframeId vote_reference(const LocalMap& map, const std::vector<LandmarkId>& landmarks) {
+  std::vector<int> votes(map.keyframes.size(), 0);
+  for (const LandmarkId id : landmarks) {
+    const LocalLandmark* landmark = id == kNoLandmark ? nullptr : map.find_landmark(id);
+    if (landmark == nullptr) continue;
+    for (std::uint32_t i = 0; i < landmark->observers; ++i) ++votes[map.observers[landmark->first_observer + i]];
+  }
+  const auto most = std::max_element(votes.begin(), votes.end());
+  return most == votes.end() || *most == 0 ? kNoKeyframe
+                                           : map.keyframes[static_cast<std::size_t>(most - votes.begin())].id;
+}
+
+bool Tracker::can_initialize(const Frame& frame) const {
+  const auto with_depth = std::count_if(frame.features.begin(), frame.features.end(),
+                                        [](const msg::Feature& feature) { return feature.depth_m > 0; });
+  return with_depth >= config_.tracker.min_initial_points;
+}
+
+TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
+  TrackOutcome outcome;
+  outcome.state = state_ = msg::TrackingState::kOk;
+  last_ = TrackedFrame{};
+  last_.landmarks.assign(frame->features.size(), kNoLandmark);
+  last_.frame = std::move(frame);
+  last_.reference = map->keyframes.front().id;
+  outcome.tracked = last_;
+  outcome.inliers = static_cast<int>(map->landmarks.size());
+  motion_.reset();
+  frames_since_keyframe_ = failed_frames_ = frames_at_place_ = 0;
+  unlocated_ = false;
+  outcome.map = place_ = std::move(map);
+  return outcome;
+}
+
+TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
+  const std::int64_t start_ns = now_ns_();
+  TrackOutcome outcome;
+  outcome.map = choose_map(snapshot);
+  adopt(*outcome.map);
+  const PoseGuess guess = find_pose(*frame, *outcome.map);
+  const std::int64_t matched_ns = now_ns_();
+  outcome.stage_ms[msg::kStageMatch] = to_ms(matched_ns - start_ns - guess.optimizer_ns);
+  outcome.stage_ms[msg::kStagePose] = to_ms(guess.optimizer_ns);
+  LocalMapTracking tracking;
+  if (guess.success) {
+    tracking = track_local_map(*frame, *outcome.map, guess, context());
+    outcome.stage_ms[msg::kStageLocalMap] = to_ms(now_ns_() - matched_ns - tracking.guess.optimizer_ns);
+    outcome.stage_ms[msg::kStagePose] += to_ms(tracking.guess.optimizer_ns);
+  }
+  outcome.inliers = tracking.guess.inliers;
+  if (acceptable(tracking.guess) && believable(*frame, guess, tracking)) {
+    accept(outcome, std::move(frame), tracking);
+    return outcome;
+  }
+  const std::int64_t failed_ns = now_ns_();
+  auto found = may_relocalize(*frame) ? relocalize(*frame, places_(frame, place_attempts_++), context()) : std::nullopt;
+  outcome.stage_ms[msg::kStageRelocalize] = to_ms(now_ns_() - failed_ns);
+  if (found) {
+    enter_place(outcome, std::move(frame), std::move(*found));
+  } else {
+    reject(outcome, *frame, tracking.guess);
+  }
+  return outcome;
+}
+
+void Tracker::forget_motion() {
+  motion_.reset();
+  if (msg::has_pose(state_)) state_ = msg::TrackingState::kRecentlyLost;
+}
+
+void Tracker::await_relocalization() {
+  motion_.reset();
+  last_ = TrackedFrame{};
+  state_ = msg::TrackingState::kLost;
+  failed_frames_ = config_.tracker.recently_lost_frames;
+  unlocated_ = true;
+}
+
+/// Where the camera entered the map, until the mapper's snapshots have followed it there: they come from another
+/// thread.
+LocalMapPtr Tracker::choose_map(const LocalMapPtr& snapshot) {
+  constexpr int kMaxFrames = 30;  // the keyframe that is waited for may have been removed meanwhile
+  if (place_ == nullptr) return snapshot;
+  if (snapshot->find_keyframe(last_.reference) == nullptr && ++frames_at_place_ <= kMaxFrames) return place_;
+  place_.reset();
+  return snapshot;
+}
+
+/// The map may have moved under the last frame, and the last frame may have become a keyframe with new landmarks.
+void Tracker::adopt(const LocalMap& map) {
+  for (const LocalKeyframe& keyframe : map.keyframes) {
+    if (keyframe.frame != last_.frame) continue;
+    last_.T_world_camera = keyframe.T_world_camera;
+    last_.landmarks = keyframe.landmarks;
+    last_.reference = keyframe.id;
+    last_.T_reference_camera.setIdentity();
+    return;
+  }
+  if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
+    last_.T_world_camera = geometry::normalized(reference->T_world_camera * last_.T_reference_camera);
+  }
+}
+
+/// Where to look: constant velocity, docs/theory/tracking.md Eq. (7); fading once frames have failed.
+Eigen::Isometry3d Tracker::predict(const Frame& frame) const {
+  if (const auto held = state_ == msg::TrackingState::kPredicted ? hold(frame) : std::nullopt) {
+    return held->T_world_camera;
+  }
+  const double gap_s = seconds_between(*last_.frame, frame);
+  if (!motion_ || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return last_.T_world_camera;
+  return last_.T_world_camera * geometry::se3_exp(gap_s * motion_->velocity_per_s);
+}
+
+/// The pose that may be claimed though nothing was measured; empty when too long ago.
+std::optional<PredictedPose> Tracker::hold(const Frame& frame) const {
+  if (last_.frame == nullptr) return std::nullopt;
+  const double gap_s = seconds_between(*last_.frame, frame);
+  const bool recent = gap_s > 0 && gap_s <= config_.prediction.max_hold_s;
+  if (!config_.techniques.prediction || !motion_ || !msg::has_pose(state_) || !recent) return std::nullopt;
+  CameraMotion motion = *motion_;
+  motion.T_world_camera = last_.T_world_camera;
+  return predict_motion(motion, gap_s, config_.prediction);
+}
+
+PoseGuess Tracker::find_pose(const Frame& frame, const LocalMap& map) {
+  if (state_ != msg::TrackingState::kLost) {
+    PoseGuess guess = track_last_frame(frame, last_, map, predict(frame), context());
+    if (guess.success) return guess;
+    if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
+      guess = track_keyframe(frame, *reference, map, context());
+      if (guess.success) return guess;
+    }
+  }
+  return msg::has_pose(state_) || config_.techniques.place_recognition ? PoseGuess{} : recover(frame, map);
+}
+
+/// Without place recognition: tries a few keyframes of the window in each frame, going round.
+PoseGuess Tracker::recover(const Frame& frame, const LocalMap& map) {
+  const std::size_t tries =
+      std::min(map.keyframes.size(), static_cast<std::size_t>(config_.tracker.recovery_keyframes));
+  for (std::size_t i = 0; i < tries; ++i) {
+    PoseGuess guess = track_keyframe(frame, map.keyframes[next_recovery_++ % map.keyframes.size()], map, context());
+    if (guess.success) return guess;
+  }
+  return {};
+}
+
+/// Lost, or about to be although the view is rich: somebody has carried the camera away.
+bool Tracker::may_relocalize(const Frame& frame) const {
+  constexpr std::size_t kFeatures = 15, kRichView = 100;
+  if (!config_.techniques.place_recognition || !places_) return false;
+  return frame.features.size() >= (msg::has_pose(state_) ? kRichView : kFeatures);
+}
+
+bool Tracker::acceptable(const PoseGuess& guess) const {
+  // After a loss a wrong place is the greater danger.
+  const double strictness = msg::has_pose(state_) ? 1.0 : 1.5;
+  return guess.success && guess.inliers >= strictness * config_.tracker.min_inliers;
+}
+
+/// The frame was tracked. After a recognised place it takes some more that agree before a pose is given out.
+void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking) {
+  follow(std::move(frame), *outcome.map, tracking);
+  outcome.tracked = last_;
+  if (state_ == msg::TrackingState::kRelocalizing && ++confirmations_ < config_.place.confirmations) {
+    outcome.state = state_;
+    return;
+  }
+  count(*last_.frame, *outcome.map, tracking);
+  failed_frames_ = 0;
+  place_attempts_ = 0;
+  unlocated_ = false;
+  ++frames_since_keyframe_;
+  outcome.state = state_ = msg::TrackingState::kOk;
+  const geometry::Matrix6d local = config_.sensor.shared_error * tracking.guess.covariance;
+  covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
+  map_covariance_ = covariance_ - local;
+  outcome.covariance = covariance_;
+}
+
+/// Found by the reference keyframe's descriptors alone, or by hardly any landmark of the last frame, the camera may as
+/// well have been carried away to where things look alike.
+bool Tracker::believable(const Frame& frame, const PoseGuess& start, const LocalMapTracking& tracking) const {
+  if (!config_.techniques.place_recognition) return true;
+  if (!start.guided) return is_convincing(frame, tracking, config_.place);
+  return start.inliers >= config_.tracker.min_inliers || agrees_widely(frame, tracking, config_.place);
+}
+
+void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalization found) {
+  state_ = msg::TrackingState::kRelocalizing;
+  outcome.map = place_ = std::move(found.place);
+  outcome.inliers = found.tracking.guess.inliers;
+  frames_at_place_ = 0;
+  confirmations_ = -1;  // the frame itself does not count
+  motion_.reset();
+  accept(outcome, std::move(frame), found.tracking);
+}
+
+/// The frame is the last tracked one from now on.
+void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking) {
+  const double gap_s = last_.frame == nullptr ? 0 : seconds_between(*last_.frame, *frame);
+  const bool entered = state_ == msg::TrackingState::kRelocalizing && confirmations_ >= 0;
+  const bool in_time = (msg::has_pose(state_) || entered) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
+  const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * tracking.guess.T_world_camera;
+  const bool continuous = in_time && (!motion_ || is_steady(*motion_, T_last_camera, gap_s));
+  motion_.reset();
+  if (continuous) {
+    motion_ = CameraMotion{tracking.guess.T_world_camera, geometry::se3_log(T_last_camera) / gap_s, gap_s,
+                           tracking.guess.covariance};
+  }
+  last_.frame = std::move(frame);
+  last_.T_world_camera = tracking.guess.T_world_camera;
+  last_.landmarks = tracking.guess.landmarks;
+  if (const KeyframeId reference = vote_reference(map, last_.landmarks); reference != kNoKeyframe) {
+    last_.reference = reference;
+  }
+  if (map.find_keyframe(last_.reference) == nullptr) last_.reference = map.keyframes.front().id;
+  last_.T_reference_camera = map.find_keyframe(last_.reference)->T_world_camera.inverse() * last_.T_world_camera;
+  inliers_ = tracking.guess.inliers;
+}
+
+/// Too little was found: predicts for a moment, or says lost. A pose from few landmarks that agrees with the
+/// prediction is better than the prediction alone.
+void Tracker::reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess& weak) {
+  constexpr double kMaxDistance2 = 16.8;  // 99 % of chi2 with 6 degrees of freedom
+  if (auto claimed = hold(frame)) {
+    const PredictedPose measured{weak.T_world_camera, weak.covariance};
+    const bool usable = weak.success && weak.inliers >= config_.prediction.min_weak_inliers;
+    if (usable && measured.covariance.trace() < claimed->covariance.trace() &&
+        pose_distance2(*claimed, measured) < kMaxDistance2) {
+      claimed = measured;
+    }
+    outcome.tracked.T_world_camera = claimed->T_world_camera;
+    outcome.covariance = config_.sensor.shared_error * claimed->covariance + map_covariance_;
+    outcome.state = state_ = msg::TrackingState::kPredicted;
+    return;
+  }
+  ++failed_frames_;
+  motion_.reset();
+  state_ = failed_frames_ > config_.tracker.recently_lost_frames ? msg::TrackingState::kLost
+                                                                 : msg::TrackingState::kRecentlyLost;
+  outcome.state = unlocated_ ? msg::TrackingState::kRelocalizing : state_;
+}
+
+void Tracker::count(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking) {
+  const auto entry = [&](LandmarkId id) -> LandmarkStatistics& {
+    LandmarkStatistics& statistics = statistics_[id];
+    statistics.landmark = id;
+    return statistics;
+  };
+  for (const LandmarkId id : tracking.visible) ++entry(id).visible;
+  for (const LandmarkId id : tracking.guess.landmarks) {
+    if (id != kNoLandmark) ++entry(id).found;
+  }
+  if (!config_.techniques.landmark_belief) return;
+  for (const LandmarkEvidence& evidence : judge_landmarks(frame, map, tracking, config_.belief)) {
+    const LocalLandmark* landmark = map.find_landmark(evidence.landmark);
+    if (landmark == nullptr) continue;
+    double& change = entry(evidence.landmark).log_odds;
+    change = bounded_change(landmark->log_odds, change + evidence.log_odds, config_.belief.max_log_odds);
+  }
+}
+
+KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_idle) const {
+  KeyframeSituation situation;
+  situation.frames_since_keyframe = frames_since_keyframe_;
+  situation.map_keyframes = static_cast<int>(map.component_keyframes);
+  situation.inliers = inliers_;
+  situation.mapper_idle = mapper_idle;
+  if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
+    situation.reference_landmarks = map.confirmed_landmarks(*reference);
+  }
+  for (std::size_t i = 0; i < last_.frame->features.size(); ++i) {
+    const double depth_m = last_.frame->features[i].depth_m;
+    if (depth_m <= 0 || depth_m > config_.sensor.close_depth_m) continue;
+    ++(last_.landmarks[i] != kNoLandmark ? situation.close_tracked : situation.close_untracked);
+  }
+  return situation;
+}
+
+KeyframeProposal Tracker::propose_keyframe() {
+  KeyframeProposal proposal{last_.frame, last_.reference, last_.T_reference_camera, last_.landmarks, {}};
+  uncertainty_.add_keyframe(last_.frame->seq, last_.T_world_camera.translation(), covariance_);
+  for (const auto& [id, statistics] : statistics_) proposal.statistics.push_back(statistics);  // sums: order is free
+  statistics_.clear();
+  frames_since_keyframe_ = 0;
+  return proposal;
+}
+
+}  // namespace rtd::slam

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory_resource>
+#include <optional>
+#include <unordered_map>
+
+#include "common/msg/tracking.hpp"
+#include "services/slam/core/mapping/mapper.hpp"
+#include "services/slam/core/tracking/keyframe_policy.hpp"
+#include "services/slam/core/tracking/map_uncertainty.hpp"
+#include "services/slam/core/tracking/motion_prediction.hpp"
+#include "services/slam/core/tracking/relocalization.hpp"
+#include "services/slam/core/tracking/tracking_steps.hpp"
+
+namespace rtd::slam {
+
+/// What tracking says of one frame.
+struct TrackOutcome {
+  LocalMapPtr map;  ///< the part of the map that the frame was compared with
+  msg::TrackingState state = msg::TrackingState::kInitializing;
+  TrackedFrame tracked;  ///< in state kPredicted the pose only
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+  int inliers = 0;
+  std::array<float, msg::kSlamStages> stage_ms{};
+
+  /// A place was recognised and is not confirmed yet.
+  bool at_place() const { return state == msg::TrackingState::kRelocalizing && tracked.frame != nullptr; }
+};
+
+/// Parts of the map around places that look like a frame; every attempt of a search gives others. May be empty.
+using PlaceSource = std::function<std::vector<LocalMapPtr>(const FramePtr&, std::size_t attempt)>;
+
+/// Follows the camera through the map: motion model, else reference keyframe; then local map; when that fails, the
+/// places that look alike. Owns no map, sees it in snapshots only. docs/theory/tracking.md, place_recognition.md. Not
+/// thread-safe.
+class Tracker {
+ public:
+  /// Without `places` a lost camera is found only around its last pose.
+  Tracker(const SlamConfig& config, Clock now_ns, PlaceSource places = {})
+      : config_(config), now_ns_(std::move(now_ns)), places_(std::move(places)) {}
+
+  /// Whether a first keyframe can be made of this frame.
+  bool can_initialize(const Frame& frame) const;
+  /// The frame is the first keyframe of a map, at the origin of its world; `map` is what that map consists of.
+  TrackOutcome initialize(FramePtr frame, LocalMapPtr map);
+  /// Tracks one frame. A failure leaves the last tracked frame as it was.
+  TrackOutcome track(FramePtr frame, const LocalMapPtr& snapshot);
+  /// The map may have moved under the last frame: takes its pose from its reference keyframe, as track() does first.
+  void adopt(const LocalMap& map);
+  /// Of the last tracked frame.
+  const Eigen::Isometry3d& T_world_camera() const { return last_.T_world_camera; }
+  /// The source started again: no motion can be assumed between the last frame and the next.
+  void forget_motion();
+  /// Between the last two tracked frames; empty when they were too far apart.
+  const std::optional<CameraMotion>& motion() const { return motion_; }
+
+  /// The map was there before the first frame: no pose until a frame is found in it.
+  void await_relocalization();
+  /// Not found in that map so far.
+  bool unlocated() const { return unlocated_; }
+
+  /// Whether the frame just tracked should become a keyframe, and what the mapper then needs.
+  KeyframeSituation keyframe_situation(const LocalMap& map, bool mapper_idle) const;
+  KeyframeProposal propose_keyframe();
+
+ private:
+  TrackingContext context() const { return {config_, now_ns_, statistics_}; }
+  LocalMapPtr choose_map(const LocalMapPtr& snapshot);
+  Eigen::Isometry3d predict(const Frame& frame) const;
+  PoseGuess find_pose(const Frame& frame, const LocalMap& map);
+  PoseGuess recover(const Frame& frame, const LocalMap& map);
+  bool may_relocalize(const Frame& frame) const;
+  bool acceptable(const PoseGuess& guess) const;
+  bool believable(const Frame& frame, const PoseGuess& start, const LocalMapTracking& tracking) const;
+  void enter_place(TrackOutcome& outcome, FramePtr frame, Relocalization found);
+  void follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking);
+  void accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking);
+  void reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess& weak);
+  std::optional<PredictedPose> hold(const Frame& frame) const;
+  void count(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking);
+
+  SlamConfig config_;
+  Clock now_ns_;
+  PlaceSource places_;
+  msg::TrackingState state_ = msg::TrackingState::kInitializing;
+  TrackedFrame last_;
+  MapUncertainty uncertainty_;
+  geometry::Matrix6d covariance_ = geometry::Matrix6d::Zero();      ///< of last_, in the world
+  geometry::Matrix6d map_covariance_ = geometry::Matrix6d::Zero();  ///< the map's part of it
+  std::optional<CameraMotion> motion_;  ///< at the last tracked frame, whose pose the map may have moved since
+  int inliers_ = 0;
+  int frames_since_keyframe_ = 0;
+  int failed_frames_ = 0;
+  bool unlocated_ = false;  ///< told as kRelocalizing; state_ is kLost meanwhile
+  std::size_t next_recovery_ = 0;
+  std::size_t place_attempts_ = 0;  ///< of the search that is going on
+  int confirmations_ = 0;           ///< frames that agreed with the recognised place
+  LocalMapPtr place_;               ///< where the camera entered the map, until the snapshots have followed it
+  int frames_at_place_ = 0;
+  std::pmr::unsynchronized_pool_resource statistics_memory_;  ///< used again from keyframe to keyframe
+  StatisticsById statistics_{&statistics_memory_};
+};
+
+/// The keyframe of the window that sees most of these landmarks; kNoKeyframe when none does.
+KeyframeId vote_reference(const LocalMap& map, const std::vector<LandmarkId>& landmarks);
+
+}  // namespace rtd::slam

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/tracking/tracking_steps.hpp"
+
+#include <algorithm>
+
+#include "services/slam/core/map/scale_pyramid.hpp"
+#include "services/slam/core/mapping/landmark_creation.hpp"
+#include "services/slam/core/tracking/pose_ransac.hpp"
+#include "services/slam/core/tracking/projection.hpp"
+
+namespace rtd::slam {
+namespace {
+
+/// A landmark as the world point of a feature, believed as much as the frames since the last keyframe let us.
+Association associate(std::uint32_t feature, const LocalLandmark& landmark, const TrackingContext& context) {
+  double probability = landmark.static_probability;
+  const auto news = context.statistics.find(landmark.id);
+  if (context.config.techniques.landmark_belief && news != context.statistics.end()) {
+    probability = to_probability(landmark.log_odds + news->second.log_odds);
+  }
+  return {feature, landmark.id, landmark.position, probability};
+}
+
+vision::PoseObservation make_observation(const Frame& frame, const Association& association) {
+  const msg::Feature& feature = frame.features[association.feature];
+  return {association.p_world, frame.measurement(association.feature), sigma_px(feature.octave),
+          std::min<double>(feature.static_probability, association.static_probability)};
+}
+
+PoseGuess optimize(const Frame& frame, const std::vector<Association>& associations,
+                   const Eigen::Isometry3d& T_world_camera_initial, const TrackingContext& context) {
+  const std::int64_t start_ns = context.now_ns();
+  std::vector<vision::PoseObservation> observations;
+  observations.reserve(associations.size());
+  for (const Association& association : associations) observations.push_back(make_observation(frame, association));
+  vision::PoseOptimizerOptions options;
+  if (context.config.techniques.adaptive_kernel) options.kernel = vision::RobustKernel::kAdaptive;
+  const auto optimized = vision::optimize_pose(frame.camera, observations, T_world_camera_initial, options);
+  PoseGuess guess;
+  guess.success = optimized.success;
+  guess.T_world_camera = optimized.T_world_camera;
+  guess.covariance = optimized.covariance;
+  guess.optimizer_ns = context.now_ns() - start_ns;
+  guess.landmarks.assign(frame.features.size(), kNoLandmark);
+  for (std::size_t i = 0; i < associations.size(); ++i) {
+    if (optimized.inlier[i] == 0 || associations[i].landmark == kNoLandmark) continue;
+    guess.landmarks[associations[i].feature] = associations[i].landmark;
+    ++guess.inliers;
+  }
+  return guess;
+}
+
+/// Landmarks of the last frame, and its close features without one at the depth that was measured there.
+std::vector<Association> points_of(const TrackedFrame& last, const LocalMap& map, const TrackingContext& context) {
+  std::vector<Association> points;
+  points.reserve(last.landmarks.size());
+  std::vector<LandmarkId> known(last.landmarks.size(), kNoLandmark);
+  for (std::uint32_t i = 0; i < last.landmarks.size(); ++i) {
+    if (last.landmarks[i] == kNoLandmark) continue;
+    const LocalLandmark* landmark = map.find_landmark(last.landmarks[i]);
+    if (landmark == nullptr) continue;
+    known[i] = landmark->id;
+    points.push_back(associate(i, *landmark, context));
+  }
+  for (const std::uint32_t i : select_close_features(*last.frame, known, context.config.sensor.close_depth_m)) {
+    points.push_back(
+        {i, kNoLandmark, last.T_world_camera * last.frame->unproject(i), last.frame->features[i].static_probability});
+  }
+  return points;
+}
+
+/// Octaves to search: moving forward makes things larger (coarser octaves show the same patch), backward smaller.
+void set_octaves(vision::SearchWindow& window, int octave, double forward_m) {
+  constexpr double kClearMotion_m = 0.08;
+  window.min_octave = forward_m < -kClearMotion_m ? 0 : (forward_m > kClearMotion_m ? octave : octave - 1);
+  window.max_octave = forward_m < -kClearMotion_m ? octave : (forward_m > kClearMotion_m ? kOctaves : octave + 1);
+}
+
+std::vector<SearchPoint> predict_points(const Frame& frame, const TrackedFrame& last,
+                                        const std::vector<Association>& points, const Eigen::Isometry3d& T_world_camera,
+                                        double radius_px) {
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  const double forward_m = (last.T_world_camera.inverse() * T_world_camera).translation().z();
+  std::vector<SearchPoint> search;
+  search.reserve(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const auto projection = project(frame, T_camera_world, points[i].p_world);
+    if (!projection) continue;
+    const msg::Feature& feature = last.frame->features[points[i].feature];
+    SearchPoint point;
+    point.window.u_px = static_cast<float>(projection->pixel.x());
+    point.window.v_px = static_cast<float>(projection->pixel.y());
+    point.window.radius_px = static_cast<float>(radius_px * sigma_px(feature.octave));
+    set_octaves(point.window, feature.octave, forward_m);
+    point.inverse_depth_per_m = static_cast<float>(1.0 / projection->z_m);
+    point.descriptor = &feature.descriptor;
+    point.angle_rad = feature.angle_rad;
+    point.tag = i;
+    search.push_back(point);
+  }
+  return search;
+}
+
+}  // namespace
+
+PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
+                           const Eigen::Isometry3d& T_world_camera_predicted, const TrackingContext& context) {
+  const SlamConfig& config = context.config;
+  constexpr int kMinLandmarks = 10;
+  const std::vector<Association> points = points_of(last, map, context);
+  const MatchRules rules{100, 1.0, RotationCheck::kOn};
+  std::vector<Match> matches;
+  for (const double widening : {1.0, 2.0}) {
+    const auto search =
+        predict_points(frame, last, points, T_world_camera_predicted, widening * config.tracker.motion_radius_px);
+    matches = match_projected(frame, search, {}, rules);
+    if (static_cast<int>(matches.size()) >= config.tracker.min_motion_matches) break;
+  }
+  if (static_cast<int>(matches.size()) < config.tracker.min_motion_matches) return {};
+  std::vector<Association> associations;
+  associations.reserve(matches.size());
+  for (const Match& match : matches) {
+    associations.push_back(points[match.tag]);
+    associations.back().feature = match.feature;
+  }
+  PoseGuess guess = optimize(frame, associations, T_world_camera_predicted, context);
+  guess.success = guess.success && guess.inliers >= kMinLandmarks;
+  return guess;
+}
+
+PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, const LocalMap& map,
+                         const TrackingContext& context) {
+  constexpr int kMinMatches = 15, kMinInliers = 10;
+  std::vector<std::uint32_t> features;
+  for (std::uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    if (keyframe.landmarks[i] != kNoLandmark) features.push_back(i);
+  }
+  const auto matches = match_by_descriptor(frame, *keyframe.frame, features, {60, 0.8, RotationCheck::kOn});
+  if (static_cast<int>(matches.size()) < kMinMatches) return {};
+  std::vector<Association> associations;
+  std::vector<vision::PoseObservation> observations;
+  for (const Match& match : matches) {
+    const LocalLandmark& landmark = *map.find_landmark(keyframe.landmarks[match.tag]);
+    associations.push_back(associate(match.feature, landmark, context));
+    observations.push_back(make_observation(frame, associations.back()));
+  }
+  PoseRansacOptions options;
+  options.seed = frame.seq;
+  const auto coarse = estimate_pose_ransac(frame.camera, observations, options);
+  PoseGuess guess =
+      optimize(frame, associations, coarse.success ? coarse.T_world_camera : keyframe.T_world_camera, context);
+  guess.guided = false;
+  guess.success = guess.success && guess.inliers >= kMinInliers;
+  return guess;
+}
+
+LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const PoseGuess& guess,
+                                 const TrackingContext& context) {
+  const SlamConfig& config = context.config;
+  constexpr double kStraightView = 0.998;  // 3.6 degrees
+  constexpr double kStraightRadius_px = 2.5, kObliqueRadius_px = 4.0;
+  LocalMapTracking result;
+  std::vector<LandmarkId> known;
+  std::vector<Association> associations;
+  std::vector<char> taken(frame.features.size(), 0);
+  known.reserve(frame.features.size());
+  associations.reserve(frame.features.size());
+  for (std::uint32_t i = 0; i < guess.landmarks.size(); ++i) {
+    const LocalLandmark* landmark = guess.landmarks[i] == kNoLandmark ? nullptr : map.find_landmark(guess.landmarks[i]);
+    if (landmark == nullptr) continue;
+    taken[i] = 1;
+    known.push_back(landmark->id);
+    associations.push_back(associate(i, *landmark, context));
+  }
+  result.visible = known;
+  std::sort(known.begin(), known.end());
+
+  const Eigen::Isometry3d T_camera_world = guess.T_world_camera.inverse();
+  std::vector<SearchPoint> search;
+  search.reserve(map.landmarks.size());
+  result.visible.reserve(map.landmarks.size());
+  for (std::uint32_t i = 0; i < map.landmarks.size(); ++i) {
+    const LocalLandmark& landmark = map.landmarks[i];
+    if (std::binary_search(known.begin(), known.end(), landmark.id)) continue;
+    const auto view =
+        predict_view(frame, guess.T_world_camera, T_camera_world,
+                     {landmark.position, landmark.normal, landmark.min_distance_m, landmark.max_distance_m});
+    if (!view) continue;
+    result.visible.push_back(landmark.id);
+    const double radius_px = view->view_cosine > kStraightView ? kStraightRadius_px : kObliqueRadius_px;
+    search.push_back(make_search_point(*view, config.tracker.local_radius_px * radius_px, landmark.descriptor, i));
+  }
+  for (const Match& match : match_projected(frame, search, taken, {100, 0.8, RotationCheck::kOff})) {
+    const LocalLandmark& landmark = map.landmarks[match.tag];
+    associations.push_back(associate(match.feature, landmark, context));
+  }
+  result.guess = optimize(frame, associations, guess.T_world_camera, context);
+  for (const Association& association : associations) {
+    if (result.guess.landmarks[association.feature] == kNoLandmark) result.rejected.push_back(association);
+  }
+  return result;
+}
+
+}  // namespace rtd::slam

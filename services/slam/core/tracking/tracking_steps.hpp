@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "common/vision/pose_optimizer.hpp"
+#include "services/slam/core/map/landmark_statistics.hpp"
+#include "services/slam/core/map/local_map.hpp"
+
+namespace rtd::slam {
+
+using Clock = std::function<std::int64_t()>;  ///< ns, monotonic; injected
+
+/// A frame whose pose is known, with the landmarks found in it.
+struct TrackedFrame {
+  FramePtr frame;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  std::vector<LandmarkId> landmarks;  ///< per feature
+  KeyframeId reference = kNoKeyframe;
+  Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
+};
+
+/// The outcome of one step of tracking. `landmarks` are the inliers of `T_world_camera`.
+struct PoseGuess {
+  bool success = false;
+  bool guided = true;  ///< by the motion; else by descriptors alone
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  std::vector<LandmarkId> landmarks;  ///< per feature
+  int inliers = 0;                    ///< landmarks, without temporary points
+  std::int64_t optimizer_ns = 0;      ///< spent in pose optimisation
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+};
+
+/// A feature of the frame with the world point it is taken for.
+struct Association {
+  std::uint32_t feature = 0;
+  LandmarkId landmark = kNoLandmark;  ///< kNoLandmark: a temporary point
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
+  double static_probability = 1.0;
+};
+
+/// What the steps need beside frame and map.
+struct TrackingContext {
+  const SlamConfig& config;
+  const Clock& now_ns;
+  const StatisticsById& statistics;
+};
+
+/// Frame to frame: looks for the landmarks of the last frame, and for its close features as temporary points, around
+/// where `T_world_camera_predicted` shows them. docs/theory/tracking.md, "Motion model".
+PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
+                           const Eigen::Isometry3d& T_world_camera_predicted, const TrackingContext& context);
+
+/// Frame to keyframe by descriptors alone, pose by RANSAC: after a jump or a loss. "Recovery".
+PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, const LocalMap& map,
+                         const TrackingContext& context);
+
+/// Frame to local map: looks for every landmark of the local map that should be visible from `guess`, and optimises
+/// the pose with all of them.
+struct LocalMapTracking {
+  PoseGuess guess;
+  std::vector<LandmarkId> visible;    ///< landmarks that should be seen from the pose
+  std::vector<Association> rejected;  ///< matched, but the pose does not agree
+};
+LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const PoseGuess& guess,
+                                 const TrackingContext& context);
+
+}  // namespace rtd::slam

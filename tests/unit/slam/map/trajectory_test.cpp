@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/map/trajectory.hpp"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+namespace rtd::slam {
+namespace {
+
+Eigen::Isometry3d shifted(double x_m) {
+  return Eigen::Isometry3d(Eigen::Translation3d(x_m, 0, 0));
+}
+
+TEST(TumTrajectory, writes_stamps_from_the_integer) {
+  std::ostringstream out;
+  write_tum_trajectory(out, {{1'305'031'102'175'304'000, Eigen::Isometry3d::Identity()}});
+  EXPECT_EQ(out.str(),
+            "1305031102.175304 0.000000000 0.000000000 0.000000000 0.000000000 0.000000000 0.000000000 1.000000000\n");
+}
+
+TEST(TumTrajectory, rounds_nanoseconds_and_keeps_signs) {
+  std::ostringstream out;
+  write_tum_trajectory(out, {{999'999'999, shifted(1)}, {-1'500'000'000, shifted(2)}, {0, shifted(3)}});
+  EXPECT_THAT(out.str(), ::testing::HasSubstr("1.000000 1.000000000"));
+  EXPECT_THAT(out.str(), ::testing::HasSubstr("\n-1.500000 2.000000000"));
+  EXPECT_THAT(out.str(), ::testing::HasSubstr("\n0.000000 3.000000000"));
+}
+
+TEST(TumTrajectory, writes_quaternions_with_positive_w) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::AngleAxisd(-1.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  std::ostringstream out;
+  write_tum_trajectory(out, {{0, T}});
+  EXPECT_THAT(out.str(), ::testing::HasSubstr("-0.479425539 0.877582562\n"));
+}
+
+TEST(ComposeTrajectory, follows_corrected_and_removed_keyframes) {
+  Map map;
+  for (KeyframeId k = 0; k < 3; ++k) {
+    auto frame = std::make_shared<Frame>();
+    frame->stamp_ns = 100 * k;
+    map.add_keyframe(frame, shifted(k), k == 0 ? kNoKeyframe : k - 1);
+  }
+  const std::vector<FrameRecord> frames{{5, 50, 0, shifted(0.5)}, {15, 150, 1, shifted(0.5)}};
+  map.remove_keyframe(1);
+  map.find_keyframe(0)->T_world_camera = shifted(10);
+  const auto poses = compose_trajectory(map, frames);
+  ASSERT_EQ(poses.size(), 2U);
+  EXPECT_EQ(poses[1].stamp_ns, 150);
+  EXPECT_NEAR(poses[0].T_world_camera.translation().x(), 10.5, 1e-12);
+  EXPECT_NEAR(poses[1].T_world_camera.translation().x(), 11.5, 1e-12);
+  const auto keyframes = keyframe_trajectory(map);
+  ASSERT_EQ(keyframes.size(), 2U);
+  EXPECT_EQ(keyframes[1].stamp_ns, 200);
+}
+
+TEST(Ply, tells_its_vertices) {
+  std::ostringstream out;
+  write_ply(out, {{{1, 2, 3}, 0.5F}, {{-1, 0, 4}, 1.0F}});
+  EXPECT_THAT(out.str(), ::testing::StartsWith("ply\nformat ascii 1.0\n"));
+  EXPECT_THAT(out.str(), ::testing::HasSubstr("element vertex 2\n"));
+  EXPECT_THAT(out.str(),
+              ::testing::HasSubstr("end_header\n1.00000 2.00000 3.00000 0.500\n-1.00000 0.00000 4.00000 1.000\n"));
+}
+
+}  // namespace
+}  // namespace rtd::slam

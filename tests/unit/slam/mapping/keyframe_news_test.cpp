@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "services/slam/core/mapping/keyframe_news.hpp"
+#include "services/slam/core/tracking/odometry_frame.hpp"
+
+namespace rtd::slam {
+namespace {
+
+using ::testing::ElementsAre;
+using Kind = KeyframeChange::Kind;
+
+KeyframeChange change(Kind kind, KeyframeId id, double x_m = 0) {
+  KeyframeChange change;
+  change.kind = kind;
+  change.id = id;
+  change.T_world_camera.translation().x() = x_m;
+  return change;
+}
+
+std::vector<KeyframeId> ids(const std::vector<KeyframeChange>& changes) {
+  std::vector<KeyframeId> ids;
+  for (const KeyframeChange& change : changes) ids.push_back(change.id);
+  return ids;
+}
+
+TEST(KeyframeNews, tells_thousands_of_corrections_in_portions_newest_first_and_loses_none) {
+  constexpr KeyframeId kCount = 5000;
+  KeyframeNews news;
+  std::vector<KeyframeChange> all;
+  for (KeyframeId id = 0; id < kCount; ++id) all.push_back(change(Kind::kCorrected, id));
+  news.add(all);
+  std::vector<KeyframeId> told;
+  while (!news.empty()) {
+    const auto portion = ids(news.take(48));
+    ASSERT_LE(portion.size(), 48U);
+    told.insert(told.end(), portion.begin(), portion.end());
+  }
+  ASSERT_EQ(told.size(), kCount);
+  for (KeyframeId i = 0; i < kCount; ++i) ASSERT_EQ(told[i], kCount - 1 - i);
+}
+
+TEST(KeyframeNews, new_and_removed_keyframes_do_not_wait_behind_corrections) {
+  KeyframeNews news;
+  news.add({change(Kind::kCorrected, 1), change(Kind::kCorrected, 2), change(Kind::kRemoved, 2)});
+  news.add({change(Kind::kCreated, 3)});
+  EXPECT_THAT(ids(news.take(2)), ElementsAre(2, 3));
+  EXPECT_THAT(ids(news.take(9)), ElementsAre(1)) << "nobody hears of a keyframe that is gone";
+}
+
+TEST(KeyframeNews, a_keyframe_that_moves_again_is_told_once_where_it_stands_then) {
+  KeyframeNews news;
+  news.add({change(Kind::kCorrected, 1, 0.5)});
+  news.add({change(Kind::kCorrected, 1, 0.7)});
+  const auto told = news.take(9);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].T_world_camera.translation().x(), 0.7);
+}
+
+TEST(OdometryFrame, takes_up_a_jump_so_that_the_odometry_stays_where_it_was) {
+  OdometryFrame frame{LoopConfig{}};
+  const Eigen::Isometry3d before = geometry::se3_exp(geometry::Vector6d::Constant(0.3));
+  const Eigen::Isometry3d after = geometry::se3_exp((geometry::Vector6d() << 1, 2, 3, 0, 0.4, 0).finished()) * before;
+  const Eigen::Isometry3d T_odom_camera = frame.T_map_odom().inverse() * before;
+  EXPECT_TRUE(frame.correct(before, after));
+  EXPECT_TRUE((frame.T_map_odom().inverse() * after).isApprox(T_odom_camera, 1e-12));
+}
+
+TEST(OdometryFrame, leaves_the_small_steps_of_local_adjustment_in_the_odometry) {
+  OdometryFrame frame{LoopConfig{}};
+  const Eigen::Isometry3d nearby(Eigen::Translation3d(0.005, 0, 0));
+  EXPECT_FALSE(frame.correct(Eigen::Isometry3d::Identity(), nearby));
+  EXPECT_TRUE(frame.T_map_odom().matrix().isIdentity(0));
+}
+
+}  // namespace
+}  // namespace rtd::slam

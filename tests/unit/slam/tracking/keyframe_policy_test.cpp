@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/tracking/keyframe_policy.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rtd::slam {
+namespace {
+
+/// Well tracked: 290 of 300 landmarks, plenty of close ones.
+KeyframeSituation steady() {
+  KeyframeSituation s;
+  s.frames_since_keyframe = 5;
+  s.map_keyframes = 6;
+  s.inliers = 290;
+  s.reference_landmarks = 300;
+  s.close_tracked = 200;
+  s.close_untracked = 300;
+  return s;
+}
+
+bool inserts(const KeyframeSituation& s) {
+  return decide_keyframe(s, {}) == KeyframeDecision::kOffer;
+}
+
+TEST(KeyframePolicy, leaves_a_well_known_view_alone) {
+  EXPECT_FALSE(inserts(steady()));
+  KeyframeSituation overdue = steady();
+  overdue.frames_since_keyframe = 1000;
+  EXPECT_FALSE(inserts(overdue)) << "time alone makes no new view";
+}
+
+TEST(KeyframePolicy, inserts_when_the_view_is_new) {
+  KeyframeSituation s = steady();
+  s.inliers = 268;
+  EXPECT_TRUE(inserts(s));
+  s.inliers = 272;
+  EXPECT_FALSE(inserts(s)) << "0.9 of the reference is still tracked";
+}
+
+TEST(KeyframePolicy, inserts_when_close_points_run_out) {
+  KeyframeSituation s = steady();
+  s.close_tracked = 99;
+  s.close_untracked = 71;
+  EXPECT_TRUE(inserts(s));
+  s.close_untracked = 70;
+  EXPECT_FALSE(inserts(s)) << "nothing there to make landmarks of";
+}
+
+TEST(KeyframePolicy, spares_a_busy_mapper_unless_tracking_is_weak) {
+  KeyframeSituation s = steady();
+  s.mapper_idle = false;
+  s.inliers = 200;
+  EXPECT_FALSE(inserts(s));
+  s.frames_since_keyframe = 30;
+  EXPECT_TRUE(inserts(s)) << "overdue";
+  s.frames_since_keyframe = 5;
+  s.inliers = 70;
+  EXPECT_TRUE(inserts(s)) << "weak";
+}
+
+TEST(KeyframePolicy, makes_no_keyframe_of_a_bad_pose) {
+  KeyframeSituation s = steady();
+  s.inliers = 15;
+  EXPECT_FALSE(inserts(s));
+  s.inliers = 16;
+  EXPECT_TRUE(inserts(s));
+}
+
+TEST(KeyframePolicy, waits_longer_while_the_map_is_one_keyframe) {
+  KeyframeSituation s = steady();
+  s.map_keyframes = 1;
+  s.inliers = 150;
+  EXPECT_FALSE(inserts(s));
+  s.inliers = 119;
+  EXPECT_TRUE(inserts(s));
+}
+
+TEST(KeyframePolicy, keeps_the_configured_distance) {
+  KeyframeSituation s = steady();
+  s.inliers = 200;
+  KeyframeConfig config;
+  config.min_gap_frames = 6;
+  EXPECT_EQ(decide_keyframe(s, config), KeyframeDecision::kNo);
+  s.frames_since_keyframe = 6;
+  EXPECT_EQ(decide_keyframe(s, config), KeyframeDecision::kOffer);
+}
+
+}  // namespace
+}  // namespace rtd::slam
