@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/config.hpp"
 
+#include "common/vision/motion_levels.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
 #include "services/filter/core/modes/techniques.hpp"
-#include "services/filter/core/motion_levels.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -187,7 +187,7 @@ FilterConfig ServiceConfig::core_config() const {
     if (mode == entry.name) config.mode = entry.mode;
   }
   try {
-    const MotionLevels check(config.motion_levels);
+    const vision::MotionLevels check(config.motion_levels);
   } catch (const std::invalid_argument& error) {
     throw service::ConfigError(std::string("filter.motion_levels: ") + error.what());
   }

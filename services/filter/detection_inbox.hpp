@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/msg/ros.hpp"
-#include "services/filter/core/detector_word.hpp"
+#include "services/filter/core/tracks/detection_batch.hpp"
 
 namespace rtd::filter {
 

@@ -3,10 +3,10 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/service/progress.hpp"
+#include "common/vision/motion_levels.hpp"
 #include "services/evaluation/detector/evaluate.hpp"
 #include "services/evaluation/detector/image_folder.hpp"
 #include "services/evaluation/detector/label_folder.hpp"
-#include "services/filter/core/motion_levels.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -15,10 +15,10 @@ constexpr double kLeastScore = 0.001;  // the whole curve counts
 constexpr std::size_t kTimedImages = 40;
 
 std::string level_of(const std::string& class_name) {
-  static const filter::MotionLevels levels;
+  static const vision::MotionLevels levels;
   const auto level = levels.find(class_name);
   if (!level) return {};
-  return *level == filter::MotionLevel::kHigh ? "high" : *level == filter::MotionLevel::kMedium ? "medium" : "low";
+  return *level == vision::MotionLevel::kHigh ? "high" : *level == vision::MotionLevel::kMedium ? "medium" : "low";
 }
 
 /// One image with what every model finds in it.

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "common/msg/transform_eigen.hpp"
-#include "services/filter/core/arrivals.hpp"
 #include "services/filter/core/belief/log_odds.hpp"
+#include "services/filter/core/belief/static_probability.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
-#include "services/filter/core/slow_votes.hpp"
+#include "services/filter/core/motion/arrivals.hpp"
+#include "services/filter/core/motion/slow_votes.hpp"
 #include "services/filter/core/stage_clock.hpp"
-#include "services/filter/core/static_probability.hpp"
 
 namespace rtd::filter {
 

@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "services/camera/core/source_factory.hpp"
-#include "services/filter/core/orb_extractor.hpp"
+#include "services/filter/core/orb/orb_extractor.hpp"
 #include "services/slam/core/place/vocabulary_training.hpp"
 
 namespace {

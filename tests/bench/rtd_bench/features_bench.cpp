@@ -11,7 +11,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "services/filter/core/orb_extractor.hpp"
+#include "services/filter/core/orb/orb_extractor.hpp"
 
 namespace rtd::bench {
 namespace {

@@ -12,7 +12,7 @@
 #include "common/geometry/se3.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/evaluation/core/trajectory/trajectory.hpp"
-#include "services/filter/core/orb_extractor.hpp"
+#include "services/filter/core/orb/orb_extractor.hpp"
 #include "services/slam/core/place/built_in_vocabulary.hpp"
 #include "services/slam/core/place/keyframe_database.hpp"
 

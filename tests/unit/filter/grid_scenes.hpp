@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "services/filter/core/depth_clusters.hpp"
-#include "services/filter/core/depth_grid.hpp"
-#include "tests/unit/filter/test_images.hpp"
+#include "services/filter/core/surfaces/depth_clusters.hpp"
+#include "services/filter/core/surfaces/depth_grid.hpp"
+#include "tests/unit/filter/orb/test_images.hpp"
 
 namespace rtd::filter::test {
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/motion_levels.hpp"
+#include "common/vision/motion_levels.hpp"
 
 #include <gmock/gmock.h>
 
-namespace rtd::filter {
+namespace rtd::vision {
 namespace {
 
 TEST(MotionLevels, follow_the_paper_without_configuration) {
@@ -32,4 +32,4 @@ TEST(MotionLevels, name_class_and_value_of_a_wrong_level) {
 }
 
 }  // namespace
-}  // namespace rtd::filter
+}  // namespace rtd::vision

@@ -4,7 +4,7 @@
 
 #include "common/msg/transform_eigen.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
-#include "tests/unit/filter/test_images.hpp"
+#include "tests/unit/filter/orb/test_images.hpp"
 
 namespace rtd::filter::test {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "services/filter/core/median.hpp"
+#include "services/filter/core/surfaces/median.hpp"
 
 namespace rtd::filter {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "services/filter/core/feature_votes.hpp"
 #include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/motion/feature_votes.hpp"
 
 namespace rtd::filter {
 

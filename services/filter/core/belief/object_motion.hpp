@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "services/filter/core/depth_check.hpp"
-#include "services/filter/core/dynamic_regions.hpp"
-#include "services/filter/core/object_masks.hpp"
+#include "services/filter/core/motion/depth_check.hpp"
+#include "services/filter/core/motion/dynamic_regions.hpp"
+#include "services/filter/core/surfaces/object_masks.hpp"
 
 namespace rtd::filter {
 

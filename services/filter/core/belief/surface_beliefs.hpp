@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/geometry/camera_model.hpp"
-#include "services/filter/core/depth_grid.hpp"
+#include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {
 

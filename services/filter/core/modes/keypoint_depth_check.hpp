@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "common/vision/rgbd_image.hpp"
-#include "services/filter/core/cell_masks.hpp"
 #include "services/filter/core/filter_config.hpp"
-#include "services/filter/core/view_store.hpp"
+#include "services/filter/core/motion/view_store.hpp"
+#include "services/filter/core/surfaces/cell_masks.hpp"
 
 namespace rtd::filter {
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/modes/paper_mode.hpp"
 
-#include "services/filter/core/guided_matching.hpp"
 #include "services/filter/core/modes/keypoint_depth_check.hpp"
-#include "services/filter/core/sightings.hpp"
+#include "services/filter/core/motion/guided_matching.hpp"
+#include "services/filter/core/motion/sightings.hpp"
 
 namespace rtd::filter {
 namespace {

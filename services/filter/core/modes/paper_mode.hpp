@@ -3,8 +3,8 @@
 #pragma once
 
 #include "services/filter/core/modes/published_mode.hpp"
-#include "services/filter/core/static_consensus.hpp"
-#include "services/filter/core/view_store.hpp"
+#include "services/filter/core/motion/static_consensus.hpp"
+#include "services/filter/core/motion/view_store.hpp"
 
 namespace rtd::filter {
 

@@ -9,9 +9,9 @@
 
 #include "common/msg/features.hpp"
 #include "common/vision/rgbd_image.hpp"
-#include "services/filter/core/cell_masks.hpp"
 #include "services/filter/core/filter_config.hpp"
-#include "services/filter/core/object_masks.hpp"
+#include "services/filter/core/surfaces/cell_masks.hpp"
+#include "services/filter/core/surfaces/object_masks.hpp"
 
 namespace rtd::filter {
 

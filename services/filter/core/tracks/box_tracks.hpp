@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "services/filter/core/detector_word.hpp"
 #include "services/filter/core/filter_config.hpp"
 #include "services/filter/core/tracks/box_kalman.hpp"
+#include "services/filter/core/tracks/detection_batch.hpp"
 
 namespace rtd::filter {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "services/filter/core/cell_masks.hpp"
-#include "services/filter/core/depth_check.hpp"
-#include "services/filter/core/depth_clusters.hpp"
+#include "services/filter/core/motion/depth_check.hpp"
+#include "services/filter/core/surfaces/cell_masks.hpp"
+#include "services/filter/core/surfaces/depth_clusters.hpp"
 #include "services/filter/core/tracks/box_kalman.hpp"
 
 namespace rtd::filter {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "services/filter/core/slow_votes.hpp"
+#include "services/filter/core/motion/slow_votes.hpp"
 #include "services/filter/core/tracks/assignment.hpp"
 
 namespace rtd::filter {

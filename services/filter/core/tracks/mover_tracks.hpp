@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "services/filter/core/dynamic_regions.hpp"
 #include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/motion/dynamic_regions.hpp"
 #include "services/filter/core/tracks/axis_kalman.hpp"
 #include "services/filter/core/tracks/mover_sighting.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/filter/core/median.hpp"
+#include "services/filter/core/surfaces/median.hpp"
 
 namespace rtd::filter {
 namespace {

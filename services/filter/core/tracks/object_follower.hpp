@@ -5,15 +5,15 @@
 #include <optional>
 #include <vector>
 
+#include "common/vision/motion_levels.hpp"
 #include "common/vision/rgbd_image.hpp"
-#include "services/filter/core/depth_grid.hpp"
-#include "services/filter/core/detector_word.hpp"
 #include "services/filter/core/filter_config.hpp"
-#include "services/filter/core/motion_levels.hpp"
-#include "services/filter/core/object_masks.hpp"
+#include "services/filter/core/motion/view_store.hpp"
+#include "services/filter/core/surfaces/depth_grid.hpp"
+#include "services/filter/core/surfaces/object_masks.hpp"
 #include "services/filter/core/tracks/box_tracks.hpp"
+#include "services/filter/core/tracks/detection_batch.hpp"
 #include "services/filter/core/tracks/mask_flow.hpp"
-#include "services/filter/core/view_store.hpp"
 
 namespace rtd::filter {
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/filter/test_images.hpp"
+#include "tests/unit/filter/orb/test_images.hpp"
 
 namespace rtd::filter {
 namespace {

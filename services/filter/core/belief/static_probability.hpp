@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/msg/features.hpp"
+#include "services/filter/core/belief/belief_update.hpp"
+#include "services/filter/core/motion/depth_check.hpp"
+#include "services/filter/core/motion/dynamic_regions.hpp"
+#include "services/filter/core/surfaces/object_masks.hpp"
+
+namespace rtd::filter {
+
+/// All that is known of a frame when its features are judged.
+struct FrameKnowledge {
+  GridShape shape;
+  const std::vector<SceneObject>& objects;
+  const std::vector<std::int16_t>& object_on;  ///< per cell, objects_on_cells()
+  const CellBeliefs& beliefs;                  ///< per cell, this frame included
+  const DynamicRegions& regions;
+  const DepthEvidence& evidence;
+};
+
+/// Gives every feature its probability to be static, its flags and its object (docs/theory/dynamic_points.md section 5,
+/// DESIGN section 4 rule 4), marks the improbable ones as removed and, when that leaves too few, takes the best of the
+/// doubtful back. Features that geometry saw moving stay removed.
+void weigh_static_probability(std::vector<msg::Feature>& features, const FrameKnowledge& known,
+                              const FilterConfig& config);
+
+}  // namespace rtd::filter

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/motion/dynamic_regions.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace rtd::filter {
+namespace {
+
+constexpr double kMinRememberedShare = 0.4;
+constexpr int kForgetFaster = 4;  // frames of memory that one frame at rest costs
+
+/// The counts by which a cluster is judged.
+struct ClusterEvidence {
+  int seen = 0;  ///< stated, or there a while ago, whatever was thought of it then
+  int stated = 0, violating = 0, remembered = 0;
+  std::uint8_t frames_left = 0;
+};
+
+std::vector<ClusterEvidence> gather(const DepthClusters& clusters, const DepthEvidence& evidence,
+                                    const CellMask& remembered) {
+  std::vector<ClusterEvidence> gathered(clusters.cells.size());
+  for (std::size_t cell = 0; cell < clusters.label.size(); ++cell) {
+    if (clusters.label[cell] < 0) continue;
+    ClusterEvidence& cluster = gathered[static_cast<std::size_t>(clusters.label[cell])];
+    cluster.violating += evidence.violated[cell] > 0 ? 1 : 0;
+    cluster.stated += evidence.violated[cell] > 0 || evidence.consistent[cell] > 0 ? 1 : 0;
+    cluster.seen += evidence.violated[cell] > 0 || evidence.consistent[cell] > 0 || evidence.lasting[cell] > 0 ? 1 : 0;
+    cluster.remembered += remembered[cell] > 0 ? 1 : 0;
+    cluster.frames_left = std::max(cluster.frames_left, remembered[cell]);
+  }
+  return gathered;
+}
+
+bool violates(const ClusterEvidence& cluster, const GeometryConfig& config) {
+  return cluster.violating >= config.min_region_cells / 2 && cluster.stated >= config.min_cluster_statements &&
+         cluster.violating >= config.min_violated_share * cluster.stated;
+}
+
+std::uint8_t one_less(std::uint8_t frames) {
+  return frames > 0 ? static_cast<std::uint8_t>(frames - 1) : frames;
+}
+
+int vote_count(const std::vector<int>& per_cluster, std::size_t cluster) {
+  return cluster < per_cluster.size() ? per_cluster[cluster] : 0;
+}
+
+/// Depth and features both say that it rests: what was believed of it was wrong, or is over.
+bool rests(const ClusterEvidence& cluster, const MotionVotes& votes, std::size_t index, const GeometryConfig& config) {
+  const auto at_place = [&](const FeatureVotes& cast) {
+    return vote_count(cast.resting, index) >= config.min_resting_ratio * vote_count(cast.moving, index);
+  };
+  return cluster.seen >= config.min_cluster_statements &&
+         cluster.violating <= config.max_unsettled_share * cluster.seen && votes.quick.cluster_rests(index, config) &&
+         at_place(votes.slow);
+}
+
+/// Per cluster: how long it is believed to be dynamic, 0 = it is not.
+std::vector<std::uint8_t> judge_clusters(const DepthClusters& clusters, const DepthEvidence& evidence,
+                                         const MotionVotes& votes, const CellMask& remembered,
+                                         const GeometryConfig& config) {
+  const std::vector<ClusterEvidence> gathered = gather(clusters, evidence, remembered);
+  std::vector<std::uint8_t> frames_left(gathered.size(), 0);
+  for (std::size_t i = 0; i < gathered.size(); ++i) {
+    if (violates(gathered[i], config) || votes.quick.cluster_moves(i, config) || votes.slow.cluster_creeps(i, config)) {
+      frames_left[i] = static_cast<std::uint8_t>(config.memory_frames);
+    } else if (gathered[i].remembered >= kMinRememberedShare * clusters.cells[i]) {
+      const int fewer = rests(gathered[i], votes, i, config) ? kForgetFaster : 1;
+      frames_left[i] = static_cast<std::uint8_t>(std::max(0, gathered[i].frames_left - fewer));
+    }
+  }
+  return frames_left;
+}
+
+struct VotesOnCells {
+  std::vector<int> resting, moving;  ///< per cell
+  std::pair<int, int> sum(const std::vector<int>& region) const {
+    std::pair<int, int> total{0, 0};
+    for (const int cell : region) {
+      total.first += resting[static_cast<std::size_t>(cell)];
+      total.second += moving[static_cast<std::size_t>(cell)];
+    }
+    return total;
+  }
+};
+
+VotesOnCells on_cells(const FeatureVotes& votes, std::size_t cells) {
+  VotesOnCells on{std::vector<int>(cells, 0), std::vector<int>(cells, 0)};
+  for (const FeatureVote& vote : votes.votes)
+    ++(vote.moving ? on.moving : on.resting)[static_cast<std::size_t>(vote.cell)];
+  return on;
+}
+
+/// Large parts that have lasted and whose features are at their place: the floor on which a walker stands belongs to
+/// his depth cluster but not to him. The inside of a slow mover lasts too, but its features have moved.
+CellMask resting_parts(const DepthClusters& clusters, const DepthEvidence& evidence, const MotionVotes& votes,
+                       const GeometryConfig& config) {
+  const VotesOnCells quick = on_cells(votes.quick, clusters.label.size()),
+                     slow = on_cells(votes.slow, clusters.label.size());
+  const auto rests = [&](const std::vector<int>& region) {
+    if (static_cast<int>(region.size()) < config.min_resting_cells) return false;
+    const auto [at_place, displaced] = quick.sum(region);
+    const auto [long_at_place, long_displaced] = slow.sum(region);
+    return at_place >= config.min_moving_features && at_place >= config.min_resting_ratio * displaced &&
+           long_at_place >= config.min_resting_ratio * long_displaced;
+  };
+  return keep_regions(clusters.shape, compact(clusters.shape, evidence.lasting), rests);
+}
+
+}  // namespace
+
+DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEvidence& evidence,
+                                    const MotionVotes& votes, const CellMask& remembered,
+                                    const GeometryConfig& config) {
+  const auto loose_memory = static_cast<std::uint8_t>(config.loose_memory_frames);
+  const std::vector<std::uint8_t> of_cluster = judge_clusters(clusters, evidence, votes, remembered, config);
+  const CellMask resting = resting_parts(clusters, evidence, votes, config);
+  const CellMask none(clusters.label.size(), 0);
+  DynamicRegions regions{true, none, 0};
+  CellMask loose(none);  // evidence inside clusters that are not dynamic as a whole
+  for (std::size_t cell = 0; cell < none.size(); ++cell) {
+    const std::int32_t label = clusters.label[cell];
+    const std::uint8_t frames_left = label < 0 ? std::uint8_t{0} : of_cluster[static_cast<std::size_t>(label)];
+    if (frames_left > 0) {  // resting parts are not taken in, but what has moved is let go slowly
+      regions.frames_left[cell] = resting[cell] == 0 ? frames_left : std::min(frames_left, one_less(remembered[cell]));
+    } else {
+      loose[cell] = evidence.violated[cell] > 0 ? loose_memory : std::min(loose_memory, one_less(remembered[cell]));
+    }
+  }
+  const CellMask groups = keep_regions(clusters.shape, compact(clusters.shape, loose), [&](const auto& region) {
+    return static_cast<int>(region.size()) >= config.min_region_cells;
+  });
+  for (std::size_t cell = 0; cell < none.size(); ++cell) {
+    regions.frames_left[cell] = std::max(regions.frames_left[cell], groups[cell]);
+  }
+  const auto dynamic =
+      std::count_if(regions.frames_left.begin(), regions.frames_left.end(), [](int n) { return n > 0; });
+  if (static_cast<double>(dynamic) > config.max_dynamic_share * clusters.shape.size()) return {false, none, 0};
+  regions.clusters = static_cast<int>(std::count_if(of_cluster.begin(), of_cluster.end(), [](int n) { return n > 0; }));
+  return regions;
+}
+
+}  // namespace rtd::filter

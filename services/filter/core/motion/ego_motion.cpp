@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/motion/ego_motion.hpp"
+
+#include "services/filter/core/motion/slow_votes.hpp"
+#include "services/filter/core/motion/static_consensus.hpp"
+
+namespace rtd::filter {
+namespace {
+
+constexpr std::int64_t kNearAgeNs = 100'000'000;
+constexpr std::int64_t kOldAgeNs = 500'000'000;
+constexpr double kRefineWindowPx = 8.0;
+
+/// Matches with the view 0.1 s ago and, when they are few, with the previous one.
+std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& near, const EgoMotionConfig& config) {
+  const View& previous = input.views.newest();
+  const Eigen::Isometry3d& T_world_camera = input.T_world_camera_predicted;
+  const std::size_t enough = 4 * static_cast<std::size_t>(config.min_inliers);
+  std::vector<FeatureMatch> matches =
+      match_by_projection(near, input.current, T_world_camera, config.window_px, config);
+  if (matches.size() < enough && previous.seq != near.seq) {
+    const auto more = match_by_projection(previous, input.current, T_world_camera, config.window_px, config);
+    matches.insert(matches.end(), more.begin(), more.end());
+  }
+  if (matches.size() < enough) {  // the prediction is off: look farther
+    matches = match_by_projection(previous, input.current, T_world_camera, 3 * config.window_px, config);
+  }
+  return matches;
+}
+
+}  // namespace
+
+EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig& config,
+                              const GeometryConfig& geometry) {
+  EgoMotion ego;
+  ego.T_world_camera = input.T_world_camera_predicted;
+  const geometry::CameraModel& camera = input.current.camera;
+  const View& near = input.views.of_age(input.stamp_ns, kNearAgeNs);
+  const std::vector<FeatureMatch> near_matches = match_recent(input, near, config);
+  const auto limit = static_cast<std::size_t>(config.max_observations);
+  const std::vector<char> none_moves(input.clusters.cells.size(), 0);
+  const auto recent = to_sightings(usable(near_matches, input, none_moves, limit), input);
+  const StaticConsensus consensus = find_static_consensus(recent, camera, input.T_world_camera_predicted, config);
+  if (consensus.image_share < config.min_image_share) return ego;
+
+  const auto all_near = to_sightings(near_matches, input);
+  const FeatureVotes first_votes = count_votes(all_near, camera, consensus.T_world_camera, input.clusters, geometry);
+  std::vector<char> moves(none_moves);
+  for (std::size_t i = 0; i < moves.size(); ++i) moves[i] = first_votes.cluster_moves(i, geometry) ? 1 : 0;
+
+  const View& old = input.views.of_age(input.stamp_ns, kOldAgeNs);
+  const auto old_matches = match_by_projection(old, input.current, consensus.T_world_camera, kRefineWindowPx, config);
+  std::vector<PointSighting> sightings = to_sightings(usable(near_matches, input, moves, limit / 2), input);
+  const std::vector<PointSighting> more = to_sightings(usable(old_matches, input, moves, limit / 2), input);
+  sightings.insert(sightings.end(), more.begin(), more.end());
+  const RefinedPose refined = refine_pose(sightings, camera, consensus.T_world_camera, config.min_inliers);
+  if (!refined.success) return ego;
+  ego.reliable = true;
+  ego.settled = input.stamp_ns - near.stamp_ns >= kMinSettledAgeNs;
+  ego.T_world_camera = refined.T_world_camera;
+  ego.inliers = refined.inliers;
+  ego.votes = count_votes(all_near, camera, refined.T_world_camera, input.clusters, geometry);
+  ego.old_votes =
+      count_votes(to_sightings(old_matches, input), camera, refined.T_world_camera, input.clusters, geometry);
+  if (input.look_back_ns > 0) ego.slow_votes = count_slow_votes(input, refined.T_world_camera, config, geometry);
+  return ego;
+}
+
+}  // namespace rtd::filter

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "services/filter/core/motion/feature_votes.hpp"
+#include "services/filter/core/motion/sightings.hpp"
+
+namespace rtd::filter {
+
+/// The quick pose of the current frame and what it was found from.
+struct EgoMotion {
+  bool settled =
+      false;  ///< found against a view at least 0.09 s old: movers could be told from the camera's own motion
+  bool reliable = false;  ///< otherwise the pose is only the prediction and geometry makes no statement
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  int inliers = 0;
+  FeatureVotes votes;       ///< of the features found again in the view 0.1 s ago, movers included
+  FeatureVotes old_votes;   ///< and in the view 0.5 s ago, near their place
+  FeatureVotes slow_votes;  ///< and in one of up to 1.5 s ago; none in most frames
+};
+
+/// A pose found over less time may have followed a mover.
+inline constexpr std::int64_t kMinSettledAgeNs = 90'000'000;
+
+/// Pose of the current frame from what stands still: features matched with the view 0.1 s ago (one frame
+/// is too short: on distant walls a shift nearly looks like a rotation, and one motion explains walls and mover), the
+/// motion that most of the image agrees with, without the clusters that move as a whole against it; then refined
+/// (common/vision/pose_optimizer), against older views too, so that errors do not add up. docs/theory/dynamic_points.md
+/// section 2.
+EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig& config,
+                              const GeometryConfig& geometry);
+
+}  // namespace rtd::filter

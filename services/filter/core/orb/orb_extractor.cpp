@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/orb/orb_extractor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "services/filter/core/orb/brief.hpp"
+#include "services/filter/core/orb/corner_detector.hpp"
+#include "services/filter/core/orb/orientation.hpp"
+#include "services/filter/core/orb/quad_tree.hpp"
+
+namespace rtd::filter {
+namespace {
+
+/// Splits the wanted number over the levels, each getting 1/scale of the one below: the same density per level pixel
+/// along a line.
+std::vector<int> share_of_levels(int wanted, int levels, double scale_factor) {
+  const double ratio = 1.0 / scale_factor;
+  double share = wanted * (1 - ratio) / (1 - std::pow(ratio, levels));
+  std::vector<int> shares;
+  int given = 0;
+  for (int level = 0; level + 1 < levels; ++level, share *= ratio) {
+    shares.push_back(static_cast<int>(std::lround(share)));
+    given += shares.back();
+  }
+  shares.push_back(std::max(0, wanted - given));
+  return shares;
+}
+
+}  // namespace
+
+OrbExtractor::OrbExtractor(const OrbConfig& config) : config_(config), pyramid_(config.levels, config.scale_factor) {
+  brief_pattern();  // made now, not within the first frame
+}
+
+std::vector<msg::Feature> OrbExtractor::extract(const vision::RgbdImage& image, int feature_count) {
+  pyramid_.build(image.color_bgr);
+  undistortion_.fit(image.camera);
+  std::vector<msg::Feature> features;
+  features.reserve(static_cast<std::size_t>(feature_count + 3 * config_.levels));
+  const std::vector<int> wanted = share_of_levels(feature_count, config_.levels, config_.scale_factor);
+  for (int level = 0; level < pyramid_.levels(); ++level)
+    append_level(image, level, wanted[static_cast<std::size_t>(level)], features);
+  if (features.size() > msg::kMaxFeatures) features.resize(msg::kMaxFeatures);
+  return features;
+}
+
+void OrbExtractor::append_level(const vision::RgbdImage& image, int level, int wanted,
+                                std::vector<msg::Feature>& features) {
+  const cv::Mat& grey = pyramid_.image(level);
+  const cv::Rect whole(0, 0, grey.cols, grey.rows);
+  const std::vector<Corner> corners = spread_corners(detect_corners(grey, config_), whole, wanted);
+  if (corners.empty()) return;
+  cv::GaussianBlur(grey, smoothed_, cv::Size(7, 7), 2, 2, cv::BORDER_REFLECT_101);
+  for (const Corner& corner : corners) {
+    const cv::Point centre(static_cast<int>(corner.x), static_cast<int>(corner.y));
+    const cv::Point2f raw = pyramid_.to_base({corner.x, corner.y}, level);
+    const cv::Point2f undistorted = undistortion_.undistort(raw);
+    msg::Feature feature{};
+    feature.u_raw_px = raw.x;
+    feature.v_raw_px = raw.y;
+    feature.u_px = undistorted.x;
+    feature.v_px = undistorted.y;
+    feature.depth_m = depth_at(image, raw.x, raw.y, config_);
+    feature.angle_rad = centroid_angle_rad(grey, centre);
+    feature.static_probability = 1.0F;
+    feature.octave = static_cast<std::uint8_t>(level);
+    feature.object_id = -1;
+    feature.descriptor = rotated_brief(smoothed_, centre, feature.angle_rad);
+    features.push_back(feature);
+  }
+}
+
+float depth_at(const vision::RgbdImage& image, float u_raw_px, float v_raw_px, const OrbConfig& config) {
+  const int u = static_cast<int>(std::lround(u_raw_px)), v = static_cast<int>(std::lround(v_raw_px));
+  if (u < 0 || v < 0 || u >= image.depth.cols || v >= image.depth.rows) return 0.0F;
+  const double depth_m = image.depth.at<std::uint16_t>(v, u) * image.depth_scale_m;
+  return depth_m >= config.min_depth_m && depth_m <= config.max_depth_m ? static_cast<float>(depth_m) : 0.0F;
+}
+
+}  // namespace rtd::filter

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "services/filter/core/surfaces/depth_grid.hpp"
+
+namespace rtd::filter {
+
+/// Operations on masks of grid cells: one value per cell, 0 = not set.
+using CellMask = std::vector<std::uint8_t>;
+
+/// The largest value within `radius` cells (square) of each. T: std::uint8_t, std::int16_t or float.
+template <typename T>
+std::vector<T> largest_near(const GridShape& shape, std::vector<T> values, int radius);
+/// The smallest one.
+std::vector<float> smallest_near(const GridShape& shape, std::vector<float> values, int radius);
+
+/// Cells within `radius` cells (square) of a set one, the larger value winning.
+CellMask dilate(const GridShape& shape, CellMask cells, int radius);
+
+/// The set cells most of whose 3x3 neighbourhood is set: noise along depth edges is one cell wide and vanishes.
+CellMask compact(const GridShape& shape, const CellMask& cells);
+
+/// Clears the connected regions (4 neighbours) that `keep` refuses; it gets the cells of a region.
+CellMask keep_regions(const GridShape& shape, CellMask cells, const std::function<bool(const std::vector<int>&)>& keep);
+
+}  // namespace rtd::filter

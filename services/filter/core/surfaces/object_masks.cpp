@@ -1,0 +1,270 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/surfaces/object_masks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "services/filter/core/surfaces/median.hpp"
+
+namespace rtd::filter {
+namespace {
+
+constexpr float kAbsurdPx = 1e5F;
+
+bool is_box(const vision::Detection& box) {
+  for (const float value : {box.x_px, box.y_px, box.width_px, box.height_px}) {
+    if (!std::isfinite(value) || std::abs(value) > kAbsurdPx) return false;
+  }
+  return box.width_px > 0 && box.height_px > 0;
+}
+
+/// A box in cells, ends excluded.
+struct CellBox {
+  int left, top, right, bottom;
+  bool contains(int column, int row) const { return column >= left && column < right && row >= top && row < bottom; }
+};
+
+std::optional<CellBox> to_cells(const vision::Detection& box, const geometry::CameraModel& camera,
+                                const GridShape& shape) {
+  if (!is_box(box)) return std::nullopt;
+  const auto& p = camera.parameters();
+  const Eigen::Vector2d size(p.width - 1, p.height - 1);
+  const Eigen::Vector2d first = Eigen::Vector2d(box.x_px, box.y_px).cwiseMax(0.0).cwiseMin(size);
+  const Eigen::Vector2d last =
+      Eigen::Vector2d(box.x_px + box.width_px, box.y_px + box.height_px).cwiseMax(0.0).cwiseMin(size);
+  if (last.x() - first.x() < kCellPx || last.y() - first.y() < kCellPx) return std::nullopt;
+  const Eigen::Vector2d from = camera.undistort(first) / kCellPx, to = camera.undistort(last) / kCellPx;
+  const CellBox cells{std::max(0, static_cast<int>(std::floor(from.x()))),
+                      std::max(0, static_cast<int>(std::floor(from.y()))),
+                      std::min(shape.columns, static_cast<int>(std::ceil(to.x())) + 1),
+                      std::min(shape.rows, static_cast<int>(std::ceil(to.y())) + 1)};
+  if (cells.left >= cells.right || cells.top >= cells.bottom) return std::nullopt;
+  return cells;
+}
+
+/// A depth cluster as far as it lies inside a box.
+struct ClusterInBox {
+  std::int32_t label;
+  std::vector<int> cells;
+  float median_m;
+};
+
+std::vector<ClusterInBox> clusters_in(const CellBox& box, const DepthGrid& grid, const DepthClusters& clusters) {
+  std::vector<std::vector<int>> cells_of(static_cast<std::size_t>(clusters.count()));
+  for (int row = box.top; row < box.bottom; ++row) {
+    for (int column = box.left; column < box.right; ++column) {
+      const int cell = grid.shape.index(column, row);
+      const std::int32_t label = clusters.label[static_cast<std::size_t>(cell)];
+      if (label >= 0) cells_of[static_cast<std::size_t>(label)].push_back(cell);
+    }
+  }
+  std::vector<ClusterInBox> found;
+  for (std::size_t label = 0; label < cells_of.size(); ++label) {
+    std::vector<int>& cells = cells_of[label];
+    if (cells.empty()) continue;
+    std::vector<float> depths;
+    depths.reserve(cells.size());
+    for (const int cell : cells) depths.push_back(grid.depth_m[static_cast<std::size_t>(cell)]);
+    found.push_back({static_cast<std::int32_t>(label), std::move(cells), median(std::move(depths))});
+  }
+  return found;
+}
+
+/// The nearest cluster that fills enough of the box; none when nothing was measured.
+const ClusterInBox* object_cluster(const std::vector<ClusterInBox>& inside, double min_share) {
+  std::size_t measured = 0;
+  for (const ClusterInBox& cluster : inside) measured += cluster.cells.size();
+  const ClusterInBox* nearest = nullptr;
+  for (const ClusterInBox& cluster : inside) {
+    if (static_cast<double>(cluster.cells.size()) < min_share * static_cast<double>(measured)) continue;
+    if (nearest == nullptr || cluster.median_m < nearest->median_m) nearest = &cluster;
+  }
+  return nearest;
+}
+
+/// The largest cluster near the depth that is expected of the object; none when it is hidden.
+const ClusterInBox* cluster_at_depth(const std::vector<ClusterInBox>& inside, double depth_m, double tolerance_m) {
+  const ClusterInBox* largest = nullptr;
+  for (const ClusterInBox& cluster : inside) {
+    if (std::abs(static_cast<double>(cluster.median_m) - depth_m) > tolerance_m) continue;
+    if (largest == nullptr || cluster.cells.size() > largest->cells.size()) largest = &cluster;
+  }
+  return largest;
+}
+
+/// How much of a cluster belongs to an object.
+enum class Share : std::uint8_t { kNothing, kNearItsDepth, kAll };
+
+/// Per cluster: all of it when it lies mostly in the box; of one that has grown together with the background only what
+/// is near the object's depth.
+std::vector<Share> shares_of(const ClusterInBox& object, const std::vector<ClusterInBox>& inside,
+                             const DepthClusters& clusters, const MaskConfig& config) {
+  std::vector<Share> shares(clusters.cells.size(), Share::kNothing);
+  for (const ClusterInBox& cluster : inside) {
+    const auto label = static_cast<std::size_t>(cluster.label);
+    const bool contained = static_cast<double>(cluster.cells.size()) / clusters.cells[label] >= config.min_contained;
+    const bool cut_off = contained && std::abs(cluster.median_m - object.median_m) <= config.max_object_depth_m;
+    if (cluster.label != object.label && !cut_off) continue;
+    shares[label] = contained ? Share::kAll : Share::kNearItsDepth;
+  }
+  return shares;
+}
+
+/// The object's own cluster and the parts of it that a depth step cut off, in ascending order.
+std::vector<int> collect_cells(const ClusterInBox& object, const CellBox& box, const std::vector<Share>& shares,
+                               const DepthGrid& grid, const DepthClusters& clusters, const MaskConfig& config) {
+  const auto near_object = [&](int cell) {
+    return box.contains(cell % grid.shape.columns, cell / grid.shape.columns) &&
+           std::abs(grid.depth_m[static_cast<std::size_t>(cell)] - object.median_m) <= config.max_object_depth_m;
+  };
+  std::vector<int> cells;
+  for (int cell = 0; cell < grid.shape.size(); ++cell) {
+    const std::int32_t label = clusters.label[static_cast<std::size_t>(cell)];
+    const Share share = label < 0 ? Share::kNothing : shares[static_cast<std::size_t>(label)];
+    if (share == Share::kAll || (share == Share::kNearItsDepth && near_object(cell))) cells.push_back(cell);
+  }
+  return cells;
+}
+
+/// Everything in the box: all that can be said where nothing was measured.
+std::vector<int> all_cells(const CellBox& box, const GridShape& shape) {
+  std::vector<int> cells;
+  for (int row = box.top; row < box.bottom; ++row) {
+    for (int column = box.left; column < box.right; ++column) cells.push_back(shape.index(column, row));
+  }
+  return cells;
+}
+
+}  // namespace
+
+/// Looks a few cells outwards, past the blurred edge.
+double outline_step_share(const std::vector<int>& cells, const DepthGrid& grid, double min_step_m) {
+  constexpr int kReachCells = 3;
+  const GridShape& shape = grid.shape;
+  std::vector<char> on_object(static_cast<std::size_t>(shape.size()), 0);
+  for (const int cell : cells) on_object[static_cast<std::size_t>(cell)] = 1;
+  int steps = 0, flats = 0;
+  for (const int cell : cells) {
+    const int column = cell % shape.columns, row = cell / shape.columns;
+    const float z = grid.depth_m[static_cast<std::size_t>(cell)];
+    for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      const int x = column + dx, y = row + dy, far_x = column + kReachCells * dx, far_y = row + kReachCells * dy;
+      if (far_x < 0 || far_y < 0 || far_x >= shape.columns || far_y >= shape.rows) continue;
+      const int outside = shape.index(far_x, far_y);
+      if (on_object[static_cast<std::size_t>(shape.index(x, y))] != 0 ||
+          on_object[static_cast<std::size_t>(outside)] != 0) {
+        continue;
+      }
+      const float z_outside = grid.depth_m[static_cast<std::size_t>(outside)];
+      if (z_outside <= 0 || z_outside < z - min_step_m) continue;  // unknown, or the object itself is partly hidden
+      (z_outside > z + min_step_m ? steps : flats) += 1;
+    }
+  }
+  return steps + flats == 0 ? 1.0 : static_cast<double>(steps) / (steps + flats);
+}
+
+CellMask free_standing(const DepthGrid& grid, const DepthClusters& clusters, const MaskConfig& config) {
+  constexpr double kMaxShare = 0.4, kMinOutline = 0.6;  // of the image in all; of the outline
+  std::vector<std::vector<int>> surfaces(clusters.cells.size());
+  for (int cell = 0; cell < grid.shape.size(); ++cell) {
+    const std::int32_t label = clusters.label[static_cast<std::size_t>(cell)];
+    if (label >= 0) surfaces[static_cast<std::size_t>(label)].push_back(cell);
+  }
+  std::erase_if(surfaces, [&](const std::vector<int>& cells) {
+    return cells.empty() || outline_step_share(cells, grid, config.min_outline_step_m) < kMinOutline;
+  });
+  const auto middle_m = [&](const std::vector<int>& cells) {
+    return grid.depth_m[static_cast<std::size_t>(cells[cells.size() / 2])];
+  };
+  std::stable_sort(surfaces.begin(), surfaces.end(),
+                   [&](const auto& a, const auto& b) { return middle_m(a) < middle_m(b); });
+  CellMask mask(clusters.label.size(), 0);
+  std::size_t taken = 0;
+  for (const std::vector<int>& cells : surfaces) {
+    taken += cells.size();
+    if (static_cast<double>(taken) > kMaxShare * grid.shape.size()) break;
+    for (const int cell : cells) mask[static_cast<std::size_t>(cell)] = 1;
+  }
+  return mask;
+}
+
+std::vector<vision::Detection> usable_detections(const std::vector<vision::Detection>& detections,
+                                                 const MotionLevels& levels) {
+  std::vector<const vision::Detection*> known;
+  for (const vision::Detection& detection : detections) {
+    if (std::isfinite(detection.score) && is_box(detection) && levels.find(detection.class_name))
+      known.push_back(&detection);
+  }
+  std::stable_sort(known.begin(), known.end(), [](const auto* a, const auto* b) { return a->score > b->score; });
+  if (known.size() > kMaxObjects) known.resize(kMaxObjects);
+  std::vector<vision::Detection> usable;
+  for (const vision::Detection* detection : known) usable.push_back(*detection);
+  return usable;
+}
+
+double depth_in_box(const vision::Detection& box, const geometry::CameraModel& camera, const DepthGrid& grid) {
+  const vision::Detection middle{
+      box.class_name,      box.score,           box.x_px + 0.2F * box.width_px, box.y_px + 0.2F * box.height_px,
+      0.6F * box.width_px, 0.6F * box.height_px};
+  const std::optional<CellBox> cells = to_cells(middle, camera, grid.shape);
+  std::vector<float> depths;
+  if (cells) {
+    for (const int cell : all_cells(*cells, grid.shape)) {
+      const float depth_m = grid.depth_m[static_cast<std::size_t>(cell)];
+      if (depth_m > 0) depths.push_back(depth_m);
+    }
+  }
+  if (depths.empty()) return 0;
+  const auto quarter = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 4);
+  std::nth_element(depths.begin(), quarter, depths.end());
+  return static_cast<double>(*quarter);
+}
+
+std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const MotionLevels& levels,
+                                      const geometry::CameraModel& camera, const DepthGrid& grid,
+                                      const DepthClusters& clusters, const MaskConfig& config) {
+  std::vector<SceneObject> objects;
+  for (const ObjectBox& from : boxes) {
+    const vision::Detection& detection = from.detection;
+    const std::optional<MotionLevel> level = levels.find(detection.class_name);
+    const std::optional<CellBox> box = level ? to_cells(detection, camera, grid.shape) : std::nullopt;
+    if (!box) continue;
+    SceneObject object{detection.class_name, detection.score,  *level,      {}, false,
+                       from.track_id,        from.track_age_s, from.carried};
+    const auto inside = config.whole_boxes ? std::vector<ClusterInBox>{} : clusters_in(*box, grid, clusters);
+    const bool depth_known = from.carried && from.depth_m > 0;
+    const ClusterInBox* cluster = depth_known ? cluster_at_depth(inside, from.depth_m, config.max_object_depth_m)
+                                              : object_cluster(inside, config.min_share);
+    if (cluster != nullptr) {
+      object.cells =
+          collect_cells(*cluster, *box, shares_of(*cluster, inside, clusters, config), grid, clusters, config);
+      object.flat = outline_step_share(object.cells, grid, config.min_outline_step_m) < config.min_outline_share;
+    } else if (from.carried && !config.whole_boxes) {
+      continue;
+    } else {
+      object.cells = all_cells(*box, grid.shape);
+    }
+    objects.push_back(std::move(object));
+  }
+  return objects;
+}
+
+DepthClusters separate_objects(DepthClusters clusters, const std::vector<SceneObject>& objects) {
+  for (const SceneObject& object : objects) {
+    if (object.flat) continue;
+    const std::int32_t own = clusters.count();
+    clusters.cells.push_back(0);
+    for (const int cell : object.cells) {
+      std::int32_t& label = clusters.label[static_cast<std::size_t>(cell)];
+      if (label < 0) continue;
+      --clusters.cells[static_cast<std::size_t>(label)];
+      ++clusters.cells[static_cast<std::size_t>(own)];
+      label = own;
+    }
+  }
+  return clusters;
+}
+
+}  // namespace rtd::filter

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/geometry/camera_model.hpp"
+#include "common/vision/detection.hpp"
+#include "common/vision/motion_levels.hpp"
+#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/surfaces/cell_masks.hpp"
+#include "services/filter/core/surfaces/depth_clusters.hpp"
+#include "services/filter/core/surfaces/depth_grid.hpp"
+
+namespace rtd::filter {
+
+using vision::MotionLevel;
+using vision::MotionLevels;
+
+/// One object of this frame: a detection with the cells that it covers.
+struct SceneObject {
+  std::string class_name;
+  float score = 0;
+  MotionLevel level = MotionLevel::kHigh;
+  std::vector<int> cells;  ///< ascending; what the mask covers, before dilation
+  bool flat = false;       ///< no depth step around it: a picture on a wall, geometry alone decides
+  int track_id = -1;       ///< the same object has the same number in every frame; -1 = not tracked
+  double track_age_s = 0;  ///< since it was seen first
+  bool carried = false;    ///< the detector said nothing of it in this frame: its track did
+};
+
+/// A box to cut an object from.
+struct ObjectBox {
+  vision::Detection detection;
+  int track_id = -1;
+  double track_age_s = 0;
+  bool carried = false;
+  double depth_m = 0;  ///< expected depth of a carried object, 0 = unknown
+};
+
+/// Detections whose class has a level and whose numbers make a box within `kAbsurdPx` of the image, the kMaxObjects
+/// highest scores, best first.
+std::vector<vision::Detection> usable_detections(const std::vector<vision::Detection>& detections,
+                                                 const MotionLevels& levels);
+/// Depth of what stands in the middle of a box, the nearer quarter of it; 0 = nothing measured.
+double depth_in_box(const vision::Detection& box, const geometry::CameraModel& camera, const DepthGrid& grid);
+
+/// The objects with masks: inside each box the nearest large depth cluster is the object, or of a carried box the
+/// largest near its depth; the background seen through the box stays. Boxes without a level or outside the image are
+/// left out, and carried ones where nothing is found.
+std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const MotionLevels& levels,
+                                      const geometry::CameraModel& camera, const DepthGrid& grid,
+                                      const DepthClusters& clusters, const MaskConfig& config);
+inline constexpr std::size_t kMaxObjects = 64;
+
+/// Share of the outline of some cells beyond which the scene lies farther by `min_step_m`; 1 where nothing is known.
+double outline_step_share(const std::vector<int>& cells, const DepthGrid& grid, double min_step_m);
+/// Cells of surfaces that stand out from what surrounds them on most sides, the nearest first, up to 40 % of the image:
+/// what can be carried about. Before there is any evidence they are not trusted with the camera's pose.
+CellMask free_standing(const DepthGrid& grid, const DepthClusters& clusters, const MaskConfig& config);
+
+/// The clusters with each object that is not flat as a cluster of its own: what it touches is then judged without it.
+DepthClusters separate_objects(DepthClusters clusters, const std::vector<SceneObject>& objects);
+
+}  // namespace rtd::filter

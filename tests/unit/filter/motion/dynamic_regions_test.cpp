@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/motion/dynamic_regions.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/filter/grid_scenes.hpp"
+
+namespace rtd::filter {
+namespace {
+
+using test::cells_in;
+using test::count_in;
+
+const GridShape kShape{160, 120};
+const cv::Rect kBlock(240, 160, 120, 160);
+constexpr std::size_t kCells = 160 * 120;
+
+/// A wall with a block in front, as clusters, and evidence that starts empty.
+class DynamicRegionsTest : public ::testing::Test {
+ protected:
+  DynamicRegionsTest() {
+    vision::RgbdImage image = test::wall_image(3.0);
+    test::put_block(image, kBlock, 1.5);
+    clusters_ = find_depth_clusters(test::make_sampler().sample(image), ClusterConfig{});
+    votes_.resting.assign(clusters_.cells.size(), 0);
+    votes_.moving.assign(clusters_.cells.size(), 0);
+  }
+  static void set(CellMask& cells, const cv::Rect& area_px, std::uint8_t value) {
+    for (int y = area_px.y / kCellPx; y < (area_px.y + area_px.height) / kCellPx; ++y) {
+      for (int x = area_px.x / kCellPx; x < (area_px.x + area_px.width) / kCellPx; ++x) {
+        cells[static_cast<std::size_t>(kShape.index(x, y))] = value;
+      }
+    }
+  }
+  void set_labels(const cv::Rect& area_px, std::int32_t label) {
+    CellMask area(kCells, 0);
+    set(area, area_px, 1);
+    for (std::size_t cell = 0; cell < kCells; ++cell) {
+      if (area[cell] != 0) clusters_.label[cell] = label;
+    }
+  }
+  DynamicRegions judge() const {
+    return find_dynamic_regions(clusters_, evidence_, {votes_, slow_votes_}, remembered_, config_);
+  }
+  void vote(const cv::Point& pixel, bool moving) {
+    const int cell = kShape.cell_at(pixel.x, pixel.y);
+    votes_.votes.push_back({cell, moving});
+    ++(moving ? votes_.moving
+              : votes_.resting)[static_cast<std::size_t>(clusters_.label[static_cast<std::size_t>(cell)])];
+  }
+
+  GeometryConfig config_;
+  DepthClusters clusters_;
+  DepthEvidence evidence_ = DepthEvidence::none(kCells);
+  FeatureVotes votes_;
+  FeatureVotes slow_votes_;
+  CellMask remembered_ = CellMask(kCells, 0);
+};
+
+TEST_F(DynamicRegionsTest, takes_the_whole_cluster_when_a_part_of_it_violates) {
+  set(evidence_.consistent, kBlock, 2);
+  set(evidence_.violated, {240, 160, 40, 160}, 1);  // the leading third
+  const DynamicRegions regions = judge();
+  EXPECT_EQ(regions.clusters, 1);
+  EXPECT_EQ(count_in(kShape, regions.frames_left, kBlock), cells_in(kBlock));
+  EXPECT_EQ(count_in(kShape, regions.frames_left, {0, 0, 640, 480}), cells_in(kBlock)) << "and not the wall";
+}
+
+TEST_F(DynamicRegionsTest, takes_the_cluster_whose_features_are_displaced) {
+  for (int i = 0; i < config_.min_moving_features; ++i) vote({250 + 8 * i, 200}, true);
+  EXPECT_EQ(count_in(kShape, judge().frames_left, kBlock), cells_in(kBlock));
+}
+
+TEST_F(DynamicRegionsTest, takes_the_cluster_that_is_displaced_over_a_second_only) {
+  slow_votes_ = votes_;
+  const auto block = static_cast<std::size_t>(clusters_.label[static_cast<std::size_t>(kShape.cell_at(300, 200))]);
+  for (int i = 0; i < 20; ++i) vote({250, 170 + 5 * i}, false);
+  slow_votes_.moving[block] = config_.min_creeping_features;
+  EXPECT_EQ(count_in(kShape, judge().frames_left, kBlock), cells_in(kBlock));
+  slow_votes_.resting[block] = config_.min_creeping_features;
+  EXPECT_EQ(judge().clusters, 0);
+}
+
+TEST_F(DynamicRegionsTest, leaves_a_cluster_with_a_few_displaced_features_alone) {
+  for (int i = 0; i < config_.min_moving_features; ++i) vote({250 + 8 * i, 200}, true);
+  for (int i = 0; i < 20; ++i) vote({250, 170 + 5 * i}, false);
+  EXPECT_EQ(judge().clusters, 0);
+}
+
+TEST_F(DynamicRegionsTest, ignores_specks_and_edges) {
+  set(evidence_.consistent, {0, 0, 640, 480}, 2);
+  set(evidence_.violated, {40, 40, 16, 16}, 1);
+  set(evidence_.violated, {0, 300, 640, 4}, 1);
+  EXPECT_EQ(count_in(kShape, judge().frames_left, {0, 0, 640, 480}), 0);
+}
+
+TEST_F(DynamicRegionsTest, takes_a_compact_part_of_a_resting_surface) {
+  set(evidence_.consistent, {0, 0, 640, 480}, 2);
+  const cv::Rect part(40, 40, 80, 80);
+  set(evidence_.violated, part, 1);
+  const DynamicRegions regions = judge();
+  EXPECT_EQ(regions.clusters, 0);
+  EXPECT_EQ(count_in(kShape, regions.frames_left, part), cells_in(part) - 4) << "all but its corners";
+}
+
+TEST_F(DynamicRegionsTest, remembers_a_mover_that_pauses_for_a_while) {
+  set(evidence_.consistent, kBlock, 2);
+  set(remembered_, kBlock, 30);
+  EXPECT_EQ(count_in(kShape, judge().frames_left, kBlock), cells_in(kBlock));
+  EXPECT_EQ(judge().frames_left[static_cast<std::size_t>(kShape.cell_at(300, 240))], 29);
+  set(remembered_, kBlock, 1);
+  EXPECT_EQ(count_in(kShape, judge().frames_left, kBlock), 0) << "the last frame of memory";
+}
+
+TEST_F(DynamicRegionsTest, forgets_faster_what_depth_and_features_see_at_rest) {
+  set(evidence_.consistent, kBlock, 2);
+  set(remembered_, kBlock, 30);
+  for (int i = 0; i < 20; ++i) vote({250, 170 + 5 * i}, false);
+  EXPECT_EQ(judge().frames_left[static_cast<std::size_t>(kShape.cell_at(300, 240))], 26);
+}
+
+TEST_F(DynamicRegionsTest, leaves_the_floor_out_on_which_a_walker_stands) {
+  for (std::size_t cell = 0; cell < kCells; ++cell) clusters_.label[cell] = cell >= 80 * 160 ? 0 : -1;
+  set_labels(kBlock, 0);  // walker and floor in one cluster
+  clusters_.cells = {static_cast<int>(kCells * 2 / 5)};
+  votes_.resting.assign(1, 0);
+  votes_.moving.assign(1, 0);
+  const cv::Rect floor(0, 380, 640, 100);
+  set(evidence_.consistent, floor, 2);
+  set(evidence_.lasting, floor, 1);
+  set(evidence_.violated, kBlock, 1);
+  for (int i = 0; i < 30; ++i) vote({20 * i + 20, 420}, false);
+  const DynamicRegions regions = judge();
+  EXPECT_EQ(count_in(kShape, regions.frames_left, kBlock), cells_in(kBlock));
+  EXPECT_EQ(count_in(kShape, regions.frames_left, {8, 388, 624, 88}), 0);
+}
+
+TEST_F(DynamicRegionsTest, makes_no_statement_when_nearly_all_moves) {
+  set(evidence_.violated, {0, 0, 640, 480}, 1);
+  const DynamicRegions regions = judge();
+  EXPECT_FALSE(regions.trusted);
+  EXPECT_EQ(count_in(kShape, regions.frames_left, {0, 0, 640, 480}), 0);
+}
+
+}  // namespace
+}  // namespace rtd::filter

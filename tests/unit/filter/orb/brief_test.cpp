@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/orb/brief.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "common/vision/hamming.hpp"
+#include "services/filter/core/orb/corner_detector.hpp"
+#include "tests/unit/filter/orb/test_images.hpp"
+
+namespace rtd::filter {
+namespace {
+
+TEST(BriefPattern, stays_inside_the_patch_when_rotated) {
+  const BriefPattern& pattern = brief_pattern();
+  for (std::size_t i = 0; i < pattern.x.size(); ++i) {
+    EXPECT_LE(std::hypot(pattern.x[i], pattern.y[i]), kPatchRadiusPx - 1) << "point " << i;
+  }
+}
+
+TEST(BriefPattern, has_no_comparison_twice) {
+  const BriefPattern& pattern = brief_pattern();
+  std::set<std::array<float, 4>> seen;
+  for (std::size_t k = 0; k < BriefPattern::kBits; ++k) {
+    const std::array<float, 4> pair{pattern.x[2 * k], pattern.y[2 * k], pattern.x[2 * k + 1], pattern.y[2 * k + 1]};
+    EXPECT_TRUE(seen.insert(pair).second);
+    EXPECT_TRUE(seen.insert({pair[2], pair[3], pair[0], pair[1]}).second);
+  }
+}
+
+TEST(RotatedBrief, differs_in_half_of_the_bits_between_unlike_patches) {
+  const cv::Mat image = test::textured_image();
+  double sum = 0;
+  int count = 0;
+  for (int x = 40; x < 600; x += 40) {
+    for (int y = 40; y < 400; y += 40, ++count) {
+      sum += vision::hamming_distance(rotated_brief(image, {x, y}, 0), rotated_brief(image, {x + 20, y + 37}, 0));
+    }
+  }
+  EXPECT_NEAR(sum / count, 128, 12) << "mean bits";
+}
+
+TEST(RotatedBrief, turned_by_the_angle_sees_a_turned_patch_alike) {
+  cv::Mat image = test::textured_image({121, 121});
+  cv::GaussianBlur(image, image, cv::Size(7, 7), 2);
+  const msg::Descriptor upright = rotated_brief(image, {60, 60}, 0);
+  for (const double degrees : {30.0, 90.0, 145.0, 180.0, -75.0}) {
+    cv::Mat turned;
+    cv::warpAffine(image, turned, cv::getRotationMatrix2D({60, 60}, -degrees, 1), image.size());
+    const auto angle = static_cast<float>(degrees * CV_PI / 180);
+    EXPECT_LE(vision::hamming_distance(upright, rotated_brief(turned, {60, 60}, angle)), 25) << degrees << " degrees";
+  }
+}
+
+}  // namespace
+}  // namespace rtd::filter

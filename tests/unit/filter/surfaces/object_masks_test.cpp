@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/surfaces/object_masks.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "tests/unit/filter/grid_scenes.hpp"
+
+namespace rtd::filter {
+namespace {
+
+using test::cells_in;
+using test::count_in;
+using test::put_block;
+using test::wall_image;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+
+std::vector<SceneObject> find(const vision::RgbdImage& image, const std::vector<vision::Detection>& detections) {
+  const DepthGrid grid = test::make_sampler().sample(image);
+  std::vector<ObjectBox> boxes;
+  for (const vision::Detection& d : usable_detections(detections, MotionLevels{}))
+    boxes.push_back({d, -1, 0, false, 0});
+  return find_objects(boxes, MotionLevels{}, image.camera, grid, find_depth_clusters(grid, ClusterConfig{}),
+                      MaskConfig{});
+}
+std::vector<std::uint8_t> mask_of(const SceneObject& object) {
+  std::vector<std::uint8_t> mask(160 * 120, 0);
+  for (const int cell : object.cells) mask[static_cast<std::size_t>(cell)] = 1;
+  return mask;
+}
+const GridShape kShape{160, 120};
+
+TEST(ObjectMasks, take_the_near_cluster_and_leave_the_background_seen_through_the_box) {
+  vision::RgbdImage image = wall_image(3.0);
+  put_block(image, {240, 120, 120, 280}, 1.5);
+  const auto objects = find(image, {{"person", 0.9F, 200, 100, 200, 320}});
+  ASSERT_EQ(objects.size(), 1U);
+  EXPECT_FALSE(objects[0].flat);
+  EXPECT_EQ(count_in(kShape, mask_of(objects[0]), {240, 120, 120, 280}), cells_in({240, 120, 120, 280}));
+  EXPECT_EQ(objects[0].cells.size(), static_cast<std::size_t>(cells_in({240, 120, 120, 280})));
+}
+
+TEST(ObjectMasks, include_what_the_box_cut_off) {
+  vision::RgbdImage image = wall_image(3.0);
+  put_block(image, {240, 100, 120, 380}, 1.5);
+  const auto objects = find(image, {{"person", 0.9F, 230, 100, 140, 240}});  // ends above the feet
+  ASSERT_EQ(objects.size(), 1U);
+  EXPECT_EQ(count_in(kShape, mask_of(objects[0]), {240, 100, 120, 380}), cells_in({240, 100, 120, 380}));
+}
+
+TEST(ObjectMasks, add_an_arm_that_a_depth_step_cut_off) {
+  vision::RgbdImage image = wall_image(3.0);
+  put_block(image, {240, 100, 120, 360}, 1.5);
+  put_block(image, {360, 200, 60, 40}, 1.2);
+  const auto objects = find(image, {{"person", 0.9F, 230, 90, 200, 380}});
+  ASSERT_EQ(objects.size(), 1U);
+  EXPECT_EQ(count_in(kShape, mask_of(objects[0]), {364, 204, 52, 32}), cells_in({364, 204, 52, 32}));
+}
+
+TEST(ObjectMasks, call_a_person_on_a_poster_flat) {
+  const auto objects = find(wall_image(2.0), {{"person", 0.8F, 200, 100, 100, 200}});
+  ASSERT_EQ(objects.size(), 1U);
+  EXPECT_TRUE(objects[0].flat);
+}
+
+TEST(ObjectMasks, cover_the_whole_box_where_nothing_was_measured) {
+  vision::RgbdImage image = wall_image();
+  image.depth.setTo(0);
+  const auto objects = find(image, {{"person", 0.8F, 200, 100, 100, 200}});
+  ASSERT_EQ(objects.size(), 1U);
+  EXPECT_EQ(count_in(kShape, mask_of(objects[0]), {200, 100, 100, 200}), cells_in({200, 100, 100, 200}));
+}
+
+TEST(ObjectMasks, part_an_object_from_what_it_touches) {
+  DepthClusters clusters{kShape, std::vector<std::int32_t>(160 * 120, 0), {160 * 120}};
+  SceneObject object{"person", 0.9F, MotionLevel::kHigh, {10, 11, 12}, false};
+  SceneObject poster{"person", 0.9F, MotionLevel::kHigh, {50, 51}, true};
+  const DepthClusters parted = separate_objects(clusters, {object, poster});
+  EXPECT_EQ(parted.count(), 2);
+  EXPECT_EQ(parted.cells[0], 160 * 120 - 3);
+  EXPECT_EQ(parted.label[11], 1);
+  EXPECT_EQ(parted.label[50], 0) << "a picture belongs to its wall";
+}
+
+TEST(ObjectMasks, ignore_classes_without_motion_level) {
+  EXPECT_TRUE(find(wall_image(), {{"traffic light", 0.9F, 100, 100, 50, 50}}).empty());
+}
+
+TEST(ObjectMasks, refuse_boxes_that_make_no_sense) {
+  const vision::RgbdImage image = wall_image();
+  EXPECT_TRUE(find(image, {{"person", 0.9F, kNan, 0, 100, 100}}).empty());
+  EXPECT_TRUE(find(image, {{"person", 0.9F, 0, 0, kInf, 100}}).empty());
+  EXPECT_TRUE(find(image, {{"person", kNan, 0, 0, 100, 100}}).empty());
+  EXPECT_TRUE(find(image, {{"person", 0.9F, 100, 100, -50, 100}}).empty());
+  EXPECT_TRUE(find(image, {{"person", 0.9F, 100, 100, 0, 0}}).empty());
+  EXPECT_TRUE(find(image, {{"person", 0.9F, 5000, 5000, 100, 100}}).empty());
+  EXPECT_TRUE(find(image, {{"person", 0.9F, -3e38F, 0, 3e38F, 100}}).empty());
+}
+
+TEST(ObjectMasks, cut_a_box_at_the_image_border) {
+  const auto objects = find(wall_image(), {{"person", 0.9F, -100, -100, 1000, 1000}});
+  ASSERT_EQ(objects.size(), 1U);
+  for (const int cell : objects[0].cells) EXPECT_LT(cell, kShape.size());
+}
+
+TEST(ObjectMasks, keep_the_best_of_ten_thousand_boxes) {
+  std::vector<vision::Detection> many(10'000, {"person", 0.3F, 100, 100, 50, 50});
+  many[7'000].score = 0.99F;
+  const auto objects = find(wall_image(), many);
+  ASSERT_EQ(objects.size(), kMaxObjects);
+  EXPECT_FLOAT_EQ(objects[0].score, 0.99F);
+}
+
+TEST(FreeStanding, is_what_stands_out_and_not_the_wall_behind) {
+  vision::RgbdImage image = wall_image(3.0);
+  put_block(image, {240, 100, 120, 200}, 1.5);
+  put_block(image, {0, 0, 640, 60}, 2.0);  // a beam along the ceiling stands out too, it comes after what is nearer
+  const DepthGrid grid = test::make_sampler().sample(image);
+  const CellMask mask = free_standing(grid, find_depth_clusters(grid, ClusterConfig{}), MaskConfig{});
+  EXPECT_EQ(count_in(kShape, mask, {240, 100, 120, 200}), cells_in({240, 100, 120, 200}));
+  EXPECT_EQ(count_in(kShape, mask, {0, 320, 640, 160}), 0);
+}
+
+TEST(FreeStanding, leaves_most_of_the_image) {
+  vision::RgbdImage image = wall_image(3.0);
+  put_block(image, {100, 100, 440, 330}, 1.5);  // nearly half of it
+  const DepthGrid grid = test::make_sampler().sample(image);
+  const CellMask mask = free_standing(grid, find_depth_clusters(grid, ClusterConfig{}), MaskConfig{});
+  EXPECT_EQ(count_in(kShape, mask, {0, 0, 640, 480}), 0);
+}
+
+}  // namespace
+}  // namespace rtd::filter
