@@ -8,8 +8,8 @@
 #include <thread>
 #include <utility>
 
+#include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/detector/core/model_locator.hpp"
 #include "services/detector/detections_message.hpp"
 
 namespace rtd::detector {
@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds kStatePeriod{50};
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
 
 Detector load_detector(const ServiceConfig& config) {
-  const ModelSearch model = find_model(config.model, process_environment());
+  const service::ModelSearch model = service::find_model(config.model, service::process_environment());
   if (!model) throw service::ConfigError(model.message);
   try {
     return Detector(to_core(config, model.path));

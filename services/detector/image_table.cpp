@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "common/service/exit_code.hpp"
+#include "common/service/model_locator.hpp"
 #include "services/detector/core/detector.hpp"
-#include "services/detector/core/model_locator.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -57,7 +57,7 @@ int print_image_table(int argc, const char* const* argv) {
   app.add_option("--confidence", config.decode.confidence_threshold, "Least score")->check(CLI::Range(0.01, 1.0));
   try {
     app.parse(argc, argv);
-    const ModelSearch model = find_model(model_name, process_environment());
+    const service::ModelSearch model = service::find_model(model_name, service::process_environment());
     if (!model) throw ModelError(model.message);
     config.model_path = model.path;
     Detector detector(config);

@@ -6,10 +6,10 @@
 #include <memory>
 #include <stdexcept>
 
+#include "common/service/model_locator.hpp"
 #include "services/camera/core/synthetic/seeded_random.hpp"
 #include "services/detector/core/coco_classes.hpp"
 #include "services/detector/core/detector.hpp"
-#include "services/detector/core/model_locator.hpp"
 #include "tests/support/remembered_detections.hpp"
 
 namespace rtd::test_support {
@@ -75,7 +75,7 @@ Boxes lie(const camera::SourceFrame& frame, const DetectorOptions& options) {
 }
 
 Look real_look(const DetectorOptions& options) {
-  const detector::ModelSearch model = detector::find_model("", detector::process_environment());
+  const service::ModelSearch model = service::find_model("", service::process_environment());
   if (!model) throw std::invalid_argument(model.message);
   detector::DetectorConfig config;
   config.model_path = model.path;

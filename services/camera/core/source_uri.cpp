@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/source_uri.hpp"
 
+#include <filesystem>
 #include <sstream>
 
 #include "services/camera/core/frame_source.hpp"
@@ -30,6 +31,14 @@ SourceUri parse_source_uri(const std::string& text) {
     }
   }
   return uri;
+}
+
+std::string complete_uri(const std::string& source) {
+  if (source.find(':') != std::string::npos) return source;
+  const std::filesystem::path path = source;
+  if (std::filesystem::is_directory(path)) return "tum:" + source;
+  if (path.extension() == ".bag") return "bag:" + source;
+  return path.extension() == ".mcap" ? "mcap:" + source : source;
 }
 
 }  // namespace rtd::camera

@@ -16,4 +16,8 @@ struct SourceUri {
 /// Throws SourceError naming the malformed part and the form expected.
 SourceUri parse_source_uri(const std::string& text);
 
+/// Adds the scheme that a path leaves out: a folder is a TUM sequence, FILE.bag and FILE.mcap are recordings.
+/// Everything else stays as it is.
+std::string complete_uri(const std::string& source);
+
 }  // namespace rtd::camera

@@ -12,8 +12,9 @@
 
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/model_locator.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/detector/core/model_locator.hpp"
+#include "services/camera/core/source_uri.hpp"
 #include "services/evaluation/commands/variant_run.hpp"
 #include "services/evaluation/core/ablation/ablation_html.hpp"
 #include "services/evaluation/core/ablation/ablation_text.hpp"
@@ -62,7 +63,7 @@ void check_source(const std::string& uri, const AblateOptions& options, std::vec
 
 bool has_detector(const AblateOptions& options) {
   if (options.detector == "off") return false;
-  const detector::ModelSearch model = detector::find_model(options.model, detector::process_environment());
+  const service::ModelSearch model = service::find_model(options.model, service::process_environment());
   if (!model && !options.model.empty()) throw service::ConfigError(model.message);
   return static_cast<bool>(model);
 }
@@ -75,7 +76,7 @@ Ablation prepare(const AblateOptions& options) {
   ablation.plan =
       plan_ablation({options.modes, options.without, has_detector(options)}, kFilterModes, known_techniques());
   for (const std::string& source : options.sources) {
-    ablation.sources.push_back(complete_uri(source));
+    ablation.sources.push_back(camera::complete_uri(source));
     check_source(ablation.sources.back(), options, ablation.notes);
   }
   ablation.source_names = source_names(ablation.sources);

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "services/detector/core/model_locator.hpp"
+#include "common/service/model_locator.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -30,7 +30,7 @@ std::string locate(const std::string& name) {
   const fs::path given(name);
   std::error_code ignored;
   if (fs::is_regular_file(given, ignored)) return name;
-  const detector::ModelSearch model = detector::find_model(name, detector::process_environment());
+  const service::ModelSearch model = service::find_model(name, service::process_environment());
   if (!model) throw EvalDetectorError(model.message);
   return model.path;
 }

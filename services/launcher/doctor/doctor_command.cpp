@@ -18,7 +18,7 @@
 #include "common/bus/network.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/exit_code.hpp"
-#include "services/detector/core/model_locator.hpp"
+#include "common/service/model_locator.hpp"
 #include "services/launcher/doctor/findings.hpp"
 #include "services/launcher/doctor/keystore_checks.hpp"
 #include "services/launcher/doctor/network_checks.hpp"
@@ -151,7 +151,7 @@ void check_leftovers(Findings& findings) {
 }
 
 void check_weights(Findings& findings) {
-  const detector::ModelSearch model = detector::find_model({}, detector::process_environment());
+  const service::ModelSearch model = service::find_model({}, service::process_environment());
   findings.push_back(
       model ? Finding{Verdict::kOk, "weights: " + model.path}
             : Finding{Verdict::kWarn, "weights: " + model.message + "; until then runs use geometry only"});

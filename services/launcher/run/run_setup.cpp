@@ -12,10 +12,11 @@
 #include <optional>
 
 #include "common/service/bus_config.hpp"
+#include "common/service/model_locator.hpp"
 #include "common/service/pace.hpp"
 #include "services/camera/core/live/live_options.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/detector/core/model_locator.hpp"
+#include "services/camera/core/source_uri.hpp"
 #include "services/launcher/process/executable.hpp"
 
 namespace rtd::launcher {
@@ -129,7 +130,7 @@ void choose_detector(const RunOptions& options, RunSetup& setup) {
   }
   std::string configured = options.model.empty() ? peek(options, "detector", "model") : options.model;
   if (!options.model.empty() && fs::is_regular_file(options.model)) configured = fs::absolute(options.model).string();
-  const detector::ModelSearch model = detector::find_model(configured, detector::process_environment());
+  const service::ModelSearch model = service::find_model(configured, service::process_environment());
   if (!model && !configured.empty()) throw ConfigError(model.message);
   setup.model_path = model.path;
   setup.weights_advice = model.message;
@@ -226,15 +227,6 @@ std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vect
 
 }  // namespace
 
-std::string complete_uri(const std::string& source) {
-  if (source.find(':') != std::string::npos) return source;
-  if (fs::is_directory(source)) return "tum:" + source;
-  for (const std::string scheme : {"bag", "mcap"}) {
-    if (fs::path(source).extension() == "." + scheme) return scheme + ":" + source;
-  }
-  return source;
-}
-
 RunSetup prepare_run(const RunOptions& options) {
   RunSetup setup;
   load_config(options, setup);
@@ -243,7 +235,7 @@ RunSetup prepare_run(const RunOptions& options) {
   setup.filter_mode = choose_filter_mode(options);
   setup.config_file = options.config_file;
   setup.overrides = options.overrides;
-  setup.source = complete_uri(options.source);
+  setup.source = camera::complete_uri(options.source);
   setup.frame_limit = options.frames;
   setup.dense = options.dense;
   setup.record = options.record;

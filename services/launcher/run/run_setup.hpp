@@ -44,9 +44,6 @@ struct RunSetup {
 /// is created). Throws service::ConfigError or camera::SourceError.
 RunSetup prepare_run(const RunOptions& options);
 
-/// A bare folder is taken as a TUM sequence, FILE.bag and FILE.mcap as what they are.
-std::string complete_uri(const std::string& source);
-
 /// Removes what an earlier run left in the output folder. Throws service::ConfigError.
 void clear_out_dir(const RunSetup& setup);
 

@@ -12,7 +12,6 @@
 #include "services/camera/core/mcap_export.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/camera/core/source_uri.hpp"
-#include "services/launcher/run/run_setup.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -105,7 +104,7 @@ void add_convert_command(CLI::App& app, ConvertOptions& options) {
 
 int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& err) {
   try {
-    const auto source = camera::make_source(complete_uri(options.source));
+    const auto source = camera::make_source(camera::complete_uri(options.source));
     const std::uint64_t frames = write(*source, options, err);
     tell(options, frames, *source, out, err);
     return lost(source->counters()) > 0 ? service::kPartialLoss : service::kOk;

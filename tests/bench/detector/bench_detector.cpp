@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/service/model_locator.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/letterbox.hpp"
-#include "services/detector/core/model_locator.hpp"
 #include "services/detector/core/yolo_decoder.hpp"
 #include "services/detector/core/yolo_network.hpp"
 
@@ -18,7 +18,7 @@ namespace rtd::detector {
 namespace {
 
 DetectorConfig config_or_skip(benchmark::State& state) {
-  const ModelSearch model = find_model("", process_environment());
+  const service::ModelSearch model = service::find_model("", service::process_environment());
   if (!model) state.SkipWithError(model.message.c_str());
   DetectorConfig config;
   config.model_path = model.path;

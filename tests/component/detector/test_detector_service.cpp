@@ -9,8 +9,8 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/detector/core/model_locator.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 #include "tests/support/service_fixture.hpp"
 
@@ -279,7 +279,7 @@ TEST_F(DetectorServiceTest, refuses_to_start_without_weights_or_with_broken_ones
 }
 
 TEST_F(DetectorServiceTest, answers_with_the_real_network) {
-  const ModelSearch model = find_model("", process_environment());
+  const service::ModelSearch model = service::find_model("", service::process_environment());
   if (!model) GTEST_SKIP() << model.message;
   config_ = {};
   config_.model = model.path;

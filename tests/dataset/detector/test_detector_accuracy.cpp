@@ -11,12 +11,12 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "common/service/model_locator.hpp"
 #include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/coco_classes.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/evaluation/accuracy_report.hpp"
 #include "services/detector/core/evaluation/mask_recall.hpp"
-#include "services/detector/core/model_locator.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -39,7 +39,7 @@ class DetectorQuality : public ::testing::Test {
     const char* const data = std::getenv("RTD_DATA_DIR");
     if (data == nullptr) GTEST_SKIP() << "RTD_DATA_DIR is not set";
     data_ = data;
-    const ModelSearch model = find_model("", process_environment());
+    const service::ModelSearch model = service::find_model("", service::process_environment());
     if (!model) GTEST_SKIP() << model.message;
     config_.model_path = model.path;
     config_.decode.confidence_threshold = kPersonConfidence;

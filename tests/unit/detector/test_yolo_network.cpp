@@ -8,8 +8,8 @@
 #include <limits>
 #include <random>
 
+#include "common/service/model_locator.hpp"
 #include "services/detector/core/fast_sigmoid.hpp"
-#include "services/detector/core/model_locator.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -87,7 +87,7 @@ int expect_equal(const HeadLogits& head, const cv::Mat& dense, float gate) {
 }
 
 TEST(YoloNetwork, equals_opencv_computing_everything) {
-  const ModelSearch model = find_model("", process_environment());
+  const service::ModelSearch model = service::find_model("", service::process_environment());
   if (!model) GTEST_SKIP() << model.message;
   DetectorConfig config;
   config.model_path = model.path;

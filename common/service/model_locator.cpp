@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/model_locator.hpp"
+#include "common/service/model_locator.hpp"
 
 #include <cstdlib>
 #include <filesystem>
 #include <vector>
 
-namespace rtd::detector {
+namespace rtd::service {
 namespace {
 
 constexpr const char* kAdvice =
@@ -55,4 +55,4 @@ EnvironmentReader process_environment() {
   };
 }
 
-}  // namespace rtd::detector
+}  // namespace rtd::service

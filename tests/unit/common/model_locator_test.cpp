@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/model_locator.hpp"
+#include "common/service/model_locator.hpp"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <map>
 
-namespace rtd::detector {
+namespace rtd::service {
 namespace {
 
 using ::testing::AllOf;
@@ -95,4 +95,4 @@ TEST_F(ModelLocator, works_without_any_environment) {
 }
 
 }  // namespace
-}  // namespace rtd::detector
+}  // namespace rtd::service

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace rtd::detector {
+namespace rtd::service {
 
 /// File name of the network that deploy/setup.sh fetches and that is used when nothing else is configured.
 inline constexpr const char* kDefaultModelFile = "v5lite-s-raw-480x640.onnx";
@@ -29,4 +29,4 @@ ModelSearch find_model(const std::string& configured, const EnvironmentReader& e
 /// The environment of this process.
 EnvironmentReader process_environment();
 
-}  // namespace rtd::detector
+}  // namespace rtd::service
