@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs what is missing, builds, and runs the main job: the same scene without and with removal of dynamic points.
-# Arguments go to `rtd demo`, e.g. deploy/demo.sh --frames 100
+# Installs missing packages, builds, and runs one scene without and with removal of dynamic points.
+# Arguments are passed to `rtd demo`, e.g. deploy/demo.sh --frames 100
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 # shellcheck source=deploy/environment.sh

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Sourced by the scripts beside it: points RTD_DATA_DIR and RTD_MODEL_DIR at ../shared when that folder exists.
-# Data and weights are read where they lie and never copied into the project. Needs $root.
+# Data and weights are read in place and never copied into the project. The calling script sets $root.
 # shellcheck shell=bash disable=SC2154
 if [ -z "${RTD_DATA_DIR:-}" ] && [ -d "$root/../shared/data" ]; then
   RTD_DATA_DIR="$(cd "$root/../shared/data" && pwd)"
@@ -13,7 +13,7 @@ if [ -z "${RTD_MODEL_DIR:-}" ] && [ -d "$root/../shared/models" ]; then
   export RTD_MODEL_DIR
 fi
 
-# Configures and builds into build/release. $1: "ON" to build the tests too; the rest goes to `cmake --build`.
+# Configures and builds into build/release. $1: "ON" to build the tests too; the other arguments are passed to `cmake --build`.
 build_release() {
   local tests="$1"
   shift

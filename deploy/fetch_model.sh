@@ -3,11 +3,11 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Downloads the public detector checkpoint, checks it, converts it to ONNX and puts it into the user's cache, where
-# rtd-detector finds it. Does nothing when it is there already. Called by deploy/setup.sh.
-#   RTD_MODEL_URL     folder that holds the checkpoint, e.g. a mirror (default: its public home)
+# rtd-detector finds it. Does nothing if the model is already there. Called by deploy/setup.sh.
+#   RTD_MODEL_URL     folder that contains the checkpoint, e.g. a mirror (default: its public home)
 #   RTD_MODEL_SHA256  its checksum, for another checkpoint of the same name
-#   XDG_CACHE_HOME    where the cache is (default: ~/.cache)
-# Exit: 0 the model is there, 1 it is not (the message says why).
+#   XDG_CACHE_HOME    folder of the cache (default: ~/.cache)
+# Exit code: 0 the model is there, 1 it is not (the message explains why).
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
@@ -33,15 +33,15 @@ require() {
     fail "python3-numpy or python3-onnx is missing: run deploy/setup.sh"
 }
 
-# What curl's exit code means for people.
+# Explains curl's exit code.
 explain() {
   case "$1" in
     5 | 6 | 7) echo "no connection to ${url%/"$checkpoint"}" ;;
-    18) echo "the download was cut off" ;;
+    18) echo "the download was interrupted" ;;
     22) echo "the server does not have $url" ;;
     23) echo "cannot write to $cache" ;;
     28) echo "the server did not answer in time" ;;
-    63) echo "the file is far too large" ;;
+    63) echo "the file is too large" ;;
     *) echo "curl failed with exit code $1" ;;
   esac
 }
@@ -53,7 +53,7 @@ download() {
     curl --fail --location --silent --proto '=http,https' --connect-timeout 10 --max-time 120 --max-filesize 500000000 \
       --output "$target" "$url" || code=$?
     [ "$code" -eq 0 ] && return
-    [ "$code" -eq 22 ] && break # the server said no: asking again does not help
+    [ "$code" -eq 22 ] && break # the server refused: another attempt does not help
     [ "$attempt" -lt "$attempts" ] && sleep "$attempt"
   done
   fail "cannot fetch $checkpoint: $(explain "$code"). Try again later, or set RTD_MODEL_URL to a mirror"
@@ -66,7 +66,7 @@ verify() {
 }
 
 if [ -f "$model" ]; then
-  echo "fetch_model: already there: $model"
+  echo "fetch_model: already installed: $model"
   exit 0
 fi
 require
@@ -78,5 +78,5 @@ download "$work/$checkpoint"
 verify "$work/$checkpoint"
 /usr/bin/python3 -B "$root/services/detector/tools/yolov5_to_onnx.py" "$work/$checkpoint" "$work/model.onnx" \
   --size "$input_size" >/dev/null || fail "the checkpoint could not be converted"
-mv -f "$work/model.onnx" "$model" # same file system: other processes see all of it or nothing
+mv -f "$work/model.onnx" "$model" # same file system: other processes see the whole file or none
 echo "fetch_model: installed $model"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the clips of docs/results.md several times and prints the tables of that page.
+"""Runs the clips of docs/results.md several times and prints tables for that page.
 
 Usage: deploy/measure.py [--runs 5] [--rtd build/release/bin/rtd] [--data DIR] [--only NAME ...]
 
@@ -84,7 +84,7 @@ def main() -> None:
     parser.add_argument("--rtd", default=str(ROOT / "build/release/bin/rtd"))
     parser.add_argument("--data", default=os.environ.get("RTD_DATA_DIR", str(ROOT.parent / "shared/data")))
     parser.add_argument("--domain", type=int, default=90)
-    parser.add_argument("--only", nargs="*", default=[], choices=list(CASES), help="cases; all when empty")
+    parser.add_argument("--only", nargs="*", default=[], choices=list(CASES), help="cases to run (default: all)")
     options = parser.parse_args()
 
     kind = None
@@ -98,7 +98,7 @@ def main() -> None:
                 reports.append(run_once(options.rtd, arguments.format(data=options.data), out, options.domain))
             if figures != kind:
                 kind = figures
-                print(f"\nMedian (smallest..largest) of {options.runs} runs\n\n{HEADS[kind]}")
+                print(f"\nMedian (min..max) of {options.runs} runs\n\n{HEADS[kind]}")
             print(accuracy_row(name, reports) if kind == "accuracy" else speed_row(name, reports), flush=True)
 
 

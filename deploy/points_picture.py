@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""Draws kept and removed points of one frame of a report over the true mask, as SVG and without the photograph.
+"""Draws kept and removed points of one frame of a report over the true mask, as SVG without the photograph.
 
-Usage: deploy/points_picture.py REPORT.html FRAME MASK.png OUT.svg [--dark]   (--dark: the mask marks what moves in black)
-The pictures of docs/results.md were made so. Needs python3-opencv.
+Usage: deploy/points_picture.py REPORT.html FRAME MASK.png OUT.svg [--dark]   (--dark: moving objects are black in the mask)
+This script made the images of docs/results.md. It needs python3-opencv.
 """
 import re
 import sys
@@ -29,7 +29,7 @@ def samples(html):
 def outline(mask_file, dark):
     mask = cv2.imread(mask_file, cv2.IMREAD_GRAYSCALE)
     if mask is None:
-        sys.exit(f"points_picture: {mask_file} is no image")
+        sys.exit(f"points_picture: {mask_file} is not an image")
     moving = (mask < 128) if dark else (mask > 127)
     contours, _ = cv2.findContours(moving.astype("uint8"), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_SIMPLE)
     smooth = [cv2.approxPolyDP(c, 1.0, True)[:, 0, :] for c in contours if cv2.contourArea(c) > 60]

@@ -2,18 +2,18 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs what RTD-SLAM needs to build and run on Debian 12. Idempotent: installs only what is missing.
+# Installs the packages that RTD-SLAM needs to build and run on Debian 12. Idempotent: installs only missing ones.
 set -euo pipefail
 
 usage() {
   cat <<'TEXT'
 Usage: deploy/setup.sh [--check | --list | --models | --no-models | --viewers]
-  (none)       install missing Debian packages, then fetch the detector weights when they are not there yet
-  --check      only say what is missing; exit 1 when something is
-  --list       print the Debian packages, one a line
-  --models     only fetch and convert the detector weights
+  (none)       install missing Debian packages, then download the detector weights if they are missing
+  --check      only report what is missing; exit code 1 if something is
+  --list       print the Debian packages, one per line
+  --models     only download and convert the detector weights
   --no-models  only install the packages
-  --viewers    also what the tests with other people's viewers and serialisers need: node, Chromium, npm packages (500 MB)
+  --viewers    also install what the tests with external viewers and serialisers need: node, Chromium, npm packages (500 MB)
 TEXT
 }
 
@@ -36,7 +36,7 @@ packages=(
   curl ca-certificates
 )
 
-# Only for the tests with other people's viewers; a command that is there already needs no package.
+# Only for the tests with external viewers; a command that exists already needs no package.
 viewer_packages=()
 command -v node >/dev/null || viewer_packages+=(nodejs)
 command -v npm >/dev/null || viewer_packages+=(npm)
@@ -55,7 +55,7 @@ as_root() {
   elif command -v sudo >/dev/null; then
     sudo "$@"
   else
-    echo "setup: packages are missing, and this is neither root nor a system with sudo. As root, run:" >&2
+    echo "setup: packages are missing, but you are not root and sudo is not installed. As root, run:" >&2
     echo "  $*" >&2
     exit 1
   fi
@@ -89,8 +89,8 @@ fetch_models() {
   if [ -n "$model" ]; then
     echo "setup: detector weights: $model"
   elif ! "$root/deploy/fetch_model.sh"; then
-    echo "setup: no detector weights: RTD-SLAM runs all the same, on geometry only." >&2
-    echo "setup: later: deploy/setup.sh --models, or point RTD_MODEL_DIR at a folder that has v5lite-s-raw-480x640.onnx" >&2
+    echo "setup: no detector weights: RTD-SLAM still runs, with geometry only." >&2
+    echo "setup: to add them: deploy/setup.sh --models, or set RTD_MODEL_DIR to a folder with v5lite-s-raw-480x640.onnx" >&2
   fi
 }
 
@@ -101,7 +101,7 @@ install_viewers() {
   mkdir -p "$tools"
   cp "$root/tests/interop/viewers/package.json" "$tools/"
   npm --prefix "$tools" install --no-audit --no-fund --ignore-scripts
-  echo "setup: next: ./deploy/test.sh -R interop"
+  echo "setup: next step: ./deploy/test.sh -R interop"
 }
 
 check() {

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs an endless synthetic scene and prints how the memory of each process develops.
+"""Runs an endless synthetic scene and prints the memory of each process over time.
 
 Usage: deploy/soak.py [--seconds 120] [--rtd build/release/bin/rtd] [--scene office] [--pace asap]
 
-The map of slam and the launcher's record of the run grow with what they hold; everything else must stay level.
+slam's map and the launcher's record of the run grow with their content; the memory of all other processes must stay constant.
 """
 import argparse
 import json
@@ -21,7 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def anonymous_mb(pid: int) -> float:
-    """Memory of its own (RssAnon): pages of shared memory and of files are left out."""
+    """Private memory (RssAnon), without pages of shared memory and files."""
     for line in pathlib.Path(f"/proc/{pid}/status").read_text().splitlines():
         if line.startswith("RssAnon:"):
             return int(line.split()[1]) / 1024

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs every synthetic scene with many seeds and reports the worst case of each, not the best.
+"""Runs every synthetic scene with many seeds and reports the worst case of each.
 
 Usage: deploy/stress.py [--seeds 20] [--scenes fill,slow] [--modes rtd,geometry] [--jobs N] [--out FOLDER]
 
-Each run is rtd_offline_run (the whole system in one process, lockstep). Results are kept in FOLDER/runs.jsonl: started
-again with the same program, what is there already is not run again. FOLDER/stress.md and stress.json hold the tables.
-Exit code: 0 all runs within the limits, 1 some are not, 2 it could not run.
+Each run is rtd_offline_run (the whole system in one process, lockstep). FOLDER/runs.jsonl keeps the results: a second
+start with the same program repeats no run. FOLDER/stress.md and stress.json contain the tables.
+Exit code: 0 all runs within the limits, 1 some are not, 2 the program is missing.
 """
 import argparse
 import concurrent.futures
@@ -88,7 +88,7 @@ def run_all(options, build: str) -> list:
 
 
 def defect(result: dict, options) -> str:
-    """Why a run is not good enough; empty when it is."""
+    """Why a run fails; empty if it passes."""
     if "failed" in result:
         return result["failed"]
     if result["ate_m"] is None:
@@ -152,8 +152,8 @@ def parse_options():
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/stress")
     parser.add_argument("--program", type=pathlib.Path, default=PROGRAM)
-    parser.add_argument("--max-ate", type=float, default=0.03, help="m; a run with more is listed as a failure")
-    parser.add_argument("--min-coverage", type=float, default=0.95, help="a run with less is listed as a failure")
+    parser.add_argument("--max-ate", type=float, default=0.03, help="m; a run with a larger ATE is listed as a failure")
+    parser.add_argument("--min-coverage", type=float, default=0.95, help="a run with a lower coverage is listed as a failure")
     return parser.parse_args()
 
 
@@ -171,7 +171,7 @@ def main() -> int:
     failures = [(r, cause) for r in results if r["mode"] not in ("off", "semantic") and (cause := defect(r, options))]
     text = table(summaries)
     if failures:
-        text += "\n\nNot within the limits:\n\n" + "\n".join(
+        text += "\n\nOutside the limits:\n\n" + "\n".join(
             f"- {cause}: `{shlex.join(command(options.program, *key(r)))}`" for r, cause in failures)
     print(text)
     (options.out / "stress.md").write_text(text + "\n")

@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs what is missing, builds everything and runs all tests. Arguments go to ctest, e.g. deploy/test.sh -L unit
+# Installs missing packages, builds everything and runs all tests. Arguments are passed to ctest,
+# e.g. deploy/test.sh -L unit
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 # shellcheck source=deploy/environment.sh
@@ -22,7 +23,7 @@ echo "test: built in $((built - started)) s"
 
 status=0
 ctest --test-dir "$root/build/release" --output-on-failure --no-tests=error "$@" || status=$?
-echo "test: tests took $((SECONDS - built)) s, everything $((SECONDS - started)) s"
+echo "test: tests took $((SECONDS - built)) s, total $((SECONDS - started)) s"
 if [ "$status" -eq 0 ]; then
   echo "test: next: ./deploy/demo.sh"
 else
