@@ -14,12 +14,21 @@ namespace rtd::bus {
 
 /// Where a process looks for others, and how its datagrams are cut. Defaults: what suits the loopback interface.
 struct NetworkOptions {
-  bool loopback_only = true;                 ///< false: also the host's network interfaces
-  std::vector<std::string> interfaces;       ///< names or IPv4 addresses to use beside loopback; empty: all
-  bool multicast = true;                     ///< false: only `peers` and the discovery server are asked
-  std::vector<std::string> peers;            ///< host names or IPv4 addresses, `:PORT` where it is not the domain's own
-  std::string discovery_server;              ///< HOST:PORT of a Fast DDS Discovery Server; empty: none
-  std::uint32_t max_datagram_bytes = 65000;  ///< larger samples are cut by DDS; <= 1400 where packets may get lost
+  bool loopback_only = true;
+  std::vector<std::string> interfaces;
+  bool multicast = true;
+  std::vector<std::string> peers;
+  std::string discovery_server;
+  std::uint32_t max_datagram_bytes = 65000;  ///< <= 1400 where packets may get lost
+
+  void bind(auto& binder) {
+    binder.field("loopback_only", loopback_only, "false: also the host's network interfaces");
+    binder.field("interfaces", interfaces, "names or IPv4 addresses to use beside loopback, none: all (--interface)");
+    binder.field("multicast", multicast, "false: only peers and the discovery server are asked");
+    binder.field("peers", peers, "hosts that are asked directly, HOST or HOST:PORT (--peers)");
+    binder.field("discovery_server", discovery_server, "HOST:PORT of a Fast DDS Discovery Server (--discovery-server)");
+    binder.field("max_datagram_bytes", max_datagram_bytes, {512, 65000}, "DDS cuts larger samples; 1400 on a network");
+  }
 };
 
 /// DDS-Security: a keystore in the layout of sros2, and whose keys to use. Both empty: plain DDS.
@@ -34,18 +43,28 @@ std::string default_vendor();
 
 /// How a process joins the bus. Defaults: Fast DDS, loopback only.
 struct BusOptions {
-  std::string vendor = default_vendor();   ///< "fastdds", "cyclonedds" or "inprocess"; `--dds`, RTD_DDS
-  std::uint32_t domain = 0;                ///< DDS domain 0..232; `--domain`, ROS_DOMAIN_ID
-  std::string participant_name;            ///< shown by DDS tools, e.g. "rtd-filter"
-  bool shared_memory = true;               ///< Fast DDS: false sends over UDP on one host too, where /dev/shm is tiny
-  std::uint32_t shm_segment_mib = 16;      ///< shared-memory segment of this process, >= 8
-  std::uint32_t socket_buffer_kib = 4096;  ///< asked UDP buffer, capped by net.core.rmem_max
+  std::string vendor = default_vendor();  ///< one of available_vendors()
+  std::uint32_t domain = 0;
+  std::string participant_name;  ///< shown by DDS tools, e.g. "rtd-filter"
+  bool shared_memory = true;     ///< false where /dev/shm is tiny
+  std::uint32_t shm_segment_mib = 16;
+  std::uint32_t socket_buffer_kib = 4096;
   NetworkOptions network;
   SecurityOptions security;
-  bool iceoryx = false;  ///< Cyclone DDS: fixed-size samples through a running iox-roudi
-  /// Told in one line what keeps others from meeting us, e.g. a participant of another vendor in a secured domain.
-  /// Runs on a bus thread, maybe several times: be brief, do not call the bus.
+  bool iceoryx = false;
+  /// Called with one line for each problem that keeps other participants from being matched, e.g. a participant of
+  /// another vendor in a secured domain. Runs on a bus thread, maybe several times: be brief, do not call the bus.
   std::function<void(const std::string& problem)> on_problem = {};
+
+  void bind(auto& binder) {
+    binder.field("vendor", vendor, "DDS implementation (--dds, RTD_DDS)");
+    binder.field("domain", domain, {0, 232}, "DDS domain (--domain, ROS_DOMAIN_ID)");
+    binder.field("shared_memory", shared_memory, "false: Fast DDS sends over UDP on one host too");
+    binder.field("shm_segment_mib", shm_segment_mib, {8, 1024}, "shared-memory segment of each process");
+    binder.field("socket_buffer_kib", socket_buffer_kib, {64, 65536}, "wanted UDP buffers, capped by the kernel");
+    binder.field("iceoryx", iceoryx, "Cyclone DDS: frames and features through a running iox-roudi");
+    binder.section("network", network);
+  }
 };
 
 /// Connects to the bus. Throws BusError: unknown vendor (with the list of those built in), domain out of range,

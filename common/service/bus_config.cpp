@@ -2,49 +2,55 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/service/bus_config.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "common/security/keystore_location.hpp"
 
 namespace rtd::service {
+namespace {
 
-void NetworkConfig::bind(ConfigBinder& binder) {
-  binder.field("loopback_only", loopback_only, "false: also the host's network interfaces");
-  binder.field("interfaces", interfaces, "names or IPv4 addresses to use beside loopback, none: all (--interface)");
-  binder.field("multicast", multicast, "false: only peers and the discovery server are asked");
-  binder.field("peers", peers, "hosts that are asked directly, HOST or HOST:PORT (--peers)");
-  binder.field("discovery_server", discovery_server, "HOST:PORT of a Fast DDS Discovery Server (--discovery-server)");
-  binder.field("max_datagram_bytes", max_datagram_bytes, {512, 65000}, "DDS cuts larger samples; 1400 on a network");
+std::string profile_names() {
+  std::string names;
+  for (const auto& [name, text] : built_in_profiles()) names += (names.empty() ? "" : ", ") + name;
+  return names;
 }
 
-void SecurityConfig::bind(ConfigBinder& binder) {
-  binder.field("enabled", enabled, "DDS-Security: only who has keys of the keystore takes part (--secure)");
-  binder.field("keystore", keystore,
-               "folder of 'rtd keystore create' (--keystore, RTD_KEYSTORE, ROS_SECURITY_KEYSTORE), default "
-               "~/.config/rtd/keystore");
-  binder.field("enclave", enclave, "whose keys: a path below enclaves/, default /rtd/ and the service's name");
+bool is_file_name(const std::string& profile) {
+  return profile.find('/') != std::string::npos || profile.ends_with(".yaml") || profile.ends_with(".yml");
 }
 
-void BusConfig::bind(ConfigBinder& binder) {
-  binder.field("vendor", vendor, "DDS implementation (--dds, RTD_DDS)");
-  binder.field("domain", domain, {0, 232}, "DDS domain (--domain, ROS_DOMAIN_ID)");
-  binder.field("shared_memory", shared_memory, "false: Fast DDS sends over UDP on one host too");
-  binder.field("shm_segment_mib", shm_segment_mib, {8, 1024}, "shared-memory segment of each process");
-  binder.field("socket_buffer_kib", socket_buffer_kib, {64, 65536}, "wanted UDP buffers, capped by the kernel");
-  binder.field("iceoryx", iceoryx, "Cyclone DDS: frames and features through a running iox-roudi");
-  binder.section("network", network);
-  binder.section("security", security);
+void load_profile(ConfigBinder& binder, const std::string& profile) {
+  if (profile.empty()) return;
+  if (const auto known = built_in_profiles().find(profile); known != built_in_profiles().end())
+    return binder.load_text(known->second, "config/profiles/" + profile + ".yaml", config_sections());
+  std::ifstream file(profile);
+  if (is_file_name(profile) && file && !std::filesystem::is_directory(profile))
+    return binder.load_text({std::istreambuf_iterator<char>(file), {}}, profile, config_sections());
+  throw ConfigError(fmt::format("--profile {}: {}, there are {} (or a YAML file)", profile,
+                                is_file_name(profile) ? "no such file" : "no such profile", profile_names()));
 }
 
-void apply_bus_environment(ConfigBinder& binder) {
+/// ["a", "b:7410"]: quoted, for YAML reads colons.
+std::string yaml_list(const std::vector<std::string>& values) {
+  std::vector<std::string> quoted;
+  for (const std::string& value : values) quoted.push_back(fmt::format("\"{}\"", value));
+  return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
+/// ROS 2 compares ROS_SECURITY_ENABLE exactly so.
+void apply_environment(ConfigBinder& binder) {
   if (const char* vendor = std::getenv("RTD_DDS")) binder.set("bus.vendor", vendor, "environment RTD_DDS");
   if (const char* domain = std::getenv("ROS_DOMAIN_ID")) binder.set("bus.domain", domain, "environment ROS_DOMAIN_ID");
-  const char* const ros_security = std::getenv("ROS_SECURITY_ENABLE");  // ROS 2 compares exactly so
-  if (ros_security != nullptr && std::string(ros_security) == "true")
+  if (const char* secure = std::getenv("ROS_SECURITY_ENABLE"); secure != nullptr && std::string(secure) == "true")
     binder.set("bus.security.enabled", "true", "environment ROS_SECURITY_ENABLE");
 }
-
-namespace {
 
 /// "rtd-slam" is the enclave /rtd/slam, the launcher "rtd" with its commands is /rtd/launcher.
 bus::SecurityOptions security_options(const SecurityConfig& config, const std::string& participant_name) {
@@ -58,22 +64,70 @@ bus::SecurityOptions security_options(const SecurityConfig& config, const std::s
 }  // namespace
 
 bus::BusOptions to_bus_options(const BusConfig& config, const std::string& participant_name) {
-  bus::BusOptions options;
-  options.vendor = config.vendor;
-  options.domain = static_cast<std::uint32_t>(config.domain);
+  bus::BusOptions options = config.options;
   options.participant_name = participant_name;
-  options.shared_memory = config.shared_memory;
-  options.shm_segment_mib = static_cast<std::uint32_t>(config.shm_segment_mib);
-  options.socket_buffer_kib = static_cast<std::uint32_t>(config.socket_buffer_kib);
-  options.iceoryx = config.iceoryx;
-  options.network.loopback_only = config.network.loopback_only;
-  options.network.interfaces = config.network.interfaces;
-  options.network.multicast = config.network.multicast;
-  options.network.peers = config.network.peers;
-  options.network.discovery_server = config.network.discovery_server;
-  options.network.max_datagram_bytes = static_cast<std::uint32_t>(config.network.max_datagram_bytes);
   options.security = security_options(config.security, participant_name);
   return options;
+}
+
+void add_bus_options(CLI::App& app, BusArguments& arguments) {
+  app.add_option("--profile", arguments.profile,
+                 fmt::format("Network profile: {}, or a YAML file (default: localhost)", profile_names()));
+  app.add_option("--peers", arguments.peers, "Hosts to ask directly, e.g. 192.168.1.20,gpubox (bus.network.peers)")
+      ->delimiter(',');
+  app.add_option("--interface", arguments.interfaces,
+                 "Network interfaces to use, e.g. eth0 (bus.network.interfaces; default: all)")
+      ->delimiter(',');
+  app.add_option("--discovery-server", arguments.discovery_server,
+                 "HOST:PORT of a Fast DDS Discovery Server (bus.network.discovery_server)");
+  app.add_option("--dds", arguments.vendor,
+                 fmt::format("DDS implementation: {} (RTD_DDS; default: {})", fmt::join(bus::dds_vendors(), " or "),
+                             bus::default_vendor()));
+  app.add_option("--domain", arguments.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
+  app.add_flag("--secure", arguments.secure, "DDS-Security: only who has keys of the keystore (bus.security.enabled)");
+  app.add_option("--keystore", arguments.keystore,
+                 "Keystore of 'rtd keystore create', with --secure (RTD_KEYSTORE, ROS_SECURITY_KEYSTORE)");
+}
+
+void load_config(ConfigBinder& binder, const BusArguments& arguments, const ConfigSources& sources) {
+  load_profile(binder, arguments.profile);
+  apply_environment(binder);
+  if (!sources.file.empty()) binder.load_file(sources.file, config_sections());
+  for (const std::string& assignment : sources.overrides) binder.set(assignment, config_sections());
+  if (!arguments.peers.empty()) binder.set("bus.network.peers", yaml_list(arguments.peers), "--peers");
+  if (!arguments.interfaces.empty())
+    binder.set("bus.network.interfaces", yaml_list(arguments.interfaces), "--interface");
+  if (!arguments.discovery_server.empty())
+    binder.set("bus.network.discovery_server", "\"" + arguments.discovery_server + "\"", "--discovery-server");
+  if (!arguments.vendor.empty()) binder.set("bus.vendor", arguments.vendor, "--dds");
+  if (arguments.domain >= 0) binder.set("bus.domain", std::to_string(arguments.domain), "--domain");
+  if (!arguments.keystore.empty()) binder.set("bus.security.keystore", "\"" + arguments.keystore + "\"", "--keystore");
+  if (arguments.secure || !arguments.keystore.empty()) binder.set("bus.security.enabled", "true", "--secure");
+}
+
+std::vector<std::string> to_command_line(const BusArguments& arguments) {
+  std::vector<std::string> words;
+  const auto add = [&words](const char* option, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {option, value});
+  };
+  add("--profile", arguments.profile);
+  add("--peers", fmt::format("{}", fmt::join(arguments.peers, ",")));
+  add("--interface", fmt::format("{}", fmt::join(arguments.interfaces, ",")));
+  add("--discovery-server", arguments.discovery_server);
+  add("--dds", arguments.vendor);
+  if (arguments.domain >= 0) add("--domain", std::to_string(arguments.domain));
+  if (arguments.secure) words.emplace_back("--secure");
+  add("--keystore", arguments.keystore);
+  return words;
+}
+
+bus::BusOptions load_bus_options(const BusArguments& arguments, const ConfigSources& sources,
+                                 const std::string& participant_name) {
+  BusConfig config;
+  ConfigBinder binder;
+  binder.section("bus", config);
+  load_config(binder, arguments, sources);
+  return to_bus_options(config, participant_name);
 }
 
 const std::vector<std::string>& config_sections() {

@@ -2,53 +2,79 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
 #include "common/service/config.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace rtd::service {
 
-/// bus.network: where a process looks for others. The profiles of config/profiles are sets of these.
-struct NetworkConfig {
-  bool loopback_only = bus::NetworkOptions{}.loopback_only;
-  std::vector<std::string> interfaces;
-  bool multicast = bus::NetworkOptions{}.multicast;
-  std::vector<std::string> peers;
-  std::string discovery_server;
-  int max_datagram_bytes = static_cast<int>(bus::NetworkOptions{}.max_datagram_bytes);
-
-  void bind(ConfigBinder& binder);
-};
-
-/// DDS-Security. Defaults: off; the keystore is found, the enclave named after the service.
+/// bus.security. Defaults: off; the keystore is found, the enclave named after the service.
 struct SecurityConfig {
   bool enabled = false;
   std::string keystore, enclave;
 
-  void bind(ConfigBinder& binder);
+  void bind(auto& binder) {
+    binder.field("enabled", enabled, "DDS-Security: only processes with keys of the keystore take part (--secure)");
+    binder.field("keystore", keystore,
+                 "folder of 'rtd keystore create' (--keystore, RTD_KEYSTORE, ROS_SECURITY_KEYSTORE), default "
+                 "~/.config/rtd/keystore");
+    binder.field("enclave", enclave, "whose keys: a path below enclaves/, default /rtd/ and the service's name");
+  }
 };
 
-/// Settings of the bus as config keys; defaults come from BusOptions and the environment.
+/// Section `bus` of the configuration.
 struct BusConfig {
-  std::string vendor = bus::BusOptions{}.vendor;
-  int domain = static_cast<int>(bus::BusOptions{}.domain);
-  bool shared_memory = bus::BusOptions{}.shared_memory;
-  int shm_segment_mib = static_cast<int>(bus::BusOptions{}.shm_segment_mib);
-  int socket_buffer_kib = static_cast<int>(bus::BusOptions{}.socket_buffer_kib);
-  bool iceoryx = bus::BusOptions{}.iceoryx;
-  NetworkConfig network;
+  bus::BusOptions options;
   SecurityConfig security;
 
-  void bind(ConfigBinder& binder);
+  void bind(auto& binder) {
+    options.bind(binder);
+    binder.section("security", security);
+  }
 };
 
-/// RTD_DDS and ROS_DOMAIN_ID, for a binder that has the section `bus`.
-void apply_bus_environment(ConfigBinder& binder);
 bus::BusOptions to_bus_options(const BusConfig& config, const std::string& participant_name);
 
 /// The top-level sections of a configuration file; every process reads its own and `bus`.
 const std::vector<std::string>& config_sections();
+
+/// Text of config/profiles/<name>.yaml by name; compiled in, so that a bare executable knows them.
+const std::map<std::string, std::string>& built_in_profiles();
+
+/// How a process joins the bus, as given on the command line: the same options for every service and `rtd run`.
+/// Empty and -1: not given.
+struct BusArguments {
+  std::string profile;  ///< name of a built-in profile or a YAML file
+  std::vector<std::string> peers, interfaces;
+  std::string discovery_server;
+  std::string vendor;
+  int domain = -1;
+  bool secure = false;
+  std::string keystore;  ///< names the keystore and means --secure
+};
+
+void add_bus_options(CLI::App& app, BusArguments& arguments);
+/// The command line that gives another process the same arguments.
+std::vector<std::string> to_command_line(const BusArguments& arguments);
+
+/// Where the values of a configuration come from, beside the command line's own options.
+struct ConfigSources {
+  std::string file;                    ///< --config
+  std::vector<std::string> overrides;  ///< --set
+};
+
+/// In rising priority: defaults, profile, environment, file, --set, own options. The binder needs the section `bus`.
+/// Throws ConfigError, for an unknown profile with the names of the known ones.
+void load_config(ConfigBinder& binder, const BusArguments& arguments, const ConfigSources& sources);
+/// For a process that reads no other section than `bus`.
+bus::BusOptions load_bus_options(const BusArguments& arguments, const ConfigSources& sources,
+                                 const std::string& participant_name);
 
 }  // namespace rtd::service

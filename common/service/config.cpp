@@ -8,17 +8,22 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <numeric>
 
 namespace rtd::service {
+
+struct ConfigBinder::Setting {
+  std::string key, help;
+  std::string wanted;                                 ///< "a number from 1 to 5"
+  std::function<bool(const std::string& yaml)> read;  ///< false: this is not what is wanted
+  std::function<std::string()> print;
+};
+
 namespace {
 
-[[noreturn]] void throw_bad_value(const std::string& key, const std::string& yaml, const std::string& wanted,
-                                  const std::string& origin) {
-  throw ConfigError(fmt::format("{}: {} = {} is not allowed: use {}", origin, key, yaml, wanted));
-}
-
-std::string describe(Range range, const char* kind) {
+std::string wanted_number(Range range, const char* kind) {
   const bool has_min = range.min > std::numeric_limits<double>::lowest(),
              has_max = range.max < std::numeric_limits<double>::max();
   if (has_min && has_max) return fmt::format("{} from {:g} to {:g}", kind, range.min, range.max);
@@ -27,13 +32,14 @@ std::string describe(Range range, const char* kind) {
   return kind;
 }
 
-template <class T>
-T parse(const std::string& key, const std::string& yaml, const std::string& wanted, const std::string& origin) {
-  try {
-    return YAML::Load(yaml).as<T>();
-  } catch (const YAML::Exception&) {
-    throw_bad_value(key, yaml, wanted, origin);
-  }
+auto within(Range range) {
+  return [range](auto number) {
+    return std::isfinite(static_cast<double>(number)) && number >= range.min && number <= range.max;
+  };
+}
+
+bool anything(const auto&) {
+  return true;
 }
 
 template <class T>
@@ -45,12 +51,13 @@ std::string dump(const T& value) {
   return emitter.c_str();
 }
 
-std::string dump_node(const YAML::Node& node) {
-  YAML::Emitter emitter;
-  emitter.SetSeqFormat(YAML::Flow);
-  emitter.SetMapFormat(YAML::Flow);
-  emitter << node;
-  return emitter.c_str();
+std::string print_value(double value) {
+  return fmt::format("{:g}", value);
+}
+
+template <class T>
+std::string print_value(const T& value) {
+  return dump(value);
 }
 
 std::string section_of(const std::string& key) {
@@ -72,156 +79,6 @@ int edit_distance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-}  // namespace
-
-std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates) {
-  std::string best;
-  int best_distance = static_cast<int>(std::max<std::size_t>(2, word.size() / 3)) + 1;
-  for (const std::string& candidate : candidates) {
-    const int distance = edit_distance(word, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
-  }
-  return best;
-}
-
-void ConfigBinder::add(const std::string& key, const std::string& help,
-                       std::function<void(const std::string&, const std::string&)> assign,
-                       std::function<std::string()> to_yaml) {
-  entries_.push_back({prefix_ + key, help, std::move(assign), std::move(to_yaml)});
-}
-
-void ConfigBinder::field(const std::string& key, bool& value, const std::string& help) {
-  const std::string full = prefix_ + key;
-  add(
-      key, help,
-      [&value, full](const std::string& yaml, const std::string& origin) {
-        value = parse<bool>(full, yaml, "true or false", origin);
-      },
-      [&value] { return value ? "true" : "false"; });
-}
-
-void ConfigBinder::field(const std::string& key, int& value, Range range, const std::string& help) {
-  const std::string full = prefix_ + key;
-  add(
-      key, help,
-      [&value, range, full](const std::string& yaml, const std::string& origin) {
-        const std::string wanted = describe(range, "a whole number");
-        const int parsed = parse<int>(full, yaml, wanted, origin);
-        if (parsed < range.min || parsed > range.max) throw_bad_value(full, yaml, wanted, origin);
-        value = parsed;
-      },
-      [&value] { return std::to_string(value); });
-}
-
-void ConfigBinder::field(const std::string& key, double& value, Range range, const std::string& help) {
-  const std::string full = prefix_ + key;
-  add(
-      key, help,
-      [&value, range, full](const std::string& yaml, const std::string& origin) {
-        const std::string wanted = describe(range, "a number");
-        const double parsed = parse<double>(full, yaml, wanted, origin);
-        if (!std::isfinite(parsed) || parsed < range.min || parsed > range.max)
-          throw_bad_value(full, yaml, wanted, origin);
-        value = parsed;
-      },
-      [&value] { return fmt::format("{:g}", value); });
-}
-
-void ConfigBinder::field(const std::string& key, std::string& value, const std::string& help) {
-  const std::string full = prefix_ + key;
-  add(
-      key, help,
-      [&value, full](const std::string& yaml, const std::string& origin) {
-        value = parse<std::string>(full, yaml, "a text", origin);
-      },
-      [&value] { return dump(value); });
-}
-
-void ConfigBinder::choice(const std::string& key, std::string& value, std::vector<std::string> allowed,
-                          const std::string& help) {
-  const std::string full = prefix_ + key;
-  add(
-      key, help,
-      [&value, full, allowed = std::move(allowed)](const std::string& yaml, const std::string& origin) {
-        const std::string wanted = fmt::format("one of {}", fmt::join(allowed, ", "));
-        // YAML 1.1 reads a bare `off` as a boolean; a choice takes the text as written.
-        const std::string parsed = parse<std::string>(full, yaml, wanted, origin);
-        if (std::find(allowed.begin(), allowed.end(), parsed) == allowed.end())
-          throw_bad_value(full, yaml, wanted, origin);
-        value = parsed;
-      },
-      [&value] { return dump(value); });
-}
-
-void ConfigBinder::field(const std::string& key, std::vector<std::string>& value, const std::string& help) {
-  const std::string full = prefix_ + key;
-  add(
-      key, help,
-      [&value, full](const std::string& yaml, const std::string& origin) {
-        value = parse<std::vector<std::string>>(full, yaml, "a list such as [a, b]", origin);
-      },
-      [&value] { return dump(value); });
-}
-
-void ConfigBinder::field(const std::string& key, std::map<std::string, std::string>& value, const std::string& help) {
-  const std::string full = prefix_ + key;
-  add(
-      key, help,
-      [&value, full](const std::string& yaml, const std::string& origin) {
-        value = parse<std::map<std::string, std::string>>(full, yaml, "a map such as {person: high}", origin);
-      },
-      [&value] { return dump(value); });
-}
-
-ConfigBinder::Entry* ConfigBinder::find(const std::string& key) {
-  const auto found =
-      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.key == key; });
-  return found == entries_.end() ? nullptr : &*found;
-}
-
-/// In a foreign section that holds no key of ours: a typo in our own section stays an error.
-bool ConfigBinder::is_foreign(const std::string& key, const std::vector<std::string>& foreign_sections) const {
-  const std::string section = section_of(key);
-  const bool own = std::any_of(entries_.begin(), entries_.end(),
-                               [&](const Entry& entry) { return section_of(entry.key) == section; });
-  return !own && std::find(foreign_sections.begin(), foreign_sections.end(), section) != foreign_sections.end();
-}
-
-std::vector<std::string> ConfigBinder::keys() const {
-  std::vector<std::string> result;
-  result.reserve(entries_.size());
-  for (const Entry& entry : entries_) result.push_back(entry.key);
-  return result;
-}
-
-void ConfigBinder::throw_unknown(const std::string& key, const std::string& origin) const {
-  const std::string near = nearest_word(key, keys());
-  throw ConfigError(
-      fmt::format("{}: unknown key '{}'{}", origin, key,
-                  near.empty() ? ": see --print-config for all keys" : fmt::format(", did you mean '{}'?", near)));
-}
-
-void ConfigBinder::set(const std::string& key, const std::string& yaml_value, const std::string& origin) {
-  Entry* entry = find(key);
-  if (entry == nullptr) throw_unknown(key, origin);
-  entry->assign(yaml_value, origin);
-}
-
-void ConfigBinder::set(const std::string& assignment, const std::vector<std::string>& foreign_sections) {
-  const std::size_t equals = assignment.find('=');
-  if (equals == std::string::npos || equals == 0) {
-    throw ConfigError(fmt::format("--set {}: write key=value, for example --set filter.mode=rtd", assignment));
-  }
-  const std::string key = assignment.substr(0, equals);
-  if (is_foreign(key, foreign_sections)) return;
-  set(key, assignment.substr(equals + 1), "--set");
-}
-
-namespace {
-
 /// Calls visit(key, yaml) for every node that is a known key or a leaf, with sections joined by dots.
 void flatten(const YAML::Node& node, const std::string& prefix, const std::vector<std::string>& known,
              const std::function<void(const std::string&, const std::string&)>& visit) {
@@ -231,21 +88,136 @@ void flatten(const YAML::Node& node, const std::string& prefix, const std::vecto
     if (child.second.IsMap() && !is_key) {
       flatten(child.second, key + ".", known, visit);
     } else {
-      visit(key, dump_node(child.second));
+      visit(key, dump(child.second));
     }
   }
 }
 
+std::vector<std::string> split_at_dots(const std::string& key) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0, dot = 0; dot != std::string::npos; begin = dot + 1) {
+    dot = key.find('.', begin);
+    parts.push_back(key.substr(begin, dot == std::string::npos ? dot : dot - begin));
+  }
+  return parts;
+}
+
 }  // namespace
 
-void ConfigBinder::load_file(const std::string& path, const std::vector<std::string>& foreign_sections) {
+std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates) {
+  std::string best;
+  int best_distance = static_cast<int>(std::max<std::size_t>(2, name.size() / 3)) + 1;
+  for (const std::string& candidate : candidates) {
+    const int distance = edit_distance(name, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+ConfigBinder::ConfigBinder() = default;
+ConfigBinder::~ConfigBinder() = default;
+
+template <class T, class Allowed>
+void ConfigBinder::add(std::string_view key, T& value, std::string wanted, Allowed allowed, std::string_view help) {
+  const auto read = [&value, allowed = std::move(allowed)](const std::string& yaml) {
+    try {
+      T parsed = YAML::Load(yaml).as<T>();
+      if (!allowed(parsed)) return false;
+      value = std::move(parsed);
+      return true;
+    } catch (const YAML::Exception&) {
+      return false;
+    }
+  };
+  settings_.push_back(
+      {prefix_ + std::string(key), std::string(help), std::move(wanted), read, [&value] { return print_value(value); }});
+}
+
+void ConfigBinder::field(std::string_view key, bool& value, std::string_view help) {
+  add(key, value, "true or false", anything<bool>, help);
+}
+
+void ConfigBinder::field(std::string_view key, int& value, Range range, std::string_view help) {
+  add(key, value, wanted_number(range, "a whole number"), within(range), help);
+}
+
+void ConfigBinder::field(std::string_view key, std::uint32_t& value, Range range, std::string_view help) {
+  add(key, value, wanted_number(range, "a whole number"), within(range), help);
+}
+
+void ConfigBinder::field(std::string_view key, double& value, Range range, std::string_view help) {
+  add(key, value, wanted_number(range, "a number"), within(range), help);
+}
+
+void ConfigBinder::field(std::string_view key, std::string& value, std::string_view help) {
+  add(key, value, "a text", anything<std::string>, help);
+}
+
+void ConfigBinder::field(std::string_view key, std::vector<std::string>& value, std::string_view help) {
+  add(key, value, "a list such as [a, b]", anything<std::vector<std::string>>, help);
+}
+
+void ConfigBinder::field(std::string_view key, std::map<std::string, std::string>& value, std::string_view help) {
+  add(key, value, "a map such as {person: high}", anything<std::map<std::string, std::string>>, help);
+}
+
+/// YAML 1.1 reads a bare `off` as a boolean; a choice takes the text as written.
+void ConfigBinder::choice(std::string_view key, std::string& value, std::vector<std::string> allowed,
+                          std::string_view help) {
+  const std::string wanted = fmt::format("one of {}", fmt::join(allowed, ", "));
+  const auto listed = [allowed = std::move(allowed)](const std::string& text) {
+    return std::find(allowed.begin(), allowed.end(), text) != allowed.end();
+  };
+  add(key, value, wanted, listed, help);
+}
+
+/// A section of another service holds no key of this binder: a typo in an own section stays an error.
+bool ConfigBinder::is_of_others(const std::string& key, const std::vector<std::string>& other_sections) const {
+  const std::string section = section_of(key);
+  const bool own = std::any_of(settings_.begin(), settings_.end(),
+                               [&](const Setting& setting) { return section_of(setting.key) == section; });
+  return !own && std::find(other_sections.begin(), other_sections.end(), section) != other_sections.end();
+}
+
+std::vector<std::string> ConfigBinder::keys() const {
+  std::vector<std::string> result;
+  for (const Setting& setting : settings_) result.push_back(setting.key);
+  return result;
+}
+
+void ConfigBinder::set(const std::string& key, const std::string& yaml_value, const std::string& origin) {
+  const auto setting =
+      std::find_if(settings_.begin(), settings_.end(), [&](const Setting& known) { return known.key == key; });
+  if (setting == settings_.end()) {
+    const std::string near = nearest_name(key, keys());
+    throw ConfigError(
+        fmt::format("{}: unknown key '{}'{}", origin, key,
+                    near.empty() ? ": see --print-config for all keys" : fmt::format(", did you mean '{}'?", near)));
+  }
+  if (!setting->read(yaml_value))
+    throw ConfigError(fmt::format("{}: {} = {} is not allowed: use {}", origin, key, yaml_value, setting->wanted));
+}
+
+void ConfigBinder::set(const std::string& assignment, const std::vector<std::string>& other_sections) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw ConfigError(fmt::format("--set {}: write key=value, for example --set filter.mode=rtd", assignment));
+  }
+  const std::string key = assignment.substr(0, equals);
+  if (!is_of_others(key, other_sections)) set(key, assignment.substr(equals + 1), "--set");
+}
+
+void ConfigBinder::load_file(const std::string& path, const std::vector<std::string>& other_sections) {
   std::ifstream file(path);
   if (!file) throw ConfigError(fmt::format("config file '{}' cannot be read: check the path given to --config", path));
-  load_text({std::istreambuf_iterator<char>(file), {}}, path, foreign_sections);
+  load_text({std::istreambuf_iterator<char>(file), {}}, path, other_sections);
 }
 
 void ConfigBinder::load_text(const std::string& yaml, const std::string& origin,
-                             const std::vector<std::string>& foreign_sections) {
+                             const std::vector<std::string>& other_sections) {
   YAML::Node root;
   try {
     root = YAML::Load(yaml);
@@ -255,27 +227,22 @@ void ConfigBinder::load_text(const std::string& yaml, const std::string& origin,
   if (root.IsNull()) return;
   if (!root.IsMap()) throw ConfigError(fmt::format("{}: expected sections such as 'filter:' at the top level", origin));
   flatten(root, "", keys(), [&](const std::string& key, const std::string& value) {
-    if (is_foreign(key, foreign_sections)) return;
-    set(key, value, origin);
+    if (!is_of_others(key, other_sections)) set(key, value, origin);
   });
 }
 
 std::string ConfigBinder::print() const {
   std::string out;
   std::vector<std::string> open;
-  for (const Entry& entry : entries_) {
-    std::vector<std::string> parts;
-    for (std::size_t begin = 0, dot = 0; dot != std::string::npos; begin = dot + 1) {
-      dot = entry.key.find('.', begin);
-      parts.push_back(entry.key.substr(begin, dot == std::string::npos ? dot : dot - begin));
-    }
-    const std::string leaf = parts.back();
-    parts.pop_back();
-    std::size_t common = 0;
-    while (common < std::min(open.size(), parts.size()) && open[common] == parts[common]) ++common;
-    for (std::size_t i = common; i < parts.size(); ++i) out += fmt::format("{:{}}{}:\n", "", 2 * i, parts[i]);
-    open = parts;
-    out += fmt::format("{:{}}{}: {}  # {}\n", "", 2 * parts.size(), leaf, entry.to_yaml(), entry.help);
+  for (const Setting& setting : settings_) {
+    std::vector<std::string> sections = split_at_dots(setting.key);
+    const std::string leaf = sections.back();
+    sections.pop_back();
+    const auto first_new = std::mismatch(open.begin(), open.end(), sections.begin(), sections.end()).second;
+    for (auto section = first_new; section != sections.end(); ++section)
+      out += fmt::format("{:{}}{}:\n", "", 2 * (section - sections.begin()), *section);
+    out += fmt::format("{:{}}{}: {}  # {}\n", "", 2 * sections.size(), leaf, setting.print(), setting.help);
+    open = std::move(sections);
   }
   return out;
 }

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace rtd::service {
@@ -23,62 +24,81 @@ struct Range {
   double max = std::numeric_limits<double>::max();
 };
 
-/// Ties the fields of plain config structs to dotted keys. A config struct keeps its defaults in itself and offers
-///   void bind(rtd::service::ConfigBinder& binder) { binder.field("max_depth_m", max_depth_m, {0.3, 20.0}, "what it
-///   is"); }
-/// The binder then loads YAML, applies key=value overrides, checks ranges and prints what is in force.
-/// Bound fields must outlive the binder. Not thread-safe.
+/// Reads, checks and prints the settings of plain config structs.
+///
+/// How a struct describes its settings, each in one place: the member has the default, and `bind`, right below the
+/// members, has key, range and help text. The members then need no comments. `bind` is a template so that the header of
+/// a core needs nothing of this one, and it costs nothing where it is not called:
+///
+///   struct FusionConfig {
+///     double voxel_m = 0.02;
+///     bool unknown_is_static = false;
+///     NoiseConfig noise;
+///
+///     void bind(auto& binder) {
+///       binder.field("voxel_m", voxel_m, {0.002, 1.0}, "side length of a voxel");
+///       binder.field("unknown_is_static", unknown_is_static, "also fuse what the filter could not judge");
+///       binder.section("noise", noise);  // keys `noise.*`
+///     }
+///   };
+///
+///   ServiceConfig config;
+///   ConfigBinder binder;
+///   binder.section("dense", config);  // run_service() does this for Service::Config
+///   binder.load_file("config.yaml", config_sections());
+///
+/// Bound settings must outlive the binder. Not thread-safe.
 class ConfigBinder {
  public:
-  void field(const std::string& key, bool& value, const std::string& help);
-  void field(const std::string& key, int& value, Range range, const std::string& help);
-  void field(const std::string& key, double& value, Range range, const std::string& help);
-  void field(const std::string& key, std::string& value, const std::string& help);
-  /// A string out of a fixed set.
-  void choice(const std::string& key, std::string& value, std::vector<std::string> allowed, const std::string& help);
-  void field(const std::string& key, std::vector<std::string>& value, const std::string& help);
-  void field(const std::string& key, std::map<std::string, std::string>& value, const std::string& help);
+  ConfigBinder();
+  ~ConfigBinder();
+  ConfigBinder(const ConfigBinder&) = delete;
+  ConfigBinder& operator=(const ConfigBinder&) = delete;
 
-  /// Binds a nested struct under `prefix.`.
+  void field(std::string_view key, bool& value, std::string_view help);
+  void field(std::string_view key, int& value, Range range, std::string_view help);
+  void field(std::string_view key, std::uint32_t& value, Range range, std::string_view help);
+  void field(std::string_view key, double& value, Range range, std::string_view help);
+  void field(std::string_view key, std::string& value, std::string_view help);
+  void field(std::string_view key, std::vector<std::string>& value, std::string_view help);
+  void field(std::string_view key, std::map<std::string, std::string>& value, std::string_view help);
+  /// A string out of a fixed set.
+  void choice(std::string_view key, std::string& value, std::vector<std::string> allowed, std::string_view help);
+
+  /// Binds a nested struct: its keys begin with `prefix.`.
   template <class Struct>
-  void section(const std::string& prefix, Struct& nested) {
-    const std::string saved = prefix_;
-    prefix_ += prefix + ".";
+  void section(std::string_view prefix, Struct& nested) {
+    const std::string outer = prefix_;
+    prefix_.append(prefix).append(".");
     nested.bind(*this);
-    prefix_ = saved;
+    prefix_ = outer;
   }
 
-  /// Loads a YAML file. Top-level sections named in `foreign_sections` belong to other services and are skipped, unless
+  /// Loads a YAML file. Top-level sections named in `other_sections` belong to other services and are skipped, unless
   /// a key of this binder lies in them; any other unknown key, a wrong type or a value out of range throws ConfigError.
-  void load_file(const std::string& path, const std::vector<std::string>& foreign_sections);
+  void load_file(const std::string& path, const std::vector<std::string>& other_sections);
   /// The same for YAML text; errors name `origin`.
-  void load_text(const std::string& yaml, const std::string& origin, const std::vector<std::string>& foreign_sections);
-  /// Applies one "key=value" override (value parsed as YAML). With `foreign_sections`, a key of another service is
+  void load_text(const std::string& yaml, const std::string& origin, const std::vector<std::string>& other_sections);
+  /// Applies one "key=value" override (value parsed as YAML). With `other_sections`, a key of another service is
   /// skipped.
-  void set(const std::string& assignment, const std::vector<std::string>& foreign_sections = {});
+  void set(const std::string& assignment, const std::vector<std::string>& other_sections = {});
   /// Applies already parsed `key` and YAML text `value`.
   void set(const std::string& key, const std::string& yaml_value, const std::string& origin);
   /// All keys with the values in force, as YAML.
   std::string print() const;
-  std::vector<std::string> keys() const;
 
  private:
-  struct Entry {
-    std::string key, help;
-    std::function<void(const std::string& yaml, const std::string& origin)> assign;
-    std::function<std::string()> to_yaml;
-  };
-  void add(const std::string& key, const std::string& help,
-           std::function<void(const std::string&, const std::string&)> assign, std::function<std::string()> to_yaml);
-  Entry* find(const std::string& key);
-  bool is_foreign(const std::string& key, const std::vector<std::string>& foreign_sections) const;
-  [[noreturn]] void throw_unknown(const std::string& key, const std::string& origin) const;
+  struct Setting;
+  template <class T, class Allowed>
+  void add(std::string_view key, T& value, std::string wanted, Allowed allowed, std::string_view help);
+  std::vector<std::string> keys() const;
+  bool is_of_others(const std::string& key, const std::vector<std::string>& other_sections) const;
 
   std::string prefix_;
-  std::vector<Entry> entries_;
+  std::vector<Setting> settings_;
 };
 
-/// The candidate with the smallest edit distance to `word`; empty when none is near.
-std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates);
+/// The candidate with the smallest edit distance to `name`; empty when none is near.
+std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates);
 
 }  // namespace rtd::service

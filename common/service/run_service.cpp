@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -17,7 +18,6 @@
 #include "common/bus/host/shm_leftovers.hpp"
 #include "common/service/alone_hint.hpp"
 #include "common/service/bounded_end.hpp"
-#include "common/service/bus_arguments.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/log.hpp"
 
@@ -147,7 +147,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     const AloneHint alone(heartbeat, options,
                           [](const std::string& cause) { SPDLOG_WARN("event=nobody_heard cause=\"{}\"", cause); });
     Runtime runtime{*bus, heartbeat, stop, pace, options};
-    SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), bus_config.domain, to_string(pace),
+    SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), options.domain, to_string(pace),
                 getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");
     code = definition.run(runtime);
     duplicate = heartbeat.duplicate();

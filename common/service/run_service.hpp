@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/runtime.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace rtd::service {
 
@@ -25,7 +28,7 @@ struct ServiceDefinition {
 /// Exceptions become one line on stderr and an exit code: ConfigError and BusError 2, others 1.
 int run_service(const ServiceDefinition& definition, int argc, char** argv);
 
-/// Service needs: static constexpr kName, kDescription; struct Config { void bind(ConfigBinder&); };
+/// Service needs: static constexpr kName, kDescription; struct Config { void bind(auto& binder); };
 /// static void add_options(CLI::App&, Config&); Service(const Config&, Runtime&); ExitCode run().
 template <class Service>
 int run_service(int argc, char** argv) {

@@ -4,24 +4,35 @@
 
 #include <string>
 
-#include "common/service/config.hpp"
 #include "services/dense/core/dense_config.hpp"
 
 namespace rtd::dense {
 
-/// Section `dense` of the configuration. The numbers of the core have their defaults in core/dense_config.hpp.
+/// Section `dense` of the configuration.
 struct ServiceConfig {
-  DenseConfig core;
-  std::string out_dir;         ///< static_map.ply is written here at the end; empty = nowhere
-  int every = 5;               ///< every so many-th frame is fused, and each keyframe
-  bool without_masks = false;  ///< fuse frames of which the filter says nothing as if all were static
-  bool background = false;     ///< also write background.png: the last frame without what moves in it
-  int background_views = 24;   ///< earlier frames kept for it, 1.6 MB each
+  std::string out_dir;
+  int every = 5;
+  bool without_masks = false;
+  bool background = false;
+  int background_views = 24;
   std::string map_frame = "map";
-  int publish_period_ms = 1000;     ///< between two clouds on rt/dense/points
-  int publish_max_points = 200000;  ///< 16 bytes each; more: larger cells
+  int publish_period_ms = 1000;
+  int publish_max_points = 200000;
+  DenseConfig core;
 
-  void bind(service::ConfigBinder& binder);
+  void bind(auto& binder) {
+    binder.field("out", out_dir, "folder for static_map.ply, written at the end; empty: none");
+    binder.field("every", every, {1, 10000}, "one frame in so many is fused, and each keyframe");
+    binder.field("without_masks", without_masks,
+                 "also fuse frames without a mask from the filter: moving objects leave ghosts");
+    binder.field("background", background, "also write background.png: the last frame without moving objects");
+    binder.field("background_views", background_views, {1, 500}, "earlier frames kept for it, 1.6 MB each");
+    binder.field("map_frame", map_frame, "frame of the published cloud");
+    binder.field("publish_period_ms", publish_period_ms, {100, 600'000}, "between two clouds on rt/dense/points");
+    binder.field("publish_max_points", publish_max_points, {100, 500'000},
+                 "of a published cloud, 16 bytes each; for more points the cells get larger");
+    core.bind(binder);
+  }
 };
 
 }  // namespace rtd::dense

@@ -13,24 +13,13 @@
 #include "common/service/bus_config.hpp"
 
 namespace rtd::launcher {
-namespace {
-
-bus::BusOptions options_of(const service::BusArguments& arguments) {
-  service::BusConfig config;
-  service::ConfigBinder binder;
-  binder.section("bus", config);
-  service::load_config(binder, arguments, {});
-  return service::to_bus_options(config, "rtd-topics");
-}
-
-}  // namespace
 
 bool is_called(const bus::RawTopic& topic, const std::string& name) {
   return topic.name == name || ros2::ros_topic(topic.name) == name || ros2::ros_topic(topic.name) == '/' + name;
 }
 
 TopicsSession::TopicsSession(const service::BusArguments& arguments)
-    : options_(options_of(arguments)), bus_(bus::connect_raw(options_)) {}
+    : options_(service::load_bus_options(arguments, {}, "rtd-topics")), bus_(bus::connect_raw(options_)) {}
 
 bool TopicsSession::goes_on(std::chrono::milliseconds moment) {
   pollfd descriptor{signals_.fd(), POLLIN, 0};

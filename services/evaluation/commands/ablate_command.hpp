@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/service/bus_arguments.hpp"
+#include "common/service/bus_config.hpp"
 
 namespace CLI {
 class App;

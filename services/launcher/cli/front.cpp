@@ -121,7 +121,7 @@ int become_service(const std::string& name, const std::vector<std::string>& argu
   }
   std::vector<std::string> known = installed_services();
   known.insert(known.end(), kCommands.begin(), kCommands.end());
-  const std::string near = service::nearest_word(name, known);
+  const std::string near = service::nearest_name(name, known);
   std::cerr << "rtd: '" << name << "' is no command"
             << (near.empty() ? ", 'rtd --help' lists them" : ", did you mean '" + near + "'?") << '\n';
   return service::kUsageOrConfig;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "common/service/bus_arguments.hpp"
+#include "common/service/bus_config.hpp"
 
 namespace rtd::launcher {
 

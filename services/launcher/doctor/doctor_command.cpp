@@ -53,15 +53,6 @@ void check_services(Findings& findings) {
   }
 }
 
-/// As the services are going to have them.
-service::BusConfig bus_config(const DoctorOptions& options) {
-  service::BusConfig config;
-  service::ConfigBinder binder;
-  binder.section("bus", config);
-  service::load_config(binder, options.bus, options.config);
-  return config;
-}
-
 /// What the bus tells of its troubles while it is joined.
 class Problems {
  public:
@@ -182,7 +173,7 @@ int clean(std::ostream& out) {
 
 int doctor(const DoctorOptions& options, std::ostream& out, std::ostream& err) try {
   if (options.clean) return clean(out);
-  const bus::BusOptions bus = service::to_bus_options(bus_config(options), "rtd-doctor");
+  const bus::BusOptions bus = service::load_bus_options(options.bus, options.config, "rtd-doctor");
   Findings findings;
   check_services(findings);
   check_leftovers(findings);

@@ -4,7 +4,7 @@
 
 #include <iosfwd>
 
-#include "common/service/bus_arguments.hpp"
+#include "common/service/bus_config.hpp"
 
 namespace rtd::launcher {
 

@@ -32,7 +32,7 @@ void check_sections(const std::vector<std::string>& overrides) {
   for (const std::string& assignment : overrides) {
     const std::string section = assignment.substr(0, assignment.find_first_of(".="));
     if (std::find(sections.begin(), sections.end(), section) != sections.end()) continue;
-    const std::string near = service::nearest_word(section, sections);
+    const std::string near = service::nearest_name(section, sections);
     throw ConfigError(fmt::format("--set {}: unknown section '{}'{}", assignment, section,
                                   near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
   }
@@ -156,7 +156,7 @@ std::vector<std::string> common_arguments(const RunSetup& setup, const std::stri
   std::vector<std::string> arguments = {"--pace", setup.pace};
   service::BusArguments bus = setup.bus_arguments;
   if (const auto own = setup.vendors_of.find(service); own != setup.vendors_of.end()) bus.vendor = own->second;
-  const std::vector<std::string> bus_words = service::to_words(bus);
+  const std::vector<std::string> bus_words = service::to_command_line(bus);
   arguments.insert(arguments.end(), bus_words.begin(), bus_words.end());
   if (!setup.config_file.empty()) arguments.insert(arguments.end(), {"--config", setup.config_file});
   for (const std::string& assignment : setup.overrides) arguments.insert(arguments.end(), {"--set", assignment});

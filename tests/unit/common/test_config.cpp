@@ -126,8 +126,8 @@ TEST_F(ConfigTest, printed_config_loads_to_the_same_values) {
   EXPECT_EQ(sample_.count, 77);
 }
 
-TEST(NearestWord, far_words_are_not_suggested) {
-  EXPECT_EQ(nearest_word("zebra", {"filter.mode"}), "");
+TEST(NearestName, far_words_are_not_suggested) {
+  EXPECT_EQ(nearest_name("zebra", {"filter.mode"}), "");
 }
 
 }  // namespace

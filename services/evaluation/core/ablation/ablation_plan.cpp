@@ -23,7 +23,7 @@ std::size_t indent_of(const std::string& line) {
 }
 
 [[noreturn]] void refuse(const std::string& what, const std::string& word, const std::vector<std::string>& known) {
-  const std::string near = service::nearest_word(word, known);
+  const std::string near = service::nearest_name(word, known);
   std::string all;
   for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
   throw AblationError("unknown " + what + " '" + word + "'" +
