@@ -13,7 +13,7 @@ if [ -z "${RTD_MODEL_DIR:-}" ] && [ -d "$root/../shared/models" ]; then
   export RTD_MODEL_DIR
 fi
 
-# Configures and builds into build/release. $1: "ON" to build the tests too; the other arguments are passed to `cmake --build`.
+# Configures and builds into build/release. $1: "ON" to build the tests too; the rest is passed to `cmake --build`.
 build_release() {
   local tests="$1"
   shift

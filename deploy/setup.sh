@@ -13,7 +13,7 @@ Usage: deploy/setup.sh [--check | --list | --models | --no-models | --viewers]
   --list       print the Debian packages, one per line
   --models     only download and convert the detector weights
   --no-models  only install the packages
-  --viewers    also install what the tests with external viewers and serialisers need: node, Chromium, npm packages (500 MB)
+  --viewers    also install node, Chromium and npm packages (500 MB) for the tests with external viewers and serialisers
 TEXT
 }
 
@@ -90,7 +90,7 @@ fetch_models() {
     echo "setup: detector weights: $model"
   elif ! "$root/deploy/fetch_model.sh"; then
     echo "setup: no detector weights: RTD-SLAM still runs, with geometry only." >&2
-    echo "setup: to add them: deploy/setup.sh --models, or set RTD_MODEL_DIR to a folder with v5lite-s-raw-480x640.onnx" >&2
+    echo "setup: to add them, run deploy/setup.sh --models, or put v5lite-s-raw-480x640.onnx into RTD_MODEL_DIR" >&2
   fi
 }
 

@@ -5,7 +5,8 @@
 
 Usage: deploy/soak.py [--seconds 120] [--rtd build/release/bin/rtd] [--scene office] [--pace asap]
 
-slam's map and the launcher's record of the run grow with their content; the memory of all other processes must stay constant.
+slam's map and the launcher's record of the run grow with their content. The memory of all other processes must stay
+constant.
 """
 import argparse
 import json

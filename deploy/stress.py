@@ -153,7 +153,7 @@ def parse_options():
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/stress")
     parser.add_argument("--program", type=pathlib.Path, default=PROGRAM)
     parser.add_argument("--max-ate", type=float, default=0.03, help="m; a run with a larger ATE is listed as a failure")
-    parser.add_argument("--min-coverage", type=float, default=0.95, help="a run with a lower coverage is listed as a failure")
+    parser.add_argument("--min-coverage", type=float, default=0.95, help="a run with less is listed as a failure")
     return parser.parse_args()
 
 
