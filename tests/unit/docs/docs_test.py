@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+# SPDX-License-Identifier: Apache-2.0
+"""Checks that the documentation matches the repository: links, paths, test and event names, line length, words."""
+import os
+import pathlib
+import re
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+SKIPPED_FOLDERS = {".git", "build", "shared", "node_modules", "__pycache__"}
+TOP_FOLDERS = ("common", "config", "deploy", "docs", "idl", "services", "tests")
+SOURCE_SUFFIXES = (".cpp", ".hpp", ".c", ".h", ".py", ".sh", ".mjs", ".cmake", ".idl", ".md", ".supp")
+MAX_LINE = 120
+OUTPUT_AND_EXTERNAL_FILES = {"ablation.md", "associate.py"}
+
+# Words that a native engineer would not write; left: pattern, right: what to write instead.
+WORDS = {
+    r"\banew\b": "again",
+    r"\b(nobody|anybody)\b": "no process, unknown, any program",
+    r"\bforeign\b": "of another camera, program, ...",
+    r"\b(hears|heard)\b": "receives, finds",
+    r"\bbears?\b": "carries, has",
+    r"\bother people's\b": "other, external",
+    r"\bDESIGN(\.md| section)\b": "no reference to documents outside the project",
+    r"\bWhat comes later\b": "describe what exists",
+    r"\bgoes on\b": "continues",
+    r"\b\d\. time\b": "third time",
+}
+
+
+def repository_files():
+    for folder, subfolders, names in os.walk(ROOT):
+        subfolders[:] = [name for name in subfolders if name not in SKIPPED_FOLDERS]
+        for name in names:
+            yield (pathlib.Path(folder) / name).relative_to(ROOT)
+
+
+FILES = sorted(repository_files())
+PAGES = [path for path in FILES if path.suffix == ".md"]
+NAMES = {path.name for path in FILES}
+
+
+def text_of(path):
+    return (ROOT / path).read_text(encoding="utf-8")
+
+
+def without_code_blocks(text):
+    """Same number of lines; fenced blocks and indented formulas are emptied."""
+    lines, fenced = [], False
+    for line in text.split("\n"):
+        fence = line.startswith("```")
+        lines.append("" if fenced or fence or line.startswith("    ") or line.startswith("$$") else line)
+        fenced ^= fence
+    return lines
+
+
+def inline_code(path):
+    for number, line in enumerate(without_code_blocks(text_of(path)), 1):
+        for code in re.findall(r"`([^`]+)`", line):
+            yield number, code
+
+
+def anchors(path):
+    """Anchors of the headings, formed as GitHub forms them."""
+    found = set()
+    for line in without_code_blocks(text_of(path)):
+        if heading := re.match(r"#+ (.*)", line):
+            plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading.group(1)).lower()
+            found.add(re.sub(r"[^\w\- ]", "", plain).replace(" ", "-"))
+    return found
+
+
+class Docs(unittest.TestCase):
+    def assert_none(self, problems):
+        self.assertFalse(problems, "\n" + "\n".join(problems))
+
+    def test_relative_links_resolve(self):
+        problems = []
+        for page in PAGES:
+            for target in re.findall(r"\]\(([^)\s]+)\)", "\n".join(without_code_blocks(text_of(page)))):
+                if re.match(r"[a-z]+:", target):
+                    continue
+                name, _, anchor = target.partition("#")
+                linked = (ROOT / page.parent / name).resolve() if name else ROOT / page
+                if not linked.exists():
+                    problems.append(f"{page}: {target} does not exist")
+                elif anchor and anchor not in anchors(linked.relative_to(ROOT)):
+                    problems.append(f"{page}: {target}: no such heading")
+        self.assert_none(problems)
+
+    def test_named_paths_exist(self):
+        problems = []
+        for page in PAGES:
+            for number, code in inline_code(page):
+                path = re.fullmatch(rf"(?:{'|'.join(TOP_FOLDERS)})/[\w./*+-]*", code)
+                if path and not any(ROOT.glob(code.rstrip("/"))) and not any(ROOT.glob(code + ".*")):
+                    problems.append(f"{page}:{number}: {code} does not exist")
+        self.assert_none(problems)
+
+    def test_named_source_files_exist(self):
+        problems = []
+        for page in PAGES:
+            for number, code in inline_code(page):
+                if re.fullmatch(r"[\w./-]+", code) and code.endswith(SOURCE_SUFFIXES) \
+                        and pathlib.PurePath(code).name not in NAMES | OUTPUT_AND_EXTERNAL_FILES:
+                    problems.append(f"{page}:{number}: no file {code} in the repository")
+        self.assert_none(problems)
+
+    def test_files_in_tables_of_contents_exist(self):
+        """Tables that start with `| file |` or `| folder |` name files or folders beside the README."""
+        problems = []
+        for page in PAGES:
+            names = {part for path in FILES if path.parent.is_relative_to(page.parent)
+                     for part in (path.stem, *path.relative_to(page.parent).parts)}
+            inside = False
+            for number, line in enumerate(text_of(page).split("\n"), 1):
+                inside = line.startswith("|") and (inside or bool(re.match(r"\| (file|folder|header)s? \|", line)))
+                for code in re.findall(r"`([\w./]+)`", line.split("|")[1]) if inside else []:
+                    known = names | ({path.stem for path in FILES} if code.startswith(TOP_FOLDERS) else set())
+                    if not all(part in known for part in code.strip("/").split("/")[-1:]):
+                        problems.append(f"{page}:{number}: {code} does not exist")
+        self.assert_none(problems)
+
+    def test_named_tests_exist(self):
+        """A name such as test_bus_${test} in a loop stands for every word of the lists of tests."""
+        lists = "\n".join(text_of(path) for path in FILES if path.name == "CMakeLists.txt" and path.parts[0] == "tests")
+        words = set(re.findall(r"\w+", lists))
+        loops = {re.sub(r"\$\{\w+\}", r"(\\w+)", name) for name in re.findall(r"\b(?:test|fuzz)_[\w${}]*\$[\w{}]+", lists)}
+
+        def known(name):
+            matches = (re.fullmatch(loop, name) for loop in loops)
+            return name in words or any(match and set(match.groups()) <= words for match in matches)
+
+        self.assert_none([f"{page}:{number}: no test {name}" for page in PAGES for number, code in inline_code(page)
+                          for name in re.findall(r"(?<![\w.])(?:test|fuzz)_\w+", code) if not known(name)])
+
+    def test_named_log_events_exist(self):
+        sources = "\n".join(text_of(path) for path in FILES
+                            if path.parts[0] in ("services", "common") and path.suffix in (".cpp", ".hpp"))
+        known = set(re.findall(r"event=(\w+)", sources))
+        self.assert_none([f"{page}: the log has no event={event}" for page in PAGES
+                          for event in re.findall(r"event=(\w+)", text_of(page)) if event not in known])
+
+    def test_lines_are_short(self):
+        self.assert_none([f"{page}:{number}: {len(line)} characters" for page in PAGES
+                          for number, line in enumerate(without_code_blocks(text_of(page)), 1)
+                          if len(line) > MAX_LINE and not line.startswith("|") and "://" not in line])
+
+    def test_words_are_plain(self):
+        problems = []
+        for path in FILES:
+            prose = path in PAGES or path.parts[0] in ("config", "deploy")
+            if not prose:
+                continue
+            for number, line in enumerate(text_of(path).split("\n"), 1):
+                line = re.sub(r"`[^`]*`|\"[^\"]*\"", "", line)
+                problems += [f"{path}:{number}: '{found.group()}': write: {instead}"
+                             for pattern, instead in WORDS.items() if (found := re.search(pattern, line))]
+        self.assert_none(problems)
+
+
+if __name__ == "__main__":
+    unittest.main()
