@@ -12,7 +12,6 @@
 
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/live/live_source.hpp"
-#include "services/camera/core/trajectory_file.hpp"
 #include "services/camera/ros2_feed.hpp"
 
 namespace rtd::camera {
@@ -305,13 +304,14 @@ void CameraService::report_counters() {
 
 void CameraService::write_groundtruth() {
   if (config_.groundtruth_out.empty()) return;
-  const std::vector<StampedPose> poses = source_->groundtruth();
+  const geometry::Trajectory poses = source_->groundtruth();
   if (poses.empty()) {
     SPDLOG_INFO("event=no_groundtruth uri={}", source_->info().uri);
     return;
   }
   std::ofstream file(config_.groundtruth_out, std::ios::binary);
-  if (!(file << to_tum_trajectory(poses)) || !file.flush()) {
+  geometry::write_tum_trajectory(file, poses, geometry::TumStyle::kGroundtruth);
+  if (!file.flush()) {
     SPDLOG_ERROR("event=groundtruth_not_written file={}", config_.groundtruth_out);
   }
 }

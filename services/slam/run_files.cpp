@@ -22,12 +22,12 @@ void write_file(const std::filesystem::path& path, const std::function<void(std:
 void write_run_files(const SlamSystem& slam, const std::filesystem::path& folder) {
   std::error_code ignored;  // an existing folder is fine, an impossible one shows when the file is written
   std::filesystem::create_directories(folder, ignored);
-  write_file(folder / "trajectory.txt", [&](std::ostream& out) { write_tum_trajectory(out, slam.trajectory()); });
-  write_file(folder / "keyframes.txt", [&](std::ostream& out) { write_tum_trajectory(out, slam.keyframes()); });
+  write_file(folder / "trajectory.txt", [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.trajectory()); });
+  write_file(folder / "keyframes.txt", [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.keyframes()); });
   for (const MapId map : slam.maps()) {
     if (map == 0) continue;
     write_file(folder / ("trajectory_map_" + std::to_string(map) + ".txt"),
-               [&](std::ostream& out) { write_tum_trajectory(out, slam.trajectory(map)); });
+               [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.trajectory(map)); });
   }
   write_file(folder / "map.ply", [&](std::ostream& out) { write_ply(out, slam.map_points()); });
 }

@@ -105,13 +105,10 @@ OfflineReport run_offline(const OfflineOptions& options) {
   slam.finish();
   if (options.on_end) options.on_end(slam);
   std::ostringstream text;
-  slam::write_tum_trajectory(text, slam.trajectory());
+  geometry::write_tum_trajectory(text, slam.trajectory());
   report.trajectory_tum = text.str();
-  for (const slam::StampedPose& pose : slam.trajectory())
-    report.trajectory.push_back({pose.stamp_ns, pose.T_world_camera});
-  for (const camera::StampedPose& pose : source->groundtruth()) {
-    report.groundtruth.push_back({pose.stamp_ns, pose.T_world_camera});
-  }
+  report.trajectory = slam.trajectory();
+  report.groundtruth = source->groundtruth();
   for (const slam::LoopClosure& closure : slam.loops()) report.loops.push_back(judge(closure, report.groundtruth));
   evaluate(report);
   return report;

@@ -43,7 +43,7 @@ class Player {
 };
 
 /// The truth at a moment, between its two nearest poses.
-std::optional<Eigen::Isometry3d> true_pose(std::int64_t stamp_ns, const std::vector<camera::StampedPose>& truth) {
+std::optional<Eigen::Isometry3d> true_pose(std::int64_t stamp_ns, const geometry::Trajectory& truth) {
   constexpr std::int64_t kMaxGapNs = 50'000'000;
   const auto after = std::lower_bound(truth.begin(), truth.end(), stamp_ns,
                                       [](const auto& pose, std::int64_t stamp) { return pose.stamp_ns < stamp; });
@@ -52,8 +52,8 @@ std::optional<Eigen::Isometry3d> true_pose(std::int64_t stamp_ns, const std::vec
   if (after->stamp_ns - before->stamp_ns > kMaxGapNs) return std::nullopt;
   const double share =
       static_cast<double>(stamp_ns - before->stamp_ns) / static_cast<double>(after->stamp_ns - before->stamp_ns);
-  const Eigen::Isometry3d way = before->T_world_camera.inverse() * after->T_world_camera;
-  return before->T_world_camera * geometry::se3_exp(share * geometry::se3_log(way));
+  const Eigen::Isometry3d way = before->T_world_body.inverse() * after->T_world_body;
+  return before->T_world_body * geometry::se3_exp(share * geometry::se3_log(way));
 }
 
 }  // namespace

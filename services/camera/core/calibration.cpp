@@ -12,9 +12,9 @@
 #include <sstream>
 #include <vector>
 
+#include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
 #include "services/camera/core/frame_source.hpp"
-#include "services/camera/core/text_fields.hpp"
 #include "services/camera/core/tum_cameras.hpp"
 
 namespace rtd::camera {
@@ -37,7 +37,7 @@ const std::map<std::string, KeyRule>& key_rules() {
   return rules;
 }
 
-std::pair<std::string, double> parse_entry(const TextLine& line, const std::string& origin) {
+std::pair<std::string, double> parse_entry(const io::TextLine& line, const std::string& origin) {
   const std::string where = origin + ":" + std::to_string(line.number);
   std::string joined;
   for (const std::string& field : line.fields) joined += field;
@@ -46,7 +46,7 @@ std::pair<std::string, double> parse_entry(const TextLine& line, const std::stri
   const std::string key = joined.substr(0, colon), value_text = joined.substr(colon + 1);
   const auto rule = key_rules().find(key);
   if (rule == key_rules().end()) throw SourceError(where + ": unknown key '" + key + "'; allowed: " + kAllowedKeys);
-  const std::optional<double> value = parse_number(value_text);
+  const std::optional<double> value = io::parse_number(value_text);
   if (!value || !std::isfinite(*value) || *value < rule->second.min || *value > rule->second.max) {
     std::ostringstream message;
     message << where << ": " << key << " is '" << value_text << "', allowed is a number in [" << rule->second.min
@@ -101,7 +101,7 @@ void check_frame_size(double width, double height, const std::string& origin) {
 
 Calibration parse_calibration(const std::string& text, const std::string& origin) {
   std::map<std::string, double> values;
-  for (const TextLine& line : split_lines(text)) {
+  for (const io::TextLine& line : io::split_lines(text)) {
     if (line.fields.front() == "---" || line.fields.front().front() == '%') continue;  // YAML document start, directive
     if (const auto entry = parse_entry(line, origin); !values.insert(entry).second) {
       throw SourceError(origin + ":" + std::to_string(line.number) + ": key '" + entry.first + "' stands twice");

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry/trajectory.hpp"
 #include "common/vision/rgbd_image.hpp"
 
 namespace rtd::camera {
@@ -71,12 +72,6 @@ struct SourceFrame {
   bool has_depth = true;                            ///< some pixel has a measurement
 };
 
-/// A pose of the ground truth. The world frame is the source's own.
-struct StampedPose {
-  std::int64_t stamp_ns = 0;
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-};
-
 /// What is known about a source before its first frame.
 struct SourceInfo {
   std::string uri;
@@ -103,9 +98,9 @@ class FrameSource {
   virtual std::uint64_t pass_over(std::int64_t stamp_ns) = 0;
   virtual const SourceInfo& info() const = 0;
   virtual const SourceCounters& counters() const = 0;
-  /// Ground truth of the span covered, oldest first; empty when there is none. Endless sources give what was played so
-  /// far.
-  virtual std::vector<StampedPose> groundtruth() const = 0;
+  /// Ground truth of the span covered: poses of the camera in a world frame of the source's own; empty when there is
+  /// none. Endless sources give what was played so far.
+  virtual geometry::Trajectory groundtruth() const = 0;
   /// What was skipped since the last call, for the log.
   virtual std::vector<SkippedInput> take_skipped() = 0;
 };

@@ -57,9 +57,9 @@ msg::Image depth_message(const vision::RgbdImage& image) {
   return to_message(depth_m, "32FC1", image.stamp_ns);
 }
 
-msg::TFMessage truth_message(const StampedPose& pose) {
-  const Eigen::Vector3d t = pose.T_world_camera.translation();
-  const Eigen::Quaterniond q(pose.T_world_camera.linear());
+msg::TFMessage truth_message(const geometry::StampedPose& pose) {
+  const Eigen::Vector3d t = pose.T_world_body.translation();
+  const Eigen::Quaterniond q(pose.T_world_body.linear());
   msg::TransformStamped transform;
   transform.header = {msg::to_time(pose.stamp_ns), "world"};
   transform.child_frame_id = kCameraFrame;
@@ -86,9 +86,9 @@ class Recorder {
     write(depth_, depth_message(image), image.stamp_ns);
   }
   /// In chunks of its own: it overlaps everything.
-  void write(const std::vector<StampedPose>& truth) {
+  void write(const geometry::Trajectory& truth) {
     writer_.end_chunk();
-    for (const StampedPose& pose : truth) write(truth_, truth_message(pose), pose.stamp_ns);
+    for (const geometry::StampedPose& pose : truth) write(truth_, truth_message(pose), pose.stamp_ns);
   }
   void close() {
     writer_.close();

@@ -26,8 +26,8 @@ SourceFrame to_frame(std::int64_t stamp_ns, cv::Mat color_bgr, cv::Mat depth, co
   return frame;
 }
 
-std::vector<StampedPose> poses_of_span(std::vector<StampedPose> poses, std::int64_t from_ns, std::int64_t to_ns) {
-  std::erase_if(poses, [=](const StampedPose& pose) {
+geometry::Trajectory poses_of_span(geometry::Trajectory poses, std::int64_t from_ns, std::int64_t to_ns) {
+  std::erase_if(poses, [=](const geometry::StampedPose& pose) {
     return pose.stamp_ns < from_ns - kGroundtruthMarginNs || pose.stamp_ns > to_ns + kGroundtruthMarginNs;
   });
   return poses;

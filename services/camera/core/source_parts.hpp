@@ -22,7 +22,7 @@ std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat
 SourceFrame to_frame(std::int64_t stamp_ns, cv::Mat color_bgr, cv::Mat depth, const SourceInfo& info);
 
 /// The poses between these stamps and kGroundtruthMarginNs around them.
-std::vector<StampedPose> poses_of_span(std::vector<StampedPose> poses, std::int64_t from_ns, std::int64_t to_ns);
+geometry::Trajectory poses_of_span(geometry::Trajectory poses, std::int64_t from_ns, std::int64_t to_ns);
 
 /// "640 x 480".
 std::string size_text(cv::Size size_px);

@@ -2,25 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/tum_export.hpp"
 
-#include <array>
-#include <cstdio>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <sstream>
 
 #include "services/camera/core/calibration.hpp"
-#include "services/camera/core/trajectory_file.hpp"
 
 namespace rtd::camera {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string stamp_text(std::int64_t stamp_ns) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%lld.%06lld", static_cast<long long>(stamp_ns / 1'000'000'000),
-                static_cast<long long>(stamp_ns % 1'000'000'000 / 1000));
-  return text.data();
-}
 
 void write_text(const fs::path& file, const std::string& text) {
   std::ofstream stream(file, std::ios::binary);
@@ -72,7 +63,7 @@ std::uint64_t export_tum(FrameSource& source, const fs::path& folder, std::uint6
   while (max_frames == 0 || frames < max_frames) {
     const std::optional<SourceFrame> frame = source.next();
     if (!frame) break;
-    const std::string stamp = stamp_text(frame->image.stamp_ns), file = stamp + ".png";
+    const std::string stamp = geometry::tum_stamp(frame->image.stamp_ns), file = stamp + ".png";
     write_png(folder / "rgb" / file, frame->image.color_bgr);
     write_png(folder / "depth" / file, frame->image.depth);
     if (!frame->dynamic_mask.empty()) {
@@ -86,7 +77,9 @@ std::uint64_t export_tum(FrameSource& source, const fs::path& folder, std::uint6
   write_text(folder / "rgb.txt", lists.rgb);
   write_text(folder / "depth.txt", lists.depth);
   write_text(folder / "associations.txt", lists.associations);
-  write_text(folder / "groundtruth.txt", to_tum_trajectory(source.groundtruth()));
+  std::ostringstream groundtruth;
+  geometry::write_tum_trajectory(groundtruth, source.groundtruth(), geometry::TumStyle::kGroundtruth);
+  write_text(folder / "groundtruth.txt", groundtruth.str());
   write_text(folder / "calibration.yaml",
              to_yaml({source.info().camera, source.info().depth_scale_m, source.info().fps}));
   return frames;

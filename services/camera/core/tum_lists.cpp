@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/tum_lists.hpp"
+#include "common/io/text.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 #include <tuple>
 
-#include "services/camera/core/text_fields.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -24,14 +24,36 @@ void check_folder(const fs::path& folder) {
   }
 }
 
-SkippedInput malformed(const fs::path& file, const TextLine& line, const std::string& expected) {
+std::vector<io::TextLine> read_lines(const fs::path& file) {
+  const std::optional<std::string> text = io::read_text(file);
+  if (!text) throw SourceError("cannot read " + file.string());
+  return io::split_lines(*text);
+}
+
+/// "folder/rgb.txt:17": for messages.
+std::string at_line(const fs::path& file, int line) {
+  return file.string() + ":" + std::to_string(line);
+}
+
+/// Empty when the text is not a number. Throws SourceError for a number that cannot be a time, naming `where`.
+std::optional<std::int64_t> stamp_of(const std::string& text, const std::string& where) {
+  try {
+    return io::parse_stamp_ns(text);
+  } catch (const io::StampOutOfRange& error) {
+    throw SourceError(where + ": " + error.what() + "; correct or remove the line");
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
+SkippedInput malformed(const fs::path& file, const io::TextLine& line, const std::string& expected) {
   return {SkipReason::kMalformedLine, at_line(file, line.number) + ": expected '" + expected + "'"};
 }
 
 std::vector<StampedFile> read_list(const fs::path& file, std::vector<SkippedInput>& skipped) {
   std::vector<StampedFile> entries;
-  for (const TextLine& line : read_lines(file)) {
-    const auto stamp_ns = parse_stamp_ns(line.fields[0], at_line(file, line.number));
+  for (const io::TextLine& line : read_lines(file)) {
+    const auto stamp_ns = stamp_of(line.fields[0], at_line(file, line.number));
     if (stamp_ns && line.fields.size() == 2) {
       entries.push_back({*stamp_ns, line.fields[1]});
     } else {
@@ -50,10 +72,10 @@ FilePair colour_first(FilePair pair) {
 
 std::vector<FilePair> read_associations(const fs::path& file, std::vector<SkippedInput>& skipped) {
   std::vector<FilePair> pairs;
-  for (const TextLine& line : read_lines(file)) {
+  for (const io::TextLine& line : read_lines(file)) {
     const std::string where = at_line(file, line.number);
-    const auto first_ns = parse_stamp_ns(line.fields[0], where);
-    const auto second_ns = line.fields.size() == 4 ? parse_stamp_ns(line.fields[2], where) : std::nullopt;
+    const auto first_ns = stamp_of(line.fields[0], where);
+    const auto second_ns = line.fields.size() == 4 ? stamp_of(line.fields[2], where) : std::nullopt;
     if (first_ns && second_ns) {
       pairs.push_back(colour_first({{*first_ns, line.fields[1]}, {*second_ns, line.fields[3]}}));
     } else {

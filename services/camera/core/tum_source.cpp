@@ -8,15 +8,19 @@
 #include "common/msg/rgbd_frame.hpp"
 #include "services/camera/core/image_files.hpp"
 #include "services/camera/core/source_parts.hpp"
-#include "services/camera/core/trajectory_file.hpp"
 
 namespace rtd::camera {
 namespace {
 
-std::vector<StampedPose> read_groundtruth(const std::filesystem::path& folder, const std::vector<FilePair>& pairs) {
+geometry::Trajectory read_groundtruth(const std::filesystem::path& folder, const std::vector<FilePair>& pairs) {
   const std::filesystem::path file = folder / "groundtruth.txt";
   if (!std::filesystem::exists(file) || pairs.empty()) return {};
-  return poses_of_span(read_tum_trajectory(file), pairs.front().color.stamp_ns, pairs.back().color.stamp_ns);
+  try {
+    return poses_of_span(geometry::read_tum_trajectory(file, geometry::TumRows::kAsWritten),
+                         pairs.front().color.stamp_ns, pairs.back().color.stamp_ns);
+  } catch (const geometry::TrajectoryError& error) {
+    throw SourceError(error.what());  // a wrong reference would falsify every figure
+  }
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ class TumSource final : public FrameSource {
   std::uint64_t pass_over(std::int64_t stamp_ns) override;
   const SourceInfo& info() const override { return info_; }
   const SourceCounters& counters() const override { return skips_.counters(); }
-  std::vector<StampedPose> groundtruth() const override { return groundtruth_; }
+  geometry::Trajectory groundtruth() const override { return groundtruth_; }
   std::vector<SkippedInput> take_skipped() override { return skips_.take(); }
 
  private:
@@ -41,7 +41,7 @@ class TumSource final : public FrameSource {
   SkipLog skips_;
   std::vector<FilePair> pairs_;
   std::size_t next_pair_ = 0;
-  std::vector<StampedPose> groundtruth_;
+  geometry::Trajectory groundtruth_;
   std::optional<SourceFrame> first_;  ///< read while opening
 };
 

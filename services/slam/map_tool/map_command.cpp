@@ -64,7 +64,7 @@ const MapPart& choose(const MapReport& report, long long id, std::ostream& err) 
 }
 
 void write_part(const slam::MapContents& contents, const MapPart& part, const std::string& format, std::ostream& out) {
-  if (format == "tum") return slam::write_tum_trajectory(out, poses_of(contents, part.id));
+  if (format == "tum") return geometry::write_tum_trajectory(out, poses_of(contents, part.id));
   const std::vector<slam::MapPoint> points = points_of(contents, part.id);
   format == "pcd" ? write_pcd(out, points) : slam::write_ply(out, points);
 }

@@ -120,10 +120,8 @@ void print_errors(const rtd::test_support::OfflineReport& report) {
 }
 
 void write_truth(const rtd::test_support::OfflineReport& report, const std::string& path) {
-  std::vector<rtd::slam::StampedPose> poses;
-  for (const rtd::eval::StampedPose& pose : report.groundtruth) poses.push_back({pose.stamp_ns, pose.T_world_body});
   std::ofstream file(path);
-  rtd::slam::write_tum_trajectory(file, poses);
+  rtd::geometry::write_tum_trajectory(file, report.groundtruth);
 }
 
 }  // namespace

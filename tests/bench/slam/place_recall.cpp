@@ -31,13 +31,13 @@ struct Rules {
   double near_m = 0.5, near_deg = 30;
 };
 
-std::optional<Eigen::Isometry3d> pose_at(const std::vector<camera::StampedPose>& truth, std::int64_t stamp_ns) {
-  const camera::StampedPose* best = nullptr;
-  for (const camera::StampedPose& pose : truth) {
+std::optional<Eigen::Isometry3d> pose_at(const geometry::Trajectory& truth, std::int64_t stamp_ns) {
+  const geometry::StampedPose* best = nullptr;
+  for (const geometry::StampedPose& pose : truth) {
     if (best == nullptr || std::abs(pose.stamp_ns - stamp_ns) < std::abs(best->stamp_ns - stamp_ns)) best = &pose;
   }
   if (best == nullptr || std::abs(best->stamp_ns - stamp_ns) > 50'000'000) return std::nullopt;
-  return best->T_world_camera;
+  return best->T_world_body;
 }
 
 void add_views(const std::string& uri, std::size_t source_index, const Rules& rules, std::vector<View>& views) {

@@ -15,7 +15,6 @@
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
-#include "services/camera/core/trajectory_file.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -334,7 +333,7 @@ TEST_F(CameraServiceTest, LimitsFramesAndWritesTheGroundtruth) {
   config_.groundtruth_out = (folder_ / "gt.txt").string();
   EXPECT_EQ(run(service::Pace::kLockstep), service::kOk);
   EXPECT_THAT(tracker.seqs(), SizeIs(4));
-  EXPECT_THAT(read_tum_trajectory(config_.groundtruth_out), SizeIs(4));
+  EXPECT_THAT(geometry::read_tum_trajectory(config_.groundtruth_out), SizeIs(4));
 }
 
 TEST_F(CameraServiceTest, RefusesASourceThatCannotBeUsed) {

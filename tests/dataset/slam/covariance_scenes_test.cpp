@@ -25,7 +25,7 @@ double mean_nees(const std::string& source, const std::string& mode) {
     constexpr std::size_t kFirst = 5;
     const std::size_t index = frame++;
     if (index < kFirst || index >= groundtruth.size()) return;
-    sum += nees(output.result, groundtruth.front().T_world_camera.inverse() * groundtruth[index].T_world_camera);
+    sum += nees(output.result, groundtruth.front().T_world_body.inverse() * groundtruth[index].T_world_body);
     ++counted;
   };
   run_offline(options);

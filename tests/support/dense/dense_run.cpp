@@ -38,17 +38,14 @@ dense::DynamicMask mask_of(const camera::SourceFrame& frame, const FrontEndOutpu
 
 /// The true poses, in slam's world. Aligned by the rotations: a path of half a metre does not tell a degree.
 eval::Trajectory true_poses(const slam::SlamSystem& slam, const camera::FrameSource& source) {
-  eval::Trajectory truth;
-  for (const camera::StampedPose& pose : source.groundtruth()) truth.push_back({pose.stamp_ns, pose.T_world_camera});
-  const auto estimate = slam.trajectory();
-  std::vector<std::int64_t> estimated_ns;
-  for (const slam::StampedPose& pose : estimate) estimated_ns.push_back(pose.stamp_ns);
-  const auto pairs = eval::associate(eval::stamps_of(truth), estimated_ns);
+  eval::Trajectory truth = source.groundtruth();
+  const eval::Trajectory estimate = slam.trajectory();
+  const auto pairs = eval::associate(eval::stamps_of(truth), eval::stamps_of(estimate));
   Eigen::Matrix3d rotations = Eigen::Matrix3d::Zero();
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();
   for (const eval::MatchedPair& pair : pairs) {
     const Eigen::Isometry3d &T_truth = truth[pair.groundtruth].T_world_body,
-                            &T_slam = estimate[pair.estimate].T_world_camera;
+                            &T_slam = estimate[pair.estimate].T_world_body;
     rotations += T_slam.linear() * T_truth.linear().transpose();
     from += T_truth.translation() / static_cast<double>(pairs.size());
     to += T_slam.translation() / static_cast<double>(pairs.size());

@@ -233,7 +233,7 @@ TEST(BagSource, GivesTheTruthOfAWorldOnly) {
   const auto poses = truth(*bag_with("/world", "/kinect"));
   ASSERT_THAT(poses, SizeIs(2)) << "of the span of the frames and half a second around it";
   EXPECT_EQ(poses[1].stamp_ns, 1'100'000'000);
-  EXPECT_DOUBLE_EQ(poses[1].T_world_camera.translation().x(), 1.1);
+  EXPECT_DOUBLE_EQ(poses[1].T_world_body.translation().x(), 1.1);
   EXPECT_THAT(truth(*bag_with("/odom", "/kinect")), IsEmpty());
   EXPECT_THAT(truth(*bag_with("/world", "/robot")), IsEmpty());
   EXPECT_THAT(truth(*bag_with("/kinect", "/kinect")), IsEmpty()) << "a ring";

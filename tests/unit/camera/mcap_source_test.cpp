@@ -68,7 +68,7 @@ TEST_P(DepthFactors, WhatIsExportedComesBackPixelByPixel) {
   const auto poses = played->groundtruth();
   ASSERT_THAT(poses, SizeIs(2));
   EXPECT_EQ(poses[0].stamp_ns, 900'000'000);
-  EXPECT_TRUE(poses[0].T_world_camera.isApprox(source->groundtruth()[0].T_world_camera, 1e-12));
+  EXPECT_TRUE(poses[0].T_world_body.isApprox(source->groundtruth()[0].T_world_body, 1e-12));
 }
 
 TEST(McapExport, LeavesAnExistingFileAlone) {

@@ -32,7 +32,7 @@ class CountingSource final : public FrameSource {
   }
   const SourceInfo& info() const override { return info_; }
   const SourceCounters& counters() const override { return counters_; }
-  std::vector<StampedPose> groundtruth() const override { return {}; }
+  geometry::Trajectory groundtruth() const override { return {}; }
   std::vector<SkippedInput> take_skipped() override { return {{SkipReason::kMalformedLine, "a line"}}; }
 
  private:

@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include "services/camera/core/text_fields.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"
 
 namespace rtd::camera {
@@ -22,18 +21,12 @@ std::vector<StampedFile> at_ms(std::initializer_list<int> stamps_ms) {
   return files;
 }
 
-TEST(ParseStamp, IsExactToTheNanosecond) {
-  EXPECT_EQ(parse_stamp_ns("1305031102.175304", "x"), 1305031102175304000);
-  EXPECT_EQ(parse_stamp_ns("0.000000001", "x"), 1);
-  EXPECT_EQ(parse_stamp_ns("12", "x"), 12'000'000'000);
-  EXPECT_EQ(parse_stamp_ns("-1.5", "x"), -1'500'000'000);
-  EXPECT_EQ(parse_stamp_ns("1e2", "x"), 100'000'000'000);
-  EXPECT_EQ(parse_stamp_ns("12:30", "x"), std::nullopt);
-}
-
-TEST(ParseStamp, RefusesWhatIsNotFinite) {
+TEST(ReadPairs, RefusesStampsThatAreNotFinite) {
   for (const char* text : {"nan", "inf", "-inf", "1e300"}) {
-    EXPECT_THAT([&] { (void)parse_stamp_ns(text, "rgb.txt:7"); }, ThrowsMessage<SourceError>(HasSubstr("rgb.txt:7")));
+    const SequenceFolder folder;
+    folder.write("rgb.txt", std::string("1 rgb/a.png\n") + text + " rgb/b.png\n");
+    folder.write("depth.txt", "1 depth/a.png\n");
+    EXPECT_THAT([&] { read_pairs(folder.path()); }, ThrowsMessage<SourceError>(HasSubstr("rgb.txt:2")));
   }
 }
 

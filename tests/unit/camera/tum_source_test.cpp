@@ -178,8 +178,8 @@ TEST(TumSource, GivesGroundtruthOfItsSpanOnly) {
   folder.write("groundtruth.txt", "0.4 0 0 0 0 0 0 1\n0.6 1 0 0 0 0 0 1\n1.6 2 0 0 0 0 0 1\n1.8 3 0 0 0 0 0 1\n");
   const auto poses = make_source(folder.uri())->groundtruth();
   ASSERT_THAT(poses, SizeIs(2));
-  EXPECT_EQ(poses[0].T_world_camera.translation().x(), 1);
-  EXPECT_EQ(poses[1].T_world_camera.translation().x(), 2);
+  EXPECT_EQ(poses[0].T_world_body.translation().x(), 1);
+  EXPECT_EQ(poses[1].T_world_body.translation().x(), 2);
 }
 
 TEST(TumSource, RefusesBrokenGroundtruthByLine) {

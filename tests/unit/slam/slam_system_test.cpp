@@ -78,7 +78,7 @@ TEST(SlamSystem, gives_the_same_bits_twice) {
     SlamSystem slam = make_slam();
     for (std::uint64_t seq = 0; seq < kFrames; ++seq) slam.process(*view(world, seq));
     std::ostringstream out;
-    write_tum_trajectory(out, slam.trajectory());
+    geometry::write_tum_trajectory(out, slam.trajectory());
     write_ply(out, slam.map_points());
     text = out.str();
   }
@@ -104,7 +104,7 @@ TEST(SlamSystem, maps_in_a_thread_as_well) {
   const auto trajectory = slam.trajectory();
   ASSERT_EQ(trajectory.size(), kFrames);
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
-    EXPECT_LT((trajectory[seq].T_world_camera.translation() - FeatureWorld::T_world_camera(seq).translation()).norm(),
+    EXPECT_LT((trajectory[seq].T_world_body.translation() - FeatureWorld::T_world_camera(seq).translation()).norm(),
               0.01);
   }
 }

@@ -5,8 +5,8 @@
 #include <sstream>
 #include <vector>
 
+#include "common/io/text.hpp"
 #include "services/camera/core/source_uri.hpp"
-#include "services/camera/core/text_fields.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -32,7 +32,7 @@ std::string info_beside(std::string color) {
 
 std::int64_t parse_tolerance_ns(const std::string& text, const std::string& value) {
   constexpr double kMaxMs = 1000;
-  const std::optional<double> ms = parse_number(value);
+  const std::optional<double> ms = io::parse_number(value);
   if (!ms || !(*ms > 0) || *ms > kMaxMs) {
     throw SourceError("source '" + text + "': tolerance_ms is '" + value + "', allowed: more than 0, at most 1000");
   }

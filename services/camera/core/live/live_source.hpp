@@ -24,7 +24,7 @@ class LiveSource final : public FrameSource {
   std::uint64_t pass_over(std::int64_t) override { return 0; }  // what is late has been dropped by the feed
   const SourceInfo& info() const override { return info_; }
   const SourceCounters& counters() const override { return skips_.counters(); }
-  std::vector<StampedPose> groundtruth() const override { return {}; }
+  geometry::Trajectory groundtruth() const override { return {}; }
   std::vector<SkippedInput> take_skipped() override { return skips_.take(); }
   void stop() override { feed_->close(); }
 

@@ -2,20 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/recording/image_pairs.hpp"
 
+#include "common/io/text.hpp"
 #include "common/ros_codec/wire_reader.hpp"
 #include "services/camera/core/calibration.hpp"
 #include "services/camera/core/recording/camera_info.hpp"
 #include "services/camera/core/recording/compressed_depth.hpp"
 #include "services/camera/core/recording/ros_images.hpp"
 #include "services/camera/core/source_parts.hpp"
-#include "services/camera/core/text_fields.hpp"
 
 namespace rtd::camera {
 namespace {
 
 double float_unit_of(const RecordedTopic& depth) {
   const auto factor = depth.metadata.find(kDepthFactor);
-  const std::optional<double> value = factor == depth.metadata.end() ? std::nullopt : parse_number(factor->second);
+  const std::optional<double> value = factor == depth.metadata.end() ? std::nullopt : io::parse_number(factor->second);
   return value && *value >= 1 && *value <= 1e6 ? 1.0 / *value : kFloatDepthUnitM;
 }
 
@@ -106,7 +106,7 @@ std::optional<SourceFrame> ImagePairs::decode(SkipLog& skips) {
   return to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info_);
 }
 
-std::vector<StampedPose> ImagePairs::groundtruth() const {
+geometry::Trajectory ImagePairs::groundtruth() const {
   if (!first_ns_) return {};
   return poses_of_span(transforms_.world_poses(camera_frame_), *first_ns_, last_ns_);
 }

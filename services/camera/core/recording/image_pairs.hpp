@@ -20,7 +20,7 @@ class ImagePairs final : public FrameAssembly {
   const SourceInfo& info() const override { return info_; }
   std::optional<std::int64_t> advance(SkipLog& skips) override;
   std::optional<SourceFrame> decode(SkipLog& skips) override;
-  std::vector<StampedPose> groundtruth() const override;
+  geometry::Trajectory groundtruth() const override;
 
  private:
   void load_calibration(const RecordingOptions& options);

@@ -20,7 +20,7 @@ class OwnFrames final : public FrameAssembly {
   std::optional<std::int64_t> advance(SkipLog& skips) override;
   std::optional<SourceFrame> decode(SkipLog& skips) override;
   /// None: what slam says of the path is no truth.
-  std::vector<StampedPose> groundtruth() const override { return {}; }
+  geometry::Trajectory groundtruth() const override { return {}; }
 
  private:
   bool take(const RecordedMessage& message, SkipLog& skips);

@@ -20,7 +20,7 @@ class FrameAssembly {
   virtual std::optional<std::int64_t> advance(SkipLog& skips) = 0;
   /// Decodes the frame gone to; empty when it cannot be used.
   virtual std::optional<SourceFrame> decode(SkipLog& skips) = 0;
-  virtual std::vector<StampedPose> groundtruth() const = 0;
+  virtual geometry::Trajectory groundtruth() const = 0;
 };
 
 /// Fills in how many frames a topic promises and their nominal rate, the median of the first.
@@ -42,7 +42,7 @@ class RecordingSource final : public FrameSource {
   const SourceInfo& info() const override { return info_; }
   const SourceCounters& counters() const override { return skips_.counters(); }
   /// Of what was played so far.
-  std::vector<StampedPose> groundtruth() const override { return frames_->groundtruth(); }
+  geometry::Trajectory groundtruth() const override { return frames_->groundtruth(); }
   std::vector<SkippedInput> take_skipped() override { return skips_.take(); }
 
  private:

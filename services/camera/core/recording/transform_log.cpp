@@ -48,14 +48,14 @@ Eigen::Isometry3d TransformLog::Link::at(std::int64_t stamp_ns) const {
   return later ? after->second : before->second;
 }
 
-std::vector<StampedPose> TransformLog::world_poses(const std::string& camera_frame) const {
+geometry::Trajectory TransformLog::world_poses(const std::string& camera_frame) const {
   std::vector<const Link*> chain;  // from the camera up
   for (auto link = links_.find(bare(camera_frame)); link != links_.end(); link = links_.find(link->second.parent)) {
     chain.push_back(&link->second);
     if (link->second.parent == kWorld || chain.size() > links_.size()) break;  // a ring has no end
   }
   if (chain.empty() || chain.back()->parent != kWorld) return {};
-  std::vector<StampedPose> poses;
+  geometry::Trajectory poses;
   for (const auto& [stamp_ns, T_world_child] : chain.back()->T_parent_child) {
     Eigen::Isometry3d T_child_camera = Eigen::Isometry3d::Identity();
     for (std::size_t i = 0; i + 1 < chain.size(); ++i) T_child_camera = chain[i]->at(stamp_ns) * T_child_camera;

@@ -18,7 +18,7 @@ class TransformLog {
   void add(const msg::TFMessage& message);
   /// T_world_camera at each measurement of the transform that begins at `world`; the transforms below are taken as they
   /// were nearest in time. Empty when no chain leads from `world` to `camera_frame`: an odometry is no truth.
-  std::vector<StampedPose> world_poses(const std::string& camera_frame) const;
+  geometry::Trajectory world_poses(const std::string& camera_frame) const;
 
  private:
   /// A frame below its parent.

@@ -7,8 +7,8 @@
 #include <limits>
 #include <sstream>
 
+#include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
-#include "services/camera/core/text_fields.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -27,7 +27,7 @@ synthetic::SceneSpec find_scene(const SourceUri& uri) {
 }
 
 double number_in(const SourceUri& uri, const std::string& key, const std::string& text, double min, double max) {
-  const std::optional<double> value = parse_number(text);
+  const std::optional<double> value = io::parse_number(text);
   if (value && *value >= min && *value <= max) return *value;
   std::ostringstream message;
   message << "source '" << uri.text << "': " << key << " is '" << text << "', allowed is a number in [" << min << ", "
@@ -146,8 +146,8 @@ std::uint64_t SyntheticSource::pass_over(std::int64_t stamp_ns) {
   return counters_.frames - before;
 }
 
-std::vector<StampedPose> SyntheticSource::groundtruth() const {
-  std::vector<StampedPose> poses;
+geometry::Trajectory SyntheticSource::groundtruth() const {
+  geometry::Trajectory poses;
   const std::uint64_t frames = options_.frames != 0 ? options_.frames : counters_.frames;
   for (std::uint64_t i = 0; i < frames; ++i) poses.push_back({stamp_ns(i), scene_.T_world_camera(time_s(i))});
   return poses;

@@ -34,7 +34,7 @@ class SyntheticSource final : public FrameSource {
   std::uint64_t pass_over(std::int64_t stamp_ns) override;
   const SourceInfo& info() const override { return info_; }
   const SourceCounters& counters() const override { return counters_; }
-  std::vector<StampedPose> groundtruth() const override;  ///< of all frames, endless: of those played
+  geometry::Trajectory groundtruth() const override;  ///< of all frames, endless: of those played
   std::vector<SkippedInput> take_skipped() override { return {}; }
 
  private:

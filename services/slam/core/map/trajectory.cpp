@@ -3,7 +3,6 @@
 #include "services/slam/core/map/trajectory.hpp"
 
 #include <array>
-#include <cinttypes>
 #include <cstdio>
 #include <ostream>
 
@@ -13,14 +12,6 @@ namespace rtd::slam {
 namespace {
 
 constexpr std::size_t kLineLength = 256;
-
-/// Seconds with six decimals, from the integer: a double would lose the last digits of today's stamps.
-void append_stamp(std::array<char, kLineLength>& line, std::int64_t stamp_ns) {
-  const std::int64_t microseconds = (stamp_ns + (stamp_ns >= 0 ? 500 : -500)) / 1000;
-  const std::int64_t magnitude = microseconds < 0 ? -microseconds : microseconds;
-  std::snprintf(line.data(), line.size(), "%s%" PRId64 ".%06" PRId64, microseconds < 0 ? "-" : "",
-                magnitude / 1'000'000, magnitude % 1'000'000);
-}
 
 }  // namespace
 
@@ -54,21 +45,6 @@ void append_map_points(const Map& map, MapId id, std::span<const LandmarkId> lan
     const Landmark* landmark = map.find_landmark(landmark_id);
     if (landmark == nullptr || map.map_of(landmark->reference) != id) continue;
     points.push_back({landmark->position.cast<float>(), static_cast<float>(landmark->static_probability)});
-  }
-}
-
-void write_tum_trajectory(std::ostream& out, const std::vector<StampedPose>& poses) {
-  std::array<char, kLineLength> line{};
-  for (const StampedPose& pose : poses) {
-    append_stamp(line, pose.stamp_ns);
-    out << line.data();
-    const Eigen::Vector3d& t = pose.T_world_camera.translation();
-    Eigen::Quaterniond q(pose.T_world_camera.linear());
-    q.normalize();
-    if (q.w() < 0) q.coeffs() = -q.coeffs();
-    std::snprintf(line.data(), line.size(), " %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", t.x(), t.y(), t.z(), q.x(), q.y(),
-                  q.z(), q.w());
-    out << line.data();
   }
 }
 

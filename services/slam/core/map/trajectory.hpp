@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "common/geometry/trajectory.hpp"
 #include "services/slam/core/map/map.hpp"
 
 namespace rtd::slam {
@@ -20,10 +21,7 @@ struct FrameRecord {
   Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
 };
 
-struct StampedPose {
-  std::int64_t stamp_ns = 0;
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-};
+using geometry::StampedPose;
 
 struct MapPoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< p_world, m
@@ -40,8 +38,6 @@ std::vector<MapPoint> map_points(const Map& map, MapId id = 0);
 /// Those of `landmarks` that are in this map.
 void append_map_points(const Map& map, MapId id, std::span<const LandmarkId> landmarks, std::vector<MapPoint>& points);
 
-/// TUM format, one "stamp tx ty tz qx qy qz qw" a line, "%.6f" and "%.9f", qw >= 0.
-void write_tum_trajectory(std::ostream& out, const std::vector<StampedPose>& poses);
 /// ASCII PLY: x y z and static_probability per vertex.
 void write_ply(std::ostream& out, const std::vector<MapPoint>& points);
 

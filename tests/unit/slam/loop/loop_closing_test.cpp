@@ -280,7 +280,7 @@ Lap walk(bool loop_closing) {
   slam.finish();
   int i = 0;
   for (const StampedPose& pose : slam.trajectory()) {
-    lap.errors_m.push_back((pose.T_world_camera.translation() - true_pose(i++).translation()).norm());
+    lap.errors_m.push_back((pose.T_world_body.translation() - true_pose(i++).translation()).norm());
   }
   lap.loops = slam.loops();
   return lap;

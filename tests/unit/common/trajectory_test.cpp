@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/trajectory/trajectory.hpp"
+#include "common/geometry/trajectory.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <sstream>
 
-namespace rtd::eval {
+namespace rtd::geometry {
 namespace {
 
 Trajectory read(const std::string& text) {
@@ -31,15 +31,6 @@ TEST(TumTrajectory, reads_blank_and_comma_separated_rows_and_skips_comments) {
   EXPECT_EQ(t[0].T_world_body.translation(), Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(t[1].T_world_body.translation(), Eigen::Vector3d(4, 5, 6));
   EXPECT_TRUE(t[1].T_world_body.linear().isApprox(Eigen::Vector3d(-1, -1, 1).asDiagonal().toDenseMatrix(), 1e-12));
-}
-
-TEST(TumTrajectory, keeps_every_digit_of_a_unix_stamp) {
-  EXPECT_EQ(parse_stamp_ns("1341846313.6541841"), 1341846313654184100);
-  EXPECT_EQ(parse_stamp_ns("1341846313.123456789"), 1341846313123456789);
-  EXPECT_EQ(parse_stamp_ns("7"), 7'000'000'000);
-  EXPECT_EQ(parse_stamp_ns(".5"), 500'000'000);
-  EXPECT_EQ(parse_stamp_ns("-1.5"), -1'500'000'000);
-  EXPECT_EQ(parse_stamp_ns("1.5e3"), 1'500'000'000'000);
 }
 
 TEST(TumTrajectory, normalises_a_slightly_long_quaternion) {
@@ -98,5 +89,49 @@ TEST(TumTrajectory, missing_file_and_folder_are_named) {
   EXPECT_THROW(read_tum_trajectory(std::filesystem::temp_directory_path()), TrajectoryError);
 }
 
+TEST(TumTrajectory, keeps_all_rows_as_written_when_asked_to) {
+  std::istringstream input("2 0 0 0 0 0 0 1 # last\n1 0 0 0 0 0 0 1.04\n1 0 0 0 0 0 0 1\n");
+  EXPECT_EQ(read_tum_trajectory(input, "truth.txt", TumRows::kAsWritten).size(), 3U);
+  std::istringstream nothing("");
+  EXPECT_TRUE(read_tum_trajectory(nothing, "truth.txt", TumRows::kAsWritten).empty());
+}
+
+Eigen::Isometry3d shifted(double x_m) {
+  return Eigen::Isometry3d(Eigen::Translation3d(x_m, 0, 0));
+}
+
+TEST(TumTrajectoryWriter, writes_stamps_from_the_integer) {
+  std::ostringstream out;
+  write_tum_trajectory(out, {{1'305'031'102'175'304'000, Eigen::Isometry3d::Identity()}});
+  EXPECT_EQ(out.str(),
+            "1305031102.175304 0.000000000 0.000000000 0.000000000 0.000000000 0.000000000 0.000000000 1.000000000\n");
+}
+
+TEST(TumTrajectoryWriter, rounds_nanoseconds_and_keeps_signs) {
+  std::ostringstream out;
+  write_tum_trajectory(out, {{999'999'999, shifted(1)}, {-1'500'000'000, shifted(2)}, {0, shifted(3)}});
+  EXPECT_THAT(out.str(), ::testing::HasSubstr("1.000000 1.000000000"));
+  EXPECT_THAT(out.str(), ::testing::HasSubstr("\n-1.500000 2.000000000"));
+  EXPECT_THAT(out.str(), ::testing::HasSubstr("\n0.000000 3.000000000"));
+}
+
+TEST(TumTrajectoryWriter, writes_quaternions_with_positive_w) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::AngleAxisd(-1.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  std::ostringstream out;
+  write_tum_trajectory(out, {{0, T}});
+  EXPECT_THAT(out.str(), ::testing::HasSubstr("-0.479425539 0.877582562\n"));
+}
+
+TEST(TumTrajectoryWriter, cuts_stamps_of_ground_truth_and_leaves_quaternions_as_they_are) {
+  Eigen::Isometry3d T = shifted(1);
+  T.linear() = Eigen::Quaterniond(-0.1, 0.3, 0.4, 0.86).normalized().toRotationMatrix();
+  std::ostringstream out;
+  write_tum_trajectory(out, {{1'066'666'999, T}}, TumStyle::kGroundtruth);
+  EXPECT_EQ(out.str(),
+            "# timestamp tx ty tz qx qy qz qw\n"
+            "1.066666 1.000000000 0.000000000 0.000000000 0.300060018 0.400080024 0.860172052 -0.100020006\n");
+}
+
 }  // namespace
-}  // namespace rtd::eval
+}  // namespace rtd::geometry

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/geometry/trajectory.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+#include "common/io/text.hpp"
+
+namespace rtd::geometry {
+namespace {
+
+constexpr std::size_t kColumns = 8;
+
+[[noreturn]] void fail(const std::string& name, int line, const std::string& cause) {
+  throw TrajectoryError(name + ":" + std::to_string(line) + ": " + cause);
+}
+
+double parse_finite(const std::string& text) {
+  const std::optional<double> value = io::parse_number(text);
+  if (!value) throw std::invalid_argument("'" + text + "' is not a number");
+  if (!std::isfinite(*value)) {
+    throw std::invalid_argument("'" + text + "' is not a finite number; leave such rows out");
+  }
+  return *value;
+}
+
+Eigen::Isometry3d parse_pose(const std::vector<std::string>& columns, double quaternion_tolerance) {
+  std::array<double, kColumns - 1> v{};
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] = parse_finite(columns[i + 1]);
+  const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
+  if (std::abs(rotation.norm() - 1) > quaternion_tolerance) {
+    throw std::invalid_argument("quaternion has length " + std::to_string(rotation.norm()) +
+                                " instead of 1 (columns are: stamp tx ty tz qx qy qz qw)");
+  }
+  Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();
+  T_world_body.linear() = rotation.normalized().toRotationMatrix();
+  T_world_body.translation() << v[0], v[1], v[2];
+  return T_world_body;
+}
+
+StampedPose parse_row(const std::vector<std::string>& columns, TumRows rows) {
+  if (columns.size() != kColumns) {
+    throw std::invalid_argument(std::to_string(columns.size()) + " columns instead of 8 (stamp tx ty tz qx qy qz qw)");
+  }
+  return {io::parse_stamp_ns(columns[0]), parse_pose(columns, rows == TumRows::kAsWritten ? 0.05 : 0.01)};
+}
+
+void append_in_order(Trajectory& trajectory, const StampedPose& pose) {
+  if (!trajectory.empty() && pose.stamp_ns < trajectory.back().stamp_ns) {
+    throw std::invalid_argument("stamp is earlier than the one before it; sort the file by its first column");
+  }
+  if (!trajectory.empty() && pose.stamp_ns == trajectory.back().stamp_ns) trajectory.pop_back();
+  trajectory.push_back(pose);
+}
+
+std::vector<io::TextLine> lines_of(std::istream& input) {
+  std::ostringstream text;
+  if (input.peek() != std::istream::traits_type::eof()) text << input.rdbuf();
+  return io::split_lines(text.view(), " \t\r,;");
+}
+
+std::ifstream open_or_throw(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) throw TrajectoryError(path.string() + ": no such file; check the path");
+  if (std::filesystem::is_directory(path)) {
+    throw TrajectoryError(path.string() + ": is a folder; name the trajectory file in it");
+  }
+  std::ifstream input(path);
+  if (!input) throw TrajectoryError(path.string() + ": cannot be opened; check its permissions");
+  return input;
+}
+
+/// Rounded to microseconds. From the integer: a double would lose the last digits of today's stamps.
+std::string rounded_stamp(std::int64_t stamp_ns) {
+  const bool negative = stamp_ns <= -500;
+  return (negative ? "-" : "") + tum_stamp((stamp_ns < 0 ? -stamp_ns : stamp_ns) + 500);
+}
+
+}  // namespace
+
+std::vector<std::int64_t> stamps_of(const Trajectory& trajectory) {
+  std::vector<std::int64_t> stamps_ns;
+  stamps_ns.reserve(trajectory.size());
+  for (const StampedPose& pose : trajectory) stamps_ns.push_back(pose.stamp_ns);
+  return stamps_ns;
+}
+
+Trajectory read_tum_trajectory(std::istream& input, const std::string& name, TumRows rows) {
+  Trajectory trajectory;
+  for (const io::TextLine& line : lines_of(input)) {
+    try {
+      const StampedPose pose = parse_row(line.fields, rows);
+      if (rows == TumRows::kIncreasing) {
+        append_in_order(trajectory, pose);
+      } else {
+        trajectory.push_back(pose);
+      }
+    } catch (const std::invalid_argument& error) {
+      fail(name, line.number, error.what());
+    }
+  }
+  if (trajectory.empty() && rows == TumRows::kIncreasing) throw TrajectoryError(name + ": holds no poses");
+  return trajectory;
+}
+
+Trajectory read_tum_trajectory(const std::filesystem::path& path, TumRows rows) {
+  std::ifstream input = open_or_throw(path);
+  return read_tum_trajectory(input, path.string(), rows);
+}
+
+std::vector<std::int64_t> read_frame_stamps(const std::filesystem::path& path) {
+  std::ifstream input = open_or_throw(path);
+  std::vector<std::int64_t> stamps_ns;
+  for (const io::TextLine& line : lines_of(input)) {
+    try {
+      stamps_ns.push_back(io::parse_stamp_ns(line.fields[0]));
+    } catch (const std::invalid_argument& error) {
+      fail(path.string(), line.number, error.what());
+    }
+  }
+  if (stamps_ns.empty()) throw TrajectoryError(path.string() + ": holds no frames");
+  return stamps_ns;
+}
+
+void write_tum_trajectory(std::ostream& out, const Trajectory& trajectory, TumStyle style) {
+  const bool estimate = style == TumStyle::kEstimate;
+  if (!estimate) out << "# timestamp tx ty tz qx qy qz qw\n";
+  std::array<char, 256> values{};
+  for (const StampedPose& pose : trajectory) {
+    const Eigen::Vector3d& t = pose.T_world_body.translation();
+    Eigen::Quaterniond q(pose.T_world_body.linear());
+    if (estimate) q.normalize();
+    if (estimate && q.w() < 0) q.coeffs() = -q.coeffs();
+    std::snprintf(values.data(), values.size(), " %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", t.x(), t.y(), t.z(), q.x(),
+                  q.y(), q.z(), q.w());
+    out << (estimate ? rounded_stamp(pose.stamp_ns) : tum_stamp(pose.stamp_ns)) << values.data();
+  }
+}
+
+std::string tum_stamp(std::int64_t stamp_ns) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%lld.%06lld", static_cast<long long>(stamp_ns / 1'000'000'000),
+                static_cast<long long>(stamp_ns % 1'000'000'000 / 1000));
+  return text.data();
+}
+
+}  // namespace rtd::geometry

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace rtd::geometry {
+
+/// Where a body (a camera, a marker frame) was in a world at a time.
+struct StampedPose {
+  std::int64_t stamp_ns = 0;
+  Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();
+};
+
+/// Poses in increasing order of stamps, unless said otherwise.
+using Trajectory = std::vector<StampedPose>;
+
+/// The stamps of a trajectory, in order.
+std::vector<std::int64_t> stamps_of(const Trajectory& trajectory);
+
+/// A trajectory or frame list cannot be used; what() names file, line, cause and fix.
+class TrajectoryError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What a reader makes of the rows of a trajectory.
+enum class TumRows {
+  kIncreasing,  ///< a repeated stamp replaces the row before it, as in TUM's tools; going back or no row is an error
+  kAsWritten,   ///< all rows in the order of the file; quaternions may be 5 % too long or short instead of 1 %
+};
+
+/// Reads TUM's format, one pose per line: `stamp_s tx ty tz qx qy qz qw`, separated by blanks or commas; `#` starts a
+/// comment. Quaternions are normalised. Throws TrajectoryError: no file, wrong number of columns, not a finite number,
+/// quaternion not of unit length, and what `rows` excludes.
+Trajectory read_tum_trajectory(const std::filesystem::path& path, TumRows rows = TumRows::kIncreasing);
+
+/// As above from a stream; `name` stands for the file in messages.
+Trajectory read_tum_trajectory(std::istream& input, const std::string& name, TumRows rows = TumRows::kIncreasing);
+
+/// Reads the stamps (first column) of a frame list such as rgb.txt or associations.txt. Throws TrajectoryError.
+std::vector<std::int64_t> read_frame_stamps(const std::filesystem::path& path);
+
+/// How a trajectory is written: "%.6f" for stamps, "%.9f" for values in both.
+enum class TumStyle {
+  kEstimate,    ///< stamps rounded to microseconds, qw >= 0
+  kGroundtruth  ///< with a title; stamps cut to microseconds, as in the names of a TUM folder's images
+};
+
+/// Writes TUM's format, one "stamp tx ty tz qx qy qz qw" per line.
+void write_tum_trajectory(std::ostream& out, const Trajectory& trajectory, TumStyle style = TumStyle::kEstimate);
+
+/// Seconds with six decimals, the rest cut off: a stamp as TUM folders name their images. `stamp_ns` >= 0.
+std::string tum_stamp(std::int64_t stamp_ns);
+
+}  // namespace rtd::geometry

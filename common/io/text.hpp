@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rtd::io {
+
+/// A line of a text file without its comment and line end, split at separators; lines left empty are not kept.
+struct TextLine {
+  int number = 0;  ///< counts from 1
+  std::vector<std::string> fields;
+};
+
+/// Splits a text into lines and fields; '#' starts a comment.
+std::vector<TextLine> split_lines(std::string_view text, std::string_view separators = " \t\r\v\f");
+
+/// The whole content of a file; empty when it cannot be read.
+std::optional<std::string> read_text(const std::filesystem::path& file);
+
+/// The whole text as a number; empty when it is not one. "nan" and "inf" are numbers here: check them.
+std::optional<double> parse_number(std::string_view text);
+
+/// A number that cannot be a time: not finite, or too large for nanoseconds in 64 bits.
+class StampOutOfRange : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// Decimal seconds -> ns, exact to the last digit. Throws std::invalid_argument for a text that is not a number.
+std::int64_t parse_stamp_ns(const std::string& text);
+
+}  // namespace rtd::io
