@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
  * SPDX-License-Identifier: Apache-2.0
  *
- * Prints the camera's pose as it comes, with Cyclone DDS: pose_cyclonedds [COUNT]. Domain: ROS_DOMAIN_ID. */
+ * Prints the poses of the camera with Cyclone DDS: pose_cyclonedds [COUNT]. ROS_DOMAIN_ID sets the domain. */
 #include <dds/dds.h>
 #include <stdio.h>
 #include <stdlib.h>

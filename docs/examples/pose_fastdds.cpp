@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Prints the camera's pose as it comes, with Fast DDS: pose_fastdds [COUNT]. Domain: ROS_DOMAIN_ID.
+// Prints the poses of the camera with Fast DDS: pose_fastdds [COUNT]. ROS_DOMAIN_ID sets the domain.
 #include <geometry_msgsPubSubTypes.h>
 #include <cstdio>
 #include <fastdds/dds/domain/DomainParticipant.hpp>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Prints the camera's pose of a recording (rtd record, rtd run --record): node pose_recording.mjs FILE.mcap
+// Prints the poses of the camera in a recording (rtd record, rtd run --record): node pose_recording.mjs FILE.mcap
 // npm install @mcap/core @mcap/support @foxglove/rosmsg @foxglove/rosmsg2-serialization
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
@@ -12,7 +12,7 @@ import { readFile } from "node:fs/promises";
 const reader = new McapStreamReader({ decompressHandlers: await loadDecompressHandlers() });
 reader.append(await readFile(process.argv[2]));
 const schemas = new Map();
-const decoders = new Map();  // of the channels that are the pose
+const decoders = new Map();  // by channel, for channels of the pose topic
 for (let record = reader.nextRecord(); record !== undefined; record = reader.nextRecord()) {
   if (record.type === "Schema") schemas.set(record.id, new TextDecoder().decode(record.data));
   if (record.type === "Channel" && record.topic === "/slam/pose") {
