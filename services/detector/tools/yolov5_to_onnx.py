@@ -52,7 +52,7 @@ def check_sha256(path, expected):
 
 
 def save_atomically(model, path):
-    """All of the file or nothing: other processes never see half of it."""
+    """Writes the file in one step: other processes never see a part of it."""
     folder = os.path.dirname(os.path.abspath(path))
     try:
         with tempfile.NamedTemporaryFile(dir=folder, suffix=".part", delete=False) as file:

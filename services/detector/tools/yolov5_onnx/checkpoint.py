@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""Reads a PyTorch checkpoint (the zip format of torch >= 1.6) without PyTorch and without executing what it names.
+"""Reads a PyTorch checkpoint (the zip format of torch >= 1.6) without PyTorch and without executing any code in it.
 
 A pickle can call any function that it names. Here a name resolves to one of a few functions of this file, to an inert
 Module that only keeps what it is given, or to an error: nothing of the file is ever imported or called.
@@ -16,7 +16,7 @@ import numpy as np
 
 from .errors import ConversionError
 
-MAX_ARCHIVE_BYTES = 2 << 30  # of all entries, unpacked: a checkpoint of this family has 2 to 400 MB
+MAX_ARCHIVE_BYTES = 2 << 30  # all entries, unpacked; a checkpoint of this family has 2 to 400 MB
 STORAGE_TYPES = {
     "HalfStorage": np.float16,
     "FloatStorage": np.float32,
@@ -33,7 +33,7 @@ INERT_PACKAGES = re.compile(r"(torch|models|utils|yolov5|ultralytics|numpy|pathl
 
 
 class Module:
-    """An object of the file: its class name and the state that it was saved with."""
+    """An object of the file: its class name and its saved state."""
 
     class_name = "Module"
 
@@ -52,10 +52,10 @@ class Module:
         return self._state.get(name, default)
 
     def require(self, name):
-        """Like get(), but the attribute must be there."""
+        """Like get(), but the attribute must exist."""
         value = self.get(name)
         if value is None:
-            raise ConversionError(f"layer {self.class_name} has no '{name}': this is not the layer known by that name")
+            raise ConversionError(f"layer {self.class_name} has no '{name}': it is not the known layer of that name")
         return value
 
     def children(self):
@@ -79,7 +79,7 @@ def load_checkpoint(path):
     except OSError as error:
         raise ConversionError(f"{path}: {error.strerror or error}") from error
     except zipfile.BadZipFile as error:
-        raise ConversionError(f"{path}: no checkpoint of torch 1.6 or later, or cut off ({error})") from error
+        raise ConversionError(f"{path}: not a checkpoint of torch 1.6 or later, or truncated ({error})") from error
 
 
 def _load_archive(archive, path):
@@ -88,13 +88,13 @@ def _load_archive(archive, path):
         raise ConversionError(f"{path}: unpacks to more than {MAX_ARCHIVE_BYTES >> 30} GiB")
     names = [entry.filename for entry in entries if entry.filename.endswith("/data.pkl")]
     if len(names) != 1:
-        raise ConversionError(f"{path}: a zip archive, but no torch checkpoint (no data.pkl)")
+        raise ConversionError(f"{path}: a zip archive, but not a torch checkpoint (no data.pkl)")
     try:
         pickled = io.BytesIO(archive.read(names[0]))
         return _Unpickler(pickled, archive, names[0][: -len("data.pkl")]).load()
     except ConversionError as error:
         raise ConversionError(f"{path}: {error}") from error
-    except Exception as error:  # whatever a broken pickle makes the reader trip over
+    except Exception as error:  # a broken pickle can raise anything
         raise ConversionError(f"{path}: broken checkpoint ({type(error).__name__}: {error})") from error
 
 
@@ -124,7 +124,7 @@ class _Unpickler(pickle.Unpickler):
             raise ConversionError(f"tensors of type {getattr(storage_type, 'name', storage_type)} are not supported")
         storage = np.frombuffer(self._archive.read(f"{self._prefix}data/{key}"), STORAGE_TYPES[storage_type.name])
         if storage.size < count:
-            raise ConversionError(f"tensor data {key} is cut off: {storage.size} of {count} values")
+            raise ConversionError(f"tensor data {key} is truncated: {storage.size} of {count} values")
         return storage
 
 

@@ -31,12 +31,12 @@ def find_model(checkpoint):
     if isinstance(checkpoint, dict):
         checkpoint = checkpoint.get("ema") or checkpoint.get("model")
     if not isinstance(checkpoint, Module) or not isinstance(checkpoint.get("model"), Module):
-        raise ConversionError("no YOLOv5 checkpoint: it holds no model (weights alone, a state dict, are not enough)")
+        raise ConversionError("not a YOLOv5 checkpoint: it contains no model (weights alone, a state dict, are not enough)")
     return checkpoint
 
 
 def walk(graph, model):
-    """Adds all layers. Each says by its `f` whose outputs it takes: -1 is the one before. Returns heads, Detect layer."""
+    """Adds all layers. `f` of a layer lists its inputs; -1 is the previous layer. Returns heads, Detect layer."""
     outputs = []
     for number, layer in enumerate(model.require("model").children()):
         try:
@@ -47,7 +47,7 @@ def walk(graph, model):
         except ConversionError as error:
             raise ConversionError(f"layer {number}: {error}") from error
         except (TypeError, ValueError, IndexError, AttributeError) as error:
-            raise ConversionError(f"layer {number} is no {layer.class_name} as known here: {error}") from error
+            raise ConversionError(f"layer {number} is not the known {layer.class_name}: {error}") from error
     raise ConversionError("the model has no Detect layer: only detection networks of the YOLOv5 family are converted")
 
 
@@ -71,7 +71,7 @@ def _as_list(value):
 
 
 def detection_heads(graph, inputs, detect):
-    """The last convolution of each head; its output is decoded by the detector, only where something is."""
+    """The last convolution of each head; the detector decodes its output only where there is an object."""
     convolutions = detect.require("m").children()
     if len(convolutions) != len(inputs):
         raise ConversionError(f"Detect has {len(convolutions)} heads for {len(inputs)} inputs")

@@ -126,7 +126,7 @@ class Refusals(ConverterTest):
 
     def test_no_zip_archive(self):
         self.checkpoint.write_text("<html>404: Not Found</html>")
-        self.assert_refused("tiny.pt: no checkpoint of torch 1.6 or later, or cut off")
+        self.assert_refused("tiny.pt: not a checkpoint of torch 1.6 or later, or truncated")
 
     def test_checkpoint_cut_off_anywhere(self):
         self.save_tiny()
@@ -138,7 +138,7 @@ class Refusals(ConverterTest):
     def test_zip_without_a_checkpoint(self):
         with zipfile.ZipFile(self.checkpoint, "w") as archive:
             archive.writestr("readme.txt", "hello")
-        self.assert_refused("no torch checkpoint")
+        self.assert_refused("not a torch checkpoint")
 
     def test_broken_pickle(self):
         for pickled in (b"", b"\x80\x02}q\x00(X", b"\x80\x02cos", b"garbage", b"\x80\x02Q."):
@@ -178,11 +178,11 @@ class Refusals(ConverterTest):
         original = tiny.layers
         tiny.layers = lambda: [(odd, -1)] + original()
         fake_torch.save(tiny.checkpoint(), self.checkpoint)
-        self.assert_refused("layer 0 is no Conv as known here")
+        self.assert_refused("layer 0 is not the known Conv")
 
     def test_state_dict_only(self):
         fake_torch.save({"weight": fake_torch.Tensor(np.zeros(3, np.float32))}, self.checkpoint)
-        self.assert_refused("holds no model")
+        self.assert_refused("contains no model")
 
     def test_model_without_detection(self):
         tiny = tiny_yolo.TinyYolo()
