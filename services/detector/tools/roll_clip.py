@@ -5,8 +5,8 @@
 
     roll_clip.py walk_xyz /tmp/walk_xyz_rolled --degrees 120
 
-A roll about the optical axis changes no viewpoint, so the copy is what such a camera would have seen, except for corners that
-were never in the picture: they are black and without depth. Needs images without distortion, as the rendered clips are.
+A roll about the optical axis does not change the viewpoint, so the copy shows what such a camera would have seen. Corners
+outside the original image are black and have no depth. The images must be free of distortion, as the rendered clips are.
 """
 
 import argparse

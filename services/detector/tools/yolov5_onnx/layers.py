@@ -31,7 +31,7 @@ def convolution(graph, tensor, layer, batch_norm=None):
     groups = layer.get("groups", 1)
     batch, channels, height, width = graph.shape(tensor)
     if weights.ndim != 4 or weights.shape[1] * groups != channels:
-        raise ConversionError(f"a convolution with weights {weights.shape} does not fit an input of {channels} channels")
+        raise ConversionError(f"convolution weights {weights.shape} do not fit an input of {channels} channels")
     span = [d * (k - 1) + 1 for d, k in zip(dilation, kernel)]
     rows = (height + 2 * padding[0] - span[0]) // stride[0] + 1
     cols = (width + 2 * padding[1] - span[1]) // stride[1] + 1
@@ -97,7 +97,7 @@ def concat(graph, tensors):
     batch, _, height, width = graph.shape(tensors[0])
     if any(graph.shape(t)[2:] != (height, width) for t in tensors):
         sizes = " and ".join("x".join(map(str, graph.shape(t)[2:])) for t in tensors)
-        raise ConversionError(f"feature maps of {sizes} cells cannot be joined: height and width must be multiples of 32")
+        raise ConversionError(f"cannot join feature maps of {sizes} cells: height and width must be multiples of 32")
     return graph.add("Concat", tensors, (batch, sum(graph.shape(t)[1] for t in tensors), height, width), axis=1)
 
 

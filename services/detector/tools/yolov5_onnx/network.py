@@ -31,7 +31,7 @@ def find_model(checkpoint):
     if isinstance(checkpoint, dict):
         checkpoint = checkpoint.get("ema") or checkpoint.get("model")
     if not isinstance(checkpoint, Module) or not isinstance(checkpoint.get("model"), Module):
-        raise ConversionError("not a YOLOv5 checkpoint: it contains no model (weights alone, a state dict, are not enough)")
+        raise ConversionError("not a YOLOv5 checkpoint: it contains no model (a state dict alone is not enough)")
     return checkpoint
 
 
