@@ -5,8 +5,9 @@
 
     roll_clip.py walk_xyz /tmp/walk_xyz_rolled --degrees 120
 
-A roll about the optical axis does not change the viewpoint, so the copy shows what such a camera would have seen. Corners
-outside the original image are black and have no depth. The images must be free of distortion, as the rendered clips are.
+A roll about the optical axis does not change the viewpoint, so the copy shows what such a camera would have seen.
+Corners outside the original image are black and have no depth. The images must be free of distortion, as the rendered
+clips are.
 """
 
 import argparse
