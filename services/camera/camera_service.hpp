@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <chrono>
 #include <deque>
@@ -19,6 +18,10 @@
 #include "services/camera/core/read_ahead.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/camera/frame_publisher.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace rtd::camera {
 

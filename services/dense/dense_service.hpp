@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 
@@ -13,6 +12,10 @@
 #include "services/dense/core/background.hpp"
 #include "services/dense/core/static_map.hpp"
 #include "services/dense/frame_joiner.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace rtd::dense {
 

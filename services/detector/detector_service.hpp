@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -21,6 +20,10 @@
 #include "services/detector/core/detector.hpp"
 #include "services/detector/image_input.hpp"
 #include "services/detector/roll_feedback.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace rtd::detector {
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -18,6 +17,10 @@
 #include "services/filter/core/dynamic_filter.hpp"
 #include "services/filter/detection_inbox.hpp"
 #include "services/filter/slam_feedback.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace rtd::filter {
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/recorder/file_command.hpp"
 
+#include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "common/mcap/byte_sink.hpp"

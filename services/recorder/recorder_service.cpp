@@ -5,6 +5,7 @@
 #include <fmt/chrono.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <ctime>
 #include <filesystem>

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +13,10 @@
 #include "services/recorder/core/recording.hpp"
 #include "services/recorder/report.hpp"
 #include "services/recorder/topic_readers.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace rtd::recorder {
 

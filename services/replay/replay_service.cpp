@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/prctl.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <iostream>

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,6 +13,10 @@
 #include "services/replay/inbox.hpp"
 #include "services/replay/outputs.hpp"
 #include "services/replay/status_line.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace rtd::replay {
 

@@ -3,6 +3,7 @@
 #include "services/slam/slam_service.hpp"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <exception>

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <memory>
 #include <string>
@@ -16,6 +15,10 @@
 #include "services/slam/map_camera.hpp"
 #include "services/slam/map_keeper.hpp"
 #include "services/slam/slam_publisher.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace rtd::slam {
 

@@ -3,6 +3,7 @@
 #include "services/topics/topics_command.hpp"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
