@@ -30,6 +30,12 @@ if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
   target_compile_options(rtd_compile_options INTERFACE -march=x86-64-v2)
 endif()
 
+# Several sources of a target in one compilation: headers are parsed once, a clean build takes less than half of the time.
+if(RTD_UNITY_BUILD)
+  set(CMAKE_UNITY_BUILD ON)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
+endif()
+
 if(RTD_SANITIZE)
   target_compile_options(rtd_compile_options INTERFACE -fsanitize=${RTD_SANITIZE} -fno-omit-frame-pointer)
   # GCC warns of its own regular expressions once sanitizers are in (GCC bug 105562).
