@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "common/msg/fields.hpp"
+
 namespace rtd::msg {
 
 inline constexpr std::uint32_t kMaxFeatures = 2048;
@@ -35,6 +37,8 @@ struct Feature {
   Descriptor descriptor;
 };
 static_assert(sizeof(Feature) == 64 && std::is_trivially_copyable_v<Feature>);
+RTD_FIELDS(rtd_msgs, Feature, u_px, v_px, u_raw_px, v_raw_px, depth_m, angle_rad, static_probability, octave, flags,
+           object_id, descriptor)
 
 /// Stages of the filter whose time travels in FeatureFrame::stage_ms.
 enum FilterStage : std::uint32_t {
@@ -66,5 +70,7 @@ struct FeatureFrame {
   std::array<Feature, kMaxFeatures> features;
 };
 static_assert(std::is_trivially_copyable_v<FeatureFrame> && std::is_standard_layout_v<FeatureFrame>);
+RTD_FIELDS(rtd_msgs, FeatureFrame, seq, stamp_ns, published_ns, intrinsics, width, height, count, removed, objects,
+           detection_use, stage_ms, features)
 
 }  // namespace rtd::msg

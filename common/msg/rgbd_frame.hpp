@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "common/msg/fields.hpp"
 #include "common/msg/unaligned.hpp"
 
 namespace rtd::msg {
@@ -34,6 +35,8 @@ struct RgbdFrame {
   std::array<std::uint16_t, kMaxFramePixels> depth;         ///< raw depth, 0 = no measurement
 };
 static_assert(std::is_trivially_copyable_v<RgbdFrame> && std::is_standard_layout_v<RgbdFrame>);
+RTD_FIELDS(rtd_msgs, RgbdFrame, seq, stamp_ns, published_ns, intrinsics, distortion, depth_scale_m, width, height,
+           source_id, color_bgr, depth)
 static_assert(alignof(RgbdFrame) == 4);
 
 }  // namespace rtd::msg

@@ -7,76 +7,94 @@
 #include <string>
 #include <vector>
 
+#include "common/msg/fields.hpp"
+
 /// Plain mirrors of the standard ROS 2 messages that we publish, field for field, in the order of their .msg files.
-/// They carry no vendor type; common/bus converts them to the generated types of each DDS vendor.
+/// They carry no type of a DDS vendor.
 namespace rtd::msg {
 
 struct Time {
   std::int32_t sec = 0;
   std::uint32_t nanosec = 0;
 };
+RTD_FIELDS(builtin_interfaces, Time, sec, nanosec)
 struct Header {
   Time stamp;
   std::string frame_id;
 };
+RTD_FIELDS(std_msgs, Header, stamp, frame_id)
 
 struct Point {
   double x = 0, y = 0, z = 0;
 };
+RTD_FIELDS(geometry_msgs, Point, x, y, z)
 struct Vector3 {
   double x = 0, y = 0, z = 0;
 };
+RTD_FIELDS(geometry_msgs, Vector3, x, y, z)
 struct Quaternion {
   double x = 0, y = 0, z = 0, w = 1;
 };
+RTD_FIELDS(geometry_msgs, Quaternion, x, y, z, w)
 struct Pose {
   Point position;
   Quaternion orientation;
 };
+RTD_FIELDS(geometry_msgs, Pose, position, orientation)
 struct PoseStamped {
   Header header;
   Pose pose;
 };
+RTD_FIELDS(geometry_msgs, PoseStamped, header, pose)
 struct PoseWithCovariance {
   Pose pose;
   std::array<double, 36> covariance{};
 };
+RTD_FIELDS(geometry_msgs, PoseWithCovariance, pose, covariance)
 struct Twist {
   Vector3 linear, angular;
 };
+RTD_FIELDS(geometry_msgs, Twist, linear, angular)
 struct TwistWithCovariance {
   Twist twist;
   std::array<double, 36> covariance{};
 };
+RTD_FIELDS(geometry_msgs, TwistWithCovariance, twist, covariance)
 struct RosTransform {
   Vector3 translation;
   Quaternion rotation;
 };
+RTD_FIELDS_OF(RosTransform, "geometry_msgs/Transform", translation, rotation)
 struct TransformStamped {
   Header header;
   std::string child_frame_id;
   RosTransform transform;
 };
+RTD_FIELDS(geometry_msgs, TransformStamped, header, child_frame_id, transform)
 
 struct TFMessage {
   std::vector<TransformStamped> transforms;
 };
+RTD_FIELDS(tf2_msgs, TFMessage, transforms)
 struct Odometry {
   Header header;
   std::string child_frame_id;
   PoseWithCovariance pose;
   TwistWithCovariance twist;
 };
+RTD_FIELDS(nav_msgs, Odometry, header, child_frame_id, pose, twist)
 struct Path {
   Header header;
   std::vector<PoseStamped> poses;
 };
+RTD_FIELDS(nav_msgs, Path, header, poses)
 
 struct CompressedImage {
   Header header;
   std::string format;
   std::vector<std::uint8_t> data;
 };
+RTD_FIELDS(sensor_msgs, CompressedImage, header, format, data)
 struct Image {
   Header header;
   std::uint32_t height = 0, width = 0;
@@ -85,10 +103,12 @@ struct Image {
   std::uint32_t step = 0;  ///< bytes of a row
   std::vector<std::uint8_t> data;
 };
+RTD_FIELDS(sensor_msgs, Image, header, height, width, encoding, is_bigendian, step, data)
 struct RegionOfInterest {
   std::uint32_t x_offset = 0, y_offset = 0, height = 0, width = 0;
   bool do_rectify = false;
 };
+RTD_FIELDS(sensor_msgs, RegionOfInterest, x_offset, y_offset, height, width, do_rectify)
 struct CameraInfo {
   Header header;
   std::uint32_t height = 0, width = 0;
@@ -99,12 +119,14 @@ struct CameraInfo {
   std::uint32_t binning_x = 0, binning_y = 0;
   RegionOfInterest roi;
 };
+RTD_FIELDS(sensor_msgs, CameraInfo, header, height, width, distortion_model, d, k, r, p, binning_x, binning_y, roi)
 struct PointField {
   std::string name;
   std::uint32_t offset = 0;
   std::uint8_t datatype = 0;
   std::uint32_t count = 0;
 };
+RTD_FIELDS(sensor_msgs, PointField, name, offset, datatype, count)
 struct PointCloud2 {
   Header header;
   std::uint32_t height = 0, width = 0;
@@ -114,49 +136,60 @@ struct PointCloud2 {
   std::vector<std::uint8_t> data;
   bool is_dense = true;
 };
+RTD_FIELDS(sensor_msgs, PointCloud2, header, height, width, fields, is_bigendian, point_step, row_step, data, is_dense)
 
 struct Point2D {
   double x = 0, y = 0;
 };
+RTD_FIELDS(vision_msgs, Point2D, x, y)
 struct Pose2D {
   Point2D position;
   double theta = 0;
 };
+RTD_FIELDS(vision_msgs, Pose2D, position, theta)
 struct BoundingBox2D {
   Pose2D center;
   double size_x = 0, size_y = 0;
 };
+RTD_FIELDS(vision_msgs, BoundingBox2D, center, size_x, size_y)
 struct ObjectHypothesis {
   std::string class_id;
   double score = 0;
 };
+RTD_FIELDS(vision_msgs, ObjectHypothesis, class_id, score)
 struct ObjectHypothesisWithPose {
   ObjectHypothesis hypothesis;
   PoseWithCovariance pose;
 };
+RTD_FIELDS(vision_msgs, ObjectHypothesisWithPose, hypothesis, pose)
 struct Detection2D {
   Header header;
   std::vector<ObjectHypothesisWithPose> results;
   BoundingBox2D bbox;
   std::string id;
 };
+RTD_FIELDS(vision_msgs, Detection2D, header, results, bbox, id)
 struct Detection2DArray {
   Header header;
   std::vector<Detection2D> detections;
 };
+RTD_FIELDS(vision_msgs, Detection2DArray, header, detections)
 
 struct KeyValue {
   std::string key, value;
 };
+RTD_FIELDS(diagnostic_msgs, KeyValue, key, value)
 struct DiagnosticStatus {
   std::uint8_t level = 0;  ///< 0 ok, 1 warn, 2 error, 3 stale
   std::string name, message, hardware_id;
   std::vector<KeyValue> values;
 };
+RTD_FIELDS(diagnostic_msgs, DiagnosticStatus, level, name, message, hardware_id, values)
 struct DiagnosticArray {
   Header header;
   std::vector<DiagnosticStatus> status;
 };
+RTD_FIELDS(diagnostic_msgs, DiagnosticArray, header, status)
 
 /// Nanoseconds <-> ROS time. Negative stamps floor towards minus infinity, nanosec stays in [0, 1e9).
 constexpr Time to_time(std::int64_t stamp_ns) {

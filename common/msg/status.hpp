@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/msg/fields.hpp"
+
 namespace rtd::msg {
 
 enum class ServiceState : std::uint32_t {
@@ -22,6 +24,7 @@ struct Metric {
   std::string name;  ///< e.g. "frames_dropped"
   double value = 0.0;
 };
+RTD_FIELDS(rtd_msgs, Metric, name, value)
 
 /// Heartbeat of a service: topic `rtd/status`, 5 Hz and at every change of state.
 struct ServiceStatus {
@@ -33,5 +36,6 @@ struct ServiceStatus {
   std::string message;  ///< one line for people: why degraded or failed
   std::vector<Metric> metrics;
 };
+RTD_FIELDS(rtd_msgs, ServiceStatus, service, pid, started_ns, stamp_ns, state, message, metrics)
 
 }  // namespace rtd::msg

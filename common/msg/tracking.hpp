@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "common/msg/fields.hpp"
+
 namespace rtd::msg {
 
 /// A rigid transform on the wire.
@@ -13,6 +15,7 @@ struct Transform {
   std::array<double, 3> translation_m;
   std::array<double, 4> rotation_xyzw;  ///< Hamilton unit quaternion
 };
+RTD_FIELDS(rtd_msgs, Transform, translation_m, rotation_xyzw)
 
 enum class KeyframeEventKind : std::uint32_t { kCreated = 0, kCorrected = 1, kRemoved = 2 };
 
@@ -26,6 +29,7 @@ struct KeyframeEvent {
   std::uint32_t keyframe_id;
   KeyframeEventKind kind;
 };
+RTD_FIELDS(rtd_msgs, KeyframeEvent, event_index, frame_seq, stamp_ns, T_world_camera, keyframe_id, kind)
 
 enum class TrackingState : std::uint32_t {
   kInitializing = 0,
@@ -33,7 +37,7 @@ enum class TrackingState : std::uint32_t {
   kRecentlyLost = 2,
   kLost = 3,
   kRelocalizing = 4,  ///< a place was recognised; its pose is not given out before the next frames agree
-  kPredicted = 5,  ///< nothing static in view: the motion goes on as before for a moment, nothing is measured
+  kPredicted = 5,     ///< nothing static in view: the motion goes on as before for a moment, nothing is measured
 };
 
 /// For logs, diagnostics and the live line.
@@ -91,6 +95,8 @@ struct TrackingResult {
   std::uint32_t maps;       ///< maps that have not been merged
   std::array<float, kSlamStages> stage_ms;  ///< by SlamStage
 };
+RTD_FIELDS(rtd_msgs, TrackingResult, seq, stamp_ns, published_ns, finished_ns, T_world_camera, covariance, event_count,
+           state, inliers, features_static, features_removed, keyframes, landmarks, map_id, maps, stage_ms)
 
 /// Whether the result is a measured pose in frame `map`.
 constexpr bool is_measured_in_map(const TrackingResult& result) {
