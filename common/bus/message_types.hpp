@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
 #include <cstdint>
+#include <type_traits>
 
 #include "common/msg/features.hpp"
 #include "common/msg/rgbd_frame.hpp"
@@ -12,64 +14,31 @@
 
 namespace rtd::bus {
 
+template <class... T>
+struct TypeList {};
+
 /// Every message type that the bus carries.
-enum class MessageId : std::uint8_t {
-  kRgbdFrame,
-  kFeatureFrame,
-  kKeyframeEvent,
-  kTrackingResult,
-  kServiceStatus,
-  kCompressedImage,
-  kImage,
-  kCameraInfo,
-  kDetection2DArray,
-  kOdometry,
-  kPoseStamped,
-  kTFMessage,
-  kPath,
-  kPointCloud2,
-  kDiagnosticArray
-};
+using MessageTypes =
+    TypeList<msg::RgbdFrame, msg::FeatureFrame, msg::KeyframeEvent, msg::TrackingResult, msg::ServiceStatus,
+             msg::CompressedImage, msg::Image, msg::CameraInfo, msg::Detection2DArray, msg::Odometry, msg::PoseStamped,
+             msg::TFMessage, msg::Path, msg::PointCloud2, msg::DiagnosticArray>;
 
-/// kPlain: of fixed size, the same bytes in memory as on the wire, so it can be loaned.
+/// The place of a type in the list.
+enum class MessageId : std::uint8_t {};
+
+template <class T, class... All>
+consteval MessageId place_in(TypeList<All...>) {
+  static_assert((std::same_as<T, All> || ...), "not one of MessageTypes");
+  std::uint8_t place = 0;
+  (void)((std::same_as<T, All> || (++place, false)) || ...);
+  return MessageId{place};
+}
+
 template <class T>
-struct MessageTraits;
-
-template <MessageId Id, bool Plain>
-struct MessageTraitsBase {
-  static constexpr MessageId kId = Id;
-  static constexpr bool kPlain = Plain;
+struct MessageTraits {
+  static constexpr MessageId kId = place_in<T>(MessageTypes());
+  /// Of fixed size, the same bytes in memory as on the wire, so it can be loaned.
+  static constexpr bool kPlain = std::is_trivially_copyable_v<T>;
 };
-
-template <>
-struct MessageTraits<msg::RgbdFrame> : MessageTraitsBase<MessageId::kRgbdFrame, true> {};
-template <>
-struct MessageTraits<msg::FeatureFrame> : MessageTraitsBase<MessageId::kFeatureFrame, true> {};
-template <>
-struct MessageTraits<msg::KeyframeEvent> : MessageTraitsBase<MessageId::kKeyframeEvent, true> {};
-template <>
-struct MessageTraits<msg::TrackingResult> : MessageTraitsBase<MessageId::kTrackingResult, true> {};
-template <>
-struct MessageTraits<msg::ServiceStatus> : MessageTraitsBase<MessageId::kServiceStatus, false> {};
-template <>
-struct MessageTraits<msg::CompressedImage> : MessageTraitsBase<MessageId::kCompressedImage, false> {};
-template <>
-struct MessageTraits<msg::Image> : MessageTraitsBase<MessageId::kImage, false> {};
-template <>
-struct MessageTraits<msg::CameraInfo> : MessageTraitsBase<MessageId::kCameraInfo, false> {};
-template <>
-struct MessageTraits<msg::Detection2DArray> : MessageTraitsBase<MessageId::kDetection2DArray, false> {};
-template <>
-struct MessageTraits<msg::Odometry> : MessageTraitsBase<MessageId::kOdometry, false> {};
-template <>
-struct MessageTraits<msg::PoseStamped> : MessageTraitsBase<MessageId::kPoseStamped, false> {};
-template <>
-struct MessageTraits<msg::TFMessage> : MessageTraitsBase<MessageId::kTFMessage, false> {};
-template <>
-struct MessageTraits<msg::Path> : MessageTraitsBase<MessageId::kPath, false> {};
-template <>
-struct MessageTraits<msg::PointCloud2> : MessageTraitsBase<MessageId::kPointCloud2, false> {};
-template <>
-struct MessageTraits<msg::DiagnosticArray> : MessageTraitsBase<MessageId::kDiagnosticArray, false> {};
 
 }  // namespace rtd::bus

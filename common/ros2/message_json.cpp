@@ -4,10 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include <cmath>
 #include <map>
 
-#include "common/ros2/idl_fields.hpp"
+#include "common/ros2/message_fields.hpp"
+#include "common/ros2/names.hpp"
 
 namespace rtd::ros2 {
 namespace {
@@ -31,7 +34,7 @@ class Walk {
   Walk(ros::Bytes body, std::size_t most_values) : cursor_(body), most_values_(most_values) {}
 
   Json message(const std::string& type) {
-    const std::vector<MessageField>* const fields = known_fields(type);
+    const std::vector<MessageField>* const fields = fields_of(type);
     if (fields == nullptr) throw ros::WireError("type " + type + " is not known here");
     Json value = Json::object();
     for (const MessageField& field : *fields) value[field.name] = read(field);
@@ -41,8 +44,7 @@ class Walk {
  private:
   Json read(const MessageField& field) {
     if (field.kind == Kind::kOne) return one(field);
-    const bool counted = field.kind == Kind::kSequence || field.kind == Kind::kBoundedSequence;
-    return many(field, counted ? number<std::uint32_t>() : field.capacity);
+    return many(field, field.kind == Kind::kSequence ? number<std::uint32_t>() : field.capacity);
   }
 
   Json one(const MessageField& field) {
@@ -94,7 +96,6 @@ class Walk {
 
 const std::map<std::string, Json (*)(Walk&)> Walk::kNumbers = {{"bool", truth},
                                                                {"byte", integer<std::uint8_t>},
-                                                               {"char", integer<std::uint8_t>},
                                                                {"uint8", integer<std::uint8_t>},
                                                                {"int8", integer<std::int8_t>},
                                                                {"uint16", integer<std::uint16_t>},
@@ -109,7 +110,7 @@ const std::map<std::string, Json (*)(Walk&)> Walk::kNumbers = {{"bool", truth},
 }  // namespace
 
 bool can_read(const std::string& dds_type) {
-  return known_fields(short_type(dds_type)) != nullptr;
+  return fields_of(short_type(dds_type)) != nullptr;
 }
 
 Json message_json(const std::string& dds_type, ros::Bytes cdr, std::size_t most_values) {

@@ -24,4 +24,10 @@ std::string dds_type(const std::string& ros_type) {
   return std::regex_replace(ros_type, kPlain, "$1::$2::dds_::$3_", std::regex_constants::match_continuous);
 }
 
+std::string short_type(const std::string& dds_type) {
+  const std::string name = ros_type(dds_type);
+  const std::size_t infix = name.find("/msg/");
+  return infix == std::string::npos ? std::string() : name.substr(0, infix) + name.substr(infix + 4);
+}
+
 }  // namespace rtd::ros2

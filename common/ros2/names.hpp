@@ -16,4 +16,7 @@ std::string dds_topic(const std::string& ros_topic);
 std::string ros_type(const std::string& dds_type);
 std::string dds_type(const std::string& ros_type);
 
+/// "nav_msgs::msg::dds_::Odometry_" -> "nav_msgs/Odometry"; empty for a name that is not a ROS 2 message type.
+std::string short_type(const std::string& dds_type);
+
 }  // namespace rtd::ros2

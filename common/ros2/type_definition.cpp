@@ -13,15 +13,45 @@
 namespace rtd::ros2 {
 namespace {
 
-constexpr const char* kOwnPackage = "rtd_msgs::msg::dds_::";
 const std::string kSeparator(80, '=');  // between the types of one text, as rosbag2 has it
+
+/// What the .msg files of ROS 2 hold besides fields.
+std::string constants_of(const std::string& type) {
+  if (type == "diagnostic_msgs/DiagnosticStatus") return "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n";
+  if (type != "sensor_msgs/PointField") return {};
+  return "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\n"
+         "uint8 FLOAT32=7\nuint8 FLOAT64=8\n";
+}
+
+std::string default_of(const std::string& type, const MessageField& field) {
+  if (type != "geometry_msgs/Quaternion") return {};
+  return field.name == "w" ? " 1" : " 0";
+}
+
+/// Types of the same package go without it, but for those that an older package has too.
+std::string type_text(const MessageField& field, const std::string& package) {
+  const bool ambiguous = field.type == "vision_msgs/Pose2D" || field.type == "vision_msgs/Point2D";
+  const bool local = field.type.starts_with(package + '/') && !ambiguous;
+  const std::string type = local ? field.type.substr(package.size() + 1) : field.type;
+  if (field.kind == MessageField::Kind::kSequence) return type + "[]";
+  return field.kind == MessageField::Kind::kOne ? type : type + '[' + std::to_string(field.capacity) + ']';
+}
+
+/// The .msg file of a type.
+std::string msg_text(const std::string& type) {
+  const std::string package = type.substr(0, type.find('/'));
+  std::string text = constants_of(type);
+  for (const MessageField& field : *fields_of(type)) {
+    text += type_text(field, package) + ' ' + field.name + default_of(type, field) + '\n';
+  }
+  return text;
+}
 
 /// The types that one is made of, each once, the type itself first.
 std::vector<std::string> closure(const std::string& type) {
   std::vector<std::string> all{type};
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::string package = all[i].substr(0, all[i].find('/'));
-    for (const MessageField& field : fields_of(message_texts().at(all[i]), package)) {
+    for (const MessageField& field : *fields_of(all[i])) {
       const bool known = std::find(all.begin(), all.end(), field.type) != all.end();
       if (field.is_message() && !known) all.push_back(field.type);
     }
@@ -33,7 +63,7 @@ std::string ros2msg_text(const std::string& type) {
   std::string text;
   for (const std::string& part : closure(type)) {
     if (!text.empty()) text += kSeparator + "\nMSG: " + part + '\n';
-    text += message_texts().at(part);
+    text += msg_text(part);
   }
   return text;
 }
@@ -51,16 +81,10 @@ std::string idl_text() {
 }  // namespace
 
 TypeDefinition definition_of(const std::string& dds_type) {
-  if (dds_type.starts_with(kOwnPackage)) {
-    const std::string name = dds_type.substr(std::string(kOwnPackage).size());
-    if (own_idl().find("struct " + name + " {") != std::string::npos) return {dds_type, "omgidl", idl_text()};
-  }
-  const std::string ros_name = ros_type(dds_type);
-  const std::size_t infix = ros_name.find("/msg/");
-  if (infix == std::string::npos) return {ros_name, {}, {}};
-  const std::string short_name = ros_name.substr(0, infix) + ros_name.substr(infix + 4);
-  if (!message_texts().contains(short_name)) return {ros_name, {}, {}};
-  return {ros_name, "ros2msg", ros2msg_text(short_name)};
+  const std::string type = short_type(dds_type);
+  if (fields_of(type) == nullptr) return {ros_type(dds_type), {}, {}};
+  if (type.starts_with("rtd_msgs/")) return {ros2::dds_type(ros_type(dds_type)), "omgidl", idl_text()};
+  return {ros_type(dds_type), "ros2msg", ros2msg_text(type)};
 }
 
 }  // namespace rtd::ros2

@@ -7,28 +7,20 @@
 
 #include <set>
 
-#include "common/ros2/definition_texts.hpp"
-#include "common/ros2/message_fields.hpp"
 #include "common/ros2/names.hpp"
 
 namespace rtd::ros2 {
 namespace {
 
-using Texts = std::map<std::string, std::string>;
 const std::string kPrefix = "RIHS01_", kKey = "typehash=";
-
-std::vector<MessageField> fields_of_type(const std::string& type, const Texts& texts) {
-  return fields_of(texts.at(type), type.substr(0, type.find('/')));
-}
 
 /// The numbers of type_description_interfaces/msg/FieldType.
 int type_id(const MessageField& field) {
-  static const std::map<std::string, int> kPrimitive = {{"int8", 2},   {"uint8", 3},    {"char", 3},     {"int16", 4},
-                                                        {"uint16", 5}, {"int32", 6},    {"uint32", 7},   {"int64", 8},
-                                                        {"uint64", 9}, {"float32", 10}, {"float64", 11}, {"bool", 15},
-                                                        {"byte", 16},  {"string", 17},  {"wstring", 18}};
+  static const std::map<std::string, int> kPrimitive = {
+      {"int8", 2},   {"uint8", 3},    {"int16", 4},    {"uint16", 5}, {"int32", 6}, {"uint32", 7}, {"int64", 8},
+      {"uint64", 9}, {"float32", 10}, {"float64", 11}, {"bool", 15},  {"byte", 16}, {"string", 17}};
   constexpr int kMessage = 1;
-  constexpr int kOffset[] = {0, 48, 144, 96};  // by MessageField::Kind
+  constexpr int kOffset[] = {0, 48, 144};  // by MessageField::Kind
   return (field.is_message() ? kMessage : kPrimitive.at(field.type)) + kOffset[static_cast<int>(field.kind)];
 }
 
@@ -44,34 +36,34 @@ std::string describe(const MessageField& field) {
       field.name, type_id(field), field.capacity, field.is_message() ? full_name(field.type) : "");
 }
 
-std::string describe(const std::string& type, const Texts& texts) {
+std::string describe(const std::string& type, const MessageFields& types) {
   std::string fields;
-  for (const MessageField& field : fields_of_type(type, texts)) {
+  for (const MessageField& field : types.at(type)) {
     fields += (fields.empty() ? "" : ", ") + describe(field);
   }
   return fmt::format(R"({{"type_name": "{}", "fields": [{}]}})", full_name(type), fields);
 }
 
 /// The messages that one is made of, in the order of their names.
-void add_parts(const std::string& type, const Texts& texts, std::set<std::string>& parts) {
-  for (const MessageField& field : fields_of_type(type, texts)) {
-    if (field.is_message() && parts.insert(field.type).second) add_parts(field.type, texts, parts);
+void add_parts(const std::string& type, const MessageFields& types, std::set<std::string>& parts) {
+  for (const MessageField& field : types.at(type)) {
+    if (field.is_message() && parts.insert(field.type).second) add_parts(field.type, types, parts);
   }
 }
 
-std::string description(const std::string& type, const Texts& texts) {
+std::string description(const std::string& type, const MessageFields& types) {
   std::set<std::string> parts;
-  add_parts(type, texts, parts);
+  add_parts(type, types, parts);
   std::string referenced;
-  for (const std::string& part : parts) referenced += (referenced.empty() ? "" : ", ") + describe(part, texts);
-  return fmt::format(R"({{"type_description": {}, "referenced_type_descriptions": [{}]}})", describe(type, texts),
+  for (const std::string& part : parts) referenced += (referenced.empty() ? "" : ", ") + describe(part, types);
+  return fmt::format(R"({{"type_description": {}, "referenced_type_descriptions": [{}]}})", describe(type, types),
                      referenced);
 }
 
 }  // namespace
 
-std::string type_hash(const std::string& type, const Texts& msg_texts) {
-  const std::string text = description(type, msg_texts);
+std::string type_hash(const std::string& type, const MessageFields& types) {
+  const std::string text = description(type, types);
   unsigned char digest[SHA256_DIGEST_LENGTH];
   SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(), digest);
   std::string hash = kPrefix;
@@ -80,11 +72,9 @@ std::string type_hash(const std::string& type, const Texts& msg_texts) {
 }
 
 std::string type_hash(const std::string& dds_type) {
-  const std::string ros_name = ros_type(dds_type);
-  const std::size_t infix = ros_name.find("/msg/");
-  if (infix == std::string::npos) return {};
-  const std::string type = ros_name.substr(0, infix) + ros_name.substr(infix + 4);
-  return message_texts().contains(type) ? type_hash(type, message_texts()) : std::string();
+  const std::string type = short_type(dds_type);
+  const bool known = fields_of(type) != nullptr && !type.starts_with("rtd_msgs/");
+  return known ? type_hash(type, message_fields()) : std::string();
 }
 
 std::string user_data_of(const std::string& dds_type) {

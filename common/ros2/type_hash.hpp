@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
 #include <string>
 
-/// The hash by which ROS 2, from Iron on, tells whether two programs mean the same by the name of a type: SHA-256 of
+#include "common/ros2/message_fields.hpp"
+
+/// The hash by which ROS 2, from Iron on, checks whether two programs mean the same by the name of a type: SHA-256 of
 /// its description as JSON (REP-2011, REP-2016). Writers and readers announce it in the USER_DATA of their discovery.
 ///
 /// A backend sets the USER_DATA of each endpoint to user_data_of(type name):
@@ -13,18 +14,18 @@
 ///   Cyclone DDS  if (!text.empty()) dds_qset_userdata(qos, text.data(), text.size());
 namespace rtd::ros2 {
 
-/// "RIHS01_<64 hexadecimal digits>"; empty where the type is none of common/ros2/msg. By DDS name:
+/// "RIHS01_<64 hexadecimal digits>"; empty for a type that is unknown or our own. By DDS name:
 /// "nav_msgs::msg::dds_::Odometry_".
 std::string type_hash(const std::string& dds_type);
 
-/// The same for "package/Type" from the .msg texts of it and all that it is made of. Throws std::out_of_range when one
+/// The same for "package/Type" from its fields and those of all that it is made of. Throws std::out_of_range when one
 /// is missing.
-std::string type_hash(const std::string& type, const std::map<std::string, std::string>& msg_texts);
+std::string type_hash(const std::string& type, const MessageFields& types);
 
 /// "typehash=RIHS01_...;", or empty.
 std::string user_data_of(const std::string& dds_type);
 
-/// The hash in somebody's USER_DATA, or empty.
+/// The hash in the USER_DATA of an endpoint, or empty.
 std::string hash_in(const std::string& user_data);
 
 }  // namespace rtd::ros2

@@ -11,18 +11,16 @@
 
 namespace rtd::ros {
 
-/// Reads messages of wire.hpp. What it allocates is bounded by the bytes that it is given, whatever they claim. Throws
-/// WireError.
+/// Reads messages by their lists of fields. What it allocates is bounded by the bytes that it is given, whatever they
+/// claim. Throws WireError.
 template <Wire kFormat>
 class WireReader {
  public:
-  static constexpr Wire kWire = kFormat;
-
   explicit WireReader(Bytes bytes) : cursor_(kFormat == Wire::kCdr ? body(bytes) : bytes) {}
 
-  template <class... Fields>
-  void operator()(Fields&... values) {
-    (read(values), ...);
+  template <class Message>
+  void operator()(Message& message) {
+    read(message);
   }
 
  private:
@@ -52,8 +50,12 @@ class WireReader {
     } else if constexpr (std::is_arithmetic_v<T>) {
       align(sizeof(T));
       value = cursor_.read<T>();
+    } else if constexpr (UnalignedNumber<T>) {
+      typename T::Number number{};
+      read(number);
+      value = number;
     } else {
-      fields(*this, value);
+      for_each_part<kFormat>(value, [this](auto& part) { read(part); });
     }
   }
 
@@ -111,11 +113,9 @@ template <class Message>
 Message decode(Wire wire, Bytes bytes) {
   Message message;
   if (wire == Wire::kRos1) {
-    WireReader<Wire::kRos1> reader(bytes);
-    reader(message);
+    WireReader<Wire::kRos1>{bytes}(message);
   } else {
-    WireReader<Wire::kCdr> reader(bytes);
-    reader(message);
+    WireReader<Wire::kCdr>{bytes}(message);
   }
   return message;
 }

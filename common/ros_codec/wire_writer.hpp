@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -29,6 +32,28 @@ class ByteVector {
   std::vector<std::uint8_t> bytes_;
 };
 
+/// Writes into memory that is there already.
+class ByteSpan {
+ public:
+  explicit ByteSpan(std::span<std::uint8_t> memory) : memory_(memory) {}
+  void append(const void* source, std::size_t size) {
+    if (size <= room() && size > 0) std::memcpy(memory_.data() + size_, source, size);
+    size_ += size;
+  }
+  void pad(std::size_t size) {
+    if (size <= room() && size > 0) std::memset(memory_.data() + size_, 0, size);
+    size_ += size;
+  }
+  /// What has been written, larger than the memory when it did not fit.
+  std::size_t size() const { return size_; }
+
+ private:
+  std::size_t room() const { return memory_.size() - std::min(size_, memory_.size()); }
+
+  std::span<std::uint8_t> memory_;
+  std::size_t size_ = 0;
+};
+
 /// Only counts them.
 class ByteCount {
  public:
@@ -40,20 +65,18 @@ class ByteCount {
   std::size_t size_ = 0;
 };
 
-/// Writes messages of wire.hpp.
+/// Writes messages by their lists of fields.
 template <Wire kFormat, class Output = ByteVector>
 class WireWriter {
  public:
-  static constexpr Wire kWire = kFormat;
-
   explicit WireWriter(Output output = {}) : output_(std::move(output)) {
     constexpr std::uint8_t kLittleEndianCdr[kHeaderBytes] = {0, 1, 0, 0};
     if constexpr (kFormat == Wire::kCdr) output_.append(kLittleEndianCdr, kHeaderBytes);
   }
 
-  template <class... Fields>
-  void operator()(const Fields&... values) {
-    (write(values), ...);
+  template <class Message>
+  void operator()(const Message& message) {
+    write(message);
   }
   Output& output() { return output_; }
 
@@ -76,8 +99,10 @@ class WireWriter {
       write(static_cast<std::underlying_type_t<T>>(value));
     } else if constexpr (std::is_arithmetic_v<T>) {
       write_numbers(&value, 1);
+    } else if constexpr (UnalignedNumber<T>) {
+      write(value.value());
     } else {
-      fields(*this, value);
+      for_each_part<kFormat>(value, [this](const auto& part) { write(part); });
     }
   }
 

@@ -12,7 +12,6 @@
 
 #include "common/bus/qos_settings.hpp"
 #include "common/bus/topics.hpp"
-#include "common/ros_codec/wire_rtd.hpp"
 #include "common/ros_codec/wire_writer.hpp"
 #include "tests/unit/bus/random_message.hpp"
 

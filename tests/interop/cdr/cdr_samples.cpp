@@ -3,19 +3,38 @@
 //
 // Samples of the standard messages, one JSON object a line: {"type": "nav_msgs/Odometry", "value": {..}, "cdr":
 // "0001.."}
+//   cdr_samples types            prints our definitions of them: {"type": "nav_msgs/Odometry", "text": ".."}
 //   cdr_samples write            prints samples of our own
 //   cdr_samples check < SAMPLES  encodes and decodes those of another implementation; exit code 1 where we differ
 #include <fmt/format.h>
 
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "common/bus/message_types.hpp"
+#include "common/ros2/message_fields.hpp"
+#include "common/ros2/names.hpp"
+#include "common/ros2/type_definition.hpp"
 #include "common/ros_codec/wire_reader.hpp"
 #include "common/ros_codec/wire_writer.hpp"
-#include "tests/interop/cdr/named_messages.hpp"
 #include "tests/unit/bus/random_message.hpp"
+
+namespace rtd::msg {
+
+/// Messages as JSON, each field by its name: what another implementation reads and gives.
+template <Message T>
+void to_json(nlohmann::json& json, const T& message) {
+  for_each_field(message, [&](const char* name, const auto& field) { json[name] = field; });
+}
+template <Message T>
+void from_json(const nlohmann::json& json, T& message) {
+  for_each_field(message, [&](const char* name, auto& field) { json.at(name).get_to(field); });
+}
+
+}  // namespace rtd::msg
 
 namespace rtd {
 namespace {
@@ -24,17 +43,23 @@ using Json = nlohmann::json;
 using Cdr = std::vector<std::uint8_t>;
 
 /// Calls use.operator()<T>(name) with each standard type of a topic.
-void for_each_type(auto use) {
-  use.template operator()<msg::CompressedImage>("sensor_msgs/CompressedImage");
-  use.template operator()<msg::Image>("sensor_msgs/Image");
-  use.template operator()<msg::CameraInfo>("sensor_msgs/CameraInfo");
-  use.template operator()<msg::PointCloud2>("sensor_msgs/PointCloud2");
-  use.template operator()<msg::Detection2DArray>("vision_msgs/Detection2DArray");
-  use.template operator()<msg::Odometry>("nav_msgs/Odometry");
-  use.template operator()<msg::Path>("nav_msgs/Path");
-  use.template operator()<msg::PoseStamped>("geometry_msgs/PoseStamped");
-  use.template operator()<msg::TFMessage>("tf2_msgs/TFMessage");
-  use.template operator()<msg::DiagnosticArray>("diagnostic_msgs/DiagnosticArray");
+template <class... T>
+void for_each_type(auto use, bus::TypeList<T...>) {
+  const auto use_standard = [&]<class Type>() {
+    constexpr std::string_view kName = msg::type_name(msg::TypeOf<Type>());
+    if constexpr (!kName.starts_with("rtd_msgs/")) use.template operator()<Type>(kName);
+  };
+  (use_standard.template operator()<T>(), ...);
+}
+
+void write_types() {
+  for (const auto& [type, fields] : ros2::message_fields()) {
+    if (type.starts_with("rtd_msgs/")) continue;
+    const std::size_t slash = type.find('/');
+    const std::string name = ros2::dds_type(type.substr(0, slash) + "/msg" + type.substr(slash));
+    const std::string text = ros2::definition_of(name).text;
+    std::cout << Json{{"type", type}, {"text", text.substr(0, text.find("=="))}}.dump() << '\n';
+  }
 }
 
 std::string to_hex(const Cdr& bytes) {
@@ -54,14 +79,16 @@ Cdr from_hex(const std::string& text) {
 void write_samples() {
   constexpr int kSamples = 50;  // of a type; the first one is empty
   std::mt19937_64 random(21);
-  for_each_type([&]<class T>(const char* name) {
-    for (int i = 0; i < kSamples; ++i) {
-      T message;
-      if (i > 0) bus::reflect::randomize(message, random);
-      const Json sample{{"type", name}, {"value", message}, {"cdr", to_hex(ros::encode<ros::Wire::kCdr>(message))}};
-      std::cout << sample.dump() << '\n';
-    }
-  });
+  for_each_type(
+      [&]<class T>(std::string_view name) {
+        for (int i = 0; i < kSamples; ++i) {
+          T message;
+          if (i > 0) bus::reflect::randomize(message, random);
+          const Json sample{{"type", name}, {"value", message}, {"cdr", to_hex(ros::encode<ros::Wire::kCdr>(message))}};
+          std::cout << sample.dump() << '\n';
+        }
+      },
+      bus::MessageTypes());
 }
 
 /// Empty: we write the same bytes and read the same values.
@@ -80,14 +107,16 @@ int check_samples() {
   for (std::string line; std::getline(std::cin, line); ++samples) {
     const Json sample = Json::parse(line);
     bool known = false;
-    for_each_type([&]<class T>(const char* name) {
-      if (sample.at("type") != name) return;
-      known = true;
-      const std::string what = difference<T>(sample);
-      if (what.empty()) return;
-      ++differences;
-      std::cerr << name << ' ' << sample.at("value").dump() << ": " << what << '\n';
-    });
+    for_each_type(
+        [&]<class T>(std::string_view name) {
+          if (sample.at("type") != name) return;
+          known = true;
+          const std::string what = difference<T>(sample);
+          if (what.empty()) return;
+          ++differences;
+          std::cerr << name << ' ' << sample.at("value").dump() << ": " << what << '\n';
+        },
+        bus::MessageTypes());
     if (!known) ++differences;
   }
   std::cout << samples << " of their samples, " << differences << " differ\n";
@@ -101,11 +130,12 @@ int main(int argc, char** argv) {
   const std::string command = argc == 2 ? argv[1] : "";
   try {
     if (command == "check") return rtd::check_samples();
+    if (command == "types") return rtd::write_types(), 0;
     if (command == "write") return rtd::write_samples(), 0;
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;
   }
-  std::cerr << "usage: cdr_samples write|check\n";
+  std::cerr << "usage: cdr_samples types|write|check\n";
   return 2;
 }

@@ -1,25 +1,26 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Our CDR bytes against @foxglove/rosmsg2-serialization: node check_cdr.mjs MSG_FOLDER OURS.jsonl THEIRS.jsonl
-// Definitions are those of @foxglove/rosmsg-msgs-common, of vision_msgs the texts of MSG_FOLDER. Decodes and writes our samples,
+// Our CDR bytes against @foxglove/rosmsg2-serialization: node check_cdr.mjs TYPES.jsonl OURS.jsonl THEIRS.jsonl
+// Definitions are those of @foxglove/rosmsg-msgs-common, of vision_msgs those of TYPES. Decodes and writes our samples,
 // then writes samples with values of its own for us to check.
 import { parse } from "@foxglove/rosmsg";
 import { ros2humble } from "@foxglove/rosmsg-msgs-common";
 import { MessageReader, MessageWriter } from "@foxglove/rosmsg2-serialization";
 import assert from "node:assert/strict";
-import { readdir, readFile, writeFile } from "node:fs/promises";
-import { join } from "node:path";
+import { readFile, writeFile } from "node:fs/promises";
 
 const kSamples = 50;  // of a type
 
-const [folder, ours, theirs] = process.argv.slice(2);
+const [types_file, ours, theirs] = process.argv.slice(2);
 
-/** Our text of a message type. */
-const ownText = (type) => readFile(join(folder, `${type}.msg`), "utf8");
+const jsonLines = async (file) => (await readFile(file, "utf8")).trim().split("\n").map((line) => JSON.parse(line));
 
-async function parseOwn(type) {
-  const [definition] = parse(await ownText(type), { ros2: true, skipTypeFixup: true });
+/** Our texts of the message types. */
+const ownTexts = new Map((await jsonLines(types_file)).map(({ type, text }) => [type, text]));
+
+function parseOwn(type) {
+  const [definition] = parse(ownTexts.get(type), { ros2: true, skipTypeFixup: true });
   const local = `${type.split("/")[0]}/`;
   for (const field of definition.definitions) {
     if (field.isComplex && !field.type.includes("/")) field.type = local + field.type;
@@ -27,13 +28,10 @@ async function parseOwn(type) {
   return { name: type, definitions: definition.definitions };
 }
 
-/** Their definitions by name, with those of vision_msgs, which they do not have, from our folder. */
-async function allDefinitions() {
+/** Their definitions by name, with ours of vision_msgs, which they do not have. */
+function allDefinitions() {
   const all = { ...ros2humble };
-  for (const file of await readdir(join(folder, "vision_msgs"))) {
-    const type = `vision_msgs/${file.replace(".msg", "")}`;
-    all[type] = await parseOwn(type);
-  }
+  for (const type of ownTexts.keys()) if (type.startsWith("vision_msgs/")) all[type] = parseOwn(type);
   return all;
 }
 
@@ -80,14 +78,14 @@ function randomValue(type, all) {
   return value;
 }
 
-const all = await allDefinitions();
-const samples = (await readFile(ours, "utf8")).trim().split("\n").map((line) => JSON.parse(line));
+const all = allDefinitions();
+const samples = await jsonLines(ours);
 const types = [...new Set(samples.map(({ type }) => type))];
 const used = new Set(types.flatMap((type) => [...closure(type, all).keys()]));
 let compared = 0;
 for (const type of used) {  // our texts against theirs: a viewer goes by ours
   if (type.startsWith("vision_msgs/")) continue;
-  assert.deepEqual(shape(await parseOwn(type)), shape(all[type]), `fields of ${type}`);
+  assert.deepEqual(shape(parseOwn(type)), shape(all[type]), `fields of ${type}`);
   ++compared;
 }
 

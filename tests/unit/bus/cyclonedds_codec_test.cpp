@@ -9,8 +9,7 @@
 #include <random>
 
 #include "common/bus/cyclonedds/codec.hpp"
-#include "common/bus/message_visit.hpp"
-#include "tests/unit/bus/random_message.hpp"
+#include "tests/unit/bus/recorded_samples.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
@@ -66,12 +65,21 @@ TEST_P(CycloneCodec, refuses_other_encodings_and_half_samples) {
   EXPECT_EQ(decode(id, copy_of({})), nullptr);
 }
 
-std::vector<MessageId> all_ids() {
-  std::vector<MessageId> ids;
-  for (int id = 0; id <= static_cast<int>(MessageId::kDiagnosticArray); ++id) ids.push_back(static_cast<MessageId>(id));
-  return ids;
+TEST_P(CycloneCodec, gives_the_recorded_bytes) {
+  visit_message_type(id, [&]<class T>() {
+    expect_recorded_bytes<T>([&](const T& message) {
+      const auto block = encode(id, type.get(), &message);
+      const auto* const first = reinterpret_cast<const std::uint8_t*>(std::as_const(*block).view().data());
+      return Cdr(first, first + block->view().size());
+    });
+  });
 }
-INSTANTIATE_TEST_SUITE_P(Messages, CycloneCodec, testing::ValuesIn(all_ids()));
+
+template <class... T>
+std::vector<MessageId> ids_of(TypeList<T...>) {
+  return {MessageTraits<T>::kId...};
+}
+INSTANTIATE_TEST_SUITE_P(Messages, CycloneCodec, testing::ValuesIn(ids_of(MessageTypes())));
 
 }  // namespace
 }  // namespace rtd::bus::cyclonedds

@@ -9,47 +9,10 @@
 #include <type_traits>
 #include <vector>
 
-/// Visits the fields of the plain message structs without knowing their names, so that a test cannot forget a field.
+#include "common/msg/fields.hpp"
+
+/// Messages with random content, by their lists of fields.
 namespace rtd::bus::reflect {
-
-struct AnyField {
-  template <class T>
-  operator T() const;
-};
-
-template <class T, std::size_t... I>
-constexpr bool takes(std::index_sequence<I...>) {
-  return requires {
-    T{((void)I, AnyField{})...};
-  };
-}
-
-template <class T, std::size_t N = 20>
-constexpr std::size_t field_count() {
-  if constexpr (takes<T>(std::make_index_sequence<N>{})) {
-    return N;
-  } else {
-    return field_count<T, N - 1>();
-  }
-}
-
-/// Calls f with each field of the aggregate.
-template <class T, class F>
-void for_each_field(T& s, F f) {
-  constexpr std::size_t n = field_count<std::remove_const_t<T>>();
-  const auto all = [&](auto&... field) { (f(field), ...); };
-  // clang-format off
-  if constexpr (n == 1) { auto& [a] = s; all(a); }
-  else if constexpr (n == 2) { auto& [a, b] = s; all(a, b); }
-  else if constexpr (n == 3) { auto& [a, b, c] = s; all(a, b, c); }
-  else if constexpr (n == 4) { auto& [a, b, c, d] = s; all(a, b, c, d); }
-  else if constexpr (n == 5) { auto& [a, b, c, d, e] = s; all(a, b, c, d, e); }
-  else if constexpr (n == 7) { auto& [a, b, c, d, e, g, h] = s; all(a, b, c, d, e, g, h); }
-  else if constexpr (n == 9) { auto& [a, b, c, d, e, g, h, i, j] = s; all(a, b, c, d, e, g, h, i, j); }
-  else { static_assert(n == 11, "add a line for this number of fields");
-         auto& [a, b, c, d, e, g, h, i, j, k, l] = s; all(a, b, c, d, e, g, h, i, j, k, l); }
-  // clang-format on
-}
 
 template <class T>
 struct IsVector : std::false_type {};
@@ -79,7 +42,7 @@ void randomize(T& value, std::mt19937_64& random) {
   } else if constexpr (IsArray<T>::value) {
     for (auto& element : value) randomize(element, random);
   } else {
-    for_each_field(value, [&](auto& field) { randomize(field, random); });
+    msg::for_each_field(value, [&](const char*, auto& field) { randomize(field, random); });
   }
 }
 
@@ -99,7 +62,7 @@ std::uint64_t fingerprint(const T& value) {
     if constexpr (IsVector<T>::value || IsArray<T>::value) {
       for (const auto& element : value) add(element);
     } else {
-      for_each_field(value, add);
+      msg::for_each_field(value, [&](const char*, const auto& field) { add(field); });
     }
     return seed;
   }

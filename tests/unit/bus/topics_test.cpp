@@ -42,7 +42,7 @@ TEST(Topics, have_names_of_their_own) {
 
 TEST(Topics, standard_types_go_where_ros2_looks_and_our_own_do_not) {
   for (const TopicFacts& topic : all_topics()) {
-    const bool own_type = topic.plain || topic.type == MessageId::kServiceStatus;
+    const bool own_type = topic.plain || topic.type == MessageTraits<msg::ServiceStatus>::kId;
     EXPECT_EQ(topic.name.rfind("rt/", 0) == 0, !own_type) << topic.name;
   }
 }
@@ -58,7 +58,7 @@ TEST(Topics, every_message_type_is_reachable_by_its_id) {
 TEST(QosProfiles, only_the_raw_frame_shares_the_writers_memory) {
   for (const TopicFacts& topic : all_topics()) {
     const QosSettings settings = qos_settings(topic.profile);
-    EXPECT_EQ(settings.data_sharing, topic.type == MessageId::kRgbdFrame) << topic.name;
+    EXPECT_EQ(settings.data_sharing, topic.type == MessageTraits<msg::RgbdFrame>::kId) << topic.name;
     EXPECT_TRUE(topic.plain || !settings.data_sharing) << topic.name;
     EXPECT_GE(settings.depth, 1) << topic.name;
   }

@@ -3,12 +3,14 @@
 #include "common/ros2/message_json.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <limits>
 #include <memory>
 
-#include "common/ros2/idl_fields.hpp"
-#include "common/ros_codec/wire_rtd.hpp"
+#include "common/msg/features.hpp"
+#include "common/msg/status.hpp"
+#include "common/msg/tracking.hpp"
 #include "common/ros_codec/wire_writer.hpp"
 
 namespace rtd::ros2 {

@@ -1,98 +1,100 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The texts that recordings carry against the IDL that the messages are generated from.
+// The lists of fields against the IDL files, and the texts that recordings carry.
 #include "common/ros2/type_definition.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <openssl/sha.h>
 
+#include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
+#include <set>
 #include <sstream>
 
-#include "common/ros2/definition_texts.hpp"
+#include "common/ros2/message_fields.hpp"
 #include "common/ros2/names.hpp"
+#include "common/ros2/type_hash.hpp"
 
 namespace rtd::ros2 {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-using Fields = std::vector<std::string>;  ///< "type name", the type in the words of .msg files
 
-std::string read_idl(const std::string& package) {
-  std::ifstream file(std::string(IDL_FOLDER) + '/' + package + ".idl");
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
   std::stringstream text;
   text << file.rdbuf();
   return text.str();
 }
 
-std::string msg_type(std::string idl_type, const std::string& package) {
-  static const std::map<std::string, std::string> kWords = {{"octet", "uint8"},
-                                                            {"boolean", "bool"},
-                                                            {"long", "int32"},
-                                                            {"unsigned long", "uint32"},
-                                                            {"float", "float32"},
-                                                            {"double", "float64"},
-                                                            {"string", "string"},
-                                                            {"unsigned short", "uint16"},
-                                                            {"short", "int16"},
-                                                            {"long long", "int64"},
-                                                            {"unsigned long long", "uint64"}};
-  if (const auto word = kWords.find(idl_type); word != kWords.end()) return word->second;
-  const std::string name = ros_type(idl_type);  // a/msg/B, or B_ of the same package
-  const std::size_t infix = name.find("/msg/");
-  if (infix != std::string::npos) return name.substr(0, infix) + name.substr(infix + 4);
-  return package + '/' + name.substr(0, name.size() - 1);
+std::string sha256(const std::string& text) {
+  unsigned char digest[SHA256_DIGEST_LENGTH];
+  SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(), digest);
+  std::string hex;
+  for (const unsigned char byte : digest) hex += fmt::format("{:02x}", byte);
+  return hex;
 }
 
-/// The structs of an IDL file by name without the final underscore.
-std::map<std::string, Fields> structs_of(const std::string& package) {
-  static const std::regex kStruct(R"(struct (\w+)_ \{([^}]*)\})");
-  static const std::regex kField(R"((sequence<)?([\w: ]+?)(>)? (\w+)(\[\d+\])?;)");
-  const std::string text = read_idl(package);
-  std::map<std::string, Fields> structs;
-  for (std::sregex_iterator s(text.begin(), text.end(), kStruct), end; s != end; ++s) {
-    const std::string body = (*s)[2];
-    Fields& fields = structs[(*s)[1]];
-    for (std::sregex_iterator f(body.begin(), body.end(), kField); f != end; ++f) {
-      std::string idl_type = (*f)[2];
-      idl_type.erase(0, idl_type.find_first_not_of(' '));
-      const std::string array = (*f)[1].matched ? "[]" : (*f)[5].str();
-      fields.push_back(msg_type(idl_type, package) + array + ' ' + (*f)[4].str());
-    }
-  }
-  return structs;
+std::string dds_name(const std::string& type) {
+  const std::size_t slash = type.find('/');
+  return type.substr(0, slash) + "::msg::dds_::" + type.substr(slash + 1) + '_';
 }
 
-/// The fields of a .msg text: without constants and default values, types with their package.
-Fields fields_of(const std::string& text, const std::string& package) {
-  Fields fields;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string type, name;
-    if (!(words >> type >> name) || name.find('=') != std::string::npos) continue;
-    if (type == "byte") type = "uint8";
-    if (std::isupper(static_cast<unsigned char>(type[0])) != 0) type = package + '/' + type;
-    fields.push_back(type + ' ' + name);
+/// A field as the IDL of `package` has it.
+std::string idl_of(const MessageField& field, const std::string& package) {
+  static const std::map<std::string, std::string> kWords = {
+      {"uint8", "octet"},           {"byte", "octet"},           {"bool", "boolean"},
+      {"int16", "short"},           {"int32", "long"},           {"int64", "long long"},
+      {"uint16", "unsigned short"}, {"uint32", "unsigned long"}, {"uint64", "unsigned long long"},
+      {"float32", "float"},         {"float64", "double"}};
+  const auto word = kWords.find(field.type);
+  std::string type = word != kWords.end() ? word->second : field.type;
+  if (field.is_message()) {
+    const bool local = field.type.starts_with(package + '/');
+    type = local ? field.type.substr(package.size() + 1) + '_' : dds_name(field.type);
   }
-  return fields;
+  if (field.kind == MessageField::Kind::kSequence) type = "sequence<" + type + '>';
+  const bool array = field.kind == MessageField::Kind::kArray;
+  return "  " + type + ' ' + field.name + (array ? '[' + std::to_string(field.capacity) + ']' : "") + ";\n";
 }
 
-TEST(TypeDefinitions, texts_have_the_fields_of_our_idl) {
-  std::size_t compared = 0;
-  for (const char* package : {"builtin_interfaces", "std_msgs", "geometry_msgs", "nav_msgs", "tf2_msgs", "sensor_msgs",
-                              "vision_msgs", "diagnostic_msgs"}) {
-    for (const auto& [name, fields] : structs_of(package)) {
-      const std::string full_name = std::string(package) + '/' + name;
-      ASSERT_TRUE(message_texts().contains(full_name)) << full_name;
-      EXPECT_EQ(fields_of(message_texts().at(full_name), package), fields) << full_name;
-      ++compared;
-    }
+/// Both vendors' generators compile this very text, so equal text is equal names and types.
+TEST(MessageFields, are_the_structs_of_the_idl_files) {
+  std::map<std::string, std::string> idl;
+  std::size_t structs = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(IDL_FOLDER)) {
+    if (entry.path().extension() != ".idl") continue;
+    const std::string text = idl[entry.path().stem()] = text_of(entry.path());
+    for (std::size_t at = 0; (at = text.find("\nstruct ", at)) != std::string::npos; ++at) ++structs;
   }
-  EXPECT_EQ(compared, message_texts().size()) << "a text without IDL is not checked";
+  for (const auto& [type, fields] : message_fields()) {
+    const std::string package = type.substr(0, type.find('/'));
+    std::string text = "@final\nstruct " + type.substr(package.size() + 1) + "_ {\n";
+    for (const MessageField& field : fields) text += idl_of(field, package);
+    EXPECT_THAT(idl[package], HasSubstr(text + "};\n")) << type;
+    EXPECT_THAT(idl[package], HasSubstr("module " + package + " { module msg { module dds_ {\n"));
+  }
+  EXPECT_EQ(structs, message_fields().size()) << "a struct of the IDL is not checked";
+}
+
+TEST(TypeDefinitions, and_hashes_are_the_recorded_ones) {
+  std::istringstream recorded(text_of(std::string(IDENTITY_FOLDER) + "/schema_hashes.txt"));
+  std::set<std::string> compared;
+  for (std::string line; std::getline(recorded, line);) {
+    if (line.starts_with('#')) continue;
+    const std::string type = line.substr(0, line.find(' '));
+    const TypeDefinition definition = definition_of(type);
+    const std::string hash = type_hash(type);
+    EXPECT_EQ(line, fmt::format("{} {} {} {} {}", type, definition.name, definition.encoding, sha256(definition.text),
+                                hash.empty() ? "-" : hash))
+        << definition.text;
+    compared.insert(type);
+  }
+  for (const auto& [type, fields] : message_fields()) EXPECT_TRUE(compared.contains(dds_name(type))) << type;
 }
 
 TEST(TypeDefinitions, are_complete) {

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <stdexcept>
+
 #include "common/ros2/message_fields.hpp"
 
 namespace rtd::ros2 {
@@ -36,16 +39,25 @@ TEST(TypeHash, of_each_standard_type_is_the_one_that_ros2_has) {
 }
 
 TEST(TypeHash, knows_every_primitive_and_kind_of_field) {
-  EXPECT_EQ(type_hash("std_msgs/String", {{"std_msgs/String", "string data\n"}}),
+  using Kind = MessageField::Kind;
+  EXPECT_EQ(type_hash("std_msgs/String", {{"std_msgs/String", {{"string", "data"}}}}),
             "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18");
-  const std::map<std::string, std::string> texts = {
-      {"a/All",
-       "bool a\nbyte b\nchar c\nint8 d\nuint16 e\nint64 f\nuint64 g\nfloat32 h\nwstring i\nB[<=3] j\nB[2] k\n"},
-      {"a/B", "int16 value\n"}};
-  EXPECT_EQ(type_hash("a/All", texts).size(), 7U + 64U);
+  MessageFields types = {{"a/B", {{"int16", "value"}}}, {"a/All", {{"a/B", "one"}}}};
+  std::set<std::string> hashes = {type_hash("a/All", types)};
+  for (const char* type : {"bool", "byte", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64",
+                           "float32", "float64", "string", "a/B"}) {
+    for (const MessageField& field : {MessageField{type, "x"}, MessageField{type, "x", Kind::kSequence},
+                                      MessageField{type, "x", Kind::kArray, 2}}) {
+      types["a/All"] = {field};
+      EXPECT_TRUE(hashes.insert(type_hash("a/All", types)).second) << type << " is like another";
+    }
+  }
+  EXPECT_EQ(hashes.begin()->size(), 7U + 64U);
+  types["a/All"] = {{"a/Unknown", "x"}};
+  EXPECT_THROW(type_hash("a/All", types), std::out_of_range);
 }
 
-TEST(TypeHash, is_told_of_types_of_ros2_only) {
+TEST(TypeHash, exists_for_types_of_ros2_only) {
   for (const char* type : {"rtd_msgs::msg::dds_::RgbdFrame_", "unknown_msgs::msg::dds_::Thing_", "KeyedSeq", ""}) {
     EXPECT_EQ(type_hash(type), "") << type;
     EXPECT_EQ(user_data_of(type), "") << type;
@@ -62,23 +74,22 @@ TEST(TypeHash, goes_into_user_data_and_is_found_in_that_of_others) {
   EXPECT_EQ(hash_in(""), "");
 }
 
-TEST(MessageFields, have_kinds_and_packages_and_leave_out_constants) {
-  const auto fields = fields_of(
-      "# a comment\nuint8 OK=0\nuint8 BAD = 1\nfloat64 x 0.5 # default\nHeader[] many\nstd_msgs/Header[<=4] few\n"
-      "float64[36] covariance\n",
-      "mine");
-  ASSERT_EQ(fields.size(), 4U);
+TEST(MessageFields, have_kinds_and_words_of_ros2) {
   using Kind = MessageField::Kind;
-  EXPECT_EQ(fields[0].type, "float64");
-  EXPECT_EQ(fields[0].kind, Kind::kOne);
-  EXPECT_EQ(fields[1].type, "mine/Header");
-  EXPECT_EQ(fields[1].kind, Kind::kSequence);
-  EXPECT_EQ(fields[2].type, "std_msgs/Header");
-  EXPECT_EQ(fields[2].kind, Kind::kBoundedSequence);
-  EXPECT_EQ(fields[2].capacity, 4U);
-  EXPECT_EQ(fields[3].name, "covariance");
-  EXPECT_EQ(fields[3].capacity, 36U);
-  EXPECT_FALSE(fields[3].is_message());
+  const std::vector<MessageField>& info = *fields_of("sensor_msgs/CameraInfo");
+  ASSERT_EQ(info.size(), 11U);
+  EXPECT_EQ(info[0].type, "std_msgs/Header");
+  EXPECT_TRUE(info[0].is_message());
+  EXPECT_EQ(info[1].type, "uint32");
+  EXPECT_EQ(info[4].type, "float64");
+  EXPECT_EQ(info[4].name, "d");
+  EXPECT_EQ(info[4].kind, Kind::kSequence);
+  EXPECT_EQ(info[7].kind, Kind::kArray);
+  EXPECT_EQ(info[7].capacity, 12U);
+  EXPECT_FALSE(info[7].is_message());
+  EXPECT_EQ(fields_of("rtd_msgs/TrackingResult")->at(7).type, "uint32") << "an enum goes as its number";
+  EXPECT_EQ(fields_of("rtd_msgs/RgbdFrame")->at(0).type, "uint64");
+  EXPECT_EQ(fields_of("rtd_msgs/Nothing"), nullptr);
 }
 
 }  // namespace
