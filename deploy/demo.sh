@@ -9,7 +9,7 @@ root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 # shellcheck source=deploy/environment.sh
 . "$root/deploy/environment.sh"
 
-"$root/deploy/setup.sh"
+"$root/deploy/setup.sh" --product
 echo "demo: building into build/release (first time: a few minutes on two cores)"
 tests=OFF
 grep -qs '^RTD_BUILD_TESTS:BOOL=ON' "$root/build/release/CMakeCache.txt" && tests=ON

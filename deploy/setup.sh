@@ -7,8 +7,9 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: deploy/setup.sh [--check | --list | --models | --no-models | --viewers]
+Usage: deploy/setup.sh [--product] [--check | --list | --models | --no-models | --viewers]
   (none)       install missing Debian packages, then download the detector weights if they are missing
+  --product    leave out the packages that only the tests need; alone or before another option
   --check      only report what is missing; exit code 1 if something is
   --list       print the Debian packages, one per line
   --models     only download and convert the detector weights
@@ -24,16 +25,19 @@ root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 # Why each one is needed: docs/dependencies.md
 packages=(
   build-essential cmake ninja-build
-  libfastrtps-dev libfastcdr-dev fastddsgen fastdds-tools default-jre-headless
-  cyclonedds-dev cyclonedds-tools
+  libfastrtps-dev libfastcdr-dev fastdds-tools
+  cyclonedds-dev
   libopencv-dev libeigen3-dev libceres-dev
   libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libtinyxml2-dev
   zlib1g-dev libdeflate-dev libbz2-dev liblz4-dev libzstd-dev libssl-dev
-  libgtest-dev libgmock-dev libbenchmark-dev
-  python3 python3-numpy python3-onnx python3-opencv
-  python3-rosbag python3-sensor-msgs
-  iproute2 nftables
+  python3 python3-numpy python3-onnx
   curl ca-certificates
+)
+test_packages=(
+  fastddsgen default-jre-headless cyclonedds-tools
+  libgtest-dev libgmock-dev libbenchmark-dev
+  python3-opencv python3-rosbag python3-sensor-msgs
+  iproute2 nftables
 )
 
 # Only for the tests with external viewers; a command that exists already needs no package.
@@ -117,6 +121,12 @@ check() {
   echo "detector weights: ${model:-none (geometry only; get them with deploy/setup.sh --models)}"
   exit "$status"
 }
+
+if [ "${1:-}" = --product ]; then
+  shift
+else
+  packages+=("${test_packages[@]}")
+fi
 
 case "${1:-}" in
   '')
