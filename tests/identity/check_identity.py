@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+# SPDX-License-Identifier: Apache-2.0
+"""Shows that a change of the code has not changed its results: compares bytes with recorded hashes.
+
+    tests/identity/check_identity.py [--bin build/release/bin] [--only NAME ...] [--record]
+
+Compared are the trajectories and the map files of lockstep runs on four clips, and the MCAP files of two conversions.
+The wire bytes of every topic and the MCAP schemas are compared by unit tests.
+The detector's floating-point results depend on the vector instructions of the processor (OpenCV chooses them at run
+time), and so do the trajectories: hashes are recorded per instruction set. Without recorded hashes for this processor,
+or without clips and weights, those results are skipped, with a line that says so.
+
+Exit codes: 0 all equal, 1 something differs, 77 nothing could be compared.
+"""
+import argparse
+import hashlib
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+HASHES = HERE / "hashes.json"
+CLIPS = ("fr1_xyz", "walk_xyz", "walk_rpy", "walk_box")
+MODEL = "v5lite-s-raw-480x640.onnx"
+SKIPPED = 77
+
+
+def instruction_set() -> str:
+    """The best vector instructions of this processor that OpenCV has kernels for."""
+    flags = pathlib.Path("/proc/cpuinfo").read_text().split()
+    return next((name for name in ("avx512f", "avx2", "sse4_2") if name in flags), "other")
+
+
+def sha256(path: pathlib.Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def run(command: list, seconds: int) -> None:
+    finished = subprocess.run(command, capture_output=True, text=True, timeout=seconds, check=False)
+    if finished.returncode != 0:
+        sys.exit(f"{' '.join(command)}\nfailed with exit code {finished.returncode}:\n{finished.stdout}{finished.stderr}")
+
+
+def lockstep_run(rtd: str, data: pathlib.Path, clip: str, out: pathlib.Path) -> dict:
+    """Runs the whole system, four processes, on one clip."""
+    saved_map = out / "map.rtdmap"
+    run([rtd, "run", "--source", f"tum:{data / clip}", "--pace", "lockstep", "--filter", "rtd", "--quiet",
+         "--out", str(out / "run"), "--save-map", str(saved_map), "--domain", str(20 + os.getpid() % 60)], 300)
+    return {f"trajectory {clip}": sha256(out / "run" / "trajectory.txt"), f"map {clip}": sha256(saved_map)}
+
+
+def conversion(rtd: str, source: str, options: list, out: pathlib.Path) -> str:
+    recording = out / "recording.mcap"
+    run([rtd, "convert", source, str(recording), *options], 120)
+    return sha256(recording)
+
+
+def measure(rtd: str, wanted) -> dict:
+    """{name: SHA-256} of all that can be made here; names that `wanted` refuses are left out."""
+    data, models = (pathlib.Path(os.environ.get(name, "/nonexistent")) for name in ("RTD_DATA_DIR", "RTD_MODEL_DIR"))
+    found = {}
+    with tempfile.TemporaryDirectory(prefix="rtd_identity_") as folder:
+        for clip in CLIPS:
+            if not wanted(f"trajectory {clip}") and not wanted(f"map {clip}"):
+                continue
+            if not (data / clip).is_dir() or not (models / MODEL).is_file():
+                print(f"skipped: {clip} (RTD_DATA_DIR needs the clip, RTD_MODEL_DIR {MODEL})")
+                continue
+            out = pathlib.Path(folder) / clip
+            out.mkdir()
+            found.update(lockstep_run(rtd, data, clip, out))
+        for name, source, options in (("mcap synthetic", "synthetic:office", ["--frames", "3"]),
+                                      ("mcap fr1_desk_9", f"tum:{data / 'fr1_desk_9'}", ["--compress", "none"])):
+            if not wanted(name):
+                continue
+            if source.startswith("tum:") and not pathlib.Path(source[4:]).is_dir():
+                print(f"skipped: {name} (RTD_DATA_DIR needs the clip)")
+                continue
+            out = pathlib.Path(folder) / name.replace(" ", "_")
+            out.mkdir()
+            found[name] = conversion(rtd, source, options, out)
+    return found
+
+
+def compare(found: dict, recorded: dict) -> int:
+    compared = different = 0
+    for name, digest in found.items():
+        if name not in recorded:
+            print(f"skipped: {name} (no recorded hash for a processor with {instruction_set()})")
+            continue
+        compared += 1
+        different += digest != recorded[name]
+        print(f"{'same' if digest == recorded[name] else 'DIFFERENT'}: {name} {digest[:16]}")
+    print(f"{compared - different} of {compared} results have the recorded bytes")
+    return 1 if different else 0 if compared else SKIPPED
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--bin", default=str(ROOT / "build/release/bin"), help="folder of the executables")
+    parser.add_argument("--only", nargs="+", default=[""], help="results whose names contain one of these words")
+    parser.add_argument("--record", action="store_true", help="write the hashes instead of comparing them")
+    arguments = parser.parse_args()
+    found = measure(str(pathlib.Path(arguments.bin) / "rtd"),
+                    lambda name: any(word in name for word in arguments.only))
+    hashes = json.loads(HASHES.read_text()) if HASHES.exists() else {}
+    recorded = hashes.setdefault(instruction_set(), {})
+    if not arguments.record:
+        return compare(found, recorded)
+    recorded.update(found)
+    HASHES.write_text(json.dumps(hashes, indent=2) + "\n")
+    print(f"recorded {len(found)} hashes for a processor with {instruction_set()}: {HASHES}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
