@@ -19,7 +19,7 @@ build_release() {
   shift
   mkdir -p "$root/build"
   cmake -S "$root" -B "$root/build/release" -G Ninja -DCMAKE_BUILD_TYPE=Release -DRTD_BUILD_TESTS="$tests" \
-    -DRTD_BUILD_BENCH="$tests" >"$root/build/configure.log" 2>&1 || {
+    -DRTD_BUILD_BENCH="$tests" -DRTD_UNITY_BUILD=ON >"$root/build/configure.log" 2>&1 || {
     cat "$root/build/configure.log" >&2
     return 1
   }

@@ -22,7 +22,7 @@ built=$SECONDS
 echo "test: built in $((built - started)) s"
 
 status=0
-ctest --test-dir "$root/build/release" --output-on-failure --no-tests=error "$@" || status=$?
+ctest --test-dir "$root/build/release" -j "$(nproc)" --output-on-failure --no-tests=error "$@" || status=$?
 echo "test: tests took $((SECONDS - built)) s, total $((SECONDS - started)) s"
 if [ "$status" -eq 0 ]; then
   echo "test: next: ./deploy/demo.sh"

@@ -5,6 +5,7 @@
 #   rtd_library(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...])  static library, includes from the repository root
 #   rtd_executable(NAME SOURCES... PRIVATE libs...)
 #   rtd_test(NAME LABEL unit|component|interop|dataset SOURCES... LIBS... [TIMEOUT seconds] [SERIAL])
+#     Tests labelled component and interop run alone; others may run beside each other (`ctest -j`), unless SERIAL.
 #   rtd_bench(NAME SOURCES... LIBS...)
 
 set(CMAKE_CXX_STANDARD 20)
@@ -83,7 +84,8 @@ function(rtd_test name)
   else()
     set_tests_properties(${ARG_LABEL}.${name} PROPERTIES TIMEOUT 120)
   endif()
-  if(ARG_SERIAL)
+  # Several processes that keep time, or ports and domains of this host: not beside other tests.
+  if(ARG_SERIAL OR ARG_LABEL STREQUAL "component" OR ARG_LABEL STREQUAL "interop")
     set_tests_properties(${ARG_LABEL}.${name} PROPERTIES RUN_SERIAL ON)
   endif()
 endfunction()
