@@ -13,5 +13,5 @@ root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 echo "demo: building into build/release (first time: a few minutes on two cores)"
 tests=OFF
 grep -qs '^RTD_BUILD_TESTS:BOOL=ON' "$root/build/release/CMakeCache.txt" && tests=ON
-build_release "$tests" --target rtd_services
+build_release "$tests" --target rtd_demo
 exec "$root/build/release/bin/rtd" demo "$@"

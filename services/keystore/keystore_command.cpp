@@ -17,7 +17,7 @@
 #include "common/service/exit_code.hpp"
 #include "services/keystore/keystore_info.hpp"
 
-namespace rtd::launcher {
+namespace rtd::keystore {
 namespace {
 
 constexpr std::int64_t kDay_s = 24 * 3600;
@@ -83,9 +83,9 @@ void renew(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out
                      security::to_utc(validity.not_after_s).substr(0, 10));
 }
 
-CLI::App* add_action(CLI::App& command, KeystoreRequest& request, KeystoreRequest::Action action,
-                     const std::string& name, const std::string& help) {
-  CLI::App* const sub = command.add_subcommand(name, help);
+CLI::App* add_action(CLI::App& app, KeystoreRequest& request, KeystoreRequest::Action action, const std::string& name,
+                     const std::string& help) {
+  CLI::App* const sub = app.add_subcommand(name, help);
   sub->add_option("dir", request.folder,
                   "Keystore (default: RTD_KEYSTORE, ROS_SECURITY_KEYSTORE, ~/.config/rtd/keystore)");
   sub->callback([&request, action] { request.action = action; });
@@ -109,18 +109,15 @@ void add_topics(CLI::App& sub, KeystoreRequest& request) {
 
 }  // namespace
 
-CLI::App* add_keystore_command(CLI::App& parent, KeystoreRequest& request) {
+void add_keystore_commands(CLI::App& app, KeystoreRequest& request) {
   using Action = KeystoreRequest::Action;
-  CLI::App* const command =
-      parent.add_subcommand("keystore", "Keys and permissions for --secure (docs/security.md), laid out as by sros2");
-  command->require_subcommand(1);
-  CLI::App* const create =
-      add_action(*command, request, Action::kCreate, "create", "A CA and an enclave for each service");
+  app.require_subcommand(1);
+  CLI::App* const create = add_action(app, request, Action::kCreate, "create", "A CA and an enclave for each service");
   add_days(*create, request);
   add_domain(*create, request);
   create->add_flag("--encrypt-frames", request.encrypt_frames,
                    "Encrypt raw frames too: they then leave shared memory (docs/security.md tells the cost)");
-  CLI::App* const add = add_action(*command, request, Action::kAdd, "add", "One more enclave");
+  CLI::App* const add = add_action(app, request, Action::kAdd, "add", "One more enclave");
   add->get_option("dir")->required();
   add->add_option("enclave", request.enclaves, "Its name, e.g. /rtd/observer2")->required()->expected(1);
   add->add_option("--like", request.like, "With the topics of this role")->check(CLI::IsMember(bus::roles()));
@@ -128,13 +125,12 @@ CLI::App* add_keystore_command(CLI::App& parent, KeystoreRequest& request) {
   add_days(*add, request);
   add_domain(*add, request);
   CLI::App* const renew =
-      add_action(*command, request, Action::kRenew, "renew", "New keys and dates; topics and domains stay");
+      add_action(app, request, Action::kRenew, "renew", "New keys and dates; topics and domains stay");
   renew->add_option("enclaves", request.enclaves, "Which (default: all)");
   add_topics(*renew, request);
   add_days(*renew, request);
-  add_action(*command, request, Action::kInfo, "info", "Who may do what until when, and what cannot be used");
-  command->footer("Exit code: 0 done, 1 info found an enclave that cannot be used, 2 it cannot be done");
-  return command;
+  add_action(app, request, Action::kInfo, "info", "Who may do what until when, and what cannot be used");
+  app.footer("Exit code: 0 done, 1 info found an enclave that cannot be used, 2 it cannot be done");
 }
 
 int run_keystore(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out, std::ostream& err) {
@@ -152,4 +148,4 @@ int run_keystore(const KeystoreRequest& request, std::int64_t now_s, std::ostrea
   }
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::keystore

@@ -11,7 +11,7 @@ namespace CLI {
 class App;
 }
 
-namespace rtd::launcher {
+namespace rtd::keystore {
 
 /// What `rtd keystore` was asked.
 struct KeystoreRequest {
@@ -26,12 +26,11 @@ struct KeystoreRequest {
   std::vector<std::string> publish, subscribe;
 };
 
-/// Adds the subcommand `keystore` with `create`, `add`, `renew` and `info`; parsing fills `request`, which must
-/// outlive `parent`.
-CLI::App* add_keystore_command(CLI::App& parent, KeystoreRequest& request);
+/// Adds `create`, `add`, `renew` and `info`; parsing fills `request`, which must outlive `app`.
+void add_keystore_commands(CLI::App& app, KeystoreRequest& request);
 
 /// Does it at the time `now_s` (seconds since 1970). Results to `out`, what prevents them to `err`. Returns the exit
 /// code: 0; 1 when `info` finds an enclave that cannot be used; 2 when it cannot be done.
 int run_keystore(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out, std::ostream& err);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::keystore

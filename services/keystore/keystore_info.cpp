@@ -11,7 +11,7 @@
 #include "common/security/enclave.hpp"
 #include "common/security/security_error.hpp"
 
-namespace rtd::launcher {
+namespace rtd::keystore {
 namespace {
 
 namespace fs = std::filesystem;
@@ -53,4 +53,4 @@ bool print_keystore_info(const std::string& folder, std::int64_t now_s, std::ost
   return all_good;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::keystore

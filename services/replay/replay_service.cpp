@@ -14,7 +14,7 @@
 
 #include "common/mcap/byte_sink.hpp"
 #include "common/mcap/decode.hpp"
-#include "common/mcap/recording_path.hpp"
+#include "common/mcap/recording_file.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"

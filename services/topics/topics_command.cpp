@@ -16,15 +16,15 @@
 #include "services/topics/core/topic_report.hpp"
 #include "services/topics/topics_session.hpp"
 
-namespace rtd::launcher {
+namespace rtd::topics {
 namespace {
 
 using namespace std::chrono_literals;
 
 constexpr double kMaxSeconds = 1e6;
 
-CLI::App* add_action(CLI::App& command, TopicsRequest& request, const char* name, const char* description) {
-  CLI::App* action = command.add_subcommand(name, description);
+CLI::App* add_action(CLI::App& app, TopicsRequest& request, const char* name, const char* description) {
+  CLI::App* action = app.add_subcommand(name, description);
   action->callback([&request, name] { request.action = name; });
   service::add_bus_options(*action, request.bus);
   action->add_flag("--json", request.json, "Print JSON instead of text");
@@ -33,19 +33,18 @@ CLI::App* add_action(CLI::App& command, TopicsRequest& request, const char* name
 
 }  // namespace
 
-void add_topics_command(CLI::App& parent, TopicsRequest& request) {
-  CLI::App* command = parent.add_subcommand("topics", "List the topics of a DDS domain, measure rates, print messages");
-  command->require_subcommand(1);
-  add_action(*command, request, "list", "Topics, types and what their writers offer")
+void add_topics_commands(CLI::App& app, TopicsRequest& request) {
+  app.require_subcommand(1);
+  add_action(app, request, "list", "Topics, types and what their writers offer")
       ->add_option("--wait", request.wait_s, "Longest look, s; ends when nobody new has come for 2 s")
       ->check(CLI::Range(0.1, kMaxSeconds))
       ->capture_default_str();
-  CLI::App* hz = add_action(*command, request, "hz", "Rate, jitter, size and losses of topics");
+  CLI::App* hz = add_action(app, request, "hz", "Rate, jitter, size and losses of topics");
   hz->add_option("topics", request.topics, "Topics by ROS or DDS name (default: all)");
   hz->add_option("--duration", request.duration_s, "Measure so long, s (default: 5)")
       ->check(CLI::Range(0.1, kMaxSeconds));
   hz->add_option("--count", request.count, "End when each topic had so many messages");
-  CLI::App* echo = add_action(*command, request, "echo", "Messages of a topic, field by field");
+  CLI::App* echo = add_action(app, request, "echo", "Messages of a topic, field by field");
   echo->add_option("topic", request.topics, "Topic by ROS or DDS name")->required()->expected(1);
   echo->add_flag("--once", request.once, "End after one message");
   echo->add_option("--count", request.count, "End after so many messages");
@@ -69,11 +68,11 @@ void look_around(double longest_s, TopicsSession& session) {
 
 int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err) {
   look_around(request.wait_s, session);
-  const std::vector<topics::TopicRow> rows = topics::rows_of(session.writers());
+  const std::vector<TopicRow> rows = rows_of(session.writers());
   if (request.json) {
-    out << topics::list_json(rows).dump(2) << '\n';
+    out << list_json(rows).dump(2) << '\n';
   } else if (!rows.empty()) {
-    out << topics::list_text(rows);
+    out << list_text(rows);
   }
   if (!rows.empty()) return service::kOk;
   err << fmt::format("rtd topics: no topic within {:.1f} s in {}\n", session.seconds(), session.empty_place());
@@ -94,4 +93,4 @@ int run_topics(const TopicsRequest& request, std::ostream& out, std::ostream& er
   return service::kUsageOrConfig;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::topics

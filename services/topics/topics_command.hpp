@@ -9,7 +9,7 @@
 
 #include "common/service/bus_config.hpp"
 
-namespace rtd::launcher {
+namespace rtd::topics {
 
 /// What `rtd topics` was asked.
 struct TopicsRequest {
@@ -23,11 +23,11 @@ struct TopicsRequest {
   bool once = false, json = false;
 };
 
-/// Adds the subcommand `topics`; parsing fills `request`, which must outlive `parent`.
-void add_topics_command(CLI::App& parent, TopicsRequest& request);
+/// Adds `list`, `hz` and `echo`; parsing fills `request`, which must outlive `app`.
+void add_topics_commands(CLI::App& app, TopicsRequest& request);
 
 /// Results go to `out`, what hinders to `err`. Exit code 0; 1: nothing was found or came; 2: cannot be done (bus,
 /// unknown type); 3: some messages could not be read.
 int run_topics(const TopicsRequest& request, std::ostream& out, std::ostream& err);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::topics

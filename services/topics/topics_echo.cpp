@@ -14,7 +14,7 @@
 #include "services/topics/core/message_text.hpp"
 #include "services/topics/topics_session.hpp"
 
-namespace rtd::launcher {
+namespace rtd::topics {
 namespace {
 
 using namespace std::chrono_literals;
@@ -39,7 +39,7 @@ class Printer {
                                         {"received_ns", sample.received_ns},    {"message", message}};
       out_ << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << std::endl;
     } else {
-      out_ << topics::message_text(message) << std::flush;
+      out_ << message_text(message) << std::flush;
     }
     ++printed_;
   } catch (const ros::WireError& error) {
@@ -131,4 +131,4 @@ int echo_topic(const TopicsRequest& request, TopicsSession& session, std::ostrea
   return service::kRunFailed;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::topics

@@ -12,7 +12,7 @@
 #include "services/topics/core/topic_report.hpp"
 #include "services/topics/topics_session.hpp"
 
-namespace rtd::launcher {
+namespace rtd::topics {
 namespace {
 
 using namespace std::chrono_literals;
@@ -46,12 +46,12 @@ class Meters {
              return one.second.rate.messages() >= count;
            });
   }
-  std::vector<topics::TopicRow> rows() {
+  std::vector<TopicRow> rows() {
     std::vector<bus::TopicWriter> writers = session_.writers();
     std::erase_if(writers, [this](const bus::TopicWriter& writer) { return !wants(writer.topic); });
-    std::vector<topics::TopicRow> rows = topics::rows_of(writers);
+    std::vector<TopicRow> rows = rows_of(writers);
     const std::lock_guard lock(mutex_);
-    for (topics::TopicRow& row : rows) {
+    for (TopicRow& row : rows) {
       const auto meter = meters_.find(row.topic);
       if (meter != meters_.end()) row.rate = meter->second.rate.rate();
     }
@@ -66,7 +66,7 @@ class Meters {
   };
   struct Meter {
     std::mutex mutex;
-    topics::RateMeter rate;
+    RateMeter rate;
     std::unique_ptr<bus::TopicListener> listener;
   };
 
@@ -110,12 +110,12 @@ int measure_topics(const TopicsRequest& request, TopicsSession& session, std::os
     if (request.count > 0 && meters.all_reached(request.count)) break;
   }
   const double seconds = session.seconds();
-  std::vector<topics::TopicRow> rows = meters.rows();
+  std::vector<TopicRow> rows = meters.rows();
   meters.stop();
   if (request.json) {
-    out << topics::rate_json(rows, seconds).dump(2) << '\n';
+    out << rate_json(rows, seconds).dump(2) << '\n';
   } else if (!rows.empty()) {
-    out << topics::rate_text(rows, seconds);
+    out << rate_text(rows, seconds);
   }
   int code = rows.empty() ? service::kRunFailed : service::kOk;
   if (rows.empty() && request.topics.empty()) {
@@ -129,4 +129,4 @@ int measure_topics(const TopicsRequest& request, TopicsSession& session, std::os
   return code;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::topics

@@ -12,7 +12,7 @@
 #include "common/ros2/names.hpp"
 #include "common/service/bus_config.hpp"
 
-namespace rtd::launcher {
+namespace rtd::topics {
 
 bool is_called(const bus::RawTopic& topic, const std::string& name) {
   return topic.name == name || ros2::ros_topic(topic.name) == name || ros2::ros_topic(topic.name) == '/' + name;
@@ -55,4 +55,4 @@ std::string TopicsSession::nobody_publishes(const std::string& topic) const {
   return fmt::format("nobody publishes {} in {}; {}", topic, place(), found);
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::topics

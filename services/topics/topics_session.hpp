@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "common/bus/raw_bus.hpp"
-#include "services/launcher/process/interrupt_signals.hpp"
+#include "common/service/interrupt_signals.hpp"
 #include "services/topics/topics_command.hpp"
 
-namespace rtd::launcher {
+namespace rtd::topics {
 
 /// Whether a topic is meant by this name, its ROS or its DDS name.
 bool is_called(const bus::RawTopic& topic, const std::string& name);
@@ -39,7 +39,7 @@ class TopicsSession {
   std::string nobody_publishes(const std::string& topic) const;
 
  private:
-  InterruptSignals signals_;  // first: before any thread
+  service::InterruptSignals signals_;  // first: before any thread
   bus::BusOptions options_;
   Clock::time_point start_ = Clock::now();
   bool interrupted_ = false;
@@ -50,4 +50,4 @@ int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostre
 int measure_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err);
 int echo_topic(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::topics

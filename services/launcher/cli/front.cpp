@@ -4,46 +4,32 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <ctime>
 #include <iostream>
 #include <string>
 #include <vector>
 
-#include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/evaluation/commands/ablate_command.hpp"
 #include "services/evaluation/commands/eval_command.hpp"
 #include "services/evaluation/detector/eval_detector_command.hpp"
-#include "services/keystore/keystore_command.hpp"
+#include "services/launcher/cli/external_command.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
-#include "services/launcher/process/executable.hpp"
 #include "services/launcher/run/run_command.hpp"
-#include "services/recorder/convert/convert_command.hpp"
-#include "services/recorder/inspect/diff_command.hpp"
-#include "services/recorder/inspect/info_command.hpp"
-#include "services/slam/map_tool/map_command.hpp"
-#include "services/topics/topics_command.hpp"
 
 namespace rtd::launcher {
 namespace {
 
-const std::vector<std::string> kCommands = {"run",  "demo", "ablate",   "convert", "eval",   "eval-detector", "info",
-                                            "diff", "map",  "keystore", "topics",  "doctor", "version",       "help"};
+const std::vector<std::string> kBuiltIn = {"run",  "demo",          "doctor",  "ablate",
+                                           "eval", "eval-detector", "version", "help"};
 
 struct Requests {
   RunOptions run;
   DemoOptions demo;
   AblateOptions ablate;
-  ConvertOptions convert;
   EvalOptions eval;
   EvalDetectorOptions eval_detector;
-  InfoOptions info;
-  DiffRequest diff;
-  MapRequest map;
   DoctorOptions doctor;
-  KeystoreRequest keystore;
-  TopicsRequest topics;
 };
 
 void add_run_command(CLI::App& app, RunOptions& options) {
@@ -106,40 +92,13 @@ void add_doctor_command(CLI::App& app, DoctorOptions& options) {
   command->add_option("--set", options.config.overrides, "Override one key of bus, e.g. --set bus.domain=5");
 }
 
-std::string services_text() {
-  std::string text = "Services (each with its own --help):";
-  for (const std::string& service : installed_services()) text += "\n  rtd " + service;
-  return text;
-}
-
-int become_service(const std::string& name, const std::vector<std::string>& arguments) {
-  const std::string executable = find_executable("rtd-" + name);
-  if (!executable.empty()) {
-    const std::string failure = replace_process(executable, arguments);
-    std::cerr << "rtd: " << failure << '\n';
-    return service::kRunFailed;
-  }
-  std::vector<std::string> known = installed_services();
-  known.insert(known.end(), kCommands.begin(), kCommands.end());
-  const std::string near = service::nearest_name(name, known);
-  std::cerr << "rtd: '" << name << "' is no command"
-            << (near.empty() ? ", 'rtd --help' lists them" : ", did you mean '" + near + "'?") << '\n';
-  return service::kUsageOrConfig;
-}
-
 int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("run")) return run(requests.run).code;
   if (app.got_subcommand("demo")) return demo(requests.demo);
   if (app.got_subcommand("ablate")) return ablate(requests.ablate);
-  if (app.got_subcommand("convert")) return run_convert(requests.convert, std::cout, std::cerr);
   if (app.got_subcommand("eval")) return run_eval(requests.eval, std::cout, std::cerr);
   if (app.got_subcommand("eval-detector")) return run_eval_detector(requests.eval_detector, std::cout, std::cerr);
-  if (app.got_subcommand("info")) return run_info(requests.info, std::cout, std::cerr);
-  if (app.got_subcommand("diff")) return run_diff(requests.diff, std::cout, std::cerr);
-  if (app.got_subcommand("map")) return run_map(requests.map, std::cout, std::cerr);
   if (app.got_subcommand("doctor")) return doctor(requests.doctor, std::cout, std::cerr);
-  if (app.got_subcommand("keystore")) return run_keystore(requests.keystore, std::time(nullptr), std::cout, std::cerr);
-  if (app.got_subcommand("topics")) return run_topics(requests.topics, std::cout, std::cerr);
   if (app.got_subcommand("version")) {
     std::cout << "rtd " << RTD_VERSION << '\n';
     return service::kOk;
@@ -153,27 +112,21 @@ int dispatch(const CLI::App& app, const Requests& requests) {
 int front(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool named = !arguments.empty() && !arguments[0].empty() && arguments[0][0] != '-';
-  if (named && std::find(kCommands.begin(), kCommands.end(), arguments[0]) == kCommands.end()) {
-    return become_service(arguments[0], {arguments.begin() + 1, arguments.end()});
-  }
+  if (named && std::ranges::count(kBuiltIn, arguments[0]) == 0)
+    return run_external_command(arguments[0], {arguments.begin() + 1, arguments.end()}, kBuiltIn);
 
   Requests requests;
-  CLI::App app{"RTD-SLAM: camera pose and static map from RGB-D images in which things move", "rtd"};
+  CLI::App app{"RTD-SLAM: RGB-D SLAM that stays accurate when people walk through the view", "rtd"};
   add_run_command(app, requests.run);
   add_demo_command(app, requests.demo);
   add_ablate_command(app, requests.ablate);
-  add_convert_command(app, requests.convert);
   add_eval_command(app, requests.eval);
   add_eval_detector_command(app, requests.eval_detector);
-  add_info_command(app, requests.info);
-  add_diff_command(app, requests.diff);
-  add_map_command(app, requests.map);
   add_doctor_command(app, requests.doctor);
-  add_keystore_command(app, requests.keystore);
-  add_topics_command(app, requests.topics);
   app.add_subcommand("version", "Print the version");
   app.add_subcommand("help", "Print this text");
-  app.footer(services_text);
+  for (CLI::App* command : app.get_subcommands({})) command->group("Commands");
+  list_external_commands(app);
   app.set_version_flag("--version", std::string("rtd ") + RTD_VERSION);
   try {
     app.parse(argc, argv);

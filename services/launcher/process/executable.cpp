@@ -55,7 +55,12 @@ std::string find_executable(const std::string& name) {
   return {};
 }
 
-std::vector<std::string> installed_services() {
+std::string missing_executable(const std::string& name) {
+  return name + " is neither beside rtd (" + own_directory() +
+         ") nor in PATH: build it with 'cmake --build <build folder> --target " + name + "'";
+}
+
+std::vector<std::string> installed_commands() {
   std::set<std::string> names;
   for (const fs::path& directory : search_directories()) {
     std::error_code error;

@@ -10,11 +10,14 @@ namespace rtd::launcher {
 /// The folder of this program's executable.
 std::string own_directory();
 
-/// `name` beside this program's executable, else in PATH; empty when it is in neither.
+/// The path of `name`: beside this program, else in PATH; empty when it is in neither.
 std::string find_executable(const std::string& name);
 
-/// The names behind "rtd-" of the executables beside this program and in PATH, sorted.
-std::vector<std::string> installed_services();
+/// Why `name` cannot be run: where it was searched, and how to build it.
+std::string missing_executable(const std::string& name);
+
+/// NAME of each executable rtd-NAME beside this program and in PATH, sorted.
+std::vector<std::string> installed_commands();
 
 /// Becomes the program; returns only on failure, with the reason.
 std::string replace_process(const std::string& executable, const std::vector<std::string>& arguments);

@@ -10,9 +10,9 @@
 
 #include "common/bus/topics.hpp"
 #include "common/mcap/indexed_reader.hpp"
+#include "common/mcap/recording_file.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/config.hpp"
-#include "services/recorder/inspect/recording_file.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -24,7 +24,7 @@ constexpr std::string_view kScheme = "mcap:";
 /// Messages by DDS name of the topic.
 std::map<std::string, std::uint64_t> counts_of(const std::string& file) {
   try {
-    const mcap::FileSource source = open_recording(file);
+    const mcap::FileSource source = mcap::open_recording(file);
     const mcap::IndexedReader reader(source);
     std::map<std::string, std::uint64_t> counts;
     for (const auto& [id, channel] : reader.summary().channels) {
@@ -36,7 +36,7 @@ std::map<std::string, std::uint64_t> counts_of(const std::string& file) {
       counts[ros2::dds_topic(channel.topic)] += messages;
     }
     return counts;
-  } catch (const RecordingFileError& error) {
+  } catch (const mcap::RecordingFileError& error) {
     throw ConfigError(error.what());
   }
 }

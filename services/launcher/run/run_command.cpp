@@ -69,7 +69,7 @@ void write_results(const RunSetup& setup, RunResult& result) {
 }
 
 RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& plans, bool quiet) {
-  InterruptSignals signals;
+  service::InterruptSignals signals;
   Terminal terminal = open_terminal(quiet);
   service::BoundedEnd end("rtd run", kEndOfBus);
   const std::shared_ptr<bus::Bus> bus = bus::connect(setup.bus);

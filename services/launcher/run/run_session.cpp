@@ -60,7 +60,7 @@ std::string existing(const std::string& path) {
 
 }  // namespace
 
-RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, InterruptSignals& signals, Terminal& terminal)
+RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptSignals& signals, Terminal& terminal)
     : setup_(setup),
       signals_(signals),
       terminal_(terminal),

@@ -8,10 +8,10 @@
 
 #include "common/bus/bus.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/interrupt_signals.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
 #include "services/launcher/core/run/terminal.hpp"
 #include "services/launcher/core/run/usage_book.hpp"
-#include "services/launcher/process/interrupt_signals.hpp"
 #include "services/launcher/process/posix_process_host.hpp"
 #include "services/launcher/run/collector.hpp"
 #include "services/launcher/run/run_setup.hpp"
@@ -22,7 +22,7 @@ namespace rtd::launcher {
 /// One run from the first process to the last: starts the services, watches them, listens, ends them.
 class RunSession {
  public:
-  RunSession(const RunSetup& setup, bus::Bus& bus, InterruptSignals& signals, Terminal& terminal);
+  RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptSignals& signals, Terminal& terminal);
 
   /// Returns when no process is left. Throws ProcessError when a service cannot be started at all,
   /// service::ConfigError when another run is heard in the same DDS domain.
@@ -47,7 +47,7 @@ class RunSession {
   void judge(RunRecord& record) const;
 
   const RunSetup& setup_;
-  InterruptSignals& signals_;
+  service::InterruptSignals& signals_;
   Terminal& terminal_;
   ServiceLogs logs_;
   UsageBook usage_;

@@ -145,10 +145,7 @@ void create_out_dir(const std::string& out_dir) {
 
 std::string require_executable(const std::string& service) {
   std::string path = find_executable("rtd-" + service);
-  if (path.empty()) {
-    throw ConfigError("rtd-" + service + " is neither beside rtd (" + own_directory() +
-                      ") nor in PATH: build it with 'cmake --build <build folder> --target rtd-" + service + "'");
-  }
+  if (path.empty()) throw ConfigError(missing_executable("rtd-" + service));
   return path;
 }
 

@@ -13,7 +13,7 @@
 #include "services/camera/core/source_factory.hpp"
 #include "services/camera/core/source_uri.hpp"
 
-namespace rtd::launcher {
+namespace rtd::recording {
 namespace {
 
 using camera::SkipReason;
@@ -117,4 +117,4 @@ int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& 
   }
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::recording

@@ -10,7 +10,7 @@ namespace CLI {
 class App;
 }
 
-namespace rtd::launcher {
+namespace rtd::recording {
 
 /// The command line of `rtd convert`.
 struct ConvertOptions {
@@ -25,4 +25,4 @@ void add_convert_command(CLI::App& app, ConvertOptions& options);
 /// Writes a source as a TUM folder or an MCAP file. Returns the exit code: 3 when part of the source was damaged.
 int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& err);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::recording

@@ -6,55 +6,55 @@
 #include <algorithm>
 #include <ostream>
 
+#include "common/mcap/recording_file.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"
 #include "services/recorder/inspect/recording_diff.hpp"
-#include "services/recorder/inspect/recording_file.hpp"
 #include "services/recorder/inspect/report_text.hpp"
 
-namespace rtd::launcher {
+namespace rtd::recording {
 namespace {
 
-recording::Contents read(const mcap::FileSource& source, const std::string& path, std::ostream& err) {
+Contents read(const mcap::FileSource& source, const std::string& path, std::ostream& err) {
   service::Progress progress(err, "reading " + path, source.size());
-  return recording::contents_of(source, [&](std::uint64_t bytes) { progress.reach(bytes); });
+  return contents_of(source, [&](std::uint64_t bytes) { progress.reach(bytes); });
 }
 
-void warn(const recording::Contents& contents, const std::string& path, std::ostream& err) {
+void warn(const Contents& contents, const std::string& path, std::ostream& err) {
   constexpr std::size_t kShownProblems = 5;
   if (contents.data_lost)
     err << "rtd diff: " << path << " is damaged, compared is what can be read:"
-        << recording::problems_text(contents.problems, contents.problems.size(), kShownProblems);
+        << problems_text(contents.problems, contents.problems.size(), kShownProblems);
 }
 
 template <class Diff>
 void print(const Diff& diff, bool json, std::ostream& out) {
   if (json) {
-    out << recording::to_json(diff).dump(2) << "\n";
+    out << to_json(diff).dump(2) << "\n";
   } else {
-    out << recording::to_text(diff);
+    out << to_text(diff);
   }
 }
 
 int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream& err) {
-  const mcap::FileSource a = open_recording(request.a), b = open_recording(request.b);
-  const recording::Contents in_a = read(a, request.a, err), in_b = read(b, request.b, err);
+  const mcap::FileSource a = mcap::open_recording(request.a), b = mcap::open_recording(request.b);
+  const Contents in_a = read(a, request.a, err), in_b = read(b, request.b, err);
   const auto ignored = [&](const char* what) { return std::ranges::count(request.ignore, what) > 0; };
-  recording::RecordingDiff diff =
-      recording::diff(in_a, in_b, {.ignore_run_fields = ignored("run"), .ignore_stamps = ignored("stamps")});
-  recording::explain(diff, a, b);
+  RecordingDiff difference =
+      diff(in_a, in_b, {.ignore_run_fields = ignored("run"), .ignore_stamps = ignored("stamps")});
+  explain(difference, a, b);
   warn(in_a, request.a, err);
   warn(in_b, request.b, err);
-  print(diff, request.json, out);
-  if (!diff.equal()) return service::kRunFailed;
+  print(difference, request.json, out);
+  if (!difference.equal()) return service::kRunFailed;
   return in_a.data_lost || in_b.data_lost ? service::kPartialLoss : service::kOk;
 }
 
 int diff_trajectories(const DiffRequest& request, std::ostream& out) {
-  const recording::TrajectoryDiff diff =
-      recording::diff(eval::read_tum_trajectory(request.a), eval::read_tum_trajectory(request.b), request.tolerance);
-  print(diff, request.json, out);
-  return diff.equal() ? service::kOk : service::kRunFailed;
+  const TrajectoryDiff difference =
+      diff(eval::read_tum_trajectory(request.a), eval::read_tum_trajectory(request.b), request.tolerance);
+  print(difference, request.json, out);
+  return difference.equal() ? service::kOk : service::kRunFailed;
 }
 
 }  // namespace
@@ -85,12 +85,12 @@ CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
 
 int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
   try {
-    const bool a = looks_like_recording(request.a), b = looks_like_recording(request.b);
+    const bool a = mcap::looks_like_recording(request.a), b = mcap::looks_like_recording(request.b);
     if (a != b)
-      throw RecordingFileError((a ? request.a : request.b) + " is a recording, " + (a ? request.b : request.a) +
-                               " is not: compare two of a kind");
+      throw mcap::RecordingFileError((a ? request.a : request.b) + " is a recording, " + (a ? request.b : request.a) +
+                                     " is not: compare two of a kind");
     return a ? diff_recordings(request, out, err) : diff_trajectories(request, out);
-  } catch (const RecordingFileError& error) {
+  } catch (const mcap::RecordingFileError& error) {
     err << "rtd diff: " << error.what() << "\n";
   } catch (const eval::TrajectoryError& error) {
     err << "rtd diff: " << error.what() << "\n";
@@ -98,4 +98,4 @@ int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
   return service::kUsageOrConfig;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::recording

@@ -12,13 +12,13 @@ namespace CLI {
 class App;
 }
 
-namespace rtd::launcher {
+namespace rtd::recording {
 
 /// What `rtd diff` was asked.
 struct DiffRequest {
   std::string a, b;
   bool json = false;
-  recording::PoseTolerance tolerance;
+  PoseTolerance tolerance;
   std::vector<std::string> ignore;  ///< recordings: "stamps", "run"
 };
 
@@ -29,4 +29,4 @@ CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request);
 /// used; 3 when nothing differs in what can be read, but a recording is damaged.
 int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::recording

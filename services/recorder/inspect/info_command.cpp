@@ -5,12 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <ostream>
 
+#include "common/mcap/recording_file.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"
-#include "services/recorder/inspect/recording_file.hpp"
 #include "services/recorder/inspect/report_text.hpp"
 
-namespace rtd::launcher {
+namespace rtd::recording {
 
 CLI::App* add_info_command(CLI::App& parent, InfoOptions& options) {
   CLI::App* command =
@@ -23,23 +23,23 @@ CLI::App* add_info_command(CLI::App& parent, InfoOptions& options) {
 
 int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
   try {
-    const mcap::FileSource source = open_recording(options.file);
+    const mcap::FileSource source = mcap::open_recording(options.file);
     service::Progress progress(err, "reading", source.size());
-    recording::ReportOptions how;
+    ReportOptions how;
     how.check = options.check;
     how.on_progress = [&](std::uint64_t bytes) { progress.reach(bytes); };
-    recording::RecordingReport report = recording::report_on(source, how);
+    RecordingReport report = report_on(source, how);
     report.being_written = source.being_written();
     if (options.json) {
-      out << recording::to_json(report, options.file).dump(2) << "\n";
+      out << to_json(report, options.file).dump(2) << "\n";
     } else {
-      out << recording::to_text(report, options.file);
+      out << to_text(report, options.file);
     }
     return report.damaged() ? service::kPartialLoss : service::kOk;
-  } catch (const RecordingFileError& error) {
+  } catch (const mcap::RecordingFileError& error) {
     err << "rtd info: " << error.what() << "\n";
     return service::kUsageOrConfig;
   }
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::recording

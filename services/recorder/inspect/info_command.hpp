@@ -10,7 +10,7 @@ namespace CLI {
 class App;
 }
 
-namespace rtd::launcher {
+namespace rtd::recording {
 
 /// What `rtd info` was asked.
 struct InfoOptions {
@@ -26,4 +26,4 @@ CLI::App* add_info_command(CLI::App& parent, InfoOptions& options);
 /// when there is no such file or it is no MCAP; 3 when it is damaged or cut, behind all that is readable.
 int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::recording

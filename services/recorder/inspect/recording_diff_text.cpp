@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "common/service/units_text.hpp"
 #include "services/recorder/inspect/recording_diff.hpp"
-#include "services/recorder/inspect/units_text.hpp"
 
 namespace rtd::recording {
 namespace {
@@ -35,7 +35,7 @@ std::string first_text(const TopicDiff& topic) {
   const MessagePlace& first = *topic.first;
   std::string text =
       fmt::format("\n{}: first different payload: message {} in A ({}), {} in B, paired by {}\n", topic.topic,
-                  first.index_a, time_text(first.a.log_ns), first.index_b, name_of(topic.paired_by));
+                  first.index_a, service::time_text(first.a.log_ns), first.index_b, name_of(topic.paired_by));
   for (std::size_t i = 0; i < std::min(first.why.size(), kShownFields); ++i) text += "  " + first.why[i] + "\n";
   if (first.why.size() > kShownFields)
     text += fmt::format("  and {} more fields (--json lists all)\n", first.why.size() - kShownFields);

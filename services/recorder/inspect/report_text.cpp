@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "services/recorder/inspect/units_text.hpp"
+#include "common/service/units_text.hpp"
 
 namespace rtd::recording {
 namespace {
@@ -19,8 +19,8 @@ std::string head_row(const char* name, const std::string& text) {
 
 std::string time_row(const RecordingReport& report) {
   if (report.messages == 0) return head_row("time", "no messages");
-  return head_row("time",
-                  fmt::format("{} for {}", time_text(report.start_ns), seconds_text(report.end_ns - report.start_ns)));
+  return head_row("time", fmt::format("{} for {}", service::time_text(report.start_ns),
+                                      service::seconds_text(report.end_ns - report.start_ns)));
 }
 
 std::string chunk_rows(const RecordingReport& report) {
@@ -29,11 +29,12 @@ std::string chunk_rows(const RecordingReport& report) {
     const double ratio =
         static_cast<double>(chunks.bytes) / static_cast<double>(std::max<std::uint64_t>(1, chunks.uncompressed_bytes));
     text += head_row(
-        "chunks", fmt::format("{} {}, {}{}", chunks.chunks, compression.empty() ? "not compressed" : compression,
-                              bytes_text(chunks.bytes),
-                              compression.empty() ? ""
-                                                  : fmt::format(" of {} ({:.0f} %)",
-                                                                bytes_text(chunks.uncompressed_bytes), 100 * ratio)));
+        "chunks",
+        fmt::format("{} {}, {}{}", chunks.chunks, compression.empty() ? "not compressed" : compression,
+                    service::bytes_text(chunks.bytes),
+                    compression.empty() ? ""
+                                        : fmt::format(" of {} ({:.0f} %)",
+                                                      service::bytes_text(chunks.uncompressed_bytes), 100 * ratio)));
   }
   return text;
 }
@@ -56,7 +57,7 @@ std::string metadata_rows(const RecordingReport& report) {
   }
   for (const mcap::AttachmentIndex& attachment : report.attachments)
     text += head_row("attachment", fmt::format("{} ({}), {}", attachment.name, attachment.media_type,
-                                               bytes_text(attachment.data_size)));
+                                               service::bytes_text(attachment.data_size)));
   return text;
 }
 
@@ -83,7 +84,7 @@ std::string channel_row(const ChannelReport& channel, std::size_t topic_width, s
                      topic_width, channel.type.empty() ? "(no schema)" : channel.type, type_width, timing.messages,
                      timing.rate_hz, static_cast<double>(timing.median_period_ns) * 1e-6,
                      static_cast<double>(timing.largest_gap_ns) * 1e-6, timing.gaps, missing_text(channel),
-                     channel.payload_bytes ? bytes_text(*channel.payload_bytes) : "-");
+                     channel.payload_bytes ? service::bytes_text(*channel.payload_bytes) : "-");
 }
 
 std::string channel_table(const RecordingReport& report) {
@@ -127,7 +128,8 @@ std::string problems_text(const std::vector<mcap::Problem>& problems, std::uint6
 std::string to_text(const RecordingReport& report, const std::string& name) {
   const std::string profile = report.header.profile.empty() ? "" : ", profile " + report.header.profile;
   const std::string library = report.header.library.empty() ? "" : ", written by " + report.header.library;
-  std::string text = head_row("file", fmt::format("{}, {}{}{}", name, bytes_text(report.file_bytes), profile, library));
+  std::string text =
+      head_row("file", fmt::format("{}, {}{}{}", name, service::bytes_text(report.file_bytes), profile, library));
   text += time_row(report);
   text += head_row("messages", fmt::format("{} on {} topics", report.messages, report.channels.size()));
   text += chunk_rows(report) + summary_row(report) + head_row("checksums", checksum_text(report));

@@ -16,7 +16,7 @@
 #include "services/slam/map_tool/map_export.hpp"
 #include "services/slam/map_tool/map_report.hpp"
 
-namespace rtd::launcher {
+namespace rtd::map_tool {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,22 +92,19 @@ int write_export(const MapRequest& request, std::ostream& out, std::ostream& err
 }
 
 constexpr const char* kExitCodes =
-    "Exit code: 0 done, 1 the output cannot be written, 2 the file cannot be read or is no map of this version, 3 it "
-    "is "
-    "damaged";
+    "Exit code: 0 done, 1 the output cannot be written, 2 the file cannot be read or is not a map of this version, "
+    "3 the file is damaged";
 
 }  // namespace
 
-CLI::App* add_map_command(CLI::App& parent, MapRequest& request) {
-  CLI::App* command =
-      parent.add_subcommand("map", "What is in a map file of slam, and its points and poses for others");
-  command->require_subcommand(1);
-  CLI::App* info = command->add_subcommand("info", "Keyframes, landmarks, maps, extent, path, time, camera, checksums");
+void add_map_commands(CLI::App& app, MapRequest& request) {
+  app.require_subcommand(1);
+  CLI::App* info = app.add_subcommand("info", "Keyframes, landmarks, maps, extent, path, time, camera, checksums");
   info->add_option("file", request.file, "Map file")->required();
   info->add_flag("--json", request.json, "Print JSON instead of text");
   info->callback([&request] { request.info = true; });
   info->footer(kExitCodes);
-  CLI::App* to_export = command->add_subcommand("export", "Landmarks as PLY or PCD, keyframe poses in TUM's format");
+  CLI::App* to_export = app.add_subcommand("export", "Landmarks as PLY or PCD, keyframe poses in TUM's format");
   to_export->add_option("file", request.file, "Map file")->required();
   to_export->add_option("--format", request.format, "ply, pcd (landmarks) or tum (keyframe poses)")
       ->check(CLI::IsMember({"ply", "pcd", "tum"}))
@@ -117,7 +114,6 @@ CLI::App* add_map_command(CLI::App& parent, MapRequest& request) {
       ->check(CLI::NonNegativeNumber);
   to_export->callback([&request] { request.to_export = true; });
   to_export->footer(kExitCodes);
-  return command;
 }
 
 int run_map(const MapRequest& request, std::ostream& out, std::ostream& err) {
@@ -137,4 +133,4 @@ int run_map(const MapRequest& request, std::ostream& out, std::ostream& err) {
   return service::kUsageOrConfig;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::map_tool

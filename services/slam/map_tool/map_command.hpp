@@ -9,7 +9,7 @@ namespace CLI {
 class App;
 }
 
-namespace rtd::launcher {
+namespace rtd::map_tool {
 
 /// What `rtd map` was asked.
 struct MapRequest {
@@ -21,12 +21,12 @@ struct MapRequest {
   long long map_id = -1;  ///< which map of the file; -1 = that with most keyframes
 };
 
-/// Adds the subcommand `map` with `info` and `export`; parsing fills `request`, which must outlive `parent`.
-CLI::App* add_map_command(CLI::App& parent, MapRequest& request);
+/// Adds `info` and `export`; parsing fills `request`, which must outlive `app`.
+void add_map_commands(CLI::App& app, MapRequest& request);
 
 /// Writes report or file; what prevents it with the fix and the progress to `err`. Returns the exit code: 0; 1 when the
 /// output cannot be written; 2 when the file cannot be read, is no map or of another version, or the output exists; 3
 /// when it is damaged.
 int run_map(const MapRequest& request, std::ostream& out, std::ostream& err);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::map_tool

@@ -8,7 +8,7 @@
 #include <ostream>
 #include <unordered_map>
 
-namespace rtd::launcher {
+namespace rtd::map_tool {
 
 std::vector<slam::MapPoint> points_of(const slam::MapContents& contents, slam::MapId map) {
   std::unordered_map<slam::KeyframeId, slam::MapId> map_of;
@@ -40,4 +40,4 @@ void write_pcd(std::ostream& out, const std::vector<slam::MapPoint>& points) {
                point.static_probability);
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::map_tool

@@ -6,7 +6,7 @@
 
 #include "services/slam/core/map/trajectory.hpp"
 
-namespace rtd::launcher {
+namespace rtd::map_tool {
 
 /// The landmarks of one map of a file, by id.
 std::vector<slam::MapPoint> points_of(const slam::MapContents& contents, slam::MapId map);
@@ -16,4 +16,4 @@ std::vector<slam::StampedPose> poses_of(const slam::MapContents& contents, slam:
 /// ASCII PCD 0.7: x y z static_probability, as the Point Cloud Library reads it.
 void write_pcd(std::ostream& out, const std::vector<slam::MapPoint>& points);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::map_tool

@@ -7,7 +7,7 @@
 
 #include "services/slam/core/store/map_format.hpp"
 
-namespace rtd::launcher {
+namespace rtd::map_tool {
 namespace {
 
 using Parts = std::map<slam::MapId, MapPart>;
@@ -78,4 +78,4 @@ MapReport report_on(const slam::MapContents& contents, std::uint64_t file_bytes)
   return report;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::map_tool

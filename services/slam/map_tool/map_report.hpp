@@ -10,7 +10,7 @@
 
 #include "services/slam/core/map/map.hpp"
 
-namespace rtd::launcher {
+namespace rtd::map_tool {
 
 /// One map of a file: its keyframes and landmarks have one frame.
 struct MapPart {
@@ -36,4 +36,4 @@ MapReport report_on(const slam::MapContents& contents, std::uint64_t file_bytes)
 std::string to_text(const MapReport& report, const std::string& name);
 nlohmann::ordered_json to_json(const MapReport& report, const std::string& name);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::map_tool

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "services/recorder/inspect/units_text.hpp"
+#include "common/service/units_text.hpp"
 #include "services/slam/map_tool/map_report.hpp"
 
-namespace rtd::launcher {
+namespace rtd::map_tool {
 namespace {
 
 constexpr const char* kChecksums = "all right";  // a file in which one does not fit is not reported on
@@ -26,8 +26,8 @@ std::string camera_text(const slam::Frame& frame) {
 std::string part_rows(const MapPart& part) {
   std::string text = row(fmt::format("map {}", part.id).c_str(),
                          fmt::format("{} keyframes, {} landmarks", part.keyframes, part.landmarks));
-  text += row("  time", fmt::format("{} for {}", recording::time_text(unsigned_ns(part.first_stamp_ns)),
-                                    recording::seconds_text(unsigned_ns(part.last_stamp_ns - part.first_stamp_ns))));
+  text += row("  time", fmt::format("{} for {}", service::time_text(unsigned_ns(part.first_stamp_ns)),
+                                    service::seconds_text(unsigned_ns(part.last_stamp_ns - part.first_stamp_ns))));
   text += row("  path", fmt::format("{:.2f} m", part.path_m));
   if (part.extent_m.isEmpty()) return text;
   const Eigen::Vector3d size = part.extent_m.sizes();
@@ -53,7 +53,7 @@ nlohmann::ordered_json part_json(const MapPart& part) {
 }  // namespace
 
 std::string to_text(const MapReport& report, const std::string& name) {
-  std::string text = row("file", fmt::format("{}, {}", name, recording::bytes_text(report.bytes)));
+  std::string text = row("file", fmt::format("{}, {}", name, service::bytes_text(report.bytes)));
   text += row("version", fmt::format("{}, checksums {}", report.version, kChecksums));
   text += row("keyframes", fmt::format("{} with {} features; {} removed", report.keyframes, report.features,
                                        report.removed_keyframes));
@@ -88,4 +88,4 @@ nlohmann::ordered_json to_json(const MapReport& report, const std::string& name)
   return json;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::map_tool

@@ -10,14 +10,14 @@
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/type_hash.hpp"
-#include "services/recorder/inspect/units_text.hpp"
+#include "common/service/units_text.hpp"
 
 namespace rtd::topics {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using bus::RawQos;
-using recording::bytes_text;
+using service::bytes_text;
 
 bool latched(const bus::TopicWriter& writer) {
   return writer.qos.durability != RawQos::Durability::kVolatile;

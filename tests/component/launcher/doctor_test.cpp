@@ -30,6 +30,7 @@ class DoctorTest : public testing::Test {
  protected:
   DoctorTest() {
     fs::copy_file(RTD_EXECUTABLE, scratch_ / "rtd");
+    fs::create_symlink(fs::path(RTD_EXECUTABLE).parent_path() / "rtd-keystore", scratch_ / "rtd-keystore");
     for (const char* service : {"camera", "detector", "filter", "slam", "dense", "record"}) {
       const std::string file = scratch_ / (std::string("rtd-") + service);
       std::ofstream(file) << "#!/bin/sh\n";

@@ -31,7 +31,7 @@ TEST_F(FrontTest, help_names_commands_and_installed_services) {
 
 TEST_F(FrontTest, without_arguments_it_prints_the_help) {
   EXPECT_EQ(rtd_.run({}), 0);
-  EXPECT_THAT(rtd_.output(), HasSubstr("Subcommands:"));
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("Commands:"), HasSubstr("Tools:"), HasSubstr("Services:")));
 }
 
 TEST_F(FrontTest, tells_its_version) {
@@ -46,7 +46,24 @@ TEST_F(FrontTest, becomes_a_service_with_its_arguments_and_exit_code) {
 
 TEST_F(FrontTest, an_unknown_command_gets_the_nearest_one) {
   EXPECT_EQ(rtd_.run({"ehco"}), 2);
-  EXPECT_THAT(rtd_.output(), HasSubstr("'ehco' is no command, did you mean 'echo'?"));
+  EXPECT_THAT(rtd_.output(), HasSubstr("'ehco' is not an rtd command, did you mean 'echo'?"));
+}
+
+TEST_F(FrontTest, passes_the_name_on_to_an_executable_with_several_commands) {
+  fs::copy_file(scratch_ / "rtd-echo", scratch_ / "rtd-recording");
+  EXPECT_EQ(rtd_.run({"info", "a.mcap"}), 7);
+  EXPECT_EQ(rtd_.output(), "echo got: info a.mcap\n");
+}
+
+TEST_F(FrontTest, a_known_command_that_is_not_built_names_its_target) {
+  EXPECT_EQ(rtd_.run({"topics", "list"}), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("--target rtd-topics"));
+}
+
+TEST_F(FrontTest, signals_of_a_command_pass_through) {
+  std::ofstream(scratch_ / "rtd-map") << "#!/bin/sh\nkill -TERM $$\n";
+  fs::permissions(scratch_ / "rtd-map", fs::perms::owner_all);
+  EXPECT_EQ(rtd_.run({"map", "info"}), -SIGTERM);
 }
 
 TEST_F(FrontTest, wrong_usage_is_exit_code_2) {

@@ -16,7 +16,7 @@
 #include "common/bus/topics.hpp"
 #include "common/service/exit_code.hpp"
 
-namespace rtd::launcher {
+namespace rtd::topics {
 namespace {
 
 using namespace std::chrono_literals;
@@ -187,4 +187,4 @@ INSTANTIATE_TEST_SUITE_P(EachVendor, Topics, ::testing::ValuesIn(networked_vendo
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Topics);
 
 }  // namespace
-}  // namespace rtd::launcher
+}  // namespace rtd::topics

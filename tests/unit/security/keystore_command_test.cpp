@@ -10,7 +10,7 @@
 #include "common/security/enclave.hpp"
 #include "tests/unit/security/sample_keystore.hpp"
 
-namespace rtd::launcher {
+namespace rtd::keystore {
 namespace {
 
 using Action = KeystoreRequest::Action;
@@ -78,4 +78,4 @@ TEST_F(KeystoreCommandTest, info_of_no_keystore_says_how_to_make_one) {
 }
 
 }  // namespace
-}  // namespace rtd::launcher
+}  // namespace rtd::keystore

@@ -14,7 +14,7 @@
 #include "services/slam/map_file.hpp"
 #include "tests/support/sample_map.hpp"
 
-namespace rtd::launcher {
+namespace rtd::map_tool {
 namespace {
 
 using ::testing::HasSubstr;
@@ -32,8 +32,7 @@ class MapCommand : public ::testing::Test {
   int run(std::vector<std::string> arguments) {
     CLI::App app;
     MapRequest request;
-    add_map_command(app, request);
-    arguments.insert(arguments.begin(), "map");
+    add_map_commands(app, request);
     std::reverse(arguments.begin(), arguments.end());
     try {
       app.parse(arguments);
@@ -114,4 +113,4 @@ TEST_F(MapCommand, tells_damage_from_other_files) {
 }
 
 }  // namespace
-}  // namespace rtd::launcher
+}  // namespace rtd::map_tool

@@ -11,11 +11,9 @@
 #include "services/recorder/inspect/info_command.hpp"
 #include "tests/unit/recorder/inspect/sample_recording.hpp"
 
-namespace rtd::launcher {
+namespace rtd::recording {
 namespace {
 
-using recording::recording_of;
-using recording::regular_messages;
 using testing::HasSubstr;
 
 class RecordingCommandsTest : public testing::Test {
@@ -77,7 +75,7 @@ TEST_F(RecordingCommandsTest, a_folder_stands_for_the_only_recording_in_it) {
 }
 
 TEST_F(RecordingCommandsTest, diff_says_equal_and_different_by_its_exit_code) {
-  std::vector<recording::SampleMessage> messages = regular_messages("/pose", 5);
+  std::vector<SampleMessage> messages = regular_messages("/pose", 5);
   const std::string a = file("a.mcap", recording_of(messages));
   EXPECT_EQ(diff(a, a), 0);
   EXPECT_THAT(out_.str(), HasSubstr("equal"));
@@ -108,4 +106,4 @@ TEST_F(RecordingCommandsTest, diff_compares_trajectories_and_no_two_kinds) {
 }
 
 }  // namespace
-}  // namespace rtd::launcher
+}  // namespace rtd::recording

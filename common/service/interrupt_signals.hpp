@@ -4,10 +4,10 @@
 
 #include <signal.h>
 
-namespace rtd::launcher {
+namespace rtd::service {
 
 /// SIGINT, SIGTERM and SIGHUP as a readable descriptor. Make one before any thread is started: the threads inherit the
-/// blocked mask. Child processes of PosixProcessHost start with a clear one.
+/// blocked mask. Child processes of PosixProcessHost start with an empty mask.
 class InterruptSignals {
  public:
   InterruptSignals();
@@ -24,4 +24,4 @@ class InterruptSignals {
   int fd_ = -1;
 };
 
-}  // namespace rtd::launcher
+}  // namespace rtd::service

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-namespace rtd::recording {
+namespace rtd::service {
 
 /// "1.54 MB", "812 B": decimal units, three digits.
 std::string bytes_text(std::uint64_t bytes);
@@ -14,4 +14,4 @@ std::string seconds_text(std::uint64_t duration_ns);
 /// "2026-11-21 14:03:12.512 UTC" for times of this century, else seconds.
 std::string time_text(std::uint64_t time_ns);
 
-}  // namespace rtd::recording
+}  // namespace rtd::service

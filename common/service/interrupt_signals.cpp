@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/process/interrupt_signals.hpp"
+#include "common/service/interrupt_signals.hpp"
 
 #include <sys/signalfd.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <csignal>
 #include <initializer_list>
 
-namespace rtd::launcher {
+namespace rtd::service {
 
 InterruptSignals::InterruptSignals() {
   // A shell starts background jobs with SIGINT ignored, and an ignored signal never reaches the descriptor.
@@ -33,4 +33,4 @@ int InterruptSignals::take() {
   return count;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::service

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recorder/inspect/units_text.hpp"
+#include "common/service/units_text.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 #include <array>
 #include <ctime>
 
-namespace rtd::recording {
+namespace rtd::service {
 
 std::string bytes_text(std::uint64_t bytes) {
   if (bytes < 1000) return fmt::format("{} B", bytes);
@@ -31,4 +31,4 @@ std::string time_text(std::uint64_t time_ns) {
   return fmt::format("{:%Y-%m-%d %H:%M:%S}.{:03} UTC", utc, time_ns % kNsPerSecond / 1'000'000);
 }
 
-}  // namespace rtd::recording
+}  // namespace rtd::service

@@ -1,16 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recorder/inspect/recording_file.hpp"
+#include "common/mcap/recording_file.hpp"
 
+#include <algorithm>
 #include <array>
-#include <filesystem>
+#include <cerrno>
 #include <string_view>
+#include <vector>
 
 #include "common/mcap/byte_sink.hpp"
 #include "common/mcap/framing.hpp"
-#include "common/mcap/recording_path.hpp"
 
-namespace rtd::launcher {
+namespace rtd::mcap {
+namespace fs = std::filesystem;
 namespace {
 
 struct KnownFormat {
@@ -27,13 +29,13 @@ constexpr std::array kOtherFormats = {
     KnownFormat{"\x1f\x8b", "compressed with gzip: unpack it first ('gunzip')"},
 };
 
-std::string first_bytes(const mcap::ByteSource& source) {
+std::string first_bytes(const ByteSource& source) {
   std::array<std::byte, 24> bytes{};
   const std::size_t count = source.read(0, bytes);
   return {reinterpret_cast<const char*>(bytes.data()), count};
 }
 
-std::string explain(const mcap::ByteSource& source) {
+std::string explain(const ByteSource& source) {
   const std::string begin = first_bytes(source);
   if (begin.empty()) return "the file is empty: nothing was recorded, or the disk was full from the start";
   for (const KnownFormat& format : kOtherFormats)
@@ -43,30 +45,44 @@ std::string explain(const mcap::ByteSource& source) {
 
 }  // namespace
 
+fs::path recording_path(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return path;
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
+    if (entry.path().extension() == ".mcap") files.push_back(entry.path());
+  std::ranges::sort(files);
+  if (files.size() == 1) return files.front();
+  if (files.empty()) throw IoError(EISDIR, path.string() + ": this folder holds no .mcap file");
+  throw IoError(EISDIR, path.string() + ": this folder holds " + std::to_string(files.size()) +
+                            " .mcap files: name one of them, e.g. " + files.front().string() +
+                            ", or join them: rtd record join " + path.string() + " -o FILE");
+}
+
 bool looks_like_recording(const std::string& path) {
   try {
-    return looks_like_recording(mcap::FileSource(mcap::recording_path(path)));
-  } catch (const mcap::IoError& error) {
+    return looks_like_recording(FileSource(recording_path(path)));
+  } catch (const IoError& error) {
     throw RecordingFileError(error.what());
   }
 }
 
-bool looks_like_recording(const mcap::ByteSource& source) {
-  if (first_bytes(source).starts_with(mcap::kMagic)) return true;
-  const mcap::SourceWindow window(source);
-  const auto header = mcap::frame_at(window, mcap::kMagic.size());
-  return header && header->opcode == mcap::Opcode::kHeader && mcap::begins_record(window, mcap::kMagic.size());
+bool looks_like_recording(const ByteSource& source) {
+  if (first_bytes(source).starts_with(kMagic)) return true;
+  const SourceWindow window(source);
+  const auto header = frame_at(window, kMagic.size());
+  return header && header->opcode == Opcode::kHeader && begins_record(window, kMagic.size());
 }
 
-mcap::FileSource open_recording(const std::string& path) {
+FileSource open_recording(const std::string& path) {
   try {
-    const std::filesystem::path file = mcap::recording_path(path);
-    const mcap::FileSource source(file);
+    const fs::path file = recording_path(path);
+    const FileSource source(file);
     if (!looks_like_recording(source)) throw RecordingFileError(path + ": " + explain(source));
-    return mcap::FileSource(file);
-  } catch (const mcap::IoError& error) {
+    return FileSource(file);
+  } catch (const IoError& error) {
     throw RecordingFileError(error.what());
   }
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::mcap

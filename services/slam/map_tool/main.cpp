@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "common/service/command_line.hpp"
+#include "services/slam/map_tool/map_command.hpp"
+
+int main(int argc, char** argv) {
+  rtd::map_tool::MapRequest request;
+  CLI::App app{"What a map file of slam contains; export of its landmarks and keyframe poses", "rtd map"};
+  rtd::map_tool::add_map_commands(app, request);
+  return rtd::service::run_command(app, argc, argv,
+                                   [&] { return rtd::map_tool::run_map(request, std::cout, std::cerr); });
+}
