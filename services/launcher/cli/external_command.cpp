@@ -88,7 +88,8 @@ int run_external_command(const std::string& name, const std::vector<std::string>
   }
   std::vector<std::string> all = arguments;
   if (command != nullptr && command->passes_name()) all.insert(all.begin(), name);
-  std::cerr << "rtd: " << replace_process(executable, all) << '\n';
+  const std::string failure = replace_process(executable, all);
+  std::cerr << "rtd: " << failure << '\n';
   return service::kRunFailed;
 }
 
