@@ -4,7 +4,7 @@
 
 #include "common/mcap/decode.hpp"
 #include "common/mcap/stream_reader.hpp"
-#include "services/recorder/inspect/payload_cursor.hpp"
+#include "services/recorder/inspect/payload_diff.hpp"
 
 namespace rtd::recording {
 namespace {
@@ -30,9 +30,9 @@ Fingerprint fingerprint(const mcap::Message& message, const std::vector<ByteRang
   Fingerprint print{message.log_time, message.publish_time, message.sequence, message.data.size()};
   print.hash = hash_of(message.data);
   print.stable_hash = of_the_run.empty() ? print.hash : stable_hash_of(message.data, of_the_run);
-  constexpr std::size_t kKeyEnd = PayloadCursor::kHeaderBytes + sizeof(print.key);
-  if (message.data.size() >= kKeyEnd)
-    print.key = mcap::load<std::uint64_t>(message.data.data() + PayloadCursor::kHeaderBytes);
+  constexpr std::size_t kHeaderBytes = 4;
+  if (message.data.size() >= kHeaderBytes + sizeof(print.key))
+    print.key = mcap::load<std::uint64_t>(message.data.data() + kHeaderBytes);
   return print;
 }
 
@@ -56,7 +56,7 @@ Contents contents_of(const mcap::ByteSource& source, const std::function<void(st
       target.topic = &contents.topics[channel.topic];
       const auto schema = reader.schemas().find(channel.schema_id);
       if (schema != reader.schemas().end()) target.topic->type = schema->second.name;
-      if (const PayloadLayout* layout = layout_of(target.topic->type)) target.of_the_run = run_ranges(*layout);
+      target.of_the_run = run_ranges(target.topic->type);
     }
     target.topic->messages.push_back(fingerprint(*message, target.of_the_run));
   }

@@ -15,7 +15,7 @@ struct Fingerprint {
   std::uint32_t sequence = 0;
   std::uint64_t bytes = 0;
   std::uint64_t hash = 0;         ///< of the payload
-  std::uint64_t stable_hash = 0;  ///< of the payload without the fields of the run (payload_layout.hpp)
+  std::uint64_t stable_hash = 0;  ///< of the payload without the fields of the run (payload_diff.hpp)
   std::uint64_t key = 0;          ///< the first 8 bytes behind the CDR header: our seq or the stamp of a ROS header
 };
 

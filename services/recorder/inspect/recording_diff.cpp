@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/mcap/indexed_reader.hpp"
-#include "services/recorder/inspect/payload_layout.hpp"
+#include "services/recorder/inspect/payload_diff.hpp"
 
 namespace rtd::recording {
 namespace {
@@ -97,7 +97,7 @@ void explain(RecordingDiff& diff, const mcap::ByteSource& a, const mcap::ByteSou
     if (!topic.first) continue;
     const auto payload_a = payload_of(in_a, topic.topic, topic.first->a);
     const auto payload_b = payload_of(in_b, topic.topic, topic.first->b);
-    if (payload_a && payload_b) topic.first->why = differences(layout_of(topic.type_a), *payload_a, *payload_b);
+    if (payload_a && payload_b) topic.first->why = differences(topic.type_a, *payload_a, *payload_b);
   }
 }
 

@@ -116,7 +116,7 @@ TEST(RecordingDiff, two_runs_are_paired_by_frame_and_told_apart_from_their_times
   const RecordingDiff loose =
       compare(a, b, {.ignore_run_fields = true, .ignore_stamps = true}, "rtd_msgs/msg/TrackingResult");
   EXPECT_EQ(loose.topics[0].first->index_a, 12U);
-  EXPECT_THAT(loose.topics[0].first->why, Contains("translation_m:[0] 0.1 | 0.2"));
+  EXPECT_THAT(loose.topics[0].first->why, Contains("T_world_camera.translation_m:[0] 0.1 | 0.2"));
   b[11].payload = tracking_payload(12, 0.1, 60);
   a.erase(a.begin() + 2);
   EXPECT_TRUE(compare(a, b, {.ignore_run_fields = true, .ignore_stamps = true}, "rtd_msgs/msg/TrackingResult").equal());

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recorder/inspect/payload_layout.hpp"
+#include "services/recorder/inspect/payload_diff.hpp"
 
 #include <gmock/gmock.h>
 
@@ -10,12 +10,14 @@
 #include "common/msg/features.hpp"
 #include "common/msg/rgbd_frame.hpp"
 #include "common/msg/tracking.hpp"
+#include "common/ros_codec/wire_writer.hpp"
 
 namespace rtd::recording {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 template <class T>
 std::vector<std::byte> payload(const T& message) {
@@ -25,7 +27,7 @@ std::vector<std::byte> payload(const T& message) {
   return bytes;
 }
 
-TEST(PayloadLayout, names_the_field_of_a_feature_that_differs) {
+TEST(PayloadDiff, names_the_field_of_a_feature_that_differs) {
   auto a = std::make_unique<msg::FeatureFrame>();
   auto b = std::make_unique<msg::FeatureFrame>();
   b->count = 7;
@@ -34,31 +36,31 @@ TEST(PayloadLayout, names_the_field_of_a_feature_that_differs) {
   b->features[2047].descriptor[31] = 9;
   b->stage_ms[2] = 1.5F;
   EXPECT_THAT(
-      differences(layout_of("rtd_msgs/msg/FeatureFrame"), payload(*a), payload(*b)),
+      differences("rtd_msgs/msg/FeatureFrame", payload(*a), payload(*b)),
       ElementsAre("count: 0 | 7", "stage_ms:[2] 0 | 1.5 (of the run)",
                   "features.static_probability: 2 values, first[12] 0 | 0.5", "features.descriptor:[2047][31] 0 | 9"));
 }
 
 /// The last field of each type of ours is found where the compiler has it.
-TEST(PayloadLayout, fits_the_structs_of_the_wire) {
+TEST(PayloadDiff, fits_the_structs_of_the_wire) {
   auto frame = std::make_unique<msg::RgbdFrame>(), other_frame = std::make_unique<msg::RgbdFrame>();
   other_frame->depth.back() = 3;
-  EXPECT_THAT(differences(layout_of("RgbdFrame"), payload(*frame), payload(*other_frame)),
+  EXPECT_THAT(differences("rtd_msgs/msg/RgbdFrame", payload(*frame), payload(*other_frame)),
               ElementsAre("depth:[307199] 0 | 3"));
   msg::TrackingResult result{}, other_result{};
   other_result.stage_ms.back() = 2;
-  EXPECT_THAT(differences(layout_of("TrackingResult"), payload(result), payload(other_result)),
+  EXPECT_THAT(differences("rtd_msgs/msg/TrackingResult", payload(result), payload(other_result)),
               ElementsAre("stage_ms:[7] 0 | 2 (of the run)"));
   msg::KeyframeEvent event{}, other_event{};
   other_event.kind = msg::KeyframeEventKind::kRemoved;
-  EXPECT_THAT(differences(layout_of("rtd_msgs::msg::dds_::KeyframeEvent_"), payload(event), payload(other_event)),
+  EXPECT_THAT(differences("rtd_msgs::msg::dds_::KeyframeEvent_", payload(event), payload(other_event)),
               ElementsAre("kind: 0 | 2"));
 }
 
-TEST(PayloadLayout, knows_where_the_fields_of_the_run_are) {
+TEST(PayloadDiff, knows_where_the_fields_of_the_run_are) {
   msg::TrackingResult result{};
   std::vector<std::byte> bytes = payload(result);
-  for (const ByteRange& range : run_ranges(*layout_of("TrackingResult")))
+  for (const ByteRange& range : run_ranges("rtd_msgs/msg/TrackingResult"))
     std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(range.begin),
               bytes.begin() + static_cast<std::ptrdiff_t>(range.end), std::byte{1});
   std::memcpy(&result, bytes.data() + 4, sizeof(result));
@@ -70,14 +72,28 @@ TEST(PayloadLayout, knows_where_the_fields_of_the_run_are) {
   EXPECT_EQ(result.landmarks, 0U);
 }
 
-TEST(PayloadLayout, other_types_and_sizes_are_told_by_bytes) {
+TEST(PayloadDiff, other_types_and_sizes_are_compared_by_bytes) {
   const auto bytes = [](const char* text) { return std::as_bytes(std::span(text, std::strlen(text))); };
-  EXPECT_EQ(layout_of("std_msgs/msg/String"), nullptr);
-  EXPECT_THAT(differences(nullptr, bytes("abcd"), bytes("abXdef")),
+  EXPECT_THAT(run_ranges("std_msgs/msg/String"), IsEmpty());
+  EXPECT_THAT(differences("std_msgs/msg/String", bytes("abcd"), bytes("abXdef")),
               ElementsAre("size: 4 | 6 bytes", "first at byte 2 of the payload"));
   const std::vector<std::byte> cut(10, std::byte{1});
-  EXPECT_THAT(differences(layout_of("TrackingResult"), cut, payload(msg::TrackingResult{})),
+  EXPECT_THAT(differences("rtd_msgs/msg/TrackingResult", cut, payload(msg::TrackingResult{})),
               testing::Contains(HasSubstr("too short")));
+}
+
+TEST(PayloadDiff, names_fields_and_lengths_of_standard_messages) {
+  msg::TFMessage a, b;
+  a.transforms.resize(2);
+  b.transforms.resize(3);
+  b.transforms[1].header.frame_id = "map";
+  b.transforms[1].transform.rotation.w = 0.5;
+  const auto cdr = [](const msg::TFMessage& message) { return ros::encode<ros::Wire::kCdr>(message); };
+  const auto bytes_a = cdr(a), bytes_b = cdr(b);
+  EXPECT_THAT(
+      differences("tf2_msgs/msg/TFMessage", std::as_bytes(std::span(bytes_a)), std::as_bytes(std::span(bytes_b))),
+      ElementsAre("transforms: 2 | 3 elements", "transforms.header.frame_id:[1] \"\" | \"map\"",
+                  "transforms.transform.rotation.w:[1] 1 | 0.5"));
 }
 
 }  // namespace
