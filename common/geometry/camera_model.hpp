@@ -16,6 +16,7 @@ class CameraModel {
     double fx = 0, fy = 0, cx = 0, cy = 0;  ///< px
     std::array<double, 5> distortion{};     ///< k1 k2 p1 p2 k3
     int width = 0, height = 0;              ///< px
+    bool operator==(const Parameters&) const = default;
   };
 
   CameraModel() = default;

@@ -4,7 +4,6 @@
 
 #include "common/vision/motion_levels.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
-#include "services/filter/core/modes/techniques.hpp"
 
 namespace rtd::filter {
 namespace {

@@ -10,22 +10,21 @@
 #include <mutex>
 #include <vector>
 
-#include "common/msg/ros.hpp"
 #include "services/filter/core/tracks/detection_batch.hpp"
 
 namespace rtd::filter {
 
-/// Pairs the detector's answers with frames by stamp. Filled by a bus thread, read by the worker. Thread-safe, bounded:
-/// of more than 64 the first that came goes, so that stamps of the far future cannot fill it for good.
+/// Pairs the detector's batches with frames by stamp. Filled by a bus thread, read by the worker. Thread-safe, bounded:
+/// of more than 64 batches the first to arrive is dropped, so that stamps of the far future cannot fill it for good.
 class DetectionInbox {
  public:
-  void put(DetectorAnswer answer);
-  /// Waits for the answer of exactly this stamp, until it has come, `give_up()` says so (asked every 50 ms) or the
-  /// inbox is closed. True when it is here.
+  void put(DetectionBatch batch);
+  /// Waits for the batch of exactly this stamp, until it has arrived, `give_up()` returns true (called every 50 ms) or
+  /// the inbox is closed. True when it is here.
   bool wait_for(std::int64_t stamp_ns, const std::function<bool()>& give_up);
-  /// All answers that are not newer than `stamp_ns`, by stamp; they are handed out once.
-  std::vector<DetectorAnswer> take_until(std::int64_t stamp_ns);
-  /// Time went backwards: what is here belongs to another story.
+  /// All batches that are not newer than `stamp_ns`, by stamp; each is handed out once.
+  std::vector<DetectionBatch> take_until(std::int64_t stamp_ns);
+  /// Time went backwards: what is here belongs to other frames.
   void clear();
   void close();
 
@@ -33,12 +32,8 @@ class DetectionInbox {
   mutable std::mutex mutex_;
   std::condition_variable arrived_;
   std::map<std::int64_t, std::vector<vision::Detection>> by_stamp_;
-  std::deque<std::int64_t> arrivals_;  ///< stamps in the order in which they came, also of what was handed out
+  std::deque<std::int64_t> arrivals_;  ///< stamps in order of arrival, including those handed out
   bool closed_ = false;
 };
-
-/// Best hypothesis of every box; boxes without one, with numbers that are not finite or without area are left out,
-/// of more than 300 the best are kept.
-DetectorAnswer from_message(const msg::Detection2DArray& message);
 
 }  // namespace rtd::filter

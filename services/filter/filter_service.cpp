@@ -7,7 +7,9 @@
 #include <opencv2/core/utility.hpp>
 
 #include "common/service/monotonic_clock.hpp"
-#include "services/filter/frame_messages.hpp"
+#include "common/vision/frame_view.hpp"
+#include "services/filter/core/modes/mode_table.hpp"
+#include "services/filter/filter_messages.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -15,7 +17,7 @@ namespace {
 constexpr std::size_t kRealtimeQueue = 2, kEveryFrameQueue = 8;
 constexpr std::chrono::milliseconds kStatePeriod{50};
 constexpr std::int64_t kSourceGoneAfterNs = 1'000'000'000;
-constexpr std::int64_t kDetectorSilentNs = 450'000'000;  // two heartbeats missed: said within half a second
+constexpr std::int64_t kDetectorSilentNs = 450'000'000;  // two heartbeats missed: reported within half a second
 constexpr std::int64_t kPatienceNs = 1'500'000'000;      // before a silent heartbeat ends the wait for detections
 
 }  // namespace
@@ -28,6 +30,7 @@ void FilterService::add_options(CLI::App& app, Config& config) {
 FilterService::FilterService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
+      mode_(config.core_config().mode),
       filter_(config.core_config(), service::monotonic_ns),
       frames_(runtime.pace == service::Pace::kRealtime
                   ? std::make_shared<Frames>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
@@ -40,7 +43,7 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
   });
   runtime.heartbeat.on_status([this](const msg::ServiceStatus& status) {
     if (status.service != "detector") return;
-    detector_heard_ns_ = status.state == msg::ServiceState::kFinished ? 0 : service::monotonic_ns();
+    detector_alive_ns_ = status.state == msg::ServiceState::kFinished ? 0 : service::monotonic_ns();
   });
   writer_ = runtime.bus.writer(bus::topics::kFeatures);
   mask_writer_ = runtime.bus.writer(bus::topics::kDynamicMask);
@@ -52,7 +55,7 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
       [this](const std::shared_ptr<const msg::KeyframeEvent>& event) { feedback_->put(*event); });
   detection_reader_ = runtime.bus.reader<msg::Detection2DArray>(
       bus::topics::kDetections, [this](const std::shared_ptr<const msg::Detection2DArray>& message) {
-        detections_->put(from_message(*message));
+        detections_->put(to_detection_batch(*message));
       });
   frame_reader_ = runtime.bus.reader<msg::RgbdFrame>(
       bus::topics::kFrame, [this](std::shared_ptr<const msg::RgbdFrame> frame) { frames_->push(std::move(frame)); });
@@ -70,66 +73,67 @@ service::ExitCode FilterService::run() {
     report_state();
     const auto frame = frames_->pop_for(kStatePeriod);
     watch_detector();
-    if (frame && accept(**frame)) answer(**frame);
+    if (frame && accept(**frame)) process(**frame);
   }
-  SPDLOG_INFO("event=summary frames={} dropped={} defective={} foreign={} without_detections={}", answered_,
-              frames_->dropped(), defective_, foreign_, unpaired_);
+  SPDLOG_INFO("event=summary frames={} dropped={} defective={} foreign={} without_detections={}", published_,
+              frames_->dropped(), defective_, from_others_, unpaired_);
   return service::kOk;
 }
 
-/// One frame: features while the detector still looks, then its boxes, then the judgement.
-void FilterService::answer(const msg::RgbdFrame& frame) {
-  const vision::RgbdImage image = view_image(frame);
+/// One frame: features while the detector still works on it, then its boxes, then the judgement.
+void FilterService::process(const msg::RgbdFrame& frame) {
+  const vision::RgbdImage image = vision::view_image(frame);
   std::vector<msg::Feature> features = filter_.extract(image);
   const std::int64_t waiting_since_ns = service::monotonic_ns();
-  const DetectorWord word = hear_detector(frame);
-  listen_to_slam();
+  const DetectorUpdate detector = collect_detections(frame);
+  apply_slam_feedback();
   const std::int64_t waited_ns = service::monotonic_ns() - waiting_since_ns;
 
-  FilterResult result = filter_.judge(image, std::move(features), word);
+  FilterResult result = filter_.judge(image, std::move(features), detector);
   result.stage_ms[msg::kStageWaitDetections] = static_cast<float>(static_cast<double>(waited_ns) * 1e-6);
-  fill_message(frame, result, use_of(word, result, frame.stamp_ns), *message_);
+  fill_message(frame, result, use_of(detector, result, frame.stamp_ns), *message_);
   writer_.write(*message_);
   publish_mask(frame, result);
-  ++answered_;
+  ++published_;
   count(result);
 }
 
-/// After the features: slam's pose waits for them, not for the mask. Costs nothing unless somebody listens.
+/// After the features: slam's pose waits for them, not for the mask. Costs nothing without a subscriber.
 void FilterService::publish_mask(const msg::RgbdFrame& frame, const FilterResult& result) {
   if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result));
 }
 
-/// False for a frame that is not to be processed: from a second camera, defective, or sent again (answered again).
+/// False for a frame that is not to be processed: from a second camera, defective, or sent again (its features are
+/// published again).
 bool FilterService::accept(const msg::RgbdFrame& frame) {
-  if (foreign(frame)) return false;
-  if (const std::string cause = defect(frame); !cause.empty()) {
-    answer_defective(frame, cause);
+  if (from_other_camera(frame)) return false;
+  if (const std::string cause = vision::defect(frame); !cause.empty()) {
+    publish_no_features(frame, cause);
     return false;
   }
-  if (answered_ == 0) return true;
+  if (published_ == 0) return true;
   if (frame.seq == message_->seq && frame.stamp_ns == message_->stamp_ns) {
     writer_.write(*message_);
     return false;
   }
   if (frame.stamp_ns <= message_->stamp_ns) {
-    forget(frame, "time went back");
+    forget_views(frame, "time went back");
   } else if (msg::aligned(frame.intrinsics) != message_->intrinsics) {
-    forget(frame, "another calibration");
+    forget_views(frame, "another calibration");
   }
   return true;
 }
 
 /// What was seen before cannot be compared with this frame.
-void FilterService::forget(const msg::RgbdFrame& frame, const char* cause) {
+void FilterService::forget_views(const msg::RgbdFrame& frame, const char* cause) {
   SPDLOG_WARN("event=views_forgotten frame={} stamp_ns={} last_stamp_ns={} cause=\"{}\"", frame.seq.value(),
               frame.stamp_ns.value(), message_->stamp_ns, cause);
   filter_.reset();
   detections_->clear();
 }
 
-/// The others wait for every frame: a frame that cannot be used has no features.
-void FilterService::answer_defective(const msg::RgbdFrame& frame, const std::string& cause) {
+/// The other services wait for every frame: a frame that cannot be used has no features.
+void FilterService::publish_no_features(const msg::RgbdFrame& frame, const std::string& cause) {
   runtime_.heartbeat.set_metric("frames_defective", static_cast<double>(++defective_));
   if (defect_log_.pass()) SPDLOG_ERROR("event=frame_defective frame={} cause=\"{}\"", frame.seq.value(), cause);
   fill_message(frame, {}, msg::DetectionUse::kNone, *message_);
@@ -137,12 +141,12 @@ void FilterService::answer_defective(const msg::RgbdFrame& frame, const std::str
 }
 
 /// Of two cameras on the topic, the first is followed as long as it sends.
-bool FilterService::foreign(const msg::RgbdFrame& frame) {
+bool FilterService::from_other_camera(const msg::RgbdFrame& frame) {
   const std::int64_t now_ns = service::monotonic_ns();
-  const bool other = answered_ > 0 && frame.source_id != source_id_;
+  const bool other = published_ > 0 && frame.source_id != source_id_;
   if (other && now_ns - source_heard_ns_ < kSourceGoneAfterNs) {
-    ++foreign_;
-    if (foreign_log_.pass()) {
+    ++from_others_;
+    if (other_camera_log_.pass()) {
       SPDLOG_ERROR("event=second_camera source={:x} followed={:x} fix=\"stop one, or give it another --domain\"",
                    frame.source_id, source_id_);
     }
@@ -157,24 +161,25 @@ bool FilterService::foreign(const msg::RgbdFrame& frame) {
   return false;
 }
 
-void FilterService::listen_to_slam() {
-  SlamWords words;
-  if (runtime_.pace == service::Pace::kLockstep && answered_ > 0) {
-    words = feedback_->take_after(message_->seq, std::chrono::milliseconds(config_.feedback_timeout_ms));
-    if (!words.complete && !runtime_.stop.stop_requested() && wait_log_.pass()) {
+void FilterService::apply_slam_feedback() {
+  SlamUpdate update;
+  if (runtime_.pace == service::Pace::kLockstep && published_ > 0) {
+    update = feedback_->take_after(message_->seq, std::chrono::milliseconds(config_.feedback_timeout_ms));
+    if (!update.complete && !runtime_.stop.stop_requested() && wait_log_.pass()) {
       SPDLOG_WARN("event=slam_silent frame={} waited_ms={}", message_->seq, config_.feedback_timeout_ms);
     }
   } else {
-    words = feedback_->take();
+    update = feedback_->take();
   }
-  for (const msg::KeyframeEvent& event : words.events) filter_.on_keyframe(event);
-  for (const msg::TrackingResult& result : words.results) filter_.on_tracking(result);
+  for (const msg::KeyframeEvent& event : update.events) filter_.on_keyframe(to_slam_keyframe(event));
+  for (const msg::TrackingResult& result : update.results) {
+    if (const auto pose = to_slam_pose(result)) filter_.on_pose(*pose);
+  }
 }
 
-/// Realtime: what has come so far. Asap and lockstep: waits for the answer to this very frame.
-DetectorWord FilterService::hear_detector(const msg::RgbdFrame& frame) {
-  const bool looks_at_boxes = config_.mode != "off" && config_.mode != "geometry";
-  if (!looks_at_boxes || config_.detector == "off") return {};
+/// Realtime: what has arrived so far. Asap and lockstep: waits for the detections of exactly this frame.
+DetectorUpdate FilterService::collect_detections(const msg::RgbdFrame& frame) {
+  if (!looks_at_boxes(mode_) || config_.detector == "off") return {};
   if (runtime_.pace != service::Pace::kRealtime) wait_for_detections(frame);
   return {detector_seen_ && !detector_gone_, detections_->take_until(frame.stamp_ns)};
 }
@@ -193,9 +198,9 @@ void FilterService::wait_for_detections(const msg::RgbdFrame& frame) {
   if (wait_log_.pass()) SPDLOG_WARN("event=no_detections frame={} total={}", frame.seq.value(), unpaired_);
 }
 
-msg::DetectionUse FilterService::use_of(const DetectorWord& word, const FilterResult& result,
+msg::DetectionUse FilterService::use_of(const DetectorUpdate& detector, const FilterResult& result,
                                         std::int64_t stamp_ns) const {
-  if (!word.answers.empty() && word.answers.back().stamp_ns == stamp_ns) return msg::DetectionUse::kExact;
+  if (!detector.batches.empty() && detector.batches.back().stamp_ns == stamp_ns) return msg::DetectionUse::kExact;
   const bool carried = std::any_of(result.objects.begin(), result.objects.end(),
                                    [](const SceneObject& object) { return object.carried; });
   if (carried) return msg::DetectionUse::kCarried;
@@ -204,26 +209,26 @@ msg::DetectionUse FilterService::use_of(const DetectorWord& word, const FilterRe
 
 void FilterService::watch_detector() {
   if (config_.detector == "off") return;
-  const bool alive = detector_heard();
-  if (alive && (!detector_seen_ || detector_gone_)) SPDLOG_INFO("event=detector_heard frames={}", answered_);
+  const bool alive = detector_alive();
+  if (alive && (!detector_seen_ || detector_gone_)) SPDLOG_INFO("event=detector_found frames={}", published_);
   if (!alive && detector_seen_ && !detector_gone_) {
-    SPDLOG_WARN("event=detector_gone frames={} effect=\"geometry only until it is back\"", answered_);
+    SPDLOG_WARN("event=detector_gone frames={} effect=\"geometry only until it returns\"", published_);
   }
   detector_gone_ = detector_seen_ && !alive;
   detector_seen_ = detector_seen_ || alive;
 }
 
 /// Without a wait at stake, silence is noticed sooner; in lockstep and asap a busy host must not change the result.
-bool FilterService::detector_heard() const {
+bool FilterService::detector_alive() const {
   if (runtime_.pace != service::Pace::kRealtime) return runtime_.heartbeat.alive("detector");
-  return service::monotonic_ns() - detector_heard_ns_ < kDetectorSilentNs;
+  return service::monotonic_ns() - detector_alive_ns_ < kDetectorSilentNs;
 }
 
 void FilterService::count(const FilterResult& result) {
   service::Heartbeat& heartbeat = runtime_.heartbeat;
-  heartbeat.set_metric("frames", static_cast<double>(answered_));
+  heartbeat.set_metric("frames", static_cast<double>(published_));
   heartbeat.set_metric("frames_dropped", static_cast<double>(frames_->dropped()));
-  heartbeat.set_metric("frames_foreign", static_cast<double>(foreign_));
+  heartbeat.set_metric("frames_foreign", static_cast<double>(from_others_));
   heartbeat.set_metric("frames_without_detections", static_cast<double>(unpaired_));
   heartbeat.set_metric("features", static_cast<double>(result.features.size()));
   heartbeat.set_metric("features_removed", result.removed);
@@ -233,16 +238,16 @@ void FilterService::count(const FilterResult& result) {
                                                      "depth_check_ms", "fuse_ms",    "filter_ms"};
   for (std::size_t stage = 0; stage < kNames.size(); ++stage) {  // means so far
     total_stage_ms_[stage] += static_cast<double>(result.stage_ms[stage]);
-    heartbeat.set_metric(kNames[stage], total_stage_ms_[stage] / static_cast<double>(answered_));
+    heartbeat.set_metric(kNames[stage], total_stage_ms_[stage] / static_cast<double>(published_));
   }
 }
 
 void FilterService::report_state() {
-  if (answered_ == 0) {
+  if (published_ == 0) {
     const bool ready = frame_reader_.matched() > 0 && writer_.matched() > 0 && tracking_reader_.matched() > 0 &&
                        keyframe_reader_.matched() > 0;
     runtime_.heartbeat.set_state(ready ? msg::ServiceState::kReady : msg::ServiceState::kStarting,
-                                 ready ? "" : "waits for a camera and slam");
+                                 ready ? "" : "waiting for a camera and slam");
     return;
   }
   if (detector_gone_) {

@@ -24,13 +24,13 @@ class App;
 
 namespace rtd::filter {
 
-/// Frames and detections in, features with their static probability out. Realtime pace: never waits for the detector,
-/// at most 2 frames wait, the oldest goes and is counted. Asap and lockstep: every frame, with the detections of
-/// exactly that frame; lockstep also after slam's word on the frame before, so that every run sees the same.
+/// Frames and detections in, features with their static probability out. Realtime pace: never waits for the detector;
+/// at most 2 frames wait, the oldest is dropped and counted. Asap and lockstep: every frame, with the detections of
+/// exactly that frame; lockstep also after slam's result for the frame before, so that every run is the same.
 class FilterService {
  public:
   static constexpr const char* kName = "filter";
-  static constexpr const char* kDescription = "Extracts ORB features and tells which of them lie on moving things";
+  static constexpr const char* kDescription = "Extracts ORB features and finds out which of them lie on moving objects";
   using Config = ServiceConfig;
   static void add_options(CLI::App& app, Config& config);
 
@@ -43,23 +43,24 @@ class FilterService {
  private:
   using Frames = concurrency::BoundedQueue<std::shared_ptr<const msg::RgbdFrame>>;
 
-  void answer(const msg::RgbdFrame& frame);
+  void process(const msg::RgbdFrame& frame);
   bool accept(const msg::RgbdFrame& frame);
-  void answer_defective(const msg::RgbdFrame& frame, const std::string& cause);
-  void forget(const msg::RgbdFrame& frame, const char* cause);
+  void publish_no_features(const msg::RgbdFrame& frame, const std::string& cause);
+  void forget_views(const msg::RgbdFrame& frame, const char* cause);
   void publish_mask(const msg::RgbdFrame& frame, const FilterResult& result);
-  bool detector_heard() const;
-  bool foreign(const msg::RgbdFrame& frame);
-  void listen_to_slam();
-  DetectorWord hear_detector(const msg::RgbdFrame& frame);
+  bool detector_alive() const;
+  bool from_other_camera(const msg::RgbdFrame& frame);
+  void apply_slam_feedback();
+  DetectorUpdate collect_detections(const msg::RgbdFrame& frame);
   void wait_for_detections(const msg::RgbdFrame& frame);
-  msg::DetectionUse use_of(const DetectorWord& word, const FilterResult& result, std::int64_t stamp_ns) const;
+  msg::DetectionUse use_of(const DetectorUpdate& detector, const FilterResult& result, std::int64_t stamp_ns) const;
   void watch_detector();
   void count(const FilterResult& result);
   void report_state();
 
   const Config config_;
   service::Runtime& runtime_;
+  const FilterMode mode_;
   DynamicFilter filter_;
   std::shared_ptr<Frames> frames_;
   std::shared_ptr<DetectionInbox> detections_ = std::make_shared<DetectionInbox>();
@@ -72,13 +73,13 @@ class FilterService {
   bus::Reader<msg::KeyframeEvent> keyframe_reader_;
 
   std::unique_ptr<msg::FeatureFrame> message_ = std::make_unique<msg::FeatureFrame>();
-  std::uint64_t answered_ = 0, defective_ = 0, foreign_ = 0, unpaired_ = 0;
+  std::uint64_t published_ = 0, defective_ = 0, from_others_ = 0, unpaired_ = 0;
   std::uint64_t source_id_ = 0;
   std::int64_t source_heard_ns_ = 0;
   bool detector_seen_ = false, detector_gone_ = false;
-  std::atomic<std::int64_t> detector_heard_ns_{0};           ///< CLOCK_MONOTONIC of its last heartbeat, 0 = ended
-  std::array<double, msg::kFilterStages> total_stage_ms_{};  ///< of all answered frames
-  service::RateLimit defect_log_{std::chrono::seconds(1)}, foreign_log_{std::chrono::seconds(5)},
+  std::atomic<std::int64_t> detector_alive_ns_{0};           ///< CLOCK_MONOTONIC of its last heartbeat, 0 = ended
+  std::array<double, msg::kFilterStages> total_stage_ms_{};  ///< of all published frames
+  service::RateLimit defect_log_{std::chrono::seconds(1)}, other_camera_log_{std::chrono::seconds(5)},
       wait_log_{std::chrono::seconds(1)};
 };
 

@@ -31,32 +31,33 @@ void SlamFeedback::put(const msg::KeyframeEvent& event) {
   {
     const std::lock_guard lock(mutex_);
     events_[event.event_index] = event;
-    events_heard_ = event.event_index + 1;  // one writer, reliable and in order; a restarted slam counts from 0 again
+    events_received_ =
+        event.event_index + 1;  // one writer, reliable and in order; a restarted slam counts from 0 again
     keep_newest(events_);
   }
   arrived_.notify_all();
 }
 
 bool SlamFeedback::complete(std::uint64_t seq) const {
-  return newest_ && newest_->seq == seq && events_heard_ >= newest_->event_count;
+  return newest_ && newest_->seq == seq && events_received_ >= newest_->event_count;
 }
 
-SlamWords SlamFeedback::take_locked(bool complete) {
-  SlamWords words;
-  words.complete = complete;
-  for (const auto& [index, event] : events_) words.events.push_back(event);
-  for (const auto& [seq, result] : results_) words.results.push_back(result);
+SlamUpdate SlamFeedback::take_locked(bool complete) {
+  SlamUpdate update;
+  update.complete = complete;
+  for (const auto& [index, event] : events_) update.events.push_back(event);
+  for (const auto& [seq, result] : results_) update.results.push_back(result);
   events_.clear();
   results_.clear();
-  return words;
+  return update;
 }
 
-SlamWords SlamFeedback::take() {
+SlamUpdate SlamFeedback::take() {
   const std::lock_guard lock(mutex_);
   return take_locked(true);
 }
 
-SlamWords SlamFeedback::take_after(std::uint64_t seq, std::chrono::milliseconds timeout) {
+SlamUpdate SlamFeedback::take_after(std::uint64_t seq, std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   arrived_.wait_for(lock, timeout, [&] { return closed_ || complete(seq); });
   return take_locked(complete(seq));

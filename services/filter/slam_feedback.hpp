@@ -14,33 +14,33 @@
 
 namespace rtd::filter {
 
-/// What slam said since the last time it was asked, in slam's own order.
-struct SlamWords {
+/// What slam has sent since the last call, in slam's own order.
+struct SlamUpdate {
   std::vector<msg::KeyframeEvent> events;    ///< by event_index
   std::vector<msg::TrackingResult> results;  ///< by seq
-  bool complete = true;                      ///< what was waited for has come
+  bool complete = true;                      ///< what the caller waited for has arrived
 };
 
-/// Collects results and keyframe events, which come on two topics and so in no common order. Thread-safe, bounded.
+/// Collects results and keyframe events, which arrive on two topics and so in no common order. Thread-safe, bounded.
 class SlamFeedback {
  public:
   void put(const msg::TrackingResult& result);
   void put(const msg::KeyframeEvent& event);
   /// Everything that is here.
-  SlamWords take();
-  /// Waits for the result of frame `seq` and every event that came before it, then takes everything.
-  SlamWords take_after(std::uint64_t seq, std::chrono::milliseconds timeout);
+  SlamUpdate take();
+  /// Waits for the result of frame `seq` and every event before it, then takes everything.
+  SlamUpdate take_after(std::uint64_t seq, std::chrono::milliseconds timeout);
   void close();
 
  private:
   bool complete(std::uint64_t seq) const;
-  SlamWords take_locked(bool complete);
+  SlamUpdate take_locked(bool complete);
 
   std::mutex mutex_;
   std::condition_variable arrived_;
   std::map<std::uint64_t, msg::TrackingResult> results_;
   std::map<std::uint64_t, msg::KeyframeEvent> events_;
-  std::uint64_t events_heard_ = 0;  ///< events 0 .. n-1 have been heard or will never be
+  std::uint64_t events_received_ = 0;  ///< events 0 .. n-1 have arrived or never will
   std::optional<msg::TrackingResult> newest_;
   bool closed_ = false;
 };

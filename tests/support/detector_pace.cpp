@@ -23,18 +23,18 @@ DetectorPace::DetectorPace(Look look, const DetectorOptions& options)
       delay_ns_(to_ns(options.delay_ms * 1e-3)),
       busy_ns_(std::max(delay_ns_, options.rate_hz > 0 ? to_ns(1.0 / options.rate_hz) : 0)) {}
 
-filter::DetectorWord DetectorPace::hear(const camera::SourceFrame& frame) {
+filter::DetectorUpdate DetectorPace::advance_to(const camera::SourceFrame& frame) {
   const std::int64_t now_ns = frame.image.stamp_ns;
   if (!first_ns_) first_ns_ = now_ns;
   look_until(now_ns - 1);  // at the image that has waited
   waiting_ = frame;
   look_until(now_ns);
-  filter::DetectorWord word{!silence_noticed(now_ns), {}};
+  filter::DetectorUpdate update{!silence_noticed(now_ns), {}};
   while (!under_way_.empty() && under_way_.front().due_ns <= now_ns) {
-    if (!gone(under_way_.front().due_ns)) word.answers.push_back(std::move(under_way_.front().answer));
+    if (!gone(under_way_.front().due_ns)) update.batches.push_back(std::move(under_way_.front().batch));
     under_way_.pop_front();
   }
-  return word;
+  return update;
 }
 
 /// Takes the waiting image as soon as the detector is free; one that meets an outage is lost.

@@ -10,20 +10,20 @@
 
 namespace rtd::test_support {
 
-/// When a detector answers, told by the stamps of the frames instead of a clock: what rtd-detector does at pace
-/// realtime. It takes the newest image when it is free, is busy for delay or period, and gives the answer after the
+/// When a detector publishes, computed from the stamps of the frames instead of a clock: what rtd-detector does at pace
+/// realtime. It takes the newest image when it is free, is busy for delay or period, and publishes the batch after the
 /// delay. Without rate, delay and outages every frame has its own boxes, as in lockstep. Deterministic.
 class DetectorPace {
  public:
   DetectorPace(Look look, const DetectorOptions& options);
 
-  /// Plays the time up to this frame; what the filter has heard when it judges it.
-  filter::DetectorWord hear(const camera::SourceFrame& frame);
+  /// Plays the time up to this frame; what has reached the filter when it judges it.
+  filter::DetectorUpdate advance_to(const camera::SourceFrame& frame);
 
  private:
-  struct Answer {
+  struct PendingBatch {
     std::int64_t due_ns;
-    filter::DetectorAnswer answer;
+    filter::DetectionBatch batch;
   };
   void look_until(std::int64_t now_ns);
   bool gone(std::int64_t at_ns) const;
@@ -35,7 +35,7 @@ class DetectorPace {
   std::optional<std::int64_t> first_ns_;
   std::int64_t free_ns_ = 0;  ///< the detector can take an image from here on
   std::optional<camera::SourceFrame> waiting_;
-  std::deque<Answer> under_way_;
+  std::deque<PendingBatch> under_way_;
 };
 
 }  // namespace rtd::test_support

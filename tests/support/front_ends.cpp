@@ -9,6 +9,7 @@
 #include "common/service/monotonic_clock.hpp"
 #include "services/filter/config.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
+#include "services/filter/filter_messages.hpp"
 #include "tests/support/detector_pace.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
@@ -62,9 +63,9 @@ class Filtered final : public FrontEnd {
   FrontEndOutput process(const camera::SourceFrame& frame) override {
     FrontEndOutput output;
     detector_ms_ = 0;
-    const filter::DetectorWord word = detector_ ? detector_->hear(frame) : filter::DetectorWord{};
+    const filter::DetectorUpdate update = detector_ ? detector_->advance_to(frame) : filter::DetectorUpdate{};
     if (detector_ms_ > 0) output.stage_ms["detector"] = detector_ms_;
-    filter::FilterResult result = filter_.apply(frame.image, word);
+    filter::FilterResult result = filter_.apply(frame.image, update);
     static constexpr std::array<const char*, 7> kNames{"filter.wait",       "filter.extract", "filter.masks",
                                                        "filter.ego_motion", "filter.check",   "filter.fuse",
                                                        "filter.total"};
@@ -76,8 +77,8 @@ class Filtered final : public FrontEnd {
     return output;
   }
   void listen(const slam::SlamOutput& output) override {
-    for (const msg::KeyframeEvent& event : output.events) filter_.on_keyframe(event);
-    filter_.on_tracking(output.result);
+    for (const msg::KeyframeEvent& event : output.events) filter_.on_keyframe(filter::to_slam_keyframe(event));
+    if (const auto pose = filter::to_slam_pose(output.result)) filter_.on_pose(*pose);
     if (roll_) roll_->on_tracking(output.result);
   }
 

@@ -6,8 +6,6 @@
 #include <string>
 
 #include "common/geometry/depth_noise.hpp"
-#include "services/filter/core/orb/orb_config.hpp"
-#include "services/filter/core/tracks/box_kalman.hpp"
 
 namespace rtd::filter {
 
@@ -51,6 +49,18 @@ struct Techniques {
   // Rule 6: never starve
   bool more_features = true;  ///< 1.5x while something is masked
   bool keep_doubtful = true;  ///< too few left: the best of the doubtful stay
+};
+
+/// How ORB features are extracted; docs/theory/orb.md. Defaults as in ORB-SLAM2.
+struct OrbConfig {
+  int feature_count = 1000;    ///< wanted features per frame
+  int levels = 8;              ///< pyramid levels
+  double scale_factor = 1.2;   ///< between two levels
+  int fast_threshold = 20;     ///< grey values, first try
+  int fast_threshold_low = 7;  ///< grey values, in cells where the first try finds nothing
+  int cell_px = 30;            ///< side of a FAST cell
+  double min_depth_m = 0.3;    ///< nearer readings count as not measured
+  double max_depth_m = 10.0;   ///< farther readings count as not measured
 };
 
 /// How cells of the depth grid join to clusters; docs/theory/dynamic_points.md Eq. (1).
@@ -139,6 +149,14 @@ struct FusionConfig {
   double remove_below = 0.25;     ///< features less probably static than this are removed
   int min_static_features = 120;  ///< fewer left: the best of the doubtful are kept
   double boost = 1.5;             ///< times as many features while something is masked
+};
+
+/// Noise in units of the box's own size, so that near and far objects are treated alike.
+struct BoxNoise {
+  double detection = 0.05;      ///< standard deviation of a detected centre or side
+  double acceleration = 4.0;    ///< of the object, box sizes / s^2
+  double flow = 0.01;           ///< of a shift measured by optical flow from image to image
+  double first_velocity = 1.5;  ///< of a box seen once, box sizes / s
 };
 
 /// The life of box tracks; docs/theory/dynamic_points.md section 6.

@@ -222,7 +222,7 @@ TEST_P(TwoHostsTest, boxes_cross_a_lossy_link_encrypted) {
   EXPECT_EQ(run_.wait(), 0) << run_.output();
   end(detector_);
   EXPECT_GT(answered(), 20) << detector_.output();
-  EXPECT_THAT(text_of(scratch_ / "out/logs/filter.log"), testing::HasSubstr("event=detector_heard"));
+  EXPECT_THAT(text_of(scratch_ / "out/logs/filter.log"), testing::HasSubstr("event=detector_found"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Vendors, TwoHostsTest,

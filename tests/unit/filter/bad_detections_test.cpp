@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-/// What a broken or hostile detector may say must not harm what the filter does without it.
+/// Whatever a broken or hostile detector sends must not harm what the filter does without it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,27 +17,27 @@ using test::MovingScene;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
 constexpr std::int64_t kSecondNs = 1'000'000'000;
-using Words = std::function<DetectorWord(std::int64_t stamp_ns)>;
+using Updates = std::function<DetectorUpdate(std::int64_t stamp_ns)>;
 
-/// Ten frames of a block that passes, with what the detector says at each.
-std::vector<FilterResult> run(const Words& words) {
+/// Ten frames of a block that passes, with the detector's update for each.
+std::vector<FilterResult> run(const Updates& updates) {
   static const MovingScene scene;
   DynamicFilter filter(FilterConfig{}, service::monotonic_ns);
   std::vector<FilterResult> results;
   for (std::uint64_t i = 0; i < 10; ++i) {
     vision::RgbdImage image = scene.render(i, 0.008 * static_cast<double>(i), -0.25 + 0.03 * static_cast<double>(i));
     image.stamp_ns += 100 * kSecondNs;
-    results.push_back(filter.apply(image, words(image.stamp_ns)));
+    results.push_back(filter.apply(image, updates(image.stamp_ns)));
   }
   return results;
 }
 
-DetectorWord says_nothing(std::int64_t stamp_ns) {
+DetectorUpdate no_boxes(std::int64_t stamp_ns) {
   return {true, {{stamp_ns, {}}}};
 }
 
-void expect_same(const Words& words, const Words& reference) {
-  const std::vector<FilterResult> results = run(words), expected = run(reference);
+void expect_same(const Updates& updates, const Updates& reference) {
+  const std::vector<FilterResult> results = run(updates), expected = run(reference);
   for (std::size_t i = 0; i < results.size(); ++i) {
     ASSERT_EQ(results[i].features.size(), expected[i].features.size()) << "frame " << i;
     EXPECT_EQ(results[i].removed, expected[i].removed) << "frame " << i;
@@ -49,8 +49,8 @@ void expect_same(const Words& words, const Words& reference) {
 }
 
 /// The same boxes with every frame.
-Words always(const std::vector<vision::Detection>& boxes) {
-  return [boxes](std::int64_t stamp_ns) { return DetectorWord{true, {{stamp_ns, boxes}}}; };
+Updates always(const std::vector<vision::Detection>& boxes) {
+  return [boxes](std::int64_t stamp_ns) { return DetectorUpdate{true, {{stamp_ns, boxes}}}; };
 }
 
 vision::Detection person(float x_px, float y_px, float width_px, float height_px, float score = 0.9F) {
@@ -60,13 +60,13 @@ vision::Detection person(float x_px, float y_px, float width_px, float height_px
 TEST(BadDetections, outside_the_image_count_as_none) {
   expect_same(always({person(-400, 10, 200, 200), person(700, 10, 200, 200), person(10, -300, 50, 200),
                       person(10, 500, 50, 200), person(1e4F, 1e4F, 10, 10)}),
-              says_nothing);
+              no_boxes);
 }
 
 TEST(BadDetections, of_impossible_size_count_as_none) {
   expect_same(always({person(10, 10, 0, 100), person(10, 10, -100, 100), person(10, 10, 100, -1),
                       person(300, 100, 1e-6F, 1e-6F), person(-1e30F, -1e30F, 2e30F, 2e30F)}),
-              says_nothing);
+              no_boxes);
 }
 
 TEST(BadDetections, with_numbers_that_are_none_count_as_none) {
@@ -75,13 +75,13 @@ TEST(BadDetections, with_numbers_that_are_none_count_as_none) {
     boxes.insert(boxes.end(), {person(bad, 10, 100, 100), person(10, bad, 100, 100), person(10, 10, bad, 100),
                                person(10, 10, 100, bad)});
   }
-  expect_same(always(boxes), says_nothing);
+  expect_same(always(boxes), no_boxes);
 }
 
 TEST(BadDetections, with_a_score_that_is_no_number_count_as_none) {
   for (const float score : {kNan, kInf, -kInf}) {
     SCOPED_TRACE(score);
-    expect_same(always({person(200, 100, 200, 250, score)}), says_nothing);
+    expect_same(always({person(200, 100, 200, 250, score)}), no_boxes);
   }
 }
 
@@ -90,7 +90,7 @@ TEST(BadDetections, of_classes_that_the_table_lacks_count_as_none) {
   for (const char* name : {"", "unicorn", "Person", "person ", "\xff\xfe"})
     boxes.push_back({name, 0.9F, 100, 100, 200, 200});
   boxes.push_back({std::string(100'000, 'x'), 0.9F, 100, 100, 200, 200});
-  expect_same(always(boxes), says_nothing);
+  expect_same(always(boxes), no_boxes);
 }
 
 TEST(BadDetections, as_large_as_the_image_leave_features_to_slam) {
@@ -122,10 +122,10 @@ TEST(BadDetections, of_the_future_count_as_none) {
     SCOPED_TRACE(ahead_ns);
     expect_same(
         [&](std::int64_t stamp_ns) {
-          return DetectorWord{true, {{stamp_ns + ahead_ns, boxes}}};
+          return DetectorUpdate{true, {{stamp_ns + ahead_ns, boxes}}};
         },
         [](std::int64_t) {
-          return DetectorWord{true, {}};
+          return DetectorUpdate{true, {}};
         });
   }
 }
@@ -137,10 +137,10 @@ TEST(BadDetections, of_long_ago_count_as_none) {
     SCOPED_TRACE(old_ns);
     expect_same(
         [&](std::int64_t) {
-          return DetectorWord{true, {{old_ns, boxes}}};
+          return DetectorUpdate{true, {{old_ns, boxes}}};
         },
         [](std::int64_t) {
-          return DetectorWord{true, {}};
+          return DetectorUpdate{true, {}};
         });
   }
 }
@@ -148,12 +148,12 @@ TEST(BadDetections, of_long_ago_count_as_none) {
 TEST(BadDetections, in_any_order_and_doubled_do_no_harm) {
   const std::vector<vision::Detection> boxes{person(200, 100, 200, 250)};
   const std::vector<FilterResult> results = run([&](std::int64_t stamp_ns) {
-    DetectorWord word{true, {}};
+    DetectorUpdate update{true, {}};
     for (const std::int64_t offset_ns :
          std::vector<std::int64_t>{33'333'333, -66'666'666, 0, 0, -33'333'333, -kSecondNs}) {
-      word.answers.push_back({stamp_ns + offset_ns, boxes});
+      update.batches.push_back({stamp_ns + offset_ns, boxes});
     }
-    return word;
+    return update;
   });
   for (const FilterResult& result : results) {
     EXPECT_GT(result.features.size(), 500U);

@@ -136,11 +136,11 @@ TEST(DynamicFilter, tells_cell_by_cell_what_moves_and_of_what_it_knows_nothing) 
 TEST(DynamicFilter, extracts_more_features_while_something_is_masked) {
   const MovingScene scene;
   DynamicFilter filter = make_filter(FilterMode::kRtd);
-  const std::vector<vision::Detection> person{{"person", 0.9F, 240, 110, 160, 240}}, nobody;
+  const std::vector<vision::Detection> person{{"person", 0.9F, 240, 110, 160, 240}}, none;
   filter.apply(scene.render(0, 0, 0), person);
-  const std::size_t with = filter.apply(scene.render(1, 0, 0), nobody).features.size();
-  for (std::uint64_t i = 2; i < 12; ++i) filter.apply(scene.render(i, 0, 0), nobody);  // a third of a second
-  const std::size_t without = filter.apply(scene.render(12, 0, 0), nobody).features.size();
+  const std::size_t with = filter.apply(scene.render(1, 0, 0), none).features.size();
+  for (std::uint64_t i = 2; i < 12; ++i) filter.apply(scene.render(i, 0, 0), none);  // a third of a second
+  const std::size_t without = filter.apply(scene.render(12, 0, 0), none).features.size();
   EXPECT_NEAR(static_cast<double>(with) / static_cast<double>(without), 1.5, 0.05);
 }
 
@@ -189,13 +189,9 @@ TEST(DynamicFilter, follows_slam_into_its_world) {
   FilterResult result;
   for (std::uint64_t i = 0; i < 6; ++i) result = filter.apply(scene.render(i, 0, 0), std::nullopt);
   EXPECT_NEAR(result.T_world_camera.translation().norm(), 0, 0.002) << "m";
-  msg::TrackingResult tracked{};
-  tracked.seq = 5;
-  tracked.state = msg::TrackingState::kOk;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   T_world_camera.translation() = Eigen::Vector3d(4, 5, 6);
-  tracked.T_world_camera = msg::to_message(T_world_camera);
-  filter.on_tracking(tracked);
+  filter.on_pose({.seq = 5, .map_id = 0, .T_world_camera = T_world_camera});
   result = filter.apply(scene.render(6, 0, 0), std::nullopt);
   EXPECT_NEAR((result.T_world_camera.translation() - Eigen::Vector3d(4, 5, 6)).norm(), 0, 0.005) << "m";
   EXPECT_EQ(result.removed, 0U);

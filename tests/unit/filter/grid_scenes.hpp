@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "services/filter/core/modes/mode_judge.hpp"
 #include "services/filter/core/surfaces/depth_clusters.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 #include "tests/unit/filter/orb/test_images.hpp"
@@ -21,6 +22,24 @@ inline void put_block(vision::RgbdImage& image, const cv::Rect& area, double dep
 inline DepthGridSampler make_sampler() {
   return {0.3, 10.0};
 }
+
+/// An image with its surfaces, as a mode judges it.
+class TestScene {
+ public:
+  explicit TestScene(const vision::RgbdImage& image)
+      : image_(image),
+        sampler_(make_sampler()),
+        grid_(sampler_.sample(image)),
+        surfaces_{grid_, find_depth_clusters(grid_, {}), sampler_.rays()} {}
+  /// `objects` must outlive the result.
+  Scene with(const std::vector<SceneObject>& objects) const { return {image_, surfaces_, objects, true}; }
+
+ private:
+  vision::RgbdImage image_;
+  DepthGridSampler sampler_;
+  DepthGrid grid_;
+  Surfaces surfaces_;
+};
 
 /// Set cells of a mask in a pixel rectangle.
 inline int count_in(const GridShape& shape, const std::vector<std::uint8_t>& cells, const cv::Rect& area_px) {

@@ -29,13 +29,13 @@ camera::SourceFrame frame(std::uint64_t seq) {
 }
 
 /// For each frame, the frames whose boxes the filter hears at it.
-std::vector<std::vector<int>> heard(const DetectorOptions& options, int frames) {
+std::vector<std::vector<int>> received(const DetectorOptions& options, int frames) {
   DetectorPace pace([](const camera::SourceFrame&) { return std::vector<vision::Detection>{}; }, options);
   std::vector<std::vector<int>> all;
   for (int i = 0; i < frames; ++i) {
     std::vector<int> now;
-    for (const filter::DetectorAnswer& answer : pace.hear(frame(static_cast<std::uint64_t>(i))).answers) {
-      now.push_back(static_cast<int>((answer.stamp_ns - kFirstNs) / kPeriodNs));
+    for (const filter::DetectionBatch& batch : pace.advance_to(frame(static_cast<std::uint64_t>(i))).batches) {
+      now.push_back(static_cast<int>((batch.stamp_ns - kFirstNs) / kPeriodNs));
     }
     all.push_back(now);
   }
@@ -45,30 +45,30 @@ std::vector<std::vector<int>> heard(const DetectorOptions& options, int frames) 
 using Seqs = std::vector<int>;
 
 TEST(DetectorPace, answers_every_frame_at_once_when_nothing_slows_it) {
-  EXPECT_THAT(heard({}, 3), ElementsAre(Seqs{0}, Seqs{1}, Seqs{2}));
+  EXPECT_THAT(received({}, 3), ElementsAre(Seqs{0}, Seqs{1}, Seqs{2}));
 }
 
 TEST(DetectorPace, takes_as_many_images_as_its_rate_allows) {
   DetectorOptions options;
   options.rate_hz = 5;
-  EXPECT_THAT(heard(options, 5), ElementsAre(Seqs{0}, Seqs{}, Seqs{2}, Seqs{}, Seqs{4}));
+  EXPECT_THAT(received(options, 5), ElementsAre(Seqs{0}, Seqs{}, Seqs{2}, Seqs{}, Seqs{4}));
 }
 
 TEST(DetectorPace, answers_late_and_then_takes_the_newest_image) {
   DetectorOptions options;
   options.delay_ms = 250;  // busy until 250: takes image 2 (of 200 ms) then, answers at 500, takes image 5
-  EXPECT_THAT(heard(options, 9),
+  EXPECT_THAT(received(options, 9),
               ElementsAre(Seqs{}, Seqs{}, Seqs{}, Seqs{0}, Seqs{}, Seqs{2}, Seqs{}, Seqs{}, Seqs{5}));
 }
 
 TEST(DetectorPace, is_silent_in_an_outage_which_the_filter_notices_later) {
   DetectorOptions options;
   options.outages = {{0.2, 0.9}};
-  EXPECT_THAT(heard(options, 11),
+  EXPECT_THAT(received(options, 11),
               ElementsAre(Seqs{0}, Seqs{1}, Seqs{}, Seqs{}, Seqs{}, Seqs{}, Seqs{}, Seqs{}, Seqs{}, Seqs{9}, Seqs{10}));
   DetectorPace pace([](const camera::SourceFrame&) { return std::vector<vision::Detection>{}; }, options);
   std::vector<bool> watching;
-  for (std::uint64_t i = 0; i < 10; ++i) watching.push_back(pace.hear(frame(i)).watching);
+  for (std::uint64_t i = 0; i < 10; ++i) watching.push_back(pace.advance_to(frame(i)).watching);
   EXPECT_THAT(watching, ElementsAre(true, true, true, true, true, true, true, false, false, true));
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/filter/core/belief/log_odds.hpp"
+#include "services/filter/core/belief/surface_beliefs.hpp"
 
 namespace rtd::filter {
 namespace {

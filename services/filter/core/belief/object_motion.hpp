@@ -4,11 +4,27 @@
 
 #include <vector>
 
+#include "services/filter/core/filter_config.hpp"
 #include "services/filter/core/motion/depth_check.hpp"
 #include "services/filter/core/motion/dynamic_regions.hpp"
+#include "services/filter/core/motion/feature_votes.hpp"
 #include "services/filter/core/surfaces/object_masks.hpp"
 
 namespace rtd::filter {
+
+/// How far an object as a whole has moved in the image against the static world.
+struct ObjectDrift {
+  int features = 0;
+  float shift_px = 0;  ///< length of the median displacement of its features
+  float sigma_px = 0;  ///< its standard deviation, from the spread of the features
+};
+
+/// Of the features on these cells. The median of n features knows the shift sqrt(n) times better than each of them, and
+/// arms that wave before a trunk at rest do not change it.
+ObjectDrift drift_of(const std::vector<int>& cells, const FeatureVotes& votes, std::size_t grid_cells);
+
+/// The shift is neither noise of the features nor of the pose.
+bool drifts(const ObjectDrift& drift, const BeliefConfig& config);
 
 /// What geometry says of an object with a class in this frame: high / low dynamic objects are told apart by it.
 enum class ObjectMotion { kUnknown, kMoving, kResting };

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "services/filter/core/belief/log_odds.hpp"
+#include "services/filter/core/belief/surface_beliefs.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -85,8 +85,8 @@ void weigh_alike(std::vector<msg::Feature>& features) {
 
 }  // namespace
 
-void weigh_static_probability(std::vector<msg::Feature>& features, const FrameKnowledge& known,
-                              const FilterConfig& config) {
+std::vector<msg::Feature> weigh_static_probability(std::vector<msg::Feature> features, const FrameKnowledge& known,
+                                                   const FilterConfig& config) {
   const std::vector<std::int16_t> painted = paint_objects(known, config.masks.dilate_cells);
   const CellMask dynamic = dilate(known.shape, known.regions.frames_left, config.masks.dilate_cells);
   const CellBeliefs beliefs = grow_doubt(known, config.masks.dilate_cells);
@@ -110,6 +110,7 @@ void weigh_static_probability(std::vector<msg::Feature>& features, const FrameKn
   }
   keep_best_of_doubtful(features, config);
   if (!config.techniques.feature_weights) weigh_alike(features);
+  return features;
 }
 
 }  // namespace rtd::filter

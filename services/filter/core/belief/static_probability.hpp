@@ -23,9 +23,9 @@ struct FrameKnowledge {
 };
 
 /// Gives every feature its probability to be static, its flags and its object (docs/theory/dynamic_points.md section 5,
-/// DESIGN section 4 rule 4), marks the improbable ones as removed and, when that leaves too few, takes the best of the
+/// which see), marks the improbable ones as removed and, when that leaves too few, takes the best of the
 /// doubtful back. Features that geometry saw moving stay removed.
-void weigh_static_probability(std::vector<msg::Feature>& features, const FrameKnowledge& known,
-                              const FilterConfig& config);
+std::vector<msg::Feature> weigh_static_probability(std::vector<msg::Feature> features, const FrameKnowledge& known,
+                                                   const FilterConfig& config);
 
 }  // namespace rtd::filter

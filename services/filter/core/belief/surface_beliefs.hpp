@@ -3,12 +3,25 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "common/geometry/camera_model.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {
+
+/// l = log(p / (1 - p)): independent pieces of evidence add up, 0 means "as likely as not".
+inline float log_odds(double probability) {
+  constexpr double kNearlyCertain = 1e-6;
+  const double p = std::clamp(probability, kNearlyCertain, 1 - kNearlyCertain);
+  return static_cast<float>(std::log(p / (1 - p)));
+}
+
+inline float probability(float log_odds) {
+  return 1.0F / (1.0F + std::exp(-log_odds));
+}
 
 /// Per cell the log-odds that its surface is static; kNoBelief where nothing is known of it.
 using CellBeliefs = std::vector<float>;

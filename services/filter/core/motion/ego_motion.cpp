@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/motion/ego_motion.hpp"
 
-#include "services/filter/core/motion/slow_votes.hpp"
 #include "services/filter/core/motion/static_consensus.hpp"
 
 namespace rtd::filter {
@@ -11,6 +10,8 @@ namespace {
 constexpr std::int64_t kNearAgeNs = 100'000'000;
 constexpr std::int64_t kOldAgeNs = 500'000'000;
 constexpr double kRefineWindowPx = 8.0;
+constexpr std::int64_t kMinSlowAgeNs = 400'000'000;
+constexpr double kSlowWindowPx = 16.0, kSlowMS = 0.05;  // the window grows by what such a mover covers
 
 /// Matches with the view 0.1 s ago and, when they are few, with the previous one.
 std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& near, const EgoMotionConfig& config) {
@@ -27,6 +28,55 @@ std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& 
     matches = match_by_projection(previous, input.current, T_world_camera, 3 * config.window_px, config);
   }
   return matches;
+}
+
+PointSighting to_sighting(const FeatureMatch& match, const EgoMotionInput& input) {
+  const msg::Feature& f = input.current.features[match.current];
+  return {match.p_world, {f.u_px, f.v_px}, f.depth_m, displacement_sigma_px(f.octave), input.cluster_of[match.current]};
+}
+
+std::vector<PointSighting> to_sightings(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input) {
+  std::vector<PointSighting> sightings;
+  sightings.reserve(matches.size());
+  for (const FeatureMatch& match : matches) sightings.push_back(to_sighting(match, input));
+  return sightings;
+}
+
+/// The matches that may take part in the pose, every n-th of them, so that not more than `limit` remain.
+/// `moving_cluster`: per cluster, 1 = not used.
+std::vector<FeatureMatch> usable(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input,
+                                 const std::vector<char>& moving_cluster, std::size_t limit) {
+  std::vector<FeatureMatch> kept;
+  for (const FeatureMatch& match : matches) {
+    const int cluster = input.cluster_of[match.current];
+    if (!match.reference_static || input.excluded[match.current] != 0) continue;
+    if (cluster >= 0 && moving_cluster[static_cast<std::size_t>(cluster)] != 0) continue;
+    kept.push_back(match);
+  }
+  if (kept.size() <= limit) return kept;
+  std::vector<FeatureMatch> thinned;
+  for (std::size_t i = 0; i < limit; ++i) thinned.push_back(kept[i * kept.size() / limit]);
+  return thinned;
+}
+
+/// Votes of the features found again in a view up to 1.5 s old: what moves at a few cm/s stays within the noise over
+/// 0.1 s, but not over a second. The camera's motion since that view is found anew, by the agreement of the image, so
+/// that neither drift of the quick pose nor a map that follows the mover is taken for motion of the rest.
+/// Empty where no view is old enough (0.4 s) or the image does not agree. docs/theory/dynamic_points.md section 3.
+FeatureVotes count_slow_votes(const EgoMotionInput& input, const Eigen::Isometry3d& T_world_camera,
+                              const EgoMotionConfig& config, const GeometryConfig& geometry) {
+  const View& old = input.views.long_ago(input.stamp_ns, input.look_back_ns);
+  const std::int64_t age_ns = input.stamp_ns - old.stamp_ns;
+  if (age_ns < kMinSlowAgeNs) return {};
+  const double reach_m = kSlowMS * 1e-9 * static_cast<double>(age_ns);
+  const auto matches = match_by_projection(old, input.current, T_world_camera, kSlowWindowPx, config, reach_m);
+  const std::vector<char> none_moves(input.clusters.cells.size(), 0);
+  const auto limit = static_cast<std::size_t>(config.max_observations);
+  const auto sightings = to_sightings(usable(matches, input, none_moves, limit), input);
+  const StaticConsensus consensus = find_static_consensus(sightings, input.current.camera, T_world_camera, config);
+  if (consensus.image_share < config.min_image_share) return {};
+  return count_votes(to_sightings(matches, input), input.current.camera, consensus.T_world_camera, input.clusters,
+                     geometry);
 }
 
 }  // namespace

@@ -3,12 +3,25 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <vector>
 
 #include "services/filter/core/motion/feature_votes.hpp"
-#include "services/filter/core/motion/sightings.hpp"
+#include "services/filter/core/motion/guided_matching.hpp"
 
 namespace rtd::filter {
+
+/// What the estimate of the camera's motion starts from.
+struct EgoMotionInput {
+  SearchableFeatures current;
+  const std::vector<char>& excluded;   ///< per feature, 1 = on something that may move: not used for the pose
+  const std::vector<int>& cluster_of;  ///< per feature, depth cluster or -1
+  const DepthClusters& clusters;
+  const ViewStore& views;  ///< not empty
+  std::int64_t stamp_ns;
+  Eigen::Isometry3d T_world_camera_predicted;
+  std::int64_t look_back_ns = 0;  ///< look for what moves too slowly for 0.1 s over this time too; 0 = not now
+};
 
 /// The quick pose of the current frame and what it was found from.
 struct EgoMotion {
@@ -21,6 +34,9 @@ struct EgoMotion {
   FeatureVotes old_votes;   ///< and in the view 0.5 s ago, near their place
   FeatureVotes slow_votes;  ///< and in one of up to 1.5 s ago; none in most frames
 };
+
+/// Slow votes are counted in every so many-th frame: what is slow can wait.
+inline constexpr unsigned kFramesPerLookBack = 3;
 
 /// A pose found over less time may have followed a mover.
 inline constexpr std::int64_t kMinSettledAgeNs = 90'000'000;

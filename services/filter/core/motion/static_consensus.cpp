@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "common/vision/pose_optimizer.hpp"
 
 namespace rtd::filter {
 namespace {
 
-constexpr double kMaxChi2 = 6.0;  // 95 % of chi2 with 2 degrees of freedom
+constexpr double kKeypointSigmaPx = 0.7;  // at octave 0
+constexpr double kMaxChi2 = 6.0;          // 95 % of chi2 with 2 degrees of freedom
 
 /// The share of each sighting in the vote of its tile; all votes together are 1.
 std::vector<double> tile_votes(const std::vector<PointSighting>& sightings) {
@@ -56,6 +58,10 @@ std::vector<std::vector<PointSighting>> proposing_groups(const std::vector<Point
 }
 
 }  // namespace
+
+double displacement_sigma_px(int octave) {
+  return std::numbers::sqrt2 * kKeypointSigmaPx * std::pow(1.2, octave);
+}
 
 std::optional<Eigen::Vector2d> displacement_px(const PointSighting& s, const geometry::CameraModel& camera,
                                                const Eigen::Isometry3d& T_camera_world) {

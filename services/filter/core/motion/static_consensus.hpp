@@ -20,6 +20,9 @@ struct PointSighting {
   int cluster = -1;                                   ///< depth cluster it lies on
 };
 
+/// Standard deviation of the displacement of a keypoint between two views: both ends are uncertain.
+double displacement_sigma_px(int octave);
+
 /// Where it was seen, from where the point would be seen at rest; nothing when that lies behind the camera.
 std::optional<Eigen::Vector2d> displacement_px(const PointSighting& sighting, const geometry::CameraModel& camera,
                                                const Eigen::Isometry3d& T_camera_world);

@@ -10,6 +10,10 @@
 
 namespace rtd::filter {
 
+/// Angle (rad, (-pi, pi], x right, y down) from a corner to the intensity centroid of the disc of kPatchRadiusPx around
+/// it: atan2(m01, m10), Rosin 1999, docs/theory/orb.md Eq. (2). The disc must lie inside the image.
+float centroid_angle_rad(const cv::Mat& grey, cv::Point centre);
+
 /// The 256 point pairs that rotated BRIEF compares, as offsets (px) from the corner, before rotation.
 ///
 /// Our own table, made from a fixed seed: Gaussian pairs, taken greedily so that no two comparisons are expected to say

@@ -2,15 +2,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <opencv2/core.hpp>
 #include <vector>
 
 #include "common/msg/features.hpp"
 #include "common/vision/rgbd_image.hpp"
-#include "services/filter/core/orb/image_pyramid.hpp"
-#include "services/filter/core/orb/orb_config.hpp"
+#include "services/filter/core/filter_config.hpp"
 #include "services/filter/core/orb/undistortion_table.hpp"
 
 namespace rtd::filter {
+
+/// Grey images of one frame, each smaller by the scale factor. Buffers are reused from frame to frame.
+class ImagePyramid {
+ public:
+  ImagePyramid(int levels, double scale_factor)
+      : scale_factor_(scale_factor), images_(static_cast<std::size_t>(levels)) {}
+
+  /// `image`: CV_8UC3 (BGR) or CV_8UC1.
+  void build(const cv::Mat& image);
+
+  int levels() const { return static_cast<int>(images_.size()); }
+  const cv::Mat& image(int level) const { return images_[static_cast<std::size_t>(level)]; }
+  /// Pixel of a level -> pixel of level 0. Pixel centres map to pixel centres, so no octave is biased against another.
+  cv::Point2f to_base(cv::Point2f pixel, int level) const;
+
+ private:
+  double scale_factor_;
+  std::vector<cv::Mat> images_;
+};
 
 /// ORB features of an RGB-D image: multi-scale FAST corners, spread over the image, with orientation, descriptor,
 /// undistorted position and depth. docs/theory/orb.md. The same image gives the same features, in the same order (by

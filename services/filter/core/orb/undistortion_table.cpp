@@ -9,15 +9,10 @@ namespace {
 
 constexpr int kStepPx = 8;
 
-bool same(const geometry::CameraModel::Parameters& a, const geometry::CameraModel::Parameters& b) {
-  return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy && a.distortion == b.distortion &&
-         a.width == b.width && a.height == b.height;
-}
-
 }  // namespace
 
 void UndistortionTable::fit(const geometry::CameraModel& camera) {
-  if (same(parameters_, camera.parameters())) return;
+  if (parameters_ == camera.parameters()) return;
   parameters_ = camera.parameters();
   identity_ = !camera.distorted();
   nodes_.clear();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/surfaces/cell_masks.hpp"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
@@ -49,6 +50,11 @@ std::vector<float> smallest_near(const GridShape& shape, std::vector<float> valu
 
 CellMask dilate(const GridShape& shape, CellMask cells, int radius) {
   return largest_near(shape, std::move(cells), radius);
+}
+
+CellMask united(CellMask a, const CellMask& b) {
+  std::transform(a.begin(), a.end(), b.begin(), a.begin(), [](auto x, auto y) { return std::max(x, y); });
+  return a;
 }
 
 CellMask compact(const GridShape& shape, const CellMask& cells) {

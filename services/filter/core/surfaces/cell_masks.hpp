@@ -22,6 +22,9 @@ std::vector<float> smallest_near(const GridShape& shape, std::vector<float> valu
 /// Cells within `radius` cells (square) of a set one, the larger value winning.
 CellMask dilate(const GridShape& shape, CellMask cells, int radius);
 
+/// Per cell the larger value of two masks.
+CellMask united(CellMask a, const CellMask& b);
+
 /// The set cells most of whose 3x3 neighbourhood is set: noise along depth edges is one cell wide and vanishes.
 CellMask compact(const GridShape& shape, const CellMask& cells);
 

@@ -13,10 +13,6 @@
 namespace rtd::filter {
 namespace {
 
-bool same(const geometry::CameraModel::Parameters& a, const geometry::CameraModel::Parameters& b) {
-  return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy && a.distortion == b.distortion;
-}
-
 constexpr float kUnmeasuredNear = std::numeric_limits<float>::max();
 
 /// Per cell: are enough of its 3x3 neighbourhood measured?
@@ -43,7 +39,7 @@ void widen_ranges(DepthGrid& grid) {
 }  // namespace
 
 void DepthGridSampler::fit(const vision::RgbdImage& image) {
-  if (size_ == image.depth.size() && same(parameters_, image.camera.parameters())) return;
+  if (size_ == image.depth.size() && parameters_ == image.camera.parameters()) return;
   size_ = image.depth.size();
   parameters_ = image.camera.parameters();
   shape_ = {std::max(1, size_.width / kCellPx), std::max(1, size_.height / kCellPx)};

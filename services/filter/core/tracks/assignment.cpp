@@ -20,16 +20,16 @@ class AugmentingPaths {
         columns_(static_cast<std::size_t>(costs.columns + costs.rows)),
         row_price_(static_cast<std::size_t>(costs.rows), 0.0),
         column_price_(columns_, 0.0),
-        row_of_(columns_, kNobody) {}
+        row_of_(columns_, kNone) {}
 
   void add(int row) {
     std::vector<double> distance(columns_, kInfinity);
-    std::vector<int> reached_from(columns_, kNobody);  // the column whose row leads here
+    std::vector<int> reached_from(columns_, kNone);  // the column whose row leads here
     std::vector<char> done(columns_, 0);
-    int current_row = row, current = kNobody;
+    int current_row = row, current = kNone;
     double so_far = 0;
-    while (current_row != kNobody) {
-      int next = kNobody;
+    while (current_row != kNone) {
+      int next = kNone;
       for (std::size_t j = 0; j < columns_; ++j) {
         if (done[j] != 0) continue;
         const double via = so_far + price(current_row, static_cast<int>(j)) -
@@ -38,28 +38,28 @@ class AugmentingPaths {
           distance[j] = via;
           reached_from[j] = current;
         }
-        if (next == kNobody || distance[j] < distance[static_cast<std::size_t>(next)]) next = static_cast<int>(j);
+        if (next == kNone || distance[j] < distance[static_cast<std::size_t>(next)]) next = static_cast<int>(j);
       }
-      current = next;  // never without end: the row's own place is always open to it
+      current = next;  // there always is one: the row's own place is always open to it
       so_far = distance[static_cast<std::size_t>(current)];
       done[static_cast<std::size_t>(current)] = 1;
       current_row = row_of_[static_cast<std::size_t>(current)];
     }
-    settle_prices(row, distance, done, so_far);
-    hand_over(row, current, reached_from);
+    update_prices(row, distance, done, so_far);
+    augment(row, current, reached_from);
   }
 
   std::vector<int> column_of_row() const {
-    std::vector<int> result(static_cast<std::size_t>(costs_.rows), kNobody);
+    std::vector<int> result(static_cast<std::size_t>(costs_.rows), kNone);
     for (int column = 0; column < costs_.columns; ++column) {
       const int row = row_of_[static_cast<std::size_t>(column)];
-      if (row != kNobody) result[static_cast<std::size_t>(row)] = column;
+      if (row != kNone) result[static_cast<std::size_t>(row)] = column;
     }
     return result;
   }
 
  private:
-  static constexpr int kNobody = -1;
+  static constexpr int kNone = -1;
 
   double price(int row, int column) const {
     if (column >= costs_.columns) return column - costs_.columns == row ? max_cost_ : kInfinity;
@@ -67,19 +67,19 @@ class AugmentingPaths {
     return std::isfinite(cost) && cost < max_cost_ ? cost : kInfinity;
   }
   /// Keeps all reduced costs >= 0 and those of the assignment 0.
-  void settle_prices(int row, const std::vector<double>& distance, const std::vector<char>& done, double total) {
+  void update_prices(int row, const std::vector<double>& distance, const std::vector<char>& done, double total) {
     row_price_[static_cast<std::size_t>(row)] += total;
     for (std::size_t j = 0; j < columns_; ++j) {
       if (done[j] == 0) continue;
       const double slack = total - distance[j];
       column_price_[j] -= slack;
-      if (row_of_[j] != kNobody) row_price_[static_cast<std::size_t>(row_of_[j])] += slack;
+      if (row_of_[j] != kNone) row_price_[static_cast<std::size_t>(row_of_[j])] += slack;
     }
   }
-  void hand_over(int row, int column, const std::vector<int>& reached_from) {
-    while (column != kNobody) {
+  void augment(int row, int column, const std::vector<int>& reached_from) {
+    while (column != kNone) {
       const int before = reached_from[static_cast<std::size_t>(column)];
-      row_of_[static_cast<std::size_t>(column)] = before == kNobody ? row : row_of_[static_cast<std::size_t>(before)];
+      row_of_[static_cast<std::size_t>(column)] = before == kNone ? row : row_of_[static_cast<std::size_t>(before)];
       column = before;
     }
   }

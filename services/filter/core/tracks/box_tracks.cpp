@@ -14,10 +14,6 @@ namespace {
 constexpr std::int64_t kSameFrameNs = 60'000'000;  // an answer for a frame that we did not get: its nearest neighbour
 constexpr double kVoteDecay = 0.9;                 // per hit: a class can change its mind
 
-double seconds(std::int64_t ns) {
-  return 1e-9 * static_cast<double>(ns);
-}
-
 const std::string& voted_class(const std::map<std::string, double>& votes) {
   return std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; })
       ->first;
@@ -53,14 +49,14 @@ std::optional<std::size_t> BoxTracks::frame_of(std::int64_t stamp_ns) const {
   return static_cast<std::size_t>(nearest - frames_.begin());
 }
 
-void BoxTracks::take(const DetectorAnswer& answer, const DepthOfBox& depth_of) {
-  const std::optional<std::size_t> frame = frame_of(answer.stamp_ns);
-  const auto known = std::find(answered_ns_.begin(), answered_ns_.end(), answer.stamp_ns);
-  if (!frame || known != answered_ns_.end()) return;
-  const bool newest = answered_ns_.empty() || answer.stamp_ns > answered_ns_.back();
+void BoxTracks::update(const DetectionBatch& batch, const DepthOfBox& depth_of) {
+  const std::optional<std::size_t> frame = frame_of(batch.stamp_ns);
+  const auto known = std::find(batches_ns_.begin(), batches_ns_.end(), batch.stamp_ns);
+  if (!frame || known != batches_ns_.end()) return;
+  const bool newest = batches_ns_.empty() || batch.stamp_ns > batches_ns_.back();
   const std::int64_t stamp_ns = frames_[*frame].stamp_ns;
   std::vector<double> depths;
-  for (const vision::Detection& d : answer.detections) depths.push_back(depth_of(stamp_ns, d));
+  for (const vision::Detection& d : batch.detections) depths.push_back(depth_of(stamp_ns, d));
 
   std::vector<std::pair<Track*, std::size_t>> then;  // tracks that existed, and their step
   for (Track& track : tracks_) {
@@ -68,32 +64,32 @@ void BoxTracks::take(const DetectorAnswer& answer, const DepthOfBox& depth_of) {
       if (track.steps[i].stamp_ns == stamp_ns) then.emplace_back(&track, i);
     }
   }
-  CostMatrix costs(static_cast<int>(then.size()), static_cast<int>(answer.detections.size()));
+  CostMatrix costs(static_cast<int>(then.size()), static_cast<int>(batch.detections.size()));
   for (std::size_t row = 0; row < then.size(); ++row) {
     const auto& [track, step] = then[row];
-    for (std::size_t column = 0; column < answer.detections.size(); ++column) {
+    for (std::size_t column = 0; column < batch.detections.size(); ++column) {
       costs.at(static_cast<int>(row), static_cast<int>(column)) =
-          match_cost(*track, track->steps[step], answer.detections[column], depths[column]);
+          match_cost(*track, track->steps[step], batch.detections[column], depths[column]);
     }
   }
   const std::vector<int> column_of = assign(costs, config_.max_match_cost);
-  std::vector<char> taken(answer.detections.size(), 0);
+  std::vector<char> taken(batch.detections.size(), 0);
   for (std::size_t row = 0; row < then.size(); ++row) {
     const auto& [track, step] = then[row];
     if (column_of[row] >= 0) {
       const auto column = static_cast<std::size_t>(column_of[row]);
       taken[column] = 1;
-      hit(*track, step, answer.detections[column], depths[column]);
+      hit(*track, step, batch.detections[column], depths[column]);
     } else if (newest) {
       miss(*track, step, frames_[*frame]);
     }
   }
   if (!newest) return;  // an older answer corrects, but it neither denies nor begins anything
-  answered_ns_.push_back(answer.stamp_ns);
-  if (answered_ns_.size() > kMaxFrames) answered_ns_.pop_front();
+  batches_ns_.push_back(batch.stamp_ns);
+  if (batches_ns_.size() > kMaxFrames) batches_ns_.pop_front();
   std::erase_if(tracks_, [](const Track& track) { return track.dead; });
   for (std::size_t i = 0; i < taken.size(); ++i) {
-    if (taken[i] == 0) give_birth(answer, i, *frame, depths[i]);
+    if (taken[i] == 0) start_track(batch, i, *frame, depths[i]);
   }
 }
 
@@ -137,9 +133,9 @@ void BoxTracks::miss(Track& track, std::size_t step, const TrackedFrame& frame) 
   track.dead = track.hits < config_.confirm_hits || (track.misses >= 2 && unseen_s > survive_s);
 }
 
-void BoxTracks::give_birth(const DetectorAnswer& answer, std::size_t detection, std::size_t frame, double depth_m) {
+void BoxTracks::start_track(const DetectionBatch& batch, std::size_t detection, std::size_t frame, double depth_m) {
   if (tracks_.size() >= kMaxTracks) return;
-  const vision::Detection& d = answer.detections[detection];
+  const vision::Detection& d = batch.detections[detection];
   Track track;
   track.id = next_id_++;
   track.votes[d.class_name] = static_cast<double>(d.score);
@@ -218,7 +214,7 @@ void BoxTracks::set_depth(int id, double depth_m) {
 
 void BoxTracks::clear() {
   frames_.clear();
-  answered_ns_.clear();
+  batches_ns_.clear();
   tracks_.clear();
 }
 

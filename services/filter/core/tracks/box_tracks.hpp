@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "services/filter/core/filter_config.hpp"
-#include "services/filter/core/tracks/box_kalman.hpp"
 #include "services/filter/core/tracks/detection_batch.hpp"
+#include "services/filter/core/tracks/kalman.hpp"
 
 namespace rtd::filter {
 
@@ -61,7 +61,7 @@ class BoxTracks {
   void begin_frame(const TrackedFrame& frame);
   /// An answer for this frame or an earlier one. Ignored: a second answer for the same stamp, one from the future, one
   /// older than what is remembered. The detections are finite, not empty and at most kMaxTracks.
-  void take(const DetectorAnswer& answer, const DepthOfBox& depth_of);
+  void update(const DetectionBatch& batch, const DepthOfBox& depth_of);
   /// Moves boxes that were not seen by what `measure` finds; where it finds nothing they keep their predicted motion.
   void carry(const MeasureCarry& measure);
   /// Drops what has left the image or has not been seen for too long, then all boxes of the newest frame, best score
@@ -97,13 +97,13 @@ class BoxTracks {
   double match_cost(const Track& track, const Step& step, const vision::Detection& detection, double depth_m) const;
   void hit(Track& track, std::size_t step, const vision::Detection& detection, double depth_m);
   void miss(Track& track, std::size_t step, const TrackedFrame& frame) const;
-  void give_birth(const DetectorAnswer& answer, std::size_t detection, std::size_t frame, double depth_m);
+  void start_track(const DetectionBatch& batch, std::size_t detection, std::size_t frame, double depth_m);
   void replay(Track& track, std::size_t from) const;
   bool expired(const Track& track) const;
 
   BoxTrackConfig config_;
   std::deque<TrackedFrame> frames_;
-  std::deque<std::int64_t> answered_ns_;
+  std::deque<std::int64_t> batches_ns_;
   std::vector<Track> tracks_;
   int next_id_ = 0;
 };

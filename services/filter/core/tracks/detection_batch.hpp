@@ -10,20 +10,24 @@
 
 namespace rtd::filter {
 
-using Detections = std::optional<std::vector<vision::Detection>>;
-
-/// One answer of the detector: the boxes of the frame with this stamp, perhaps none.
-struct DetectorAnswer {
+/// The boxes that the detector found in the frame with this stamp, perhaps none.
+struct DetectionBatch {
   std::int64_t stamp_ns = 0;
   std::vector<vision::Detection> detections;
 };
 
-/// What was heard of the detector since the frame before.
-struct DetectorWord {
-  bool watching = false;                ///< somebody looks: silence means "not yet"; else geometry only
-  std::vector<DetectorAnswer> answers;  ///< new ones by stamp; of this frame or of earlier ones, late ones included
+/// What has arrived from the detector since the previous frame.
+struct DetectorUpdate {
+  bool active = false;                  ///< a detector is running: no batch means "not yet"; false: geometry only
+  std::vector<DetectionBatch> batches;  ///< new ones by stamp, of this frame or, arriving late, of earlier ones
 };
-/// The boxes of this very frame; empty optional = nobody looks.
-DetectorWord word_of(std::int64_t stamp_ns, const Detections& detections);
+
+/// The boxes of one frame; nullopt = no detector is running.
+using Detections = std::optional<std::vector<vision::Detection>>;
+/// The update that brings the boxes of exactly this frame.
+inline DetectorUpdate update_for(std::int64_t stamp_ns, const Detections& detections) {
+  if (!detections) return {};
+  return {true, {{stamp_ns, *detections}}};
+}
 
 }  // namespace rtd::filter

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "services/filter/core/tracks/box_kalman.hpp"
+#include "services/filter/core/tracks/kalman.hpp"
 
 namespace rtd::filter {
 

@@ -9,7 +9,6 @@
 namespace rtd::filter {
 namespace {
 
-constexpr double kMinDepthM = 0.1;
 constexpr std::size_t kMinCells = 40, kEnoughCells = 300;  // every n-th cell of a large surface is enough
 
 Eigen::Vector3d point_world(const MoverFrame& frame, int cell) {
@@ -82,6 +81,7 @@ std::vector<MoverSighting> sight_movers(const MoverFrame& frame, const DepthClus
 }
 
 std::optional<Box> project(const Eigen::AlignedBox3d& box_world, const MoverFrame& frame) {
+  constexpr double kMinDepthM = 0.1;
   const auto& p = frame.camera.parameters();
   const Eigen::Isometry3d T_camera_world = frame.pose.T_world_camera.inverse();
   Eigen::AlignedBox2d image;

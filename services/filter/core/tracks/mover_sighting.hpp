@@ -9,7 +9,7 @@
 #include "services/filter/core/motion/depth_check.hpp"
 #include "services/filter/core/surfaces/cell_masks.hpp"
 #include "services/filter/core/surfaces/depth_clusters.hpp"
-#include "services/filter/core/tracks/box_kalman.hpp"
+#include "services/filter/core/tracks/kalman.hpp"
 
 namespace rtd::filter {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "services/filter/core/motion/slow_votes.hpp"
+#include "services/filter/core/motion/ego_motion.hpp"
 #include "services/filter/core/tracks/assignment.hpp"
 
 namespace rtd::filter {
@@ -12,10 +12,6 @@ namespace {
 
 constexpr double kPositionSigmaM = 0.05, kFirstSpeedMS = 0.5;
 constexpr double kMarginM = 0.06, kMaxMarginM = 0.3, kMarginPerWay = 0.3;  // it need not go on as it went
-
-double seconds(std::int64_t ns) {
-  return 1e-9 * static_cast<double>(ns);
-}
 
 /// Two movers have come together, or one has parted: the centre has jumped, nothing has moved so.
 bool changes_shape(const Eigen::Vector3d& half_before_m, const Eigen::Vector3d& half_m) {
@@ -65,7 +61,7 @@ void MoverTracks::update(const MoverFrame& frame, const DepthClusters& clusters,
   }
   std::erase_if(tracks_, [this](const Track& track) { return ended(track); });
   for (std::size_t j = 0; j < sightings.size(); ++j) {
-    if (known[j] == 0) give_birth(sightings[j], frame.pose.stamp_ns);
+    if (known[j] == 0) start_track(sightings[j], frame.pose.stamp_ns);
   }
 }
 
@@ -148,7 +144,7 @@ bool MoverTracks::ended(const Track& track) const {
          (track.hits < config_.confirm_hits && track.unseen_s() > kUnconfirmedS);
 }
 
-void MoverTracks::give_birth(const MoverSighting& sighting, std::int64_t stamp_ns) {
+void MoverTracks::start_track(const MoverSighting& sighting, std::int64_t stamp_ns) {
   if (tracks_.size() >= kMaxTracks) return;
   Track track;
   track.id = next_id_++;

@@ -8,7 +8,7 @@
 
 #include "services/filter/core/filter_config.hpp"
 #include "services/filter/core/motion/dynamic_regions.hpp"
-#include "services/filter/core/tracks/axis_kalman.hpp"
+#include "services/filter/core/tracks/kalman.hpp"
 #include "services/filter/core/tracks/mover_sighting.hpp"
 
 namespace rtd::filter {
@@ -59,7 +59,7 @@ class MoverTracks {
   std::vector<int> assign_to_tracks(const std::vector<MoverSighting>& sightings, const MoverFrame& frame) const;
   void hit(Track& track, const MoverSighting& sighting) const;
   void miss(Track& track, double elapsed_s, const MoverFrame& frame, const FeatureVotes& slow_votes) const;
-  void give_birth(const MoverSighting& sighting, std::int64_t stamp_ns);
+  void start_track(const MoverSighting& sighting, std::int64_t stamp_ns);
   void place(Track& track, const Eigen::AlignedBox3d& extent_world) const;
   double margin_m(const Track& track) const;
   bool ended(const Track& track) const;

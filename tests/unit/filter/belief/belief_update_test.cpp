@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/filter/core/belief/log_odds.hpp"
+#include "services/filter/core/belief/surface_beliefs.hpp"
 
 namespace rtd::filter {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/filter/core/belief/log_odds.hpp"
+#include "services/filter/core/belief/surface_beliefs.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -37,7 +37,8 @@ class StaticProbabilityTest : public ::testing::Test {
     const auto object_on = objects_on_cells({160, 120}, objects_);
     const CellBeliefs beliefs =
         update_beliefs(recalled_, {objects_, motions_, object_on, evidence, 0.033}, config_.belief, config_.techniques);
-    weigh_static_probability(features_, {{160, 120}, objects_, object_on, beliefs, regions_, evidence_}, config_);
+    features_ =
+        weigh_static_probability(features_, {{160, 120}, objects_, object_on, beliefs, regions_, evidence_}, config_);
   }
   const msg::Feature& on_object() const { return features_[2]; }
   const msg::Feature& background() const { return features_[25]; }

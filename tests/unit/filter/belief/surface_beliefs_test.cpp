@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "services/filter/core/belief/log_odds.hpp"
 #include "tests/unit/filter/grid_scenes.hpp"
 
 namespace rtd::filter {

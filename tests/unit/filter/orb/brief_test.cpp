@@ -7,7 +7,7 @@
 #include <set>
 
 #include "common/vision/hamming.hpp"
-#include "services/filter/core/orb/corner_detector.hpp"
+#include "services/filter/core/orb/corners.hpp"
 #include "tests/unit/filter/orb/test_images.hpp"
 
 namespace rtd::filter {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/orb/quad_tree.hpp"
+#include "services/filter/core/orb/corners.hpp"
 
 #include <gmock/gmock.h>
 

@@ -29,7 +29,7 @@ class BoxTracksTest : public ::testing::Test {
  protected:
   void frame(int number, bool rolling = false) { tracks_.begin_frame({stamp(number), rolling, 640, 480}); }
   void answer(int number, std::vector<vision::Detection> detections) {
-    tracks_.take({stamp(number), std::move(detections)}, no_depth);
+    tracks_.update({stamp(number), std::move(detections)}, no_depth);
   }
   /// Frames first..last, with the detector's answer for each.
   void walk(int first, int last, double step_px) {
@@ -246,10 +246,10 @@ TEST_F(BoxTracksTest, tell_objects_of_different_depth_apart) {
   double depth_m = 1.5;
   const auto depth_of = [&](std::int64_t, const vision::Detection&) { return depth_m; };
   frame(0);
-  tracks_.take({stamp(0), {person(100)}}, depth_of);
+  tracks_.update({stamp(0), {person(100)}}, depth_of);
   frame(1);
   depth_m = 4.0;
-  tracks_.take({stamp(1), {person(145)}}, depth_of);  // overlaps by half a box
+  tracks_.update({stamp(1), {person(145)}}, depth_of);  // overlaps by half a box
   EXPECT_NE(tracks_.boxes().back().id, 0);
 }
 

@@ -26,14 +26,14 @@ class CarriedMask : public ::testing::Test {
   }
   static double block_x_m(std::uint64_t frame) { return -0.3 + kBlockStepM * static_cast<double>(frame); }
   static std::int64_t stamp(std::uint64_t frame) { return static_cast<std::int64_t>(frame) * 33'333'333; }
-  static DetectorAnswer answer(std::uint64_t frame) {
+  static DetectionBatch batch(std::uint64_t frame) {
     const cv::Rect block = MovingScene::block(0, block_x_m(frame));
     return {stamp(frame),
             {{"person", 0.9F, static_cast<float>(block.x - 5), static_cast<float>(block.y - 5),
               static_cast<float>(block.width + 10), static_cast<float>(block.height + 10)}}};
   }
-  FilterResult frame(std::uint64_t number, std::vector<DetectorAnswer> answers, bool watching = true) {
-    return filter_.apply(scene_.render(number, 0, block_x_m(number)), DetectorWord{watching, std::move(answers)});
+  FilterResult frame(std::uint64_t number, std::vector<DetectionBatch> batches, bool active = true) {
+    return filter_.apply(scene_.render(number, 0, block_x_m(number)), DetectorUpdate{active, std::move(batches)});
   }
   static double on_block(const FilterResult& result, std::uint64_t number) {
     return removed_share(result, MovingScene::block(0, block_x_m(number)), true);
@@ -48,9 +48,9 @@ class CarriedMask : public ::testing::Test {
 
 TEST_F(CarriedMask, stays_on_a_walker_with_late_answers_at_five_hertz) {
   for (std::uint64_t i = 0; i < 30; ++i) {
-    std::vector<DetectorAnswer> answers;
-    if (i >= 4 && (i - 4) % 6 == 0) answers.push_back(answer(i - 4));  // 130 ms late
-    const FilterResult result = frame(i, std::move(answers));
+    std::vector<DetectionBatch> batches;
+    if (i >= 4 && (i - 4) % 6 == 0) batches.push_back(batch(i - 4));  // 130 ms late
+    const FilterResult result = frame(i, std::move(batches));
     if (i < 4) continue;
     EXPECT_GE(on_block(result, i), 0.95) << "frame " << i;
     EXPECT_LE(beside_block(result, i), 0.02) << "frame " << i;
@@ -62,14 +62,14 @@ TEST_F(CarriedMask, stays_on_a_walker_with_late_answers_at_five_hertz) {
 
 TEST_F(CarriedMask, stays_on_a_walker_through_a_second_of_silence) {
   for (std::uint64_t i = 0; i < 40; ++i) {
-    const FilterResult result = frame(i, i < 5 ? std::vector{answer(i)} : std::vector<DetectorAnswer>{});
+    const FilterResult result = frame(i, i < 5 ? std::vector{batch(i)} : std::vector<DetectionBatch>{});
     if (i >= 35) continue;
     EXPECT_GE(on_block(result, i), 0.95) << "frame " << i;
   }
 }
 
 TEST_F(CarriedMask, is_dropped_half_a_second_after_nobody_looks_any_more) {
-  for (std::uint64_t i = 0; i < 5; ++i) frame(i, {answer(i)});
+  for (std::uint64_t i = 0; i < 5; ++i) frame(i, {batch(i)});
   FilterResult result;
   for (std::uint64_t i = 5; i < 12; ++i) result = frame(i, {}, false);
   EXPECT_EQ(result.objects.size(), 1U);
@@ -78,16 +78,16 @@ TEST_F(CarriedMask, is_dropped_half_a_second_after_nobody_looks_any_more) {
 }
 
 TEST_F(CarriedMask, takes_what_a_broken_detector_may_say) {
-  const DetectorAnswer good = answer(0);
+  const DetectionBatch good = batch(0);
   std::vector<vision::Detection> ten_thousand(10'000, {"person", 0.9F, 10, 10, 50, 50});
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<DetectorAnswer> words{good,
-                                          good,
-                                          {stamp(90), good.detections},
-                                          {-stamp(90), good.detections},
-                                          {stamp(0), {{"person", nan, nan, 1e30F, -5, 0}}},
-                                          {stamp(0), ten_thousand}};
-  const FilterResult result = frame(0, words);
+  const std::vector<DetectionBatch> batches{good,
+                                            good,
+                                            {stamp(90), good.detections},
+                                            {-stamp(90), good.detections},
+                                            {stamp(0), {{"person", nan, nan, 1e30F, -5, 0}}},
+                                            {stamp(0), ten_thousand}};
+  const FilterResult result = frame(0, batches);
   EXPECT_EQ(result.objects.size(), 1U) << "one answer a frame: the first";
   const FilterResult flooded = frame(1, {{stamp(1), ten_thousand}});
   EXPECT_LE(flooded.objects.size(), kMaxObjects + 1);

@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "services/filter/core/orb/orb_config.hpp"
+#include "services/filter/core/filter_config.hpp"
 
 namespace rtd::filter {
 
@@ -22,5 +22,9 @@ inline constexpr int kBorderPx = kPatchRadiusPx + 1;
 /// FAST corners of one level: the usual threshold everywhere, the low one in the cells which that leaves empty, so that
 /// weakly textured regions contribute too. Order: row of cells, strict before low threshold.
 std::vector<Corner> detect_corners(const cv::Mat& grey, const OrbConfig& config);
+
+/// Picks about `wanted` corners (at most wanted + 2) spread over `area`: the area is quartered, coarse cells and among
+/// those the fullest first, until there are `wanted` non-empty cells; each gives its strongest corner. Deterministic.
+std::vector<Corner> spread_corners(std::vector<Corner> corners, const cv::Rect& area, int wanted);
 
 }  // namespace rtd::filter

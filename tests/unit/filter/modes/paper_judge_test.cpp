@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/modes/paper_mode.hpp"
+#include "services/filter/core/modes/paper_judge.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "services/filter/core/modes/keypoint_depth_check.hpp"
 #include "tests/unit/filter/grid_scenes.hpp"
 #include "tests/unit/filter/moving_scene.hpp"
 
@@ -87,8 +86,10 @@ class PaperRulesTest : public ::testing::Test {
     objects_.push_back(object);
   }
   std::vector<bool> removed() {
-    PaperMode mode(FilterConfig{});
-    mode.judge({image_, kShape, objects_}, features_);
+    const auto now_ns = [] { return std::int64_t{0}; };
+    StageClock clock(now_ns);
+    const test::TestScene scene(image_);
+    features_ = PaperJudge(FilterConfig{}).judge(scene.with(objects_), features_, clock).features;
     return {test::removed(features_[0]), test::removed(features_[1]), test::removed(features_[2])};
   }
   vision::RgbdImage image_ = test::wall_image(2.0);
@@ -128,25 +129,22 @@ double removed_of_block(const std::string& class_name) {
   FilterResult result;
   for (std::uint64_t i = 0; i < 6; ++i) {
     result = filter.apply(scene.render(i, 0, i < 3 ? 100.0 : 0.0), i < 3 ? std::vector<vision::Detection>{} : boxes);
-    msg::KeyframeEvent event{};
-    event.frame_seq = i;
-    event.T_world_camera = msg::to_message(result.T_world_camera);
-    if (i == 0) filter.on_keyframe(event);
+    if (i == 0) filter.on_keyframe({.seq = 0, .T_world_camera = result.T_world_camera});
   }
   return removed_share(result, block, true);
 }
 
-TEST(PaperMode, removes_part_of_a_chair_that_was_pushed_and_of_a_box_without_class) {
+TEST(PaperJudge, removes_part_of_a_chair_that_was_pushed_and_of_a_box_without_class) {
   EXPECT_GT(removed_of_block("chair"), 0.15);
   EXPECT_GT(removed_of_block(""), 0.15);
   EXPECT_LT(removed_of_block("chair"), 1.0) << "only where the keyframe had keypoints";
 }
 
-TEST(PaperMode, trusts_a_screen_even_when_it_was_moved) {
+TEST(PaperJudge, trusts_a_screen_even_when_it_was_moved) {
   EXPECT_EQ(removed_of_block("tv"), 0.0);
 }
 
-TEST(PaperMode, takes_the_whole_box_of_a_person_background_included) {
+TEST(PaperJudge, takes_the_whole_box_of_a_person_background_included) {
   const MovingScene scene;
   DynamicFilter filter = make_filter();
   const FilterResult result =
@@ -155,7 +153,7 @@ TEST(PaperMode, takes_the_whole_box_of_a_person_background_included) {
   EXPECT_EQ(removed_share(result, {100, 50, 440, 380}, false), 0.0);
 }
 
-TEST(PaperMode, remembers_nothing) {
+TEST(PaperJudge, remembers_nothing) {
   const MovingScene scene;
   DynamicFilter filter = make_filter();
   filter.apply(scene.render(0, 0, 0), std::vector<vision::Detection>{{"person", 0.9F, 240, 110, 160, 240}});

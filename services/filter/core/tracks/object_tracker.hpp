@@ -17,22 +17,25 @@
 
 namespace rtd::filter {
 
-/// Makes of what the detector says, early, late or not at all, the boxes of every frame (DESIGN section 4 rule 5): box
-/// tracks, moved by optical flow of the features on the object where no detection came.
-class ObjectFollower {
+/// Finds the objects of every frame, whether the detector's boxes come early, late or not at all: box tracks, carried
+/// by optical flow of the features on the object where no detection came, and the mask of each box.
+/// docs/theory/dynamic_points.md section 6.
+class ObjectTracker {
  public:
-  explicit ObjectFollower(const FilterConfig& config);
+  explicit ObjectTracker(const FilterConfig& config);
 
-  /// Once per frame, in order of time. `grid` is this frame's, `views` are the earlier frames.
-  std::vector<ObjectBox> follow(const DetectorWord& word, const vision::RgbdImage& image, const DepthGrid& grid,
-                                const ViewStore& views);
-  /// The depths that the masks of this frame were found at: where the objects are expected next.
-  void learn_depths(const std::vector<SceneObject>& objects, const DepthGrid& grid);
+  /// Once per frame, in order of time. `views` are earlier frames.
+  std::vector<SceneObject> track(const DetectorUpdate& detector, const vision::RgbdImage& image, const DepthGrid& grid,
+                                 const DepthClusters& clusters, const ViewStore& views);
   void clear();
 
  private:
+  std::vector<ObjectBox> boxes_of_frame(const DetectorUpdate& detector, const vision::RgbdImage& image) const;
+  std::vector<ObjectBox> tracked_boxes(const DetectorUpdate& detector, const vision::RgbdImage& image,
+                                       const DepthGrid& grid, const ViewStore& views);
   std::optional<CarriedBox> measure(const CarryStep& step, const vision::RgbdImage& image, const DepthGrid& grid,
                                     const ViewStore& views);
+  void learn_depths(const std::vector<SceneObject>& objects, const DepthGrid& grid);
 
   BoxTrackConfig config_;
   MaskConfig masks_;
@@ -40,7 +43,7 @@ class ObjectFollower {
   MotionLevels levels_;
   BoxTracks tracks_;
   MaskFlow flow_;
-  std::int64_t watched_ns_ = 0;  ///< stamp of the last frame for which somebody looked
+  std::int64_t detector_active_ns_ = 0;  ///< stamp of the last frame for which a detector was active
 };
 
 /// How fast the camera turned about its optical axis between the last two views, rad/s.

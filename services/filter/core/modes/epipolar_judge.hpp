@@ -7,6 +7,7 @@
 
 #include "common/geometry/camera_model.hpp"
 #include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/modes/mode_judge.hpp"
 
 namespace rtd::filter {
 
@@ -25,5 +26,24 @@ std::vector<FlowMatch> follow_corners(const cv::Mat& before, const cv::Mat& now,
 /// seen: that is the weakness of the check, as is the freedom of the matrix when the camera only turns.
 std::vector<cv::Point2f> find_moving_points(const std::vector<FlowMatch>& matches, const geometry::CameraModel& camera,
                                             const EpipolarConfig& config);
+
+/// DS-SLAM's rule (Yu et al., IROS 2018): people with enough moving points on them are removed whole, everything else
+/// stays. Its SegNet mask is our depth mask in the box.
+class EpipolarJudge final : public ModeJudge {
+ public:
+  explicit EpipolarJudge(const FilterConfig& config)
+      : config_(config.epipolar), dilate_cells_(config.masks.dilate_cells) {}
+  Verdict judge(const Scene& scene, std::vector<msg::Feature> features, StageClock& clock) override;
+  void reset() override { grey_before_.release(); }
+
+ private:
+  EpipolarConfig config_;
+  int dilate_cells_;
+  cv::Mat grey_before_;
+};
+
+/// The masks with more than `min_points` of these raw pixels on them, together.
+CellMask moving_masks(const Scene& scene, const std::vector<cv::Point2f>& moving_points, int min_points,
+                      int dilate_cells);
 
 }  // namespace rtd::filter

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/modes/epipolar_check.hpp"
+#include "services/filter/core/modes/epipolar_judge.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -45,6 +46,18 @@ double epipolar_distance_px(const cv::Matx33d& fundamental, const cv::Point2f& b
   return norm > 0 ? std::abs(line.dot(cv::Vec3d(now.x, now.y, 1))) / norm : 0.0;
 }
 
+constexpr const char* kPerson = "person";
+
+std::vector<int> cells_of_points(const Scene& scene, const std::vector<cv::Point2f>& raw_points) {
+  std::vector<int> cells;
+  cells.reserve(raw_points.size());
+  for (const cv::Point2f& raw : raw_points) {
+    const Eigen::Vector2d p = scene.image.camera.undistort(Eigen::Vector2d(raw.x, raw.y));
+    cells.push_back(scene.shape().nearest_cell(p.x(), p.y()));
+  }
+  return cells;
+}
+
 }  // namespace
 
 std::vector<FlowMatch> follow_corners(const cv::Mat& before, const cv::Mat& now, const EpipolarConfig& config) {
@@ -77,6 +90,41 @@ std::vector<cv::Point2f> find_moving_points(const std::vector<FlowMatch>& matche
     if (epipolar_distance_px(fundamental, before[i], now[i]) > config.max_distance_px) moving.push_back(matches[i].now);
   }
   return moving;
+}
+
+CellMask moving_masks(const Scene& scene, const std::vector<cv::Point2f>& moving_points, int min_points,
+                      int dilate_cells) {
+  const std::vector<int> points = cells_of_points(scene, moving_points);
+  CellMask moving(static_cast<std::size_t>(scene.shape().size()), 0);
+  for (const SceneObject& object : scene.objects) {
+    if (object.class_name != kPerson) continue;
+    CellMask mask(moving.size(), 0);
+    for (const int cell : object.cells) mask[static_cast<std::size_t>(cell)] = 1;
+    mask = dilate(scene.shape(), mask, dilate_cells);
+    const auto on_mask = std::count_if(points.begin(), points.end(),
+                                       [&](int cell) { return mask[static_cast<std::size_t>(cell)] != 0; });
+    if (on_mask <= min_points) continue;
+    for (std::size_t cell = 0; cell < mask.size(); ++cell) moving[cell] = std::max(moving[cell], mask[cell]);
+  }
+  return moving;
+}
+
+Verdict EpipolarJudge::judge(const Scene& scene, std::vector<msg::Feature> features, StageClock& clock) {
+  cv::Mat grey;
+  cv::cvtColor(scene.image.color_bgr, grey, cv::COLOR_BGR2GRAY);
+  std::vector<cv::Point2f> moving_points;
+  if (grey_before_.size() == grey.size()) {
+    moving_points = find_moving_points(follow_corners(grey_before_, grey, config_), scene.image.camera, config_);
+  }
+  grey_before_ = grey;
+  const CellMask moving = moving_masks(scene, moving_points, config_.max_still_points, dilate_cells_);
+  for (msg::Feature& feature : features) {
+    const bool moves = moving[static_cast<std::size_t>(scene.shape().nearest_cell(feature.u_px, feature.v_px))] != 0;
+    if (moves) feature.flags |= msg::kFeatureInHighMask | msg::kFeatureGeometryMoving;
+    mark(feature, moves);
+  }
+  clock.finish(msg::kStageDepthCheck);
+  return {.features = std::move(features), .motion = to_cell_motion(moving, false)};
 }
 
 }  // namespace rtd::filter

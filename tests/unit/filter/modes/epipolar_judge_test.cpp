@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/modes/epipolar_mode.hpp"
+#include "services/filter/core/modes/epipolar_judge.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <random>
 
 #include "common/geometry/se3.hpp"
-#include "services/filter/core/modes/epipolar_check.hpp"
+#include "tests/unit/filter/grid_scenes.hpp"
 #include "tests/unit/filter/moving_scene.hpp"
 
 namespace rtd::filter {
@@ -116,7 +116,7 @@ FilterConfig epipolar_config() {
 }
 
 /// The camera goes sideways past two walls, a block in a box of this class goes up: across the epipolar lines.
-class EpipolarModeTest : public ::testing::Test {
+class EpipolarJudgeTest : public ::testing::Test {
  protected:
   double removed_of_block(const std::string& class_name, int block_step_px) {
     DynamicFilter filter(epipolar_config(), [] { return std::int64_t{0}; });
@@ -147,16 +147,16 @@ class EpipolarModeTest : public ::testing::Test {
   cv::Mat wall_ = test::textured_image({700, 480}, 1), block_ = test::textured_image({200, 200}, 3);
 };
 
-TEST_F(EpipolarModeTest, removes_a_person_that_moves_and_keeps_one_that_stands) {
+TEST_F(EpipolarJudgeTest, removes_a_person_that_moves_and_keeps_one_that_stands) {
   EXPECT_EQ(removed_of_block("person", 6), 1.0);
   EXPECT_EQ(removed_of_block("person", 0), 0.0);
 }
 
-TEST_F(EpipolarModeTest, knows_people_only) {
+TEST_F(EpipolarJudgeTest, knows_people_only) {
   EXPECT_EQ(removed_of_block("dog", 6), 0.0);
 }
 
-TEST_F(EpipolarModeTest, says_nothing_in_the_first_frame_and_without_detector) {
+TEST_F(EpipolarJudgeTest, says_nothing_in_the_first_frame_and_without_detector) {
   const MovingScene scene;
   DynamicFilter filter(epipolar_config(), [] { return std::int64_t{0}; });
   const std::vector<vision::Detection> person{{"person", 0.9F, 240, 110, 160, 240}};
@@ -164,12 +164,12 @@ TEST_F(EpipolarModeTest, says_nothing_in_the_first_frame_and_without_detector) {
   EXPECT_EQ(filter.apply(scene.render(1, 0, 0.1), std::nullopt).removed, 0U);
 }
 
-TEST_F(EpipolarModeTest, wants_more_than_a_few_moving_points_on_a_mask) {
+TEST_F(EpipolarJudgeTest, wants_more_than_a_few_moving_points_on_a_mask) {
   const vision::RgbdImage image = test::rgbd_image(test::textured_image());
   const std::vector<SceneObject> person{{"person", 0.9F, MotionLevel::kHigh, {0, 1, 2}, false}};
-  const PublishedInput input{image, {160, 120}, person};
+  const test::TestScene scene(image);
   const auto masked = [&](std::size_t points) {
-    return moving_masks(input, std::vector<cv::Point2f>(points, {5, 1}), kConfig.max_still_points, 0)[1];
+    return moving_masks(scene.with(person), std::vector<cv::Point2f>(points, {5, 1}), kConfig.max_still_points, 0)[1];
   };
   EXPECT_EQ(masked(static_cast<std::size_t>(kConfig.max_still_points)), 0);
   EXPECT_EQ(masked(static_cast<std::size_t>(kConfig.max_still_points) + 1), 1);

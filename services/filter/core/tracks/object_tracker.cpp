@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/tracks/object_follower.hpp"
+#include "services/filter/core/tracks/object_tracker.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,13 +40,9 @@ double depth_at(const std::vector<cv::Point2f>& points_px, const geometry::Camer
   return static_cast<double>(median(std::move(depths)));
 }
 
-ObjectBox to_object_box(const TrackedBox& box) {
-  return {box.detection, box.id, box.age_s, box.carried, box.depth_m};
-}
-
 }  // namespace
 
-ObjectFollower::ObjectFollower(const FilterConfig& config)
+ObjectTracker::ObjectTracker(const FilterConfig& config)
     : config_(config.tracks),
       masks_(config.masks),
       use_tracks_(config.techniques.box_tracks),
@@ -56,20 +52,32 @@ ObjectFollower::ObjectFollower(const FilterConfig& config)
                                               : MotionLevels(config.motion_levels).all_high()),
       tracks_(config.tracks) {}
 
-std::vector<ObjectBox> ObjectFollower::follow(const DetectorWord& word, const vision::RgbdImage& image,
-                                              const DepthGrid& grid, const ViewStore& views) {
+std::vector<SceneObject> ObjectTracker::track(const DetectorUpdate& detector, const vision::RgbdImage& image,
+                                              const DepthGrid& grid, const DepthClusters& clusters,
+                                              const ViewStore& views) {
+  const std::vector<ObjectBox> boxes =
+      use_tracks_ ? tracked_boxes(detector, image, grid, views) : boxes_of_frame(detector, image);
+  std::vector<SceneObject> objects = find_objects(boxes, levels_, image.camera, grid, clusters, masks_);
+  learn_depths(objects, grid);
+  return objects;
+}
+
+std::vector<ObjectBox> ObjectTracker::boxes_of_frame(const DetectorUpdate& detector,
+                                                     const vision::RgbdImage& image) const {
   std::vector<ObjectBox> boxes;
-  if (!use_tracks_) {
-    for (const DetectorAnswer& answer : word.answers) {
-      if (answer.stamp_ns != image.stamp_ns) continue;
-      for (const auto& d : usable_detections(answer.detections, levels_)) boxes.push_back({d, -1, 0, false, 0});
-    }
-    return boxes;
+  for (const DetectionBatch& batch : detector.batches) {
+    if (batch.stamp_ns != image.stamp_ns) continue;
+    for (const auto& d : usable_detections(batch.detections, levels_)) boxes.push_back({d, -1, 0, false, 0});
   }
-  if (word.watching) watched_ns_ = image.stamp_ns;
-  if (std::abs(static_cast<double>(image.stamp_ns - watched_ns_)) > 1e9 * config_.unwatched_s) {
+  return boxes;
+}
+
+std::vector<ObjectBox> ObjectTracker::tracked_boxes(const DetectorUpdate& detector, const vision::RgbdImage& image,
+                                                    const DepthGrid& grid, const ViewStore& views) {
+  if (detector.active) detector_active_ns_ = image.stamp_ns;
+  if (std::abs(static_cast<double>(image.stamp_ns - detector_active_ns_)) > 1e9 * config_.unwatched_s) {
     clear();  // geometry only
-    return boxes;
+    return {};
   }
   const double fast_rad_s = config_.fast_roll_deg_s * std::numbers::pi / 180;
   const bool rolling = distrust_roll_ && std::abs(roll_rate_rad_s(views)) > fast_rad_s;
@@ -81,16 +89,18 @@ std::vector<ObjectBox> ObjectFollower::follow(const DetectorWord& word, const vi
     const View* view = views.at(stamp_ns);
     return view == nullptr ? 0.0 : depth_in_box(box, image.camera, view->grid);
   };
-  for (const DetectorAnswer& answer : word.answers) {
-    tracks_.take({answer.stamp_ns, usable_detections(answer.detections, levels_)}, depth_of);
+  for (const DetectionBatch& batch : detector.batches) {
+    tracks_.update({batch.stamp_ns, usable_detections(batch.detections, levels_)}, depth_of);
   }
   if (use_flow_) tracks_.carry([&](const CarryStep& step) { return measure(step, image, grid, views); });
-  for (const TrackedBox& box : tracks_.boxes()) boxes.push_back(to_object_box(box));
+  std::vector<ObjectBox> boxes;
+  for (const TrackedBox& box : tracks_.boxes())
+    boxes.push_back({box.detection, box.id, box.age_s, box.carried, box.depth_m});
   return boxes;
 }
 
-std::optional<CarriedBox> ObjectFollower::measure(const CarryStep& step, const vision::RgbdImage& image,
-                                                  const DepthGrid& grid, const ViewStore& views) {
+std::optional<CarriedBox> ObjectTracker::measure(const CarryStep& step, const vision::RgbdImage& image,
+                                                 const DepthGrid& grid, const ViewStore& views) {
   if (levels_.find(step.class_name) != MotionLevel::kHigh) return std::nullopt;  // geometry decides: not worth the time
   const View *from = views.at(step.from_ns), *to = views.at(step.to_ns);
   if (from == nullptr || (to == nullptr && step.to_ns != image.stamp_ns)) return std::nullopt;
@@ -100,7 +110,8 @@ std::optional<CarriedBox> ObjectFollower::measure(const CarryStep& step, const v
   return CarriedBox{motion->flow, depth_at(motion->landed_px, image.camera, to == nullptr ? grid : to->grid)};
 }
 
-void ObjectFollower::learn_depths(const std::vector<SceneObject>& objects, const DepthGrid& grid) {
+/// The depths at which the masks of this frame lie: where the objects are expected next.
+void ObjectTracker::learn_depths(const std::vector<SceneObject>& objects, const DepthGrid& grid) {
   for (const SceneObject& object : objects) {
     if (object.track_id < 0) continue;
     std::vector<float> depths;
@@ -112,7 +123,7 @@ void ObjectFollower::learn_depths(const std::vector<SceneObject>& objects, const
   }
 }
 
-void ObjectFollower::clear() {
+void ObjectTracker::clear() {
   tracks_.clear();
   flow_.clear();
 }

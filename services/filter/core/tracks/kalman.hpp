@@ -8,9 +8,24 @@
 #include <optional>
 
 #include "common/vision/detection.hpp"
-#include "services/filter/core/tracks/axis_kalman.hpp"
+#include "services/filter/core/filter_config.hpp"
 
 namespace rtd::filter {
+
+inline double seconds(std::int64_t ns) {
+  return 1e-9 * static_cast<double>(ns);
+}
+
+/// Position and velocity along one axis: constant velocity, disturbed by white acceleration
+/// (docs/theory/dynamic_points.md Eq. (9)). The unit of length is the caller's.
+struct AxisKalman {
+  Eigen::Vector2d state = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+
+  void predict(double dt_s, double acceleration);
+  /// `observe`: (1, 0) measures the position, (0, 1) the velocity.
+  void update(const Eigen::RowVector2d& observe, double measured, double sigma);
+};
 
 /// A box in pixels of the camera's own image.
 struct Box {
@@ -28,14 +43,6 @@ double visible_share(const Box& box, const Eigen::Vector2d& image_px);
 struct BoxFlow {
   Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();  ///< of its centre
   double scale = 1;
-};
-
-/// Noise in units of the box's own size, so that near and far objects are treated alike.
-struct BoxNoise {
-  double detection = 0.05;      ///< standard deviation of a detected centre or side
-  double acceleration = 4.0;    ///< of the object, box sizes / s^2
-  double flow = 0.01;           ///< of a shift measured by optical flow from image to image
-  double first_velocity = 1.5;  ///< of a box seen once, box sizes / s
 };
 
 /// Kalman filter of a box: centre and size with constant velocity, the four axes independent of each other

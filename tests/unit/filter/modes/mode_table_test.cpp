@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 /// Every switch changes what the filter says, and only its part of it.
-#include "services/filter/core/modes/techniques.hpp"
+#include "services/filter/core/modes/mode_table.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <set>
 
-#include "services/filter/core/belief/object_drift.hpp"
-#include "services/filter/core/modes/mode_table.hpp"
+#include "services/filter/core/belief/object_motion.hpp"
 #include "services/filter/core/motion/static_consensus.hpp"
 #include "tests/unit/filter/grid_scenes.hpp"
 #include "tests/unit/filter/moving_scene.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/tracks/box_kalman.hpp"
+#include "services/filter/core/tracks/kalman.hpp"
 
 #include <algorithm>
 
@@ -14,6 +14,24 @@ std::array<double, 4> numbers_of(const Box& box) {
 }
 
 }  // namespace
+
+void AxisKalman::predict(double dt_s, double acceleration) {
+  Eigen::Matrix2d transition, noise;
+  transition << 1, dt_s, 0, 1;
+  noise << dt_s * dt_s * dt_s / 3, dt_s * dt_s / 2, dt_s * dt_s / 2, dt_s;  // white acceleration over dt
+  state = transition * state;
+  covariance = transition * covariance * transition.transpose() + acceleration * acceleration * noise;
+}
+
+/// Joseph form: stays symmetric and positive whatever the rounding.
+void AxisKalman::update(const Eigen::RowVector2d& observe, double measured, double sigma) {
+  const double variance = sigma * sigma;
+  const double innovation_variance = (observe * covariance * observe.transpose()).value() + variance;
+  const Eigen::Vector2d gain = covariance * observe.transpose() / innovation_variance;
+  state += gain * (measured - (observe * state).value());
+  const Eigen::Matrix2d kept = Eigen::Matrix2d::Identity() - gain * observe;
+  covariance = kept * covariance * kept.transpose() + variance * gain * gain.transpose();
+}
 
 Box box_of(const vision::Detection& d) {
   return {{d.x_px + 0.5 * static_cast<double>(d.width_px), d.y_px + 0.5 * static_cast<double>(d.height_px)},

@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+/// The steps of RtdJudge. Their order, RtdJudge::judge(), is in core/dynamic_filter.cpp.
+#include "services/filter/core/modes/rtd_judge.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "services/filter/core/belief/static_probability.hpp"
+
+namespace rtd::filter {
+namespace {
+
+/// How far to look back for slow movers.
+std::int64_t look_back_ns(std::uint64_t seq) {
+  return seq % kFramesPerLookBack == 0 ? 1'500'000'000 : 0;
+}
+
+MoverFrame mover_frame(const Scene& scene, const Eigen::Isometry3d& T_world_camera) {
+  return {scene.surfaces.grid, scene.surfaces.rays, scene.image.camera, {scene.image.stamp_ns, T_world_camera}};
+}
+
+/// Per feature: does it lie on one of these cells?
+std::vector<char> features_on(const CellMask& cells, const std::vector<msg::Feature>& features,
+                              const GridShape& shape) {
+  std::vector<char> on(features.size());
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    on[i] = cells[static_cast<std::size_t>(shape.nearest_cell(features[i].u_px, features[i].v_px))] != 0 ? 1 : 0;
+  }
+  return on;
+}
+
+/// Per feature: does it lie on the first of these areas that leaves at least half of the features, or else on `least`?
+std::vector<char> first_that_leaves_half(const std::vector<msg::Feature>& features, const GridShape& shape,
+                                         const std::vector<CellMask>& areas, const CellMask& least) {
+  for (const CellMask& area : areas) {
+    std::vector<char> on = features_on(area, features, shape);
+    if (2 * std::count(on.begin(), on.end(), 1) <= static_cast<std::ptrdiff_t>(on.size())) return on;
+  }
+  return features_on(least, features, shape);
+}
+
+std::vector<int> clusters_of(const std::vector<msg::Feature>& features, const DepthClusters& clusters) {
+  std::vector<int> of(features.size());
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    of[i] = clusters.label[static_cast<std::size_t>(clusters.shape.nearest_cell(features[i].u_px, features[i].v_px))];
+  }
+  return of;
+}
+
+}  // namespace
+
+RtdJudge::Foreground RtdJudge::separate_foreground(const Scene& scene) const {
+  const int grow_cells = config_.masks.dilate_cells;
+  CellMask on_high(static_cast<std::size_t>(scene.shape().size()), 0);
+  for (const SceneObject& object : scene.objects) {
+    if (object.level != MotionLevel::kHigh || object.flat) continue;
+    for (const int cell : object.cells) on_high[static_cast<std::size_t>(cell)] = 1;
+  }
+  return {separate_objects(scene.surfaces.clusters, scene.objects), dilate(scene.shape(), on_high, grow_cells),
+          dilate(scene.shape(), without_known_surfaces(scene, on_high), grow_cells)};
+}
+
+/// What has been seen at rest for long takes part in the pose and in later checks, whatever its class.
+CellMask RtdJudge::without_known_surfaces(const Scene& scene, CellMask may_move) const {
+  if (views_.empty() || !config_.techniques.belief || !config_.techniques.resting_objects) return may_move;
+  if (std::none_of(may_move.begin(), may_move.end(), [](int cell) { return cell != 0; })) return may_move;
+  const CellBeliefs beliefs = recall_beliefs(scene, views_.predict_pose());
+  const float enough = log_odds(config_.belief.min_used_probability);
+  for (std::size_t cell = 0; cell < beliefs.size(); ++cell) {
+    if (is_known(beliefs[cell]) && beliefs[cell] >= enough) may_move[cell] = 0;
+  }
+  return may_move;
+}
+
+CellBeliefs RtdJudge::recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const {
+  if (views_.empty()) return CellBeliefs(static_cast<std::size_t>(scene.shape().size()), kNoBelief);
+  return beliefs_.recall(scene.surfaces.grid, scene.surfaces.rays, scene.image.camera,
+                         views_.newest().T_world_camera.inverse() * T_world_camera);
+}
+
+/// Per cell: for how many more frames it counts as moving because of earlier frames; 0 = it does not.
+CellMask RtdJudge::recall_movers(const Scene& scene, const Foreground& foreground,
+                                 const Eigen::Isometry3d& T_world_camera) const {
+  constexpr std::uint8_t kExpectedFrames = 3;
+  CellMask remembered = memory_.recall(scene.surfaces.grid, scene.image.camera,
+                                       T_world_camera.inverse() * views_.newest().T_world_camera);
+  if (!config_.techniques.mover_tracks) return remembered;
+  const CellMask expected = movers_.expected(mover_frame(scene, T_world_camera));
+  for (std::size_t cell = 0; cell < expected.size(); ++cell) {
+    if (expected[cell] != 0 && foreground.high[cell] == 0)
+      remembered[cell] = std::max(remembered[cell], kExpectedFrames);
+  }
+  return remembered;
+}
+
+EgoMotion RtdJudge::find_ego_motion(const Scene& scene, const Foreground& foreground,
+                                    const std::vector<msg::Feature>& features) const {
+  if (!compares()) return {};
+  const GridShape& shape = scene.shape();
+  const Eigen::Isometry3d T_world_predicted = views_.predict_pose();
+  CellMask avoid = united(dilate(shape, recall_movers(scene, foreground, T_world_predicted), 1), foreground.may_move);
+  if (!views_.spans(scene.image.stamp_ns, kMinSettledAgeNs)) {  // too early to tell movers from the camera's motion
+    avoid = united(std::move(avoid), free_standing(scene.surfaces.grid, foreground.clusters, config_.masks));
+  }
+  const auto& p = scene.image.camera.parameters();
+  const vision::FeatureGrid feature_grid(features, p.width, p.height);
+  // People at rest are left out too, so that one who rises does not take the pose along. But neither people nor memory
+  // may leave too few features.
+  const std::vector<char> excluded =
+      first_that_leaves_half(features, shape, {united(avoid, foreground.high), avoid}, foreground.may_move);
+  const std::vector<int> cluster_of = clusters_of(features, foreground.clusters);
+  EgoMotion ego = estimate_ego_motion({{features, feature_grid, scene.image.camera},
+                                       excluded,
+                                       cluster_of,
+                                       foreground.clusters,
+                                       views_,
+                                       scene.image.stamp_ns,
+                                       T_world_predicted,
+                                       look_back_ns(scene.image.seq)},
+                                      config_.ego_motion, config_.geometry);
+  // Objects of a high level have a rule of their own (belief): a second later they may have stopped again.
+  ego.slow_votes = without_votes_on(foreground.may_move, std::move(ego.slow_votes), foreground.clusters);
+  return ego;
+}
+
+DepthEvidence RtdJudge::compare_with_views(const Scene& scene, const Foreground& foreground,
+                                           const EgoMotion& ego) const {
+  if (!ego.reliable) return DepthEvidence::none(static_cast<std::size_t>(scene.shape().size()));
+  const CameraPose pose{scene.image.stamp_ns, ego.T_world_camera};
+  const auto references =
+      views_.references(pose.stamp_ns, pose.T_world_camera,
+                        {static_cast<std::size_t>(config_.geometry.max_views), config_.geometry.max_baseline_m});
+  return accept_arrivals(
+      check_depth(scene.surfaces.grid, scene.surfaces.rays, pose, references, scene.image.camera, config_.geometry),
+      foreground.clusters, ego.votes, ego.old_votes, config_.geometry);
+}
+
+DynamicRegions RtdJudge::find_regions(const Scene& scene, const Foreground& foreground, const EgoMotion& ego,
+                                      const DepthEvidence& evidence) const {
+  if (!compares()) return {false, CellMask(static_cast<std::size_t>(scene.shape().size()), 0), 0};
+  DynamicRegions regions = find_dynamic_regions(foreground.clusters, evidence, {ego.votes, ego.slow_votes},
+                                                recall_movers(scene, foreground, ego.T_world_camera), config_.geometry);
+  regions.trusted = regions.trusted && ego.reliable;
+  return regions;
+}
+
+/// Tracks surfaces that move in this very frame. Those of a high level have box tracks instead.
+std::vector<Mover> RtdJudge::follow_movers(const Scene& scene, const Foreground& foreground, const EgoMotion& ego,
+                                           const DynamicRegions& regions) {
+  if (!config_.techniques.mover_tracks || !regions.trusted) return {};
+  CellMask moving(regions.frames_left);
+  for (std::size_t cell = 0; cell < moving.size(); ++cell)
+    moving[cell] = moving[cell] == config_.geometry.memory_frames && foreground.high[cell] == 0 ? 1 : 0;
+  movers_.update(mover_frame(scene, ego.T_world_camera), foreground.clusters, moving, ego.slow_votes);
+  return movers_.movers();
+}
+
+std::vector<msg::Feature> RtdJudge::weigh(const Scene& scene, const EgoMotion& ego, const DepthEvidence& evidence,
+                                          const DynamicRegions& regions, std::vector<msg::Feature> features) {
+  const MotionEvidence motion{regions, evidence, ego.votes};
+  const std::vector<std::int16_t> object_on = objects_on_cells(scene.shape(), scene.objects);
+  const std::vector<ObjectMotion> motions = judge_objects(scene.objects, motion, config_.belief);
+  const double elapsed_s =
+      views_.empty() ? 0.0 : 1e-9 * static_cast<double>(scene.image.stamp_ns - views_.newest().stamp_ns);
+  CellBeliefs beliefs =
+      update_beliefs(recall_beliefs(scene, ego.T_world_camera), {scene.objects, motions, object_on, motion, elapsed_s},
+                     config_.belief, config_.techniques);
+  features = weigh_static_probability(std::move(features),
+                                      {scene.shape(), scene.objects, object_on, beliefs, regions, evidence}, config_);
+  beliefs_.store(scene.surfaces.grid, std::move(beliefs));
+  return features;
+}
+
+void RtdJudge::remember(const Scene& scene, const EgoMotion& ego, const DynamicRegions& regions,
+                        const CellMask& dynamic, const std::vector<msg::Feature>& features) {
+  memory_.store(scene.surfaces.grid, scene.surfaces.rays, regions.frames_left);
+  View view;
+  view.seq = scene.image.seq;
+  view.stamp_ns = scene.image.stamp_ns;
+  view.T_world_camera = ego.T_world_camera;
+  view.settled = views_.empty() || ego.settled;
+  view.dynamic = dynamic;
+  view.grid = scene.surfaces.grid;
+  view.features = features;
+  views_.add(std::move(view));
+}
+
+void RtdJudge::on_pose(const SlamPose& pose) {
+  if (std::exchange(map_, pose.map_id) != pose.map_id) {  // poses of two maps cannot be compared
+    views_.forget_before(pose.seq);
+    movers_.clear();
+  }
+  if (!views_.correct(pose.seq, pose.T_world_camera)) movers_.clear();  // another world
+}
+
+void RtdJudge::on_keyframe(const SlamKeyframe& keyframe) {
+  if (keyframe.removed) {
+    views_.forget_keyframe(keyframe.seq);
+  } else if (!views_.mark_keyframe(keyframe.seq, keyframe.T_world_camera)) {
+    movers_.clear();
+  }
+}
+
+void RtdJudge::reset() {
+  ModeJudge::reset();
+  memory_.clear();
+  movers_.clear();
+  beliefs_.clear();
+}
+
+}  // namespace rtd::filter

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/filter_messages.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/msg/transform_eigen.hpp"
+
+namespace rtd::filter {
+namespace {
+
+constexpr std::size_t kMaxBoxes = 300;
+
+bool usable(const vision::Detection& box) {
+  return std::isfinite(box.score) && std::isfinite(box.x_px) && std::isfinite(box.y_px) &&
+         std::isfinite(box.width_px) && std::isfinite(box.height_px) && box.width_px > 0 && box.height_px > 0;
+}
+
+bool removed(const msg::Feature& feature) {
+  return (feature.flags & msg::kFeatureRemoved) != 0;
+}
+
+}  // namespace
+
+DetectionBatch to_detection_batch(const msg::Detection2DArray& message) {
+  DetectionBatch batch{msg::to_ns(message.header.stamp), {}};
+  for (const msg::Detection2D& detection : message.detections) {
+    if (detection.results.empty()) continue;
+    const auto best =
+        std::max_element(detection.results.begin(), detection.results.end(),
+                         [](const auto& a, const auto& b) { return a.hypothesis.score < b.hypothesis.score; });
+    const msg::BoundingBox2D& box = detection.bbox;
+    const vision::Detection converted{best->hypothesis.class_id,
+                                      static_cast<float>(best->hypothesis.score),
+                                      static_cast<float>(box.center.position.x - box.size_x / 2),
+                                      static_cast<float>(box.center.position.y - box.size_y / 2),
+                                      static_cast<float>(box.size_x),
+                                      static_cast<float>(box.size_y)};
+    if (usable(converted)) batch.detections.push_back(converted);
+  }
+  if (batch.detections.size() > kMaxBoxes) {
+    std::stable_sort(batch.detections.begin(), batch.detections.end(),
+                     [](const auto& a, const auto& b) { return a.score > b.score; });
+    batch.detections.resize(kMaxBoxes);
+  }
+  return batch;
+}
+
+std::optional<SlamPose> to_slam_pose(const msg::TrackingResult& result) {
+  if (result.state != msg::TrackingState::kOk) return std::nullopt;
+  return SlamPose{result.seq, result.map_id, msg::to_isometry(result.T_world_camera)};
+}
+
+SlamKeyframe to_slam_keyframe(const msg::KeyframeEvent& event) {
+  return {event.frame_seq, event.kind == msg::KeyframeEventKind::kRemoved, msg::to_isometry(event.T_world_camera)};
+}
+
+void fill_message(const msg::RgbdFrame& frame, const FilterResult& result, msg::DetectionUse use,
+                  msg::FeatureFrame& message) {
+  message = {};
+  message.seq = frame.seq;
+  message.stamp_ns = frame.stamp_ns;
+  message.published_ns = frame.published_ns;
+  message.intrinsics = msg::aligned(frame.intrinsics);
+  message.width = frame.width;
+  message.height = frame.height;
+  message.objects = static_cast<std::uint32_t>(result.objects.size());
+  message.detection_use = use;
+  message.stage_ms = result.stage_ms;
+  const bool overfull = result.features.size() > msg::kMaxFeatures;
+  for (const msg::Feature& feature : result.features) {
+    if (message.count == msg::kMaxFeatures) break;
+    if (overfull && removed(feature)) continue;
+    message.features[message.count++] = feature;
+    if (removed(feature)) ++message.removed;
+  }
+}
+
+msg::Image make_mask(const msg::RgbdFrame& frame, const FilterResult& result) {
+  const auto cells = [](std::uint32_t px) { return std::max(1U, px / kCellPx); };
+  const bool judged = !result.motion.empty();
+  msg::Image mask;
+  mask.header = {msg::to_time(frame.stamp_ns), "camera_color_optical_frame"};
+  mask.width = judged ? static_cast<std::uint32_t>(result.cells.columns) : cells(frame.width);
+  mask.height = judged ? static_cast<std::uint32_t>(result.cells.rows) : cells(frame.height);
+  mask.encoding = "mono8";
+  mask.step = mask.width;
+  mask.data.resize(std::size_t{mask.width} * mask.height, static_cast<std::uint8_t>(CellMotion::kStatic));
+  std::transform(result.motion.begin(), result.motion.end(), mask.data.begin(),
+                 [](CellMotion motion) { return static_cast<std::uint8_t>(motion); });
+  return mask;
+}
+
+}  // namespace rtd::filter

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "common/msg/features.hpp"
+#include "common/msg/rgbd_frame.hpp"
+#include "common/msg/ros.hpp"
+#include "common/msg/tracking.hpp"
+#include "services/filter/core/dynamic_filter.hpp"
+
+namespace rtd::filter {
+
+/// Best hypothesis of every box. Boxes without a hypothesis, without area or with numbers that are not finite are left
+/// out; of more than 300, the best are kept.
+DetectionBatch to_detection_batch(const msg::Detection2DArray& message);
+
+/// slam's pose of a frame; nullopt when it did not track that frame.
+std::optional<SlamPose> to_slam_pose(const msg::TrackingResult& result);
+SlamKeyframe to_slam_keyframe(const msg::KeyframeEvent& event);
+
+/// Fills a feature message. Of more than kMaxFeatures features, the removed ones are left out first.
+void fill_message(const msg::RgbdFrame& frame, const FilterResult& result, msg::DetectionUse use,
+                  msg::FeatureFrame& message);
+
+/// What moves, as a grey image of grid cells (4x4 undistorted pixels each) with the values of CellMotion and the stamp
+/// of the frame. Mode off takes everything to be static: all its cells are.
+msg::Image make_mask(const msg::RgbdFrame& frame, const FilterResult& result);
+
+}  // namespace rtd::filter

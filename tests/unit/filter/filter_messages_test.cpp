@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/filter_messages.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/msg/transform_eigen.hpp"
+#include "common/vision/frame_view.hpp"
+
+namespace rtd::filter {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using vision::defect;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
+
+msg::Detection2D box(double centre_px, double size_px, double score) {
+  msg::Detection2D detection;
+  detection.bbox.center.position = {centre_px, centre_px};
+  detection.bbox.size_x = detection.bbox.size_y = size_px;
+  detection.results.push_back({{"cup", 0.1}, {}});
+  detection.results.push_back({{"person", score}, {}});
+  return detection;
+}
+msg::Detection2D named_box(const char* name, double score, double x, double y, double width, double height) {
+  msg::Detection2D detection;
+  msg::ObjectHypothesisWithPose result;
+  result.hypothesis = {name, score};
+  detection.results = {result};
+  detection.bbox = {{{x, y}, 0}, width, height};
+  return detection;
+}
+
+TEST(DetectionMessage, takes_the_best_hypothesis_and_the_corner_of_the_box) {
+  msg::Detection2DArray message;
+  message.header.stamp = {1, 5};
+  message.detections = {box(50, 20, 0.8)};
+  const DetectionBatch converted = to_detection_batch(message);
+  EXPECT_EQ(converted.stamp_ns, 1'000'000'005);
+  ASSERT_EQ(converted.detections.size(), 1U);
+  EXPECT_EQ(converted.detections[0].class_name, "person");
+  EXPECT_FLOAT_EQ(converted.detections[0].x_px, 40.0F);
+}
+
+TEST(DetectionMessage, leaves_out_boxes_that_are_none) {
+  msg::Detection2DArray message;
+  message.detections = {box(std::nan(""), 20, 0.8), box(50, 0, 0.8), box(50, -3, 0.8),
+                        box(50, std::numeric_limits<double>::infinity(), 0.8), msg::Detection2D{}};
+  EXPECT_THAT(to_detection_batch(message).detections, IsEmpty());
+}
+
+TEST(DetectionMessage, of_ten_thousand_boxes_the_best_are_kept) {
+  msg::Detection2DArray message;
+  for (int i = 0; i < 10'000; ++i) message.detections.push_back(box(50, 20, 0.2 + 0.00005 * i));
+  const auto kept = to_detection_batch(message).detections;
+  EXPECT_EQ(kept.size(), 300U);
+  EXPECT_GT(kept.back().score, 0.68F);
+}
+
+TEST(DetectionMessage, becomes_boxes_with_their_corner) {
+  msg::Detection2DArray message;
+  message.header.stamp = msg::to_time(1'234'567'890);
+  message.detections = {named_box("person", 0.8, 100, 200, 40, 60)};
+  const DetectionBatch boxes = to_detection_batch(message);
+  EXPECT_EQ(boxes.stamp_ns, 1'234'567'890);
+  ASSERT_EQ(boxes.detections.size(), 1U);
+  EXPECT_FLOAT_EQ(boxes.detections[0].x_px, 80);
+  EXPECT_FLOAT_EQ(boxes.detections[0].y_px, 170);
+}
+
+TEST(DetectionMessage, loses_what_makes_no_sense) {
+  msg::Detection2DArray message;
+  message.detections = {named_box("person", kNan, 1, 1, 1, 1),   named_box("person", 0.5, kInf, 1, 1, 1),
+                        named_box("person", 0.5, 1, 1, kNan, 1), named_box("person", 0.5, 1, 1, -4, 1),
+                        named_box("person", 0.5, 1, 1, 0, 0),    msg::Detection2D{}};
+  EXPECT_TRUE(to_detection_batch(message).detections.empty());
+  message.detections.assign(10'000, named_box("person", 0.5, 100, 100, 10, 10));
+  message.detections[9'999].results[0].hypothesis.score = 0.9;
+  const DetectionBatch boxes = to_detection_batch(message);
+  EXPECT_LE(boxes.detections.size(), 1000U);
+  EXPECT_FLOAT_EQ(boxes.detections[0].score, 0.9F) << "the best are kept";
+}
+
+std::unique_ptr<msg::RgbdFrame> good_frame() {
+  auto frame = std::make_unique<msg::RgbdFrame>();
+  *frame = {};
+  frame->seq = 9;
+  frame->width = 320;
+  frame->height = 240;
+  frame->intrinsics = {260, 260, 160, 120};
+  frame->depth_scale_m = 0.0002;
+  return frame;
+}
+
+TEST(FrameMessages, names_what_is_wrong_with_a_frame) {
+  auto frame = good_frame();
+  EXPECT_EQ(defect(*frame), "");
+  frame->width = 1280;
+  EXPECT_THAT(defect(*frame), HasSubstr("1280x240"));
+  frame = good_frame();
+  frame->intrinsics[0] = 0;
+  EXPECT_THAT(defect(*frame), HasSubstr("fx 0"));
+  frame = good_frame();
+  frame->depth_scale_m = std::nan("");
+  EXPECT_THAT(defect(*frame), HasSubstr("depth scale"));
+  frame = good_frame();
+  frame->distortion[2] = std::nan("");
+  EXPECT_THAT(defect(*frame), HasSubstr("distortion"));
+}
+
+TEST(FrameMessages, views_rows_of_the_frame_width) {
+  auto frame = good_frame();
+  frame->depth[320 * 2 + 5] = 777;
+  const vision::RgbdImage image = vision::view_image(*frame);
+  EXPECT_EQ(image.depth.at<std::uint16_t>(2, 5), 777);
+  EXPECT_EQ(image.color_bgr.size(), cv::Size(320, 240));
+}
+
+TEST(FrameMessages, leaves_out_removed_features_first) {
+  FilterResult result;
+  for (int i = 0; i < 3000; ++i) {
+    msg::Feature feature{};
+    feature.flags = i % 2 == 0 ? msg::kFeatureRemoved : 0;
+    result.features.push_back(feature);
+  }
+  const auto frame = good_frame();
+  const auto message = std::make_unique<msg::FeatureFrame>();
+  fill_message(*frame, result, msg::DetectionUse::kExact, *message);
+  EXPECT_EQ(message->count, 1500U);
+  EXPECT_EQ(message->removed, 0U);
+  result.features.resize(100);
+  fill_message(*frame, result, msg::DetectionUse::kExact, *message);
+  EXPECT_EQ(message->count, 100U);
+  EXPECT_EQ(message->removed, 50U);
+}
+
+TEST(FrameMessages, name_what_is_wrong_with_a_frame) {
+  const auto frame = std::make_unique<msg::RgbdFrame>();
+  *frame = {};
+  frame->width = 640;
+  frame->height = 480;
+  frame->intrinsics = {525, 525, 320, 240};
+  frame->depth_scale_m = 0.0002;
+  EXPECT_EQ(defect(*frame), "");
+  frame->intrinsics[1] = kNan;
+  EXPECT_THAT(defect(*frame), testing::HasSubstr("intrinsics"));
+  frame->intrinsics[1] = 525;
+  frame->depth_scale_m = 0;
+  EXPECT_THAT(defect(*frame), testing::HasSubstr("depth scale"));
+  frame->depth_scale_m = 0.0002;
+  frame->width = 5000;
+  EXPECT_THAT(defect(*frame), testing::HasSubstr("5000"));
+}
+
+TEST(FrameMessages, show_the_motion_of_the_cells_as_a_grey_picture) {
+  const auto frame = std::make_unique<msg::RgbdFrame>();
+  *frame = {};
+  frame->stamp_ns = 1'500'000'000;
+  frame->width = 12;
+  frame->height = 8;
+  FilterResult result;
+  EXPECT_EQ(make_mask(*frame, result).data, std::vector<std::uint8_t>(6, 0)) << "mode off: all is static";
+  result.cells = {3, 2};
+  result.motion.assign(6, CellMotion::kUnknown);
+  result.motion[4] = CellMotion::kDynamic;
+  const msg::Image mask = make_mask(*frame, result);
+  EXPECT_EQ(msg::to_ns(mask.header.stamp), 1'500'000'000);
+  EXPECT_EQ(mask.encoding, "mono8");
+  EXPECT_EQ(mask.width, 3U);
+  EXPECT_EQ(mask.height, 2U);
+  EXPECT_EQ(mask.step, 3U);
+  EXPECT_THAT(mask.data, testing::ElementsAre(128, 128, 128, 128, 255, 128));
+}
+
+TEST(SlamMessages, give_poses_of_tracked_frames_only) {
+  msg::TrackingResult result{};
+  result.seq = 5;
+  result.map_id = 2;
+  result.T_world_camera.rotation_xyzw = {0, 0, 0, 1};
+  result.T_world_camera.translation_m = {4, 5, 6};
+  result.state = msg::TrackingState::kOk;
+  const auto pose = to_slam_pose(result);
+  ASSERT_TRUE(pose);
+  EXPECT_EQ(pose->seq, 5U);
+  EXPECT_EQ(pose->map_id, 2U);
+  EXPECT_EQ(pose->T_world_camera.translation(), Eigen::Vector3d(4, 5, 6));
+  result.state = msg::TrackingState::kLost;
+  EXPECT_FALSE(to_slam_pose(result));
+}
+
+}  // namespace
+}  // namespace rtd::filter
