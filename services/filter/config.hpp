@@ -13,16 +13,16 @@ namespace rtd::filter {
 /// Values of `filter.mode`.
 std::vector<std::string> mode_names();
 
-/// Section `filter` of the configuration. The numbers of the core have their defaults in core/filter_config.hpp.
+/// Section `filter` of the configuration.
 struct ServiceConfig {
   FilterConfig core;
-  std::string mode = "rtd";          ///< one of mode_names()
-  std::string detector = "auto";     ///< auto: use one that is heard; off: never wait, never use
-  int detections_timeout_ms = 5000;  ///< asap, lockstep: longest wait for the boxes of one frame
-  int feedback_timeout_ms = 3000;    ///< lockstep: longest wait for slam's result of the previous frame
+  std::string mode = "rtd";
+  std::string detector = "auto";
+  int detections_timeout_ms = 5000;
+  int feedback_timeout_ms = 3000;
 
   void bind(service::ConfigBinder& binder);
-  /// `core` with the mode as its enum.
+  /// `core` with the mode as its enum. Throws service::ConfigError for an unknown motion level.
   FilterConfig core_config() const;
 };
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/filter_service.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <opencv2/core/utility.hpp>
 

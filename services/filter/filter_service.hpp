@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -15,12 +16,7 @@
 #include "common/service/runtime.hpp"
 #include "services/filter/config.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
-#include "services/filter/detection_inbox.hpp"
-#include "services/filter/slam_feedback.hpp"
-
-namespace CLI {
-class App;
-}
+#include "services/filter/inboxes.hpp"
 
 namespace rtd::filter {
 

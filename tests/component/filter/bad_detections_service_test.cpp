@@ -44,7 +44,7 @@ class BadDetectionsService : public FilterServiceTest {
   }
 };
 
-TEST_F(BadDetectionsService, leaves_out_boxes_that_make_no_sense) {
+TEST_F(BadDetectionsService, leaves_out_invalid_boxes) {
   start(service::Pace::kAsap, true);
   send(stamp(0),
        {box("person", kNan, 300, 200, 100), box("person", 0.9, kNan, 200, 100),

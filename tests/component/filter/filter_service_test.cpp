@@ -27,7 +27,7 @@ TEST_F(FilterServiceTest, pairs_each_frame_with_its_own_boxes) {
   EXPECT_EQ(answers_.at(1)->stamp_ns, stamp(1));
 }
 
-TEST_F(FilterServiceTest, publishes_what_moves_to_those_who_listen) {
+TEST_F(FilterServiceTest, publishes_what_moves_while_there_is_a_subscriber) {
   Inbox<msg::Image> masks;
   hear(bus::topics::kDynamicMask, masks);
   start(service::Pace::kAsap, true);
@@ -40,7 +40,7 @@ TEST_F(FilterServiceTest, publishes_what_moves_to_those_who_listen) {
   EXPECT_EQ(masks.at(0)->data.at(static_cast<std::size_t>(160 * (block.y / 4 + 2) + block.x / 4 + 2)), 255);
 }
 
-TEST_F(FilterServiceTest, waits_for_boxes_that_come_late) {
+TEST_F(FilterServiceTest, waits_for_boxes_that_arrive_late) {
   start(service::Pace::kAsap, true);
   send_frame(0);
   EXPECT_FALSE(answers_.wait_count(1, std::chrono::milliseconds(300))) << "answered without the boxes";
@@ -65,7 +65,7 @@ TEST_F(FilterServiceTest, carries_the_newest_boxes_in_realtime_and_does_not_wait
   EXPECT_EQ(answers_.at(2)->detection_use, msg::DetectionUse::kNone);
 }
 
-TEST_F(FilterServiceTest, says_within_half_a_second_that_the_detector_has_gone_and_when_it_is_back) {
+TEST_F(FilterServiceTest, reports_within_half_a_second_that_the_detector_has_gone_and_its_return) {
   start(service::Pace::kRealtime, true);
   send_frame(0);
   ASSERT_TRUE(wait_state(msg::ServiceState::kRunning));
@@ -111,14 +111,14 @@ TEST_F(FilterServiceTest, waits_in_lockstep_for_slam_and_its_keyframes) {
   EXPECT_TRUE(answers_.wait_count(2));
 }
 
-TEST_F(FilterServiceTest, gives_a_repeated_frame_the_same_answer) {
+TEST_F(FilterServiceTest, gives_a_repeated_frame_the_same_features) {
   start(service::Pace::kLockstep, false);
   for (int i = 0; i < 3; ++i) send_frame(0);
   ASSERT_TRUE(answers_.wait_count(3));
   EXPECT_EQ(std::memcmp(answers_.at(0).get(), answers_.at(2).get(), sizeof(msg::FeatureFrame)), 0);
 }
 
-TEST_F(FilterServiceTest, answers_a_defective_frame_without_features_and_counts_it) {
+TEST_F(FilterServiceTest, publishes_a_defective_frame_without_features_and_counts_it) {
   start(service::Pace::kLockstep, false);
   *frame_ = {};
   frame_->width = 100'000;
@@ -143,7 +143,7 @@ TEST_F(FilterServiceTest, keeps_to_the_first_of_two_cameras) {
   EXPECT_TRUE(wait_metric("frames_foreign", 2));
 }
 
-TEST_F(FilterServiceTest, takes_time_that_goes_backwards) {
+TEST_F(FilterServiceTest, accepts_time_that_goes_backwards) {
   start(service::Pace::kAsap, false);
   for (const std::uint64_t seq : {10U, 11U, 2U, 3U}) send_frame(seq);
   ASSERT_TRUE(answers_.wait_count(4));

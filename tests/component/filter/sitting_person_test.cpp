@@ -59,7 +59,7 @@ TEST_F(SittingPerson, is_used_again_within_two_seconds_of_stopping) {
     EXPECT_LE(gone_.at(i), 0.1) << "frame " << i;
 }
 
-TEST_F(SittingPerson, takes_nothing_of_the_room_away) {
+TEST_F(SittingPerson, removes_nothing_of_the_room) {
   for (const auto& [frame, share] : background_gone_) EXPECT_LE(share, 0.08) << "frame " << frame;
 }
 

@@ -69,7 +69,7 @@ TEST(BadDetections, of_impossible_size_count_as_none) {
               no_boxes);
 }
 
-TEST(BadDetections, with_numbers_that_are_none_count_as_none) {
+TEST(BadDetections, with_numbers_that_are_not_finite_count_as_none) {
   std::vector<vision::Detection> boxes;
   for (const float bad : {kNan, kInf, -kInf}) {
     boxes.insert(boxes.end(), {person(bad, 10, 100, 100), person(10, bad, 100, 100), person(10, 10, bad, 100),
@@ -78,14 +78,14 @@ TEST(BadDetections, with_numbers_that_are_none_count_as_none) {
   expect_same(always(boxes), no_boxes);
 }
 
-TEST(BadDetections, with_a_score_that_is_no_number_count_as_none) {
+TEST(BadDetections, with_a_score_that_is_not_finite_count_as_none) {
   for (const float score : {kNan, kInf, -kInf}) {
     SCOPED_TRACE(score);
     expect_same(always({person(200, 100, 200, 250, score)}), no_boxes);
   }
 }
 
-TEST(BadDetections, of_classes_that_the_table_lacks_count_as_none) {
+TEST(BadDetections, of_unknown_classes_count_as_none) {
   std::vector<vision::Detection> boxes;
   for (const char* name : {"", "unicorn", "Person", "person ", "\xff\xfe"})
     boxes.push_back({name, 0.9F, 100, 100, 200, 200});
@@ -99,7 +99,7 @@ TEST(BadDetections, as_large_as_the_image_leave_features_to_slam) {
   EXPECT_GT(last.features.size() - last.removed, 100U);
 }
 
-TEST(BadDetections, ten_thousand_of_them_cost_no_second) {
+TEST(BadDetections, ten_thousand_of_them_take_less_than_half_a_second_per_frame) {
   std::vector<vision::Detection> boxes;
   for (int i = 0; i < 10'000; ++i) {
     const auto n = static_cast<float>(i);
@@ -145,7 +145,7 @@ TEST(BadDetections, of_long_ago_count_as_none) {
   }
 }
 
-TEST(BadDetections, in_any_order_and_doubled_do_no_harm) {
+TEST(BadDetections, in_any_order_and_duplicated_do_no_harm) {
   const std::vector<vision::Detection> boxes{person(200, 100, 200, 250)};
   const std::vector<FilterResult> results = run([&](std::int64_t stamp_ns) {
     DetectorUpdate update{true, {}};

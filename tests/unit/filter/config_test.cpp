@@ -7,7 +7,7 @@
 namespace rtd::filter {
 namespace {
 
-TEST(FilterConfig, is_bound_completely_and_refuses_what_is_out_of_range) {
+TEST(FilterConfig, is_bound_completely_and_rejects_values_out_of_range) {
   ServiceConfig config;
   service::ConfigBinder binder;
   binder.section("filter", config);

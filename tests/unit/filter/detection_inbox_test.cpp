@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/detection_inbox.hpp"
+#include "services/filter/inboxes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ bool at_once() {
   return true;
 }
 
-TEST(DetectionInbox, hands_out_by_stamp_what_is_not_newer_and_once) {
+TEST(DetectionInbox, hands_out_each_batch_once_by_stamp) {
   DetectionInbox inbox;
   inbox.put({200, {person(2)}});
   inbox.put({100, {person(1)}});
@@ -32,7 +32,7 @@ TEST(DetectionInbox, hands_out_by_stamp_what_is_not_newer_and_once) {
   EXPECT_EQ(inbox.take_until(1000).size(), 1U) << "it came before its frame";
 }
 
-TEST(DetectionInbox, waits_for_boxes_that_come_later) {
+TEST(DetectionInbox, waits_for_batches_that_arrive_later) {
   DetectionInbox inbox;
   auto waiting = std::async(std::launch::async, [&] { return inbox.wait_for(300, never); });
   inbox.put({299, {}});
@@ -41,7 +41,7 @@ TEST(DetectionInbox, waits_for_boxes_that_come_later) {
   EXPECT_EQ(inbox.take_until(300).size(), 2U);
 }
 
-TEST(DetectionInbox, gives_up_when_told_and_when_closed) {
+TEST(DetectionInbox, gives_up_when_the_caller_does_and_when_closed) {
   DetectionInbox inbox;
   EXPECT_FALSE(inbox.wait_for(1, at_once));
   auto waiting = std::async(std::launch::async, [&] { return inbox.wait_for(1, never); });

@@ -36,7 +36,7 @@ TEST(DynamicFilter, finds_the_pose_of_a_moving_camera_in_a_static_scene) {
   EXPECT_NEAR(result.T_world_camera.translation().y(), 0, 0.006) << "m";
 }
 
-TEST(DynamicFilter, removes_a_mover_of_no_class_and_keeps_the_room) {
+TEST(DynamicFilter, removes_a_mover_without_a_class_and_keeps_the_room) {
   const MovingScene scene;
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
   for (std::uint64_t i = 0; i < 15; ++i) {
@@ -51,7 +51,7 @@ TEST(DynamicFilter, removes_a_mover_of_no_class_and_keeps_the_room) {
   }
 }
 
-TEST(DynamicFilter, removes_a_mover_of_three_centimetres_a_second) {
+TEST(DynamicFilter, removes_a_mover_at_three_centimetres_per_second) {
   const MovingScene scene;
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
   for (std::uint64_t i = 0; i < 75; ++i) {
@@ -73,7 +73,7 @@ TEST(DynamicFilter, is_not_carried_along_in_the_second_frame) {
   EXPECT_GE(removed_share(result, MovingScene::block(kCameraStepM, -0.1 + kBlockStepM), true), 0.9);
 }
 
-TEST(DynamicFilter, does_not_believe_a_mover_that_pauses_for_half_a_second) {
+TEST(DynamicFilter, still_removes_a_mover_that_pauses_for_half_a_second) {
   const MovingScene scene;
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
   for (std::uint64_t i = 0; i < 25; ++i) {
@@ -115,7 +115,7 @@ TEST(DynamicFilter, ignores_boxes_in_geometry_mode_and_everything_in_mode_off) {
   }
 }
 
-TEST(DynamicFilter, tells_cell_by_cell_what_moves_and_of_what_it_knows_nothing) {
+TEST(DynamicFilter, marks_each_cell_as_moving_static_or_unknown) {
   const MovingScene scene;
   DynamicFilter filter = make_filter(FilterMode::kRtd);
   const cv::Rect block = MovingScene::block(0, 0);
@@ -173,7 +173,7 @@ TEST(DynamicFilter, survives_broken_images_between_good_ones) {
   EXPECT_EQ(result.removed, 0U);
 }
 
-TEST(DynamicFilter, takes_stamps_that_stand_still_or_go_backwards) {
+TEST(DynamicFilter, accepts_stamps_that_stand_still_or_go_backwards) {
   const MovingScene scene;
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
   for (const std::int64_t stamp_ns : {100, 100, 50, -1'000'000'000, 7'200'000}) {

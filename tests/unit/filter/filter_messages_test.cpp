@@ -47,7 +47,7 @@ TEST(DetectionMessage, takes_the_best_hypothesis_and_the_corner_of_the_box) {
   EXPECT_FLOAT_EQ(converted.detections[0].x_px, 40.0F);
 }
 
-TEST(DetectionMessage, leaves_out_boxes_that_are_none) {
+TEST(DetectionMessage, leaves_out_invalid_boxes) {
   msg::Detection2DArray message;
   message.detections = {box(std::nan(""), 20, 0.8), box(50, 0, 0.8), box(50, -3, 0.8),
                         box(50, std::numeric_limits<double>::infinity(), 0.8), msg::Detection2D{}};
@@ -73,7 +73,7 @@ TEST(DetectionMessage, becomes_boxes_with_their_corner) {
   EXPECT_FLOAT_EQ(boxes.detections[0].y_px, 170);
 }
 
-TEST(DetectionMessage, loses_what_makes_no_sense) {
+TEST(DetectionMessage, drops_boxes_that_make_no_sense) {
   msg::Detection2DArray message;
   message.detections = {named_box("person", kNan, 1, 1, 1, 1),   named_box("person", 0.5, kInf, 1, 1, 1),
                         named_box("person", 0.5, 1, 1, kNan, 1), named_box("person", 0.5, 1, 1, -4, 1),
@@ -157,7 +157,7 @@ TEST(FrameMessages, name_what_is_wrong_with_a_frame) {
   EXPECT_THAT(defect(*frame), testing::HasSubstr("5000"));
 }
 
-TEST(FrameMessages, show_the_motion_of_the_cells_as_a_grey_picture) {
+TEST(FrameMessages, show_the_motion_of_the_cells_as_a_grey_image) {
   const auto frame = std::make_unique<msg::RgbdFrame>();
   *frame = {};
   frame->stamp_ns = 1'500'000'000;

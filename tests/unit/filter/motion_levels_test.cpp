@@ -22,7 +22,7 @@ TEST(MotionLevels, can_be_changed_class_by_class) {
   EXPECT_EQ(levels.find("person"), std::nullopt);
 }
 
-TEST(MotionLevels, name_class_and_value_of_a_wrong_level) {
+TEST(MotionLevels, name_class_and_value_of_an_unknown_level) {
   EXPECT_THAT(
       [] {
         MotionLevels(std::map<std::string, std::string>{{"dog", "fast"}});

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/slam_feedback.hpp"
+#include "services/filter/inboxes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -31,7 +31,7 @@ class BeliefStep {
     medium_ = {log_odds(config.medium_prior), gain, highest};
     high_ = {log_odds(config.high_prior), high_gain, log_odds(config.high_limit)};
     forgotten_ = static_cast<float>(1 - std::exp(-step_s / config.forget_s));
-    if (!techniques.belief) background_.gain = medium_.gain = highest - lowest_;  // one frame says it all
+    if (!techniques.belief) background_.gain = medium_.gain = highest - lowest_;  // one frame decides
     if (!techniques.belief || !techniques.resting_objects) high_.gain = 0;
   }
 

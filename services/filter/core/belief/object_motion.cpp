@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "services/filter/core/surfaces/median.hpp"
+#include "services/filter/core/samples.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -17,18 +17,6 @@ float median_variance(const std::vector<float>& values, float middle) {
   for (const float value : values) deviations.push_back(std::abs(value - middle));
   const float sigma = kSigmaPerMad * median(std::move(deviations));
   return kMedianVariance * sigma * sigma / static_cast<float>(values.size());
-}
-
-/// Votes of features per cell, to be summed over objects.
-struct VotesByCell {
-  std::vector<std::uint8_t> resting, moving;
-};
-
-VotesByCell by_cell(const FeatureVotes& votes, std::size_t cells) {
-  VotesByCell counted{std::vector<std::uint8_t>(cells, 0), std::vector<std::uint8_t>(cells, 0)};
-  for (const FeatureVote& vote : votes.votes)
-    ++(vote.moving ? counted.moving : counted.resting)[static_cast<std::size_t>(vote.cell)];
-  return counted;
 }
 
 ObjectMotion judge(const SceneObject& object, const MotionEvidence& evidence, const VotesByCell& votes,

@@ -19,14 +19,14 @@ struct ObjectDrift {
   float sigma_px = 0;  ///< its standard deviation, from the spread of the features
 };
 
-/// Of the features on these cells. The median of n features knows the shift sqrt(n) times better than each of them, and
-/// arms that wave before a trunk at rest do not change it.
+/// The drift of the features on these cells. The median of n features is sqrt(n) times more precise than each of them,
+/// and waving arms in front of a trunk at rest do not change it.
 ObjectDrift drift_of(const std::vector<int>& cells, const FeatureVotes& votes, std::size_t grid_cells);
 
-/// The shift is neither noise of the features nor of the pose.
+/// Is the shift larger than the noise of the features and of the pose?
 bool drifts(const ObjectDrift& drift, const BeliefConfig& config);
 
-/// What geometry says of an object with a class in this frame: high / low dynamic objects are told apart by it.
+/// What geometry says about an object with a class in this frame.
 enum class ObjectMotion { kUnknown, kMoving, kResting };
 
 /// All that geometry found out about a frame.

@@ -55,7 +55,7 @@ CellBeliefs grow_doubt(const FrameKnowledge& known, int cells) {
   return grown;
 }
 
-/// Takes back the most probable of the removed features until enough remain.
+/// Keeps the most probable of the removed features until enough remain.
 void keep_best_of_doubtful(std::vector<msg::Feature>& features, const FilterConfig& config) {
   const auto seen_moving = static_cast<float>(config.belief.lowest_probability) * 1.01F;
   int kept = 0;
@@ -76,7 +76,7 @@ void keep_best_of_doubtful(std::vector<msg::Feature>& features, const FilterConf
   }
 }
 
-/// What is kept counts in full.
+/// Features that are kept count in full.
 void weigh_alike(std::vector<msg::Feature>& features) {
   for (msg::Feature& feature : features) {
     if ((feature.flags & msg::kFeatureRemoved) == 0) feature.static_probability = 1;

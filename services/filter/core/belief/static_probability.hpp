@@ -12,7 +12,7 @@
 
 namespace rtd::filter {
 
-/// All that is known of a frame when its features are judged.
+/// All that is known about a frame when its features are judged.
 struct FrameKnowledge {
   GridShape shape;
   const std::vector<SceneObject>& objects;
@@ -22,9 +22,9 @@ struct FrameKnowledge {
   const DepthEvidence& evidence;
 };
 
-/// Gives every feature its probability to be static, its flags and its object (docs/theory/dynamic_points.md section 5,
-/// which see), marks the improbable ones as removed and, when that leaves too few, takes the best of the
-/// doubtful back. Features that geometry saw moving stay removed.
+/// Gives every feature its probability to be static, its flags and its object (docs/theory/dynamic_points.md section
+/// 5), marks the improbable ones as removed and, if that leaves too few, keeps the best of the doubtful. Features that
+/// geometry saw moving stay removed.
 std::vector<msg::Feature> weigh_static_probability(std::vector<msg::Feature> features, const FrameKnowledge& known,
                                                    const FilterConfig& config);
 

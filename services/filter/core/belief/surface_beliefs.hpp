@@ -23,15 +23,16 @@ inline float probability(float log_odds) {
   return 1.0F / (1.0F + std::exp(-log_odds));
 }
 
-/// Per cell the log-odds that its surface is static; kNoBelief where nothing is known of it.
+/// Per cell the log-odds that its surface is static; kNoBelief where nothing is known about it.
 using CellBeliefs = std::vector<float>;
 inline constexpr float kNoBelief = 1e9F;
 inline bool is_known(float belief) {
   return belief < kNoBelief;
 }
 
-/// What was believed of the surfaces of the last frame, carried to the current one. A belief lies on a place in space:
-/// what steps in front of a wall finds no belief there, and a wall keeps its own whatever a detector calls it.
+/// The beliefs about the surfaces of the last frame, carried to the current one. A belief is attached to a place in
+/// space: what steps in front of a wall does not inherit the wall's belief, and the wall keeps it whatever a detector
+/// calls it.
 class SurfaceBeliefs {
  public:
   void store(const DepthGrid& grid, CellBeliefs beliefs);

@@ -39,7 +39,7 @@ std::vector<cv::Point2f> undistorted(const std::vector<FlowMatch>& matches, cv::
   return points;
 }
 
-/// Distance of a point to the epipolar line F x of its partner, px; infinite when the line is none.
+/// Distance of a point to the epipolar line F x of its partner, px; 0 if there is no line.
 double epipolar_distance_px(const cv::Matx33d& fundamental, const cv::Point2f& before, const cv::Point2f& now) {
   const cv::Vec3d line = fundamental * cv::Vec3d(before.x, before.y, 1);
   const double norm = std::hypot(line[0], line[1]);
@@ -81,7 +81,7 @@ std::vector<cv::Point2f> find_moving_points(const std::vector<FlowMatch>& matche
   if (matches.size() < kMinMatches) return {};
   const std::vector<cv::Point2f> before = undistorted(matches, &FlowMatch::before, camera);
   const std::vector<cv::Point2f> now = undistorted(matches, &FlowMatch::now, camera);
-  cv::setRNGSeed(0);  // the same input gives the same answer
+  cv::setRNGSeed(0);  // the same input gives the same result
   const cv::Mat found = cv::findFundamentalMat(before, now, cv::FM_RANSAC, config.ransac_distance_px, 0.99);
   if (found.rows != 3 || found.cols != 3 || !cv::checkRange(found)) return {};
   const cv::Matx33d fundamental(found.ptr<double>());

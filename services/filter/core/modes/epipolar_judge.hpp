@@ -16,14 +16,14 @@ struct FlowMatch {
   cv::Point2f before, now;
 };
 
-/// Corners followed by pyramidal Lucas-Kanade flow. Left out: what leaves the image or ends near its border, and what
-/// does not look the same any more (3x3 patch). Both images CV_8UC1 of one size.
+/// Corners followed by pyramidal Lucas-Kanade flow. Left out: corners that leave the image or end near its border, and
+/// those that no longer look the same (3x3 patch). Both images CV_8UC1 of one size.
 std::vector<FlowMatch> follow_corners(const cv::Mat& before, const cv::Mat& now, const EpipolarConfig& config);
 
 /// DS-SLAM's moving consistency check (Yu et al., IROS 2018, section III-C): the fundamental matrix of most matches by
 /// RANSAC; where a match ends farther from its epipolar line than the config's distance, it has moved. Returns the
 /// current raw pixels of those; none when there are too few matches for a matrix. Motion along the epipolar line is not
-/// seen: that is the weakness of the check, as is the freedom of the matrix when the camera only turns.
+/// seen: this is the weakness of the check, as is the freedom of the matrix when the camera only turns.
 std::vector<cv::Point2f> find_moving_points(const std::vector<FlowMatch>& matches, const geometry::CameraModel& camera,
                                             const EpipolarConfig& config);
 

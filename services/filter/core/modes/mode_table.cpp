@@ -16,29 +16,6 @@ namespace {
 
 constexpr double kPaperTauM = 0.4;  // section III-A
 
-constexpr NamedTechnique kTechniques[] = {
-    {"motion_levels", &Techniques::motion_levels, "every class of the table counts as high"},
-    {"depth_masks", &Techniques::depth_masks, "the whole box is the object"},
-    {"flat_objects", &Techniques::flat_objects, "a poster of a person is a person"},
-    {"depth_check", &Techniques::depth_check, "no multi-view check of range images"},
-    {"feature_votes", &Techniques::feature_votes, "displaced features do not vote"},
-    {"look_back", &Techniques::look_back, "no look back over a second for very slow movers"},
-    {"arrivals", &Techniques::arrivals, "old views go on condemning what has come and stopped"},
-    {"object_drift", &Techniques::object_drift, "a person's features vote one by one"},
-    {"noise_aware_tau", &Techniques::noise_aware_tau, "the paper's 0.4 m at every depth"},
-    {"mover_memory", &Techniques::mover_memory, "movers are found anew in each frame"},
-    {"mover_tracks", &Techniques::mover_tracks, "movers that come back into view are new"},
-    {"surface_poses", &Techniques::surface_poses, "surfaces do not propose the camera's motion"},
-    {"belief", &Techniques::belief, "static probability from one frame alone"},
-    {"resting_objects", &Techniques::resting_objects, "high classes are never used"},
-    {"feature_weights", &Techniques::feature_weights, "what is kept weighs 1"},
-    {"box_tracks", &Techniques::box_tracks, "only the boxes of the frame itself"},
-    {"mask_flow", &Techniques::mask_flow, "masks move with the predicted box"},
-    {"roll_distrust", &Techniques::roll_distrust, "an empty answer is always believed"},
-    {"more_features", &Techniques::more_features, "as many features whatever is masked"},
-    {"keep_doubtful", &Techniques::keep_doubtful, "too few features stay too few"},
-};
-
 using T = Techniques;
 
 template <class Judge>
@@ -48,7 +25,7 @@ std::unique_ptr<ModeJudge> make(const FilterConfig& config) {
 
 Techniques only(std::initializer_list<bool T::*> chosen) {
   Techniques techniques;
-  for (const NamedTechnique& technique : all_techniques()) {
+  for (const NamedTechnique& technique : kTechniques) {
     techniques.*technique.on = std::find(chosen.begin(), chosen.end(), technique.on) != chosen.end();
   }
   return techniques;
@@ -56,7 +33,7 @@ Techniques only(std::initializer_list<bool T::*> chosen) {
 
 Techniques everything() {
   Techniques techniques;
-  for (const NamedTechnique& technique : all_techniques()) techniques.*technique.on = true;
+  for (const NamedTechnique& technique : kTechniques) techniques.*technique.on = true;
   return techniques;
 }
 
@@ -78,23 +55,20 @@ const std::vector<ModeEntry>& table() {
   return entries;
 }
 
-}  // namespace
-
-std::span<const NamedTechnique> all_techniques() {
-  return kTechniques;
-}
-
+/// Only those that are on in both.
 Techniques in_common(const Techniques& a, const Techniques& b) {
   Techniques both;
   for (const NamedTechnique& technique : kTechniques) both.*technique.on = a.*technique.on && b.*technique.on;
   return both;
 }
 
+/// What switches that are off mean in numbers: a technique that only weighs evidence needs no branch in the algorithm,
+/// its numbers are such that it has no effect. `config.techniques` is kept for those that do need a branch.
 FilterConfig with_techniques_applied(FilterConfig config) {
   const Techniques& on = config.techniques;
   if (!on.depth_masks) config.masks.whole_boxes = true;
   if (!on.flat_objects) config.masks.min_outline_share = 0;  // no outline is flat enough
-  if (!on.depth_check) config.geometry.max_views = 0;        // nobody to ask
+  if (!on.depth_check) config.geometry.max_views = 0;        // no view to compare with
   if (!on.feature_votes) {
     config.geometry.min_moving_features = config.geometry.min_creeping_features = std::numeric_limits<int>::max();
   }
@@ -111,6 +85,8 @@ FilterConfig with_techniques_applied(FilterConfig config) {
   if (!on.keep_doubtful) config.fusion.min_static_features = 0;
   return config;
 }
+
+}  // namespace
 
 std::span<const ModeEntry> all_modes() {
   return table();

@@ -4,14 +4,13 @@
 
 #include "services/filter/core/belief/surface_beliefs.hpp"
 #include "services/filter/core/modes/mode_judge.hpp"
-#include "services/filter/core/motion/dynamic_memory.hpp"
 #include "services/filter/core/motion/dynamic_regions.hpp"
 #include "services/filter/core/motion/ego_motion.hpp"
 
 namespace rtd::filter {
 
 /// The rule of this project, for the modes rtd, semantic and geometry, which differ in the techniques that are on.
-/// docs/theory/dynamic_points.md. Its story, judge(), is told in core/dynamic_filter.cpp.
+/// docs/theory/dynamic_points.md. judge() itself is in core/dynamic_filter.cpp, which tells the whole story.
 class RtdJudge final : public ModeJudge {
  public:
   /// `config`: effective_config() of the mode.

@@ -8,7 +8,8 @@
 namespace rtd::filter {
 namespace {
 
-using Points = Eigen::Array<float, Eigen::Dynamic, 3>;  ///< x, y, z in a column each: what is done to all is vectorised
+using Points = Eigen::Array<float, Eigen::Dynamic,
+                            3>;  ///< x, y, z in a column each, so that operations on all points are vectorised
 
 /// The cells that have a depth, as points of the camera.
 struct MeasuredCells {
@@ -30,7 +31,7 @@ MeasuredCells measured_cells(const DepthGrid& grid, const std::vector<Eigen::Vec
   return measured;
 }
 
-// What recent views say of a cell while they are asked
+// What recent views saw at a cell, while views are being compared
 constexpr std::uint8_t kSeenThere = 1, kSeenThrough = 2;
 
 /// The check against one reference view, in single precision: it runs over every cell.

@@ -3,6 +3,7 @@
 #include "services/filter/core/motion/dynamic_regions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace rtd::filter {
@@ -13,7 +14,7 @@ constexpr int kForgetFaster = 4;  // frames of memory that one frame at rest cos
 
 /// The counts by which a cluster is judged.
 struct ClusterEvidence {
-  int seen = 0;  ///< stated, or there a while ago, whatever was thought of it then
+  int seen = 0;  ///< cells with a statement, or that were there a while ago even if they counted as dynamic then
   int stated = 0, violating = 0, remembered = 0;
   std::uint8_t frames_left = 0;
 };
@@ -46,7 +47,7 @@ int vote_count(const std::vector<int>& per_cluster, std::size_t cluster) {
   return cluster < per_cluster.size() ? per_cluster[cluster] : 0;
 }
 
-/// Depth and features both say that it rests: what was believed of it was wrong, or is over.
+/// Depth and features both show that it rests: it was taken for dynamic wrongly, or it has stopped.
 bool rests(const ClusterEvidence& cluster, const MotionVotes& votes, std::size_t index, const GeometryConfig& config) {
   const auto at_place = [&](const FeatureVotes& cast) {
     return vote_count(cast.resting, index) >= config.min_resting_ratio * vote_count(cast.moving, index);
@@ -56,7 +57,7 @@ bool rests(const ClusterEvidence& cluster, const MotionVotes& votes, std::size_t
          at_place(votes.slow);
 }
 
-/// Per cluster: how long it is believed to be dynamic, 0 = it is not.
+/// Per cluster: for how many frames it counts as dynamic, 0 = not.
 std::vector<std::uint8_t> judge_clusters(const DepthClusters& clusters, const DepthEvidence& evidence,
                                          const MotionVotes& votes, const CellMask& remembered,
                                          const GeometryConfig& config) {
@@ -73,35 +74,26 @@ std::vector<std::uint8_t> judge_clusters(const DepthClusters& clusters, const De
   return frames_left;
 }
 
-struct VotesOnCells {
-  std::vector<int> resting, moving;  ///< per cell
-  std::pair<int, int> sum(const std::vector<int>& region) const {
-    std::pair<int, int> total{0, 0};
-    for (const int cell : region) {
-      total.first += resting[static_cast<std::size_t>(cell)];
-      total.second += moving[static_cast<std::size_t>(cell)];
-    }
-    return total;
+/// Votes on the cells of a region: at their place, displaced.
+std::pair<int, int> sum_votes(const VotesByCell& votes, const std::vector<int>& region) {
+  std::pair<int, int> total{0, 0};
+  for (const int cell : region) {
+    total.first += votes.resting[static_cast<std::size_t>(cell)];
+    total.second += votes.moving[static_cast<std::size_t>(cell)];
   }
-};
-
-VotesOnCells on_cells(const FeatureVotes& votes, std::size_t cells) {
-  VotesOnCells on{std::vector<int>(cells, 0), std::vector<int>(cells, 0)};
-  for (const FeatureVote& vote : votes.votes)
-    ++(vote.moving ? on.moving : on.resting)[static_cast<std::size_t>(vote.cell)];
-  return on;
+  return total;
 }
 
-/// Large parts that have lasted and whose features are at their place: the floor on which a walker stands belongs to
-/// his depth cluster but not to him. The inside of a slow mover lasts too, but its features have moved.
+/// Large parts that have lasted and whose features are at their place: the floor under a walker belongs to the walker's
+/// depth cluster but not to the walker. The inside of a slow mover lasts too, but its features have moved.
 CellMask resting_parts(const DepthClusters& clusters, const DepthEvidence& evidence, const MotionVotes& votes,
                        const GeometryConfig& config) {
-  const VotesOnCells quick = on_cells(votes.quick, clusters.label.size()),
-                     slow = on_cells(votes.slow, clusters.label.size());
+  const std::size_t cells = clusters.label.size();
+  const VotesByCell quick = by_cell(votes.quick, cells), slow = by_cell(votes.slow, cells);
   const auto rests = [&](const std::vector<int>& region) {
     if (static_cast<int>(region.size()) < config.min_resting_cells) return false;
-    const auto [at_place, displaced] = quick.sum(region);
-    const auto [long_at_place, long_displaced] = slow.sum(region);
+    const auto [at_place, displaced] = sum_votes(quick, region);
+    const auto [long_at_place, long_displaced] = sum_votes(slow, region);
     return at_place >= config.min_moving_features && at_place >= config.min_resting_ratio * displaced &&
            long_at_place >= config.min_resting_ratio * long_displaced;
   };
@@ -145,7 +137,7 @@ DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEv
   for (std::size_t cell = 0; cell < none.size(); ++cell) {
     const std::int32_t label = clusters.label[cell];
     const std::uint8_t frames_left = label < 0 ? std::uint8_t{0} : of_cluster[static_cast<std::size_t>(label)];
-    if (frames_left > 0) {  // resting parts are not taken in, but what has moved is let go slowly
+    if (frames_left > 0) {  // resting parts are left out, but what has moved is released slowly
       regions.frames_left[cell] = resting[cell] == 0 ? frames_left : std::min(frames_left, one_less(remembered[cell]));
     } else {
       loose[cell] = evidence.violated[cell] > 0 ? loose_memory : std::min(loose_memory, one_less(remembered[cell]));
@@ -162,6 +154,42 @@ DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEv
   if (static_cast<double>(dynamic) > config.max_dynamic_share * clusters.shape.size()) return {false, none, 0};
   regions.clusters = static_cast<int>(std::count_if(of_cluster.begin(), of_cluster.end(), [](int n) { return n > 0; }));
   return regions;
+}
+
+void DynamicMemory::store(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
+                          const std::vector<std::uint8_t>& frames_left) {
+  points_.clear();
+  for (std::size_t cell = 0; cell < frames_left.size(); ++cell) {
+    if (frames_left[cell] > 0 && grid.depth_m[cell] > 0)
+      points_.push_back({rays[cell] * grid.depth_m[cell], frames_left[cell]});
+  }
+}
+
+std::vector<std::uint8_t> DynamicMemory::recall(const DepthGrid& grid, const geometry::CameraModel& camera,
+                                                const Eigen::Isometry3d& T_current_last) const {
+  constexpr float kOwnDepthM = 0.2F;  // a mover of 3 m/s gets 0.1 m nearer from frame to frame
+  constexpr float kMinDepthM = 0.1F;
+  const Eigen::Matrix3f rotation = T_current_last.linear().cast<float>();
+  const Eigen::Vector3f translation = T_current_last.translation().cast<float>();
+  const auto& p = camera.parameters();
+  const auto fx = static_cast<float>(p.fx), fy = static_cast<float>(p.fy);
+  const auto cx = static_cast<float>(p.cx), cy = static_cast<float>(p.cy);
+  std::vector<std::uint8_t> frames_left(static_cast<std::size_t>(grid.shape.size()), 0);
+  for (const Point& point : points_) {
+    const Eigen::Vector3f p_current = rotation * point.p_camera + translation;
+    if (p_current.z() < kMinDepthM) continue;
+    // Two by two cells: no holes when things come nearer.
+    const auto left = static_cast<int>(std::floor((fx * p_current.x() / p_current.z() + cx) / kCellPx - 0.5F));
+    const auto top = static_cast<int>(std::floor((fy * p_current.y() / p_current.z() + cy) / kCellPx - 0.5F));
+    for (int row = std::max(top, 0); row <= std::min(top + 1, grid.shape.rows - 1); ++row) {
+      for (int column = std::max(left, 0); column <= std::min(left + 1, grid.shape.columns - 1); ++column) {
+        const auto i = static_cast<std::size_t>(grid.shape.index(column, row));
+        if (std::abs(grid.depth_m[i] - p_current.z()) < kOwnDepthM)
+          frames_left[i] = std::max(frames_left[i], point.frames_left);
+      }
+    }
+  }
+  return frames_left;
 }
 
 }  // namespace rtd::filter

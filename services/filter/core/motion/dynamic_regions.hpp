@@ -2,24 +2,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
 #include "services/filter/core/motion/depth_check.hpp"
 #include "services/filter/core/motion/feature_votes.hpp"
 #include "services/filter/core/surfaces/cell_masks.hpp"
 #include "services/filter/core/surfaces/depth_clusters.hpp"
+#include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {
 
-/// What has come and stopped: older views saw through its place, but those of the last 0.7 s saw it there, and its
-/// features are where they were 0.1 s (`quick`) and 0.5 s (`old`) ago. Of such surfaces the verdict of the older views
-/// is taken back (`violated` cleared, `lasting` set): they say what has come, not what moves. Without this a person who
-/// stops before a wall would move for ever. docs/theory/dynamic_points.md section 4.
+/// Accepts surfaces that have arrived and stopped: older views saw through their place, but those of the last 0.7 s saw
+/// them there, and their features are where they were 0.1 s (`quick`) and 0.5 s (`old`) ago. The verdict of the older
+/// views is withdrawn there (`violated` cleared, `lasting` set): it shows that something has arrived, not that it
+/// moves. Without this, a person who stops in front of a wall would count as moving for ever.
+/// docs/theory/dynamic_points.md section 4.
 DepthEvidence accept_arrivals(DepthEvidence evidence, const DepthClusters& clusters, const FeatureVotes& quick,
                               const FeatureVotes& old, const GeometryConfig& config);
 
-/// Where the frame moves, by geometry alone.
+/// What moves in a frame, from geometry alone.
 struct DynamicRegions {
-  bool trusted = false;  ///< false: no statement (no pose, or more of the image moves than can be)
-  CellMask frames_left;  ///< 0 = not dynamic, else how many frames this is believed without new evidence
+  bool trusted = false;  ///< false: no statement (no pose, or an implausibly large part of the image moves)
+  CellMask frames_left;  ///< 0 = not dynamic, else the number of frames for which this holds without new evidence
   int clusters = 0;      ///< depth clusters that are dynamic as a whole
 };
 
@@ -29,11 +35,31 @@ struct MotionVotes {
   const FeatureVotes& slow;
 };
 
-/// Judges whole depth clusters (share of violating cells, votes of displaced features, or what was remembered of them)
-/// and, inside clusters that are not dynamic, compact groups of violating or remembered cells. Parts of a dynamic
-/// cluster that demonstrably rest are left out. docs/theory/dynamic_points.md section 4.
-/// `remembered`: frames_left of the last frame, brought to this one.
+/// Judges whole depth clusters (share of violated cells, votes of displaced features, or memory) and, inside clusters
+/// that are not dynamic, compact groups of violated or remembered cells. Parts of a dynamic cluster that demonstrably
+/// rest are left out. docs/theory/dynamic_points.md section 4. `remembered`: frames_left of the last frame, brought to
+/// this one.
 DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEvidence& evidence,
                                     const MotionVotes& votes, const CellMask& remembered, const GeometryConfig& config);
+
+/// Where things moved in the last frame, so that a mover that slows down or pauses does not count as static at once.
+class DynamicMemory {
+ public:
+  /// `frames_left` per cell of the frame just judged; its points are kept in the camera frame.
+  void store(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
+             const std::vector<std::uint8_t>& frames_left);
+  /// The same, seen from the current frame: points follow the camera's motion and count where the depth is about their
+  /// own.
+  std::vector<std::uint8_t> recall(const DepthGrid& grid, const geometry::CameraModel& camera,
+                                   const Eigen::Isometry3d& T_current_last) const;
+  void clear() { points_.clear(); }
+
+ private:
+  struct Point {
+    Eigen::Vector3f p_camera;
+    std::uint8_t frames_left;
+  };
+  std::vector<Point> points_;
+};
 
 }  // namespace rtd::filter

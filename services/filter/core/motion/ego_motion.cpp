@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/motion/ego_motion.hpp"
 
+#include <utility>
+
 #include "services/filter/core/motion/static_consensus.hpp"
+#include "services/filter/core/samples.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -42,8 +45,8 @@ std::vector<PointSighting> to_sightings(const std::vector<FeatureMatch>& matches
   return sightings;
 }
 
-/// The matches that may take part in the pose, every n-th of them, so that not more than `limit` remain.
-/// `moving_cluster`: per cluster, 1 = not used.
+/// The matches that may take part in the pose, thinned out evenly to at most `limit`. `moving_cluster`: per cluster, 1
+/// = not used.
 std::vector<FeatureMatch> usable(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input,
                                  const std::vector<char>& moving_cluster, std::size_t limit) {
   std::vector<FeatureMatch> kept;
@@ -53,16 +56,13 @@ std::vector<FeatureMatch> usable(const std::vector<FeatureMatch>& matches, const
     if (cluster >= 0 && moving_cluster[static_cast<std::size_t>(cluster)] != 0) continue;
     kept.push_back(match);
   }
-  if (kept.size() <= limit) return kept;
-  std::vector<FeatureMatch> thinned;
-  for (std::size_t i = 0; i < limit; ++i) thinned.push_back(kept[i * kept.size() / limit]);
-  return thinned;
+  return thin_out(std::move(kept), limit);
 }
 
 /// Votes of the features found again in a view up to 1.5 s old: what moves at a few cm/s stays within the noise over
-/// 0.1 s, but not over a second. The camera's motion since that view is found anew, by the agreement of the image, so
-/// that neither drift of the quick pose nor a map that follows the mover is taken for motion of the rest.
-/// Empty where no view is old enough (0.4 s) or the image does not agree. docs/theory/dynamic_points.md section 3.
+/// 0.1 s, but not over a second. The camera's motion since that view is estimated again, by the agreement of the image,
+/// so that neither drift of the quick pose nor a map that follows the mover appears as motion of everything else. Empty
+/// where no view is old enough (0.4 s) or the image does not agree. docs/theory/dynamic_points.md section 3.
 FeatureVotes count_slow_votes(const EgoMotionInput& input, const Eigen::Isometry3d& T_world_camera,
                               const EgoMotionConfig& config, const GeometryConfig& geometry) {
   const View& old = input.views.long_ago(input.stamp_ns, input.look_back_ns);

@@ -11,7 +11,7 @@
 
 namespace rtd::filter {
 
-/// What the estimate of the camera's motion starts from.
+/// Input of the estimate of the camera's motion.
 struct EgoMotionInput {
   SearchableFeatures current;
   const std::vector<char>& excluded;   ///< per feature, 1 = on something that may move: not used for the pose
@@ -20,13 +20,14 @@ struct EgoMotionInput {
   const ViewStore& views;  ///< not empty
   std::int64_t stamp_ns;
   Eigen::Isometry3d T_world_camera_predicted;
-  std::int64_t look_back_ns = 0;  ///< look for what moves too slowly for 0.1 s over this time too; 0 = not now
+  std::int64_t look_back_ns =
+      0;  ///< also compare with a view this old, to find what moves too slowly for 0.1 s; 0 = not in this frame
 };
 
 /// The quick pose of the current frame and what it was found from.
 struct EgoMotion {
   bool settled =
-      false;  ///< found against a view at least 0.09 s old: movers could be told from the camera's own motion
+      false;  ///< found against a view at least 0.09 s old: movers could be distinguished from the camera's own motion
   bool reliable = false;  ///< otherwise the pose is only the prediction and geometry makes no statement
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   int inliers = 0;
@@ -35,15 +36,15 @@ struct EgoMotion {
   FeatureVotes slow_votes;  ///< and in one of up to 1.5 s ago; none in most frames
 };
 
-/// Slow votes are counted in every so many-th frame: what is slow can wait.
+/// Slow votes are counted only in one of this many frames: what is slow can wait.
 inline constexpr unsigned kFramesPerLookBack = 3;
 
 /// A pose found over less time may have followed a mover.
 inline constexpr std::int64_t kMinSettledAgeNs = 90'000'000;
 
-/// Pose of the current frame from what stands still: features matched with the view 0.1 s ago (one frame
-/// is too short: on distant walls a shift nearly looks like a rotation, and one motion explains walls and mover), the
-/// motion that most of the image agrees with, without the clusters that move as a whole against it; then refined
+/// Pose of the current frame from what stands still: features matched with the view 0.1 s ago (one frame is too short:
+/// on distant walls a shift nearly looks like a rotation, and one motion explains walls and mover), the motion that
+/// most of the image agrees with, without the clusters that move as a whole against it; then refined
 /// (common/vision/pose_optimizer), against older views too, so that errors do not add up. docs/theory/dynamic_points.md
 /// section 2.
 EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig& config,

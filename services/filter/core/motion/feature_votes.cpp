@@ -40,6 +40,13 @@ FeatureVotes count_votes(const std::vector<PointSighting>& sightings, const geom
   return votes;
 }
 
+VotesByCell by_cell(const FeatureVotes& votes, std::size_t cells) {
+  VotesByCell counted{std::vector<int>(cells, 0), std::vector<int>(cells, 0)};
+  for (const FeatureVote& vote : votes.votes)
+    ++(vote.moving ? counted.moving : counted.resting)[static_cast<std::size_t>(vote.cell)];
+  return counted;
+}
+
 FeatureVotes without_votes_on(const std::vector<std::uint8_t>& cells, FeatureVotes votes,
                               const DepthClusters& clusters) {
   std::erase_if(votes.votes, [&](const FeatureVote& vote) {

@@ -32,14 +32,20 @@ struct FeatureVotes {
   bool cluster_moves(std::size_t cluster, const GeometryConfig& config) const;
   /// Enough of the cluster's features are at their place, and hardly one is not.
   bool cluster_rests(std::size_t cluster, const GeometryConfig& config) const;
-  /// The same for displacements over a second, which need no crowd: few features, but nearly all of them.
+  /// The same for displacements over a second, which need fewer features, but nearly all of them.
   bool cluster_creeps(std::size_t cluster, const GeometryConfig& config) const;
 };
 FeatureVotes count_votes(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
                          const Eigen::Isometry3d& T_world_camera, const DepthClusters& clusters,
                          const GeometryConfig& config);
 
-/// The votes that were not cast on these cells. `cells`: per cell, 1 = left out.
+/// The votes of the features on each cell.
+struct VotesByCell {
+  std::vector<int> resting, moving;
+};
+VotesByCell by_cell(const FeatureVotes& votes, std::size_t cells);
+
+/// The votes outside these cells. `cells`: per cell, 1 = left out.
 FeatureVotes without_votes_on(const std::vector<std::uint8_t>& cells, FeatureVotes votes,
                               const DepthClusters& clusters);
 

@@ -32,13 +32,13 @@ Best nearest_descriptor(const msg::Feature& wanted, const SearchableFeatures& cu
   return best;
 }
 
-/// Of several matches of one current feature the best stays.
+/// Of several matches of one current feature, the best is kept.
 std::vector<FeatureMatch> make_unique(std::vector<FeatureMatch> matches, std::size_t feature_count) {
   std::vector<int> best(feature_count, std::numeric_limits<int>::max());
   for (const FeatureMatch& match : matches) best[match.current] = std::min(best[match.current], match.hamming);
   std::erase_if(matches, [&](const FeatureMatch& match) {
     if (match.hamming != best[match.current]) return true;
-    best[match.current] = -1;  // a second one of the same distance goes too
+    best[match.current] = -1;  // a second match at the same distance is dropped
     return false;
   });
   return matches;

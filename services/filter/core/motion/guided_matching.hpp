@@ -31,7 +31,7 @@ struct SearchableFeatures {
 };
 
 /// Projects the measured features of `reference` into the expected current pose and takes the nearest descriptor within
-/// `window_px` (and what `reach_m` across the view is there), if it is near enough and clearly nearer than the second.
+/// `window_px` (plus the image of `reach_m` at its depth), if it is near enough and clearly nearer than the second.
 /// Each current feature is matched at most once.
 std::vector<FeatureMatch> match_by_projection(const View& reference, const SearchableFeatures& current,
                                               const Eigen::Isometry3d& T_world_camera, double window_px,

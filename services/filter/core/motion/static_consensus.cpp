@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "common/vision/pose_optimizer.hpp"
+#include "services/filter/core/samples.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -29,14 +30,6 @@ std::vector<double> tile_votes(const std::vector<PointSighting>& sightings) {
   for (const PointSighting& s : sightings)
     votes.push_back(1.0 / (in_tile[tile(s)] * static_cast<double>(in_tile.size())));
   return votes;
-}
-
-/// Every n-th element, so that not more than `limit` remain.
-std::vector<PointSighting> thin_out(const std::vector<PointSighting>& all, std::size_t limit) {
-  if (all.size() <= limit) return all;
-  std::vector<PointSighting> kept;
-  for (std::size_t i = 0; i < limit; ++i) kept.push_back(all[i * all.size() / limit]);
-  return kept;
 }
 
 /// All sightings, then those of each of the clusters with most sightings.

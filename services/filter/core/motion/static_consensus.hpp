@@ -23,7 +23,7 @@ struct PointSighting {
 /// Standard deviation of the displacement of a keypoint between two views: both ends are uncertain.
 double displacement_sigma_px(int octave);
 
-/// Where it was seen, from where the point would be seen at rest; nothing when that lies behind the camera.
+/// From where the point would appear at rest to where it was seen; nullopt if it lies behind the camera.
 std::optional<Eigen::Vector2d> displacement_px(const PointSighting& sighting, const geometry::CameraModel& camera,
                                                const Eigen::Isometry3d& T_camera_world);
 
@@ -49,8 +49,8 @@ struct StaticConsensus {
 /// Every large surface (depth cluster) proposes the motion under which it stands still, all sightings together propose
 /// one, and the prediction is one. The image decides: every 40 px tile has one vote, which its sightings share, so that
 /// a mover with much texture does not outvote plain walls. Agreement is graded (1 - chi2/limit), since a shift of the
-/// camera and a rotation nearly cancel on distant walls: a wrong motion that carries the mover along is betrayed by
-/// many small residuals only. docs/theory/dynamic_points.md section 2.
+/// camera and a rotation nearly cancel on distant walls: a wrong motion that carries the mover along shows only in many
+/// small residuals. docs/theory/dynamic_points.md section 2.
 StaticConsensus find_static_consensus(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
                                       const Eigen::Isometry3d& T_world_camera_predicted, const EgoMotionConfig& config);
 

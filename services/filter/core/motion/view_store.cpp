@@ -12,7 +12,7 @@ namespace rtd::filter {
 namespace {
 
 constexpr std::int64_t kPastStepNs = 250'000'000;
-constexpr double kNewWorldM = 0.25, kNewWorldRad = 0.25;    // slam and we differ by more: another world
+constexpr double kNewWorldM = 0.25, kNewWorldRad = 0.25;    // slam and the filter differ by more: another world
 constexpr double kCorrectedM = 0.05, kCorrectedRad = 0.05;  // a keyframe moved by more: slam has corrected its map
 constexpr double kSameWayRad = 0.5;                         // a keyframe worth comparing with
 constexpr std::array<std::int64_t, 4> kAgesNs{100'000'000, 270'000'000, 550'000'000, 1'000'000'000};

@@ -34,19 +34,20 @@ struct ReferenceLimits {
 /// The views of the last second, some of the two seconds before and those of the last keyframes, bounded in number
 /// (about 0.4 MB each), with their poses.
 ///
-/// Poses are those of our own quick estimate until slam says better; then the later ones follow. When slam's word is
-/// far from ours, its map has started anew or it has relocalised: older views are dropped, they lie in another world.
+/// Poses come from the quick estimate until slam sends better ones; later poses are then corrected as well. If slam's
+/// pose is far from ours, slam has started a new map or relocalised: older views are dropped, because they lie in
+/// another world.
 class ViewStore {
  public:
   void add(View view);
-  /// slam's pose of a frame. Returns false when it made us drop the older views.
+  /// Takes slam's pose of a frame. Returns false if the older views were dropped.
   bool correct(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera);
-  /// The frame is a keyframe: its view is kept longer. Where slam has moved a recent one far from where it had it
-  /// before, it has corrected its map: recent and past views move along, so that they still fit together. Returns false
-  /// then. Other keyframes wait for a word of their own.
+  /// The frame is a keyframe: its view is kept longer. If slam has moved a recent keyframe far, it has corrected its
+  /// map: recent and past views move along, so that they still fit together, and the result is false. Other keyframes
+  /// wait for an event of their own.
   bool mark_keyframe(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera);
   void forget_keyframe(std::uint64_t seq);
-  /// Keeps only what is as new as this frame, and the newest view: what lies before belongs to another world.
+  /// Keeps this frame, later ones and the newest view; earlier ones belong to another world.
   void forget_before(std::uint64_t seq);
   void clear();
 
@@ -55,7 +56,7 @@ class ViewStore {
   const View& newest() const { return recent_.back(); }
   /// The view before the newest one; null when there is none.
   const View* second_newest() const { return recent_.size() < 2 ? nullptr : &recent_[recent_.size() - 2]; }
-  /// There is a view that is at least so old.
+  /// Is there a view at least this old?
   bool spans(std::int64_t now_ns, std::int64_t age_ns) const {
     return !recent_.empty() && now_ns - recent_.front().stamp_ns >= age_ns;
   }

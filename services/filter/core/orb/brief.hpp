@@ -16,8 +16,8 @@ float centroid_angle_rad(const cv::Mat& grey, cv::Point centre);
 
 /// The 256 point pairs that rotated BRIEF compares, as offsets (px) from the corner, before rotation.
 ///
-/// Our own table, made from a fixed seed: Gaussian pairs, taken greedily so that no two comparisons are expected to say
-/// the same under a natural image's autocorrelation; docs/theory/orb.md Eq. (3)-(4).
+/// Our own table, made from a fixed seed: Gaussian pairs, taken greedily so that no two comparisons are expected to be
+/// redundant under a natural image's autocorrelation; docs/theory/orb.md Eq. (3)-(4).
 struct BriefPattern {
   static constexpr std::size_t kBits = 256;
   std::array<float, 2 * kBits> x{}, y{};  ///< points 2k and 2k+1 are compared for bit k

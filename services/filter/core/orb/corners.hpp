@@ -19,8 +19,8 @@ struct Corner {
 inline constexpr int kPatchRadiusPx = 15;
 inline constexpr int kBorderPx = kPatchRadiusPx + 1;
 
-/// FAST corners of one level: the usual threshold everywhere, the low one in the cells which that leaves empty, so that
-/// weakly textured regions contribute too. Order: row of cells, strict before low threshold.
+/// FAST corners of one level: the usual threshold everywhere, the low one in the cells that stay empty, so that weakly
+/// textured regions contribute too. Order: row of cells, strict before low threshold.
 std::vector<Corner> detect_corners(const cv::Mat& grey, const OrbConfig& config);
 
 /// Picks about `wanted` corners (at most wanted + 2) spread over `area`: the area is quartered, coarse cells and among

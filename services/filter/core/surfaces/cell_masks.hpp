@@ -19,7 +19,7 @@ std::vector<T> largest_near(const GridShape& shape, std::vector<T> values, int r
 /// The smallest one.
 std::vector<float> smallest_near(const GridShape& shape, std::vector<float> values, int radius);
 
-/// Cells within `radius` cells (square) of a set one, the larger value winning.
+/// Cells within `radius` cells (square) of a set one; the larger value wins.
 CellMask dilate(const GridShape& shape, CellMask cells, int radius);
 
 /// Per cell the larger value of two masks.
@@ -28,7 +28,7 @@ CellMask united(CellMask a, const CellMask& b);
 /// The set cells most of whose 3x3 neighbourhood is set: noise along depth edges is one cell wide and vanishes.
 CellMask compact(const GridShape& shape, const CellMask& cells);
 
-/// Clears the connected regions (4 neighbours) that `keep` refuses; it gets the cells of a region.
+/// Clears the connected regions (4 neighbours) for which `keep` returns false; `keep` receives the cells of a region.
 CellMask keep_regions(const GridShape& shape, CellMask cells, const std::function<bool(const std::vector<int>&)>& keep);
 
 }  // namespace rtd::filter

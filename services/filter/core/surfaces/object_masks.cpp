@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "services/filter/core/surfaces/median.hpp"
+#include "services/filter/core/samples.hpp"
 
 namespace rtd::filter {
 namespace {

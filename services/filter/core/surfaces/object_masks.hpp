@@ -28,7 +28,7 @@ struct SceneObject {
   bool flat = false;       ///< no depth step around it: a picture on a wall, geometry alone decides
   int track_id = -1;       ///< the same object has the same number in every frame; -1 = not tracked
   double track_age_s = 0;  ///< since it was seen first
-  bool carried = false;    ///< the detector said nothing of it in this frame: its track did
+  bool carried = false;    ///< not detected in this frame, but carried by its track
 };
 
 /// A box to cut an object from.
@@ -58,7 +58,7 @@ inline constexpr std::size_t kMaxObjects = 64;
 /// Share of the outline of some cells beyond which the scene lies farther by `min_step_m`; 1 where nothing is known.
 double outline_step_share(const std::vector<int>& cells, const DepthGrid& grid, double min_step_m);
 /// Cells of surfaces that stand out from what surrounds them on most sides, the nearest first, up to 40 % of the image:
-/// what can be carried about. Before there is any evidence they are not trusted with the camera's pose.
+/// such things can be carried about. Until there is evidence, they take no part in the camera's pose.
 CellMask free_standing(const DepthGrid& grid, const DepthClusters& clusters, const MaskConfig& config);
 
 /// The clusters with each object that is not flat as a cluster of its own: what it touches is then judged without it.

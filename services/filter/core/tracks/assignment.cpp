@@ -11,7 +11,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Grows the assignment row by row; each new row finds the cheapest chain of changes that ends at a free column.
-/// Columns behind the real ones are places of rows left alone, one for each row.
+/// Columns after the real ones stand for unassigned rows, one for each row.
 class AugmentingPaths {
  public:
   AugmentingPaths(const CostMatrix& costs, double max_cost)

@@ -19,9 +19,9 @@ struct CostMatrix {
   }
 };
 
-/// Per row its column or -1, each column at most once: the pairing with the smallest sum of costs where a row left
-/// alone costs `max_cost`; pairs that cost that much or more are never made. Exact (shortest augmenting paths: Jonker
-/// and Volgenant, Computing 38, 1987), O(rows^2 (rows + columns)). Deterministic.
+/// Per row its column or -1, each column at most once: the pairing with the smallest sum of costs where an unassigned
+/// row costs `max_cost`; pairs that cost that much or more are never made. Exact (shortest augmenting paths: Jonker and
+/// Volgenant, Computing 38, 1987), O(rows^2 (rows + columns)). Deterministic.
 std::vector<int> assign(const CostMatrix& costs, double max_cost);
 
 }  // namespace rtd::filter

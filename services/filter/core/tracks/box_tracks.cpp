@@ -11,8 +11,8 @@
 namespace rtd::filter {
 namespace {
 
-constexpr std::int64_t kSameFrameNs = 60'000'000;  // an answer for a frame that we did not get: its nearest neighbour
-constexpr double kVoteDecay = 0.9;                 // per hit: a class can change its mind
+constexpr std::int64_t kSameFrameNs = 60'000'000;  // a batch for a dropped frame counts for the nearest one
+constexpr double kVoteDecay = 0.9;                 // per hit: the class of a track can change
 
 const std::string& voted_class(const std::map<std::string, double>& votes) {
   return std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; })
@@ -84,7 +84,7 @@ void BoxTracks::update(const DetectionBatch& batch, const DepthOfBox& depth_of) 
       miss(*track, step, frames_[*frame]);
     }
   }
-  if (!newest) return;  // an older answer corrects, but it neither denies nor begins anything
+  if (!newest) return;  // an older batch corrects tracks, but neither ends nor starts one
   batches_ns_.push_back(batch.stamp_ns);
   if (batches_ns_.size() > kMaxFrames) batches_ns_.pop_front();
   std::erase_if(tracks_, [](const Track& track) { return track.dead; });
@@ -108,7 +108,7 @@ double BoxTracks::match_cost(const Track& track, const Step& step, const vision:
 
 void BoxTracks::hit(Track& track, std::size_t step, const vision::Detection& detection, double depth_m) {
   Step& seen = track.steps[step];
-  if (seen.seen) return;  // two answers that fell to the same frame
+  if (seen.seen) return;  // two batches for the same frame
   seen.seen = detection;
   if (depth_m > 0) seen.depth_m = depth_m;
   replay(track, step);
@@ -150,7 +150,7 @@ void BoxTracks::start_track(const DetectionBatch& batch, std::size_t detection, 
   tracks_.push_back(std::move(track));
 }
 
-/// The states of `from` and of all later steps anew, from the one before and what was measured since.
+/// Recomputes the states from step `from` on, with the measurements since then.
 void BoxTracks::replay(Track& track, std::size_t from) const {
   for (std::size_t i = from; i < track.steps.size(); ++i) {
     Step& step = track.steps[i];

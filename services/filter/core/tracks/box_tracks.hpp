@@ -16,10 +16,10 @@
 
 namespace rtd::filter {
 
-/// What a frame brings for the tracks besides answers.
+/// What a frame adds to the tracks besides detections.
 struct TrackedFrame {
   std::int64_t stamp_ns = 0;
-  bool rolling = false;  ///< the camera turns fast about its optical axis: detectors miss what they know
+  bool rolling = false;  ///< the camera turns fast about its optical axis: detectors miss known objects
   double width_px = 0, height_px = 0;
   Eigen::Vector2d size_px() const { return {width_px, height_px}; }
 };
@@ -27,7 +27,7 @@ struct TrackedFrame {
 /// A track's box in the newest frame.
 struct TrackedBox {
   int id = 0;                   ///< unique until clear()
-  vision::Detection detection;  ///< the detector's own box where it saw it in this frame, else the carried one
+  vision::Detection detection;  ///< the detector's own box if it found the object in this frame, else the carried one
   bool carried = false;
   double depth_m = 0;  ///< of the object, 0 = unknown
   double age_s = 0;    ///< since it was seen first
@@ -50,8 +50,8 @@ using DepthOfBox = std::function<double(std::int64_t stamp_ns, const vision::Det
 using MeasureCarry = std::function<std::optional<CarriedBox>(const CarryStep&)>;
 
 /// Boxes with an identity: born from a detection, confirmed by a second one, they survive the detector's misses and
-/// silence for a while. Each keeps its states by stamp, so that an answer for an earlier frame is compared with the
-/// state of that frame, and its correction is carried to now (docs/theory/dynamic_points.md section 6). Bounded:
+/// silence for a while. Each keeps its states by stamp, so that detections of an earlier frame are compared with the
+/// state of that frame, and the correction is carried forward (docs/theory/dynamic_points.md section 6). Bounded:
 /// kMaxTracks, kMaxFrames. Deterministic.
 class BoxTracks {
  public:
@@ -59,8 +59,9 @@ class BoxTracks {
 
   /// Every frame in order of time: predicts all boxes into it.
   void begin_frame(const TrackedFrame& frame);
-  /// An answer for this frame or an earlier one. Ignored: a second answer for the same stamp, one from the future, one
-  /// older than what is remembered. The detections are finite, not empty and at most kMaxTracks.
+  /// Updates the tracks with the detections of this frame or an earlier one. Ignored: a second batch for the same
+  /// stamp, one from the future, one older than the remembered frames. The detections are finite, not empty and at most
+  /// kMaxTracks.
   void update(const DetectionBatch& batch, const DepthOfBox& depth_of);
   /// Moves boxes that were not seen by what `measure` finds; where it finds nothing they keep their predicted motion.
   void carry(const MeasureCarry& measure);

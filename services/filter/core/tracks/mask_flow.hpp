@@ -25,8 +25,8 @@ std::optional<BoxFlow> motion_of_points(const Box& box, const std::vector<cv::Po
 inline constexpr std::size_t kMinFlowPoints = 6;
 
 /// Sparse optical flow (Lucas-Kanade in pyramids) between recent images at half resolution: follows points on objects
-/// of which no detection came. A point counts when the way back leads to where it came from. Bounded: the last
-/// kMaxImages images. All pixels are those of the camera's own image.
+/// without a detection. A point counts if the flow backwards leads to where it started. Bounded: the last kMaxImages
+/// images. All pixels are those of the camera's own image.
 class MaskFlow {
  public:
   void see(std::int64_t stamp_ns, const cv::Mat& color_bgr);

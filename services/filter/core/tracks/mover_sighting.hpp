@@ -21,7 +21,7 @@ struct MoverFrame {
   CameraPose pose;
 };
 
-/// A surface that was seen moving: what one frame says of a mover.
+/// A surface that was seen moving: what one frame shows of a mover.
 struct MoverSighting {
   Eigen::AlignedBox3d extent_world;  ///< 5 % of its cells lie beyond each side
   Box box_px;                        ///< image of the extent, undistorted pixels
@@ -31,9 +31,9 @@ struct MoverSighting {
 /// The clusters with at least 40 of these cells, in the order of their labels. `moving`: per cell, 1 = seen moving.
 std::vector<MoverSighting> sight_movers(const MoverFrame& frame, const DepthClusters& clusters, const CellMask& moving);
 
-/// Image of a box in space, undistorted pixels; nothing when a corner is behind the camera.
+/// Image of a box in space, undistorted pixels; nullopt if a corner is behind the camera.
 std::optional<Box> project(const Eigen::AlignedBox3d& box_world, const MoverFrame& frame);
-/// What is seen where a box in space is.
+/// What is seen at the place of a box in space.
 struct BoxContent {
   std::vector<int> cells;  ///< whose points lie in the box, ascending
   int measured = 0;        ///< cells with a depth in front of it, in it and behind it

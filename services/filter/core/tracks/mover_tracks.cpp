@@ -11,9 +11,9 @@ namespace rtd::filter {
 namespace {
 
 constexpr double kPositionSigmaM = 0.05, kFirstSpeedMS = 0.5;
-constexpr double kMarginM = 0.06, kMaxMarginM = 0.3, kMarginPerWay = 0.3;  // it need not go on as it went
+constexpr double kMarginM = 0.06, kMaxMarginM = 0.3, kMarginPerWay = 0.3;  // it may change direction
 
-/// Two movers have come together, or one has parted: the centre has jumped, nothing has moved so.
+/// Two movers have merged or one has split: the centre jumps without any such motion.
 bool changes_shape(const Eigen::Vector3d& half_before_m, const Eigen::Vector3d& half_m) {
   constexpr double kLonger = 1.25, kLarger = 2.0;
   const double longer = half_m.maxCoeff() / half_before_m.maxCoeff();
@@ -105,7 +105,7 @@ void MoverTracks::hit(Track& track, const MoverSighting& sighting) const {
   track.rest_s = track.gone_s = 0;
   track.out_of_sight = false;
   ++track.hits;
-  if (sighting.cut_off && track.whole) return;  // a part of it says little of where it is
+  if (sighting.cut_off && track.whole) return;  // a part of it says little about its centre
   track.whole = !sighting.cut_off;
   const Eigen::Vector3d half_m = 0.5 * sighting.extent_world.sizes();
   if (changes_shape(track.half_m, half_m)) return place(track, sighting.extent_world);
@@ -115,7 +115,7 @@ void MoverTracks::hit(Track& track, const MoverSighting& sighting) const {
   track.half_m += kNewShare * (half_m - track.half_m);
 }
 
-/// What is in sight is there or not, at rest or not.
+/// Checks a mover that was not seen moving: is it in sight, still there, at rest?
 void MoverTracks::miss(Track& track, double elapsed_s, const MoverFrame& frame, const FeatureVotes& slow_votes) const {
   constexpr double kMostlyVisible = 0.5, kMinFoundShare = 0.2, kRestingRatio = 5;
   constexpr int kMinVotes = 6;

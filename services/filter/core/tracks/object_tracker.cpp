@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/filter/core/surfaces/median.hpp"
+#include "services/filter/core/samples.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -22,10 +22,7 @@ std::vector<cv::Point2f> points_on(const View& view, const Box& box, double dept
     if (depth_m > 0 && std::abs(static_cast<double>(f.depth_m) - depth_m) > tolerance_m) continue;
     points.emplace_back(f.u_raw_px, f.v_raw_px);
   }
-  if (points.size() <= kMaxPoints) return points;
-  std::vector<cv::Point2f> thinned;
-  for (std::size_t i = 0; i < kMaxPoints; ++i) thinned.push_back(points[i * points.size() / kMaxPoints]);
-  return thinned;
+  return thin_out(std::move(points), kMaxPoints);
 }
 
 /// Median depth of a grid at some raw pixels, 0 = nothing measured.

@@ -74,7 +74,7 @@ TEST_F(BeliefTest, falls_when_a_third_of_the_features_are_displaced) {
   EXPECT_EQ(motion_[0], ObjectMotion::kMoving);
 }
 
-TEST_F(BeliefTest, takes_only_the_arm_from_somebody_who_waves) {
+TEST_F(BeliefTest, removes_only_the_arm_of_a_person_who_waves) {
   rest();
   see(100);
   for (std::size_t cell = 0; cell < 25; ++cell) regions_.frames_left[cell] = 5;  // 4 % of the person
@@ -93,7 +93,7 @@ TEST_F(BeliefTest, recovers_after_a_stop_within_two_seconds) {
   EXPECT_GT(on_wall(), 0.9);
 }
 
-TEST_F(BeliefTest, forgets_when_nothing_is_said) {
+TEST_F(BeliefTest, returns_to_the_prior_without_a_statement) {
   rest();
   see(100);
   depth_ = DepthEvidence::none(kCells);
@@ -101,7 +101,7 @@ TEST_F(BeliefTest, forgets_when_nothing_is_said) {
   EXPECT_NEAR(see(600), config_.high_prior, 0.01);
 }
 
-TEST_F(BeliefTest, keeps_a_wall_that_a_box_covers_now_and_then) {
+TEST_F(BeliefTest, keeps_a_wall_that_a_box_sometimes_covers) {
   rest();
   objects_[0].level = MotionLevel::kLow;
   see(60);

@@ -29,20 +29,20 @@ bool moves(const FeatureVotes& votes) {
   return drifts(drift_of(kObject, votes, kGridCells), BeliefConfig{});
 }
 
-TEST(ObjectDrift, is_known_better_than_the_shift_of_one_feature) {
+TEST(ObjectDrift, is_more_precise_than_the_shift_of_one_feature) {
   const ObjectDrift drift = drift_of(kObject, shifted_by(3, 100), kGridCells);
   EXPECT_EQ(drift.features, 100);
   EXPECT_NEAR(drift.shift_px, 3, 0.4);
   EXPECT_NEAR(drift.sigma_px, std::sqrt(2 * 1.57 / 100), 0.05) << "two axes";
 }
 
-TEST(ObjectDrift, tells_a_shift_of_three_pixels_from_rest) {
+TEST(ObjectDrift, distinguishes_a_shift_of_three_pixels_from_rest) {
   EXPECT_TRUE(moves(shifted_by(3, 100)));
   EXPECT_FALSE(moves(shifted_by(0, 100)));
   EXPECT_FALSE(moves(shifted_by(1.4F, 100))) << "the pose may be off so far";
 }
 
-TEST(ObjectDrift, says_nothing_of_few_features_or_none) {
+TEST(ObjectDrift, makes_no_statement_about_few_features_or_none) {
   EXPECT_FALSE(moves(shifted_by(5, 8)));
   EXPECT_FALSE(moves({}));
 }

@@ -53,7 +53,7 @@ class StaticProbabilityTest : public ::testing::Test {
   FilterConfig config_;
 };
 
-TEST_F(StaticProbabilityTest, removes_a_person_of_whom_nothing_is_known) {
+TEST_F(StaticProbabilityTest, removes_a_person_seen_for_the_first_time) {
   weigh();
   EXPECT_TRUE(removed(on_object()));
   EXPECT_EQ(on_object().object_id, 0);
@@ -70,7 +70,7 @@ TEST_F(StaticProbabilityTest, gives_a_person_who_sits_for_long_a_low_weight) {
   EXPECT_NEAR(on_object().static_probability, 0.42, 0.01);
 }
 
-TEST_F(StaticProbabilityTest, weighs_all_alike_when_weights_are_off) {
+TEST_F(StaticProbabilityTest, weighs_all_equally_when_weights_are_off) {
   config_.techniques.feature_weights = false;
   recalled_.assign(kCells, log_odds(0.4));
   weigh();

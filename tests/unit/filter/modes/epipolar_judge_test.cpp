@@ -86,13 +86,13 @@ TEST_F(EpipolarCheckTest, makes_no_statement_from_few_or_degenerate_matches) {
   EXPECT_EQ(moving(), 0U) << "not finite";
 }
 
-TEST_F(EpipolarCheckTest, gives_the_same_answer_twice) {
+TEST_F(EpipolarCheckTest, gives_the_same_result_twice) {
   add(200, {20, 20, 600, 440}, 1.5, 4.0);
   add(60, {240, 120, 160, 240}, 1.2, 1.4, {0.01, 0.03, 0});
   EXPECT_EQ(find_moving_points(matches_, camera_, kConfig), find_moving_points(matches_, camera_, kConfig));
 }
 
-TEST(FollowCorners, drop_what_leaves_the_image_or_changes_its_looks) {
+TEST(FollowCorners, drop_corners_that_leave_the_image_or_look_different) {
   const cv::Mat image = test::textured_image();
   cv::Mat shifted;
   const cv::Mat affine = (cv::Mat_<double>(2, 3) << 1, 0, 4, 0, 1, 0);
@@ -152,11 +152,11 @@ TEST_F(EpipolarJudgeTest, removes_a_person_that_moves_and_keeps_one_that_stands)
   EXPECT_EQ(removed_of_block("person", 0), 0.0);
 }
 
-TEST_F(EpipolarJudgeTest, knows_people_only) {
+TEST_F(EpipolarJudgeTest, removes_people_only) {
   EXPECT_EQ(removed_of_block("dog", 6), 0.0);
 }
 
-TEST_F(EpipolarJudgeTest, says_nothing_in_the_first_frame_and_without_detector) {
+TEST_F(EpipolarJudgeTest, removes_nothing_in_the_first_frame_and_without_a_detector) {
   const MovingScene scene;
   DynamicFilter filter(epipolar_config(), [] { return std::int64_t{0}; });
   const std::vector<vision::Detection> person{{"person", 0.9F, 240, 110, 160, 240}};
@@ -164,7 +164,7 @@ TEST_F(EpipolarJudgeTest, says_nothing_in_the_first_frame_and_without_detector) 
   EXPECT_EQ(filter.apply(scene.render(1, 0, 0.1), std::nullopt).removed, 0U);
 }
 
-TEST_F(EpipolarJudgeTest, wants_more_than_a_few_moving_points_on_a_mask) {
+TEST_F(EpipolarJudgeTest, needs_more_than_a_few_moving_points_on_a_mask) {
   const vision::RgbdImage image = test::rgbd_image(test::textured_image());
   const std::vector<SceneObject> person{{"person", 0.9F, MotionLevel::kHigh, {0, 1, 2}, false}};
   const test::TestScene scene(image);

@@ -48,9 +48,9 @@ std::vector<SceneObject> objects_in(const vision::RgbdImage& image, const Filter
                       find_depth_clusters(grid, ClusterConfig{}), effective_config(config).masks);
 }
 
-TEST(Techniques, have_names_of_their_own_and_none_is_forgotten) {
+TEST(Techniques, each_have_a_name_of_their_own) {
   std::set<std::string> names;
-  for (const NamedTechnique& technique : all_techniques()) names.insert(technique.name);
+  for (const NamedTechnique& technique : kTechniques) names.insert(technique.name);
   EXPECT_EQ(names.size(), sizeof(Techniques)) << "one switch, one name";
 }
 
@@ -99,11 +99,11 @@ int frames_masked_after_stop(std::initializer_list<bool Techniques::*> off) {
   return masked;
 }
 
-TEST(Techniques, mover_memory_off_takes_back_sooner_what_has_stopped) {
+TEST(Techniques, mover_memory_off_uses_what_has_stopped_sooner) {
   EXPECT_LT(frames_masked_after_stop({&Techniques::mover_memory}), frames_masked_after_stop({}));
 }
 
-TEST(Techniques, arrivals_off_takes_back_later_what_has_stopped) {
+TEST(Techniques, arrivals_off_uses_what_has_stopped_later) {
   EXPECT_GT(frames_masked_after_stop({&Techniques::arrivals}), frames_masked_after_stop({}));
 }
 
@@ -137,7 +137,7 @@ TEST(Techniques, mover_tracks_give_a_mover_an_identity) {
   }
 }
 
-TEST(Techniques, noise_aware_tau_off_misses_somebody_a_step_before_the_wall) {
+TEST(Techniques, noise_aware_tau_off_misses_a_person_one_step_in_front_of_the_wall) {
   const cv::Rect block(240, 160, 120, 160);
   vision::RgbdImage now = test::wall_image(3.0);
   test::put_block(now, block, 2.65);
@@ -182,7 +182,7 @@ TEST(Techniques, surface_poses_off_leaves_the_camera_to_the_majority) {
   EXPECT_GT(error_m(config_of(FilterMode::kRtd, {&Techniques::surface_poses})), 0.02) << "m";
 }
 
-TEST(Techniques, more_features_off_extracts_as_many_as_ever) {
+TEST(Techniques, more_features_off_extracts_the_usual_number) {
   const MovingScene scene;
   const std::vector<vision::Detection> person{{"person", 0.9F, 240, 110, 160, 240}};
   const auto extracted = [&](std::initializer_list<bool Techniques::*> off) {
@@ -193,7 +193,7 @@ TEST(Techniques, more_features_off_extracts_as_many_as_ever) {
   EXPECT_NEAR(extracted({}) / extracted({&Techniques::more_features}), 1.5, 0.05);
 }
 
-TEST(Techniques, keep_doubtful_off_lets_a_frame_go_empty) {
+TEST(Techniques, keep_doubtful_off_may_leave_a_frame_without_features) {
   const MovingScene scene;
   const std::vector<vision::Detection> everywhere{{"person", 0.9F, 0, 0, 640, 480}};
   const auto kept = [&](std::initializer_list<bool Techniques::*> off) {
@@ -213,13 +213,13 @@ TEST(ModeTable, gives_every_mode_a_name_and_rtd_everything) {
     EXPECT_EQ(&entry_of(entry.mode), &entry);
   }
   EXPECT_EQ(names.size(), all_modes().size());
-  for (const NamedTechnique& technique : all_techniques()) {
+  for (const NamedTechnique& technique : kTechniques) {
     EXPECT_TRUE(entry_of(FilterMode::kRtd).techniques.*technique.on) << technique.name;
     EXPECT_FALSE(entry_of(FilterMode::kOff).techniques.*technique.on) << technique.name;
   }
 }
 
-TEST(ModeTable, knows_who_needs_the_detector) {
+TEST(ModeTable, knows_which_modes_need_the_detector) {
   for (const ModeEntry& entry : all_modes()) {
     const bool blind = entry.mode == FilterMode::kOff || entry.mode == FilterMode::kGeometry;
     EXPECT_NE(looks_at_boxes(entry.mode), blind) << entry.name;

@@ -38,7 +38,7 @@ int moved_cells(const vision::RgbdImage& now, const View& keyframe) {
   return static_cast<int>(std::count(moved.begin(), moved.end(), 1));
 }
 
-TEST(KeypointDepthCheck, finds_what_came_nearer_by_more_than_forty_centimetres) {
+TEST(KeypointDepthCheck, finds_what_is_nearer_by_more_than_forty_centimetres) {
   EXPECT_GT(moved_cells(test::wall_image(2.5), keyframe_of_wall(3.0)), 1000);
   EXPECT_EQ(moved_cells(test::wall_image(2.65), keyframe_of_wall(3.0)), 0) << "the paper's threshold";
   EXPECT_EQ(moved_cells(test::wall_image(3.0), keyframe_of_wall(2.0)), 0) << "gone: hidden background, no mover";
@@ -57,7 +57,7 @@ TEST(KeypointDepthCheck, ignores_views_under_more_than_thirty_degrees) {
   }
 }
 
-TEST(KeypointDepthCheck, says_nothing_without_depth_or_keyframes) {
+TEST(KeypointDepthCheck, makes_no_statement_without_depth_or_keyframes) {
   vision::RgbdImage blind = test::wall_image();
   blind.depth.setTo(0);
   EXPECT_EQ(moved_cells(blind, keyframe_of_wall(3.0)), 0);
@@ -97,7 +97,7 @@ class PaperRulesTest : public ::testing::Test {
   std::vector<msg::Feature> features_;
 };
 
-TEST_F(PaperRulesTest, delete_high_boxes_and_keep_the_others_until_geometry_speaks) {
+TEST_F(PaperRulesTest, remove_high_boxes_and_keep_the_others_unless_geometry_objects) {
   put(MotionLevel::kHigh, 0, 50);
   put(MotionLevel::kMedium, 50, 100);
   put(MotionLevel::kLow, 100, 160);

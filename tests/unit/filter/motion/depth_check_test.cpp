@@ -58,7 +58,7 @@ TEST(DepthCheck, finds_a_resting_block_and_wall_at_their_place) {
   EXPECT_GT(count_in(kShape, evidence.lasting, kBlock), cells_in(kBlock) * 9 / 10);
 }
 
-TEST(DepthCheck, says_nothing_of_background_that_was_hidden) {
+TEST(DepthCheck, makes_no_statement_about_background_that_was_hidden) {
   const DepthEvidence evidence = check(wall_image(3.0), {view_of(with_block(kBlock))});
   EXPECT_EQ(count(evidence.violated), 0) << "the mover has gone: what it hid is not dynamic";
   const cv::Rect inside(260, 180, 80, 120);
@@ -82,7 +82,7 @@ TEST(DepthCheck, needs_a_difference_beyond_the_noise) {
   EXPECT_GT(count(check(with_block(kBlock, 3.0 - 1.2 * tau_m), reference).violated), 0);
 }
 
-TEST(DepthCheck, says_nothing_when_the_rays_differ_by_more_than_thirty_degrees) {
+TEST(DepthCheck, makes_no_statement_when_the_rays_differ_by_more_than_thirty_degrees) {
   for (const double degrees : {20.0, 40.0}) {
     // The reference camera has gone around the block and looks at it under an angle.
     const double angle = degrees * std::numbers::pi / 180;
@@ -95,7 +95,7 @@ TEST(DepthCheck, says_nothing_when_the_rays_differ_by_more_than_thirty_degrees) 
   }
 }
 
-TEST(DepthCheck, wants_two_of_four_views_to_agree) {
+TEST(DepthCheck, needs_two_of_four_views_to_agree) {
   std::vector<View> references(4, view_of(with_block(kBlock)));
   references[3] = view_of(wall_image(3.0), 1.0);
   EXPECT_EQ(count(check(with_block(kBlock), references).violated), 0);
@@ -103,7 +103,7 @@ TEST(DepthCheck, wants_two_of_four_views_to_agree) {
   EXPECT_EQ(count(check(with_block(kBlock), references).violated), cells_in(kBlock));
 }
 
-TEST(DepthCheck, tells_what_has_come_and_stayed_from_what_comes) {
+TEST(DepthCheck, distinguishes_what_has_arrived_and_stayed_from_what_arrives) {
   std::vector<View> references{view_of(with_block(kBlock), 0.1), view_of(with_block(kBlock), 0.5),
                                view_of(wall_image(3.0), 1.0), view_of(wall_image(3.0), 30.0)};
   EXPECT_EQ(count(check(with_block(kBlock), references).settled),
@@ -115,7 +115,7 @@ TEST(DepthCheck, tells_what_has_come_and_stayed_from_what_comes) {
   EXPECT_EQ(count(check(with_block(kBlock), references).settled), 0) << "it has not been there for long";
 }
 
-TEST(DepthCheck, takes_nothing_dynamic_as_a_witness_of_rest) {
+TEST(DepthCheck, does_not_take_dynamic_cells_as_evidence_of_rest) {
   View reference = view_of(with_block(kBlock));
   reference.dynamic.assign(reference.dynamic.size(), 1);
   EXPECT_EQ(count(check(with_block(kBlock), {reference}).consistent), 0);

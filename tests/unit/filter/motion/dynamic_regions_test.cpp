@@ -120,7 +120,7 @@ TEST_F(DynamicRegionsTest, forgets_faster_what_depth_and_features_see_at_rest) {
   EXPECT_EQ(judge().frames_left[static_cast<std::size_t>(kShape.cell_at(300, 240))], 26);
 }
 
-TEST_F(DynamicRegionsTest, leaves_the_floor_out_on_which_a_walker_stands) {
+TEST_F(DynamicRegionsTest, leaves_out_the_floor_under_a_walker) {
   for (std::size_t cell = 0; cell < kCells; ++cell) clusters_.label[cell] = cell >= 80 * 160 ? 0 : -1;
   set_labels(kBlock, 0);  // walker and floor in one cluster
   clusters_.cells = {static_cast<int>(kCells * 2 / 5)};
@@ -136,7 +136,7 @@ TEST_F(DynamicRegionsTest, leaves_the_floor_out_on_which_a_walker_stands) {
   EXPECT_EQ(count_in(kShape, regions.frames_left, {8, 388, 624, 88}), 0);
 }
 
-TEST_F(DynamicRegionsTest, makes_no_statement_when_nearly_all_moves) {
+TEST_F(DynamicRegionsTest, makes_no_statement_when_nearly_everything_moves) {
   set(evidence_.violated, {0, 0, 640, 480}, 1);
   const DynamicRegions regions = judge();
   EXPECT_FALSE(regions.trusted);

@@ -41,7 +41,7 @@ TEST(ViewStore, keeps_a_view_from_longer_ago_than_the_recent_ones) {
   EXPECT_EQ(store.long_ago(stamp(120), 500'000'000).seq, 105U);
 }
 
-TEST(ViewStore, forgets_what_is_long_ago_when_the_map_starts_anew) {
+TEST(ViewStore, forgets_what_is_long_ago_when_slam_starts_a_new_map) {
   ViewStore store;
   for (std::uint64_t seq = 0; seq < 120; ++seq) store.add(view(seq));
   EXPECT_FALSE(store.correct(110, at(1.0)));
@@ -108,7 +108,7 @@ TEST(ViewStore, adds_keyframes_that_look_the_same_way_from_near) {
   EXPECT_EQ(store.references(stamp(60), at(0), {6}).size(), 4U);
 }
 
-TEST(ViewStore, asks_no_keyframe_from_beyond_the_largest_baseline) {
+TEST(ViewStore, uses_no_keyframe_beyond_the_largest_baseline) {
   ViewStore store;
   for (std::uint64_t seq = 0; seq < 60; ++seq) {
     store.add(view(seq));

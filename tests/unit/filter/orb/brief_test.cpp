@@ -20,7 +20,7 @@ TEST(BriefPattern, stays_inside_the_patch_when_rotated) {
   }
 }
 
-TEST(BriefPattern, has_no_comparison_twice) {
+TEST(BriefPattern, has_no_duplicate_comparison) {
   const BriefPattern& pattern = brief_pattern();
   std::set<std::array<float, 4>> seen;
   for (std::size_t k = 0; k < BriefPattern::kBits; ++k) {
@@ -42,7 +42,7 @@ TEST(RotatedBrief, differs_in_half_of_the_bits_between_unlike_patches) {
   EXPECT_NEAR(sum / count, 128, 12) << "mean bits";
 }
 
-TEST(RotatedBrief, turned_by_the_angle_sees_a_turned_patch_alike) {
+TEST(RotatedBrief, rotated_by_the_angle_matches_a_rotated_patch) {
   cv::Mat image = test::textured_image({121, 121});
   cv::GaussianBlur(image, image, cv::Size(7, 7), 2);
   const msg::Descriptor upright = rotated_brief(image, {60, 60}, 0);

@@ -79,7 +79,7 @@ TEST(OrbExtractor, is_recognised_after_a_change_of_scale) {
       0.55);
 }
 
-TEST(OrbExtractor, places_a_blob_alike_in_all_octaves) {
+TEST(OrbExtractor, places_a_blob_at_the_same_point_in_all_octaves) {
   OrbExtractor extractor{OrbConfig{}};
   cv::Mat image(480, 640, CV_8UC1, cv::Scalar(40));
   cv::circle(image, {320, 240}, 60, cv::Scalar(220), cv::FILLED);
@@ -97,7 +97,7 @@ TEST(OrbExtractor, places_a_blob_alike_in_all_octaves) {
   EXPECT_NEAR(sum_v / count, 240, 2.0) << "px";
 }
 
-TEST(OrbExtractor, reads_depth_and_refuses_what_lies_out_of_range) {
+TEST(OrbExtractor, reads_depth_and_rejects_values_out_of_range) {
   OrbExtractor extractor{OrbConfig{}};
   vision::RgbdImage image = rgbd_image(textured_image(), 2.0);
   image.depth.colRange(0, 200).setTo(0);

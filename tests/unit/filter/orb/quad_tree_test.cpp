@@ -25,7 +25,7 @@ TEST(QuadTree, gives_the_wanted_number) {
   EXPECT_LE(spread.size(), 502U);
 }
 
-TEST(QuadTree, serves_a_sparse_region_beside_a_crowded_one) {
+TEST(QuadTree, keeps_corners_in_a_sparse_region_beside_a_crowded_one) {
   std::vector<Corner> corners = random_corners(5000, 0, 160);
   const std::vector<Corner> sparse = random_corners(60, 320, 640);
   corners.insert(corners.end(), sparse.begin(), sparse.end());
@@ -40,12 +40,12 @@ TEST(QuadTree, keeps_the_strongest_corner_of_a_cell) {
   EXPECT_EQ(spread[0].response, 50);
 }
 
-TEST(QuadTree, ends_with_corners_on_one_spot) {
+TEST(QuadTree, terminates_with_corners_on_one_spot) {
   const std::vector<Corner> same(100, Corner{100, 100, 10});
   EXPECT_EQ(spread_corners(same, kArea, 50).size(), 1U);
 }
 
-TEST(QuadTree, gives_nothing_for_nothing) {
+TEST(QuadTree, returns_nothing_for_no_corners) {
   EXPECT_TRUE(spread_corners({}, kArea, 100).empty());
   EXPECT_TRUE(spread_corners(random_corners(10, 0, 640), kArea, 0).empty());
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/orb/undistortion_table.hpp"
+#include "services/filter/core/orb/orb_extractor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -23,7 +23,7 @@ TEST(DepthGrid, has_the_depth_of_a_plane_in_every_cell) {
   }
 }
 
-TEST(DepthGrid, knows_near_and_far_depth_along_an_edge) {
+TEST(DepthGrid, has_near_and_far_depth_along_an_edge) {
   vision::RgbdImage image = wall_image(3.0);
   put_block(image, {320, 0, 320, 480}, 1.0);
   const DepthGrid grid = make_sampler().sample(image);

@@ -74,7 +74,7 @@ TEST(ObjectMasks, cover_the_whole_box_where_nothing_was_measured) {
   EXPECT_EQ(count_in(kShape, mask_of(objects[0]), {200, 100, 100, 200}), cells_in({200, 100, 100, 200}));
 }
 
-TEST(ObjectMasks, part_an_object_from_what_it_touches) {
+TEST(ObjectMasks, separate_an_object_from_what_it_touches) {
   DepthClusters clusters{kShape, std::vector<std::int32_t>(160 * 120, 0), {160 * 120}};
   SceneObject object{"person", 0.9F, MotionLevel::kHigh, {10, 11, 12}, false};
   SceneObject poster{"person", 0.9F, MotionLevel::kHigh, {50, 51}, true};
@@ -89,7 +89,7 @@ TEST(ObjectMasks, ignore_classes_without_motion_level) {
   EXPECT_TRUE(find(wall_image(), {{"traffic light", 0.9F, 100, 100, 50, 50}}).empty());
 }
 
-TEST(ObjectMasks, refuse_boxes_that_make_no_sense) {
+TEST(ObjectMasks, reject_invalid_boxes) {
   const vision::RgbdImage image = wall_image();
   EXPECT_TRUE(find(image, {{"person", 0.9F, kNan, 0, 100, 100}}).empty());
   EXPECT_TRUE(find(image, {{"person", 0.9F, 0, 0, kInf, 100}}).empty());

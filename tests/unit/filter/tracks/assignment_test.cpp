@@ -51,7 +51,7 @@ TEST(Assignment, is_as_cheap_as_the_best_of_all_possible_ones) {
   }
 }
 
-TEST(Assignment, gives_way_to_a_row_that_has_no_other_choice) {
+TEST(Assignment, leaves_a_column_to_a_row_that_has_no_other_choice) {
   CostMatrix costs(2, 2);
   costs.at(0, 0) = 0.1;
   costs.at(0, 1) = 0.2;
@@ -59,7 +59,7 @@ TEST(Assignment, gives_way_to_a_row_that_has_no_other_choice) {
   EXPECT_EQ(assign(costs, 1.0), (std::vector<int>{1, 0}));
 }
 
-TEST(Assignment, leaves_rows_alone_whose_pairs_are_too_dear_or_not_numbers) {
+TEST(Assignment, does_not_assign_rows_whose_pairs_cost_too_much_or_are_not_finite) {
   CostMatrix costs(3, 3);
   costs.at(0, 0) = 2.0;
   costs.at(1, 1) = std::nan("");
@@ -67,7 +67,7 @@ TEST(Assignment, leaves_rows_alone_whose_pairs_are_too_dear_or_not_numbers) {
   EXPECT_EQ(assign(costs, 1.0), (std::vector<int>{-1, -1, 2}));
 }
 
-TEST(Assignment, takes_empty_sides) {
+TEST(Assignment, accepts_empty_sides) {
   EXPECT_TRUE(assign(CostMatrix(0, 5), 1.0).empty());
   EXPECT_EQ(assign(CostMatrix(2, 0), 1.0), (std::vector<int>{-1, -1}));
 }

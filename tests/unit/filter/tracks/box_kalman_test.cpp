@@ -26,7 +26,7 @@ TEST(BoxKalman, learns_a_constant_velocity) {
   EXPECT_NEAR(filter.box().centre_px.x(), 100 + 4 * 36, 3) << "px, six frames later";
 }
 
-TEST(BoxKalman, is_nearer_to_the_truth_than_noisy_boxes_are) {
+TEST(BoxKalman, is_closer_to_the_truth_than_noisy_boxes) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0, 4);
   BoxKalman filter(box(100, 200, 80, 200), BoxNoise{});
@@ -41,7 +41,7 @@ TEST(BoxKalman, is_nearer_to_the_truth_than_noisy_boxes_are) {
   EXPECT_LT(filtered, 0.7 * raw);
 }
 
-TEST(BoxKalman, follows_the_flow_where_no_detection_came) {
+TEST(BoxKalman, follows_the_flow_without_a_detection) {
   BoxKalman filter(box(100, 200, 80, 200), BoxNoise{});
   for (int i = 0; i < 15; ++i) {  // half a second, the object turns round in the middle
     filter.flowed({{i < 7 ? 5.0 : -5.0, 0}, 1.01}, kFrameS);
@@ -51,7 +51,7 @@ TEST(BoxKalman, follows_the_flow_where_no_detection_came) {
   EXPECT_NEAR(filter.box().size_px.x(), 80 * std::pow(1.01, 15), 2) << "px";
 }
 
-TEST(BoxKalman, grows_less_sure_without_measurements_and_surer_with_them) {
+TEST(BoxKalman, becomes_less_certain_without_measurements_and_more_with_them) {
   BoxKalman filter(box(100, 200, 80, 200), BoxNoise{});
   const double first = filter.sigma_px(0);
   filter.predict(0.5);
@@ -72,7 +72,7 @@ TEST(BoxKalman, treats_large_and_small_boxes_alike) {
   EXPECT_NEAR(10 * small.box().centre_px.x(), large.box().centre_px.x(), 1e-9) << "px";
 }
 
-TEST(BoxKalman, stays_a_box_whatever_it_is_told) {
+TEST(BoxKalman, stays_a_box_whatever_is_measured) {
   BoxKalman filter(box(100, 100, 20, 50), BoxNoise{});
   for (int i = 0; i < 100; ++i) {
     filter.flowed({{1e4, -1e4}, 0.01}, kFrameS);

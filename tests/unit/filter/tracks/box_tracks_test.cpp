@@ -90,7 +90,7 @@ TEST_F(BoxTracksTest, survive_one_miss_however_short_they_have_been_seen) {
   EXPECT_THAT(tracks_.boxes(), SizeIs(1));
 }
 
-TEST_F(BoxTracksTest, do_not_pile_up_when_a_detector_lies) {
+TEST_F(BoxTracksTest, do_not_accumulate_when_a_detector_is_wrong) {
   std::minstd_rand random(1);
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -112,13 +112,13 @@ TEST_F(BoxTracksTest, do_not_pile_up_when_a_detector_lies) {
   EXPECT_LE(static_cast<double>(carried) / kFrames, 2.0);
 }
 
-TEST_F(BoxTracksTest, believe_answers_that_keep_saying_nobody) {
+TEST_F(BoxTracksTest, end_after_repeated_empty_batches) {
   walk(0, 10, 0);
   denial(11, 40);
   EXPECT_THAT(tracks_.boxes(), IsEmpty());
 }
 
-TEST_F(BoxTracksTest, do_not_believe_them_while_the_camera_rolls_fast) {
+TEST_F(BoxTracksTest, ignore_empty_batches_while_the_camera_rolls_fast) {
   walk(0, 10, 0);
   denial(11, 70, true);
   EXPECT_THAT(tracks_.boxes(), SizeIs(1)) << "two seconds";
@@ -126,7 +126,7 @@ TEST_F(BoxTracksTest, do_not_believe_them_while_the_camera_rolls_fast) {
   EXPECT_THAT(tracks_.boxes(), IsEmpty()) << "roll is over";
 }
 
-TEST_F(BoxTracksTest, believe_them_at_last_however_long_it_rolls) {
+TEST_F(BoxTracksTest, end_after_empty_batches_however_long_the_camera_rolls) {
   walk(0, 10, 0);
   denial(11, 170, true);
   EXPECT_THAT(tracks_.boxes(), IsEmpty());
@@ -141,7 +141,7 @@ TEST_F(BoxTracksTest, forget_at_once_what_was_seen_only_once) {
   EXPECT_THAT(tracks_.boxes(), IsEmpty());
 }
 
-TEST_F(BoxTracksTest, live_through_a_second_of_silence_but_not_for_ever) {
+TEST_F(BoxTracksTest, survive_a_second_without_batches_but_not_for_ever) {
   walk(0, 10, 0);
   silence(11, 40);
   EXPECT_THAT(tracks_.boxes(), SizeIs(1));
@@ -149,7 +149,7 @@ TEST_F(BoxTracksTest, live_through_a_second_of_silence_but_not_for_ever) {
   EXPECT_THAT(tracks_.boxes(), IsEmpty());
 }
 
-TEST_F(BoxTracksTest, compare_a_late_answer_with_their_state_of_that_time) {
+TEST_F(BoxTracksTest, compare_a_late_batch_with_their_state_at_that_time) {
   walk(0, 10, 4);
   silence(11, 20);
   answer(14, {person(100 + 4 * 14 + 20)});  // it had hurried
@@ -158,7 +158,7 @@ TEST_F(BoxTracksTest, compare_a_late_answer_with_their_state_of_that_time) {
   EXPECT_GT(x_px(), 100 + 4 * 20 + 15) << "px: the correction is carried to now";
 }
 
-TEST_F(BoxTracksTest, carry_what_is_new_in_a_late_answer_to_now) {
+TEST_F(BoxTracksTest, carry_new_objects_of_a_late_batch_forward) {
   silence(0, 10);
   answer(4, {person(100)});
   ASSERT_THAT(tracks_.boxes(), SizeIs(1));
@@ -174,7 +174,7 @@ TEST_F(BoxTracksTest, carry_what_is_new_in_a_late_answer_to_now) {
   EXPECT_EQ(tracks_.boxes()[0].depth_m, 2.0);
 }
 
-TEST_F(BoxTracksTest, ask_for_the_flow_of_each_step_once_and_not_of_seen_boxes) {
+TEST_F(BoxTracksTest, measure_the_flow_of_each_step_once_and_not_of_detected_boxes) {
   walk(0, 5, 2);
   int asked = 0;
   const auto count = [&](const CarryStep&) {
@@ -189,7 +189,7 @@ TEST_F(BoxTracksTest, ask_for_the_flow_of_each_step_once_and_not_of_seen_boxes) 
   EXPECT_EQ(asked, 1);
 }
 
-TEST_F(BoxTracksTest, keep_the_flow_when_a_late_answer_changes_the_past) {
+TEST_F(BoxTracksTest, keep_the_flow_when_a_late_batch_changes_the_past) {
   walk(0, 5, 0);
   for (int i = 6; i <= 12; ++i) {
     frame(i);
@@ -201,7 +201,7 @@ TEST_F(BoxTracksTest, keep_the_flow_when_a_late_answer_changes_the_past) {
   EXPECT_LT(x_px() - before_px, 10) << "px";
 }
 
-TEST_F(BoxTracksTest, hear_one_answer_once) {
+TEST_F(BoxTracksTest, use_each_batch_once) {
   walk(0, 0, 0);
   answer(0, {person(100)});
   answer(0, {person(100)});
@@ -210,7 +210,7 @@ TEST_F(BoxTracksTest, hear_one_answer_once) {
   EXPECT_THAT(tracks_.boxes(), IsEmpty()) << "the repetition did not confirm it";
 }
 
-TEST_F(BoxTracksTest, ignore_answers_of_the_future_and_of_long_ago) {
+TEST_F(BoxTracksTest, ignore_batches_of_the_future_and_of_long_ago) {
   silence(0, 40);
   answer(41, {person(100)});
   answer(1000, {person(100)});
@@ -219,7 +219,7 @@ TEST_F(BoxTracksTest, ignore_answers_of_the_future_and_of_long_ago) {
   EXPECT_THAT(tracks_.boxes(), IsEmpty());
 }
 
-TEST_F(BoxTracksTest, keep_two_people_apart_that_cross) {
+TEST_F(BoxTracksTest, keep_two_crossing_people_apart) {
   for (int i = 0; i <= 40; ++i) {
     frame(i);
     answer(i, {person(100 + 8 * i), person(420 - 8 * i)});
@@ -230,7 +230,7 @@ TEST_F(BoxTracksTest, keep_two_people_apart_that_cross) {
   EXPECT_FLOAT_EQ(boxes[0].detection.x_px, 100 + 8 * 40);
 }
 
-TEST_F(BoxTracksTest, take_the_class_that_most_answers_gave) {
+TEST_F(BoxTracksTest, take_the_class_of_most_detections) {
   for (int i = 0; i < 6; ++i) {
     frame(i);
     vision::Detection d = person(100);
@@ -242,7 +242,7 @@ TEST_F(BoxTracksTest, take_the_class_that_most_answers_gave) {
   EXPECT_EQ(tracks_.boxes()[0].detection.class_name, "person");
 }
 
-TEST_F(BoxTracksTest, tell_objects_of_different_depth_apart) {
+TEST_F(BoxTracksTest, distinguish_objects_at_different_depths) {
   double depth_m = 1.5;
   const auto depth_of = [&](std::int64_t, const vision::Detection&) { return depth_m; };
   frame(0);
@@ -271,7 +271,7 @@ TEST_F(BoxTracksTest, stay_bounded_with_random_boxes) {
   }
 }
 
-TEST_F(BoxTracksTest, start_anew_when_time_goes_back) {
+TEST_F(BoxTracksTest, are_reset_when_time_goes_back) {
   walk(0, 10, 0);
   frame(3);
   EXPECT_THAT(tracks_.boxes(), IsEmpty());

@@ -46,7 +46,7 @@ class CarriedMask : public ::testing::Test {
   DynamicFilter filter_{config(), [] { return std::int64_t{0}; }};
 };
 
-TEST_F(CarriedMask, stays_on_a_walker_with_late_answers_at_five_hertz) {
+TEST_F(CarriedMask, stays_on_a_walker_with_late_detections_at_five_hertz) {
   for (std::uint64_t i = 0; i < 30; ++i) {
     std::vector<DetectionBatch> batches;
     if (i >= 4 && (i - 4) % 6 == 0) batches.push_back(batch(i - 4));  // 130 ms late
@@ -68,7 +68,7 @@ TEST_F(CarriedMask, stays_on_a_walker_through_a_second_of_silence) {
   }
 }
 
-TEST_F(CarriedMask, is_dropped_half_a_second_after_nobody_looks_any_more) {
+TEST_F(CarriedMask, is_dropped_half_a_second_after_the_detector_has_gone) {
   for (std::uint64_t i = 0; i < 5; ++i) frame(i, {batch(i)});
   FilterResult result;
   for (std::uint64_t i = 5; i < 12; ++i) result = frame(i, {}, false);
@@ -77,7 +77,7 @@ TEST_F(CarriedMask, is_dropped_half_a_second_after_nobody_looks_any_more) {
   EXPECT_TRUE(result.objects.empty());
 }
 
-TEST_F(CarriedMask, takes_what_a_broken_detector_may_say) {
+TEST_F(CarriedMask, survives_a_broken_detector) {
   const DetectionBatch good = batch(0);
   std::vector<vision::Detection> ten_thousand(10'000, {"person", 0.9F, 10, 10, 50, 50});
   const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -40,7 +40,7 @@ TEST(MaskFlow, finds_the_shift_of_a_box) {
   EXPECT_NEAR(motion->flow.scale, 1, 0.01);
 }
 
-TEST(MaskFlow, finds_a_box_that_comes_nearer) {
+TEST(MaskFlow, finds_the_scale_of_an_approaching_box) {
   MaskFlow flow;
   flow.see(1, picture(0));
   flow.see(2, picture(0, 1.06));
@@ -50,14 +50,14 @@ TEST(MaskFlow, finds_a_box_that_comes_nearer) {
   EXPECT_NEAR(motion->flow.shift_px.norm(), 0, 1.0) << "px";
 }
 
-TEST(MaskFlow, says_nothing_where_nothing_is_found_again) {
+TEST(MaskFlow, returns_nothing_where_no_point_is_found_again) {
   MaskFlow flow;
   flow.see(1, picture(0));
   flow.see(2, cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(128)));
   EXPECT_FALSE(flow.follow(1, 2, kBox, points_in_box()));
 }
 
-TEST(MaskFlow, says_nothing_of_unknown_images_and_of_too_few_points) {
+TEST(MaskFlow, returns_nothing_for_unknown_images_and_too_few_points) {
   MaskFlow flow;
   flow.see(1, picture(0));
   flow.see(2, picture(1));

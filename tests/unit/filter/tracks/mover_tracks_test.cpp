@@ -64,7 +64,7 @@ class MoverTracksTest : public ::testing::Test {
   std::int64_t stamp_ns_ = 0;
 };
 
-TEST_F(MoverTracksTest, knows_again_what_comes_back_into_view) {
+TEST_F(MoverTracksTest, recognises_a_mover_that_returns_to_the_view) {
   see_mover();
   look_away(2);
   const CellMask mask = expected(block_at(kBlock));
@@ -127,14 +127,14 @@ TEST_F(MoverTracksTest, ends_when_it_was_seen_at_rest) {
   EXPECT_TRUE(tracks_.movers().empty());
 }
 
-TEST_F(MoverTracksTest, takes_no_jump_of_the_centre_for_motion_when_two_part) {
+TEST_F(MoverTracksTest, does_not_take_a_jump_of_the_centre_for_motion_when_two_movers_part) {
   const cv::Rect pair(240, 160, 240, 160);
   for (int i = 0; i < 10; ++i) step(block_at(pair), true);
   for (int i = 0; i < 5; ++i) step(block_at(kBlock), true);
   EXPECT_LT(tracks_.movers().front().velocity_world_m_s.norm(), 0.05);
 }
 
-TEST_F(MoverTracksTest, believes_no_mover_that_was_seen_once_or_twice) {
+TEST_F(MoverTracksTest, does_not_report_a_mover_that_was_seen_once_or_twice) {
   for (int i = 0; i < 2; ++i) step(block_at(kBlock), true);
   EXPECT_TRUE(tracks_.movers().empty());
 }

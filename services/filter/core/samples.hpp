@@ -15,4 +15,13 @@ inline float median(std::vector<float> values) {
   return *middle;
 }
 
+/// The elements, thinned out evenly to at most `limit`.
+template <class T>
+std::vector<T> thin_out(std::vector<T> all, std::size_t limit) {
+  if (all.size() <= limit) return all;
+  std::vector<T> kept;
+  for (std::size_t i = 0; i < limit; ++i) kept.push_back(all[i * all.size() / limit]);
+  return kept;
+}
+
 }  // namespace rtd::filter
