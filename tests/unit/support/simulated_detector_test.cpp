@@ -67,9 +67,9 @@ TEST(DetectorPace, is_silent_in_an_outage_which_the_filter_notices_later) {
   EXPECT_THAT(received(options, 11),
               ElementsAre(Seqs{0}, Seqs{1}, Seqs{}, Seqs{}, Seqs{}, Seqs{}, Seqs{}, Seqs{}, Seqs{}, Seqs{9}, Seqs{10}));
   DetectorPace pace([](const camera::SourceFrame&) { return std::vector<vision::Detection>{}; }, options);
-  std::vector<bool> watching;
-  for (std::uint64_t i = 0; i < 10; ++i) watching.push_back(pace.advance_to(frame(i)).watching);
-  EXPECT_THAT(watching, ElementsAre(true, true, true, true, true, true, true, false, false, true));
+  std::vector<bool> active;
+  for (std::uint64_t i = 0; i < 10; ++i) active.push_back(pace.advance_to(frame(i)).active);
+  EXPECT_THAT(active, ElementsAre(true, true, true, true, true, true, true, false, false, true));
 }
 
 TEST(SimulatedDetector, tells_people_from_boxes_and_is_a_little_wrong) {
