@@ -9,6 +9,10 @@
 
 namespace rtd::filter::test {
 
+/// Cells of a 640x480 image, and a block in it on whole cells.
+inline const GridShape kShape{160, 120};
+inline const cv::Rect kBlock(240, 160, 120, 160);
+
 /// A wall at `wall_m` that fills the image, without texture.
 inline vision::RgbdImage wall_image(double wall_m = 3.0) {
   return rgbd_image(cv::Mat(480, 640, CV_8UC1, cv::Scalar(128)), wall_m);

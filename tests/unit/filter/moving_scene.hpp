@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
+
 #include "common/msg/transform_eigen.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
 #include "tests/unit/filter/orb/test_images.hpp"
@@ -52,8 +54,13 @@ class MovingScene {
     shifted(inside).copyTo(grey(inside));
     image.depth(inside).setTo(cv::Scalar(depth_m / image.depth_scale_m));
   }
-  cv::Mat far_ = textured_image({1900, 480}, 1), near_ = textured_image({1900, 480}, 2),
-          block_ = textured_image({1900, 480}, 3);
+  static cv::Mat texture(std::uint64_t seed) {
+    static std::map<std::uint64_t, cv::Mat> drawn;  // once for all scenes
+    cv::Mat& image = drawn[seed];
+    if (image.empty()) image = textured_image({1900, 480}, seed);
+    return image;
+  }
+  const cv::Mat far_ = texture(1), near_ = texture(2), block_ = texture(3);
 };
 
 inline bool removed(const msg::Feature& feature) {

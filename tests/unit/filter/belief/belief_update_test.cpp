@@ -9,15 +9,15 @@
 namespace rtd::filter {
 namespace {
 
-constexpr std::size_t kCells = 40 * 30;
+constexpr std::size_t kBeliefCells = 40 * 30;
 constexpr double kFrameS = 1.0 / 30;
 
 /// An object on the first half of a small image, seen for a while.
 class BeliefTest : public ::testing::Test {
  protected:
   BeliefTest() {
-    for (int cell = 0; cell < static_cast<int>(kCells / 2); ++cell) objects_[0].cells.push_back(cell);
-    for (std::size_t cell = 0; cell < kCells; cell += 4) votes_.votes.push_back({static_cast<int>(cell), false});
+    for (int cell = 0; cell < static_cast<int>(kBeliefCells / 2); ++cell) objects_[0].cells.push_back(cell);
+    for (std::size_t cell = 0; cell < kBeliefCells; cell += 4) votes_.votes.push_back({static_cast<int>(cell), false});
   }
   /// Frames until now; returns the probability on the object.
   double see(int frames) {
@@ -30,17 +30,17 @@ class BeliefTest : public ::testing::Test {
     return on_object();
   }
   double on_object() const { return probability(beliefs_[100]); }
-  double on_wall() const { return probability(beliefs_[kCells - 100]); }
-  void rest() { depth_.consistent.assign(kCells, 2), depth_.lasting.assign(kCells, 1); }
+  double on_wall() const { return probability(beliefs_[kBeliefCells - 100]); }
+  void rest() { depth_.consistent.assign(kBeliefCells, 2), depth_.lasting.assign(kBeliefCells, 1); }
 
   std::vector<SceneObject> objects_{{"person", 0.9F, MotionLevel::kHigh, {}, false}};
   std::vector<ObjectMotion> motion_;
-  DynamicRegions regions_{true, CellMask(kCells, 0), 0};
-  DepthEvidence depth_ = DepthEvidence::none(kCells);
+  DynamicRegions regions_{true, CellMask(kBeliefCells, 0), 0};
+  DepthEvidence depth_ = DepthEvidence::none(kBeliefCells);
   FeatureVotes votes_;
   BeliefConfig config_;
   Techniques techniques_;
-  CellBeliefs beliefs_ = CellBeliefs(kCells, kNoBelief);
+  CellBeliefs beliefs_ = CellBeliefs(kBeliefCells, kNoBelief);
 };
 
 TEST_F(BeliefTest, starts_from_the_prior_of_the_class) {
@@ -60,8 +60,8 @@ TEST_F(BeliefTest, rises_slowly_for_a_person_at_rest_and_stays_below_its_limit) 
 TEST_F(BeliefTest, falls_at_once_when_the_person_moves) {
   rest();
   see(100);
-  regions_.frames_left.assign(kCells / 2, 30);
-  regions_.frames_left.resize(kCells, 0);
+  regions_.frames_left.assign(kBeliefCells / 2, 30);
+  regions_.frames_left.resize(kBeliefCells, 0);
   EXPECT_NEAR(see(1), config_.lowest_probability, 1e-3);
   EXPECT_GT(on_wall(), 0.9);
 }
@@ -84,9 +84,9 @@ TEST_F(BeliefTest, removes_only_the_arm_of_a_person_who_waves) {
 }
 
 TEST_F(BeliefTest, recovers_after_a_stop_within_two_seconds) {
-  regions_.frames_left.assign(kCells, 30);
+  regions_.frames_left.assign(kBeliefCells, 30);
   see(5);
-  regions_.frames_left.assign(kCells, 0);
+  regions_.frames_left.assign(kBeliefCells, 0);
   rest();
   EXPECT_LT(see(15), 0.25);
   EXPECT_GT(see(30), 0.25);
@@ -96,7 +96,7 @@ TEST_F(BeliefTest, recovers_after_a_stop_within_two_seconds) {
 TEST_F(BeliefTest, returns_to_the_prior_without_a_statement) {
   rest();
   see(100);
-  depth_ = DepthEvidence::none(kCells);
+  depth_ = DepthEvidence::none(kBeliefCells);
   EXPECT_LT(see(30), config_.high_limit - 0.1);
   EXPECT_NEAR(see(600), config_.high_prior, 0.01);
 }
@@ -106,7 +106,7 @@ TEST_F(BeliefTest, keeps_a_wall_that_a_box_sometimes_covers) {
   objects_[0].level = MotionLevel::kLow;
   see(60);
   objects_[0].level = MotionLevel::kHigh;
-  depth_ = DepthEvidence::none(kCells);
+  depth_ = DepthEvidence::none(kBeliefCells);
   EXPECT_GT(see(10), 0.9) << "ten frames of a wrong box";
 }
 

@@ -9,7 +9,7 @@
 namespace rtd::filter {
 namespace {
 
-constexpr std::size_t kCells = 160 * 120;
+constexpr std::size_t kImageCells = 160 * 120;
 
 /// One object on the left third of the image, features on a grid over all of it.
 class StaticProbabilityTest : public ::testing::Test {
@@ -24,7 +24,7 @@ class StaticProbabilityTest : public ::testing::Test {
       }
     }
     SceneObject object{"person", 0.9F, MotionLevel::kHigh, {}, false};
-    for (int cell = 0; cell < static_cast<int>(kCells); ++cell) {
+    for (int cell = 0; cell < static_cast<int>(kImageCells); ++cell) {
       if (cell % 160 < 53) object.cells.push_back(cell);
     }
     objects_.push_back(object);
@@ -47,9 +47,9 @@ class StaticProbabilityTest : public ::testing::Test {
   std::vector<msg::Feature> features_;
   std::vector<SceneObject> objects_;
   std::vector<ObjectMotion> motions_{ObjectMotion::kUnknown};
-  DynamicRegions regions_{true, CellMask(kCells, 0), 0};
-  DepthEvidence evidence_ = DepthEvidence::none(kCells);
-  CellBeliefs recalled_ = CellBeliefs(kCells, kNoBelief);
+  DynamicRegions regions_{true, CellMask(kImageCells, 0), 0};
+  DepthEvidence evidence_ = DepthEvidence::none(kImageCells);
+  CellBeliefs recalled_ = CellBeliefs(kImageCells, kNoBelief);
   FilterConfig config_;
 };
 
@@ -64,7 +64,7 @@ TEST_F(StaticProbabilityTest, removes_a_person_seen_for_the_first_time) {
 
 TEST_F(StaticProbabilityTest, gives_a_person_who_sits_for_long_a_low_weight) {
   motions_[0] = ObjectMotion::kResting;
-  recalled_.assign(kCells, log_odds(0.4));
+  recalled_.assign(kImageCells, log_odds(0.4));
   weigh();
   EXPECT_FALSE(removed(on_object()));
   EXPECT_NEAR(on_object().static_probability, 0.42, 0.01);
@@ -72,7 +72,7 @@ TEST_F(StaticProbabilityTest, gives_a_person_who_sits_for_long_a_low_weight) {
 
 TEST_F(StaticProbabilityTest, weighs_all_equally_when_weights_are_off) {
   config_.techniques.feature_weights = false;
-  recalled_.assign(kCells, log_odds(0.4));
+  recalled_.assign(kImageCells, log_odds(0.4));
   weigh();
   EXPECT_EQ(on_object().static_probability, 1.0F);
 }
@@ -94,7 +94,7 @@ TEST_F(StaticProbabilityTest, trusts_a_screen_unless_it_moves) {
   objects_[0].level = MotionLevel::kLow;
   weigh();
   EXPECT_FALSE(removed(on_object()));
-  regions_.frames_left.assign(kCells, 10);
+  regions_.frames_left.assign(kImageCells, 10);
   weigh();
   EXPECT_TRUE(removed(on_object()));
 }
@@ -117,28 +117,29 @@ TEST_F(StaticProbabilityTest, prefers_the_person_where_masks_overlap) {
 
 TEST_F(StaticProbabilityTest, removes_what_moves_without_a_class) {
   objects_.clear();
-  regions_.frames_left.assign(kCells, 10);
+  regions_.frames_left.assign(kImageCells, 10);
   weigh();
   EXPECT_TRUE(removed(background()));
   EXPECT_NE(background().flags & msg::kFeatureGeometryMoving, 0);
 }
 
 TEST_F(StaticProbabilityTest, removes_people_and_nothing_else_in_semantic_mode) {
-  recalled_.assign(kCells, log_odds(0.9));
+  recalled_.assign(kImageCells, log_odds(0.9));
   weigh(FilterMode::kSemantic);
   EXPECT_TRUE(removed(on_object()));
   EXPECT_FALSE(removed(background()));
 }
 
 TEST_F(StaticProbabilityTest, keeps_the_best_of_the_doubtful_when_too_few_remain) {
-  for (int cell = 0; cell < static_cast<int>(kCells); ++cell) objects_[0].cells.push_back(cell);  // a person everywhere
+  for (int cell = 0; cell < static_cast<int>(kImageCells); ++cell)
+    objects_[0].cells.push_back(cell);  // a person everywhere
   config_.fusion.min_static_features = 100;
   weigh();
   EXPECT_EQ(std::count_if(features_.begin(), features_.end(), [](const auto& f) { return !removed(f); }), 100);
 }
 
 TEST_F(StaticProbabilityTest, never_takes_back_what_geometry_saw_moving) {
-  regions_.frames_left.assign(kCells, 10);
+  regions_.frames_left.assign(kImageCells, 10);
   config_.fusion.min_static_features = 100;
   weigh();
   EXPECT_EQ(std::count_if(features_.begin(), features_.end(), [](const auto& f) { return !removed(f); }), 0);

@@ -13,11 +13,11 @@
 namespace rtd::filter {
 namespace {
 
+using test::kShape;
 using test::MovingScene;
 using test::removed_share;
 
 constexpr double kDegree = 3.14159265358979 / 180;
-const GridShape kShape{160, 120};
 
 /// A keyframe that saw keypoints on a grid over a wall at this depth.
 View keyframe_of_wall(double depth_m) {
@@ -86,7 +86,7 @@ class PaperRulesTest : public ::testing::Test {
     objects_.push_back(object);
   }
   std::vector<bool> removed() {
-    const auto now_ns = [] { return std::int64_t{0}; };
+    const std::function<std::int64_t()> now_ns = [] { return std::int64_t{0}; };
     StageClock clock(now_ns);
     const test::TestScene scene(image_);
     features_ = PaperJudge(FilterConfig{}).judge(scene.with(objects_), features_, clock).features;

@@ -7,25 +7,25 @@
 namespace rtd::filter {
 namespace {
 
-constexpr std::size_t kCells = 100;
+constexpr std::size_t kSurfaceCells = 100;
 
 /// One surface that keyframes saw through and recent views saw at its place.
 class Arrivals : public ::testing::Test {
  protected:
   DepthEvidence accept() { return accept_arrivals(evidence_, clusters_, votes_, old_votes_, GeometryConfig{}); }
-  DepthClusters clusters_{{10, 10}, std::vector<std::int32_t>(kCells, 0), {100}};
+  DepthClusters clusters_{{10, 10}, std::vector<std::int32_t>(kSurfaceCells, 0), {100}};
   FeatureVotes votes_{{}, {40}, {0}}, old_votes_{{}, {30}, {0}};
   DepthEvidence evidence_ = [] {
-    DepthEvidence evidence = DepthEvidence::none(kCells);
-    evidence.violated.assign(kCells, 1);
-    evidence.settled.assign(kCells, 1);
+    DepthEvidence evidence = DepthEvidence::none(kSurfaceCells);
+    evidence.violated.assign(kSurfaceCells, 1);
+    evidence.settled.assign(kSurfaceCells, 1);
     return evidence;
   }();
 };
 
 TEST_F(Arrivals, are_at_rest_when_their_features_are) {
-  EXPECT_EQ(accept().violated, std::vector<std::uint8_t>(kCells, 0));
-  EXPECT_EQ(accept().lasting, std::vector<std::uint8_t>(kCells, 1));
+  EXPECT_EQ(accept().violated, std::vector<std::uint8_t>(kSurfaceCells, 0));
+  EXPECT_EQ(accept().lasting, std::vector<std::uint8_t>(kSurfaceCells, 1));
 }
 
 TEST_F(Arrivals, are_none_while_features_are_displaced_or_few) {

@@ -14,11 +14,10 @@ namespace {
 
 using test::cells_in;
 using test::count_in;
+using test::kBlock;
+using test::kShape;
 using test::put_block;
 using test::wall_image;
-
-const GridShape kShape{160, 120};
-const cv::Rect kBlock(240, 160, 120, 160);
 
 View view_of(const vision::RgbdImage& image, double age_s = 0.5) {
   View view;

@@ -11,9 +11,8 @@ namespace {
 
 using test::cells_in;
 using test::count_in;
-
-const GridShape kShape{160, 120};
-const cv::Rect kBlock(240, 160, 120, 160);
+using test::kBlock;
+using test::kShape;
 
 /// Remembers a block at 1.5 m as dynamic for 20 frames.
 class DynamicMemoryTest : public ::testing::Test {

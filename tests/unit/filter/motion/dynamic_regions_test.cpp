@@ -11,10 +11,10 @@ namespace {
 
 using test::cells_in;
 using test::count_in;
+using test::kBlock;
+using test::kShape;
 
-const GridShape kShape{160, 120};
-const cv::Rect kBlock(240, 160, 120, 160);
-constexpr std::size_t kCells = 160 * 120;
+constexpr std::size_t kRegionCells = 160 * 120;
 
 /// A wall with a block in front, as clusters, and evidence that starts empty.
 class DynamicRegionsTest : public ::testing::Test {
@@ -34,9 +34,9 @@ class DynamicRegionsTest : public ::testing::Test {
     }
   }
   void set_labels(const cv::Rect& area_px, std::int32_t label) {
-    CellMask area(kCells, 0);
+    CellMask area(kRegionCells, 0);
     set(area, area_px, 1);
-    for (std::size_t cell = 0; cell < kCells; ++cell) {
+    for (std::size_t cell = 0; cell < kRegionCells; ++cell) {
       if (area[cell] != 0) clusters_.label[cell] = label;
     }
   }
@@ -52,10 +52,10 @@ class DynamicRegionsTest : public ::testing::Test {
 
   GeometryConfig config_;
   DepthClusters clusters_;
-  DepthEvidence evidence_ = DepthEvidence::none(kCells);
+  DepthEvidence evidence_ = DepthEvidence::none(kRegionCells);
   FeatureVotes votes_;
   FeatureVotes slow_votes_;
-  CellMask remembered_ = CellMask(kCells, 0);
+  CellMask remembered_ = CellMask(kRegionCells, 0);
 };
 
 TEST_F(DynamicRegionsTest, takes_the_whole_cluster_when_a_part_of_it_violates) {
@@ -121,9 +121,9 @@ TEST_F(DynamicRegionsTest, forgets_faster_what_depth_and_features_see_at_rest) {
 }
 
 TEST_F(DynamicRegionsTest, leaves_out_the_floor_under_a_walker) {
-  for (std::size_t cell = 0; cell < kCells; ++cell) clusters_.label[cell] = cell >= 80 * 160 ? 0 : -1;
+  for (std::size_t cell = 0; cell < kRegionCells; ++cell) clusters_.label[cell] = cell >= 80 * 160 ? 0 : -1;
   set_labels(kBlock, 0);  // walker and floor in one cluster
-  clusters_.cells = {static_cast<int>(kCells * 2 / 5)};
+  clusters_.cells = {static_cast<int>(kRegionCells * 2 / 5)};
   votes_.resting.assign(1, 0);
   votes_.moving.assign(1, 0);
   const cv::Rect floor(0, 380, 640, 100);

@@ -13,6 +13,7 @@ namespace {
 
 using test::cells_in;
 using test::count_in;
+using test::kShape;
 using test::put_block;
 using test::wall_image;
 
@@ -31,7 +32,6 @@ std::vector<std::uint8_t> mask_of(const SceneObject& object) {
   for (const int cell : object.cells) mask[static_cast<std::size_t>(cell)] = 1;
   return mask;
 }
-const GridShape kShape{160, 120};
 
 TEST(ObjectMasks, take_the_near_cluster_and_leave_the_background_seen_through_the_box) {
   vision::RgbdImage image = wall_image(3.0);

@@ -9,7 +9,7 @@
 namespace rtd::filter {
 namespace {
 
-constexpr double kFrameS = 1.0 / 30;
+constexpr double kDetectionPeriodS = 1.0 / 30;
 
 Box box(double x, double y, double width, double height) {
   return {{x, y}, {width, height}};
@@ -18,7 +18,7 @@ Box box(double x, double y, double width, double height) {
 TEST(BoxKalman, learns_a_constant_velocity) {
   BoxKalman filter(box(100, 200, 80, 200), BoxNoise{});
   for (int i = 1; i <= 30; ++i) {
-    filter.predict(kFrameS);
+    filter.predict(kDetectionPeriodS);
     filter.detected(box(100 + 4 * i, 200, 80, 200));
   }
   EXPECT_NEAR(filter.velocity_px_s().x(), 120, 5) << "px/s";
@@ -33,7 +33,7 @@ TEST(BoxKalman, is_closer_to_the_truth_than_noisy_boxes) {
   double filtered = 0, raw = 0;
   for (int i = 1; i <= 200; ++i) {
     const double truth = 100 + 2 * i, seen = truth + noise(random);
-    filter.predict(kFrameS);
+    filter.predict(kDetectionPeriodS);
     filter.detected(box(seen, 200, 80, 200));
     filtered += std::pow(filter.box().centre_px.x() - truth, 2);
     raw += std::pow(seen - truth, 2);
@@ -44,8 +44,8 @@ TEST(BoxKalman, is_closer_to_the_truth_than_noisy_boxes) {
 TEST(BoxKalman, follows_the_flow_without_a_detection) {
   BoxKalman filter(box(100, 200, 80, 200), BoxNoise{});
   for (int i = 0; i < 15; ++i) {  // half a second, the object turns round in the middle
-    filter.flowed({{i < 7 ? 5.0 : -5.0, 0}, 1.01}, kFrameS);
-    filter.predict(kFrameS);
+    filter.flowed({{i < 7 ? 5.0 : -5.0, 0}, 1.01}, kDetectionPeriodS);
+    filter.predict(kDetectionPeriodS);
   }
   EXPECT_NEAR(filter.box().centre_px.x(), 100 - 5, 6) << "px";
   EXPECT_NEAR(filter.box().size_px.x(), 80 * std::pow(1.01, 15), 2) << "px";
@@ -64,8 +64,8 @@ TEST(BoxKalman, becomes_less_certain_without_measurements_and_more_with_them) {
 TEST(BoxKalman, treats_large_and_small_boxes_alike) {
   BoxKalman small(box(100, 100, 20, 50), BoxNoise{}), large(box(1000, 1000, 200, 500), BoxNoise{});
   for (int i = 1; i <= 5; ++i) {
-    small.predict(kFrameS);
-    large.predict(kFrameS);
+    small.predict(kDetectionPeriodS);
+    large.predict(kDetectionPeriodS);
     small.detected(box(100 + i, 100, 20, 50));
     large.detected(box(1000 + 10 * i, 1000, 200, 500));
   }
@@ -75,8 +75,8 @@ TEST(BoxKalman, treats_large_and_small_boxes_alike) {
 TEST(BoxKalman, stays_a_box_whatever_is_measured) {
   BoxKalman filter(box(100, 100, 20, 50), BoxNoise{});
   for (int i = 0; i < 100; ++i) {
-    filter.flowed({{1e4, -1e4}, 0.01}, kFrameS);
-    filter.predict(kFrameS);
+    filter.flowed({{1e4, -1e4}, 0.01}, kDetectionPeriodS);
+    filter.predict(kDetectionPeriodS);
   }
   EXPECT_GE(filter.box().size_px.minCoeff(), 1.0);
   EXPECT_TRUE(filter.box().centre_px.allFinite());

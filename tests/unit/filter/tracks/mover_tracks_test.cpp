@@ -13,11 +13,11 @@ namespace {
 
 using test::cells_in;
 using test::count_in;
+using test::kBlock;
+using test::kShape;
 
-const GridShape kShape{160, 120};
 const cv::Rect kEverywhere(0, 0, 640, 480);
-const cv::Rect kBlock(240, 160, 120, 160);
-constexpr double kFrameS = 0.1;
+constexpr double kStepS = 0.1;
 
 /// A block at 1.5 m before a wall at 3 m, frame by frame of a tenth of a second.
 class MoverTracksTest : public ::testing::Test {
@@ -36,7 +36,7 @@ class MoverTracksTest : public ::testing::Test {
     const DepthGrid grid = sampler_.sample(image);
     CellMask moving(grid.depth_m.size(), 0);
     for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = seen_moving && grid.depth_m[i] < 2 ? 1 : 0;
-    stamp_ns_ += static_cast<std::int64_t>(1e9 * kFrameS);
+    stamp_ns_ += static_cast<std::int64_t>(1e9 * kStepS);
     tracks_.update({grid, sampler_.rays(), image.camera, {stamp_ns_, T_world_camera}},
                    find_depth_clusters(grid, ClusterConfig{}), moving, votes);
   }
@@ -45,7 +45,7 @@ class MoverTracksTest : public ::testing::Test {
     for (int i = 0; i < 10; ++i) step(block_at(kBlock + cv::Point(i * px_per_frame, 0)), true);
   }
   void look_away(double for_s) {
-    for (int i = 0; i < for_s / kFrameS; ++i) step(test::wall_image(3.0), false, looking_away());
+    for (int i = 0; i < for_s / kStepS; ++i) step(test::wall_image(3.0), false, looking_away());
   }
   CellMask expected(const vision::RgbdImage& image) {
     const DepthGrid grid = sampler_.sample(image);
@@ -88,7 +88,7 @@ TEST_F(MoverTracksTest, keeps_one_identity_and_its_velocity) {
   see_mover(10);
   ASSERT_EQ(tracks_.movers().size(), 1U);
   const Mover mover = tracks_.movers().front();
-  const double true_m_s = 10 / kFrameS * 1.5 / 525;
+  const double true_m_s = 10 / kStepS * 1.5 / 525;
   EXPECT_NEAR(mover.velocity_world_m_s.x(), true_m_s, 0.2 * true_m_s);
   EXPECT_NEAR(mover.extent_world.center().z(), 1.5, 0.02);
   EXPECT_NEAR(mover.age_s, 0.9, 1e-9);

@@ -13,7 +13,7 @@ namespace {
 using test::MovingScene;
 using test::removed_share;
 
-constexpr double kBlockStepM = 0.02;  // 0.6 m/s
+constexpr double kWalkerStepM = 0.02;  // 0.6 m/s
 
 /// A person (the block of the scene) whom only the detector can know: semantic mode. The answers of the detector are
 /// given by hand.
@@ -24,7 +24,7 @@ class CarriedMask : public ::testing::Test {
     config.mode = FilterMode::kSemantic;
     return config;
   }
-  static double block_x_m(std::uint64_t frame) { return -0.3 + kBlockStepM * static_cast<double>(frame); }
+  static double block_x_m(std::uint64_t frame) { return -0.3 + kWalkerStepM * static_cast<double>(frame); }
   static std::int64_t stamp(std::uint64_t frame) { return static_cast<std::int64_t>(frame) * 33'333'333; }
   static DetectionBatch batch(std::uint64_t frame) {
     const cv::Rect block = MovingScene::block(0, block_x_m(frame));

@@ -19,25 +19,44 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::nume
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 using Updates = std::function<DetectorUpdate(std::int64_t stamp_ns)>;
 
-/// Ten frames of a block that passes, with the detector's update for each.
+/// Ten frames of a block that passes; rendered once for all tests.
+const std::vector<vision::RgbdImage>& frames() {
+  static const std::vector<vision::RgbdImage> rendered = [] {
+    const MovingScene scene;
+    std::vector<vision::RgbdImage> images;
+    for (std::uint64_t i = 0; i < 10; ++i) {
+      images.push_back(scene.render(i, 0.008 * static_cast<double>(i), -0.25 + 0.03 * static_cast<double>(i)));
+      images.back().stamp_ns += 100 * kSecondNs;
+    }
+    return images;
+  }();
+  return rendered;
+}
+
+/// The results of the ten frames with the detector's update for each.
 std::vector<FilterResult> run(const Updates& updates) {
-  static const MovingScene scene;
   DynamicFilter filter(FilterConfig{}, service::monotonic_ns);
   std::vector<FilterResult> results;
-  for (std::uint64_t i = 0; i < 10; ++i) {
-    vision::RgbdImage image = scene.render(i, 0.008 * static_cast<double>(i), -0.25 + 0.03 * static_cast<double>(i));
-    image.stamp_ns += 100 * kSecondNs;
-    results.push_back(filter.apply(image, updates(image.stamp_ns)));
-  }
+  for (const vision::RgbdImage& image : frames()) results.push_back(filter.apply(image, updates(image.stamp_ns)));
   return results;
 }
 
-DetectorUpdate no_boxes(std::int64_t stamp_ns) {
-  return {true, {{stamp_ns, {}}}};
+/// A detector that finds nothing in any frame.
+const std::vector<FilterResult>& without_boxes() {
+  static const std::vector<FilterResult> results = run([](std::int64_t stamp_ns) {
+    return DetectorUpdate{true, {{stamp_ns, {}}}};
+  });
+  return results;
 }
 
-void expect_same(const Updates& updates, const Updates& reference) {
-  const std::vector<FilterResult> results = run(updates), expected = run(reference);
+/// A detector that is running but publishes nothing.
+const std::vector<FilterResult>& without_batches() {
+  static const std::vector<FilterResult> results = run([](std::int64_t) { return DetectorUpdate{true, {}}; });
+  return results;
+}
+
+void expect_same(const Updates& updates, const std::vector<FilterResult>& expected) {
+  const std::vector<FilterResult> results = run(updates);
   for (std::size_t i = 0; i < results.size(); ++i) {
     ASSERT_EQ(results[i].features.size(), expected[i].features.size()) << "frame " << i;
     EXPECT_EQ(results[i].removed, expected[i].removed) << "frame " << i;
@@ -60,13 +79,13 @@ vision::Detection person(float x_px, float y_px, float width_px, float height_px
 TEST(BadDetections, outside_the_image_count_as_none) {
   expect_same(always({person(-400, 10, 200, 200), person(700, 10, 200, 200), person(10, -300, 50, 200),
                       person(10, 500, 50, 200), person(1e4F, 1e4F, 10, 10)}),
-              no_boxes);
+              without_boxes());
 }
 
 TEST(BadDetections, of_impossible_size_count_as_none) {
   expect_same(always({person(10, 10, 0, 100), person(10, 10, -100, 100), person(10, 10, 100, -1),
                       person(300, 100, 1e-6F, 1e-6F), person(-1e30F, -1e30F, 2e30F, 2e30F)}),
-              no_boxes);
+              without_boxes());
 }
 
 TEST(BadDetections, with_numbers_that_are_not_finite_count_as_none) {
@@ -75,13 +94,13 @@ TEST(BadDetections, with_numbers_that_are_not_finite_count_as_none) {
     boxes.insert(boxes.end(), {person(bad, 10, 100, 100), person(10, bad, 100, 100), person(10, 10, bad, 100),
                                person(10, 10, 100, bad)});
   }
-  expect_same(always(boxes), no_boxes);
+  expect_same(always(boxes), without_boxes());
 }
 
 TEST(BadDetections, with_a_score_that_is_not_finite_count_as_none) {
   for (const float score : {kNan, kInf, -kInf}) {
     SCOPED_TRACE(score);
-    expect_same(always({person(200, 100, 200, 250, score)}), no_boxes);
+    expect_same(always({person(200, 100, 200, 250, score)}), without_boxes());
   }
 }
 
@@ -90,7 +109,7 @@ TEST(BadDetections, of_unknown_classes_count_as_none) {
   for (const char* name : {"", "unicorn", "Person", "person ", "\xff\xfe"})
     boxes.push_back({name, 0.9F, 100, 100, 200, 200});
   boxes.push_back({std::string(100'000, 'x'), 0.9F, 100, 100, 200, 200});
-  expect_same(always(boxes), no_boxes);
+  expect_same(always(boxes), without_boxes());
 }
 
 TEST(BadDetections, as_large_as_the_image_leave_features_to_slam) {
@@ -124,9 +143,7 @@ TEST(BadDetections, of_the_future_count_as_none) {
         [&](std::int64_t stamp_ns) {
           return DetectorUpdate{true, {{stamp_ns + ahead_ns, boxes}}};
         },
-        [](std::int64_t) {
-          return DetectorUpdate{true, {}};
-        });
+        without_batches());
   }
 }
 
@@ -135,13 +152,7 @@ TEST(BadDetections, of_long_ago_count_as_none) {
   for (const std::int64_t old_ns :
        {std::int64_t{0}, 60 * kSecondNs, std::numeric_limits<std::int64_t>::min(), std::int64_t{-1}}) {
     SCOPED_TRACE(old_ns);
-    expect_same(
-        [&](std::int64_t) {
-          return DetectorUpdate{true, {{old_ns, boxes}}};
-        },
-        [](std::int64_t) {
-          return DetectorUpdate{true, {}};
-        });
+    expect_same([&](std::int64_t) { return DetectorUpdate{true, {{old_ns, boxes}}}; }, without_batches());
   }
 }
 
