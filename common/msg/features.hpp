@@ -21,7 +21,7 @@ enum FeatureFlag : std::uint8_t {
   kFeatureInMediumMask = 1U << 2,    ///< inside the mask of a medium-motion object (chair, book)
   kFeatureInLowMask = 1U << 3,       ///< inside the mask of a low-motion object (tv, refrigerator)
   kFeatureGeometryMoving = 1U << 4,  ///< the multi-view depth check found motion here
-  kFeatureGeometryStatic = 1U << 5,  ///< the multi-view depth check found this point where it should be
+  kFeatureGeometryStatic = 1U << 5,  ///< the multi-view depth check found this point where it expected it
 };
 
 /// One ORB feature with what is known about its motion.
@@ -52,10 +52,10 @@ enum FilterStage : std::uint32_t {
   kFilterStages = 8
 };
 
-/// What the filter says of the detector for this frame.
+/// How the filter used the detector for this frame.
 enum class DetectionUse : std::uint32_t { kNone = 0, kExact = 1, kCarried = 2, kDetectorGone = 3 };
 
-/// The features of one frame: topic `rtd/features`. Plain and of fixed size; entries behind `count` are zero.
+/// The features of one frame: topic `rtd/features`. Plain and of fixed size; entries after `count` are zero.
 struct FeatureFrame {
   std::uint64_t seq;                 ///< seq of the RgbdFrame
   std::int64_t stamp_ns;             ///< stamp of the RgbdFrame

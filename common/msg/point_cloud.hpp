@@ -12,7 +12,7 @@
 
 namespace rtd::msg {
 
-/// x y z in metres and one channel more, 32 bits each: "intensity", or "rgb" as packed bytes.
+/// x y z in metres and one more channel, 32 bits each: "intensity", or "rgb" as packed bytes.
 using CloudSlot = std::array<float, 4>;
 
 /// An unordered cloud as ROS 2 programs read it, little-endian.

@@ -36,8 +36,8 @@ enum class TrackingState : std::uint32_t {
   kOk = 1,
   kRecentlyLost = 2,
   kLost = 3,
-  kRelocalizing = 4,  ///< a place was recognised; its pose is not given out before the next frames agree
-  kPredicted = 5,     ///< nothing static in view: the motion goes on as before for a moment, nothing is measured
+  kRelocalizing = 4,  ///< a place was recognised; its pose is published once the next frames agree
+  kPredicted = 5,     ///< nothing static in view: the last motion continues for a moment, without measurement
 };
 
 /// For logs, diagnostics and the live line.
@@ -59,7 +59,7 @@ constexpr const char* to_string(TrackingState state) {
   return "unknown";
 }
 
-/// Whether a result of this state bears a pose: measured (kOk) or predicted.
+/// Whether a result of this state has a pose: measured (kOk) or predicted.
 constexpr bool has_pose(TrackingState state) {
   return state == TrackingState::kOk || state == TrackingState::kPredicted;
 }
@@ -91,7 +91,7 @@ struct TrackingResult {
   std::uint32_t features_removed;
   std::uint32_t keyframes;  ///< keyframes in the map
   std::uint32_t landmarks;  ///< landmarks in the map
-  std::uint32_t map_id;     ///< map that the pose is in: 0 is frame `map`; others are on their own until merged
+  std::uint32_t map_id;     ///< map that the pose is in: 0 is frame `map`; others are separate until merged
   std::uint32_t maps;       ///< maps that have not been merged
   std::array<float, kSlamStages> stage_ms;  ///< by SlamStage
 };

@@ -23,7 +23,7 @@ constexpr std::size_t kValuesOfMessage = 4;
 ros::Bytes body_of(ros::Bytes cdr) {
   constexpr std::size_t kHeaderBytes = 4;
   if (cdr.size() < kHeaderBytes || cdr[0] != 0 || cdr[1] != 1) {
-    throw ros::WireError("it is not plain little-endian CDR");
+    throw ros::WireError("the bytes are not plain little-endian CDR");
   }
   return cdr.subspan(kHeaderBytes);
 }
@@ -35,7 +35,7 @@ class Walk {
 
   Json message(const std::string& type) {
     const std::vector<MessageField>* const fields = fields_of(type);
-    if (fields == nullptr) throw ros::WireError("type " + type + " is not known here");
+    if (fields == nullptr) throw ros::WireError("type " + type + " is unknown");
     Json value = Json::object();
     for (const MessageField& field : *fields) value[field.name] = read(field);
     return value;
@@ -57,7 +57,7 @@ class Walk {
     const std::size_t most =
         field.is_message() ? (most_values_ + kValuesOfMessage - 1) / kValuesOfMessage : most_values_;
     Json values = Json::array();
-    for (std::size_t i = 0; i < count; ++i) {  // ends by WireError when count lies
+    for (std::size_t i = 0; i < count; ++i) {  // a wrong count ends in a WireError
       Json value = one(field);
       if (most == 0 || i < most) values.push_back(std::move(value));
     }
@@ -114,7 +114,7 @@ bool can_read(const std::string& dds_type) {
 }
 
 Json message_json(const std::string& dds_type, ros::Bytes cdr, std::size_t most_values) {
-  if (!can_read(dds_type)) throw ros::WireError("type " + dds_type + " is not known here");
+  if (!can_read(dds_type)) throw ros::WireError("type " + dds_type + " is unknown");
   return Walk(body_of(cdr), most_values).message(short_type(dds_type));
 }
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-/// Names of DDS and of ROS 2 for one thing, both ways:
+/// Converts between the names of topics and types in DDS and in ROS 2:
 ///   rt/slam/odometry                 <-> /slam/odometry          (a ROS topic begins with a slash)
 ///   rtd/frame                        <-> rtd/frame               (any other topic keeps its name)
 ///   nav_msgs::msg::dds_::Odometry_   <-> nav_msgs/msg/Odometry

@@ -6,7 +6,6 @@
 #include <sstream>
 #include <vector>
 
-#include "common/ros2/definition_texts.hpp"
 #include "common/ros2/message_fields.hpp"
 #include "common/ros2/names.hpp"
 

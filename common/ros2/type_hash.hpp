@@ -6,7 +6,7 @@
 
 #include "common/ros2/message_fields.hpp"
 
-/// The hash by which ROS 2, from Iron on, checks whether two programs mean the same by the name of a type: SHA-256 of
+/// The hash by which ROS 2, from Iron on, checks that two programs mean the same type by one name: SHA-256 of
 /// its description as JSON (REP-2011, REP-2016). Writers and readers announce it in the USER_DATA of their discovery.
 ///
 /// A backend sets the USER_DATA of each endpoint to user_data_of(type name):

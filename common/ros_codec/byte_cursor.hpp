@@ -22,7 +22,7 @@ class WireError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Walks over bytes of strangers: every step is checked against what is left.
+/// Reads bytes of unknown origin in order. Checks every step against what is left.
 class ByteCursor {
  public:
   explicit ByteCursor(Bytes bytes) : bytes_(bytes) {}

@@ -68,7 +68,7 @@ class WireReader {
   void read(std::string& text) {
     const std::size_t length = read_count();
     Bytes bytes = cursor_.take(length);
-    if (kFormat == Wire::kCdr && length > 0) {  // some write an empty string as length 0, without end mark
+    if (kFormat == Wire::kCdr && length > 0) {  // some programs write an empty string as length 0, without end mark
       if (bytes.back() != 0) {
         throw WireError("a string of " + std::to_string(length) + " bytes before byte " +
                         std::to_string(cursor_.position()) + " has no end mark");
@@ -101,7 +101,7 @@ class WireReader {
       if (count > 0) std::memcpy(values.data(), bytes.data(), bytes.size());
     } else {
       values.clear();
-      for (std::size_t i = 0; i < count; ++i) read(values.emplace_back());  // ends by WireError when count lies
+      for (std::size_t i = 0; i < count; ++i) read(values.emplace_back());  // a wrong count ends in a WireError
     }
   }
 

@@ -54,7 +54,7 @@ class ByteSpan {
   std::size_t size_ = 0;
 };
 
-/// Only counts them.
+/// Only counts the bytes.
 class ByteCount {
  public:
   void append(const void*, std::size_t size) { size_ += size; }
