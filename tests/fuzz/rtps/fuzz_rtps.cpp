@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "common/bus/backend.hpp"
-#include "common/bus/fastdds/screening/rtps_screen.hpp"
+#include "common/bus/fastdds/screening/rtps_message.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "tests/fuzz/mcap/mutation.hpp"
 #include "tests/fuzz/rtps/datagram_seeds.hpp"
@@ -102,7 +102,7 @@ class FuzzRtps : public ::testing::TestWithParam<std::string> {
     std::uint64_t sent = 0;
     for (std::size_t bytes = 0; bytes < kBytes && sent < std::min(most, kPackets); ++sent) {
       const Bytes datagram = malformed(seeds, random_);
-      sound_ += bus::is_rtps_message(datagram) ? 1 : 0;
+      sound_ += bus::read_rtps_message(datagram).well_formed ? 1 : 0;
       target.send(datagram, target.ports()[random_() % target.ports().size()]);
       bytes += datagram.size();
     }

@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "common/bus/fastdds/screening/rtps_fragments.hpp"
-#include "common/bus/fastdds/screening/rtps_numbers.hpp"
-
 #include <cstdint>
 #include <vector>
 
@@ -34,8 +31,12 @@ std::vector<std::uint8_t> join(std::vector<std::uint8_t> one, const std::vector<
   return one;
 }
 
+RtpsMessage read(const std::vector<std::uint8_t>& datagram) {
+  return read_rtps_message(std::as_bytes(std::span(datagram)));
+}
+
 bool passes(const std::vector<std::uint8_t>& datagram) {
-  return is_rtps_message(std::as_bytes(std::span(datagram)));
+  return read(datagram).well_formed;
 }
 
 TEST(RtpsScreenTest, lets_whole_messages_pass) {
@@ -81,7 +82,7 @@ std::vector<std::uint8_t> data(std::uint64_t value) {
 }
 
 std::vector<WriterNumber> numbers(const std::vector<std::uint8_t>& datagram) {
-  return sequence_numbers_of(std::as_bytes(std::span(datagram)));
+  return read(datagram).numbers;
 }
 
 TEST(RtpsNumbersTest, finds_the_largest_number_of_each_writer) {
@@ -116,14 +117,14 @@ std::vector<std::uint8_t> data_frag(const Fragments& f) {
 }
 
 bool whole(const std::vector<std::uint8_t>& datagram) {
-  return has_whole_fragments(std::as_bytes(std::span(datagram)));
+  return read(datagram).well_formed && read(datagram).whole_fragments;
 }
 
 bool whole(const Fragments& fragments) {
   return whole(message(data_frag(fragments)));
 }
 
-TEST(RtpsFragmentsTest, are_all_there) {
+TEST(RtpsFragmentsTest, whole_ones_are_accepted) {
   EXPECT_TRUE(whole(Fragments{}));
   EXPECT_TRUE(whole(Fragments{.first = 2, .count = 2, .sample = 100, .octets = 16}));
   EXPECT_TRUE(whole(Fragments{.first = 2, .sample = 10, .octets = 4}))
@@ -133,7 +134,7 @@ TEST(RtpsFragmentsTest, are_all_there) {
   EXPECT_TRUE(whole(message(kInfoTimestamp)));
 }
 
-TEST(RtpsFragmentsTest, or_the_message_is_refused) {
+TEST(RtpsFragmentsTest, missing_ones_are_found) {
   EXPECT_FALSE(whole(Fragments{.octets = 4}));
   EXPECT_FALSE(whole(Fragments{.count = 12, .sample = 90, .octets = 16})) << "to the last one: more than is there";
   EXPECT_FALSE(whole(Fragments{.first = 0}));
@@ -178,15 +179,15 @@ TEST(SequenceGuardTest, remembers_no_more_writers_than_it_says) {
 }
 
 TEST(RtpsScreenTest, refuses_numbers_that_would_be_counted_to_for_hours) {
-  const auto heard = [](RtpsScreen& screen, const std::vector<std::uint8_t>& datagram) {
+  const auto passes_screen = [](RtpsScreen& screen, const std::vector<std::uint8_t>& datagram) {
     return screen.passes(std::as_bytes(std::span(datagram)));
   };
   RtpsScreen screen;
-  EXPECT_TRUE(heard(screen, message(heartbeat(1, 5))));
-  EXPECT_FALSE(heard(screen, message(heartbeat(0x7fffffff, 0x7fffffff))));
-  EXPECT_FALSE(heard(screen, message(join(kInfoTimestamp, data(std::uint64_t{1} << 33)))));
-  EXPECT_TRUE(heard(screen, message(data(6))));
-  EXPECT_FALSE(heard(screen, {'R', 'T', 'P', 'S'}));
+  EXPECT_TRUE(passes_screen(screen, message(heartbeat(1, 5))));
+  EXPECT_FALSE(passes_screen(screen, message(heartbeat(0x7fffffff, 0x7fffffff))));
+  EXPECT_FALSE(passes_screen(screen, message(join(kInfoTimestamp, data(std::uint64_t{1} << 33)))));
+  EXPECT_TRUE(passes_screen(screen, message(data(6))));
+  EXPECT_FALSE(passes_screen(screen, {'R', 'T', 'P', 'S'}));
 }
 
 }  // namespace
