@@ -5,18 +5,15 @@
 #include <utility>
 
 #include "common/bus/host/port_check.hpp"
-#include "common/bus/inprocess/inprocess_backend.hpp"
-#include "common/bus/inprocess/inprocess_raw_bus.hpp"
+#include "common/bus/inprocess/inprocess_bus.hpp"
 #include "common/bus/network.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/bus/security_guard.hpp"
 #ifdef RTD_HAVE_CYCLONEDDS
-#include "common/bus/cyclonedds/cyclonedds_backend.hpp"
-#include "common/bus/cyclonedds/cyclonedds_raw_bus.hpp"
+#include "common/bus/cyclonedds/cyclonedds_bus.hpp"
 #endif
 #ifdef RTD_HAVE_FASTDDS
-#include "common/bus/fastdds/fastdds_backend.hpp"
-#include "common/bus/fastdds/fastdds_raw_bus.hpp"
+#include "common/bus/fastdds/fastdds_bus.hpp"
 #endif
 
 namespace rtd::bus {
@@ -31,7 +28,7 @@ struct Vendor {
   bool secures;  ///< honours BusOptions::security
 };
 
-/// A new vendor is a folder beside this file and one entry here.
+/// A new vendor is a folder beside this file and one entry here. The first one is the default.
 const Vendor kVendors[] = {
 #ifdef RTD_HAVE_FASTDDS
     {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); },
@@ -80,6 +77,10 @@ void require_ports(const BusOptions& options) {
 }
 
 }  // namespace
+
+std::string default_vendor() {
+  return kVendors[0].name;
+}
 
 std::vector<std::string> available_vendors() {
   std::vector<std::string> names;

@@ -55,4 +55,15 @@ void CallbackThread::loop() {
   }
 }
 
+StatusReporter::StatusReporter(StatusCallbacks callbacks) : callbacks_(std::move(callbacks)) {
+  if (callbacks_.on_matched || callbacks_.on_incompatible_qos || callbacks_.on_deadline_missed ||
+      callbacks_.on_type_mismatch)
+    thread_ = &own_.emplace();
+}
+
+void StatusReporter::report_matched(int peers) {
+  matched_ = peers;
+  post(callbacks_.on_matched, peers);
+}
+
 }  // namespace rtd::bus

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/topic_types.hpp"
+#include "common/bus/discovery.hpp"
 
 #include <utility>
 
 namespace rtd::bus {
 
-TopicTypes::Watch::Watch(TopicTypes& types, const std::string& topic, const std::string& type, OnMismatch on_mismatch)
-    : types_(types), topic_(topic), type_(type), on_mismatch_(std::move(on_mismatch)) {
+TopicTypes::Watch::Watch(TopicTypes& types, const std::string& topic, const std::string& type, StatusReporter& status)
+    : types_(types), topic_(topic), type_(type), status_(status) {
   const std::lock_guard lock(types_.mutex_);
   types_.watches_.push_back(this);
   for (const auto& [id, endpoint] : types_.endpoints_) {
@@ -20,8 +20,8 @@ TopicTypes::Watch::~Watch() {
   types_.watches_.remove(this);
 }
 
-void TopicTypes::Watch::compare(const std::string& foreign_type) const {
-  if (foreign_type != type_) on_mismatch_(foreign_type);
+void TopicTypes::Watch::compare(const std::string& other_type) const {
+  if (other_type != type_) status_.report_type_mismatch(other_type);
 }
 
 void TopicTypes::appeared(const std::string& endpoint, const std::string& topic, const std::string& type) {
@@ -35,6 +35,44 @@ void TopicTypes::appeared(const std::string& endpoint, const std::string& topic,
 void TopicTypes::gone(const std::string& endpoint) {
   const std::lock_guard lock(mutex_);
   endpoints_.erase(endpoint);
+}
+
+std::vector<TopicWriter> WriterRegistry::writers() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<TopicWriter> all;
+  for (const auto& [id, writer] : writers_) all.push_back(writer);
+  return all;
+}
+
+void WriterRegistry::watch(RawBus::Watcher watcher) {
+  {
+    const std::lock_guard lock(mutex_);
+    watcher_ = nullptr;  // nothing more is posted
+  }
+  thread_.reset();  // waits for a running call
+  if (!watcher) return;
+  const std::lock_guard lock(mutex_);
+  watcher_ = std::move(watcher);
+  thread_.emplace();
+  for (const auto& [id, writer] : writers_) report(writer, WriterChange::kAppeared);
+}
+
+void WriterRegistry::note(const TopicWriter& writer) {
+  const std::lock_guard lock(mutex_);
+  const auto [known, is_new] = writers_.try_emplace(writer.id, writer);
+  if (is_new) return report(writer, WriterChange::kAppeared);
+  if (known->second.qos == writer.qos && known->second.topic == writer.topic) return;
+  known->second = writer;
+  report(writer, WriterChange::kChanged);
+}
+
+void WriterRegistry::note_gone(const WriterId& id) {
+  const std::lock_guard lock(mutex_);
+  if (const auto gone = writers_.extract(id); !gone.empty()) report(gone.mapped(), WriterChange::kGone);
+}
+
+void WriterRegistry::report(const TopicWriter& writer, WriterChange change) {
+  if (watcher_) thread_->post([watcher = watcher_, writer, change] { watcher(writer, change); });
 }
 
 }  // namespace rtd::bus

@@ -2,38 +2,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <list>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "common/bus/callback_thread.hpp"
+#include "common/bus/raw_bus.hpp"
+
+/// What discovery tells of a domain, without a vendor.
 namespace rtd::bus {
 
-/// Finds endpoints of others that use the name of one of our topics with another type: DDS never matches them, and
-/// says nothing. Thread-safe.
+/// Finds endpoints of other participants that use the name of one of our topics with another type: DDS never matches
+/// them, and says nothing. Thread-safe.
 class TopicTypes {
  public:
-  /// Runs with the foreign type's name, under a lock: only post it.
-  using OnMismatch = std::function<void(const std::string& type)>;
-
-  /// Tells of a mismatch as long as it lives.
+  /// Reports mismatches of one endpoint of ours as long as it lives.
   class Watch {
    public:
-    Watch(TopicTypes& types, const std::string& topic, const std::string& type, OnMismatch on_mismatch);
+    Watch(TopicTypes& types, const std::string& topic, const std::string& type, StatusReporter& status);
     ~Watch();
     Watch(const Watch&) = delete;
     Watch& operator=(const Watch&) = delete;
 
    private:
     friend class TopicTypes;
-    void compare(const std::string& foreign_type) const;
+    void compare(const std::string& other_type) const;
     TopicTypes& types_;
     const std::string topic_, type_;
-    const OnMismatch on_mismatch_;
+    StatusReporter& status_;
   };
 
-  /// An endpoint of somebody else, by its id.
+  /// An endpoint of another participant, by its id.
   void appeared(const std::string& endpoint, const std::string& topic, const std::string& type);
   void gone(const std::string& endpoint);
 
@@ -44,6 +46,25 @@ class TopicTypes {
   std::mutex mutex_;
   std::map<std::string, Endpoint> endpoints_;  ///< what appeared before the watch did counts too
   std::list<const Watch*> watches_;
+};
+
+/// The writers of a domain, as a vendor's discovery finds them. Discovery threads only take notes; the watcher
+/// has a thread of its own, so that it may create readers. Thread-safe.
+class WriterRegistry {
+ public:
+  std::vector<TopicWriter> writers() const;
+  void watch(RawBus::Watcher watcher);
+
+  void note(const TopicWriter& writer);
+  void note_gone(const WriterId& id);
+
+ private:
+  void report(const TopicWriter& writer, WriterChange change);
+
+  mutable std::mutex mutex_;
+  std::map<WriterId, TopicWriter> writers_;
+  RawBus::Watcher watcher_;
+  std::optional<CallbackThread> thread_;
 };
 
 }  // namespace rtd::bus

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/qos_settings.hpp"
+#include "common/bus/qos.hpp"
+
+#include <iterator>
 
 #include "common/bus/backend.hpp"
 
@@ -30,6 +32,14 @@ std::string incompatible_policy(const QosSettings& offered, const QosSettings& r
   const bool offers_deadline = offered.deadline_ms > 0, asks_deadline = requested.deadline_ms > 0;
   if (asks_deadline && (!offers_deadline || offered.deadline_ms > requested.deadline_ms)) return "DEADLINE";
   return {};
+}
+
+std::string policy_name(unsigned id) {
+  constexpr const char* kNames[] = {"INVALID",          "USER_DATA",         "DURABILITY", "PRESENTATION",
+                                    "DEADLINE",         "LATENCY_BUDGET",    "OWNERSHIP",  "OWNERSHIP_STRENGTH",
+                                    "LIVELINESS",       "TIME_BASED_FILTER", "PARTITION",  "RELIABILITY",
+                                    "DESTINATION_ORDER"};
+  return id < std::size(kNames) ? kNames[id] : "policy " + std::to_string(id);
 }
 
 }  // namespace rtd::bus

@@ -21,6 +21,25 @@ enum class QosProfile : std::uint8_t {
   kHeartbeat,     ///< reliable, keep-last 8, volatile, automatic liveliness 1 s
 };
 
+/// What a profile means, in DDS terms but without a vendor. All profiles are reliable and keep-last.
+struct QosSettings {
+  int depth = 0;                 ///< history depth of writers and readers
+  bool transient_local = false;  ///< late readers get the last `depth` samples of living writers
+  bool data_sharing = false;     ///< samples stay in the writer's shared memory; this host only, plain types only
+  int liveliness_lease_ms = 0;   ///< automatic liveliness; 0 = infinite
+  int deadline_ms = 0;           ///< a writer promises a sample at least this often; 0 = no promise
+};
+
+/// The one table of QoS profiles; every backend maps QosSettings to its vendor.
+QosSettings qos_settings(QosProfile profile);
+
+/// The policy in which a reader asks for more than a writer offers, by its DDS name, e.g. "DURABILITY"; empty when they
+/// match.
+std::string incompatible_policy(const QosSettings& offered, const QosSettings& requested);
+
+/// DDS name of a policy by its number (DDS 1.4, annex 2.3.3), e.g. "RELIABILITY". Vendors number their own beyond 22.
+std::string policy_name(unsigned id);
+
 /// What can happen to an endpoint. Callbacks run on a bus thread: be brief, do not call the bus.
 struct StatusCallbacks {
   std::function<void(int peers)> on_matched;                           ///< current number of matched peers

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "common/bus/sequence_gaps.hpp"
-
 namespace rtd::bus {
 
 std::string to_string(const WriterId& id) {

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -70,6 +72,18 @@ struct RawLoss {
   WriterId writer{};
   std::int64_t first_sequence = 0;
   std::uint64_t count = 0;
+};
+
+/// Finds the samples that a reader did not get by the numbers that their writers gave them. The count of a
+/// writer begins with its first number that is received: what it sent to others before is not lost.
+class SequenceGaps {
+ public:
+  /// The samples missing before this one.
+  std::optional<RawLoss> next(const WriterId& writer, std::int64_t sequence);
+  void forget(const WriterId& writer) { newest_.erase(writer); }
+
+ private:
+  std::map<WriterId, std::int64_t> newest_;
 };
 
 /// Run on a thread of the reader, one at a time: queue and return. Losses are told before the sample that revealed

@@ -49,7 +49,7 @@ StatusCallbacks TopicCounters::count(const std::string& topic, StatusCallbacks c
   counted.on_type_mismatch = [note, next = std::move(callbacks.on_type_mismatch)](const std::string& type) {
     note([&](TopicTrouble& trouble) {
       ++trouble.type_mismatch;
-      trouble.foreign_type = type;
+      trouble.other_type = type;
     });
     if (next) next(type);
   };

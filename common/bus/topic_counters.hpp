@@ -19,7 +19,7 @@ struct TopicTrouble {
   std::uint64_t incompatible_qos = 0;  ///< peers refused for their QoS
   std::uint64_t type_mismatch = 0;     ///< peers that use the name with another type
   std::string policy;                  ///< of the last peer refused, e.g. "RELIABILITY"
-  std::string foreign_type;            ///< of the last mismatch
+  std::string other_type;              ///< of the last mismatch
   friend bool operator==(const TopicTrouble&, const TopicTrouble&) = default;
 };
 

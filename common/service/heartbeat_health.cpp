@@ -28,8 +28,8 @@ void log_refusals(const std::string& topic, const bus::TopicTrouble& before, con
     SPDLOG_ERROR("event=incompatible_qos topic={} policy={} fix=\"use the QoS of docs/topics.md\"", topic, now.policy);
   }
   if (now.type_mismatch > before.type_mismatch) {
-    SPDLOG_ERROR("event=type_mismatch topic={} foreign_type={} fix=\"another program uses this topic's name\"", topic,
-                 now.foreign_type);
+    SPDLOG_ERROR("event=type_mismatch topic={} other_type={} fix=\"another program uses this topic's name\"", topic,
+                 now.other_type);
   }
 }
 

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
-
-#include "common/bus/bus_factory.hpp"
+#include "common/bus/raw_bus.hpp"
 
 namespace rtd::bus::cyclonedds {
 
-/// Throws BusError when Cyclone DDS cannot start.
+/// Both throw BusError when Cyclone DDS cannot start.
 std::shared_ptr<BusBackend> create_backend(const BusOptions& options);
+std::shared_ptr<RawBus> create_raw_bus(const BusOptions& options);
 
 }  // namespace rtd::bus::cyclonedds

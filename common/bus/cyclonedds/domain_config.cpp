@@ -2,7 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/cyclonedds/domain_config.hpp"
 
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 
 #include "common/bus/backend.hpp"
 #include "common/bus/network.hpp"
@@ -70,9 +76,9 @@ std::string discovery(const NetworkOptions& network) {
   return element("Discovery", text + element("Peers", peers));
 }
 
-/// A volatile reader begins with the first heartbeat of a foreign writer, for which it asks at once. A lost sample is
-/// noticed and repaired within some ms. No writer waits for a slow or dead reader: histories are
-/// short, so the limit on bytes not yet acknowledged may be out of reach.
+/// A volatile reader begins with the first heartbeat of a writer of another vendor, for which it asks at once. A lost
+/// sample is noticed and repaired within some ms. No writer waits for a slow or dead reader: histories are short, so
+/// the limit on bytes not yet acknowledged may be out of reach.
 std::string internal(const BusOptions& options, const HostLimits& limits) {
   const auto buffer = [](const char* name, std::uint32_t size) {
     return "<" + std::string(name) + R"( min="default" max=")" + bytes(size) + "\"/>";
@@ -91,11 +97,30 @@ std::string internal(const BusOptions& options, const HostLimits& limits) {
 
 std::string domain_config(const BusOptions& options, const HostLimits& limits) {
   std::string text = general(options) + discovery(options.network) + internal(options, limits);
-  // The trace of discovery goes to StrangerWatch; the file is only to be one that can be opened.
+  // The trace of discovery goes to UnmatchedWatch; the file is only to be one that can be opened.
   if (options.security.enabled())
     text += element("Tracing", element("Category", "discovery") + element("OutputFile", "/dev/null"));
   if (options.iceoryx) text += element("SharedMemory", element("Enable", "true") + element("LogLevel", "warn"));
   return R"(<CycloneDDS><Domain Id="any">)" + text + "</Domain></CycloneDDS>";
+}
+
+/// The daemon listens on a datagram socket: connecting to it sends nothing, and fails when nobody has it open, even if
+/// the file was left behind.
+void require_roudi(const std::string& socket_path) {
+  const int probe = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (probe < 0) throw BusError(std::string("no socket to ask iox-roudi: ") + std::strerror(errno));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  socket_path.copy(address.sun_path, sizeof(address.sun_path) - 1);
+  const int failed = connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 ? 0 : errno;
+  close(probe);
+  if (failed == 0) return;
+  const bool forbidden = failed == EACCES || failed == EPERM;
+  throw BusError("bus.iceoryx is true, but " +
+                 (forbidden ? "the iox-roudi of this host belongs to a user or group that we are not in (" +
+                                  socket_path + ": " + std::strerror(failed) + ")"
+                            : std::string("no iox-roudi runs on this host")) +
+                 "; start it (package iceoryx: iox-roudi), or leave bus.iceoryx out");
 }
 
 }  // namespace rtd::bus::cyclonedds

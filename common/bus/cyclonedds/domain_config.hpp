@@ -12,4 +12,8 @@ namespace rtd::bus::cyclonedds {
 /// (common/bus/network.hpp).
 std::string domain_config(const BusOptions& options, const HostLimits& limits);
 
+/// Throws BusError when no iox-roudi answers on this host: without it iceoryx waits for 60 s and then ends the process.
+/// `socket`: where it listens; for tests.
+void require_roudi(const std::string& socket = "/tmp/roudi");
+
 }  // namespace rtd::bus::cyclonedds

@@ -1,83 +1,85 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/cyclonedds/cyclonedds_reader.hpp"
+#include "common/bus/cyclonedds/endpoints.hpp"
+
+#include <dds/ddsc/dds_loan_api.h>
 
 #include <limits>
 #include <utility>
 
+#include "common/bus/cyclonedds/codec.hpp"
 #include "common/bus/cyclonedds/qos_mapping.hpp"
 
 namespace rtd::bus::cyclonedds {
+namespace {
+
+StatusReporter& status(void* reporter) {
+  return *static_cast<StatusReporter*>(reporter);
+}
+
+/// `reporter` gets all but new data.
+Listener reader_listener(StatusReporter& reporter) {
+  Listener listener(dds_create_listener(&reporter));
+  dds_listener_t* const l = listener.get();
+  dds_lset_subscription_matched(l, [](dds_entity_t, dds_subscription_matched_status_t matched, void* self) {
+    status(self).report_matched(static_cast<int>(matched.current_count));
+  });
+  dds_lset_requested_deadline_missed(l, [](dds_entity_t, dds_requested_deadline_missed_status_t, void* self) {
+    status(self).report_deadline_missed();
+  });
+  dds_lset_liveliness_changed(l, [](dds_entity_t, dds_liveliness_changed_status_t changed, void* self) {
+    status(self).report_liveliness(static_cast<int>(changed.alive_count));
+  });
+  dds_lset_requested_incompatible_qos(l, [](dds_entity_t, dds_requested_incompatible_qos_status_t refused, void* self) {
+    status(self).report_incompatible_qos(name_of(refused.last_policy_id));
+  });
+  dds_lset_sample_rejected(l, [](dds_entity_t, dds_sample_rejected_status_t rejected, void* self) {
+    status(self).report_rejected(static_cast<int>(rejected.total_count));
+  });
+  return listener;
+}
+
+Listener writer_listener(StatusReporter& reporter) {
+  Listener listener(dds_create_listener(&reporter));
+  dds_listener_t* const l = listener.get();
+  dds_lset_publication_matched(l, [](dds_entity_t, dds_publication_matched_status_t matched, void* self) {
+    status(self).report_matched(static_cast<int>(matched.current_count));
+  });
+  dds_lset_offered_deadline_missed(
+      l, [](dds_entity_t, dds_offered_deadline_missed_status_t, void* self) { status(self).report_deadline_missed(); });
+  dds_lset_offered_incompatible_qos(l, [](dds_entity_t, dds_offered_incompatible_qos_status_t refused, void* self) {
+    status(self).report_incompatible_qos(name_of(refused.last_policy_id));
+  });
+  return listener;
+}
+
+}  // namespace
 
 CycloneReader::CycloneReader(std::shared_ptr<Participant> participant, const SampleType& type, const std::string& topic,
                              Qos qos, Handlers handlers)
-    : participant_(std::move(participant)), handlers_(std::move(handlers)), thread_([this] { return handle_one(); }) {
+    : participant_(std::move(participant)),
+      on_sample_(std::move(handlers.on_sample)),
+      on_gap_(std::move(handlers.on_gap)),
+      status_(std::move(handlers.status), thread_),
+      thread_([this] { return handle_one(); }) {
   const VendorTopic vendor = participant_->topic(topic, type);
   set_type_hash(*qos, type.name);
   participant_->set_reader_partition(topic, *qos);
-  const Listener heard = listener();
-  const dds_entity_t reader = dds_create_reader(participant_->handle(), vendor.handle, qos.get(), heard.get());
+  const Listener listener = reader_listener(status_);
+  dds_lset_data_available_arg(
+      listener.get(), [](dds_entity_t, void* self) { static_cast<CycloneReader*>(self)->thread_.wake(); }, this, true);
+  const dds_entity_t reader = dds_create_reader(participant_->handle(), vendor.handle, qos.get(), listener.get());
   if (reader < 0) throw BusError("Cyclone DDS refused a reader on topic " + topic + ": " + dds_strretcode(reader));
   reader_ = reader;
-  if (handlers_.status.on_type_mismatch) {
-    types_.emplace(participant_->types(), topic, type.name, [this](const std::string& foreign_type) {
-      thread_.post([this, foreign_type] { handlers_.status.on_type_mismatch(foreign_type); });
-    });
-  }
+  if (status_.callbacks().on_type_mismatch) types_.emplace(participant_->types(), topic, type.name, status_);
   thread_.wake();  // a sample may have come before reader_ was known
 }
 
 CycloneReader::~CycloneReader() {
   types_.reset();
   dds_set_listener(reader_, nullptr);  // waits for a running one
-  thread_.stop();                      // waits for a running callback; only now nobody takes from the reader
+  thread_.stop();                      // waits for a running callback; only now nothing takes from the reader
   dds_delete(reader_);
-}
-
-Listener CycloneReader::listener() {
-  Listener heard(dds_create_listener(this));
-  dds_lset_data_available(heard.get(),
-                          [](dds_entity_t, void* self) { static_cast<CycloneReader*>(self)->thread_.wake(); });
-  dds_lset_subscription_matched(heard.get(), [](dds_entity_t, dds_subscription_matched_status_t status, void* self) {
-    auto& reader = *static_cast<CycloneReader*>(self);
-    const int peers = static_cast<int>(status.current_count);
-    reader.matched_ = peers;
-    if (reader.handlers_.status.on_matched) {
-      reader.thread_.post([&reader, peers] { reader.handlers_.status.on_matched(peers); });
-    }
-  });
-  const StatusCallbacks& status = handlers_.status;
-  if (status.on_deadline_missed) {
-    dds_lset_requested_deadline_missed(
-        heard.get(), [](dds_entity_t, dds_requested_deadline_missed_status_t, void* self) {
-          auto& reader = *static_cast<CycloneReader*>(self);
-          reader.thread_.post([&reader] { reader.handlers_.status.on_deadline_missed(); });
-        });
-  }
-  if (status.on_liveliness) {
-    dds_lset_liveliness_changed(heard.get(), [](dds_entity_t, dds_liveliness_changed_status_t changed, void* self) {
-      auto& reader = *static_cast<CycloneReader*>(self);
-      const int alive = static_cast<int>(changed.alive_count);
-      reader.thread_.post([&reader, alive] { reader.handlers_.status.on_liveliness(alive); });
-    });
-  }
-  if (status.on_incompatible_qos) {
-    dds_lset_requested_incompatible_qos(heard.get(),
-                                        [](dds_entity_t, dds_requested_incompatible_qos_status_t refused, void* self) {
-                                          auto& reader = *static_cast<CycloneReader*>(self);
-                                          reader.thread_.post([&reader, policy = policy_name(refused.last_policy_id)] {
-                                            reader.handlers_.status.on_incompatible_qos(policy);
-                                          });
-                                        });
-  }
-  if (status.on_samples_rejected) {
-    dds_lset_sample_rejected(heard.get(), [](dds_entity_t, dds_sample_rejected_status_t rejected, void* self) {
-      auto& reader = *static_cast<CycloneReader*>(self);
-      const int total = static_cast<int>(rejected.total_count);
-      reader.thread_.post([&reader, total] { reader.handlers_.status.on_samples_rejected(total); });
-    });
-  }
-  return heard;
 }
 
 bool CycloneReader::handle_one() {
@@ -85,16 +87,16 @@ bool CycloneReader::handle_one() {
   if (reader == 0) return false;
   const std::optional<TakenSample> sample = take_sample(reader);
   if (!sample) return false;
-  // Cyclone has no word for samples that a writer sent and that will not come; their numbers tell. Those that came
-  // through iceoryx have none.
+  // Cyclone does not report samples that a writer sent and that will not come; their numbers show them. Samples that
+  // came through iceoryx have none.
   if (sample->origin.sequence > 0) {
     if (const auto gap = gaps_.next(sample->origin.writer, sample->origin.sequence)) {
       missing_ += gap->count;
-      if (handlers_.on_gap) handlers_.on_gap(*gap);
+      if (on_gap_) on_gap_(*gap);
       report_lost();
     }
   }
-  if (sample->bytes && !handlers_.on_sample(*sample)) {
+  if (sample->bytes && !on_sample_(*sample)) {
     ++unusable_;
     report_lost();
   }
@@ -103,8 +105,80 @@ bool CycloneReader::handle_one() {
 
 void CycloneReader::report_lost() {
   constexpr std::uint64_t kMost = std::numeric_limits<int>::max();
-  if (handlers_.status.on_samples_lost) {
-    handlers_.status.on_samples_lost(static_cast<int>(std::min(missing_ + unusable_, kMost)));
+  const auto& on_samples_lost = status_.callbacks().on_samples_lost;
+  if (on_samples_lost) on_samples_lost(static_cast<int>(std::min(missing_ + unusable_, kMost)));
+}
+
+CycloneWriter::CycloneWriter(std::shared_ptr<Participant> participant, const SampleType& type, const std::string& topic,
+                             Qos qos, StatusCallbacks callbacks)
+    : participant_(std::move(participant)), topic_(participant_->topic(topic, type)), status_(std::move(callbacks)) {
+  set_type_hash(*qos, type.name);
+  participant_->set_writer_partition(topic, *qos);
+  const Listener listener = writer_listener(status_);
+  writer_ = dds_create_writer(participant_->handle(), topic_.handle, qos.get(), listener.get());
+  if (writer_ < 0) throw BusError("Cyclone DDS refused a writer on topic " + topic + ": " + dds_strretcode(writer_));
+  last_.writer = guid_of(writer_);
+  if (status_.callbacks().on_type_mismatch) types_.emplace(participant_->types(), topic, type.name, status_);
+}
+
+CycloneWriter::~CycloneWriter() {
+  types_.reset();
+  dds_set_listener(writer_, nullptr);  // waits for a running one
+  dds_delete(writer_);
+}
+
+bool CycloneWriter::write(std::shared_ptr<ByteBlock> bytes, std::int64_t source_ns) {
+  const std::lock_guard lock(mutex_);
+  SampleOrigin next = last_;
+  ++next.sequence;
+  if (!write_sample(writer_, topic_.type, std::move(bytes), next, source_ns)) return false;
+  last_ = next;
+  return true;
+}
+
+bool CycloneWriter::wait_acknowledged(int timeout_ms) {
+  return dds_wait_for_acks(writer_, DDS_MSECS(timeout_ms)) == DDS_RETCODE_OK;
+}
+
+TypedWriter::TypedWriter(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic, Qos qos,
+                         StatusCallbacks callbacks)
+    : id_(id),
+      writer_(participant, sample_type(id), topic, std::move(qos), std::move(callbacks)),
+      shares_memory_(participant->shares_memory() && dds_is_shared_memory_available(writer_.handle())) {}
+
+TypedWriter::~TypedWriter() {
+  while (!shared_loans_.empty()) discard_loan(*shared_loans_.begin());
+}
+
+bool TypedWriter::write(const void* message) {
+  if (shares_memory_) return dds_write(writer_.handle(), message) == DDS_RETCODE_OK;
+  return writer_.write(encode(id_, writer_.type(), message));
+}
+
+void* TypedWriter::loan() {
+  void* slot = nullptr;
+  if (shares_memory_ && dds_loan_sample(writer_.handle(), &slot) == DDS_RETCODE_OK) {
+    return *shared_loans_.insert(slot).first;
+  }
+  std::shared_ptr<ByteBlock> block = plain_block(id_, writer_.type());
+  slot = block->bytes().data() + ByteBlock::kCdrHeaderBytes;
+  loans_.emplace(slot, std::move(block));
+  return slot;
+}
+
+bool TypedWriter::write_loaned(void* slot) {
+  if (shared_loans_.erase(slot) > 0) return dds_write(writer_.handle(), slot) == DDS_RETCODE_OK;
+  auto node = loans_.extract(slot);
+  if (node.empty()) return false;
+  if (shares_memory_) return dds_write(writer_.handle(), slot) == DDS_RETCODE_OK;  // there was none left to lend
+  return writer_.write(std::move(node.mapped()));
+}
+
+void TypedWriter::discard_loan(void* slot) {
+  if (shared_loans_.erase(slot) > 0) {
+    dds_return_loan(writer_.handle(), &slot, 1);
+  } else {
+    loans_.erase(slot);
   }
 }
 

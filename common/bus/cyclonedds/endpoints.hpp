@@ -4,14 +4,16 @@
 
 #include <atomic>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 
-#include "common/bus/callback_thread.hpp"
 #include "common/bus/cyclonedds/participant.hpp"
 #include "common/bus/cyclonedds/sample_io.hpp"
-#include "common/bus/sequence_gaps.hpp"
+#include "common/bus/message_types.hpp"
 
 namespace rtd::bus::cyclonedds {
 
@@ -28,21 +30,70 @@ class CycloneReader : public ReaderBackend {
   CycloneReader(std::shared_ptr<Participant> participant, const SampleType& type, const std::string& topic, Qos qos,
                 Handlers handlers);
   ~CycloneReader() override;
-  int matched() const override { return matched_; }
+  int matched() const override { return status_.matched(); }
 
  private:
-  Listener listener();
   bool handle_one();
   void report_lost();
 
   std::shared_ptr<Participant> participant_;
-  const Handlers handlers_;
+  const std::function<bool(const TakenSample&)> on_sample_;
+  const std::function<void(const RawLoss&)> on_gap_;
   SequenceGaps gaps_;                         // used by the callback thread
   std::uint64_t missing_ = 0, unusable_ = 0;  // as well
-  std::atomic<int> matched_{0};
   std::atomic<dds_entity_t> reader_{0};
+  StatusReporter status_;
   std::optional<TopicTypes::Watch> types_;
   CallbackThread thread_;
+};
+
+/// One writer of samples as bytes.
+class CycloneWriter {
+ public:
+  CycloneWriter(std::shared_ptr<Participant> participant, const SampleType& type, const std::string& topic, Qos qos,
+                StatusCallbacks callbacks);
+  ~CycloneWriter();
+  CycloneWriter(const CycloneWriter&) = delete;
+  CycloneWriter& operator=(const CycloneWriter&) = delete;
+
+  dds_entity_t handle() const { return writer_; }
+  const ddsi_sertype* type() const { return topic_.type; }
+  /// The bytes must not change afterwards. `source_ns` 0: now. Thread-safe.
+  bool write(std::shared_ptr<ByteBlock> bytes, std::int64_t source_ns = 0);
+  int matched() const { return status_.matched(); }
+  bool wait_acknowledged(int timeout_ms);
+
+ private:
+  std::shared_ptr<Participant> participant_;
+  VendorTopic topic_;
+  StatusReporter status_;
+  std::mutex mutex_;
+  SampleOrigin last_;  ///< as Cyclone counts, for readers in this process
+  dds_entity_t writer_ = 0;
+  std::optional<TopicTypes::Watch> types_;
+};
+
+/// Writes messages of common/msg. A loan is the sample's own memory: write_loaned() copies nothing. With iceoryx it
+/// lies in shared memory, as long as the daemon has some.
+class TypedWriter : public WriterBackend {
+ public:
+  TypedWriter(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic, Qos qos,
+              StatusCallbacks callbacks);
+  ~TypedWriter() override;
+
+  bool write(const void* message) override;
+  void* loan() override;
+  bool write_loaned(void* slot) override;
+  void discard_loan(void* slot) override;
+  int matched() const override { return writer_.matched(); }
+  bool wait_acknowledged(int timeout_ms) override { return writer_.wait_acknowledged(timeout_ms); }
+
+ private:
+  const MessageId id_;
+  CycloneWriter writer_;
+  const bool shares_memory_;
+  std::map<void*, std::shared_ptr<ByteBlock>> loans_;
+  std::set<void*> shared_loans_;
 };
 
 }  // namespace rtd::bus::cyclonedds

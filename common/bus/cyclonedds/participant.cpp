@@ -3,13 +3,40 @@
 #include "common/bus/cyclonedds/participant.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <utility>
 
-#include "common/bus/cyclonedds/participant_security.hpp"
-#include "common/bus/cyclonedds/vendor_log.hpp"
 #include "common/bus/network.hpp"
+#include "common/security/keystore_layout.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
+
+/// The enclave's files as Cyclone's built-in plugins want them. No change without security.
+void map_security(const SecurityOptions& security, const Qos& qos) {
+  if (!security.enabled()) return;
+  const security::EnclaveFiles files = security::KeystoreLayout{security.keystore}.enclave(security.enclave);
+  const auto add = [&qos](const std::string& name, const std::string& value) {
+    dds_qset_prop(qos.get(), ("dds.sec." + name).c_str(), value.c_str());
+  };
+  const auto file = [&add](const std::string& name, const std::filesystem::path& path) {
+    add(name, "file:" + std::filesystem::absolute(path).string());
+  };
+  const auto plugin = [&add](const std::string& name, const std::string& library, const std::string& functions) {
+    add(name + ".library.path", library);
+    add(name + ".library.init", "init_" + functions);
+    add(name + ".library.finalize", "finalize_" + functions);
+  };
+  plugin("auth", "dds_security_auth", "authentication");
+  file("auth.identity_ca", files.identity_ca());
+  file("auth.identity_certificate", files.certificate());
+  file("auth.private_key", files.key());
+  plugin("access", "dds_security_ac", "access_control");
+  file("access.permissions_ca", files.permissions_ca());
+  file("access.governance", files.governance());
+  file("access.permissions", files.permissions());
+  plugin("crypto", "dds_security_crypto", "crypto");
+}
 
 Entity create_participant(const BusOptions& options) {
   const Qos qos(dds_create_qos());
@@ -33,8 +60,49 @@ WriterId guid_of(dds_entity_t entity) {
   return id;
 }
 
+EndpointWatch::EndpointWatch(dds_entity_t participant, Direction direction, Note note) : note_(std::move(note)) {
+  const Listener listener(dds_create_listener(this));
+  dds_lset_data_available(listener.get(),
+                          [](dds_entity_t, void* self) { static_cast<EndpointWatch*>(self)->take_all(); });
+  const dds_entity_t topic =
+      direction == Direction::kWriters ? DDS_BUILTIN_TOPIC_DCPSPUBLICATION : DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION;
+  const dds_entity_t reader = dds_create_reader(participant, topic, nullptr, listener.get());
+  if (reader < 0)
+    throw BusError(std::string("Cyclone DDS refused to report other endpoints: ") + dds_strretcode(reader));
+  {
+    const std::lock_guard lock(mutex_);
+    reader_ = reader;
+  }
+  take_all();  // those that were there before
+}
+
+EndpointWatch::~EndpointWatch() {
+  dds_set_listener(reader_, nullptr);  // waits for a running one
+  dds_delete(reader_);
+}
+
+void EndpointWatch::take_all() {
+  constexpr std::size_t kAtOnce = 32;
+  const std::lock_guard lock(mutex_);
+  if (reader_ == 0) return;
+  while (true) {
+    void* samples[kAtOnce] = {};
+    dds_sample_info_t infos[kAtOnce];
+    const dds_return_t count = dds_take(reader_, samples, infos, kAtOnce, kAtOnce);
+    if (count <= 0) return;
+    for (int i = 0; i < count; ++i) {
+      const auto* const endpoint = static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
+      WriterId id{};
+      std::copy_n(endpoint->key.v, id.size(), id.begin());
+      const bool there = infos[i].instance_state == DDS_IST_ALIVE && infos[i].valid_data;
+      note_(id, there ? endpoint : nullptr);
+    }
+    dds_return_loan(reader_, samples, count);
+  }
+}
+
 Participant::Participant(const BusOptions& options)
-    : strangers_(StrangerWatch::start(options)),
+    : unmatched_(UnmatchedWatch::start(options)),
       domain_(join_domain(options)),
       participant_(create_participant(options)),
       id_(guid_of(participant_.get())),

@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 
 #include "common/bus/cyclonedds/domain.hpp"
-#include "common/bus/cyclonedds/endpoint_watch.hpp"
 #include "common/bus/cyclonedds/sample_type.hpp"
-#include "common/bus/cyclonedds/stranger_watch.hpp"
-#include "common/bus/topic_types.hpp"
+#include "common/bus/cyclonedds/unmatched_participants.hpp"
+#include "common/bus/discovery.hpp"
 
 namespace rtd::bus::cyclonedds {
 
@@ -20,7 +20,28 @@ struct VendorTopic {
   const ddsi_sertype* type = nullptr;
 };
 
-/// Our presence in a domain, and its topics. Thread-safe.
+/// Notes the endpoints of one direction in the domain, ours and others', as they appear, change and go.
+class EndpointWatch {
+ public:
+  enum class Direction { kWriters, kReaders };
+  /// Runs on Cyclone's threads, one call at a time: take notes and return. `qos` is valid only for an endpoint that is
+  /// there.
+  using Note = std::function<void(const WriterId& id, const dds_builtintopic_endpoint_t* endpoint)>;
+
+  EndpointWatch(dds_entity_t participant, Direction direction, Note note);
+  ~EndpointWatch();
+  EndpointWatch(const EndpointWatch&) = delete;
+  EndpointWatch& operator=(const EndpointWatch&) = delete;
+
+ private:
+  void take_all();
+
+  const Note note_;
+  std::mutex mutex_;
+  dds_entity_t reader_ = 0;
+};
+
+/// Our participant in a domain, and its topics. Thread-safe.
 class Participant {
  public:
   /// Throws BusError when Cyclone refuses.
@@ -31,14 +52,13 @@ class Participant {
   /// Whether an endpoint of that identity belongs to us.
   bool is_own(const WriterId& endpoint) const;
   bool shares_memory() const { return shares_memory_; }
-  /// Where writers of the topic are heard and readers look: topics that stay on the host are in a partition of the
-  /// host, so that nobody elsewhere is matched. Without a network they need none.
+  /// Topics that stay on the host are in a partition of the host, so that no reader elsewhere is matched. Without a
+  /// network they need none.
   void set_writer_partition(const std::string& topic, dds_qos_t& qos) const;
   void set_reader_partition(const std::string& topic, dds_qos_t& qos) const;
   /// The topic of that name, created when new; lives as long as the participant.
   /// Throws BusError when it exists with another type.
   VendorTopic topic(const std::string& name, const SampleType& type);
-  /// Tells endpoints of ours when somebody uses the topic's name with another type.
   TopicTypes& types();
 
  private:
@@ -47,7 +67,7 @@ class Participant {
     VendorTopic vendor;
   };
 
-  std::unique_ptr<StrangerWatch> strangers_;  ///< secured: hears from the first one on, to the last
+  std::unique_ptr<UnmatchedWatch> unmatched_;  ///< secured: from before the first participant to after the last
   std::shared_ptr<Domain> domain_;
   Entity participant_;  // its topics and endpoints end with it
   WriterId id_{};
@@ -55,7 +75,7 @@ class Participant {
   std::mutex mutex_;
   std::map<std::string, KnownTopic> topics_;
   TopicTypes types_;
-  std::unique_ptr<EndpointWatch> writers_, readers_;  ///< once somebody wants to know types; they end first
+  std::unique_ptr<EndpointWatch> writers_, readers_;  ///< from the first call of types() on; they end first
 };
 
 /// Identity of an entity in its domain.

@@ -114,33 +114,10 @@ std::string user_data(const dds_qos_t& qos) {
   return text;
 }
 
-std::string policy_name(std::uint32_t id) {
-  switch (id) {
-    case DDS_DURABILITY_QOS_POLICY_ID:
-      return "DURABILITY";
-    case DDS_PRESENTATION_QOS_POLICY_ID:
-      return "PRESENTATION";
-    case DDS_DEADLINE_QOS_POLICY_ID:
-      return "DEADLINE";
-    case DDS_LATENCYBUDGET_QOS_POLICY_ID:
-      return "LATENCY_BUDGET";
-    case DDS_OWNERSHIP_QOS_POLICY_ID:
-      return "OWNERSHIP";
-    case DDS_LIVELINESS_QOS_POLICY_ID:
-      return "LIVELINESS";
-    case DDS_PARTITION_QOS_POLICY_ID:
-      return "PARTITION";
-    case DDS_RELIABILITY_QOS_POLICY_ID:
-      return "RELIABILITY";
-    case DDS_DESTINATIONORDER_QOS_POLICY_ID:
-      return "DESTINATION_ORDER";
-    case DDS_DATA_REPRESENTATION_QOS_POLICY_ID:
-      return "DATA_REPRESENTATION";
-    case DDS_TYPE_CONSISTENCY_ENFORCEMENT_QOS_POLICY_ID:
-      return "TYPE_CONSISTENCY";
-    default:
-      return "policy " + std::to_string(id);
-  }
+std::string name_of(std::uint32_t policy) {
+  if (policy == DDS_DATA_REPRESENTATION_QOS_POLICY_ID) return "DATA_REPRESENTATION";
+  if (policy == DDS_TYPE_CONSISTENCY_ENFORCEMENT_QOS_POLICY_ID) return "TYPE_CONSISTENCY";
+  return policy_name(policy);
 }
 
 }  // namespace rtd::bus::cyclonedds

@@ -5,12 +5,11 @@
 #include <string>
 
 #include "common/bus/cyclonedds/entity.hpp"
-#include "common/bus/qos_settings.hpp"
 #include "common/bus/raw_bus.hpp"
 
 namespace rtd::bus::cyclonedds {
 
-/// A profile's settings in the terms of RawQos, which has all that Cyclone is to be told.
+/// A profile's settings in the terms of RawQos, which has all that Cyclone needs.
 RawQos to_raw_qos(const QosSettings& settings);
 
 /// Every policy that an endpoint has is set: defaults differ between vendors.
@@ -19,7 +18,7 @@ Qos reader_qos(const RawQos& requested);
 /// Asks for nothing that would keep a writer from matching: no deadline, no liveliness, any data representation.
 Qos raw_reader_qos(const RawReaderOptions& options);
 
-/// What discovery tells of a writer; without identity and topic.
+/// What discovery finds of a writer; without identity and topic.
 RawQos from_vendor(const dds_qos_t& qos);
 
 /// Announces the type's hash, for ROS 2 (common/ros2/type_hash.hpp).
@@ -27,7 +26,7 @@ void set_type_hash(dds_qos_t& qos, const std::string& dds_type);
 /// What an endpoint announces beside its policies.
 std::string user_data(const dds_qos_t& qos);
 
-/// "DURABILITY" and the like.
-std::string policy_name(std::uint32_t id);
+/// DDS name of a policy, e.g. "RELIABILITY".
+std::string name_of(std::uint32_t policy);
 
 }  // namespace rtd::bus::cyclonedds

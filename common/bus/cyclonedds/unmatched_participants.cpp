@@ -1,9 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/cyclonedds/strangers.hpp"
+#include "common/bus/cyclonedds/unmatched_participants.hpp"
+
+#include <dds/ddsrt/log.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <list>
+#include <mutex>
+#include <utility>
 
 #include "common/bus/security_guard.hpp"
 
@@ -42,7 +47,7 @@ std::string dotted(const std::string& guid) {
   return text;
 }
 
-/// "'rtd-slam' 01.10....", as others are told of.
+/// "'rtd-slam' 01.10....", as problems name participants.
 std::string name_in(std::string_view line, const std::string& guid) {
   const std::string_view rest = after(line, "entity_name=\"");
   std::string name(rest.substr(0, rest.find('"')));
@@ -51,9 +56,20 @@ std::string name_in(std::string_view line, const std::string& guid) {
   return (name.empty() ? "" : "'" + name + "' ") + dotted(guid);
 }
 
+/// Cyclone has one sink for the traces of all domains of a process, and does not say (0.10.2) which one a line is from.
+struct Watches {
+  std::mutex mutex;
+  std::list<UnmatchedWatch*> all;
+};
+
+Watches& watches() {
+  static Watches watches;
+  return watches;
+}
+
 }  // namespace
 
-std::vector<std::string> Strangers::hear(std::string_view line, TimePoint now) {
+std::vector<std::string> UnmatchedParticipants::read(std::string_view line, TimePoint now) {
   if (line.starts_with("SPDP ST0 ")) return appeared(line, now);
   if (line.starts_with("SPDP ST3 ")) unproven_.erase(guid_in(line.substr(9)));
   if (const auto gone = after(line, "ddsi_delete_proxy_participant_by_guid("); !gone.empty())
@@ -66,7 +82,7 @@ std::vector<std::string> Strangers::hear(std::string_view line, TimePoint now) {
 }
 
 /// "SPDP ST0 GUID bes f [(secure)] NEW [(versions of Cyclone)] (data ADDRESS ...) QOS={...}"
-std::vector<std::string> Strangers::appeared(std::string_view line, TimePoint now) {
+std::vector<std::string> UnmatchedParticipants::appeared(std::string_view line, TimePoint now) {
   const std::size_t end = line.find(" NEW ");
   if (end == std::string_view::npos) return {};  // our own, or news of a known one
   const std::string guid = guid_in(line.substr(9));
@@ -76,7 +92,7 @@ std::vector<std::string> Strangers::appeared(std::string_view line, TimePoint no
   if (!is_new) return {};
   const bool secure = line.substr(0, end).find("(secure)") != std::string_view::npos;
   const bool same_vendor = line.substr(end).starts_with(" NEW (0x");
-  known->second.told = !secure || !same_vendor;
+  known->second.reported = !secure || !same_vendor;
   if (!same_vendor) {
     const bool fast = line.find("\"fastdds.") != std::string_view::npos;
     return {other_vendor_problem(domain_, name, fast ? "Fast DDS" : "another DDS")};
@@ -85,15 +101,45 @@ std::vector<std::string> Strangers::appeared(std::string_view line, TimePoint no
   return {};
 }
 
-std::vector<std::string> Strangers::refused(TimePoint now) {
+std::vector<std::string> UnmatchedParticipants::refused(TimePoint now) {
   std::vector<std::string> problems;
   for (auto& [guid, participant] : unproven_) {
     const bool meant = unproven_.size() == 1 || now - participant.since > kSuspicious;
-    if (participant.told || !meant) continue;
-    participant.told = true;
+    if (participant.reported || !meant) continue;
+    participant.reported = true;
     problems.push_back(refused_problem(domain_, participant.name));
   }
   return problems;
+}
+
+std::unique_ptr<UnmatchedWatch> UnmatchedWatch::start(const BusOptions& options) {
+  if (!options.security.enabled() || !options.on_problem) return nullptr;
+  return std::unique_ptr<UnmatchedWatch>(new UnmatchedWatch(options));
+}
+
+UnmatchedWatch::UnmatchedWatch(const BusOptions& options)
+    : on_problem_(options.on_problem), unmatched_(options.domain) {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    dds_set_trace_sink([](void*, const dds_log_data_t* line) { dispatch({line->message, line->size}); }, nullptr);
+  });
+  const std::lock_guard lock(watches().mutex);
+  watches().all.push_back(this);
+}
+
+UnmatchedWatch::~UnmatchedWatch() {
+  const std::lock_guard lock(watches().mutex);
+  watches().all.remove(this);
+}
+
+void UnmatchedWatch::dispatch(std::string_view line) {
+  const std::lock_guard lock(watches().mutex);
+  for (UnmatchedWatch* watch : watches().all) watch->read(line);
+}
+
+void UnmatchedWatch::read(std::string_view line) {
+  for (std::string& problem : unmatched_.read(line, std::chrono::steady_clock::now()))
+    thread_.post([this, problem = std::move(problem)] { on_problem_(problem); });
 }
 
 }  // namespace rtd::bus::cyclonedds

@@ -1,16 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/fastdds/greeter.hpp"
+#include "common/bus/fastdds/discovery_listener.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <sstream>
 #include <string>
+
+#include "common/bus/fastdds/network_mapping.hpp"
+#include "common/bus/fastdds/qos_mapping.hpp"
+#include "common/bus/fastdds/raw_codec.hpp"
+#include "common/bus/network.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
 
-/// After the newcomer was seen; the second one is for a busy host.
+/// After a participant has appeared; the second one is for a busy host.
 constexpr std::chrono::milliseconds kDelays[] = {std::chrono::milliseconds(30), std::chrono::milliseconds(80)};
 
 /// A participant announces itself at once when its user data changes. Keys that a reader does not know mean nothing to
@@ -24,13 +32,30 @@ void announce(dds::DomainParticipant& participant, std::uint64_t count) {
   participant.set_qos(qos);
 }
 
+bool is_own(const dds::DomainParticipant& participant, const rtps::GUID_t& endpoint) {
+  return endpoint.guidPrefix == participant.guid().guidPrefix;
+}
+
+/// `Info`: of a writer or of a reader.
+template <class Info>
+void note_type(const dds::DomainParticipant& participant, const Info& info, bool gone, TopicTypes& types) {
+  if (is_own(participant, info.guid())) return;
+  std::ostringstream id;
+  id << info.guid();
+  if (gone) {
+    types.gone(id.str());
+  } else {
+    types.appeared(id.str(), info.topicName().to_string(), info.typeName().to_string());
+  }
+}
+
 }  // namespace
 
-void Greeter::start(dds::DomainParticipant& participant) {
+void Reannouncer::start(dds::DomainParticipant& participant) {
   thread_ = std::thread([this, &participant] { loop(participant); });
 }
 
-void Greeter::stop() {
+void Reannouncer::stop() {
   {
     const std::lock_guard lock(mutex_);
     ended_ = true;
@@ -39,21 +64,21 @@ void Greeter::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void Greeter::greet() {
+void Reannouncer::announce_again() {
   {
     const std::lock_guard lock(mutex_);
-    ++newcomers_;
+    ++appeared_;
   }
   changed_.notify_all();
 }
 
-void Greeter::loop(dds::DomainParticipant& participant) {
+void Reannouncer::loop(dds::DomainParticipant& participant) {
   std::unique_lock lock(mutex_);
-  std::uint64_t greeted = 0, announcements = 0;
+  std::uint64_t answered = 0, announcements = 0;
   const auto ended = [this] { return ended_; };
   while (true) {
-    changed_.wait(lock, [&] { return ended_ || newcomers_ > greeted; });
-    greeted = newcomers_;
+    changed_.wait(lock, [&] { return ended_ || appeared_ > answered; });
+    answered = appeared_;
     for (const auto delay : kDelays) {
       if (changed_.wait_for(lock, delay, ended)) return;
       lock.unlock();
@@ -61,6 +86,74 @@ void Greeter::loop(dds::DomainParticipant& participant) {
       lock.lock();
     }
   }
+}
+
+void ServerWatch::start(const BusOptions& options) {
+  if (options.network.discovery_server.empty() || !options.on_problem) return;
+  thread_ = std::thread([this, options] { wait_for_server(options); });
+}
+
+void ServerWatch::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void ServerWatch::appeared(const rtps::GuidPrefix_t& participant) {
+  if (participant != server_prefix()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    found_ = true;
+  }
+  changed_.notify_all();
+}
+
+void ServerWatch::wait_for_server(const BusOptions& options) {
+  std::unique_lock lock(mutex_);
+  if (changed_.wait_for(lock, kServerPatience, [this] { return found_ || ended_; })) return;
+  lock.unlock();
+  options.on_problem(no_server_problem(options));
+}
+
+DiscoveryListener::DiscoveryListener(const BusOptions& options, WriterRegistry* writers)
+    : writers_(writers), security_(options.security.enabled() ? std::make_unique<SecurityWatch>(options) : nullptr) {}
+
+void DiscoveryListener::start(dds::DomainParticipant& participant, const BusOptions& options) {
+  reannouncer_.start(participant);
+  server_.start(options);
+}
+
+void DiscoveryListener::stop() {
+  reannouncer_.stop();
+  server_.stop();
+}
+
+void DiscoveryListener::on_participant_discovery(Participant*, rtps::ParticipantDiscoveryInfo&& info) {
+  if (security_) security_->discovered(info);
+  if (info.status != rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) return;
+  reannouncer_.announce_again();
+  server_.appeared(info.info.m_guid.guidPrefix);
+}
+
+void DiscoveryListener::onParticipantAuthentication(Participant*, rtps::ParticipantAuthenticationInfo&& info) {
+  if (security_) security_->authenticated(info);
+}
+
+void DiscoveryListener::on_publisher_discovery(Participant* participant, rtps::WriterDiscoveryInfo&& info) {
+  const bool gone = info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER;
+  note_type(*participant, info.info, gone, types_);
+  if (writers_ == nullptr) return;
+  TopicWriter writer = to_topic_writer(info.info);
+  if (gone) return writers_->note_gone(writer.id);
+  writer.own = is_own(*participant, info.info.guid());
+  writers_->note(writer);
+}
+
+void DiscoveryListener::on_subscriber_discovery(Participant* participant, rtps::ReaderDiscoveryInfo&& info) {
+  note_type(*participant, info.info, info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER, types_);
 }
 
 }  // namespace rtd::bus::fastdds

@@ -4,33 +4,81 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <thread>
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+
+#include "common/bus/discovery.hpp"
+#include "common/bus/fastdds/participant_security.hpp"
 
 namespace rtd::bus::fastdds {
 
-/// Introduces us again to whoever has just appeared. Fast DDS 2.9 answers a newcomer's first announcement once, but a
-/// newcomer announces itself some milliseconds before it listens: an answer that comes too early is lost, and the two
-/// meet only at our next periodic announcement, half a second later. Thread-safe.
-class Greeter {
+/// Announces our participant again to others that have just appeared. Fast DDS 2.9 answers a new participant's first
+/// announcement once, but it announces itself some milliseconds before it can receive: an answer that comes too early
+/// is lost, and the two match only at our next periodic announcement, half a second later. Thread-safe.
+class Reannouncer {
  public:
-  ~Greeter() { stop(); }
+  ~Reannouncer() { stop(); }
   void start(eprosima::fastdds::dds::DomainParticipant& participant);
   /// Afterwards the participant is not touched. To be called before it is deleted.
   void stop();
-  /// Somebody has appeared.
-  void greet();
+  /// A participant has appeared.
+  void announce_again();
 
  private:
   void loop(eprosima::fastdds::dds::DomainParticipant& participant);
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::uint64_t newcomers_ = 0;
+  std::uint64_t appeared_ = 0;
   bool ended_ = false;
   std::thread thread_;
+};
+
+/// Calls BusOptions::on_problem when the Discovery Server does not answer within kServerPatience: without it no
+/// participant is found, and Fast DDS goes on asking without a message. Thread-safe.
+class ServerWatch {
+ public:
+  ~ServerWatch() { stop(); }
+  /// Does nothing without a server in the options.
+  void start(const BusOptions& options);
+  void stop();
+  void appeared(const eprosima::fastrtps::rtps::GuidPrefix_t& participant);
+
+ private:
+  void wait_for_server(const BusOptions& options);
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool found_ = false, ended_ = false;
+  std::thread thread_;
+};
+
+/// Receives what Fast DDS discovers of the other participants of a domain and of their endpoints.
+class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListener {
+ public:
+  /// `writers`, if any, gets all writers.
+  DiscoveryListener(const BusOptions& options, WriterRegistry* writers);
+  void start(eprosima::fastdds::dds::DomainParticipant& participant, const BusOptions& options);
+  void stop();
+  TopicTypes& types() { return types_; }
+
+ private:
+  using Participant = eprosima::fastdds::dds::DomainParticipant;
+  void on_participant_discovery(Participant*, eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
+  void onParticipantAuthentication(Participant*,
+                                   eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
+  void on_publisher_discovery(Participant* participant, eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
+  void on_subscriber_discovery(Participant* participant, eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+
+  WriterRegistry* const writers_;
+  std::unique_ptr<SecurityWatch> security_;
+  Reannouncer reannouncer_;
+  ServerWatch server_;
+  TopicTypes types_;
 };
 
 }  // namespace rtd::bus::fastdds

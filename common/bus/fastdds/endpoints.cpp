@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/fastdds/fastdds_reader.hpp"
+#include "common/bus/fastdds/endpoints.hpp"
 
 #include <utility>
 
-#include "common/bus/fastdds/qos_mapping.hpp"
-
 namespace rtd::bus::fastdds {
+
+using eprosima::fastrtps::types::ReturnCode_t;
 
 FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::unique_ptr<Codec> codec,
                              const std::string& topic, const dds::DataReaderQos& qos, ErasedCallback on_message,
@@ -16,15 +16,11 @@ FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::uniq
       codec_(std::move(codec)),
       depth_(qos.history().depth),
       on_message_(std::move(on_message)),
-      callbacks_(std::move(callbacks)),
+      status_(std::move(callbacks), thread_),
       thread_([this] { return handle_one(); }) {
   dds::Topic* const known = participant_->topic(topic, *codec_);
-  if (callbacks_.on_type_mismatch) {
-    const std::string type = codec_->create_type().get_type_name();
-    types_.emplace(participant_->types(), topic, type, [this](const std::string& foreign_type) {
-      thread_.post([this, foreign_type] { callbacks_.on_type_mismatch(foreign_type); });
-    });
-  }
+  if (status_.callbacks().on_type_mismatch)
+    types_.emplace(participant_->types(), topic, known->get_type_name(), status_);
   reader_ = subscriber_.create_datareader(known, with_type_hash(qos, known->get_type_name()), this);
   if (reader_ == nullptr) throw BusError("Fast DDS refused a reader on topic " + topic);
   thread_.wake();  // a sample may have come before reader_ was known
@@ -34,7 +30,7 @@ FastddsReader::~FastddsReader() {
   dds::DataReader* const reader = reader_;
   reader->set_listener(nullptr);
   types_.reset();
-  thread_.stop();  // waits for a running callback; only now nobody takes from the reader
+  thread_.stop();  // waits for a running callback; only now nothing takes from the reader
   subscriber_.delete_datareader(reader);
 }
 
@@ -67,39 +63,56 @@ bool FastddsReader::may_have_skipped_one(const dds::DataReader& reader) {
   return again;
 }
 
-void FastddsReader::report_lost() {
-  if (!callbacks_.on_samples_lost) return;
-  thread_.post([this, total = lost_in_transit_ + unusable_] { callbacks_.on_samples_lost(total); });
+FastddsWriter::FastddsWriter(std::shared_ptr<Participant> participant, std::unique_ptr<Codec> codec,
+                             const std::string& topic, const dds::DataWriterQos& qos, StatusCallbacks callbacks)
+    : participant_(std::move(participant)),
+      publisher_(participant_->publisher(topic)),
+      codec_(std::move(codec)),
+      status_(std::move(callbacks)) {
+  dds::Topic* const known = participant_->topic(topic, *codec_);
+  if (status_.callbacks().on_type_mismatch)
+    types_.emplace(participant_->types(), topic, known->get_type_name(), status_);
+  lends_own_memory_ = codec_->in_place() && qos.data_sharing().kind() != dds::OFF;
+  writer_ = publisher_.create_datawriter(known, with_type_hash(qos, known->get_type_name()), this);
+  if (writer_ == nullptr) throw BusError("Fast DDS refused a writer on topic " + topic);
+  participant_->writer_created();
 }
 
-void FastddsReader::on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) {
-  matched_ = status.current_count;
-  if (!callbacks_.on_matched) return;
-  thread_.post([this, peers = status.current_count] { callbacks_.on_matched(peers); });
+FastddsWriter::~FastddsWriter() {
+  writer_->set_listener(nullptr);
+  publisher_.delete_datawriter(writer_);
 }
 
-void FastddsReader::on_requested_deadline_missed(dds::DataReader*, const dds::RequestedDeadlineMissedStatus&) {
-  if (callbacks_.on_deadline_missed) thread_.post([this] { callbacks_.on_deadline_missed(); });
+void* FastddsWriter::loan() {
+  void* lent = nullptr;
+  if (lends_own_memory_ && writer_->loan_sample(lent) == ReturnCode_t::RETCODE_OK) {
+    return *vendor_loans_.insert(lent).first;
+  }
+  std::shared_ptr<void> slot = codec_->allocate();
+  return loans_.emplace(slot.get(), slot).first->first;
 }
 
-void FastddsReader::on_liveliness_changed(dds::DataReader*, const dds::LivelinessChangedStatus& status) {
-  if (!callbacks_.on_liveliness) return;
-  thread_.post([this, alive = status.alive_count] { callbacks_.on_liveliness(alive); });
+bool FastddsWriter::write_loaned(void* slot) {
+  if (vendor_loans_.erase(slot) > 0) {
+    if (writer_->write(slot)) return true;
+    writer_->discard_loan(slot);  // a failed write leaves it lent
+    return false;
+  }
+  const auto node = loans_.extract(slot);
+  return !node.empty() && write(slot);
 }
 
-void FastddsReader::on_requested_incompatible_qos(dds::DataReader*, const dds::RequestedIncompatibleQosStatus& status) {
-  if (!callbacks_.on_incompatible_qos) return;
-  thread_.post([this, policy = policy_name(status.last_policy_id)] { callbacks_.on_incompatible_qos(policy); });
+void FastddsWriter::discard_loan(void* slot) {
+  if (vendor_loans_.erase(slot) > 0) {
+    writer_->discard_loan(slot);
+  } else {
+    loans_.erase(slot);
+  }
 }
 
-void FastddsReader::on_sample_rejected(dds::DataReader*, const eprosima::fastrtps::SampleRejectedStatus& status) {
-  if (!callbacks_.on_samples_rejected) return;
-  thread_.post([this, total = status.total_count] { callbacks_.on_samples_rejected(total); });
-}
-
-void FastddsReader::on_sample_lost(dds::DataReader*, const dds::SampleLostStatus& status) {
-  lost_in_transit_ = status.total_count;
-  report_lost();
+bool FastddsWriter::wait_acknowledged(int timeout_ms) {
+  const auto nanoseconds = static_cast<std::uint32_t>(timeout_ms % 1000) * 1'000'000U;
+  return writer_->wait_for_acknowledgments({timeout_ms / 1000, nanoseconds}) == ReturnCode_t::RETCODE_OK;
 }
 
 }  // namespace rtd::bus::fastdds

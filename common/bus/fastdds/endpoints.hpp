@@ -3,15 +3,18 @@
 #pragma once
 
 #include <atomic>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 
 #include "common/bus/backend.hpp"
-#include "common/bus/callback_thread.hpp"
 #include "common/bus/fastdds/participant.hpp"
+#include "common/bus/fastdds/qos_mapping.hpp"
 
 namespace rtd::bus::fastdds {
 
@@ -22,20 +25,33 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
   FastddsReader(std::shared_ptr<Participant> participant, std::unique_ptr<Codec> codec, const std::string& topic,
                 const dds::DataReaderQos& qos, ErasedCallback on_message, StatusCallbacks callbacks);
   ~FastddsReader() override;
-  int matched() const override { return matched_; }
+  int matched() const override { return status_.matched(); }
 
  private:
   bool handle_one();
   bool may_have_skipped_one(const dds::DataReader& reader);
-  void report_lost();
+  void report_lost() { status_.report_lost(lost_in_transit_ + unusable_); }
 
   void on_data_available(dds::DataReader*) override { thread_.wake(); }
-  void on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) override;
-  void on_requested_deadline_missed(dds::DataReader*, const dds::RequestedDeadlineMissedStatus&) override;
-  void on_liveliness_changed(dds::DataReader*, const dds::LivelinessChangedStatus& status) override;
-  void on_requested_incompatible_qos(dds::DataReader*, const dds::RequestedIncompatibleQosStatus& status) override;
-  void on_sample_rejected(dds::DataReader*, const eprosima::fastrtps::SampleRejectedStatus& status) override;
-  void on_sample_lost(dds::DataReader*, const dds::SampleLostStatus& status) override;
+  void on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) override {
+    status_.report_matched(status.current_count);
+  }
+  void on_requested_deadline_missed(dds::DataReader*, const dds::RequestedDeadlineMissedStatus&) override {
+    status_.report_deadline_missed();
+  }
+  void on_liveliness_changed(dds::DataReader*, const dds::LivelinessChangedStatus& status) override {
+    status_.report_liveliness(status.alive_count);
+  }
+  void on_requested_incompatible_qos(dds::DataReader*, const dds::RequestedIncompatibleQosStatus& status) override {
+    status_.report_incompatible_qos(name_of(status.last_policy_id));
+  }
+  void on_sample_rejected(dds::DataReader*, const eprosima::fastrtps::SampleRejectedStatus& status) override {
+    status_.report_rejected(status.total_count);
+  }
+  void on_sample_lost(dds::DataReader*, const dds::SampleLostStatus& status) override {
+    lost_in_transit_ = status.total_count;
+    report_lost();
+  }
 
   std::shared_ptr<Participant> participant_;
   dds::Subscriber& subscriber_;
@@ -43,12 +59,49 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
   const int depth_;
   int skipped_ = 0;  ///< used by the callback thread
   const ErasedCallback on_message_;
-  const StatusCallbacks callbacks_;
-  std::atomic<int> matched_{0};
   std::atomic<int> lost_in_transit_{0}, unusable_{0};
   std::atomic<dds::DataReader*> reader_{nullptr};
+  StatusReporter status_;
   CallbackThread thread_;
   std::optional<TopicTypes::Watch> types_;
+};
+
+/// One DataWriter. A loan of a message without 64-bit members is a slot of the writer's own shared memory, which
+/// write_loaned() does not copy. Fast DDS's slots begin 4 bytes behind an aligned address, after the CDR header; loans
+/// of other messages are memory of our own.
+class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
+ public:
+  FastddsWriter(std::shared_ptr<Participant> participant, std::unique_ptr<Codec> codec, const std::string& topic,
+                const dds::DataWriterQos& qos, StatusCallbacks callbacks);
+  ~FastddsWriter() override;
+
+  bool write(const void* message) override { return codec_->write(*writer_, message); }
+  void* loan() override;
+  bool write_loaned(void* slot) override;
+  void discard_loan(void* slot) override;
+  int matched() const override { return status_.matched(); }
+  bool wait_acknowledged(int timeout_ms) override;
+
+ private:
+  void on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus& status) override {
+    status_.report_matched(status.current_count);
+  }
+  void on_offered_deadline_missed(dds::DataWriter*, const dds::OfferedDeadlineMissedStatus&) override {
+    status_.report_deadline_missed();
+  }
+  void on_offered_incompatible_qos(dds::DataWriter*, const dds::OfferedIncompatibleQosStatus& status) override {
+    status_.report_incompatible_qos(name_of(status.last_policy_id));
+  }
+
+  std::shared_ptr<Participant> participant_;
+  dds::Publisher& publisher_;
+  std::unique_ptr<Codec> codec_;
+  StatusReporter status_;
+  std::optional<TopicTypes::Watch> types_;
+  std::map<void*, std::shared_ptr<void>> loans_;
+  bool lends_own_memory_ = false;  ///< of the data-sharing pool
+  std::set<void*> vendor_loans_;
+  dds::DataWriter* writer_ = nullptr;
 };
 
 }  // namespace rtd::bus::fastdds

@@ -73,28 +73,22 @@ dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factor
 
 }  // namespace
 
-Participant::Participant(const BusOptions& options, const HostLimits& limits, dds::DomainParticipantListener* listener)
-    : watch_(listener) {
+Participant::Participant(const BusOptions& options, const HostLimits& limits, WriterRegistry* writers)
+    : secured_(options.security.enabled()), listener_(options, writers) {
   if (options.shm_segment_mib < kMinSegmentMib || options.shm_segment_mib > 1024) {
     throw BusError("shared-memory segment of " + std::to_string(options.shm_segment_mib) +
                    " MiB, allowed: " + std::to_string(kMinSegmentMib) + "..1024");
   }
   log_to_stderr_once();
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
-  dds::DomainParticipantListener* heard = &watch_;
-  if (options.security.enabled()) {
-    security_ = std::make_unique<SecurityWatch>(options, heard);
-    heard = security_.get();
-  }
-  const DiscoveryScope scope = listener == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;
-  participant_ = create_participant(*factory_, options, limits, scope, heard);
-  watch_.greeter().start(*participant_);
-  watch_.server().start(options);
+  const DiscoveryScope scope = writers == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;
+  participant_ = create_participant(*factory_, options, limits, scope, &listener_);
+  listener_.start(*participant_, options);
   create_publishers(options.network);
 }
 
-/// Topics that stay on the host are in a partition of the host, so that nobody elsewhere is matched. Without a network
-/// they need none, and any DDS program of this host may read them; our readers look into both.
+/// Topics that stay on the host are in a partition of the host, so that no reader elsewhere is matched. Without a
+/// network they need none, and any DDS program of this host may read them; our readers look into both.
 void Participant::create_publishers(const NetworkOptions& network) {
   const std::string host = host_partition();
   dds::PublisherQos publisher = dds::PUBLISHER_QOS_DEFAULT;
@@ -118,8 +112,7 @@ dds::Subscriber& Participant::subscriber(const std::string& topic) {
 
 Participant::~Participant() {
   if (participant_ == nullptr) return;
-  watch_.greeter().stop();
-  watch_.server().stop();
+  listener_.stop();
   silence();
   participant_->delete_contained_entities();
   factory_->delete_participant(participant_);

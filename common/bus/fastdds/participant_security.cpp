@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/participant_security.hpp"
 
-#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
-
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -69,48 +67,33 @@ void hide_shared_memory() {
   }
 }
 
-SecurityWatch::SecurityWatch(const BusOptions& options, eprosima::fastdds::dds::DomainParticipantListener* next)
-    : domain_(options.domain),
-      on_problem_(options.on_problem ? options.on_problem : [](const std::string&) {}),
-      next_(next) {}
+SecurityWatch::SecurityWatch(const BusOptions& options)
+    : domain_(options.domain), on_problem_(options.on_problem ? options.on_problem : [](const std::string&) {}) {}
 
-void SecurityWatch::on_participant_discovery(Participant* participant, rtps::ParticipantDiscoveryInfo&& info) {
-  look_at(info);
-  next_->on_participant_discovery(participant, std::move(info));
-}
-
-void SecurityWatch::look_at(const rtps::ParticipantDiscoveryInfo& info) {
+void SecurityWatch::discovered(const rtps::ParticipantDiscoveryInfo& info) {
   using Info = rtps::ParticipantDiscoveryInfo;
-  const rtps::ParticipantProxyData& stranger = info.info;
+  const rtps::ParticipantProxyData& participant = info.info;
   const std::lock_guard lock(mutex_);
   if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) {
-    names_.erase(stranger.m_guid.guidPrefix);
+    names_.erase(participant.m_guid.guidPrefix);
     return;
   }
-  const auto [known, is_new] = names_.try_emplace(stranger.m_guid.guidPrefix, name_of(stranger));
+  const auto [known, is_new] = names_.try_emplace(participant.m_guid.guidPrefix, name_of(participant));
   if (!is_new) return;
-  if (stranger.m_VendorId != rtps::c_VendorId_eProsima) {
-    on_problem_(other_vendor_problem(domain_, std::exchange(known->second, {}), vendor_name(stranger.m_VendorId)));
-  } else if (!has_certificate(stranger)) {
+  if (participant.m_VendorId != rtps::c_VendorId_eProsima) {
+    on_problem_(other_vendor_problem(domain_, std::exchange(known->second, {}), vendor_name(participant.m_VendorId)));
+  } else if (!has_certificate(participant)) {
     on_problem_(not_secured_problem(domain_, std::exchange(known->second, {})));
   }
 }
 
-void SecurityWatch::onParticipantAuthentication(Participant*, rtps::ParticipantAuthenticationInfo&& info) {
+void SecurityWatch::authenticated(const rtps::ParticipantAuthenticationInfo& info) {
   if (info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT) return;
   const std::lock_guard lock(mutex_);
   std::ostringstream id;
   id << info.guid.guidPrefix;
   const auto [known, is_new] = names_.try_emplace(info.guid.guidPrefix, id.str());
   if (!known->second.empty()) on_problem_(refused_problem(domain_, std::exchange(known->second, {})));
-}
-
-void SecurityWatch::on_publisher_discovery(Participant* participant, rtps::WriterDiscoveryInfo&& info) {
-  next_->on_publisher_discovery(participant, std::move(info));
-}
-
-void SecurityWatch::on_subscriber_discovery(Participant* participant, rtps::ReaderDiscoveryInfo&& info) {
-  next_->on_subscriber_discovery(participant, std::move(info));
 }
 
 }  // namespace rtd::bus::fastdds

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
+
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -19,27 +21,18 @@ void map_security(const SecurityOptions& security, eprosima::fastdds::dds::Domai
 /// raw frames in it are not encrypted.
 void hide_shared_memory();
 
-/// Tells BusOptions::on_problem, once each, of participants that a secured one cannot meet. Passes all that it hears on
-/// to `next`.
-class SecurityWatch : public eprosima::fastdds::dds::DomainParticipantListener {
+/// Calls BusOptions::on_problem, once each, for participants that a secured one cannot match. Thread-safe.
+class SecurityWatch {
  public:
-  SecurityWatch(const BusOptions& options, eprosima::fastdds::dds::DomainParticipantListener* next);
+  explicit SecurityWatch(const BusOptions& options);
+  void discovered(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
+  void authenticated(const eprosima::fastrtps::rtps::ParticipantAuthenticationInfo& info);
 
  private:
-  using Participant = eprosima::fastdds::dds::DomainParticipant;
-  void on_participant_discovery(Participant*, eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
-  void onParticipantAuthentication(Participant*,
-                                   eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
-  void on_publisher_discovery(Participant* participant, eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
-
-  void on_subscriber_discovery(Participant* participant, eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
-  void look_at(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
-
   const std::uint32_t domain_;
   const std::function<void(const std::string&)> on_problem_;
-  eprosima::fastdds::dds::DomainParticipantListener* const next_;
   std::mutex mutex_;
-  std::map<eprosima::fastrtps::rtps::GuidPrefix_t, std::string> names_;  ///< of those not told of yet; else empty
+  std::map<eprosima::fastrtps::rtps::GuidPrefix_t, std::string> names_;  ///< of those not reported yet; else empty
 };
 
 }  // namespace rtd::bus::fastdds

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fastdds/rtps/builtin/data/WriterProxyData.h>
+
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <string>
 
-#include "common/bus/qos_settings.hpp"
+#include "common/bus/raw_bus.hpp"
 
 namespace rtd::bus::fastdds {
 
@@ -15,6 +17,10 @@ namespace rtd::bus::fastdds {
 eprosima::fastdds::dds::DataWriterQos writer_qos(const QosSettings& settings, bool plain);
 eprosima::fastdds::dds::DataReaderQos reader_qos(const QosSettings& settings, bool plain);
 
+/// Asks for nothing that would keep a writer from matching: no deadline, no liveliness, any data representation.
+eprosima::fastdds::dds::DataReaderQos raw_reader_qos(const RawReaderOptions& options);
+eprosima::fastdds::dds::DataWriterQos raw_writer_qos(const RawWriterOptions& options);
+
 /// With the type's hash in the user data, for ROS 2 (common/ros2/type_hash.hpp).
 eprosima::fastdds::dds::DataWriterQos with_type_hash(eprosima::fastdds::dds::DataWriterQos qos,
                                                      const std::string& dds_type);
@@ -22,6 +28,9 @@ eprosima::fastdds::dds::DataReaderQos with_type_hash(eprosima::fastdds::dds::Dat
                                                      const std::string& dds_type);
 
 /// DDS name of a policy, e.g. "RELIABILITY".
-std::string policy_name(eprosima::fastdds::dds::QosPolicyId_t id);
+std::string name_of(eprosima::fastdds::dds::QosPolicyId_t id);
+
+/// What discovery finds of a writer; `own` is not set.
+TopicWriter to_topic_writer(const eprosima::fastrtps::rtps::WriterProxyData& data);
 
 }  // namespace rtd::bus::fastdds

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "common/bus/qos_settings.hpp"
+#include "common/bus/qos.hpp"
 
 namespace rtd::bus {
 namespace {

@@ -2,90 +2,138 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/inprocess/domain.hpp"
 
-#include <algorithm>
+#include <cstring>
+#include <map>
+#include <utility>
 
 namespace rtd::bus::inprocess {
 namespace {
 
-bool same_topic(const Endpoint& a, const Endpoint& b) {
+bool same_topic(const EndpointKind& a, const EndpointKind& b) {
   return a.type == b.type && a.topic == b.topic;
 }
 
+std::string refused_policy(const EndpointKind& offered, const EndpointKind& requested) {
+  if (requested.reliable && !offered.reliable) return "RELIABILITY";
+  return incompatible_policy(offered.qos, requested.qos);
+}
+
 bool connected(const WriterEndpoint& writer, const ReaderEndpoint& reader) {
-  return same_topic(writer, reader) && incompatible_policy(writer.qos, reader.qos).empty();
+  return same_topic(writer.kind, reader.kind) && refused_policy(writer.kind, reader.kind).empty();
 }
 
-void report_incompatible(Endpoint& endpoint, const std::string& policy) {
-  if (!endpoint.callbacks.on_incompatible_qos) return;
-  endpoint.thread->post([&callback = endpoint.callbacks.on_incompatible_qos, policy] { callback(policy); });
-}
-
+template <class Endpoint>
 void change_matched(Endpoint& endpoint, int change) {
-  const int peers = endpoint.matched += change;
-  if (!endpoint.callbacks.on_matched) return;
-  endpoint.thread->post([&callback = endpoint.callbacks.on_matched, peers] { callback(peers); });
-}
-
-void change_alive(ReaderEndpoint& reader) {
-  if (!reader.callbacks.on_liveliness) return;
-  const int alive = reader.matched;
-  reader.thread->post([&callback = reader.callbacks.on_liveliness, alive] { callback(alive); });
+  endpoint.status.report_matched(endpoint.status.matched() + change);
 }
 
 /// Matches or refuses the pair; true when matched.
-bool meet(WriterEndpoint& writer, ReaderEndpoint& reader) {
-  if (!same_topic(writer, reader)) return false;
-  const std::string policy = incompatible_policy(writer.qos, reader.qos);
+bool match(WriterEndpoint& writer, ReaderEndpoint& reader) {
+  if (!same_topic(writer.kind, reader.kind)) return false;
+  const std::string policy = refused_policy(writer.kind, reader.kind);
   if (!policy.empty()) {
-    report_incompatible(writer, policy);
-    report_incompatible(reader, policy);
+    writer.status.report_incompatible_qos(policy);
+    reader.status.report_incompatible_qos(policy);
     return false;
   }
   change_matched(writer, 1);
   change_matched(reader, 1);
-  change_alive(reader);
+  reader.status.report_liveliness(reader.status.matched());
   return true;
+}
+
+void deliver(ReaderEndpoint& reader, const Message& message) {
+  if (!reader.mailbox.deliver(message)) reader.status.report_lost(++reader.lost);
 }
 
 }  // namespace
 
-std::shared_ptr<Domain> Domain::join(std::uint32_t number) {
+bool Mailbox::deliver(Message message) {
+  bool kept_all = true;
+  {
+    const std::lock_guard lock(mutex_);
+    if (messages_.size() >= depth_) {
+      messages_.pop_front();
+      kept_all = false;
+    }
+    messages_.push_back(std::move(message));
+  }
+  thread_.wake();
+  return kept_all;
+}
+
+bool Mailbox::handle_one() {
+  std::unique_lock lock(mutex_);
+  if (messages_.empty()) return false;
+  Message message = std::move(messages_.front());
+  messages_.pop_front();
+  lock.unlock();
+  on_message_(std::move(message));
+  return true;
+}
+
+std::shared_ptr<Domain> Domain::join(std::uint32_t number, Content content) {
   static std::mutex mutex;
-  static std::map<std::uint32_t, std::weak_ptr<Domain>> domains;
+  static std::map<std::pair<std::uint32_t, Content>, std::weak_ptr<Domain>> domains;
   const std::lock_guard lock(mutex);
-  std::shared_ptr<Domain> domain = domains[number].lock();
-  if (!domain) domains[number] = domain = std::make_shared<Domain>();
+  std::weak_ptr<Domain>& known = domains[{number, content}];
+  std::shared_ptr<Domain> domain = known.lock();
+  if (!domain) known = domain = std::make_shared<Domain>();
   return domain;
+}
+
+WriterId Domain::new_id() {
+  const std::lock_guard lock(mutex_);
+  WriterId id{};
+  ++ids_;
+  std::memcpy(id.data(), &ids_, sizeof(ids_));
+  return id;
+}
+
+void Domain::add(WriterRegistry& registry) {
+  const std::lock_guard lock(mutex_);
+  registries_.push_back(&registry);
+  for (const WriterEndpoint* writer : writers_)
+    if (writer->discovered) registry.note(*writer->discovered);
 }
 
 void Domain::add(WriterEndpoint& writer) {
   const std::lock_guard lock(mutex_);
   writers_.push_back(&writer);
-  for (ReaderEndpoint* reader : readers_) meet(writer, *reader);
+  if (writer.discovered)
+    for (WriterRegistry* registry : registries_) registry->note(*writer.discovered);
+  for (ReaderEndpoint* reader : readers_) match(writer, *reader);
 }
 
 void Domain::add(ReaderEndpoint& reader) {
   const std::lock_guard lock(mutex_);
   readers_.push_back(&reader);
   for (WriterEndpoint* writer : writers_) {
-    if (!meet(*writer, reader) || !reader.qos.transient_local) continue;
+    if (!match(*writer, reader) || !reader.kind.qos.transient_local) continue;
     for (const Message& message : writer->retained) deliver(reader, message);
   }
 }
 
+void Domain::remove(WriterRegistry& registry) {
+  const std::lock_guard lock(mutex_);
+  std::erase(registries_, &registry);
+}
+
 void Domain::remove(WriterEndpoint& writer) {
   const std::lock_guard lock(mutex_);
-  writers_.erase(std::find(writers_.begin(), writers_.end(), &writer));
+  std::erase(writers_, &writer);
+  if (writer.discovered)
+    for (WriterRegistry* registry : registries_) registry->note_gone(writer.discovered->id);
   for (ReaderEndpoint* reader : readers_) {
     if (!connected(writer, *reader)) continue;
     change_matched(*reader, -1);
-    change_alive(*reader);
+    reader->status.report_liveliness(reader->status.matched());
   }
 }
 
 void Domain::remove(ReaderEndpoint& reader) {
   const std::lock_guard lock(mutex_);
-  readers_.erase(std::find(readers_.begin(), readers_.end(), &reader));
+  std::erase(readers_, &reader);
   for (WriterEndpoint* writer : writers_) {
     if (connected(*writer, reader)) change_matched(*writer, -1);
   }
@@ -93,20 +141,13 @@ void Domain::remove(ReaderEndpoint& reader) {
 
 void Domain::publish(WriterEndpoint& writer, const Message& message) {
   const std::lock_guard lock(mutex_);
-  if (writer.qos.transient_local) {
+  if (writer.kind.qos.transient_local) {
     writer.retained.push_back(message);
-    if (writer.retained.size() > static_cast<std::size_t>(writer.qos.depth)) writer.retained.pop_front();
+    if (writer.retained.size() > static_cast<std::size_t>(writer.kind.qos.depth)) writer.retained.pop_front();
   }
   for (ReaderEndpoint* reader : readers_) {
     if (connected(writer, *reader)) deliver(*reader, message);
   }
-}
-
-void Domain::deliver(ReaderEndpoint& reader, const Message& message) {
-  if (reader.mailbox->deliver(message)) return;
-  const int lost = ++reader.lost;
-  if (!reader.callbacks.on_samples_lost) return;
-  reader.thread->post([&callback = reader.callbacks.on_samples_lost, lost] { callback(lost); });
 }
 
 }  // namespace rtd::bus::inprocess

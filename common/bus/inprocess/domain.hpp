@@ -2,58 +2,93 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <deque>
-#include <map>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "common/bus/backend.hpp"
 #include "common/bus/callback_thread.hpp"
-#include "common/bus/inprocess/mailbox.hpp"
-#include "common/bus/qos_settings.hpp"
+#include "common/bus/discovery.hpp"
 
 namespace rtd::bus::inprocess {
 
-/// What writers and readers have in common.
-struct Endpoint {
-  MessageId type;
-  std::string topic;
+using Message = std::shared_ptr<const void>;
+
+/// What waits for one reader: at most `depth` messages; one more pushes the oldest out, as a keep-last history does.
+/// Thread-safe.
+class Mailbox {
+ public:
+  Mailbox(int depth, std::function<void(Message)> on_message)
+      : depth_(static_cast<std::size_t>(depth)),
+        on_message_(std::move(on_message)),
+        thread_([this] { return handle_one(); }) {}
+
+  /// Never blocks. False when an older message had to go.
+  bool deliver(Message message);
+  CallbackThread& thread() { return thread_; }
+
+ private:
+  bool handle_one();
+
+  const std::size_t depth_;
+  const std::function<void(Message)> on_message_;
+  std::mutex mutex_;
+  std::deque<Message> messages_;
+  CallbackThread thread_;
+};
+
+/// What a writer offers or a reader asks for.
+struct EndpointKind {
+  std::string topic, type;
   QosSettings qos;
-  StatusCallbacks callbacks;
-  std::atomic<int> matched{0};
-  CallbackThread* thread = nullptr;  ///< runs the callbacks; null when there are none
+  bool reliable = true;
 };
 
-struct WriterEndpoint : Endpoint {
-  std::deque<Message> retained;  ///< transient-local history, guarded by the domain
+struct WriterEndpoint {
+  EndpointKind kind;
+  StatusReporter status;
+  std::optional<TopicWriter> discovered = {};  ///< as the registries get it; empty: not at all
+  std::deque<Message> retained = {};           ///< transient-local history, guarded by the domain
 };
 
-struct ReaderEndpoint : Endpoint {
-  Mailbox* mailbox = nullptr;
-  int lost = 0;  ///< messages pushed out of the full mailbox, guarded by the domain
+struct ReaderEndpoint {
+  ReaderEndpoint(EndpointKind what, StatusCallbacks callbacks, std::function<void(Message)> on_message)
+      : kind(std::move(what)),
+        status(std::move(callbacks), mailbox.thread()),
+        mailbox(kind.qos.depth, std::move(on_message)) {}
+  EndpointKind kind;
+  StatusReporter status;
+  int lost = 0;     ///< messages pushed out of the full mailbox, guarded by the domain
+  Mailbox mailbox;  // last: its thread uses the others and ends first
 };
 
 /// All endpoints of one domain number in this process. Thread-safe; never runs a callback under its lock.
 class Domain {
  public:
-  /// The domain of that number; lives as long as somebody holds it.
-  static std::shared_ptr<Domain> join(std::uint32_t number);
+  /// Typed messages have no bytes here, so typed and raw endpoints have domains of their own.
+  enum class Content { kTyped, kRaw };
+  /// The domain of that number; lives as long as a connection holds it.
+  static std::shared_ptr<Domain> join(std::uint32_t number, Content content);
 
+  WriterId new_id();
+  /// A registry is told of the writers that there are, then of all changes.
+  void add(WriterRegistry& registry);
   void add(WriterEndpoint& writer);
   void add(ReaderEndpoint& reader);
-  /// After remove() returns nothing is handed to the endpoint any more.
+  /// After remove() returns the endpoint gets nothing any more.
+  void remove(WriterRegistry& registry);
   void remove(WriterEndpoint& writer);
   void remove(ReaderEndpoint& reader);
   void publish(WriterEndpoint& writer, const Message& message);
 
  private:
-  static void deliver(ReaderEndpoint& reader, const Message& message);
-
   std::mutex mutex_;
+  std::uint32_t ids_ = 0;
+  std::vector<WriterRegistry*> registries_;
   std::vector<WriterEndpoint*> writers_;
   std::vector<ReaderEndpoint*> readers_;
 };

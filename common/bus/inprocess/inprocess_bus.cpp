@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/inprocess/inprocess_backend.hpp"
+#include "common/bus/inprocess/inprocess_bus.hpp"
 
+#include <chrono>
 #include <map>
-#include <optional>
 #include <type_traits>
 #include <utility>
 
 #include "common/bus/inprocess/domain.hpp"
 #include "common/bus/message_visit.hpp"
+#include "common/bus/type_names.hpp"
 
 namespace rtd::bus::inprocess {
 namespace {
@@ -28,26 +29,23 @@ std::shared_ptr<void> allocate_plain(MessageId id) {
   });
 }
 
-bool wants_events(const StatusCallbacks& callbacks) {
-  return callbacks.on_matched || callbacks.on_incompatible_qos;
-}
-
 class InprocessWriter : public WriterBackend {
  public:
   InprocessWriter(std::shared_ptr<Domain> domain, MessageId id, const std::string& topic, QosProfile profile,
                   StatusCallbacks callbacks)
-      : domain_(std::move(domain)), endpoint_{{id, topic, qos_settings(profile), std::move(callbacks)}} {
-    if (wants_events(endpoint_.callbacks)) endpoint_.thread = &thread_.emplace();
+      : domain_(std::move(domain)),
+        id_(id),
+        endpoint_{{topic, dds_type_name(id), qos_settings(profile)}, StatusReporter(std::move(callbacks))} {
     domain_->add(endpoint_);
   }
   ~InprocessWriter() override { domain_->remove(endpoint_); }
 
   bool write(const void* message) override {
-    domain_->publish(endpoint_, copy_message(endpoint_.type, message));
+    domain_->publish(endpoint_, copy_message(id_, message));
     return true;
   }
   void* loan() override {
-    std::shared_ptr<void> slot = allocate_plain(endpoint_.type);
+    std::shared_ptr<void> slot = allocate_plain(id_);
     return loans_.emplace(slot.get(), slot).first->first;
   }
   bool write_loaned(void* slot) override {
@@ -57,13 +55,13 @@ class InprocessWriter : public WriterBackend {
     return true;
   }
   void discard_loan(void* slot) override { loans_.erase(slot); }
-  int matched() const override { return endpoint_.matched; }
-  bool wait_acknowledged(int) override { return true; }  // a message is with its readers when write() returns
+  int matched() const override { return endpoint_.status.matched(); }
+  bool wait_acknowledged(int) override { return true; }  // readers have a message when write() returns
 
  private:
   std::shared_ptr<Domain> domain_;
+  const MessageId id_;
   WriterEndpoint endpoint_;
-  std::optional<CallbackThread> thread_;
   std::map<void*, std::shared_ptr<void>> loans_;
 };
 
@@ -72,24 +70,20 @@ class InprocessReader : public ReaderBackend {
   InprocessReader(std::shared_ptr<Domain> domain, MessageId id, const std::string& topic, QosProfile profile,
                   ErasedCallback on_message, StatusCallbacks callbacks)
       : domain_(std::move(domain)),
-        endpoint_{{id, topic, qos_settings(profile), std::move(callbacks)}},
-        mailbox_(static_cast<std::size_t>(endpoint_.qos.depth), std::move(on_message)) {
-    endpoint_.thread = &mailbox_.thread();
-    endpoint_.mailbox = &mailbox_;
+        endpoint_({topic, dds_type_name(id), qos_settings(profile)}, std::move(callbacks), std::move(on_message)) {
     domain_->add(endpoint_);
   }
   ~InprocessReader() override { domain_->remove(endpoint_); }
-  int matched() const override { return endpoint_.matched; }
+  int matched() const override { return endpoint_.status.matched(); }
 
  private:
   std::shared_ptr<Domain> domain_;
   ReaderEndpoint endpoint_;
-  Mailbox mailbox_;  // after endpoint_: its thread uses the endpoint's callbacks and ends first
 };
 
 class InprocessBackend : public BusBackend {
  public:
-  explicit InprocessBackend(std::uint32_t domain) : domain_(Domain::join(domain)) {}
+  explicit InprocessBackend(std::uint32_t domain) : domain_(Domain::join(domain, Domain::Content::kTyped)) {}
 
   const std::string& vendor() const override { return vendor_; }
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
@@ -106,10 +100,100 @@ class InprocessBackend : public BusBackend {
   std::shared_ptr<Domain> domain_;
 };
 
+std::int64_t realtime_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+class InprocessRawReader : public RawReader {
+ public:
+  InprocessRawReader(std::shared_ptr<Domain> domain, const RawTopic& topic, const RawReaderOptions& options,
+                     RawHandlers handlers)
+      : domain_(std::move(domain)),
+        handlers_(std::move(handlers)),
+        endpoint_({topic.name, topic.type, {options.depth, options.transient_local}, options.reliable}, {},
+                  [this](const Message& message) { receive(*std::static_pointer_cast<const RawSample>(message)); }) {
+    domain_->add(endpoint_);
+  }
+  ~InprocessRawReader() override { domain_->remove(endpoint_); }
+  int matched() const override { return endpoint_.status.matched(); }
+
+ private:
+  void receive(const RawSample& sample) {
+    const auto loss = gaps_.next(sample.writer, sample.sequence);
+    if (loss && handlers_.on_lost) handlers_.on_lost(*loss);
+    if (handlers_.on_sample) handlers_.on_sample(sample);
+  }
+
+  std::shared_ptr<Domain> domain_;
+  const RawHandlers handlers_;
+  SequenceGaps gaps_;
+  ReaderEndpoint endpoint_;  // last: its thread uses the others
+};
+
+class InprocessRawWriter : public RawWriter {
+ public:
+  InprocessRawWriter(std::shared_ptr<Domain> domain, const RawTopic& topic, RawQos qos) : domain_(std::move(domain)) {
+    if (qos.depth <= 0) qos.depth = 10;
+    const bool keeps_history = qos.durability != RawQos::Durability::kVolatile;
+    endpoint_.kind = {topic.name, topic.type, {qos.depth, keeps_history}, qos.reliable};
+    endpoint_.discovered = TopicWriter{domain_->new_id(), topic, qos};
+    domain_->add(endpoint_);
+  }
+  ~InprocessRawWriter() override { domain_->remove(endpoint_); }
+
+  bool write(std::span<const std::byte> cdr, std::int64_t source_ns) override {
+    auto block = std::make_shared<ByteBlock>();
+    block->assign(cdr);
+    const std::lock_guard lock(mutex_);
+    const std::int64_t now_ns = realtime_ns();
+    domain_->publish(endpoint_, std::make_shared<const RawSample>(RawSample{endpoint_.discovered->id, ++sequence_,
+                                                                            source_ns == 0 ? now_ns : source_ns, now_ns,
+                                                                            std::move(block)}));
+    return true;
+  }
+  int matched() const override { return endpoint_.status.matched(); }
+  bool wait_acknowledged(int) override { return true; }  // readers have a sample when write() returns
+
+ private:
+  std::shared_ptr<Domain> domain_;
+  std::mutex mutex_;
+  std::int64_t sequence_ = 0;
+  WriterEndpoint endpoint_{{}, StatusReporter({})};
+};
+
+class InprocessRawBus : public RawBus {
+ public:
+  explicit InprocessRawBus(std::uint32_t domain) : domain_(Domain::join(domain, Domain::Content::kRaw)) {
+    domain_->add(registry_);
+  }
+  ~InprocessRawBus() override { domain_->remove(registry_); }
+
+  const std::string& vendor() const override { return vendor_; }
+  std::vector<TopicWriter> writers() const override { return registry_.writers(); }
+  void watch(Watcher watcher) override { registry_.watch(std::move(watcher)); }
+  std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
+                                    RawHandlers handlers) override {
+    return std::make_unique<InprocessRawReader>(domain_, topic, options, std::move(handlers));
+  }
+  std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options, StatusCallbacks) override {
+    return std::make_unique<InprocessRawWriter>(domain_, topic, options.qos);
+  }
+
+ private:
+  const std::string vendor_ = "inprocess";
+  std::shared_ptr<Domain> domain_;
+  WriterRegistry registry_;
+};
+
 }  // namespace
 
 std::shared_ptr<BusBackend> create_backend(std::uint32_t domain) {
   return std::make_shared<InprocessBackend>(domain);
+}
+
+std::shared_ptr<RawBus> create_raw_bus(std::uint32_t domain) {
+  return std::make_shared<InprocessRawBus>(domain);
 }
 
 }  // namespace rtd::bus::inprocess

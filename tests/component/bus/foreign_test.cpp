@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-#include "common/bus/qos_settings.hpp"
+#include "common/bus/qos.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/patterns.hpp"

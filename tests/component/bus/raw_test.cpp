@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "common/bus/raw_bus.hpp"
-#include "common/bus/sequence_gaps.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/peer_process.hpp"
 

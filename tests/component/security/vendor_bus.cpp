@@ -4,10 +4,10 @@
 
 #include "common/bus/backend.hpp"
 #ifdef RTD_HAVE_CYCLONEDDS
-#include "common/bus/cyclonedds/cyclonedds_raw_bus.hpp"
+#include "common/bus/cyclonedds/cyclonedds_bus.hpp"
 #endif
 #ifdef RTD_HAVE_FASTDDS
-#include "common/bus/fastdds/fastdds_raw_bus.hpp"
+#include "common/bus/fastdds/fastdds_bus.hpp"
 #endif
 
 namespace rtd::bus {

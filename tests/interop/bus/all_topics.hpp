@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/qos_settings.hpp"
+#include "common/bus/qos.hpp"
 #include "common/bus/topics.hpp"
 #include "common/ros_codec/wire_writer.hpp"
 #include "tests/unit/bus/random_message.hpp"

@@ -7,7 +7,6 @@
 
 #include "common/bus/backend.hpp"
 #include "common/bus/cyclonedds/domain_config.hpp"
-#include "common/bus/cyclonedds/iceoryx.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {

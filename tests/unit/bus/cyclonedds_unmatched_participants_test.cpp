@@ -4,7 +4,7 @@
 // Lines as Cyclone DDS 0.10.2 wrote them.
 #include <gmock/gmock.h>
 
-#include "common/bus/cyclonedds/strangers.hpp"
+#include "common/bus/cyclonedds/unmatched_participants.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
@@ -29,61 +29,61 @@ const std::string kFailed =
     "Begin handshake reply failed: Certificate not valid: error: certificate signature failure; subject: "
     "/CN=\\/rtd\\/writer(code: 200)\n";
 
-class StrangersTest : public ::testing::Test {
+class UnmatchedParticipantsTest : public ::testing::Test {
  protected:
-  std::vector<std::string> hear(const std::string& line) { return strangers_.hear(line, now_); }
-  Strangers strangers_{7};
-  Strangers::TimePoint now_{};
+  std::vector<std::string> read(const std::string& line) { return unmatched_.read(line, now_); }
+  UnmatchedParticipants unmatched_{7};
+  UnmatchedParticipants::TimePoint now_{};
 };
 
-TEST_F(StrangersTest, who_has_no_certificate_is_named_once) {
-  EXPECT_THAT(hear(kClear), ElementsAre(StartsWith("participant 'clear' 01.10.85.78.27.b0.c4.92.b4.3f.7d.f5 in secured "
+TEST_F(UnmatchedParticipantsTest, who_has_no_certificate_is_named_once) {
+  EXPECT_THAT(read(kClear), ElementsAre(StartsWith("participant 'clear' 01.10.85.78.27.b0.c4.92.b4.3f.7d.f5 in secured "
                                                    "domain 7 has no certificate")));
-  EXPECT_THAT(hear(kClear), IsEmpty());
-  EXPECT_THAT(hear("SPDP ST0 1108578:27b0c492:b43f7df5:1c1 (update)ddsi_update_qos_locked\n"), IsEmpty());
+  EXPECT_THAT(read(kClear), IsEmpty());
+  EXPECT_THAT(read("SPDP ST0 1108578:27b0c492:b43f7df5:1c1 (update)ddsi_update_qos_locked\n"), IsEmpty());
 }
 
-TEST_F(StrangersTest, another_vendor_is_named_by_its_name) {
+TEST_F(UnmatchedParticipantsTest, another_vendor_is_named_by_its_name) {
   EXPECT_THAT(
-      hear("SPDP ST0 a2d1b1ca:8a5185f1:7c76248d:1c1 bes fff0c3f (secure) " + kFast + "rtd-slam\"}\n"),
+      read("SPDP ST0 a2d1b1ca:8a5185f1:7c76248d:1c1 bes fff0c3f (secure) " + kFast + "rtd-slam\"}\n"),
       ElementsAre(StartsWith("participant 'rtd-slam' a2.d1.b1.ca.8a.51.85.f1.7c.76.24.8d in secured domain 7 runs "
                              "Fast DDS")));
 }
 
-TEST_F(StrangersTest, who_fails_the_handshake_is_named_once) {
-  EXPECT_THAT(hear(kRogue), IsEmpty());
-  EXPECT_THAT(hear(kFailed), ElementsAre(StartsWith("participant 'rogue' f6.93.")));
-  EXPECT_THAT(hear(kFailed), IsEmpty());
+TEST_F(UnmatchedParticipantsTest, who_fails_the_handshake_is_named_once) {
+  EXPECT_THAT(read(kRogue), IsEmpty());
+  EXPECT_THAT(read(kFailed), ElementsAre(StartsWith("participant 'rogue' f6.93.")));
+  EXPECT_THAT(read(kFailed), IsEmpty());
 }
 
-TEST_F(StrangersTest, nobody_is_named_in_place_of_another) {
-  hear(kRogue);
-  hear(kGood);
-  EXPECT_THAT(hear(kFailed), IsEmpty()) << "it is one of two";
-  hear(kProven);
-  EXPECT_THAT(hear(kFailed), ElementsAre(StartsWith("participant 'rogue'")));
+TEST_F(UnmatchedParticipantsTest, nobody_is_named_in_place_of_another) {
+  read(kRogue);
+  read(kGood);
+  EXPECT_THAT(read(kFailed), IsEmpty()) << "it is one of two";
+  read(kProven);
+  EXPECT_THAT(read(kFailed), ElementsAre(StartsWith("participant 'rogue'")));
 }
 
-TEST_F(StrangersTest, of_several_those_are_named_that_are_not_proven_for_long) {
-  hear(kRogue);
+TEST_F(UnmatchedParticipantsTest, of_several_those_are_named_that_are_not_proven_for_long) {
+  read(kRogue);
   now_ += 4s;
-  hear(kGood);
-  EXPECT_THAT(hear(kFailed), ElementsAre(StartsWith("participant 'rogue'")));
+  read(kGood);
+  EXPECT_THAT(read(kFailed), ElementsAre(StartsWith("participant 'rogue'")));
 }
 
-TEST_F(StrangersTest, who_has_gone_is_forgotten) {
-  hear(kRogue);
-  hear("ddsi_delete_proxy_participant_by_guid(f6933eb0:6a834ff7:832f23f8:1c1) - deleting\n");
-  EXPECT_THAT(hear(kFailed), IsEmpty());
-  hear(kClear);
-  hear("SPDP ST3 1108578:27b0c492:b43f7df5:1c1ddsi_delete_proxy_participant_by_guid(");
-  EXPECT_THAT(hear(kClear), ElementsAre(StartsWith("participant 'clear'")));
+TEST_F(UnmatchedParticipantsTest, who_has_gone_is_forgotten) {
+  read(kRogue);
+  read("ddsi_delete_proxy_participant_by_guid(f6933eb0:6a834ff7:832f23f8:1c1) - deleting\n");
+  EXPECT_THAT(read(kFailed), IsEmpty());
+  read(kClear);
+  read("SPDP ST3 1108578:27b0c492:b43f7df5:1c1ddsi_delete_proxy_participant_by_guid(");
+  EXPECT_THAT(read(kClear), ElementsAre(StartsWith("participant 'clear'")));
 }
 
-TEST_F(StrangersTest, lines_that_are_none_do_no_harm) {
+TEST_F(UnmatchedParticipantsTest, lines_that_are_none_do_no_harm) {
   for (const char* line : {"", "SPDP ST0 ", "SPDP ST0 x NEW ", "SPDP ST3", "handshake (lguid=", " failed: ", "NEW (0x"})
-    hear(line);
-  EXPECT_THAT(hear("SPDP ST0 1:2:3:1c1 bes f NEW (0x0) QOS={entity_name=\"a\nevent=b\"}"),
+    read(line);
+  EXPECT_THAT(read("SPDP ST0 1:2:3:1c1 bes f NEW (0x0) QOS={entity_name=\"a\nevent=b\"}"),
               ElementsAre(StartsWith("participant 'a?event=b' 00.00.00.01.")));
 }
 

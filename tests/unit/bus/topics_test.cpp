@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/bus/message_visit.hpp"
-#include "common/bus/qos_settings.hpp"
+#include "common/bus/qos.hpp"
 
 namespace rtd::bus {
 namespace {
