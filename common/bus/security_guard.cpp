@@ -5,7 +5,6 @@
 #include <ctime>
 #include <utility>
 
-#include "common/security/security_error.hpp"
 
 namespace rtd::bus {
 namespace {

@@ -2,17 +2,54 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/security/certificate.hpp"
 
+#include <openssl/bio.h>
 #include <openssl/bn.h>
 #include <openssl/err.h>
+#include <openssl/evp.h>
 #include <openssl/pem.h>
+#include <openssl/pkcs7.h>
 #include <openssl/x509v3.h>
 
 #include <ctime>
 
-#include "common/security/security_error.hpp"
-
 namespace rtd::security {
 namespace {
+
+template <auto Free>
+struct FreeWith {
+  template <class T>
+  void operator()(T* object) const {
+    Free(object);
+  }
+};
+using Bio = std::unique_ptr<BIO, FreeWith<BIO_free_all>>;
+using Pkcs7 = std::unique_ptr<PKCS7, FreeWith<PKCS7_free>>;
+
+/// Throws SecurityError with OpenSSL's reason.
+[[noreturn]] void throw_openssl(const std::string& what) {
+  const unsigned long code = ERR_get_error();
+  const char* const reason = ERR_reason_error_string(code);
+  ERR_clear_error();
+  throw SecurityError(what + (reason == nullptr ? std::string() : std::string(": ") + reason));
+}
+
+/// `ok`: 1 is OpenSSL's success.
+void require(int ok, const std::string& what) {
+  if (ok != 1) throw_openssl(what);
+}
+
+Bio memory_bio(const std::string& content = {}) {
+  Bio bio(BIO_new(BIO_s_mem()));
+  if (!bio) throw_openssl("no memory");
+  if (!content.empty()) BIO_write(bio.get(), content.data(), static_cast<int>(content.size()));
+  return bio;
+}
+
+std::string content_of(BIO* bio) {
+  char* data = nullptr;
+  const long size = BIO_get_mem_data(bio, &data);
+  return size > 0 ? std::string(data, static_cast<std::size_t>(size)) : std::string();
+}
 
 Key generate_key() {
   Key key(EVP_EC_gen("P-256"));
@@ -60,6 +97,14 @@ std::int64_t seconds(const ASN1_TIME* time) {
 
 }  // namespace
 
+void FreeOpenssl::operator()(X509* certificate) const {
+  X509_free(certificate);
+}
+
+void FreeOpenssl::operator()(EVP_PKEY* key) const {
+  EVP_PKEY_free(key);
+}
+
 Identity create_ca(const std::string& common_name, const Validity& validity) {
   Identity ca{nullptr, generate_key()};
   ca.certificate = unsigned_certificate(common_name, validity, *ca.key);
@@ -92,13 +137,13 @@ std::string to_pem(const EVP_PKEY& key) {
 
 Certificate certificate_from_pem(const std::string& pem, const std::string& origin) {
   Certificate certificate(PEM_read_bio_X509(memory_bio(pem).get(), nullptr, nullptr, nullptr));
-  if (!certificate) throw_openssl(origin + " is no certificate in PEM");
+  if (!certificate) throw_openssl(origin + " is not a certificate in PEM");
   return certificate;
 }
 
 Key key_from_pem(const std::string& pem, const std::string& origin) {
   Key key(PEM_read_bio_PrivateKey(memory_bio(pem).get(), nullptr, nullptr, nullptr));
-  if (!key) throw_openssl(origin + " is no private key in PEM");
+  if (!key) throw_openssl(origin + " is not a private key in PEM");
   return key;
 }
 
@@ -122,6 +167,32 @@ bool signed_by(const X509& certificate, const X509& ca) {
   const bool ok = X509_verify(const_cast<X509*>(&certificate), X509_get0_pubkey(&ca)) == 1;
   ERR_clear_error();
   return ok;
+}
+
+std::string sign_document(const std::string& text, const Identity& signer) {
+  constexpr int kFlags = PKCS7_TEXT | PKCS7_DETACHED | PKCS7_STREAM;
+  const Bio input = memory_bio(text);
+  const Pkcs7 signature(PKCS7_sign(signer.certificate.get(), signer.key.get(), nullptr, input.get(), kFlags));
+  if (!signature) throw_openssl("signing");
+  const Bio output = memory_bio();
+  require(SMIME_write_PKCS7(output.get(), signature.get(), input.get(), kFlags), "writing a signed document");
+  return content_of(output.get());
+}
+
+std::string verified_text(const std::string& signed_text, const X509& signer, const std::string& origin) {
+  BIO* detached = nullptr;
+  const Pkcs7 signature(SMIME_read_PKCS7(memory_bio(signed_text).get(), &detached));
+  const Bio text(detached);
+  if (!signature) throw_openssl(origin + " is not a signed document (S/MIME)");
+  constexpr auto kFree = [](STACK_OF(X509) * stack) { sk_X509_free(stack); };  // a macro
+  const std::unique_ptr<STACK_OF(X509), FreeWith<kFree>> signers(sk_X509_new_null());
+  sk_X509_push(signers.get(), const_cast<X509*>(&signer));
+  const Bio output = memory_bio();
+  // Only the given certificate may have signed; what the document brings along does not count.
+  if (PKCS7_verify(signature.get(), signers.get(), nullptr, text.get(), output.get(),
+                   PKCS7_TEXT | PKCS7_NOVERIFY | PKCS7_NOINTERN) != 1)
+    throw_openssl(origin + " is not signed by " + subject_name(signer));
+  return content_of(output.get());
 }
 
 }  // namespace rtd::security

@@ -2,12 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <openssl/types.h>
+
 #include <cstdint>
+#include <memory>
+#include <stdexcept>
 #include <string>
 
-#include "common/security/openssl_handles.hpp"
-
 namespace rtd::security {
+
+/// A keystore cannot be made or used; what() names file or enclave, cause and fix.
+class SecurityError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Owners of OpenSSL's objects.
+struct FreeOpenssl {
+  void operator()(X509* certificate) const;
+  void operator()(EVP_PKEY* key) const;
+};
+using Certificate = std::unique_ptr<X509, FreeOpenssl>;
+using Key = std::unique_ptr<EVP_PKEY, FreeOpenssl>;
 
 /// From when to when, in seconds since 1970 (UTC).
 struct Validity {
@@ -37,5 +53,10 @@ Validity validity_of(const X509& certificate);
 bool belongs_to(const EVP_PKEY& key, const X509& certificate);
 /// The CA has signed it, whatever the date.
 bool signed_by(const X509& certificate, const X509& ca);
+
+/// S/MIME as DDS-Security asks it of governance and permissions: text/plain, detached signature.
+std::string sign_document(const std::string& text, const Identity& signer);
+/// The text within. Throws SecurityError naming `origin` when it is not a signed document or `signer` has not signed it.
+std::string verified_text(const std::string& signed_text, const X509& signer, const std::string& origin);
 
 }  // namespace rtd::security

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 
-#include "common/security/security_error.hpp"
-#include "common/security/signed_document.hpp"
 
 namespace rtd::security {
 

@@ -10,8 +10,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "common/security/security_error.hpp"
-#include "common/security/signed_document.hpp"
 
 namespace rtd::security {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "common/security/governance.hpp"
 #include "common/security/keystore_layout.hpp"
+#include "common/security/permissions.hpp"
 
 namespace rtd::security {
 

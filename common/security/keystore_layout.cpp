@@ -4,15 +4,24 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <sstream>
 
-#include "common/security/security_error.hpp"
+#include "common/security/certificate.hpp"
 
 namespace rtd::security {
 
 namespace fs = std::filesystem;
+namespace {
+
+std::string variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? std::string() : value;
+}
+
+}  // namespace
 
 std::vector<std::string> enclaves_in(const KeystoreLayout& layout) {
   std::vector<std::string> names;
@@ -34,6 +43,14 @@ std::string read_text(const fs::path& file) {
   if (!stream || text.str().empty())
     throw SecurityError(file.string() + " cannot be read: " + (errno != 0 ? std::strerror(errno) : "it is empty"));
   return text.str();
+}
+
+std::string default_keystore() {
+  for (const char* name : {"RTD_KEYSTORE", "ROS_SECURITY_KEYSTORE"}) {
+    if (std::string named = variable(name); !named.empty()) return named;
+  }
+  const std::string config = variable("XDG_CONFIG_HOME");
+  return (config.empty() ? variable("HOME") + "/.config" : config) + "/rtd/keystore";
 }
 
 }  // namespace rtd::security

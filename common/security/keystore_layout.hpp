@@ -37,4 +37,8 @@ std::vector<std::string> enclaves_in(const KeystoreLayout& layout);
 /// Throw SecurityError naming the file.
 std::string read_text(const std::filesystem::path& file);
 
+/// The keystore when none is named: RTD_KEYSTORE, ROS_SECURITY_KEYSTORE, else rtd/keystore in the user's
+/// configuration (XDG_CONFIG_HOME, ~/.config).
+std::string default_keystore();
+
 }  // namespace rtd::security

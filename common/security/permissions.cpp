@@ -10,8 +10,6 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "common/security/security_error.hpp"
-
 namespace rtd::security {
 namespace {
 
@@ -57,7 +55,7 @@ std::string text_of(const XMLElement& parent, const std::vector<const char*>& pa
 std::int64_t from_utc(const std::string& text, const std::string& origin) {
   std::tm calendar{};
   if (strptime(text.c_str(), "%Y-%m-%dT%T", &calendar) == nullptr)
-    throw SecurityError(fmt::format("{}: '{}' is no time such as 2026-01-31T00:00:00", origin, text));
+    throw SecurityError(fmt::format("{}: '{}' is not a time such as 2026-01-31T00:00:00", origin, text));
   return static_cast<std::int64_t>(timegm(&calendar));
 }
 
@@ -66,6 +64,22 @@ DomainRange domains_of(const XMLElement& rule, const std::string& origin) {
   const auto number = [&](std::vector<const char*> path) { return std::atoi(text_of(domains, path, origin).c_str()); };
   if (domains.FirstChildElement("id_range")) return {number({"id_range", "min"}), number({"id_range", "max"})};
   return {number({"id"}), number({"id"})};
+}
+
+std::string topic_rule(const std::string& topic, TopicProtection protection) {
+  const bool encrypt = protection == TopicProtection::kEncrypt;
+  return fmt::format(
+      R"(        <topic_rule>
+          <topic_expression>{}</topic_expression>
+          <enable_discovery_protection>true</enable_discovery_protection>
+          <enable_liveliness_protection>true</enable_liveliness_protection>
+          <enable_read_access_control>true</enable_read_access_control>
+          <enable_write_access_control>true</enable_write_access_control>
+          <metadata_protection_kind>{}</metadata_protection_kind>
+          <data_protection_kind>{}</data_protection_kind>
+        </topic_rule>
+)",
+      topic, encrypt ? "SIGN" : "NONE", encrypt ? "ENCRYPT" : "NONE");
 }
 
 }  // namespace
@@ -118,7 +132,7 @@ std::string to_xml(const Permissions& permissions) {
 Permissions permissions_from_xml(const std::string& xml, const std::string& origin) {
   tinyxml2::XMLDocument document;
   if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr)
-    throw SecurityError(origin + " is no XML: " + document.ErrorStr());
+    throw SecurityError(origin + " is not XML: " + document.ErrorStr());
   const XMLElement& grant = descend(*document.RootElement(), {"permissions", "grant"}, origin);
   Permissions permissions;
   permissions.subject = text_of(grant, {"subject_name"}, origin);
@@ -131,6 +145,35 @@ Permissions permissions_from_xml(const std::string& xml, const std::string& orig
     for (std::string& topic : topics_of(*next, "subscribe")) permissions.topics.subscribe.push_back(std::move(topic));
   }
   return permissions;
+}
+
+std::string to_xml(const Governance& governance) {
+  std::string rules;
+  for (const std::string& topic : governance.access_only) rules += topic_rule(topic, TopicProtection::kAccessOnly);
+  rules += topic_rule("*", TopicProtection::kEncrypt);  // the first rule that fits counts
+  return fmt::format(
+      R"(<?xml version="1.0" encoding="utf-8"?>
+<dds xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:noNamespaceSchemaLocation="http://www.omg.org/spec/DDS-SECURITY/20170901/omg_shared_ca_governance.xsd">
+  <domain_access_rules>
+    <domain_rule>
+      <domains>
+        <id_range>
+          <min>{}</min>
+          <max>{}</max>
+        </id_range>
+      </domains>
+      <allow_unauthenticated_participants>false</allow_unauthenticated_participants>
+      <enable_join_access_control>true</enable_join_access_control>
+      <discovery_protection_kind>ENCRYPT</discovery_protection_kind>
+      <liveliness_protection_kind>ENCRYPT</liveliness_protection_kind>
+      <rtps_protection_kind>NONE</rtps_protection_kind>
+      <topic_access_rules>
+{}      </topic_access_rules>
+    </domain_rule>
+  </domain_access_rules>
+</dds>
+)",
+      governance.domains.first, governance.domains.last, rules);
 }
 
 }  // namespace rtd::security

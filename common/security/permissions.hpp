@@ -15,7 +15,7 @@ struct DomainRange {
   bool holds(int domain) const { return first <= domain && domain <= last; }
 };
 
-/// DDS names of topics, or patterns as of the shell ("rt/*"), that somebody may publish and subscribe.
+/// DDS names of topics, or patterns as of the shell ("rt/*"), that a participant may publish and subscribe.
 struct TopicGrant {
   std::vector<std::string> publish, subscribe;
 };
@@ -32,6 +32,21 @@ struct Permissions {
 std::string to_xml(const Permissions& permissions);
 /// Throws SecurityError naming `origin`.
 Permissions permissions_from_xml(const std::string& xml, const std::string& origin);
+
+/// How the samples of a topic travel. Who may publish and subscribe is checked in any case.
+enum class TopicProtection {
+  kAccessOnly,  ///< in the clear among those who may: stays in shared memory
+  kEncrypt,     ///< encrypted, and what steers the delivery is signed
+};
+
+/// The rules of a domain that all its participants share (DDS-Security's governance document): participants
+/// that are not authenticated are refused, discovery is encrypted.
+struct Governance {
+  DomainRange domains;
+  std::vector<std::string> access_only;  ///< topics of this protection; all others are encrypted
+};
+
+std::string to_xml(const Governance& governance);
 
 /// "2026-11-21T20:00:00", UTC.
 std::string to_utc(std::int64_t time_s);

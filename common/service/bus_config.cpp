@@ -11,7 +11,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "common/security/keystore_location.hpp"
+#include "common/security/keystore_layout.hpp"
 
 namespace rtd::service {
 namespace {

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kPeriod{200}, kLookPeriod{100};
 constexpr std::int64_t kGoneAfterNs = 700'000'000;      // three heartbeats missed, with a margin for a busy host
-constexpr std::int64_t kNewcomerForNs = 5'000'000'000;  // who has run for longer does not end for anybody's word
-constexpr std::size_t kMostPeers = 100;                 // whoever may write to the bus could make up names without end
+constexpr std::int64_t kNewcomerForNs = 5'000'000'000;  // a service that has run for longer never ends for a duplicate
+constexpr std::size_t kMostPeers = 100;                 // a writer could make up names without end
 
 bool is_name(const std::string& service) {
   constexpr std::size_t kLongest = 64;
@@ -44,16 +44,16 @@ Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop)
 Heartbeat::~Heartbeat() {
   ended_.request_stop();
   thread_.join();
-  say_goodbye();
+  publish_end();
 }
 
-/// Looks after the others twice as often as it speaks; news are told at once.
+/// Checks the others twice as often as it publishes; changes are published at once.
 void Heartbeat::loop() {
   for (int turn = 0; !ended_.wait_for(kLookPeriod); ++turn) {
-    bool news = check_peers();
-    news = check_progress() || news;
-    news = check_topics() || news;
-    if (news || turn % (kPeriod / kLookPeriod) == 0) publish();
+    bool changed = check_peers();
+    changed = check_progress() || changed;
+    changed = check_topics() || changed;
+    if (changed || turn % (kPeriod / kLookPeriod) == 0) publish();
   }
 }
 
@@ -96,8 +96,8 @@ void Heartbeat::receive(const msg::ServiceStatus& status) {
     const std::lock_guard lock(mutex_);
     if (status.service == own_.service) {
       const bool self = status.pid == own_.pid && status.started_ns == own_.started_ns;
-      // Heartbeats are volatile: whoever is heard is alive. The older instance stays, the younger one ends.
-      // One heartbeat is not believed: it may be anybody's.
+      // Heartbeats are volatile: their sender is alive. The older instance stays, the younger one ends.
+      // One heartbeat is not enough: any program may have sent it.
       const bool newcomer = arrival_ns - own_.started_ns < kNewcomerForNs;
       const bool older =
           newcomer && !self && status.state != msg::ServiceState::kFinished && status.started_ns < own_.started_ns;
@@ -112,7 +112,7 @@ void Heartbeat::receive(const msg::ServiceStatus& status) {
     } else if (peers_.size() < kMostPeers || peers_.contains(status.service)) {
       Peer& peer = peers_[status.service];
       peer.status = status;
-      peer.heard_ns = monotonic_ns();
+      peer.received_ns = monotonic_ns();
       for (const msg::Metric& metric : clocks_.received(status, arrival_ns)) set(metric);
       known = true;
     }
@@ -127,7 +127,7 @@ bool Heartbeat::alive(const std::string& service) const {
   const std::lock_guard lock(mutex_);
   const auto found = peers_.find(service);
   return found != peers_.end() && found->second.status.state != msg::ServiceState::kFinished &&
-         found->second.health == PeerHealth::kAlive && monotonic_ns() - found->second.heard_ns < kGoneAfterNs;
+         found->second.health == PeerHealth::kAlive && monotonic_ns() - found->second.received_ns < kGoneAfterNs;
 }
 
 bool Heartbeat::alone() const {

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The part of the heartbeat that looks after the health of all: peers, the own worker, the topics.
+// The part of the heartbeat that watches the health of peers, of the own worker and of the topics.
 #include <fmt/format.h>
 
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/realtime_clock.hpp"
 #include "common/service/runtime.hpp"
-#include "common/service/status_metrics.hpp"
 
 namespace rtd::service {
 namespace {
@@ -55,9 +54,9 @@ bool Heartbeat::check_peers() {
   const std::lock_guard lock(mutex_);
   const std::int64_t now_ns = monotonic_ns();
   const double own_host = find_metric(own_, "host_id").value_or(0);
-  bool news = false;
+  bool changed = false;
   for (auto& [name, peer] : peers_) {
-    PeerEvidence evidence{now_ns - peer.heard_ns, ProcessState::kUnknown};
+    PeerEvidence evidence{now_ns - peer.received_ns, ProcessState::kUnknown};
     const bool here = find_metric(peer.status, "host_id").value_or(0) == own_host;
     if (evidence.silent_ns >= kSuspectAfterNs && here) evidence.process = process_state(peer.status.pid);
     const bool ended = peer.status.state == msg::ServiceState::kFinished;
@@ -66,9 +65,9 @@ bool Heartbeat::check_peers() {
     SPDLOG_WARN("event=peer_{} service={} pid={} silent_ms={}", to_string(health), name, peer.status.pid,
                 evidence.silent_ns / 1'000'000);
     peer.health = health;
-    news = true;
+    changed = true;
   }
-  return news;
+  return changed;
 }
 
 /// True when the worker got stuck or free.
@@ -89,17 +88,17 @@ bool Heartbeat::check_progress() {
 bool Heartbeat::check_topics() {
   auto troubles = bus_.troubles();
   const std::lock_guard lock(mutex_);
-  bool news = false;
+  bool changed = false;
   for (const auto& [topic, now] : troubles) {
     const bus::TopicTrouble before = troubles_[topic];
     log_refusals(topic, before, now);
-    news = news || now.incompatible_qos != before.incompatible_qos || now.type_mismatch != before.type_mismatch;
+    changed = changed || now.incompatible_qos != before.incompatible_qos || now.type_mismatch != before.type_mismatch;
   }
   troubles_ = std::move(troubles);
-  return news;
+  return changed;
 }
 
-/// What the service says of itself, and what is wrong with it, its peers and its topics.
+/// State and metrics of the service, and what is wrong with it, its peers and its topics.
 msg::ServiceStatus Heartbeat::current_status() {
   const std::lock_guard lock(mutex_);
   own_.stamp_ns = realtime_ns();
@@ -118,8 +117,8 @@ msg::ServiceStatus Heartbeat::current_status() {
   return status;
 }
 
-/// So that the others do not take an orderly end for a death.
-void Heartbeat::say_goodbye() {
+/// Tells an orderly end from a death.
+void Heartbeat::publish_end() {
   {
     const std::lock_guard lock(mutex_);
     if (own_.state == msg::ServiceState::kFailed || !duplicate_.empty()) return;

@@ -11,14 +11,44 @@
 
 #include "common/bus/network.hpp"
 #include "common/service/log.hpp"
-#include "common/service/status_metrics.hpp"
 
 namespace rtd::service {
 namespace {
 
-constexpr double kWorthTellingMs = 10;  // above, latencies across hosts and stamps of different hosts mislead
+constexpr std::int64_t kWindowNs = 30'000'000'000;  // clocks drift apart by 1 ms in it at the very most
+constexpr double kNsPerMs = 1e6;
+constexpr double kNotableMs = 10;  // above, latencies across hosts and stamps of different hosts mislead
 
 }  // namespace
+
+std::optional<double> find_metric(const msg::ServiceStatus& status, const std::string& name) {
+  const auto found = std::find_if(status.metrics.begin(), status.metrics.end(),
+                                  [&](const msg::Metric& metric) { return metric.name == name; });
+  return found == status.metrics.end() ? std::nullopt : std::optional(found->value);
+}
+
+void ClockOffsets::received(const std::string& peer, std::int64_t stamp_ns, std::int64_t arrival_ns) {
+  Least& least = peers_[peer];
+  const std::int64_t age_ns = arrival_ns - least.began_ns;
+  if (age_ns > kWindowNs || age_ns < 0) {  // negative: our clock was set back
+    least.before_ns = age_ns > 0 && age_ns < 2 * kWindowNs ? least.now_ns : std::numeric_limits<std::int64_t>::max();
+    least.now_ns = std::numeric_limits<std::int64_t>::max();
+    least.began_ns = arrival_ns;
+  }
+  least.now_ns = std::min(least.now_ns, arrival_ns - stamp_ns);
+}
+
+std::optional<double> ClockOffsets::measured_ms(const std::string& peer) const {
+  const auto found = peers_.find(peer);
+  if (found == peers_.end()) return std::nullopt;
+  return static_cast<double>(found->second.value_ns()) / kNsPerMs;
+}
+
+std::optional<ClockOffset> ClockOffsets::offset(const std::string& peer, double peer_measured_ms) const {
+  const std::optional<double> own_ms = measured_ms(peer);
+  if (!own_ms) return std::nullopt;
+  return ClockOffset{(peer_measured_ms - *own_ms) / 2, peer_measured_ms + *own_ms};
+}
 
 PeerClocks::PeerClocks(std::string own_service, double own_host_id)
     : own_service_(std::move(own_service)), own_host_id_(own_host_id) {}
@@ -32,20 +62,20 @@ double PeerClocks::this_host_id() {
 std::vector<msg::Metric> PeerClocks::received(const msg::ServiceStatus& status, std::int64_t arrival_ns) {
   const std::optional<double> host_id = find_metric(status, "host_id");
   if (!host_id || *host_id == own_host_id_) return {};
-  clocks_.heard(status.service, status.stamp_ns, arrival_ns);
+  clocks_.received(status.service, status.stamp_ns, arrival_ns);
   const std::string prefix = "clock." + status.service + ".";
-  std::vector<msg::Metric> told = {{prefix + "heard_ms", *clocks_.heard_ms(status.service)}};
-  const std::optional<double> peer_hears_ms = find_metric(status, "clock." + own_service_ + ".heard_ms");
-  if (!peer_hears_ms) return told;
-  const ClockOffset offset = *clocks_.offset(status.service, *peer_hears_ms);
-  told.push_back({prefix + "offset_ms", offset.offset_ms});
-  told.push_back({prefix + "round_trip_ms", offset.round_trip_ms});
+  std::vector<msg::Metric> metrics = {{prefix + "heard_ms", *clocks_.measured_ms(status.service)}};
+  const std::optional<double> peer_measured_ms = find_metric(status, "clock." + own_service_ + ".heard_ms");
+  if (!peer_measured_ms) return metrics;
+  const ClockOffset offset = *clocks_.offset(status.service, *peer_measured_ms);
+  metrics.push_back({prefix + "offset_ms", offset.offset_ms});
+  metrics.push_back({prefix + "round_trip_ms", offset.round_trip_ms});
   warn_once(status, *host_id, offset);
-  return told;
+  return metrics;
 }
 
 void PeerClocks::warn_once(const msg::ServiceStatus& status, double host_id, const ClockOffset& offset) {
-  if (std::abs(offset.offset_ms) < kWorthTellingMs + offset.round_trip_ms / 2) return;
+  if (std::abs(offset.offset_ms) < kNotableMs + offset.round_trip_ms / 2) return;
   if (!warned_hosts_.insert(host_id).second) return;
   SPDLOG_WARN(
       "event=clocks_differ peer={} ahead_ms={:.1f} round_trip_ms={:.1f} effect=\"stamps stay as they are, boxes are "

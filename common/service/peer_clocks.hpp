@@ -2,17 +2,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "common/msg/status.hpp"
-#include "common/service/clock_offsets.hpp"
 
 namespace rtd::service {
 
-/// Where the clocks of other hosts stand, told in metrics of the heartbeat: `host_id` (the same for all processes of a
+/// The metric of that name in a heartbeat; empty when it has none.
+std::optional<double> find_metric(const msg::ServiceStatus& status, const std::string& name);
+
+/// How far the clock of another host is ahead of this one's, and how long a message takes there and back.
+struct ClockOffset {
+  double offset_ms = 0;
+  double round_trip_ms = 0;
+};
+
+/// Compares clocks by the stamps of messages both ways, as NTP does. We measure of a peer the least of
+/// (arrival by our clock - its stamp) = delay - offset; the peer measures delay + offset of us and publishes it. Half
+/// their difference is the offset, wrong by at most half the difference of the two delays; their sum is the round trip.
+/// The least of the last half to one minute counts: it met no queue. Stamps are only compared, never changed. Reads no
+/// clock; not thread-safe.
+class ClockOffsets {
+ public:
+  void received(const std::string& peer, std::int64_t stamp_ns, std::int64_t arrival_ns);
+  /// Delay - offset of the peer, for the peer to use; empty: nothing was received.
+  std::optional<double> measured_ms(const std::string& peer) const;
+  /// `peer_measured_ms`: its measured_ms() of us.
+  std::optional<ClockOffset> offset(const std::string& peer, double peer_measured_ms) const;
+
+ private:
+  struct Least {
+    std::int64_t began_ns = 0;
+    std::int64_t now_ns = std::numeric_limits<std::int64_t>::max(), before_ns = now_ns;
+    std::int64_t value_ns() const { return std::min(now_ns, before_ns); }
+  };
+  std::map<std::string, Least> peers_;
+};
+
+/// Where the clocks of other hosts stand, as metrics of the heartbeat: `host_id` (the same for all processes of a
 /// host), and for each service of another host `clock.SERVICE.heard_ms` (its half of the comparison, see ClockOffsets),
 /// `clock.SERVICE.offset_ms` (how far its clock is ahead of ours) and `clock.SERVICE.round_trip_ms`. Not thread-safe.
 class PeerClocks {

@@ -10,15 +10,16 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/host/host_checks.hpp"
+#include "common/bus/host/port_check.hpp"
 #include "common/bus/host/shm_leftovers.hpp"
-#include "common/service/alone_hint.hpp"
-#include "common/service/bounded_end.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/log.hpp"
 
@@ -72,7 +73,7 @@ class SignalWatcher {
 constexpr std::chrono::milliseconds kStuckAfter{1500}, kStuckAfterOffline{30'000};
 constexpr std::chrono::milliseconds kEndOfBus{10'000};
 
-/// What processes that were killed have left takes memory.
+/// Killed processes leave shared memory behind.
 void remove_leftovers() {
   const bus::CleanReport report = bus::remove_shm_leftovers();
   if (report.removed.empty()) return;
@@ -106,16 +107,16 @@ std::shared_ptr<bus::Bus> join_bus(const bus::BusOptions& options) {
   }
 }
 
-/// What keeps others from meeting us: in the log, and counted in the heartbeat while there is one.
+/// What keeps other participants from being matched: in the log, and counted in the heartbeat while there is one.
 class BusProblems {
  public:
   void add(const std::string& problem) {
-    constexpr int kLogged = 50;  // strangers must not fill the disk
+    constexpr int kLogged = 50;  // other participants must not fill the disk
     const std::lock_guard lock(mutex_);
     if (++count_ <= kLogged) SPDLOG_WARN("event=bus_problem cause=\"{}\"", problem);
     if (heartbeat_ != nullptr) heartbeat_->set_metric("bus_problems", count_);
   }
-  void tell(Heartbeat* heartbeat) {
+  void count_in(Heartbeat* heartbeat) {
     const std::lock_guard lock(mutex_);
     heartbeat_ = heartbeat;
     if (heartbeat_ != nullptr && count_ > 0) heartbeat_->set_metric("bus_problems", count_);
@@ -142,11 +143,11 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   std::string duplicate;
   {
     Heartbeat heartbeat(*bus, definition.name, stop);
-    problems.tell(&heartbeat);
-    const std::shared_ptr<void> at_end(nullptr, [&problems](void*) { problems.tell(nullptr); });
+    problems.count_in(&heartbeat);
+    const std::shared_ptr<void> at_end(nullptr, [&problems](void*) { problems.count_in(nullptr); });
     heartbeat.watch_progress(pace == Pace::kRealtime ? kStuckAfter : kStuckAfterOffline);
-    const AloneHint alone(heartbeat, options,
-                          [](const std::string& cause) { SPDLOG_WARN("event=nobody_heard cause=\"{}\"", cause); });
+    const NoPeersWarning warning(
+        heartbeat, options, [](const std::string& cause) { SPDLOG_WARN("event=no_peers cause=\"{}\"", cause); });
     Runtime runtime{*bus, heartbeat, stop, pace, options};
     SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), options.domain, to_string(pace),
                 getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");
@@ -201,6 +202,41 @@ int run_service(const ServiceDefinition& definition, int argc, char** argv) {
     std::cerr << "rtd-" << definition.name << ": " << error.what() << '\n';
     return kRunFailed;
   }
+}
+
+NoPeersWarning::NoPeersWarning(const Heartbeat& heartbeat, const bus::BusOptions& options,
+                     std::function<void(const std::string&)> warn, std::chrono::milliseconds patience) {
+  thread_ = std::thread([this, &heartbeat, domain = options.domain, warn = std::move(warn), patience] {
+    if (ended_.wait_for(patience) || !heartbeat.alone()) return;
+    warn("no other service is in DDS domain " + std::to_string(domain) + bus::other_domains_hint(domain));
+  });
+}
+
+NoPeersWarning::~NoPeersWarning() {
+  ended_.request_stop();
+  thread_.join();
+}
+
+BoundedEnd::~BoundedEnd() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void BoundedEnd::begin(int exit_code) {
+  if (!thread_.joinable()) thread_ = std::thread([this, exit_code] { watch(exit_code); });
+}
+
+void BoundedEnd::watch(int exit_code) {
+  std::unique_lock lock(mutex_);
+  if (changed_.wait_for(lock, limit_, [this] { return ended_; })) return;
+  std::fprintf(stderr, "%s: the bus did not end within %lld ms and is left behind\n", program_.c_str(),
+               static_cast<long long>(limit_.count()));
+  std::fflush(nullptr);
+  std::_Exit(exit_code);
 }
 
 }  // namespace rtd::service

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
 #include <functional>
+#include <mutex>
 #include <string>
+#include <thread>
 
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
@@ -38,5 +42,46 @@ int run_service(int argc, char** argv) {
                       [&](Runtime& runtime) { return Service(config, runtime).run(); }},
                      argc, argv);
 }
+
+/// Warns once when no other service was seen for a while: in which domain this one is, and in which domains DDS runs on
+/// this host. It is not an error, the others may start later.
+class NoPeersWarning {
+ public:
+  static constexpr std::chrono::milliseconds kUsualPatience{10'000};
+
+  /// `warn` is called by a thread of its own.
+  NoPeersWarning(const Heartbeat& heartbeat, const bus::BusOptions& options, std::function<void(const std::string&)> warn,
+            std::chrono::milliseconds patience = kUsualPatience);
+  ~NoPeersWarning();
+  NoPeersWarning(const NoPeersWarning&) = delete;
+  NoPeersWarning& operator=(const NoPeersWarning&) = delete;
+
+ private:
+  StopToken ended_;
+  std::thread thread_;
+};
+
+/// Ends the process when what was declared after this takes too long to be destroyed: a bus that malformed datagrams
+/// have blocked must not keep a program from ending whose work is done.
+class BoundedEnd {
+ public:
+  BoundedEnd(std::string program, std::chrono::milliseconds limit) : program_(std::move(program)), limit_(limit) {}
+  ~BoundedEnd();
+  BoundedEnd(const BoundedEnd&) = delete;
+  BoundedEnd& operator=(const BoundedEnd&) = delete;
+
+  /// The work is done, all results are written: from now on the time counts.
+  void begin(int exit_code);
+
+ private:
+  void watch(int exit_code);
+
+  const std::string program_;
+  const std::chrono::milliseconds limit_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool ended_ = false;
+  std::thread thread_;
+};
 
 }  // namespace rtd::service

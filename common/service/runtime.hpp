@@ -32,18 +32,18 @@ class Heartbeat {
   void set_state(msg::ServiceState state, const std::string& message = {});
   /// A number shown in the heartbeat; the same name overwrites.
   void set_metric(const std::string& name, double value);
-  /// A worker loop calls it in each round. Stuck for longer than the limit: the heartbeat says so, state degraded.
+  /// A worker loop calls it in each round. If it is stuck for longer than the limit, the heartbeat has state degraded.
   void tick();
   /// The worker waits on purpose until the next tick.
   void idle();
-  /// 0, the default: a worker is never taken for stuck.
+  /// 0, the default: a worker never counts as stuck.
   void watch_progress(std::chrono::milliseconds limit);
-  /// False for a service that is dead, hung, or not heard for 0.7 s.
+  /// False for a service that is dead, hung, or sent no heartbeat for 0.7 s.
   bool alive(const std::string& service) const;
   bool ready(const std::string& service) const;  ///< alive and in state kReady, kRunning or kDegraded
-  bool alone() const;                            ///< no other service has been heard yet
-  /// Called on a bus thread for every heartbeat of another service. A call that runs is waited for: afterwards the
-  /// one before is used no more. Not from the callback itself.
+  bool alone() const;                            ///< no other service has sent a heartbeat yet
+  /// `callback` runs on a bus thread for every heartbeat of another service. Waits for a running call: afterwards the
+  /// earlier callback is not used any more. Not to be called from the callback itself.
   void on_status(std::function<void(const msg::ServiceStatus&)> callback);
   /// Message when an older instance of the same service runs in this domain; empty otherwise.
   std::string duplicate() const;
@@ -51,11 +51,11 @@ class Heartbeat {
  private:
   struct Peer {
     msg::ServiceStatus status;
-    std::int64_t heard_ns = 0;
+    std::int64_t received_ns = 0;
     PeerHealth health = PeerHealth::kAlive;
   };
   void publish();
-  void say_goodbye();
+  void publish_end();
   bool check_peers();
   bool check_progress();
   bool check_topics();
@@ -77,7 +77,7 @@ class Heartbeat {
   ProgressWatch progress_;
   bool stuck_ = false;
   std::map<std::string, bus::TopicTrouble> troubles_;
-  std::pair<std::int64_t, std::int64_t> twin_{};  ///< pid and start of an older instance that was heard once
+  std::pair<std::int64_t, std::int64_t> twin_{};  ///< pid and start of an older instance that was seen once
   std::mutex publish_mutex_;
   bus::Writer<msg::ServiceStatus> writer_;
   bus::Reader<msg::ServiceStatus> reader_;

@@ -12,8 +12,7 @@
 #include "common/bus/topic_roles.hpp"
 #include "common/bus/topics.hpp"
 #include "common/security/keystore.hpp"
-#include "common/security/keystore_location.hpp"
-#include "common/security/security_error.hpp"
+#include "common/security/keystore_layout.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/keystore/keystore_info.hpp"
 

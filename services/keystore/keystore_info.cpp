@@ -9,7 +9,6 @@
 #include <ostream>
 
 #include "common/security/enclave.hpp"
-#include "common/security/security_error.hpp"
 
 namespace rtd::keystore {
 namespace {

@@ -36,7 +36,7 @@ struct ProcessUsage {
   int restarts = 0;
 };
 
-/// How far the clock of a service's host is ahead of the others' (common/service/clock_offsets.hpp).
+/// How far the clock of a service's host is ahead of the others' (common/service/peer_clocks.hpp).
 struct HostClock {
   std::string service;
   double offset_ms = 0, round_trip_ms = 0;

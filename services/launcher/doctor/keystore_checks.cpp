@@ -9,7 +9,6 @@
 #include <filesystem>
 
 #include "common/security/enclave.hpp"
-#include "common/security/security_error.hpp"
 
 namespace rtd::launcher {
 namespace {

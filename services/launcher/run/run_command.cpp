@@ -10,7 +10,7 @@
 #include <iostream>
 
 #include "common/bus/bus_factory.hpp"
-#include "common/service/bounded_end.hpp"
+#include "common/service/run_service.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/evaluation/core/report/report.hpp"
 #include "services/launcher/core/run/online_trajectory.hpp"

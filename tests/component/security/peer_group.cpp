@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "common/security/keystore.hpp"
-#include "common/security/signed_document.hpp"
 
 namespace rtd::security {
 namespace {

@@ -5,8 +5,6 @@
 #include <gmock/gmock.h>
 
 #include "common/bus/topic_roles.hpp"
-#include "common/security/governance.hpp"
-#include "common/security/security_error.hpp"
 
 namespace rtd::security {
 namespace {

@@ -11,8 +11,6 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
-#include "common/service/alone_hint.hpp"
-#include "common/service/bounded_end.hpp"
 #include "common/service/run_service.hpp"
 
 namespace rtd::service {
@@ -63,7 +61,7 @@ TEST(Heartbeat, the_younger_of_two_equal_services_ends) {
 }
 
 /// Malformed or malicious heartbeats end no service at work.
-TEST(Heartbeat, a_service_that_has_run_for_a_while_ends_for_nobody) {
+TEST(Heartbeat, a_service_that_has_run_for_a_while_does_not_end_for_a_duplicate) {
   const auto bus = bus::connect(domain(11));
   StopToken stop;
   Heartbeat camera(*bus, "camera", stop);
@@ -91,7 +89,7 @@ TEST(Heartbeat, metrics_travel) {
   EXPECT_TRUE(eventually([&] { return seen == 7; }));
 }
 
-TEST(Heartbeat, whoever_takes_the_callback_back_waits_for_a_call_that_runs) {
+TEST(Heartbeat, removing_the_callback_waits_for_a_running_call) {
   const auto bus = bus::connect(domain(4));
   StopToken stop;
   std::promise<void> entered, leave;
@@ -105,41 +103,41 @@ TEST(Heartbeat, whoever_takes_the_callback_back_waits_for_a_call_that_runs) {
   });
   Heartbeat filter(*bus, "filter", stop);
   ASSERT_EQ(entered.get_future().wait_for(5s), std::future_status::ready);
-  auto taken_back = std::async(std::launch::async, [&] {
+  auto removed = std::async(std::launch::async, [&] {
     slam.on_status({});
     return left.load();
   });
-  EXPECT_EQ(taken_back.wait_for(50ms), std::future_status::timeout);
+  EXPECT_EQ(removed.wait_for(50ms), std::future_status::timeout);
   leave.set_value();
-  EXPECT_TRUE(taken_back.get());
+  EXPECT_TRUE(removed.get());
 }
 
-TEST(AloneHint, tells_who_hears_nobody_where_he_is) {
+TEST(NoPeersWarning, names_the_domain_of_a_service_without_peers) {
   const auto bus = bus::connect(domain(5));
   StopToken stop;
-  std::promise<std::string> told;
+  std::promise<std::string> warned;
   const Heartbeat slam(*bus, "slam", stop);
-  const AloneHint hint(
-      slam, domain(5), [&](const std::string& cause) { told.set_value(cause); }, 50ms);
-  auto cause = told.get_future();
+  const NoPeersWarning warning(
+      slam, domain(5), [&](const std::string& cause) { warned.set_value(cause); }, 50ms);
+  auto cause = warned.get_future();
   ASSERT_EQ(cause.wait_for(5s), std::future_status::ready);
   EXPECT_THAT(cause.get(), HasSubstr("no other service is in DDS domain 5"));
 }
 
-TEST(AloneHint, is_silent_in_company_and_at_the_end) {
+TEST(NoPeersWarning, is_silent_with_peers_and_at_the_end) {
   const auto bus = bus::connect(domain(6));
   StopToken stop;
-  std::atomic<bool> told{false};
+  std::atomic<bool> warned{false};
   const Heartbeat slam(*bus, "slam", stop), filter(*bus, "filter", stop);
   ASSERT_TRUE(eventually([&] { return !slam.alone(); }));
-  const auto say = [&](const std::string&) { told = true; };
-  { const AloneHint ends(slam, domain(6), say); }
-  const AloneHint hint(slam, domain(6), say, 1ms);
+  const auto warn = [&](const std::string&) { warned = true; };
+  { const NoPeersWarning ends(slam, domain(6), warn); }
+  const NoPeersWarning warning(slam, domain(6), warn, 1ms);
   std::this_thread::sleep_for(50ms);
-  EXPECT_FALSE(told);
+  EXPECT_FALSE(warned);
 }
 
-/// Runs a service definition with command-line words.
+/// Runs a service definition with a command line.
 class RunServiceTest : public ::testing::Test {
  protected:
   struct Config {
@@ -147,11 +145,11 @@ class RunServiceTest : public ::testing::Test {
     void bind(ConfigBinder& binder) { binder.field("count", count, {1, 10}, "how many"); }
   };
 
-  int run(std::vector<std::string> words) {
-    words.insert(words.begin(), "rtd-filter");
+  int run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "rtd-filter");
     std::vector<char*> argv;
-    argv.reserve(words.size());
-    for (std::string& word : words) argv.push_back(word.data());
+    argv.reserve(arguments.size());
+    for (std::string& argument : arguments) argv.push_back(argument.data());
     return run_service({"filter", "A service for tests",
                         [this](CLI::App& app) { app.add_option("--count", config_.count, "how many"); },
                         [this](ConfigBinder& binder) { binder.section("filter", config_); },
@@ -191,14 +189,14 @@ TEST_F(RunServiceTest, wrong_use_ends_with_two) {
 /// What a service is given as bus options.
 class BusOptionsTest : public RunServiceTest {
  protected:
-  bus::NetworkOptions network_of(std::vector<std::string> words) {
+  bus::NetworkOptions network_of(std::vector<std::string> arguments) {
     bus::NetworkOptions network;
     body_ = [&network](Runtime& runtime) {
       network = runtime.bus_options.network;
       return kOk;
     };
-    words.insert(words.begin(), {"--dds", "inprocess"});
-    EXPECT_EQ(run(words), kOk);
+    arguments.insert(arguments.begin(), {"--dds", "inprocess"});
+    EXPECT_EQ(run(arguments), kOk);
     return network;
   }
 };
