@@ -53,7 +53,7 @@ class Writer {
   Loan<T> loan() requires MessageTraits<T>::kPlain { return Loan<T>(backend_.get(), backend_->loan()); }
   bool write(Loan<T>&& loan) { return backend_->write_loaned(loan.release()); }
   /// Number of readers matched now. Each side matches on its own: on a volatile topic, what is written before the
-  /// reader too has matched may never reach it, so wait for the other side's word (its heartbeat) where the first
+  /// reader too has matched may never reach it, so wait for the other side's heartbeat where the first
   /// message matters.
   int matched() const { return backend_->matched(); }
   /// Blocks until every reliable reader has acknowledged what was written, at most timeout_ms. True when all did.

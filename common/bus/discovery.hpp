@@ -12,11 +12,11 @@
 #include "common/bus/callback_thread.hpp"
 #include "common/bus/raw_bus.hpp"
 
-/// What discovery tells of a domain, without a vendor.
+/// What discovery finds in a domain, without a vendor.
 namespace rtd::bus {
 
 /// Finds endpoints of other participants that use the name of one of our topics with another type: DDS never matches
-/// them, and says nothing. Thread-safe.
+/// them, and reports nothing. Thread-safe.
 class TopicTypes {
  public:
   /// Reports mismatches of one endpoint of ours as long as it lives.

@@ -60,7 +60,7 @@ std::uint16_t parse_port(const std::string& digits, const std::string& text, con
   std::uint16_t port = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
   if (error == std::errc() && end == digits.data() + digits.size() && port > 0) return port;
-  throw BusError(option + " " + text + ": '" + digits + "' is no port, write HOST or HOST:PORT with 1..65535");
+  throw BusError(option + " " + text + ": '" + digits + "' is not a port, write HOST or HOST:PORT with 1..65535");
 }
 
 bool is_loopback(const std::string& address) {
@@ -142,7 +142,7 @@ std::string no_server_problem(const BusOptions& options) {
   const std::string& server = options.network.discovery_server;
   const std::size_t colon = server.find(':');
   const std::string host = server.substr(0, colon), port = colon == std::string::npos ? "" : server.substr(colon + 1);
-  return "no Discovery Server answers at " + server + ", without which nobody is found: start it there with " +
+  return "no Discovery Server answers at " + server + ", without which no participant is found: start it there with " +
          "'fast-discovery-server -i 0 -l " + host + " -p " + port + "' (id 0), let UDP port " + port +
          " through the firewall, or correct --discovery-server";
 }

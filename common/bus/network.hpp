@@ -44,7 +44,7 @@ void require_network(const BusOptions& options);
 
 /// How long a Discovery Server may take until it is called missing. It answers within some ms; ours ask every 0.5 s.
 inline constexpr std::chrono::milliseconds kServerPatience{3000};
-/// What to tell then.
+/// The problem to report then.
 std::string no_server_problem(const BusOptions& options);
 
 }  // namespace rtd::bus

@@ -16,7 +16,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/byte_block.hpp"
 
-/// Topics as bytes: whoever records, replays or inspects needs no type. Beside Bus, on a connection of its own.
+/// Topics as bytes: recording, replaying and inspecting need no type. Beside Bus, on a connection of its own.
 namespace rtd::bus {
 
 /// Identity of a writer in the domain (its GUID).
@@ -25,8 +25,8 @@ std::string to_string(const WriterId& id);  ///< hexadecimal, e.g. "010f5b2a..."
 
 inline constexpr std::int64_t kUnlimitedNs = std::numeric_limits<std::int64_t>::max();
 
-/// What a writer promises, as it says so in discovery, or shall promise. Numbers of `Durability` and `Liveliness` grow
-/// with what they promise.
+/// What a writer offers, as discovery has it or as it is to be. The numbers of `Durability` and `Liveliness` grow with
+/// what they offer.
 struct RawQos {
   enum class Durability { kVolatile, kTransientLocal, kTransient, kPersistent };
   enum class Liveliness { kAutomatic, kManualByParticipant, kManualByTopic };
@@ -51,7 +51,7 @@ struct TopicWriter {
   RawTopic topic;
   RawQos qos;
   bool own = false;            ///< belongs to this connection
-  bool shared_memory = false;  ///< its samples, of a fixed size, stay in its shared memory for those who read there
+  bool shared_memory = false;  ///< its samples, of a fixed size, can be read in its shared memory
   std::string user_data;       ///< what it announces beside; ROS 2: "typehash=RIHS01_...;" (common/ros2/type_hash.hpp)
 };
 
@@ -61,7 +61,7 @@ enum class WriterChange { kAppeared, kChanged, kGone };
 struct RawSample {
   WriterId writer{};
   std::int64_t sequence = 0;     ///< the writer counts its samples from 1
-  std::int64_t source_ns = 0;    ///< CLOCK_REALTIME of the writer; the reception where it says none
+  std::int64_t source_ns = 0;    ///< CLOCK_REALTIME of the writer; the reception if unknown
   std::int64_t received_ns = 0;  ///< CLOCK_REALTIME here
   std::shared_ptr<const ByteBlock> bytes;
   std::span<const std::byte> cdr() const { return bytes->view(); }
@@ -86,8 +86,8 @@ class SequenceGaps {
   std::map<WriterId, std::int64_t> newest_;
 };
 
-/// Run on a thread of the reader, one at a time: queue and return. Losses are told before the sample that revealed
-/// them.
+/// Run on a thread of the reader, one at a time: queue and return. A loss is reported before the sample that revealed
+/// it.
 struct RawHandlers {
   std::function<void(RawSample)> on_sample;
   std::function<void(const RawLoss&)> on_lost;

@@ -5,7 +5,6 @@
 #include <ctime>
 #include <utility>
 
-
 namespace rtd::bus {
 namespace {
 
@@ -104,7 +103,7 @@ std::string other_vendor_problem(std::uint32_t domain, const std::string& partic
 
 std::string not_secured_problem(std::uint32_t domain, const std::string& participant) {
   return "participant " + participant + " in secured domain " + std::to_string(domain) +
-         " has no certificate and is not heard: start it with --secure, or in another domain";
+         " has no certificate and is not matched: start it with --secure, or in another domain";
 }
 
 std::string refused_problem(std::uint32_t domain, const std::string& participant) {

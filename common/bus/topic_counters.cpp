@@ -8,7 +8,7 @@
 namespace rtd::bus {
 namespace {
 
-/// An endpoint tells its total; a topic has several endpoints. Called by one endpoint's thread.
+/// An endpoint reports its total; a topic has several endpoints. Called by one endpoint's thread.
 class Increase {
  public:
   std::uint64_t of(int total) {

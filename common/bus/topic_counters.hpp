@@ -23,7 +23,7 @@ struct TopicTrouble {
   friend bool operator==(const TopicTrouble&, const TopicTrouble&) = default;
 };
 
-/// Counts for each topic of one connection what its endpoints are told. Thread-safe.
+/// Counts for each topic of one connection what its endpoints report. Thread-safe.
 class TopicCounters {
  public:
   /// The callbacks of one endpoint, counted before they are called.
@@ -36,7 +36,7 @@ class TopicCounters {
     mutable std::mutex mutex;
     std::map<std::string, TopicTrouble> troubles;
   };
-  std::shared_ptr<Book> book_ = std::make_shared<Book>();  ///< endpoints may tell until they end
+  std::shared_ptr<Book> book_ = std::make_shared<Book>();  ///< endpoints may report until they end
 };
 
 }  // namespace rtd::bus

@@ -9,8 +9,8 @@
 
 namespace rtd::bus {
 
-/// Hears all writers of one topic, whatever they offer: the reader asks for what each of them has, reliable samples and
-/// earlier ones only while all have them. A new writer that offers less gets the reader opened anew. Thread-safe.
+/// Reads all writers of one topic, whatever they offer: the reader requests what each of them has, reliable samples and
+/// earlier ones only while all have them. For a new writer that offers less the reader is opened again. Thread-safe.
 class TopicListener {
  public:
   /// `bus` outlives this. `in_place`, `depth`: as RawReaderOptions.

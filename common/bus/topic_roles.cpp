@@ -12,7 +12,7 @@ namespace {
 using Roles = std::vector<std::string_view>;
 
 const Roles kServices = {"camera", "detector", "filter", "slam", "dense", "record", "replay", "viewer"};
-/// They hear what comes out.
+/// They read the results.
 const Roles kOnlookers = {"viewer", "observer"};
 
 Roles operator+(Roles roles, const Roles& further) {

@@ -8,15 +8,15 @@
 
 namespace rtd::bus {
 
-/// Who writes and who reads a topic, by the names of services ("filter"). Written down once: keystores are made from
-/// it, a test holds it against what the running services open.
+/// Who writes and who reads a topic, by the names of services ("filter"). Keystores are made from it, a test
+/// compares it with what the running services open.
 struct TopicRoles {
   std::string topic;  ///< DDS name, or a pattern of names ("rt/*")
   std::vector<std::string_view> writers, readers;
 };
 const std::vector<TopicRoles>& topic_roles();
 
-/// Who there is: services, launcher, `rtd topics`, observer (ROS 2 and others who read poses).
+/// All roles: services, launcher, `rtd topics`, observer (ROS 2 and other programs that read poses).
 const std::vector<std::string>& roles();
 
 /// The topics of one role.

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 
-
 namespace rtd::security {
 
 namespace fs = std::filesystem;
@@ -55,7 +54,7 @@ void check_dates(const Validity& validity, std::int64_t now_s, const std::string
   if (now_s > validity.not_after_s)
     throw SecurityError(fmt::format("{} expired on {} UTC; {}", file, to_utc(validity.not_after_s), fix));
   if (now_s < validity.not_before_s)
-    throw SecurityError(fmt::format("{} is valid only from {} UTC on: does the clock of this host go right?", file,
+    throw SecurityError(fmt::format("{} is valid only from {} UTC on: is the clock of this host right?", file,
                                     to_utc(validity.not_before_s)));
 }
 
@@ -67,7 +66,7 @@ Enclave load_enclave(const std::string& keystore, const std::string& name) {
   enclave.certificate_validity = validity_of(*certificate);
   enclave.permissions = check_documents(enclave.files);
   if (enclave.permissions.subject != subject_name(*certificate))
-    throw SecurityError(fmt::format("{} is for {}, the certificate beside it says {}",
+    throw SecurityError(fmt::format("{} is for {}, the certificate beside it for {}",
                                     enclave.files.permissions().string(), enclave.permissions.subject,
                                     subject_name(*certificate)));
   return enclave;

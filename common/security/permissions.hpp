@@ -21,7 +21,7 @@ struct TopicGrant {
 };
 bool matches_any(const std::vector<std::string>& patterns, const std::string& topic);
 
-/// What DDS-Security's permissions document says of one participant; everything else is denied.
+/// DDS-Security's permissions document of one participant; everything else is denied.
 struct Permissions {
   std::string subject;  ///< as subject_name()
   Validity validity;
@@ -35,7 +35,7 @@ Permissions permissions_from_xml(const std::string& xml, const std::string& orig
 
 /// How the samples of a topic travel. Who may publish and subscribe is checked in any case.
 enum class TopicProtection {
-  kAccessOnly,  ///< in the clear among those who may: stays in shared memory
+  kAccessOnly,  ///< not encrypted among permitted participants: stays in shared memory
   kEncrypt,     ///< encrypted, and what steers the delivery is signed
 };
 

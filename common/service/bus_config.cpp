@@ -84,7 +84,8 @@ void add_bus_options(CLI::App& app, BusArguments& arguments) {
                  fmt::format("DDS implementation: {} (RTD_DDS; default: {})", fmt::join(bus::dds_vendors(), " or "),
                              bus::default_vendor()));
   app.add_option("--domain", arguments.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
-  app.add_flag("--secure", arguments.secure, "DDS-Security: only who has keys of the keystore (bus.security.enabled)");
+  app.add_flag("--secure", arguments.secure,
+               "DDS-Security: only processes with keys of the keystore take part (bus.security.enabled)");
   app.add_option("--keystore", arguments.keystore,
                  "Keystore of 'rtd keystore create', with --secure (RTD_KEYSTORE, ROS_SECURITY_KEYSTORE)");
 }
@@ -106,9 +107,9 @@ void load_config(ConfigBinder& binder, const BusArguments& arguments, const Conf
 }
 
 std::vector<std::string> to_command_line(const BusArguments& arguments) {
-  std::vector<std::string> words;
-  const auto add = [&words](const char* option, const std::string& value) {
-    if (!value.empty()) words.insert(words.end(), {option, value});
+  std::vector<std::string> line;
+  const auto add = [&line](const char* option, const std::string& value) {
+    if (!value.empty()) line.insert(line.end(), {option, value});
   };
   add("--profile", arguments.profile);
   add("--peers", fmt::format("{}", fmt::join(arguments.peers, ",")));
@@ -116,9 +117,9 @@ std::vector<std::string> to_command_line(const BusArguments& arguments) {
   add("--discovery-server", arguments.discovery_server);
   add("--dds", arguments.vendor);
   if (arguments.domain >= 0) add("--domain", std::to_string(arguments.domain));
-  if (arguments.secure) words.emplace_back("--secure");
+  if (arguments.secure) line.emplace_back("--secure");
   add("--keystore", arguments.keystore);
-  return words;
+  return line;
 }
 
 bus::BusOptions load_bus_options(const BusArguments& arguments, const ConfigSources& sources,

@@ -18,7 +18,7 @@ void init_logging(const std::string& service, const std::string& level);
 class RateLimit {
  public:
   explicit RateLimit(std::chrono::milliseconds period) : period_(period) {}
-  /// True when the caller may log now; suppressed() then tells how many were swallowed since the last time.
+  /// True when the caller may log now; suppressed() then says how many were suppressed since the last time.
   bool pass();
   std::uint64_t suppressed() const { return last_suppressed_; }
 

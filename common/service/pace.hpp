@@ -8,7 +8,7 @@ namespace rtd::service {
 
 /// How frames are paced through the system (docs/architecture.md, "Pacing").
 enum class Pace {
-  kRealtime,  ///< recorded stamps; what is late is dropped and counted; nobody waits for the detector
+  kRealtime,  ///< recorded stamps; late frames are dropped and counted; no service waits for the detector
   kAsap,      ///< as fast as the slowest stage, a bounded window of frames in flight, nothing dropped
   kLockstep,  ///< the next frame after the pose of this one, mapping synchronous: same input, same bits
 };

@@ -10,11 +10,11 @@ namespace rtd::service {
 enum class ProcessState { kUnknown, kRunning, kStopped, kGone };
 enum class PeerHealth {
   kAlive,
-  kDead,  ///< its process is gone, or nothing is heard of another host
-  kHung   ///< its process is there and says nothing: stopped, or stuck
+  kDead,  ///< its process is gone, or nothing is received from another host
+  kHung   ///< its process is there and silent: stopped, or stuck
 };
 
-/// What is known of a service that was heard before.
+/// What is known of a service that sent heartbeats before.
 struct PeerEvidence {
   std::int64_t silent_ns = 0;                     ///< since its last heartbeat
   ProcessState process = ProcessState::kUnknown;  ///< kUnknown: on another host

@@ -20,7 +20,7 @@ struct Domain {
   Entity entity;
 };
 
-/// Throws BusError: refused, with Cyclone's own words, or already there with other settings.
+/// Throws BusError: refused, with Cyclone's reason, or already there with other settings.
 std::shared_ptr<Domain> join_domain(const BusOptions& options);
 
 /// Captures Cyclone's errors while it lives: they say why a call failed. Otherwise Cyclone's warnings and errors go to
@@ -32,7 +32,7 @@ class LogCapture {
   LogCapture(const LogCapture&) = delete;
   LogCapture& operator=(const LogCapture&) = delete;
 
-  /// ": what it said", or nothing.
+  /// ": the errors so far", or nothing.
   std::string reason() const;
 
  private:

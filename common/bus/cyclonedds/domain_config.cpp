@@ -34,8 +34,8 @@ std::string interface(const std::string& address, const std::string& attributes)
 }
 
 /// Loopback has no multicast flag in Linux, but carries it; so does Fast DDS on 127.0.0.1. Peers are asked through the
-/// interface of the highest priority, whatever their address: by default that is loopback, from where nobody else is
-/// reached.
+/// interface of the highest priority, whatever their address: by default that is loopback, from where no other host
+/// is reached.
 std::string interfaces(const NetworkOptions& network) {
   std::vector<std::string> addresses = interface_addresses(network);
   if (addresses.size() >= kMostInterfaces && !network.interfaces.empty()) {
@@ -104,8 +104,8 @@ std::string domain_config(const BusOptions& options, const HostLimits& limits) {
   return R"(<CycloneDDS><Domain Id="any">)" + text + "</Domain></CycloneDDS>";
 }
 
-/// The daemon listens on a datagram socket: connecting to it sends nothing, and fails when nobody has it open, even if
-/// the file was left behind.
+/// The daemon listens on a datagram socket: connecting to it sends nothing, and fails when no process has it open, even
+/// if the file was left behind.
 void require_roudi(const std::string& socket_path) {
   const int probe = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (probe < 0) throw BusError(std::string("no socket to ask iox-roudi: ") + std::strerror(errno));

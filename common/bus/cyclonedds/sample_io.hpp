@@ -21,7 +21,7 @@ struct TakenSample {
 /// The next sample that waits in a reader; nothing when none does.
 std::optional<TakenSample> take_sample(dds_entity_t reader);
 
-/// Hands bytes over, which nobody may change afterwards. `source_ns` 0: now.
+/// Hands bytes over, which must not change afterwards. `source_ns` 0: now.
 bool write_sample(dds_entity_t writer, const ddsi_sertype* type, std::shared_ptr<ByteBlock> bytes,
                   const SampleOrigin& origin, std::int64_t source_ns);
 

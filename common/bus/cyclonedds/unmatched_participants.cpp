@@ -84,7 +84,7 @@ std::vector<std::string> UnmatchedParticipants::read(std::string_view line, Time
 /// "SPDP ST0 GUID bes f [(secure)] NEW [(versions of Cyclone)] (data ADDRESS ...) QOS={...}"
 std::vector<std::string> UnmatchedParticipants::appeared(std::string_view line, TimePoint now) {
   const std::size_t end = line.find(" NEW ");
-  if (end == std::string_view::npos) return {};  // our own, or news of a known one
+  if (end == std::string_view::npos) return {};  // our own, or an update of a known one
   const std::string guid = guid_in(line.substr(9));
   const std::string name = name_in(line, guid);
   if (unproven_.size() >= kMostKnown) unproven_.clear();

@@ -78,7 +78,7 @@ void take_well_known_port(const BusOptions& options, rtps::BuiltinAttributes& bu
   builtin.mutation_tries = kPeerParticipants - 1;
 }
 
-/// Multicast is always listened to: it costs nothing, and tools of this host that keep to loopback are heard.
+/// Multicast is always received: it costs nothing, and tools of this host that keep to loopback are found.
 void find_by_announcements(const BusOptions& options, rtps::BuiltinAttributes& builtin) {
   const NetworkOptions& network = options.network;
   builtin.metatrafficMulticastLocatorList.push_back(udp_locator(kMulticastGroup));

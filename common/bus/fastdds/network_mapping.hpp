@@ -15,7 +15,7 @@ enum class DiscoveryScope {
   kAll,       ///< all of the domain: recorders, tools
 };
 
-/// Transports and discovery as NetworkOptions say. Samples of a host go through shared memory in every profile; UDP on
+/// Transports and discovery of NetworkOptions. Samples of a host go through shared memory in every profile; UDP on
 /// loopback and the chosen interfaces is for discovery and for other hosts, cut to max_datagram_bytes.
 void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope,
                  eprosima::fastdds::dds::DomainParticipantQos& qos);

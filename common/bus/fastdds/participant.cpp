@@ -49,7 +49,7 @@ dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostL
   map_network(options, limits, scope, qos);
   map_security(options.security, qos);
   auto& builtin = qos.wire_protocol().builtin;
-  // A killed process is forgotten after the lease; its heartbeat topic tells much earlier.
+  // A killed process is forgotten after the lease; its heartbeat topic shows it much earlier.
   builtin.discovery_config.leaseDuration = {5, 0};
   builtin.discovery_config.leaseDuration_announcementperiod = {0, 500'000'000};
   return qos;

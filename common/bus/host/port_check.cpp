@@ -34,7 +34,7 @@ bool taken(std::uint16_t port) {
   return refused;
 }
 
-/// A line: "  sl: ADDRESS:PORT ...", in hexadecimal, below a heading. `of_all`: only those that are heard at any
+/// A line: "  sl: ADDRESS:PORT ...", in hexadecimal, below a heading. `of_all`: only those that receive at any
 /// address or at the group of DDS, 239.255.0.1.
 std::set<int> ports_in_use(const std::string& udp_table, bool of_all) {
   std::set<int> ports;

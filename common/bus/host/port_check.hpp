@@ -10,13 +10,13 @@
 
 namespace rtd::bus {
 
-/// UDP port on which the participants of a domain hear each other's announcements (RTPS 2.2, 9.6.1.1). They share it.
+/// UDP port on which the participants of a domain receive announcements (RTPS 2.2, 9.6.1.1). They share it.
 constexpr std::uint16_t discovery_port(std::uint32_t domain) {
   return static_cast<std::uint16_t>(7400 + 250 * domain);
 }
 
 /// Throws BusError when another program has the domain's discovery port and does not share it: Fast DDS would start
-/// and hear nobody, without a word.
+/// and find no participant, without a message.
 void require_discovery_port(std::uint32_t domain);
 
 /// UDP port of the domain's participant with this id: what others write to it to find it.
@@ -26,11 +26,11 @@ constexpr std::uint16_t participant_port(std::uint32_t domain, int id) {
 
 /// Whether a process with these options takes one of the ports that peers ask: of the ids below kPeerParticipants.
 bool takes_participant_port(const BusOptions& options);
-/// How many of them nobody has; nothing is opened. `udp_table`: for tests.
+/// How many of them are free; nothing is opened. `udp_table`: for tests.
 int free_participant_ports(std::uint32_t domain, const std::string& udp_table = "/proc/self/net/udp");
-/// DDS domains of which somebody on this host hears the announcements, in order.
+/// DDS domains in which a program on this host receives announcements, in order.
 std::vector<std::uint32_t> domains_in_use(const std::string& udp_table = "/proc/self/net/udp");
-/// For somebody who is alone in his domain: ", but on this host DDS runs in domain 0: ..."; empty when it does not.
+/// For a process without peers in its domain: ", but on this host DDS runs in domain 0: ..."; empty when it does not.
 std::string other_domains_hint(std::uint32_t domain, const std::string& udp_table = "/proc/self/net/udp");
 /// Throws BusError when no such port is free.
 void require_participant_port(std::uint32_t domain);

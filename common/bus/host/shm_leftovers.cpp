@@ -87,7 +87,7 @@ bool is_young(const Candidate& file, std::chrono::seconds min_age) {
   return std::time(nullptr) - file.changed < min_age.count();
 }
 
-/// A process that may have made the file or can use it, but does not let us look.
+/// A process that may have made the file or can use it, but cannot be inspected.
 const UnreadableProcess* hidden_user(const Candidate& file, const ShmUsers& users) {
   const bool open_to_all = (file.mode & S_IWOTH) != 0;
   for (const UnreadableProcess& process : users.unreadable) {
@@ -96,7 +96,7 @@ const UnreadableProcess* hidden_user(const Candidate& file, const ShmUsers& user
   return nullptr;
 }
 
-/// Why a group must stay; empty: nobody needs it.
+/// Why a group must stay; empty: no process needs it.
 std::string reason_to_stay(const Group& group, const ShmUsers& users, const Descriptor& folder,
                            const CleanOptions& options) {
   for (const Candidate& file : group) {
@@ -105,7 +105,7 @@ std::string reason_to_stay(const Group& group, const ShmUsers& users, const Desc
   for (const Candidate& file : group) {
     if (is_young(file, options.min_age)) return "younger than " + std::to_string(options.min_age.count()) + " s";
     if (const UnreadableProcess* process = hidden_user(file, users)) {
-      return "process " + std::to_string(process->pid) + " may use it and does not let us look";
+      return "process " + std::to_string(process->pid) + " may use it, but its files cannot be inspected";
     }
     if (is_locked(folder, file)) return "locked by a process";
   }
@@ -115,8 +115,8 @@ std::string reason_to_stay(const Group& group, const ShmUsers& users, const Desc
 /// Removes the file unless another one has taken its name.
 std::string remove_file(const Descriptor& folder, const Candidate& file) {
   struct stat now {};
-  if (fstatat(folder.get(), file.name.c_str(), &now, AT_SYMLINK_NOFOLLOW) != 0) return {};  // somebody was quicker
-  if (FileId(now.st_dev, now.st_ino) != file.id) return "made anew";
+  if (fstatat(folder.get(), file.name.c_str(), &now, AT_SYMLINK_NOFOLLOW) != 0) return {};  // already removed
+  if (FileId(now.st_dev, now.st_ino) != file.id) return "replaced meanwhile";
   if (unlinkat(folder.get(), file.name.c_str(), 0) == 0 || errno == ENOENT) return {};
   return errno == EPERM || errno == EACCES ? "belongs to user " + std::to_string(file.owner) : std::strerror(errno);
 }
@@ -167,7 +167,7 @@ CleanReport remove_shm_leftovers(const CleanOptions& options) {
   const auto groups = list_groups(folder, options.shm_dir);
   if (groups.empty()) return report;
   const bool blind = in_first_ipc_namespace(options.proc_dir) && !in_first_pid_namespace(options.proc_dir);
-  // Listed first, asked afterwards: whoever makes a file later on makes one that is not in the list.
+  // Listed before users are looked for: a file that is made later on is not in the list.
   const ShmUsers users =
       blind || !any_may_go(groups, options) ? ShmUsers{} : find_shm_users(kNameParts, options.proc_dir);
   for (const auto& [name, group] : groups) {

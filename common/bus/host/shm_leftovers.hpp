@@ -25,7 +25,7 @@ struct CleanReport {
 struct CleanOptions {
   std::string shm_dir = "/dev/shm", proc_dir = "/proc";
   std::chrono::seconds min_age{2};  ///< younger files may belong to a process that is just starting
-  bool dry_run = false;             ///< only tell what would be removed
+  bool dry_run = false;             ///< only report what would be removed
 };
 
 /// Removes what killed DDS processes left in shared memory: files with the names of our vendors that no living process

@@ -25,7 +25,7 @@ bool has_one_of(std::string_view text, const NameParts& parts) {
                      [&](const std::string& part) { return text.find(part) != std::string_view::npos; });
 }
 
-/// Names in a folder without `.` and `..`; errno tells why there are none.
+/// Names in a folder without `.` and `..`; errno says why there are none.
 std::vector<std::string> list_folder(const std::string& path) {
   std::vector<std::string> names;
   const std::unique_ptr<DIR, int (*)(DIR*)> folder(opendir(path.c_str()), closedir);
@@ -78,10 +78,10 @@ bool add_mapped_files(const std::string& process, const NameParts& parts, std::s
 /// The value of "Key:\tvalue" in /proc/PID/status.
 long status_value(const std::string& process, const std::string& key) {
   std::ifstream status(process + "/status");
-  std::string word;
+  std::string token;
   long value = 0;
-  while (status >> word) {
-    if (word == key) return status >> value ? value : 0;
+  while (status >> token) {
+    if (token == key) return status >> value ? value : 0;
   }
   return 0;
 }

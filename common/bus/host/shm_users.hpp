@@ -31,10 +31,10 @@ struct ShmUsers {
 bool in_first_pid_namespace(const std::string& proc_dir = "/proc");
 bool in_first_ipc_namespace(const std::string& proc_dir = "/proc");
 
-/// Asks all processes for the files that they map or hold open and whose name contains one of `name_parts`. A file
+/// Looks in all processes for the files that they map or hold open and whose name contains one of `name_parts`. A file
 /// that was listed before the call and whose maker lives is found: descriptors are read before maps, and a maker maps
 /// the file before it closes the descriptor. About 5 ms for 100 processes.
-/// The init of the host is taken for no user even where it may not be read.
+/// The init of the host never counts as a user, even where it may not be read.
 ShmUsers find_shm_users(const std::vector<std::string>& name_parts, const std::string& proc_dir = "/proc");
 
 }  // namespace rtd::bus

@@ -75,7 +75,7 @@ class Domain {
   static std::shared_ptr<Domain> join(std::uint32_t number, Content content);
 
   WriterId new_id();
-  /// A registry is told of the writers that there are, then of all changes.
+  /// A registry gets the writers known now, then all changes.
   void add(WriterRegistry& registry);
   void add(WriterEndpoint& writer);
   void add(ReaderEndpoint& reader);
