@@ -61,10 +61,10 @@ TEST_P(DdsBus, delivers_every_kind_of_message) {
   EXPECT_EQ(status.next()->metrics.at(0).value, 3.0);
 }
 
-/// The same name with another type, as only a foreign program would use it.
+/// The same name with another type, as only another program would use it.
 constexpr Topic<msg::PoseStamped> kOdometryMistaken{"rt/slam/odometry", QosProfile::kPose};
 
-TEST_P(DdsBus, tells_both_sides_of_another_type_on_the_topic) {
+TEST_P(DdsBus, reports_another_type_on_the_topic_to_both_sides) {
   Collector<std::string> told_writer, told_reader;
   StatusCallbacks of_writer, of_reader;
   of_writer.on_type_mismatch = [&](const std::string& type) { told_writer.push(std::make_shared<std::string>(type)); };
@@ -76,16 +76,16 @@ TEST_P(DdsBus, tells_both_sides_of_another_type_on_the_topic) {
   EXPECT_EQ(*told_reader.next(), "nav_msgs::msg::dds_::Odometry_");
 }
 
-TEST_P(DdsBus, tells_a_late_endpoint_of_another_type_that_was_there_before) {
+TEST_P(DdsBus, reports_another_type_that_was_there_before_a_late_endpoint) {
   const auto reader = there->reader(kOdometryMistaken, [](const auto&) {});
-  Collector<std::string> told;
+  Collector<std::string> types;
   const auto right_reader = here->reader(topics::kPose, [](const auto&) {});  // meet first
   const auto right_writer = there->writer(topics::kPose);
   wait_for_reader(right_writer);
   StatusCallbacks callbacks;
-  callbacks.on_type_mismatch = [&](const std::string& type) { told.push(std::make_shared<std::string>(type)); };
+  callbacks.on_type_mismatch = [&](const std::string& type) { types.push(std::make_shared<std::string>(type)); };
   const auto writer = here->writer(topics::kOdometry, callbacks);
-  EXPECT_EQ(*told.next(), "geometry_msgs::msg::dds_::PoseStamped_");
+  EXPECT_EQ(*types.next(), "geometry_msgs::msg::dds_::PoseStamped_");
 }
 
 TEST_P(DdsBus, takes_an_unwritten_loan_back) {
@@ -93,7 +93,7 @@ TEST_P(DdsBus, takes_an_unwritten_loan_back) {
   for (int i = 0; i < 20; ++i) const auto loan = writer.loan();
 }
 
-TEST_P(DdsBus, tells_both_sides_when_they_match_and_part) {
+TEST_P(DdsBus, reports_matches_and_their_end_to_both_sides) {
   Collector<int> writer_peers, reader_peers;
   StatusCallbacks of_writer, of_reader;
   of_writer.on_matched = [&](int peers) { writer_peers.push(std::make_shared<int>(peers)); };
@@ -124,7 +124,7 @@ TEST_P(DdsBus, names_the_policy_that_keeps_a_pair_apart) {
   EXPECT_EQ(writer.matched(), 0);
 }
 
-TEST_P(DdsBus, tells_when_a_promised_heartbeat_stays_away) {
+TEST_P(DdsBus, reports_a_missing_heartbeat) {
   Collector<int> missed;
   StatusCallbacks callbacks;
   callbacks.on_deadline_missed = [&] { missed.push(std::make_shared<int>(1)); };

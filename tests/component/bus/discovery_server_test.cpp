@@ -29,7 +29,7 @@ using ::testing::HasSubstr;
 
 constexpr char kServer[] = "/usr/bin/fast-discovery-server";
 
-/// A UDP port that nobody has now.
+/// A UDP port that is free now.
 int free_port() {
   const int probe = socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in address{};
@@ -45,9 +45,9 @@ int free_port() {
 class Server {
  public:
   Server(const std::string& id, int port) {
-    std::string words[] = {kServer, "-i", id, "-l", "127.0.0.1", "-p", std::to_string(port)};
+    std::string arguments[] = {kServer, "-i", id, "-l", "127.0.0.1", "-p", std::to_string(port)};
     std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
+    for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
     posix_spawn_file_actions_t silent;
     posix_spawn_file_actions_init(&silent);
@@ -98,7 +98,7 @@ class DiscoveryServer : public ::testing::Test {
   Collector<std::string> problems_;
 };
 
-TEST_F(DiscoveryServer, alone_brings_two_together_that_do_not_meet_without_it) {
+TEST_F(DiscoveryServer, matches_two_participants_that_do_not_find_each_other_without_it) {
   const auto here = connect(options()), there = connect(options());
   Collector<msg::PoseStamped> poses;
   const auto reader = there->reader(topics::kPose, poses.callback());

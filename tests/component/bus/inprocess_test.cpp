@@ -91,7 +91,7 @@ TEST(InprocessBus, replays_the_last_of_a_transient_local_topic_to_a_late_reader)
   EXPECT_EQ(late_info.size(), 0U);
 }
 
-TEST(InprocessBus, slow_reader_loses_the_oldest_and_is_told) {
+TEST(InprocessBus, a_slow_reader_loses_the_oldest_and_gets_a_report) {
   const auto bus = connect_inprocess();
   concurrency::BoundedQueue<int> gate(1, concurrency::Overflow::kBlock), entered(1, concurrency::Overflow::kBlock);
   Collector<msg::RgbdFrame> frames;
@@ -124,7 +124,7 @@ TEST(InprocessBus, slow_reader_loses_the_oldest_and_is_told) {
   EXPECT_EQ(*lost.next(), 2);
 }
 
-TEST(InprocessBus, tells_both_sides_when_they_match_and_part) {
+TEST(InprocessBus, reports_matches_and_their_end_to_both_sides) {
   const auto bus = connect_inprocess();
   Collector<int> writer_peers, reader_peers;
   StatusCallbacks of_writer, of_reader;
@@ -176,7 +176,7 @@ TEST(InprocessBus, no_callback_runs_after_the_reader_is_gone) {
   sender.join();
 }
 
-TEST(BusFactory, names_the_vendors_when_asked_for_an_unknown_one) {
+TEST(BusFactory, an_unknown_vendor_names_the_known_ones) {
   BusOptions options;
   options.vendor = "fastdss";
   try {

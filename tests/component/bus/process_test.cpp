@@ -135,7 +135,7 @@ TEST_P(DdsProcesses, late_reader_gets_keyframes_and_camera_info) {
   EXPECT_EQ(received->header.frame_id, "camera");
 }
 
-TEST_P(DdsProcesses, killed_writer_is_noticed_and_its_successor_heard) {
+TEST_P(DdsProcesses, a_killed_writer_is_noticed_and_its_successor_received) {
   const auto bus = connect_to(GetParam());
   Collector<msg::ServiceStatus> status;
   Collector<int> alive;

@@ -45,7 +45,7 @@ TopicWriter wait_for_writer(const RawBus& bus, const std::string& topic) {
     }
     std::this_thread::sleep_for(1ms);
   }
-  throw std::runtime_error("nobody writes " + topic);
+  throw std::runtime_error("no writer of " + topic);
 }
 
 /// Whether a vendor keeps frames in the writer's shared memory.

@@ -191,7 +191,7 @@ TEST_P(RawTopics, a_reader_that_asks_for_more_than_is_offered_gets_nothing) {
 
 INSTANTIATE_TEST_SUITE_P(Vendors, RawTopics, ::testing::ValuesIn(available_vendors()), test_name);
 
-TEST(SequenceGaps, counts_begin_with_the_first_number_heard) {
+TEST(SequenceGaps, counts_begin_with_the_first_number_received) {
   SequenceGaps gaps;
   const WriterId a{1}, b{2};
   EXPECT_FALSE(gaps.next(a, 100));

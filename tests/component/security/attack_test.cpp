@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Who may not take part, does not: receives nothing and is not heard, while the rightful ones do.
+// Participants without permission receive nothing and are not received, while the permitted ones are.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -26,7 +26,7 @@ class AttackTest : public ::testing::TestWithParam<std::string> {
   PeerGroup peers_;
 };
 
-TEST_P(AttackTest, only_the_rightful_hear_and_are_heard) {
+TEST_P(AttackTest, only_permitted_participants_receive_and_are_received) {
   Keystores keystores(peers_.scratch());
   const std::string good = keystores.good();
   peers_.start("writer", good, "/rtd/writer", kTopics);
@@ -35,9 +35,9 @@ TEST_P(AttackTest, only_the_rightful_hear_and_are_heard) {
   peers_.start("rogue", keystores.rogue(), "/rtd/writer", kTopics);
   peers_.start("expired", good, "/rtd/expired", kTopics, keystores.clock_of_expired());
   peers_.start("stale", good, "/rtd/stale", kTopics, keystores.clock_of_expired());
-  peers_.start("stranger", good, "/rtd/stranger", kTopics);
-  peers_.start("lax", keystores.lax(), "/rtd/stranger", kTopics);
-  const std::vector<std::string> attackers = {"clear", "rogue", "expired", "stale", "stranger", "lax"};
+  peers_.start("unpermitted", good, "/rtd/unpermitted", kTopics);
+  peers_.start("lax", keystores.lax(), "/rtd/unpermitted", kTopics);
+  const std::vector<std::string> attackers = {"clear", "rogue", "expired", "stale", "unpermitted", "lax"};
 
   // The attackers have had their time when the rightful have theirs, and each has sent as much, if it could at all.
   EXPECT_TRUE(peers_.wait_until([&] {
@@ -52,9 +52,9 @@ TEST_P(AttackTest, only_the_rightful_hear_and_are_heard) {
   EXPECT_GE(peers_.sent("expired"), kSamples) << "the attack was none\n" << peers_.log();
   EXPECT_GE(peers_.sent("lax"), kSamples) << "the attack was none\n" << peers_.log();
   for (const std::string& attacker : attackers) {
-    EXPECT_EQ(peers_.got("reader", attacker), 0) << attacker << " was heard";
-    EXPECT_EQ(peers_.got("writer", attacker), 0) << attacker << " was heard";
-    EXPECT_EQ(peers_.got(attacker, "writer"), 0) << attacker << " hears";
+    EXPECT_EQ(peers_.got("reader", attacker), 0) << attacker << " was received";
+    EXPECT_EQ(peers_.got("writer", attacker), 0) << attacker << " was received";
+    EXPECT_EQ(peers_.got(attacker, "writer"), 0) << attacker << " receives";
   }
   // Of a refused handshake only the side that checks first knows.
   for (const char* rightful : {"writer", "reader"}) {
@@ -62,17 +62,17 @@ TEST_P(AttackTest, only_the_rightful_hear_and_are_heard) {
     EXPECT_THAT(problems, ContainsRegex("participant 'clear' [0-9a-f.]+ in secured domain [0-9]+ has no certificate"));
     EXPECT_THAT(problems, Not(HasSubstr("'writer'")));
     EXPECT_THAT(problems, Not(HasSubstr("'reader'")));
-    EXPECT_EQ(problems.find("'clear'"), problems.rfind("'clear'")) << "told twice: " << problems;
+    EXPECT_EQ(problems.find("'clear'"), problems.rfind("'clear'")) << "reported twice: " << problems;
   }
   if (std::getenv("RTD_SHOW_PEERS") != nullptr) std::cout << peers_.log();
   std::cout << "reader got " << peers_.got("reader", "writer") << " samples of the writer; attackers sent clear "
             << peers_.sent("clear") << ", rogue " << peers_.sent("rogue") << ", expired " << peers_.sent("expired")
-            << ", expired permissions " << peers_.sent("stale") << ", wrong permissions " << peers_.sent("stranger")
-            << ", their checks evaded " << peers_.sent("lax") << ": 0 heard, 0 delivered\n";
+            << ", expired permissions " << peers_.sent("stale") << ", wrong permissions " << peers_.sent("unpermitted")
+            << ", their checks evaded " << peers_.sent("lax") << ": 0 received, 0 delivered\n";
 }
 
 /// The same attackers in a domain that is not secured: what the test above counts is there to be counted.
-TEST_P(AttackTest, without_security_everybody_hears_everybody) {
+TEST_P(AttackTest, without_security_all_participants_receive_each_other) {
   for (const std::string peer : {"writer", "reader", "clear"}) peers_.start(peer, "-", "-", kTopics);
   EXPECT_TRUE(peers_.wait_until([&] {
     return peers_.got("reader", "clear") >= kSamples && peers_.got("clear", "writer") >= kSamples;

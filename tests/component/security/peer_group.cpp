@@ -32,7 +32,7 @@ void create(const std::string& folder) {
   const TopicGrant topics = {{"rt/open", "rt/secret"}, {"rt/open", "rt/secret"}};
   create_keystore(folder, {valid, valid, {{}, {"rt/open"}}});
   add_enclaves(folder,
-               {{"/rtd/writer", topics}, {"/rtd/reader", topics}, {"/rtd/stranger", {{"rt/other"}, {"rt/other"}}}},
+               {{"/rtd/writer", topics}, {"/rtd/reader", topics}, {"/rtd/unpermitted", {{"rt/other"}, {"rt/other"}}}},
                valid, {});
   add_enclaves(folder, {{"/rtd/expired", topics}, {"/rtd/stale", topics}}, valid_until(-kHour_s), {});
 }
@@ -80,7 +80,7 @@ std::vector<std::string> Keystores::clock_of_expired() const {
 PeerGroup::PeerGroup(std::string vendor)
     : vendor_(std::move(vendor)),
       scratch_(fs::path(::testing::TempDir()) / ("rtd_security_" + std::to_string(getpid()))),
-      host_([this](const std::string& peer, const std::string& line) { listen(peer, line); }) {
+      host_([this](const std::string& peer, const std::string& line) { read_line(peer, line); }) {
   fs::remove_all(scratch_);
   fs::create_directories(scratch_);
 }
@@ -114,19 +114,19 @@ bool PeerGroup::wait_until(const std::function<bool()>& condition) {
   return condition();
 }
 
-void PeerGroup::listen(const std::string& peer, const std::string& line) {
-  std::istringstream words(line);
-  std::string word, tag;
-  words >> word;
-  Said& said = said_[peer];
-  if (word == "sent") {
-    words >> said.sent;
-  } else if (word == "got") {
-    words >> tag;
-    words >> said.got[tag];
+void PeerGroup::read_line(const std::string& peer, const std::string& line) {
+  std::istringstream text(line);
+  std::string event, tag;
+  text >> event;
+  PeerReport& report = reports_[peer];
+  if (event == "sent") {
+    text >> report.sent;
+  } else if (event == "got") {
+    text >> tag;
+    text >> report.got[tag];
   } else {
-    said.refused = said.refused || word == "refused";
-    if (word == "problem") said.problems += line + "\n";
+    report.refused = report.refused || event == "refused";
+    if (event == "problem") report.problems += line + "\n";
     log_ += peer + ": " + line + "\n";
   }
 }

@@ -19,7 +19,7 @@ class Keystores {
  public:
   explicit Keystores(std::string scratch);
   /// Enclaves /rtd/writer and /rtd/reader, which may publish and subscribe rt/open and rt/secret; /rtd/expired and
-  /// /rtd/stale, which might until an hour ago by certificate and by permissions; /rtd/stranger, which may use other
+  /// /rtd/stale, which might until an hour ago by certificate and by permissions; /rtd/unpermitted, which may use other
   /// topics.
   std::string good() const { return scratch_ + "/good"; }
   std::string rogue() const { return scratch_ + "/rogue"; }  ///< the same names, another CA
@@ -45,25 +45,25 @@ class PeerGroup {
              const std::string& vendor = {});
   /// False when the condition did not come true within a minute.
   bool wait_until(const std::function<bool()>& condition);
-  int sent(const std::string& peer) { return said_[peer].sent; }
-  int got(const std::string& peer, const std::string& from) { return said_[peer].got[from]; }
-  bool refused(const std::string& peer) { return said_[peer].refused; }
-  const std::string& problems(const std::string& peer) { return said_[peer].problems; }
+  int sent(const std::string& peer) { return reports_[peer].sent; }
+  int got(const std::string& peer, const std::string& from) { return reports_[peer].got[from]; }
+  bool refused(const std::string& peer) { return reports_[peer].refused; }
+  const std::string& problems(const std::string& peer) { return reports_[peer].problems; }
   const std::string& log() const { return log_; }
   const std::string& scratch() const { return scratch_; }
 
  private:
-  struct Said {
+  struct PeerReport {
     int sent = 0;
     std::map<std::string, int> got;
     bool refused = false;  ///< it is not in the domain, or may not write any topic
     std::string problems;
   };
-  void listen(const std::string& peer, const std::string& line);
+  void read_line(const std::string& peer, const std::string& line);
 
   const std::string vendor_;
   std::string scratch_, log_;
-  std::map<std::string, Said> said_;
+  std::map<std::string, PeerReport> reports_;
   std::vector<launcher::ProcessId> processes_;
   launcher::PosixProcessHost host_;
 };

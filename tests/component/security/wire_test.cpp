@@ -21,7 +21,7 @@ constexpr int kSamples = 50;
 const std::string kTopic = "rt/secret", kType = "std_msgs::msg::dds_::String_";
 
 /// Datagrams that hold what.
-struct Heard {
+struct Captured {
   int payload = 0, topic = 0, type = 0;
   int of_writer = 0;    ///< any that its participant has sent
   int permissions = 0;  ///< its permissions: the first messages of two participants, before they have keys
@@ -36,7 +36,7 @@ class Eavesdropper {
   void listen() {
     while (const auto packet = capture_.next(std::chrono::milliseconds(0))) look_at(packet->payload);
   }
-  const Heard& heard() const { return heard_; }
+  const Captured& captured() const { return captured_; }
   unsigned missed() { return capture_.lost(); }
 
  private:
@@ -45,30 +45,31 @@ class Eavesdropper {
   void look_at(const std::vector<std::byte>& bytes) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const auto holds = [&](const std::string& what) { return text.find(what) != std::string_view::npos; };
-    heard_.payload += holds("marker-" + writer_);
+    captured_.payload += holds("marker-" + writer_);
     if (!text.starts_with("RTPS") || text.size() < kPrefixEnd) return;
     const std::string_view sender = text.substr(kPrefixBegin, kPrefixEnd - kPrefixBegin);
     if (writer_prefix_.empty() && holds(writer_) && !holds("marker-")) writer_prefix_ = sender;  // it tells its name
     if (writer_prefix_ != sender) return;
-    ++heard_.of_writer;
-    if (holds("c.perm")) return static_cast<void>(++heard_.permissions);
-    heard_.topic += holds(kTopic);
-    heard_.type += holds(kType);
+    ++captured_.of_writer;
+    if (holds("c.perm")) return static_cast<void>(++captured_.permissions);
+    captured_.topic += holds(kTopic);
+    captured_.type += holds(kType);
   }
 
   const std::string writer_;
   std::string writer_prefix_;
   LoopbackCapture capture_;
-  Heard heard_;
+  Captured captured_;
 };
 
 class WireTest : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    if (!eavesdropper_.permitted()) GTEST_SKIP() << "needs CAP_NET_RAW to hear the loopback interface: run it as root";
+    if (!eavesdropper_.permitted())
+      GTEST_SKIP() << "needs CAP_NET_RAW to capture the loopback interface: run it as root";
   }
   /// Shared memory is off: all that the reader gets has been on the wire.
-  Heard exchange(const std::string& keystore) {
+  Captured exchange(const std::string& keystore) {
     peers_.start(writer_, keystore, "/rtd/writer", {kTopic}, {"SECURE_PEER_UDP=1"});
     peers_.start("reader", keystore, "/rtd/reader", {kTopic}, {"SECURE_PEER_UDP=1"});
     EXPECT_TRUE(peers_.wait_until([&] {
@@ -76,33 +77,33 @@ class WireTest : public ::testing::TestWithParam<std::string> {
       return peers_.got("reader", writer_) >= kSamples;
     })) << peers_.log();
     EXPECT_EQ(eavesdropper_.missed(), 0U);
-    const Heard heard = eavesdropper_.heard();
+    const Captured captured = eavesdropper_.captured();
     std::printf(
         "%s: %d samples received; of %d datagrams of the writer %d hold the topic, %d the type, %d its "
         "permissions; %d of all hold the payload\n",
-        GetParam().c_str(), peers_.got("reader", writer_), heard.of_writer, heard.topic, heard.type, heard.permissions,
-        heard.payload);
-    return heard;
+        GetParam().c_str(), peers_.got("reader", writer_), captured.of_writer, captured.topic, captured.type,
+        captured.permissions, captured.payload);
+    return captured;
   }
 
-  const std::string writer_ = "writer" + std::to_string(getpid());  // of nobody else on this host
+  const std::string writer_ = "writer" + std::to_string(getpid());  // of no other process on this host
   Eavesdropper eavesdropper_{writer_};
   PeerGroup peers_{GetParam()};
 };
 
 TEST_P(WireTest, without_security_everything_can_be_read) {
-  const Heard heard = exchange("-");
-  EXPECT_GE(heard.payload, kSamples);
-  EXPECT_GT(heard.topic, 0);
-  EXPECT_GT(heard.type, 0);
+  const Captured captured = exchange("-");
+  EXPECT_GE(captured.payload, kSamples);
+  EXPECT_GT(captured.topic, 0);
+  EXPECT_GT(captured.type, 0);
 }
 
 TEST_P(WireTest, secured_neither_payload_nor_topic_nor_type_is_on_the_wire) {
-  const Heard heard = exchange(Keystores(peers_.scratch()).good());
-  EXPECT_GE(heard.of_writer, kSamples) << "the samples did not go this way";
-  EXPECT_EQ(heard.payload, 0);
-  EXPECT_EQ(heard.topic, 0);
-  EXPECT_EQ(heard.type, 0);
+  const Captured captured = exchange(Keystores(peers_.scratch()).good());
+  EXPECT_GE(captured.of_writer, kSamples) << "the samples did not go this way";
+  EXPECT_EQ(captured.payload, 0);
+  EXPECT_EQ(captured.topic, 0);
+  EXPECT_EQ(captured.type, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Vendors, WireTest, ::testing::ValuesIn(bus::dds_vendors()),

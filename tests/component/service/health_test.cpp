@@ -38,14 +38,14 @@ class Health : public ::testing::TestWithParam<std::string> {
     return bus::connect(options);
   }
 
-  /// The newest status of a service as somebody else hears it.
-  std::optional<msg::ServiceStatus> heard(const std::string& service) {
+  /// The newest status of a service as another service receives it.
+  std::optional<msg::ServiceStatus> newest_status(const std::string& service) {
     const std::lock_guard lock(mutex_);
-    const auto found = heard_.find(service);
-    return found == heard_.end() ? std::nullopt : std::optional(found->second);
+    const auto found = statuses_.find(service);
+    return found == statuses_.end() ? std::nullopt : std::optional(found->second);
   }
-  bool tells(const std::string& service, const std::string& metric) {
-    const auto status = heard(service);
+  bool reports(const std::string& service, const std::string& metric) {
+    const auto status = newest_status(service);
     if (!status) return false;
     for (const auto& entry : status->metrics) {
       if (entry.name == metric) return true;
@@ -61,12 +61,12 @@ class Health : public ::testing::TestWithParam<std::string> {
   }
 
   std::mutex mutex_;
-  std::map<std::string, msg::ServiceStatus> heard_;
+  std::map<std::string, msg::ServiceStatus> statuses_;
   std::shared_ptr<bus::Bus> here_ = join(), listener_ = join();
   bus::Reader<msg::ServiceStatus> statuses_ =
       listener_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](const auto& status) {
         const std::lock_guard lock(mutex_);
-        heard_[status->service] = *status;
+        statuses_[status->service] = *status;
       });
   StopToken stop_;
 };
@@ -104,13 +104,13 @@ TEST_P(Health, a_killed_peer_is_named_dead_and_its_successor_takes_that_back) {
   ASSERT_LT(seconds_until([&] { return filter.alive("detector"); }), 15);
 
   peer.end();
-  const double dead_s = seconds_until([&] { return tells("filter", "peer.detector.dead"); });
+  const double dead_s = seconds_until([&] { return reports("filter", "peer.detector.dead"); });
   std::printf("%s: killed peer named after %.2f s\n", GetParam().c_str(), dead_s);
   EXPECT_LT(dead_s, kPatienceS);
   EXPECT_FALSE(filter.alive("detector"));
 
   const PeerService successor(GetParam(), domain());
-  EXPECT_LT(seconds_until([&] { return filter.alive("detector") && !tells("filter", "peer.detector.dead"); }), 15);
+  EXPECT_LT(seconds_until([&] { return filter.alive("detector") && !reports("filter", "peer.detector.dead"); }), 15);
 }
 
 TEST_P(Health, a_stopped_peer_is_named_hung_until_it_goes_on) {
@@ -119,37 +119,37 @@ TEST_P(Health, a_stopped_peer_is_named_hung_until_it_goes_on) {
   ASSERT_LT(seconds_until([&] { return filter.alive("detector"); }), 15);
 
   peer.signal(SIGSTOP);
-  const double hung_s = seconds_until([&] { return tells("filter", "peer.detector.hung"); });
+  const double hung_s = seconds_until([&] { return reports("filter", "peer.detector.hung"); });
   std::printf("%s: stopped peer named after %.2f s\n", GetParam().c_str(), hung_s);
   EXPECT_LT(hung_s, kPatienceS);
 
   peer.signal(SIGCONT);
-  EXPECT_LT(seconds_until([&] { return filter.alive("detector") && !tells("filter", "peer.detector.hung"); }), 15);
+  EXPECT_LT(seconds_until([&] { return filter.alive("detector") && !reports("filter", "peer.detector.hung"); }), 15);
 }
 
-TEST_P(Health, a_stuck_worker_is_told_by_its_own_heartbeat) {
+TEST_P(Health, a_stuck_worker_is_reported_by_its_own_heartbeat) {
   Heartbeat slam(*here_, "slam", stop_);
   slam.set_state(msg::ServiceState::kRunning);
   slam.watch_progress(1500ms);
   slam.tick();  // and no more
-  const double hung_s = seconds_until([&] { return tells("slam", "hung"); });
-  std::printf("%s: stuck worker told after %.2f s\n", GetParam().c_str(), hung_s);
+  const double hung_s = seconds_until([&] { return reports("slam", "hung"); });
+  std::printf("%s: stuck worker reported after %.2f s\n", GetParam().c_str(), hung_s);
   EXPECT_LT(hung_s, kPatienceS);
-  EXPECT_EQ(heard("slam")->state, msg::ServiceState::kDegraded);
+  EXPECT_EQ(newest_status("slam")->state, msg::ServiceState::kDegraded);
 
   slam.tick();
-  EXPECT_LT(seconds_until([&] { return heard("slam")->state == msg::ServiceState::kRunning; }), 15);
+  EXPECT_LT(seconds_until([&] { return newest_status("slam")->state == msg::ServiceState::kRunning; }), 15);
 }
 
-TEST_P(Health, an_orderly_end_is_no_death) {
+TEST_P(Health, an_orderly_end_is_not_a_death) {
   Heartbeat filter(*here_, "filter", stop_);
   {
     Heartbeat slam(*listener_, "slam", stop_);
     ASSERT_LT(seconds_until([&] { return filter.alive("slam"); }), 15);
   }
   EXPECT_LT(seconds_until([&] { return !filter.alive("slam"); }), 15);
-  std::this_thread::sleep_for(600ms);  // the time in which a death would be told
-  EXPECT_FALSE(tells("filter", "peer.slam.dead"));
+  std::this_thread::sleep_for(600ms);  // the time in which a death would be reported
+  EXPECT_FALSE(reports("filter", "peer.slam.dead"));
 }
 
 TEST_P(Health, refused_peers_are_counted_by_topic) {
@@ -157,15 +157,15 @@ TEST_P(Health, refused_peers_are_counted_by_topic) {
   const auto writer = here_->writer(bus::topics::kFeatures);  // volatile
   const bus::Topic<msg::FeatureFrame> asks_for_more{bus::topics::kFeatures.name, bus::QosProfile::kKeyframes};
   const auto reader = listener_->reader<msg::FeatureFrame>(asks_for_more, [](const auto&) {});
-  EXPECT_LT(seconds_until([&] { return tells("filter", "topic.rtd/features.incompatible_qos"); }), kPatienceS);
+  EXPECT_LT(seconds_until([&] { return reports("filter", "topic.rtd/features.incompatible_qos"); }), kPatienceS);
 }
 
 TEST_P(Health, another_type_on_a_topic_is_counted) {
   Heartbeat slam(*here_, "slam", stop_);
   const auto writer = here_->writer(bus::topics::kOdometry);
   const PeerService mistaken(GetParam(), domain());  // reads that topic with another type
-  EXPECT_LT(seconds_until([&] { return tells("slam", "topic.rt/slam/odometry.type_mismatch"); }), kPatienceS);
-  EXPECT_LT(seconds_until([&] { return tells("detector", "topic.rt/slam/odometry.type_mismatch"); }), kPatienceS);
+  EXPECT_LT(seconds_until([&] { return reports("slam", "topic.rt/slam/odometry.type_mismatch"); }), kPatienceS);
+  EXPECT_LT(seconds_until([&] { return reports("detector", "topic.rt/slam/odometry.type_mismatch"); }), kPatienceS);
 }
 
 std::vector<std::string> vendors() {

@@ -230,7 +230,7 @@ TEST_F(BusOptionsTest, a_file_wins_over_the_profile_and_own_options_over_both) {
               ElementsAre("c"));
 }
 
-TEST_F(BusOptionsTest, an_unknown_profile_names_those_there_are) {
+TEST_F(BusOptionsTest, an_unknown_profile_names_the_known_ones) {
   for (const char* profile : {"lna", "/no/such.yaml", "/tmp"}) {
     ::testing::internal::CaptureStderr();
     EXPECT_EQ(run({"--dds", "inprocess", "--profile", profile}), kUsageOrConfig);

@@ -49,13 +49,13 @@ TEST(CycloneConfig, asks_peers_at_the_ports_that_ours_take) {
             HasSubstr(R"(<Peer address="127.0.0.2"/>)"), HasSubstr("<ParticipantIndex>auto</ParticipantIndex>")));
 }
 
-TEST(CycloneConfig, refuses_a_peer_that_is_no_host) {
+TEST(CycloneConfig, refuses_a_peer_that_is_not_a_host) {
   BusOptions options;
   options.network.peers = {"\"/><Peer address=\"192.0.2.1"};
   EXPECT_THROW(domain_config(options, kLimits), BusError);
 }
 
-TEST(Roudi, is_told_from_a_socket_that_it_left_behind) {
+TEST(Roudi, is_not_confused_with_a_socket_that_it_left_behind) {
   const std::string missing = testing::TempDir() + "no_roudi_here", stale = testing::TempDir() + "stale_roudi";
   fclose(fopen(stale.c_str(), "w"));
   EXPECT_THROW(require_roudi(missing), BusError);

@@ -36,7 +36,7 @@ class UnmatchedParticipantsTest : public ::testing::Test {
   UnmatchedParticipants::TimePoint now_{};
 };
 
-TEST_F(UnmatchedParticipantsTest, who_has_no_certificate_is_named_once) {
+TEST_F(UnmatchedParticipantsTest, a_participant_without_certificate_is_named_once) {
   EXPECT_THAT(read(kClear), ElementsAre(StartsWith("participant 'clear' 01.10.85.78.27.b0.c4.92.b4.3f.7d.f5 in secured "
                                                    "domain 7 has no certificate")));
   EXPECT_THAT(read(kClear), IsEmpty());
@@ -50,13 +50,13 @@ TEST_F(UnmatchedParticipantsTest, another_vendor_is_named_by_its_name) {
                              "Fast DDS")));
 }
 
-TEST_F(UnmatchedParticipantsTest, who_fails_the_handshake_is_named_once) {
+TEST_F(UnmatchedParticipantsTest, a_participant_that_fails_the_handshake_is_named_once) {
   EXPECT_THAT(read(kRogue), IsEmpty());
   EXPECT_THAT(read(kFailed), ElementsAre(StartsWith("participant 'rogue' f6.93.")));
   EXPECT_THAT(read(kFailed), IsEmpty());
 }
 
-TEST_F(UnmatchedParticipantsTest, nobody_is_named_in_place_of_another) {
+TEST_F(UnmatchedParticipantsTest, no_participant_is_named_in_place_of_another) {
   read(kRogue);
   read(kGood);
   EXPECT_THAT(read(kFailed), IsEmpty()) << "it is one of two";
@@ -64,14 +64,14 @@ TEST_F(UnmatchedParticipantsTest, nobody_is_named_in_place_of_another) {
   EXPECT_THAT(read(kFailed), ElementsAre(StartsWith("participant 'rogue'")));
 }
 
-TEST_F(UnmatchedParticipantsTest, of_several_those_are_named_that_are_not_proven_for_long) {
+TEST_F(UnmatchedParticipantsTest, of_several_participants_the_long_unproven_ones_are_named) {
   read(kRogue);
   now_ += 4s;
   read(kGood);
   EXPECT_THAT(read(kFailed), ElementsAre(StartsWith("participant 'rogue'")));
 }
 
-TEST_F(UnmatchedParticipantsTest, who_has_gone_is_forgotten) {
+TEST_F(UnmatchedParticipantsTest, a_participant_that_has_gone_is_forgotten) {
   read(kRogue);
   read("ddsi_delete_proxy_participant_by_guid(f6933eb0:6a834ff7:832f23f8:1c1) - deleting\n");
   EXPECT_THAT(read(kFailed), IsEmpty());
@@ -80,7 +80,7 @@ TEST_F(UnmatchedParticipantsTest, who_has_gone_is_forgotten) {
   EXPECT_THAT(read(kClear), ElementsAre(StartsWith("participant 'clear'")));
 }
 
-TEST_F(UnmatchedParticipantsTest, lines_that_are_none_do_no_harm) {
+TEST_F(UnmatchedParticipantsTest, malformed_lines_do_no_harm) {
   for (const char* line : {"", "SPDP ST0 ", "SPDP ST0 x NEW ", "SPDP ST3", "handshake (lguid=", " failed: ", "NEW (0x"})
     read(line);
   EXPECT_THAT(read("SPDP ST0 1:2:3:1c1 bes f NEW (0x0) QOS={entity_name=\"a\nevent=b\"}"),

@@ -24,7 +24,7 @@ std::string shared_memory_error(const BusOptions& options, const HostLimits& lim
   return {};
 }
 
-TEST(HostChecks, an_ample_host_passes_without_a_word) {
+TEST(HostChecks, an_ample_host_passes_without_a_warning) {
   EXPECT_EQ(shared_memory_error({}, kAmple), "");
   EXPECT_THAT(host_warnings({}, kAmple), IsEmpty());
 }

@@ -38,7 +38,8 @@ TEST(Network, a_host_is_an_address_or_a_name_with_or_without_port) {
 }
 
 TEST(Network, a_host_that_cannot_be_is_named_with_the_option) {
-  for (const std::string text : {"10.0.0.2:0", "10.0.0.2:70000", "10.0.0.2:x", "10.0.0.2:", ":7400", "", "no such host"})
+  for (const std::string text :
+       {"10.0.0.2:0", "10.0.0.2:70000", "10.0.0.2:x", "10.0.0.2:", ":7400", "", "no such host"})
     EXPECT_THAT(refusal([&] { resolve_host(text, "--peers"); }), HasSubstr("--peers " + text)) << text;
 }
 
@@ -46,7 +47,7 @@ TEST(Network, loopback_alone_has_no_further_addresses) {
   EXPECT_THAT(interface_addresses({}), IsEmpty());
 }
 
-TEST(Network, an_unknown_interface_is_refused_with_those_there_are) {
+TEST(Network, an_unknown_interface_is_refused_with_the_known_ones) {
   NetworkOptions network;
   network.loopback_only = false;
   network.interfaces = {"eth99"};

@@ -65,7 +65,7 @@ TEST(PortCheck, a_port_that_is_not_shared_is_named_with_the_way_out) {
   }
 }
 
-TEST(PortCheck, a_shared_port_is_no_trouble) {
+TEST(PortCheck, a_shared_port_is_accepted) {
   const Holder other(discovery_port(domain()), 1);
   if (!other.held()) GTEST_SKIP() << "the port of domain " << domain() << " is in use";
   EXPECT_NO_THROW(require_discovery_port(domain()));
@@ -91,7 +91,7 @@ TEST(PortCheck, ports_of_participants_are_read_from_the_kernel_table) {
   std::remove(path.c_str());
 }
 
-TEST(PortCheck, without_a_free_port_for_peers_nobody_joins_a_network) {
+TEST(PortCheck, without_a_free_port_for_peers_no_process_joins_a_network) {
   std::vector<std::unique_ptr<Holder>> others;
   for (int id = 0; id < kPeerParticipants; ++id)
     others.push_back(std::make_unique<Holder>(participant_port(domain(), id)));

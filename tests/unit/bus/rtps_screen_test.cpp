@@ -46,7 +46,7 @@ TEST(RtpsScreenTest, lets_whole_messages_pass) {
   EXPECT_TRUE(passes(message({0x15, 1, 0, 0, 9, 9, 9}))) << "length 0: to the end";
 }
 
-TEST(RtpsScreenTest, refuses_what_is_no_message) {
+TEST(RtpsScreenTest, refuses_what_is_not_a_message) {
   EXPECT_FALSE(passes({}));
   EXPECT_FALSE(passes({'R', 'T', 'P', 'S', 2, 3}));
   auto other = message(kInfoTimestamp);
@@ -57,7 +57,7 @@ TEST(RtpsScreenTest, refuses_what_is_no_message) {
 
 TEST(RtpsScreenTest, refuses_lengths_that_lie) {
   EXPECT_FALSE(passes(message({0x15, 1, 8, 0, 1, 2, 3, 4}))) << "longer than the datagram";
-  EXPECT_FALSE(passes(message(join({0x15, 1, 5, 0, 1, 2, 3, 4, 5}, kInfoTimestamp)))) << "no whole words";
+  EXPECT_FALSE(passes(message(join({0x15, 1, 5, 0, 1, 2, 3, 4, 5}, kInfoTimestamp)))) << "not a whole number of words";
   EXPECT_FALSE(passes(message({0x09, 1, 8}))) << "half a header";
 }
 
@@ -150,7 +150,7 @@ TEST(RtpsFragmentsTest, missing_ones_are_found) {
   EXPECT_FALSE(whole(huge)) << "4 GB";
 }
 
-TEST(SequenceGuardTest, believes_in_steps_and_in_who_insists) {
+TEST(SequenceGuardTest, accepts_steps_and_repeated_far_numbers) {
   constexpr std::uint64_t kFar = SequenceGuard::kFar, kDays = 40 * kFar;
   const WriterGuid writer{std::byte{1}}, other{std::byte{2}};
   SequenceGuard guard;

@@ -180,7 +180,7 @@ TEST_F(ShmLeftovers, of_another_user_are_left_with_the_reason) {
   EXPECT_TRUE(fs::exists(path("fastrtps_00a20056a0830cc2")));
 }
 
-TEST_F(ShmLeftovers, a_missing_folder_is_no_trouble) {
+TEST_F(ShmLeftovers, a_missing_folder_is_accepted) {
   EXPECT_THAT(remove_shm_leftovers({.shm_dir = "/nonexistent"}).left, IsEmpty());
 }
 

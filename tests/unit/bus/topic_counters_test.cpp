@@ -7,7 +7,7 @@
 namespace rtd::bus {
 namespace {
 
-TEST(TopicCounters, sum_up_what_the_endpoints_of_a_topic_tell) {
+TEST(TopicCounters, sum_up_what_the_endpoints_of_a_topic_report) {
   TopicCounters counters;
   const StatusCallbacks one = counters.count("rtd/frame", {}), two = counters.count("rtd/frame", {});
   one.on_samples_lost(3);

@@ -38,7 +38,7 @@ TEST_F(EnclaveTest, says_that_there_is_no_keystore) {
               AllOf(HasSubstr("there is none"), HasSubstr("rtd keystore create")));
 }
 
-TEST_F(EnclaveTest, a_missing_enclave_names_those_that_there_are) {
+TEST_F(EnclaveTest, a_missing_enclave_names_the_existing_ones) {
   EXPECT_THAT(refusal(create("k"), "/c"), AllOf(HasSubstr("no enclave /c, only /a /b"), HasSubstr("rtd keystore add")));
 }
 
@@ -48,7 +48,7 @@ TEST_F(EnclaveTest, names_the_file_that_is_missing) {
   EXPECT_THAT(refusal(keystore), AllOf(HasSubstr("a/key.pem"), HasSubstr("No such file")));
 }
 
-TEST_F(EnclaveTest, expired_names_the_day_and_the_cure) {
+TEST_F(EnclaveTest, expired_names_the_day_and_the_fix) {
   EXPECT_THAT(refusal(create("k"), "/a", 0, kNow_s + 6 * kDay_s),
               AllOf(HasSubstr("expired on 2027-01-20T08:00:00"), HasSubstr("rtd keystore renew")));
 }
@@ -79,7 +79,7 @@ TEST_F(EnclaveTest, permissions_of_another_enclave_are_refused) {
   EXPECT_THAT(refusal(keystore), HasSubstr("is for CN=/b, the certificate beside it for CN=/a"));
 }
 
-TEST_F(EnclaveTest, permissions_that_somebody_edited_are_refused) {
+TEST_F(EnclaveTest, edited_permissions_are_refused) {
   const std::string keystore = create("k"), file = keystore + "/enclaves/a/permissions.p7s";
   std::string text = read_text(file);
   text.replace(text.find("<topic>t<"), 9, "<topic>*<");

@@ -49,7 +49,7 @@ TEST_F(KeystoreCommandTest, a_second_one_is_refused) {
   EXPECT_THAT(err_.str(), HasSubstr("exists already"));
 }
 
-TEST_F(KeystoreCommandTest, info_tells_what_expired_and_renew_cures_it) {
+TEST_F(KeystoreCommandTest, info_names_what_expired_and_renew_fixes_it) {
   ASSERT_EQ(run(Action::kCreate), 0);
   EXPECT_EQ(run(Action::kInfo), 0);
   EXPECT_THAT(out_.str(), HasSubstr("ok    /rtd/slam"));

@@ -23,7 +23,7 @@ TEST(PermissionsTest, survive_xml) {
   EXPECT_EQ(read.topics.subscribe, written.topics.subscribe);
 }
 
-TEST(PermissionsTest, what_is_no_permissions_document_is_refused_with_its_name) {
+TEST(PermissionsTest, what_is_not_a_permissions_document_is_refused_with_its_name) {
   for (const char* xml : {"", "<dds", "<dds/>", "<dds><permissions><grant/></permissions></dds>"}) {
     try {
       permissions_from_xml(xml, "file.xml");

@@ -75,7 +75,7 @@ TEST_F(ConfigTest, unknown_key_names_the_nearest_one) {
               AllOf(HasSubstr("filter.cuont"), HasSubstr("did you mean 'filter.count'")));
 }
 
-TEST_F(ConfigTest, unknown_key_of_an_own_section_is_an_error_even_when_the_section_is_listed_as_foreign) {
+TEST_F(ConfigTest, unknown_key_of_an_own_section_is_an_error_even_when_the_section_is_listed_as_another_ones) {
   EXPECT_THROW(binder_.load_file(write("filter: {cuont: 7}"), {"filter", "slam"}), ConfigError);
   EXPECT_THROW(binder_.set("filter.cuont=7", {"filter", "slam"}), ConfigError);
   EXPECT_NO_THROW(binder_.set("slam.anything=7", {"filter", "slam"}));

@@ -20,21 +20,21 @@ struct Service {
   double host_id;
   std::int64_t ahead_ns;
   PeerClocks clocks{name, host_id};
-  std::vector<msg::Metric> told{};
+  std::vector<msg::Metric> metrics{};
 
   msg::ServiceStatus status(std::int64_t true_ns) const {
     msg::ServiceStatus status;
     status.service = name;
     status.stamp_ns = true_ns + ahead_ns;
-    status.metrics = told;
+    status.metrics = metrics;
     status.metrics.push_back({"host_id", host_id});
     return status;
   }
-  void hear(const Service& other, std::int64_t sent_ns, std::int64_t delay_ns) {
-    told = clocks.received(other.status(sent_ns), sent_ns + delay_ns + ahead_ns);
+  void receive(const Service& other, std::int64_t sent_ns, std::int64_t delay_ns) {
+    metrics = clocks.received(other.status(sent_ns), sent_ns + delay_ns + ahead_ns);
   }
   double metric(const std::string& key) const {
-    for (const msg::Metric& candidate : told)
+    for (const msg::Metric& candidate : metrics)
       if (candidate.name == key) return candidate.value;
     return std::nan("");
   }
@@ -47,8 +47,8 @@ void talk(Service& a, Service& b, int seconds, std::int64_t from_ns = kEpochNs) 
   for (int i = 0; i < 5 * seconds; ++i) {
     const std::int64_t now_ns = from_ns + i * 200 * kMs;
     const auto delay_ns = [&] { return 200'000 + static_cast<std::int64_t>(std::min(20.0, queue_ms(random)) * 1e6); };
-    b.hear(a, now_ns, delay_ns());
-    a.hear(b, now_ns + 70 * kMs, delay_ns());
+    b.receive(a, now_ns, delay_ns());
+    a.receive(b, now_ns + 70 * kMs, delay_ns());
   }
 }
 
@@ -63,7 +63,7 @@ TEST(PeerClocks, both_hosts_find_the_same_offset_behind_queues) {
   }
 }
 
-TEST(PeerClocks, a_clock_that_was_set_is_believed_within_a_minute) {
+TEST(PeerClocks, a_clock_that_was_set_is_accepted_within_a_minute) {
   Service camera{"camera", 1, 0}, detector{"detector", 2, 500 * kMs};
   talk(camera, detector, 20);
   detector.ahead_ns = 0;
@@ -74,10 +74,10 @@ TEST(PeerClocks, a_clock_that_was_set_is_believed_within_a_minute) {
 TEST(PeerClocks, services_of_one_host_have_one_clock) {
   Service camera{"camera", 1, 0}, detector{"detector", 1, 0};
   talk(camera, detector, 2);
-  EXPECT_THAT(camera.told, IsEmpty());
+  EXPECT_THAT(camera.metrics, IsEmpty());
 }
 
-TEST(PeerClocks, a_service_that_says_no_host_is_not_compared) {
+TEST(PeerClocks, a_service_without_a_host_id_is_not_compared) {
   Service camera{"camera", 1, 0};
   msg::ServiceStatus old_version;
   old_version.service = "detector";

@@ -14,7 +14,7 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 
 TEST(PeerHealth, a_gone_process_is_dead_before_the_others_wait_half_a_second) {
-  EXPECT_EQ(judge({250 * kMs, ProcessState::kGone}), PeerHealth::kAlive) << "its last word is fresh";
+  EXPECT_EQ(judge({250 * kMs, ProcessState::kGone}), PeerHealth::kAlive) << "its last heartbeat is recent";
   EXPECT_EQ(judge({350 * kMs, ProcessState::kGone}), PeerHealth::kDead);
 }
 

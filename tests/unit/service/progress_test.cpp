@@ -14,7 +14,7 @@ TEST(Progress, shows_the_part_that_is_done_and_the_time_that_is_left) {
   EXPECT_EQ(progress_line("reading", 100, 100, 3), "reading [####################] 100 %, 0 s left");
 }
 
-TEST(Progress, bears_totals_that_are_wrong_or_unknown) {
+TEST(Progress, accepts_totals_that_are_wrong_or_unknown) {
   EXPECT_EQ(progress_line("reading", 0, 100, 3), "reading [....................]   0 %");
   EXPECT_EQ(progress_line("reading", 300, 100, 3), "reading [####################] 100 %, 0 s left");
   EXPECT_EQ(progress_line("reading", 0, 0, 3), "reading [####################] 100 %, 0 s left");
