@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "common/bus/message_types.hpp"
 #include "common/bus/qos.hpp"
@@ -32,7 +33,7 @@ class WriterBackend {
 
 class ReaderBackend {
  public:
-  virtual ~ReaderBackend() = default;
+  virtual ~ReaderBackend() = default;  ///< afterwards no callback runs
   virtual int matched() const = 0;
 };
 
@@ -40,12 +41,16 @@ using ErasedCallback = std::function<void(std::shared_ptr<const void>)>;
 
 class BusBackend {
  public:
+  explicit BusBackend(std::string vendor) : vendor_(std::move(vendor)) {}
   virtual ~BusBackend() = default;
-  virtual const std::string& vendor() const = 0;
+  const std::string& vendor() const { return vendor_; }
   virtual std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                        StatusCallbacks callbacks) = 0;
   virtual std::unique_ptr<ReaderBackend> create_reader(MessageId id, const std::string& topic, QosProfile profile,
                                                        ErasedCallback on_message, StatusCallbacks callbacks) = 0;
+
+ private:
+  const std::string vendor_;
 };
 
 }  // namespace rtd::bus

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/bus/callback_thread.hpp"
@@ -65,6 +66,17 @@ class WriterRegistry {
   std::map<WriterId, TopicWriter> writers_;
   RawBus::Watcher watcher_;
   std::optional<CallbackThread> thread_;
+};
+
+/// A raw bus whose vendor notes the writers in a registry.
+class RegistryRawBus : public RawBus {
+ public:
+  using RawBus::RawBus;
+  std::vector<TopicWriter> writers() const override { return registry_.writers(); }
+  void watch(Watcher watcher) override { registry_.watch(std::move(watcher)); }
+
+ protected:
+  WriterRegistry registry_;
 };
 
 }  // namespace rtd::bus

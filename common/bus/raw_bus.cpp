@@ -24,4 +24,13 @@ std::optional<RawLoss> SequenceGaps::next(const WriterId& writer, std::int64_t s
   return RawLoss{writer, expected, static_cast<std::uint64_t>(sequence - expected)};
 }
 
+ErasedCallback raw_callback(RawHandlers handlers) {
+  return [handlers = std::move(handlers), gaps = SequenceGaps()](const std::shared_ptr<const void>& message) mutable {
+    const auto& sample = *std::static_pointer_cast<const RawSample>(message);
+    const auto loss = gaps.next(sample.writer, sample.sequence);
+    if (loss && handlers.on_lost) handlers.on_lost(*loss);
+    if (sample.bytes && handlers.on_sample) handlers.on_sample(sample);
+  };
+}
+
 }  // namespace rtd::bus

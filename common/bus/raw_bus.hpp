@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
@@ -74,6 +75,17 @@ struct RawLoss {
   std::uint64_t count = 0;
 };
 
+/// Run on a thread of the reader, one at a time: queue and return. A loss is reported before the sample that revealed
+/// it.
+struct RawHandlers {
+  std::function<void(RawSample)> on_sample;
+  std::function<void(const RawLoss&)> on_lost;
+  StatusCallbacks status;  ///< on_samples_lost: what the transport counts, also before a next sample reveals it
+};
+
+/// For backends whose readers give RawSamples: hands them on, and before each the loss that its number reveals.
+ErasedCallback raw_callback(RawHandlers handlers);
+
 /// Finds the samples that a reader did not get by the numbers that their writers gave them. The count of a
 /// writer begins with its first number that is received: what it sent to others before is not lost.
 class SequenceGaps {
@@ -84,14 +96,6 @@ class SequenceGaps {
 
  private:
   std::map<WriterId, std::int64_t> newest_;
-};
-
-/// Run on a thread of the reader, one at a time: queue and return. A loss is reported before the sample that revealed
-/// it.
-struct RawHandlers {
-  std::function<void(RawSample)> on_sample;
-  std::function<void(const RawLoss&)> on_lost;
-  StatusCallbacks status;  ///< on_samples_lost: what the transport counts, also before a next sample reveals it
 };
 
 struct RawReaderOptions {
@@ -108,11 +112,7 @@ struct RawWriterOptions {
   std::uint32_t fixed_bytes = 0;  ///< size of every sample with its CDR header: they stay in shared memory; 0: varies
 };
 
-class RawReader {
- public:
-  virtual ~RawReader() = default;  ///< afterwards no handler runs
-  virtual int matched() const = 0;
-};
+using RawReader = ReaderBackend;
 
 class RawWriter {
  public:
@@ -129,18 +129,22 @@ class RawBus {
  public:
   using Watcher = std::function<void(const TopicWriter&, WriterChange)>;
 
+  explicit RawBus(std::string vendor) : vendor_(std::move(vendor)) {}
   virtual ~RawBus() = default;
-  virtual const std::string& vendor() const = 0;
+  const std::string& vendor() const { return vendor_; }
   /// Writers known now. A writer is known before its first sample is delivered.
   virtual std::vector<TopicWriter> writers() const = 0;
-  /// Tells of the writers known now, then of each change. One watcher, on a thread of the bus that may create and
-  /// destroy readers and writers. Empty ends it: afterwards it does not run.
+  /// Calls the watcher for each writer known now, then for each change. One watcher, on a thread of the bus that may
+  /// create and destroy readers and writers. Empty ends it: afterwards it does not run.
   virtual void watch(Watcher watcher) = 0;
   /// Throws BusError: refused, or the topic is in use with another type.
   virtual std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
                                             RawHandlers handlers) = 0;
   virtual std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options,
                                             StatusCallbacks callbacks = {}) = 0;
+
+ private:
+  const std::string vendor_;
 };
 
 /// As connect(). In process, raw endpoints meet raw endpoints only: typed messages have no bytes there.

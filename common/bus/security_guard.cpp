@@ -30,8 +30,7 @@ class Guard {
 class GuardedBus : public BusBackend {
  public:
   GuardedBus(std::shared_ptr<BusBackend> bus, security::Enclave enclave)
-      : bus_(std::move(bus)), guard_(std::move(enclave)) {}
-  const std::string& vendor() const override { return bus_->vendor(); }
+      : BusBackend(bus->vendor()), bus_(std::move(bus)), guard_(std::move(enclave)) {}
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                StatusCallbacks callbacks) override {
     guard_.require_publish(topic);
@@ -51,8 +50,7 @@ class GuardedBus : public BusBackend {
 class GuardedRawBus : public RawBus {
  public:
   GuardedRawBus(std::shared_ptr<RawBus> bus, security::Enclave enclave)
-      : bus_(std::move(bus)), guard_(std::move(enclave)) {}
-  const std::string& vendor() const override { return bus_->vendor(); }
+      : RawBus(bus->vendor()), bus_(std::move(bus)), guard_(std::move(enclave)) {}
   std::vector<TopicWriter> writers() const override { return bus_->writers(); }
   void watch(Watcher watcher) override { bus_->watch(std::move(watcher)); }
   std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,

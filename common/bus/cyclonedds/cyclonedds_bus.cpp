@@ -25,9 +25,9 @@ CycloneReader::Handlers typed_handlers(MessageId id, ErasedCallback on_message, 
 
 class CycloneBackend : public BusBackend {
  public:
-  explicit CycloneBackend(const BusOptions& options) : participant_(std::make_shared<Participant>(options)) {}
+  explicit CycloneBackend(const BusOptions& options)
+      : BusBackend("cyclonedds"), participant_(std::make_shared<Participant>(options)) {}
 
-  const std::string& vendor() const override { return vendor_; }
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                StatusCallbacks callbacks) override {
     Qos qos = writer_qos(to_raw_qos(qos_settings(profile)));
@@ -41,7 +41,6 @@ class CycloneBackend : public BusBackend {
   }
 
  private:
-  const std::string vendor_ = "cyclonedds";
   std::shared_ptr<Participant> participant_;
 };
 
@@ -49,28 +48,17 @@ SampleType raw_type(const RawTopic& topic) {
   return {topic.type, topic.keyed, 0, true};
 }
 
-class RawCycloneReader : public RawReader {
- public:
-  RawCycloneReader(std::shared_ptr<Participant> participant, const RawTopic& topic, const RawReaderOptions& options,
-                   RawHandlers handlers)
-      : reader_(std::move(participant), raw_type(topic), topic.name, raw_reader_qos(options), to_own(handlers)) {}
-  int matched() const override { return reader_.matched(); }
-
- private:
-  static CycloneReader::Handlers to_own(const RawHandlers& handlers) {
-    CycloneReader::Handlers own;
-    own.on_sample = [on_sample = handlers.on_sample](const TakenSample& taken) {
-      if (!on_sample) return true;
-      on_sample({taken.origin.writer, taken.origin.sequence, taken.source_ns, taken.received_ns, taken.bytes});
-      return true;
-    };
-    own.on_gap = handlers.on_lost;
-    own.status = handlers.status;
-    return own;
-  }
-
-  CycloneReader reader_;
-};
+CycloneReader::Handlers raw_handlers(const RawHandlers& handlers) {
+  CycloneReader::Handlers own;
+  own.on_sample = [on_sample = handlers.on_sample](const TakenSample& taken) {
+    if (!on_sample) return true;
+    on_sample({taken.origin.writer, taken.origin.sequence, taken.source_ns, taken.received_ns, taken.bytes});
+    return true;
+  };
+  own.on_gap = handlers.on_lost;
+  own.status = handlers.status;
+  return own;
+}
 
 class RawCycloneWriter : public RawWriter {
  public:
@@ -98,19 +86,18 @@ bool is_keyed(const WriterId& id) {
   return (id.back() & 0x0f) == 0x02;
 }
 
-class CycloneRawBus : public RawBus {
+class CycloneRawBus : public RegistryRawBus {
  public:
   explicit CycloneRawBus(const BusOptions& options)
-      : participant_(std::make_shared<Participant>(options)),
+      : RegistryRawBus("cyclonedds"),
+        participant_(std::make_shared<Participant>(options)),
         watch_(participant_->handle(), EndpointWatch::Direction::kWriters,
                [this](const WriterId& id, const dds_builtintopic_endpoint_t* writer) { note(id, writer); }) {}
 
-  const std::string& vendor() const override { return vendor_; }
-  std::vector<TopicWriter> writers() const override { return registry_.writers(); }
-  void watch(Watcher watcher) override { registry_.watch(std::move(watcher)); }
   std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
                                     RawHandlers handlers) override {
-    return std::make_unique<RawCycloneReader>(participant_, topic, options, std::move(handlers));
+    return std::make_unique<CycloneReader>(participant_, raw_type(topic), topic.name, raw_reader_qos(options),
+                                           raw_handlers(handlers));
   }
   std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options,
                                     StatusCallbacks callbacks) override {
@@ -129,9 +116,7 @@ class CycloneRawBus : public RawBus {
     registry_.note(writer);
   }
 
-  const std::string vendor_ = "cyclonedds";
   std::shared_ptr<Participant> participant_;
-  WriterRegistry registry_;
   EndpointWatch watch_;  // last: it uses the others
 };
 

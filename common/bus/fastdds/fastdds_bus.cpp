@@ -14,9 +14,8 @@ namespace {
 class FastddsBackend : public BusBackend {
  public:
   FastddsBackend(std::shared_ptr<Participant> participant, bool shared_memory)
-      : participant_(std::move(participant)), shared_memory_(shared_memory) {}
+      : BusBackend("fastdds"), participant_(std::move(participant)), shared_memory_(shared_memory) {}
 
-  const std::string& vendor() const override { return vendor_; }
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                StatusCallbacks callbacks) override {
     auto codec = create_codec(id);
@@ -38,34 +37,8 @@ class FastddsBackend : public BusBackend {
     return settings;
   }
 
-  const std::string vendor_ = "fastdds";
   std::shared_ptr<Participant> participant_;
   const bool shared_memory_;
-};
-
-class FastddsRawReader : public RawReader {
- public:
-  FastddsRawReader(std::shared_ptr<Participant> participant, const RawTopic& topic, const RawReaderOptions& options,
-                   RawHandlers handlers)
-      : handlers_(std::move(handlers)),
-        reader_(
-            std::move(participant), create_raw_codec(topic, options), topic.name, raw_reader_qos(options),
-            [this](std::shared_ptr<const void> message) {
-              receive(*std::static_pointer_cast<const RawSample>(std::move(message)));
-            },
-            handlers_.status) {}
-  int matched() const override { return reader_.matched(); }
-
- private:
-  void receive(const RawSample& sample) {
-    const auto loss = gaps_.next(sample.writer, sample.sequence);
-    if (loss && handlers_.on_lost) handlers_.on_lost(*loss);
-    if (sample.bytes && handlers_.on_sample) handlers_.on_sample(sample);
-  }
-
-  const RawHandlers handlers_;
-  SequenceGaps gaps_;
-  FastddsReader reader_;  // last: its thread uses the others
 };
 
 class FastddsRawWriter : public RawWriter {
@@ -85,21 +58,20 @@ class FastddsRawWriter : public RawWriter {
   FastddsWriter writer_;
 };
 
-class FastddsRawBus : public RawBus {
+class FastddsRawBus : public RegistryRawBus {
  public:
   FastddsRawBus(const BusOptions& options, const HostLimits& limits)
-      : participant_(std::make_shared<Participant>(options, limits, &registry_)) {}
+      : RegistryRawBus("fastdds"), participant_(std::make_shared<Participant>(options, limits, &registry_)) {}
   ~FastddsRawBus() override {
     registry_.watch(nullptr);
     participant_->silence();
   }
 
-  const std::string& vendor() const override { return vendor_; }
-  std::vector<TopicWriter> writers() const override { return registry_.writers(); }
-  void watch(Watcher watcher) override { registry_.watch(std::move(watcher)); }
   std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
                                     RawHandlers handlers) override {
-    return std::make_unique<FastddsRawReader>(participant_, topic, options, std::move(handlers));
+    const StatusCallbacks status = handlers.status;
+    return std::make_unique<FastddsReader>(participant_, create_raw_codec(topic, options), topic.name,
+                                           raw_reader_qos(options), raw_callback(std::move(handlers)), status);
   }
   std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options,
                                     StatusCallbacks callbacks) override {
@@ -107,8 +79,6 @@ class FastddsRawBus : public RawBus {
   }
 
  private:
-  const std::string vendor_ = "fastdds";
-  WriterRegistry registry_;
   std::shared_ptr<Participant> participant_;
 };
 

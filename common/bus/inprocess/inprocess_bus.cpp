@@ -9,7 +9,6 @@
 
 #include "common/bus/inprocess/domain.hpp"
 #include "common/bus/message_visit.hpp"
-#include "common/bus/type_names.hpp"
 
 namespace rtd::bus::inprocess {
 namespace {
@@ -67,10 +66,9 @@ class InprocessWriter : public WriterBackend {
 
 class InprocessReader : public ReaderBackend {
  public:
-  InprocessReader(std::shared_ptr<Domain> domain, MessageId id, const std::string& topic, QosProfile profile,
-                  ErasedCallback on_message, StatusCallbacks callbacks)
-      : domain_(std::move(domain)),
-        endpoint_({topic, dds_type_name(id), qos_settings(profile)}, std::move(callbacks), std::move(on_message)) {
+  InprocessReader(std::shared_ptr<Domain> domain, EndpointKind kind, ErasedCallback on_message,
+                  StatusCallbacks callbacks)
+      : domain_(std::move(domain)), endpoint_(std::move(kind), std::move(callbacks), std::move(on_message)) {
     domain_->add(endpoint_);
   }
   ~InprocessReader() override { domain_->remove(endpoint_); }
@@ -83,20 +81,20 @@ class InprocessReader : public ReaderBackend {
 
 class InprocessBackend : public BusBackend {
  public:
-  explicit InprocessBackend(std::uint32_t domain) : domain_(Domain::join(domain, Domain::Content::kTyped)) {}
+  explicit InprocessBackend(std::uint32_t domain)
+      : BusBackend("inprocess"), domain_(Domain::join(domain, Domain::Content::kTyped)) {}
 
-  const std::string& vendor() const override { return vendor_; }
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                StatusCallbacks callbacks) override {
     return std::make_unique<InprocessWriter>(domain_, id, topic, profile, std::move(callbacks));
   }
   std::unique_ptr<ReaderBackend> create_reader(MessageId id, const std::string& topic, QosProfile profile,
                                                ErasedCallback on_message, StatusCallbacks callbacks) override {
-    return std::make_unique<InprocessReader>(domain_, id, topic, profile, std::move(on_message), std::move(callbacks));
+    EndpointKind kind{topic, dds_type_name(id), qos_settings(profile)};
+    return std::make_unique<InprocessReader>(domain_, std::move(kind), std::move(on_message), std::move(callbacks));
   }
 
  private:
-  const std::string vendor_ = "inprocess";
   std::shared_ptr<Domain> domain_;
 };
 
@@ -104,32 +102,6 @@ std::int64_t realtime_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
       .count();
 }
-
-class InprocessRawReader : public RawReader {
- public:
-  InprocessRawReader(std::shared_ptr<Domain> domain, const RawTopic& topic, const RawReaderOptions& options,
-                     RawHandlers handlers)
-      : domain_(std::move(domain)),
-        handlers_(std::move(handlers)),
-        endpoint_({topic.name, topic.type, {options.depth, options.transient_local}, options.reliable}, {},
-                  [this](const Message& message) { receive(*std::static_pointer_cast<const RawSample>(message)); }) {
-    domain_->add(endpoint_);
-  }
-  ~InprocessRawReader() override { domain_->remove(endpoint_); }
-  int matched() const override { return endpoint_.status.matched(); }
-
- private:
-  void receive(const RawSample& sample) {
-    const auto loss = gaps_.next(sample.writer, sample.sequence);
-    if (loss && handlers_.on_lost) handlers_.on_lost(*loss);
-    if (handlers_.on_sample) handlers_.on_sample(sample);
-  }
-
-  std::shared_ptr<Domain> domain_;
-  const RawHandlers handlers_;
-  SequenceGaps gaps_;
-  ReaderEndpoint endpoint_;  // last: its thread uses the others
-};
 
 class InprocessRawWriter : public RawWriter {
  public:
@@ -162,28 +134,26 @@ class InprocessRawWriter : public RawWriter {
   WriterEndpoint endpoint_{{}, StatusReporter({})};
 };
 
-class InprocessRawBus : public RawBus {
+class InprocessRawBus : public RegistryRawBus {
  public:
-  explicit InprocessRawBus(std::uint32_t domain) : domain_(Domain::join(domain, Domain::Content::kRaw)) {
+  explicit InprocessRawBus(std::uint32_t domain)
+      : RegistryRawBus("inprocess"), domain_(Domain::join(domain, Domain::Content::kRaw)) {
     domain_->add(registry_);
   }
   ~InprocessRawBus() override { domain_->remove(registry_); }
 
-  const std::string& vendor() const override { return vendor_; }
-  std::vector<TopicWriter> writers() const override { return registry_.writers(); }
-  void watch(Watcher watcher) override { registry_.watch(std::move(watcher)); }
   std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
                                     RawHandlers handlers) override {
-    return std::make_unique<InprocessRawReader>(domain_, topic, options, std::move(handlers));
+    EndpointKind kind{topic.name, topic.type, {options.depth, options.transient_local}, options.reliable};
+    return std::make_unique<InprocessReader>(domain_, std::move(kind), raw_callback(std::move(handlers)),
+                                             StatusCallbacks());
   }
   std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options, StatusCallbacks) override {
     return std::make_unique<InprocessRawWriter>(domain_, topic, options.qos);
   }
 
  private:
-  const std::string vendor_ = "inprocess";
   std::shared_ptr<Domain> domain_;
-  WriterRegistry registry_;
 };
 
 }  // namespace
