@@ -14,6 +14,7 @@
 
 #include "common/bus/raw_bus.hpp"
 #include "common/concurrency/thread_priority.hpp"
+#include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/recorder/core/bag_metadata.hpp"

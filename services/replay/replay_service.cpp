@@ -16,6 +16,7 @@
 #include "common/mcap/decode.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/ros2/names.hpp"
+#include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/replay/core/replay_error.hpp"

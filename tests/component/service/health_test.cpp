@@ -41,8 +41,8 @@ class Health : public ::testing::TestWithParam<std::string> {
   /// The newest status of a service as another service receives it.
   std::optional<msg::ServiceStatus> newest_status(const std::string& service) {
     const std::lock_guard lock(mutex_);
-    const auto found = statuses_.find(service);
-    return found == statuses_.end() ? std::nullopt : std::optional(found->second);
+    const auto found = newest_.find(service);
+    return found == newest_.end() ? std::nullopt : std::optional(found->second);
   }
   bool reports(const std::string& service, const std::string& metric) {
     const auto status = newest_status(service);
@@ -61,12 +61,12 @@ class Health : public ::testing::TestWithParam<std::string> {
   }
 
   std::mutex mutex_;
-  std::map<std::string, msg::ServiceStatus> statuses_;
+  std::map<std::string, msg::ServiceStatus> newest_;
   std::shared_ptr<bus::Bus> here_ = join(), listener_ = join();
   bus::Reader<msg::ServiceStatus> statuses_ =
       listener_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](const auto& status) {
         const std::lock_guard lock(mutex_);
-        statuses_[status->service] = *status;
+        newest_[status->service] = *status;
       });
   StopToken stop_;
 };
