@@ -143,5 +143,86 @@ TEST_F(DynamicRegionsTest, makes_no_statement_when_nearly_everything_moves) {
   EXPECT_EQ(count_in(kShape, regions.frames_left, {0, 0, 640, 480}), 0);
 }
 
+/// Remembers a block at 1.5 m as dynamic for 20 frames.
+class DynamicMemoryTest : public ::testing::Test {
+ protected:
+  DynamicMemoryTest() {
+    const DepthGrid grid = sampler_.sample(block_at(kBlock, 1.5));
+    std::vector<std::uint8_t> frames_left(grid.depth_m.size(), 0);
+    for (std::size_t i = 0; i < frames_left.size(); ++i) frames_left[i] = grid.depth_m[i] < 2 ? 20 : 0;
+    memory_.store(grid, sampler_.rays(), frames_left);
+  }
+  static vision::RgbdImage block_at(const cv::Rect& area, double depth_m) {
+    vision::RgbdImage image = test::wall_image(3.0);
+    test::put_block(image, area, depth_m);
+    return image;
+  }
+  std::vector<std::uint8_t> recall(const vision::RgbdImage& image, const Eigen::Isometry3d& T_current_last) {
+    return memory_.recall(sampler_.sample(image), image.camera, T_current_last);
+  }
+  DepthGridSampler sampler_ = test::make_sampler();
+  DynamicMemory memory_;
+};
+
+TEST_F(DynamicMemoryTest, finds_the_block_again) {
+  const auto frames_left = recall(block_at(kBlock, 1.45), Eigen::Isometry3d::Identity());
+  EXPECT_EQ(count_in(kShape, frames_left, kBlock), cells_in(kBlock));
+  EXPECT_EQ(frames_left[static_cast<std::size_t>(kShape.cell_at(300, 240))], 20);
+}
+
+TEST_F(DynamicMemoryTest, follows_the_motion_of_the_camera) {
+  Eigen::Isometry3d T_current_last = Eigen::Isometry3d::Identity();
+  T_current_last.translation().x() = -0.2;  // the camera has gone right, the block appears 70 px farther left
+  const cv::Rect shifted = kBlock - cv::Point(70, 0);
+  EXPECT_GT(count_in(kShape, recall(block_at(shifted, 1.5), T_current_last), shifted), cells_in(shifted) * 9 / 10);
+}
+
+TEST_F(DynamicMemoryTest, forgets_the_place_once_the_block_has_left) {
+  EXPECT_EQ(count_in(kShape, recall(test::wall_image(3.0), Eigen::Isometry3d::Identity()), {0, 0, 640, 480}), 0);
+}
+
+TEST_F(DynamicMemoryTest, is_empty_after_clear) {
+  memory_.clear();
+  EXPECT_EQ(count_in(kShape, recall(block_at(kBlock, 1.5), Eigen::Isometry3d::Identity()), {0, 0, 640, 480}), 0);
+}
+
+constexpr std::size_t kSurfaceCells = 100;
+
+/// One surface that keyframes saw through and recent views saw at its place.
+class Arrivals : public ::testing::Test {
+ protected:
+  DepthEvidence accept() { return accept_arrivals(evidence_, clusters_, votes_, old_votes_, GeometryConfig{}); }
+  DepthClusters clusters_{{10, 10}, std::vector<std::int32_t>(kSurfaceCells, 0), {100}};
+  FeatureVotes votes_{{}, {40}, {0}}, old_votes_{{}, {30}, {0}};
+  DepthEvidence evidence_ = [] {
+    DepthEvidence evidence = DepthEvidence::none(kSurfaceCells);
+    evidence.violated.assign(kSurfaceCells, 1);
+    evidence.settled.assign(kSurfaceCells, 1);
+    return evidence;
+  }();
+};
+
+TEST_F(Arrivals, are_at_rest_when_their_features_are) {
+  EXPECT_EQ(accept().violated, std::vector<std::uint8_t>(kSurfaceCells, 0));
+  EXPECT_EQ(accept().lasting, std::vector<std::uint8_t>(kSurfaceCells, 1));
+}
+
+TEST_F(Arrivals, are_none_while_features_are_displaced_or_few) {
+  votes_.moving = {10};
+  EXPECT_EQ(accept().violated, evidence_.violated);
+  votes_ = {{}, {5}, {0}};
+  EXPECT_EQ(accept().violated, evidence_.violated);
+}
+
+TEST_F(Arrivals, are_none_while_their_features_are_new_at_the_place) {
+  old_votes_ = {{}, {5}, {0}};
+  EXPECT_EQ(accept().violated, evidence_.violated);
+}
+
+TEST_F(Arrivals, are_none_while_a_recent_view_sees_through_part_of_the_surface) {
+  for (std::size_t cell = 0; cell < 6; ++cell) evidence_.settled[cell] = 0;
+  EXPECT_EQ(accept().violated, evidence_.violated);
+}
+
 }  // namespace
 }  // namespace rtd::filter

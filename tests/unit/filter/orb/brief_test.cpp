@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include "common/vision/hamming.hpp"
@@ -52,6 +54,23 @@ TEST(RotatedBrief, rotated_by_the_angle_matches_a_rotated_patch) {
     const auto angle = static_cast<float>(degrees * CV_PI / 180);
     EXPECT_LE(vision::hamming_distance(upright, rotated_brief(turned, {60, 60}, angle)), 25) << degrees << " degrees";
   }
+}
+
+TEST(Orientation, points_to_the_bright_side) {
+  for (double angle = -3.0; angle < 3.1; angle += 0.25) {
+    cv::Mat ramp(61, 61, CV_8UC1);
+    for (int y = 0; y < ramp.rows; ++y) {
+      for (int x = 0; x < ramp.cols; ++x) {
+        ramp.at<std::uint8_t>(y, x) =
+            cv::saturate_cast<std::uint8_t>(128 + 4 * ((x - 30) * std::cos(angle) + (y - 30) * std::sin(angle)));
+      }
+    }
+    EXPECT_NEAR(centroid_angle_rad(ramp, {30, 30}), angle, 0.02) << "rad";
+  }
+}
+
+TEST(Orientation, of_a_flat_patch_is_zero) {
+  EXPECT_EQ(centroid_angle_rad(cv::Mat(61, 61, CV_8UC1, cv::Scalar(90)), {30, 30}), 0.0F);
 }
 
 }  // namespace

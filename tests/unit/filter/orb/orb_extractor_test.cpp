@@ -117,5 +117,27 @@ TEST(OrbExtractor, finds_nothing_in_a_uniform_or_tiny_image) {
   EXPECT_TRUE(extractor.extract(rgbd_image(cv::Mat(8, 8, CV_8UC1, cv::Scalar(77)))).empty());
 }
 
+TEST(UndistortionTable, agrees_with_the_exact_solution_for_the_tum_camera) {
+  geometry::CameraModel::Parameters p = test::pinhole().parameters();
+  p.distortion = {0.262383, -0.953104, -0.005358, 0.002628, 1.163314};
+  const geometry::CameraModel camera(p);
+  UndistortionTable table;
+  table.fit(camera);
+  for (int v = 3; v < 480; v += 17) {
+    for (int u = 1; u < 640; u += 13) {
+      const Eigen::Vector2d exact = camera.undistort({u, v});
+      const cv::Point2f looked_up = table.undistort({static_cast<float>(u), static_cast<float>(v)});
+      EXPECT_NEAR(looked_up.x, exact.x(), 0.02) << "px at " << u << " " << v;
+      EXPECT_NEAR(looked_up.y, exact.y(), 0.02) << "px at " << u << " " << v;
+    }
+  }
+}
+
+TEST(UndistortionTable, leaves_pixels_alone_without_distortion) {
+  UndistortionTable table;
+  table.fit(test::pinhole());
+  EXPECT_EQ(table.undistort({12.25F, 400.5F}), cv::Point2f(12.25F, 400.5F));
+}
+
 }  // namespace
 }  // namespace rtd::filter

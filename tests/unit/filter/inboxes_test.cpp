@@ -11,6 +11,53 @@ namespace {
 
 using namespace std::chrono_literals;
 
+vision::Detection person(float x_px) {
+  return {"person", 0.9F, x_px, 10, 40, 80};
+}
+bool never() {
+  return false;
+}
+bool at_once() {
+  return true;
+}
+
+TEST(DetectionInbox, hands_out_each_batch_once_by_stamp) {
+  DetectionInbox inbox;
+  inbox.put({200, {person(2)}});
+  inbox.put({100, {person(1)}});
+  inbox.put({300, {person(3)}});
+  const auto taken = inbox.take_until(200);
+  ASSERT_EQ(taken.size(), 2U);
+  EXPECT_EQ(taken[0].stamp_ns, 100);
+  EXPECT_EQ(taken[1].detections.at(0).x_px, 2);
+  EXPECT_TRUE(inbox.take_until(200).empty());
+  EXPECT_EQ(inbox.take_until(1000).size(), 1U) << "it came before its frame";
+}
+
+TEST(DetectionInbox, waits_for_batches_that_arrive_later) {
+  DetectionInbox inbox;
+  auto waiting = std::async(std::launch::async, [&] { return inbox.wait_for(300, never); });
+  inbox.put({299, {}});
+  inbox.put({300, {person(3)}});
+  ASSERT_TRUE(waiting.get());
+  EXPECT_EQ(inbox.take_until(300).size(), 2U);
+}
+
+TEST(DetectionInbox, gives_up_when_the_caller_does_and_when_closed) {
+  DetectionInbox inbox;
+  EXPECT_FALSE(inbox.wait_for(1, at_once));
+  auto waiting = std::async(std::launch::async, [&] { return inbox.wait_for(1, never); });
+  inbox.close();
+  EXPECT_FALSE(waiting.get());
+}
+
+TEST(DetectionInbox, is_not_blocked_by_stamps_of_the_far_future) {
+  DetectionInbox inbox;
+  for (int i = 0; i < 1000; ++i) inbox.put({1'000'000'000'000 + i, {person(1)}});
+  inbox.put({100, {person(1)}});
+  EXPECT_EQ(inbox.take_until(100).size(), 1U);
+}
+
 msg::TrackingResult result(std::uint64_t seq, std::uint64_t event_count) {
   msg::TrackingResult result{};
   result.seq = seq;
