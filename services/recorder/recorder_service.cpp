@@ -17,7 +17,7 @@
 #include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/recorder/core/bag_metadata.hpp"
+#include "services/recorder/core/recording.hpp"
 
 namespace rtd::recorder {
 namespace {
@@ -37,7 +37,7 @@ std::string output_of(const ServiceConfig& config) {
 SplitPolicy split_of(const ServiceConfig& config) {
   if (config.split.empty()) return {};
   if (const auto policy = parse_split(config.split)) return *policy;
-  throw ConfigError("--split " + config.split + ": a size or a time is needed, e.g. 500MB, 1GB, 2GiB, 60s, 5min, 1h");
+  throw ConfigError("--split " + config.split + ": give a size or a duration, e.g. 500MB, 1GB, 2GiB, 60s, 5min, 1h");
 }
 
 OutputFiles files_of(const ServiceConfig& config) {
@@ -55,18 +55,18 @@ RecordingOptions options_of(const ServiceConfig& config) {
   return options;
 }
 
-/// Makes room for the recording; ConfigError when there is none.
+/// Makes room for the recording. Throws ConfigError when it cannot.
 void prepare(const OutputFiles& files, bool force) {
   const auto earlier = files.existing();
   if (!earlier.empty() && !force) {
     throw ConfigError(earlier.front().string() +
-                      " exists already: give another name with -o or replace it with --force");
+                      " exists already: choose another name with -o, or replace it with --force");
   }
   std::error_code error;
   fs::create_directories(files.folder(), error);
   if (error)
     throw ConfigError("folder " + files.folder().string() + ": " + error.message() + "; choose another with -o");
-  // What is written anew is replaced by its sink, which sees whether another recorder has it.
+  // The sink replaces the first file: it notices when another recorder is writing it.
   for (const fs::path& file : earlier) {
     if (file != files.file(0)) fs::remove(file, error);
   }
@@ -76,17 +76,17 @@ void prepare(const OutputFiles& files, bool force) {
 
 void RecorderService::add_options(CLI::App& app, Config& config) {
   app.add_option("--topics", config.topics, "Patterns of DDS or ROS 2 names: 'rtd/*' /slam/odometry (default: all)");
-  app.add_option("-o,--output", config.output, "FILE.mcap, or a folder as rosbag2 has it (default: rtd_DATE-TIME)");
-  app.add_option("--split", config.split, "A new file after so much: 500MB, 1GB, 60s, 5min");
+  app.add_option("-o,--output", config.output, "FILE.mcap, or a folder in the layout of rosbag2 (default: rtd_DATE-TIME)");
+  app.add_option("--split", config.split, "Begin a new file at this size or duration: 500MB, 1GB, 60s, 5min");
   app.add_option("--compress", config.compression, "none, lz4 or zstd (default none)")
       ->check(CLI::IsMember({"none", "lz4", "zstd"}));
   app.add_flag("--force", config.force, "Replace an earlier recording");
   app.add_flag("--beside", config.beside, "Keep an earlier recording and take the next free name: run.1.mcap");
   app.add_flag("--json", config.json, "Final report as JSON on stdout");
   app.footer(
-      "rtd record recover FILE    makes what is whole in a damaged or unfinished recording a well-formed one\n"
-      "rtd record join FOLDER -o FILE   makes one recording of the parts of a split one\n"
-      "Exit code 3: recorded, but something was lost; the report, the log and the file say what.");
+      "rtd record recover FILE          write what is intact in a damaged or unfinished recording to a new file\n"
+      "rtd record join FOLDER -o FILE   join the parts of a split recording\n"
+      "Exit code 3: recorded, but messages were lost; the report, the log and the file list them.");
 }
 
 RecorderService::RecorderService(const Config& config, service::Runtime& runtime)
@@ -122,7 +122,7 @@ service::ExitCode RecorderService::run() {
   return conclude();
 }
 
-/// A disk that refuses ends the recording; what was written until then stays.
+/// A write error of the disk ends the recording; what was written before stays.
 void RecorderService::record() {
   try {
     record_until_stopped();
@@ -165,7 +165,7 @@ void RecorderService::report_state(std::int64_t now_ns) {
   book_.count_acknowledged(acknowledged.messages);
   const TopicCounts totals = book_.totals();
   publish_metrics(acknowledged, totals);
-  say_state(totals);
+  set_state(totals);
   if (now_ns - progress_ns_ >= (interactive_ ? kProgressPeriodNs : kLogPeriodNs)) show_progress(now_ns, totals);
   if (failure_.empty()) failure_ = sync_->failure();
   watch_disk();
@@ -185,20 +185,20 @@ void RecorderService::publish_metrics(const Acknowledged& acknowledged, const To
   }
 }
 
-void RecorderService::say_state(const TopicCounts& totals) {
+void RecorderService::set_state(const TopicCounts& totals) {
   if (totals.lost() > 0) {
     return runtime_.heartbeat.set_state(msg::ServiceState::kDegraded, fmt::format("{} messages lost", totals.lost()));
   }
-  if (!readers_->settled()) return runtime_.heartbeat.set_state(msg::ServiceState::kStarting, "joins the topics");
-  if (!stepped_back_ && readers_->any()) {  // not before: who joins late misses the first messages
+  if (!readers_->settled()) return runtime_.heartbeat.set_state(msg::ServiceState::kStarting, "subscribing");
+  if (!stepped_back_ && readers_->any()) {  // not earlier: a late subscriber misses the first messages
     concurrency::lower_process_priority(config_.niceness);
     stepped_back_ = true;
   }
   if (totals.written > 0) return runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
   const bool any = readers_->any();
-  if (!any && !waiting_said_) {
-    waiting_said_ = true;
-    SPDLOG_INFO("event=waiting cause=\"nobody writes a topic that matches {}\"", fmt::join(config_.topics, " "));
+  if (!any && !waiting_logged_) {
+    waiting_logged_ = true;
+    SPDLOG_INFO("event=waiting cause=\"no topic matches {}\"", fmt::join(config_.topics, " "));
   }
   runtime_.heartbeat.set_state(msg::ServiceState::kReady, any ? "" : "no topic matches yet");
 }
@@ -220,7 +220,7 @@ void RecorderService::show_progress(std::int64_t now_ns, const TopicCounts& tota
   }
 }
 
-/// Ends while there is room for the summary.
+/// Ends the recording while there is still room for the summary.
 void RecorderService::watch_disk() {
   std::error_code error;
   const fs::space_info space = fs::space(files_.folder(), error);
@@ -228,7 +228,7 @@ void RecorderService::watch_disk() {
   free_bytes_ = space.available;
   const std::uint64_t least = static_cast<std::uint64_t>(config_.min_free_mib) * kMib;
   if (free_bytes_ < least && failure_.empty()) {
-    failure_ = fmt::format("the disk is nearly full: {} MiB are left and record.min_free_mib is {}", free_bytes_ / kMib,
+    failure_ = fmt::format("the disk is nearly full: {} MiB left, record.min_free_mib is {}", free_bytes_ / kMib,
                            config_.min_free_mib);
   }
 }
@@ -249,7 +249,7 @@ service::ExitCode RecorderService::conclude() {
   } else {
     SPDLOG_WARN(
         "event=metadata_not_written path={} cause=\"it describes another recording in this folder\" "
-        "fix=\"a folder for each: -o NAME without .mcap\"",
+        "fix=\"give each recording a folder of its own: -o NAME without .mcap\"",
         files_.metadata().string());
   }
   if (interactive_) std::cerr << "\r\x1b[K";

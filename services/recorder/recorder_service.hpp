@@ -20,13 +20,13 @@ class App;
 
 namespace rtd::recorder {
 
-/// Every wanted topic of the domain into MCAP files. Only listens; nobody waits for it. Says in its heartbeat what is
-/// on disk for certain. Ends in good order when asked to, or when the disk is full.
+/// Records every wanted topic of the domain into MCAP files. It only subscribes, so no publisher waits for it. Its
+/// heartbeat reports what is on disk for certain. It ends in good order when asked to, or when the disk is full.
 class RecorderService {
  public:
   static constexpr const char* kName = "record";
   static constexpr const char* kDescription =
-      "Records topics of any type, byte by byte, into MCAP files (rtd record recover FILE: repairs one)";
+      "Record topics of any type to MCAP files, byte for byte";
   using Config = ServiceConfig;
   static void add_options(CLI::App& app, Config& config);
 
@@ -43,7 +43,7 @@ class RecorderService {
   void finish();
   void report_state(std::int64_t now_ns);
   void publish_metrics(const Acknowledged& acknowledged, const TopicCounts& totals);
-  void say_state(const TopicCounts& totals);
+  void set_state(const TopicCounts& totals);
   void show_progress(std::int64_t now_ns, const TopicCounts& totals);
   void watch_disk();
   service::ExitCode conclude();
@@ -59,8 +59,8 @@ class RecorderService {
   std::optional<TopicReaders> readers_;
   std::int64_t started_ns_ = 0, reported_ns_ = 0, progress_ns_ = 0;
   std::uint64_t progress_bytes_ = 0, free_bytes_ = 0;
-  bool interactive_ = false, waiting_said_ = false, stepped_back_ = false;
-  std::string failure_;  ///< why it ends early
+  bool interactive_ = false, waiting_logged_ = false, stepped_back_ = false;
+  std::string failure_;  ///< why it ended early
 };
 
 }  // namespace rtd::recorder

@@ -5,8 +5,7 @@
 
 #include "common/service/command_line.hpp"
 #include "services/recorder/convert/convert_command.hpp"
-#include "services/recorder/inspect/diff_command.hpp"
-#include "services/recorder/inspect/info_command.hpp"
+#include "services/recorder/inspect/inspect_commands.hpp"
 
 /// rtd-recording: `rtd info`, `rtd diff` and `rtd convert`.
 int main(int argc, char** argv) {

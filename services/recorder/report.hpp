@@ -10,7 +10,7 @@
 
 namespace rtd::recorder {
 
-/// What a recording came to.
+/// The result of a recording.
 struct RecordingReport {
   std::vector<std::string> names;  ///< of the files, in the folder
   std::string folder;
@@ -18,16 +18,16 @@ struct RecordingReport {
   std::vector<RecordedTopic> topics;
   std::uint64_t acknowledged_bytes = 0;
   double duration_s = 0;
-  std::string failure;  ///< why it ended early; empty: it was asked to
+  std::string failure;  ///< why it ended early; empty: it was stopped
   bool partial() const;
 };
 
 std::string report_json(const RecordingReport& report);
 
-/// What the file itself says of its losses.
+/// The losses, as metadata of the file.
 mcap::Metadata loss_metadata(const std::vector<RecordedTopic>& topics);
 
-/// One line for a terminal, rewritten while it goes on.
+/// The progress of a recording, for one line on a terminal.
 struct ProgressFacts {
   double elapsed_s = 0, bytes_per_s = 0;
   TopicCounts totals;

@@ -21,7 +21,7 @@ std::string key_of(const bus::RawTopic& topic) {
 
 TopicReaders::TopicReaders(bus::RawBus& bus, TopicFilter filter, bool in_place, TopicBook& book, MessageQueue& queue)
     : bus_(bus), filter_(std::move(filter)), in_place_(in_place), book_(book), queue_(queue) {
-  bus_.watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { take_note(writer, change); });
+  bus_.watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { on_writer(writer, change); });
 }
 
 void TopicReaders::stop() {
@@ -45,10 +45,10 @@ bool TopicReaders::settled() const {
   });
 }
 
-void TopicReaders::take_note(const bus::TopicWriter& writer, bus::WriterChange change) {
+void TopicReaders::on_writer(const bus::TopicWriter& writer, bus::WriterChange change) {
   if (change == bus::WriterChange::kGone || writer.own || !filter_.wants(writer.topic.name)) return;
   try {
-    listen(writer);
+    subscribe(writer);
   } catch (const bus::BusError& error) {
     const std::lock_guard lock(mutex_);
     if (refused_.insert(key_of(writer.topic)).second) {
@@ -58,65 +58,65 @@ void TopicReaders::take_note(const bus::TopicWriter& writer, bus::WriterChange c
   }
 }
 
-void TopicReaders::listen(const bus::TopicWriter& writer) {
+void TopicReaders::subscribe(const bus::TopicWriter& writer) {
   const std::size_t topic = book_.find_or_add(writer.topic.name, writer.topic.type);
   book_.add_offer(topic, writer.qos);
   const Offer offer = offer_of(writer.qos);
   const std::lock_guard lock(mutex_);
   if (readers_.contains({topic, offer})) return;
-  const auto listener = std::make_shared<Listener>(Listener{topic, offer, {}});
+  const auto subscription = std::make_shared<Subscription>(Subscription{topic, offer, {}});
   bus::RawReaderOptions options;
   options.reliable = offer.first;
   options.transient_local = offer.second;
   options.in_place = in_place_ && writer.shared_memory;
-  readers_[{topic, offer}] = bus_.reader(writer.topic, options, handlers(listener));
+  readers_[{topic, offer}] = bus_.reader(writer.topic, options, handlers(subscription));
   const RecordedTopic described = book_.topic(topic);
   SPDLOG_INFO("event=topic_found topic={} type={} reliable={} latched={}{}", described.name, described.type.name,
               offer.first, offer.second, described.type.known() ? "" : " definition=unknown");
 }
 
-bus::RawHandlers TopicReaders::handlers(const std::shared_ptr<Listener>& listener) {
+bus::RawHandlers TopicReaders::handlers(const std::shared_ptr<Subscription>& subscription) {
   bus::RawHandlers handlers;
-  handlers.on_sample = [this, listener](const bus::RawSample& sample) { receive(*listener, sample); };
-  handlers.on_lost = [this, listener](const bus::RawLoss& loss) { lose(*listener, loss); };
-  handlers.status.on_samples_lost = [this, listener](int total) {
-    book_.at_least_lost_in_transit(listener->topic, static_cast<std::uint64_t>(total));
+  handlers.on_sample = [this, subscription](const bus::RawSample& sample) { receive(*subscription, sample); };
+  handlers.on_lost = [this, subscription](const bus::RawLoss& loss) { lose(*subscription, loss); };
+  handlers.status.on_samples_lost = [this, subscription](int total) {
+    book_.at_least_lost_in_transit(subscription->topic, static_cast<std::uint64_t>(total));
   };
   return handlers;
 }
 
-/// Whether the writer offers just what this reader asks for.
-bool TopicReaders::is_mine(Listener& listener, const bus::WriterId& writer) {
-  const auto known = listener.is_mine.find(writer);
-  if (known != listener.is_mine.end()) return known->second;
-  bool mine = true;  // a writer that is gone already and left samples
+/// Whether the writer offers exactly what this reader requests.
+bool TopicReaders::is_mine(Subscription& subscription, const bus::WriterId& writer) {
+  const auto known = subscription.is_mine.find(writer);
+  if (known != subscription.is_mine.end()) return known->second;
+  bool mine = true;  // a writer that has gone and left samples
   for (const bus::TopicWriter& other : bus_.writers()) {
-    if (other.id == writer) mine = offer_of(other.qos) == listener.offer;
+    if (other.id == writer) mine = offer_of(other.qos) == subscription.offer;
   }
-  return listener.is_mine[writer] = mine;
+  return subscription.is_mine[writer] = mine;
 }
 
-void TopicReaders::receive(Listener& listener, const bus::RawSample& sample) {
-  if (!is_mine(listener, sample.writer)) return;
-  QueuedMessage message{listener.topic, static_cast<std::uint32_t>(sample.sequence),
+void TopicReaders::receive(Subscription& subscription, const bus::RawSample& sample) {
+  if (!is_mine(subscription, sample.writer)) return;
+  QueuedMessage message{subscription.topic, static_cast<std::uint32_t>(sample.sequence),
                         static_cast<std::uint64_t>(sample.received_ns), static_cast<std::uint64_t>(sample.source_ns),
                         sample.bytes};
   if (queue_.push(std::move(message))) return;
-  book_.count_lost_in_queue(listener.topic);
+  book_.count_lost_in_queue(subscription.topic);
   const std::lock_guard lock(log_mutex_);
   if (!queue_log_.pass()) return;
   SPDLOG_WARN(
       "event=queue_full topic={} sequence={} cause=\"the disk is too slow\" fix=\"fewer topics (--topics) or "
       "record.queue_mib\"",
-      book_.topic(listener.topic).name, sample.sequence);
+      book_.topic(subscription.topic).name, sample.sequence);
 }
 
-void TopicReaders::lose(Listener& listener, const bus::RawLoss& loss) {
-  if (!is_mine(listener, loss.writer)) return;
-  book_.count_lost_in_transit(listener.topic, loss.count);
+void TopicReaders::lose(Subscription& subscription, const bus::RawLoss& loss) {
+  if (!is_mine(subscription, loss.writer)) return;
+  book_.count_lost_in_transit(subscription.topic, loss.count);
   const std::lock_guard lock(log_mutex_);
   if (!loss_log_.pass()) return;
-  SPDLOG_WARN("event=samples_lost topic={} writer={} first={} count={}", book_.topic(listener.topic).name,
+  SPDLOG_WARN("event=samples_lost topic={} writer={} first={} count={}", book_.topic(subscription.topic).name,
               bus::to_string(loss.writer), loss.first_sequence, loss.count);
 }
 

@@ -14,40 +14,39 @@
 #include "common/service/log.hpp"
 #include "services/recorder/core/message_queue.hpp"
 #include "services/recorder/core/topic_book.hpp"
-#include "services/recorder/core/topic_filter.hpp"
 
 namespace rtd::recorder {
 
-/// Listens to every wanted topic of the domain, from the moment in which somebody writes it, and queues what comes.
+/// Subscribes to every wanted topic of the domain as soon as it has a writer, and queues the messages.
 ///
-/// A reader asks for what a writer offers: reliable, and the history of a latched topic. Writers of one topic that
-/// offer different things get a reader each kind; the modest ones match the others too, whose samples are then left out
-/// there.
+/// A reader requests what a writer offers: reliability, and the history of a latched topic. If the writers of a topic
+/// offer different QoS, each kind of QoS gets a reader. A reader that requests less also matches the other writers and
+/// ignores their samples.
 class TopicReaders {
  public:
   TopicReaders(bus::RawBus& bus, TopicFilter filter, bool in_place, TopicBook& book, MessageQueue& queue);
   ~TopicReaders() { stop(); }
-  /// Nothing is queued any more.
+  /// Afterwards nothing is queued.
   void stop();
   bool any() const;
-  /// Every writer that is known has a reader of ours that knows it.
+  /// Every known writer is matched with a reader of ours.
   bool settled() const;
 
  private:
   /// What a writer offers: reliable, transient-local.
   using Offer = std::pair<bool, bool>;
-  struct Listener {
+  struct Subscription {
     std::size_t topic = 0;
     Offer offer;
     std::map<bus::WriterId, bool> is_mine;  ///< used by the reader's thread
   };
 
-  void take_note(const bus::TopicWriter& writer, bus::WriterChange change);
-  void listen(const bus::TopicWriter& writer);
-  bus::RawHandlers handlers(const std::shared_ptr<Listener>& listener);
-  bool is_mine(Listener& listener, const bus::WriterId& writer);
-  void receive(Listener& listener, const bus::RawSample& sample);
-  void lose(Listener& listener, const bus::RawLoss& loss);
+  void on_writer(const bus::TopicWriter& writer, bus::WriterChange change);
+  void subscribe(const bus::TopicWriter& writer);
+  bus::RawHandlers handlers(const std::shared_ptr<Subscription>& subscription);
+  bool is_mine(Subscription& subscription, const bus::WriterId& writer);
+  void receive(Subscription& subscription, const bus::RawSample& sample);
+  void lose(Subscription& subscription, const bus::RawLoss& loss);
 
   bus::RawBus& bus_;
   const TopicFilter filter_;

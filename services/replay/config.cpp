@@ -19,13 +19,13 @@ void require(const char* name, double value, double max) {
 }  // namespace
 
 void validate(const ServiceConfig& config) {
-  if (config.file.empty()) throw service::ConfigError("no recording is named: rtd replay FILE (replay.file)");
+  if (config.file.empty()) throw service::ConfigError("name a recording: rtd replay FILE (replay.file)");
   require("--rate", config.rate, ServiceConfig::kHighestRate);
-  require("--start-offset", config.start_offset_s, ServiceConfig::kLongest_s);
-  require("--duration", config.duration_s, ServiceConfig::kLongest_s);
-  require("--clock", config.clock_hz, ServiceConfig::kFastestClock_hz);
+  require("--start-offset", config.start_offset_s, ServiceConfig::kLongestS);
+  require("--duration", config.duration_s, ServiceConfig::kLongestS);
+  require("--clock", config.clock_hz, ServiceConfig::kFastestClockHz);
   require("--wait-readers", config.wait_readers_s, 3600);
-  require("--read-ahead", config.read_ahead_mb, 16384);
+  require("--read-ahead", config.read_ahead_mb, ServiceConfig::kMostReadAheadMb);
 }
 
 int window_of(const ServiceConfig& config, service::Pace pace) {

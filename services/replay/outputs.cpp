@@ -10,7 +10,7 @@
 #include "common/ros2/names.hpp"
 #include "common/ros2/offered_qos.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/replay/core/replay_error.hpp"
+#include "services/replay/core/topic_choice.hpp"
 
 namespace rtd::replay {
 namespace {
@@ -20,7 +20,7 @@ constexpr std::size_t kPublishedAt = kCdrHeaderBytes + 16;  // behind seq and st
 constexpr char kFrameType[] = "rtd_msgs::msg::dds_::RgbdFrame_";
 constexpr char kFeaturesType[] = "rtd_msgs::msg::dds_::FeatureFrame_";
 constexpr char kTrackingType[] = "rtd_msgs::msg::dds_::TrackingResult_";
-// Kept for readers that are late. DDS does not announce the depth of a writer, so a recording seldom knows it.
+// History for late readers. DDS does not announce the depth of a writer, so a recording seldom knows it.
 constexpr int kFrameDepth = 8, kLatchedDepth = 10, kUsualDepth = 64;
 constexpr int kSlowReaderMs = 2000;
 

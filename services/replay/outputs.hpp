@@ -18,8 +18,8 @@ namespace rtd::replay {
 struct OutputOptions {
   std::map<std::string, std::string> remaps;  ///< by DDS name
   bool restamp = false;                       ///< published_ns of our frames and features becomes now
-  bool wait_for_readers = false;              ///< never overtake a reliable reader: nobody paces the messages
-  bool frames_apart = false;  ///< frames are written by a thread of their own: a millisecond that nobody else waits for
+  bool wait_for_readers = false;              ///< never overtake a reliable reader: nothing else paces the messages
+  bool frames_apart = false;  ///< frames have a writing thread of their own, so that other topics do not wait a millisecond
 };
 
 /// A topic of the recording on the bus.
@@ -48,9 +48,9 @@ class Outputs {
   void send_clock(std::int64_t recorded_ns);
   const Output& of(mcap::ChannelId channel) const { return *by_channel_.at(channel); }
   std::vector<const Output*> all() const;
-  /// Reliable topics that nobody reads yet.
+  /// Reliable topics without a reader.
   std::vector<std::string> unread() const;
-  /// Writes what waits; the counts are final then, nothing can be sent any more.
+  /// Writes the waiting frames. Afterwards nothing can be sent and the counts are final.
   void finish();
   /// Waits until every reliable reader has everything.
   void wait_acknowledged(int timeout_ms);

@@ -19,9 +19,8 @@
 #include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/replay/core/replay_error.hpp"
 #include "services/replay/core/topic_choice.hpp"
-#include "services/replay/keyboard.hpp"
+#include "services/replay/input.hpp"
 #include "services/replay/replay_report.hpp"
 
 namespace rtd::replay {
@@ -30,7 +29,7 @@ namespace {
 constexpr std::int64_t kNsPerSecond = 1'000'000'000, kMetricsEveryNs = kNsPerSecond;
 constexpr std::chrono::milliseconds kLook{20};
 constexpr std::chrono::milliseconds kSettle{200};    // a reader that has matched here may not have matched us yet
-constexpr std::chrono::milliseconds kFarewell{300};  // the last heartbeats reach everybody
+constexpr std::chrono::milliseconds kFarewell{300};  // time for the last heartbeats to arrive
 constexpr int kLastAcknowledgementMs = 2000;
 constexpr char kTrackingTopic[] = "rtd/tracking";
 
@@ -38,7 +37,7 @@ std::int64_t to_ns(double seconds) {
   return static_cast<std::int64_t>(seconds * 1e9);
 }
 
-/// Times beyond 2262 are a lie of the file.
+/// A time beyond the year 2262 is an error in the file.
 std::int64_t signed_time(mcap::Timestamp time) {
   return static_cast<std::int64_t>(std::min<mcap::Timestamp>(time, std::numeric_limits<std::int64_t>::max()));
 }
@@ -55,30 +54,30 @@ void ReplayService::add_options(CLI::App& app, Config& config) {
   app.add_option("-r,--rate", config.rate, "Speed, 1 = as recorded, 0 = as fast as possible (replay.rate)");
   app.add_flag(
       "--asap", [&config](std::int64_t) { config.rate = 0; }, "As fast as possible: --rate 0");
-  app.add_flag("-l,--loop", config.loop, "Begin again at the end (replay.loop)");
-  app.add_option("--start-offset", config.start_offset_s, "Begin so many seconds behind the first message");
-  app.add_option("--duration", config.duration_s, "Play so many seconds, 0 = to the end");
-  app.add_option("--topics", config.topics, "Only these topics or patterns, e.g. rtd/frame '/slam/*'")->delimiter(',');
-  app.add_option("--exclude", config.exclude, "Not these topics or patterns")->delimiter(',');
+  app.add_flag("-l,--loop", config.loop, "Start again at the end (replay.loop)");
+  app.add_option("--start-offset", config.start_offset_s, "Start this many seconds after the first message");
+  app.add_option("--duration", config.duration_s, "Play this many seconds, 0 = to the end");
+  app.add_option("--topics", config.topics, "Play only these topics or patterns, e.g. rtd/frame '/slam/*'")->delimiter(',');
+  app.add_option("--exclude", config.exclude, "Leave these topics or patterns out")->delimiter(',');
   app.add_option("-m,--remap", config.remap, "Rename topics: old:=new");
-  app.add_option("--clock", config.clock_hz, "Publish /clock at this rate (without a number: 40 Hz)")
+  app.add_option("--clock", config.clock_hz, "Publish /clock at this rate (40 Hz without a number)")
       ->expected(0, 1)
       ->default_str("40");
-  app.add_flag("-p,--pause,--start-paused", config.pause, "Begin paused (space goes on)");
+  app.add_flag("-p,--pause,--start-paused", config.pause, "Start paused (space continues)");
   app.add_option("--read-ahead", config.read_ahead_mb, "Megabytes read before they are due (replay.read_ahead_mb)");
   app.add_option("--lockstep", config.lockstep,
-                 "The next frame only behind a message of this topic, e.g. rtd/tracking");
-  app.add_option("--paced-topic", config.paced_topic, "What waits for it (default rtd/frame, else rtd/features)");
+                 "Send the next frame only after a message of this topic, e.g. rtd/tracking");
+  app.add_option("--paced-topic", config.paced_topic, "Topic that waits for these answers (default rtd/frame, else rtd/features)");
   app.add_option("--wait-for", config.wait_for, "Services that must be ready first, e.g. filter,slam")->delimiter(',');
   app.add_option("--wait-readers", config.wait_readers_s, "Longest wait for readers of reliable topics [s]");
-  app.add_option("--stand-in", config.stand_in, "Services for which heartbeats are sent, e.g. detector")
+  app.add_option("--stand-in", config.stand_in, "Services to send heartbeats for, e.g. detector")
       ->delimiter(',');
-  app.add_flag("--restamp", config.restamp, "published_ns of our frames and features becomes the time of the replay");
+  app.add_flag("--restamp", config.restamp, "Set published_ns of our frames and features to the time of the replay");
   app.add_flag("--json", config.json, "Print a report in JSON at the end");
   app.footer(
-      "Keys: space pause, right arrow or s next message (paused), up and down arrow rate, b and f 10 s back and "
-      "forward, q end.\nExit code: 0 done, 1 nobody answers (--lockstep), 2 the recording or an option cannot be used, "
-      "3 the recording is damaged: played is what can be read");
+      "Keys: space pauses, right arrow or s steps (paused), up and down arrow change the rate, b and f jump 10 s back "
+      "and forward, q ends.\nExit code: 0 done, 1 no answers (--lockstep), 2 the recording or an option cannot be "
+      "used, 3 the recording is damaged and only its readable part was played");
 }
 
 ReplayService::ReplayService(const Config& config, service::Runtime& runtime)
@@ -100,7 +99,7 @@ void ReplayService::open() {
   reader_ = std::make_unique<mcap::IndexedReader>(*source_);
   for (const mcap::Problem& problem : reader_->problems().listed())
     if (problem.kind == mcap::ProblemKind::kNotMcap && problem.data_lost)
-      throw ReplayError(config_.file + ": this is no MCAP file; 'rtd info' says more");
+      throw ReplayError(config_.file + ": this is not an MCAP file; 'rtd info' says more");
   choose_topics();
   choose_span();
   bus::BusOptions options = runtime_.bus_options;
@@ -133,7 +132,7 @@ void ReplayService::choose_topics() {
 void ReplayService::choose_span() {
   const mcap::Summary& summary = reader_->summary();
   if (!summary.statistics || summary.statistics->message_count == 0)
-    throw ReplayError(config_.file + ": it holds no messages");
+    throw ReplayError(config_.file + ": the recording has no messages");
   first_ns_ = signed_time(summary.statistics->message_start_time);
   const std::int64_t last_ns = signed_time(summary.statistics->message_end_time);
   start_ns_ = first_ns_ + to_ns(config_.start_offset_s);
@@ -161,13 +160,13 @@ service::ExitCode ReplayService::run() {
   SPDLOG_INFO("event=recording_opened file={} topics={} messages={} duration_s={:.3f} summary={}", config_.file,
               channels_.size(), reader_->summary().statistics->message_count,
               static_cast<double>(end_ns_ - start_ns_) * 1e-9, !reader_->summary().scanned);
-  if (source_->being_written()) SPDLOG_WARN("event=being_written cause=\"played is what is in the file now\"");
+  if (source_->being_written()) SPDLOG_WARN("event=being_written cause=\"only what is in the file now is played\"");
   for (const std::string& service : config_.stand_in) {
     stand_ins_.push_back(std::make_unique<service::Heartbeat>(runtime_.bus, service, runtime_.stop));
     stand_ins_.back()->set_state(msg::ServiceState::kRunning, "played by rtd-replay");
   }
-  // Slam is ready only when somebody listens to its answers.
-  if (!listen_for_answers() || !wait_for_services() || !wait_for_readers())
+  // Slam is ready only when its answers have a subscriber.
+  if (!subscribe_to_answers() || !wait_for_services() || !wait_for_readers())
     return runtime_.stop.stop_requested() ? service::kOk : service::kRunFailed;
   runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
   return play();
@@ -190,7 +189,7 @@ bool ReplayService::wait_for_services() {
   }
 }
 
-bool ReplayService::listen_for_answers() {
+bool ReplayService::subscribe_to_answers() {
   if (window_ == 0) return true;
   const std::string topic = ros2::dds_topic(config_.lockstep);
   const std::int64_t deadline_ns = now_ns() + to_ns(config_.start_timeout_s);
@@ -207,12 +206,12 @@ bool ReplayService::listen_for_answers() {
     }
     if (runtime_.stop.wait_for(kLook)) return false;
   }
-  fail(fmt::format("nobody publishes {} within {:g} s: start who answers, or leave out --lockstep", topic,
+  fail(fmt::format("{} has no publisher after {:g} s: start the service that answers, or leave out --lockstep", topic,
                    config_.start_timeout_s));
   return false;
 }
 
-/// A volatile topic reaches only who is there: reliable topics wait a moment for their readers.
+/// A volatile topic reaches only readers that are already there, so reliable topics wait a moment for theirs.
 bool ReplayService::wait_for_readers() {
   const std::int64_t deadline_ns = now_ns() + to_ns(config_.wait_readers_s);
   while ((!outputs_->unread().empty() || (answers_ && answers_->matched() == 0)) && now_ns() < deadline_ns)
@@ -251,7 +250,7 @@ service::ExitCode ReplayService::finish(const Player& player, PlayOutcome outcom
   const Report report = report_of(player, *outputs_, config_.file, outcome, reader_->problems());
   SPDLOG_INFO("event=summary {}", log_text(report));
   if (config_.json) std::cout << to_json(report).dump(2) << std::endl;
-  tell_problems();
+  log_problems();
   if (outcome == PlayOutcome::kUnanswered)
     return fail(fmt::format("no message of {} for number {} of {} within {:g} s: are its publishers alive?",
                             config_.lockstep, player.unanswered_seq(), paced_->topic.name, config_.result_timeout_s));
@@ -260,7 +259,7 @@ service::ExitCode ReplayService::finish(const Player& player, PlayOutcome outcom
   return reader_->problems().data_lost() ? service::kPartialLoss : service::kOk;
 }
 
-void ReplayService::tell_problems() const {
+void ReplayService::log_problems() const {
   for (const mcap::Problem& problem : reader_->problems().listed())
     SPDLOG_WARN("event=recording_damaged kind={} cause=\"{}\"", mcap::name_of(problem.kind), mcap::to_string(problem));
 }

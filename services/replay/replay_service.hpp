@@ -10,9 +10,9 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/runtime.hpp"
 #include "services/replay/config.hpp"
-#include "services/replay/inbox.hpp"
+#include "services/replay/input.hpp"
 #include "services/replay/outputs.hpp"
-#include "services/replay/status_line.hpp"
+#include "services/replay/replay_report.hpp"
 
 namespace CLI {
 class App;
@@ -20,11 +20,11 @@ class App;
 
 namespace rtd::replay {
 
-/// rtd-replay: plays a recording onto the bus, byte for byte (docs/recordings.md).
+/// rtd-replay: publishes a recording, byte for byte (docs/recordings.md).
 class ReplayService final : public PlayerHost {
  public:
   static constexpr const char* kName = "replay";
-  static constexpr const char* kDescription = "Plays a recording (MCAP) onto the bus";
+  static constexpr const char* kDescription = "Replay a recording (MCAP)";
   using Config = ServiceConfig;
   static void add_options(CLI::App& app, Config& config);
 
@@ -47,10 +47,10 @@ class ReplayService final : public PlayerHost {
   void choose_span();
   bool wait_for_services();
   bool wait_for_readers();
-  bool listen_for_answers();
+  bool subscribe_to_answers();
   service::ExitCode play();
   service::ExitCode finish(const Player& player, PlayOutcome outcome);
-  void tell_problems() const;
+  void log_problems() const;
   service::ExitCode fail(const std::string& message);
 
   Config config_;
@@ -58,7 +58,7 @@ class ReplayService final : public PlayerHost {
   int window_;
   std::unique_ptr<mcap::FileSource> source_;
   std::unique_ptr<mcap::IndexedReader> reader_;
-  std::vector<const mcap::Channel*> channels_;  ///< that are played
+  std::vector<const mcap::Channel*> channels_;  ///< the ones played
   std::int64_t first_ns_ = 0, start_ns_ = 0, end_ns_ = 0;
   std::shared_ptr<Inbox> inbox_;
   std::shared_ptr<bus::RawBus> bus_;

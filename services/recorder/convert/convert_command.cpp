@@ -37,7 +37,7 @@ Destination parse_destination(const std::string& text) {
   return {Format::kTum, text};
 }
 
-/// What is missing in the result although the source once had it.
+/// Counts what the source once had and the result lacks.
 std::uint64_t lost(const camera::SourceCounters& counters) {
   return counters.of(SkipReason::kColorUnreadable) + counters.of(SkipReason::kDepthUnreadable) +
          counters.of(SkipReason::kDepthNot16Bit) + counters.of(SkipReason::kSizeMismatch) +
@@ -69,7 +69,7 @@ nlohmann::json to_json(const ConvertOptions& options, std::uint64_t frames, cons
           {"lost", lost(counters)}};
 }
 
-void tell(const ConvertOptions& options, std::uint64_t frames, camera::FrameSource& source, std::ostream& out,
+void print(const ConvertOptions& options, std::uint64_t frames, camera::FrameSource& source, std::ostream& out,
           std::ostream& err) {
   constexpr std::size_t kMostLines = 10;
   const std::vector<camera::SkippedInput> skipped = source.take_skipped();
@@ -88,25 +88,25 @@ void tell(const ConvertOptions& options, std::uint64_t frames, camera::FrameSour
 }  // namespace
 
 void add_convert_command(CLI::App& app, ConvertOptions& options) {
-  CLI::App* command = app.add_subcommand("convert", "A recording as another: bag, MCAP or TUM folder to TUM or MCAP");
+  CLI::App* command = app.add_subcommand("convert", "Convert a bag, an MCAP file, a TUM folder or any other source to TUM or MCAP");
   command->add_option("source", options.source, "bag:FILE, mcap:FILE, tum:FOLDER or any other source; FILE.bag")
       ->required();
   command->add_option("destination", options.destination, "New tum:FOLDER or FILE.mcap; nothing is overwritten")
       ->required();
-  command->add_option("--frames", options.frames, "At most so many frames, 0 = all");
-  command->add_option("--compress", options.compression, "Chunks of an MCAP file: none, lz4, zstd")
+  command->add_option("--frames", options.frames, "At most this many frames, 0 = all");
+  command->add_option("--compress", options.compression, "Compression of MCAP chunks: none, lz4, zstd")
       ->check(CLI::IsMember({"none", "lz4", "zstd"}))
       ->capture_default_str();
   command->add_flag("--json", options.json, "Print the summary as JSON");
   command->footer(
-      "Exit codes: 0 done, 1 failed on the way, 2 nothing was written, 3 done but part of the source was damaged");
+      "Exit codes: 0 done, 1 failed while converting, 2 nothing was written, 3 done but part of the source was damaged");
 }
 
 int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& err) {
   try {
     const auto source = camera::make_source(camera::complete_uri(options.source));
     const std::uint64_t frames = write(*source, options, err);
-    tell(options, frames, *source, out, err);
+    print(options, frames, *source, out, err);
     return lost(source->counters()) > 0 ? service::kPartialLoss : service::kOk;
   } catch (const SourceError& error) {
     err << "rtd convert: " << error.what() << '\n';

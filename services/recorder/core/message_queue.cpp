@@ -9,21 +9,21 @@ namespace rtd::recorder {
 bool MessageQueue::push(QueuedMessage message) {
   const std::uint64_t size = message.bytes->view().size();
   const std::uint64_t room = size < kLargeMessage ? max_bytes_ : max_bytes_ - max_bytes_ / 8;
-  bool worth = false;
+  bool enough = false;
   {
     const std::lock_guard lock(mutex_);
     if (closed_ || bytes_ + size > room) return false;
-    worth = bytes_ < kWorth && bytes_ + size >= kWorth;
+    enough = bytes_ < kEnoughToWrite && bytes_ + size >= kEnoughToWrite;
     bytes_ += size;
     messages_.push_back(std::move(message));
   }
-  if (worth) ready_.notify_one();
+  if (enough) ready_.notify_one();
   return true;
 }
 
 void MessageQueue::wait_for(std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  ready_.wait_for(lock, timeout, [this] { return closed_ || bytes_ >= kWorth; });
+  ready_.wait_for(lock, timeout, [this] { return closed_ || bytes_ >= kEnoughToWrite; });
 }
 
 std::optional<QueuedMessage> MessageQueue::pop() {

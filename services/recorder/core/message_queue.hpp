@@ -21,25 +21,25 @@ struct QueuedMessage {
   std::shared_ptr<const bus::ByteBlock> bytes;
 };
 
-/// What waits for the disk, bounded in bytes. Full: the newest is refused. Large messages are refused somewhat earlier,
-/// so that images do not crowd out poses. Thread-safe.
+/// The messages that wait for the disk, bounded in bytes. When it is full, the newest message is refused. Large messages
+/// are refused somewhat earlier, so that images do not displace poses. Thread-safe.
 class MessageQueue {
  public:
   explicit MessageQueue(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}
 
   /// False: no room (or closed).
   bool push(QueuedMessage message);
-  /// Until there is a good piece of work, the time is over or the queue is closed. To wake the writer for each message
-  /// would cost more than to write it.
+  /// Waits until there is enough to write, the time is over or the queue is closed. Waking the writer for each message
+  /// would cost more than writing it.
   void wait_for(std::chrono::milliseconds timeout);
-  /// The oldest, at once; empty when there is none.
+  /// The oldest message; empty when there is none. Does not wait.
   std::optional<QueuedMessage> pop();
   void close();
   std::uint64_t bytes() const;
 
  private:
   static constexpr std::uint64_t kLargeMessage = 64 * 1024;
-  static constexpr std::uint64_t kWorth = 1024 * 1024;
+  static constexpr std::uint64_t kEnoughToWrite = 1024 * 1024;
 
   const std::uint64_t max_bytes_;
   mutable std::mutex mutex_;

@@ -2,14 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace rtd::recorder {
 
-/// Where a recording goes. "run.mcap" is that file, or run_0.mcap, run_1.mcap, ... when it is split. Anything else is a
-/// folder as rosbag2 has it: run/run_0.mcap, ... Beside the files lies metadata.yaml.
+/// The files of a recording. "run.mcap" is that file, or run_0.mcap, run_1.mcap, ... when it is split. Anything else is
+/// a folder in the layout of rosbag2: run/run_0.mcap, ... with metadata.yaml beside the files.
 class OutputFiles {
  public:
   OutputFiles(const std::string& output, bool split);
@@ -20,9 +22,9 @@ class OutputFiles {
   std::filesystem::path file(std::size_t number) const;
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path metadata() const { return folder_ / "metadata.yaml"; }
-  /// Files of an earlier recording under this name that are there now.
+  /// The files of an earlier recording under this name.
   std::vector<std::filesystem::path> existing() const;
-  /// Whether metadata.yaml is not there or speaks of files of this recording only.
+  /// True when metadata.yaml does not exist or lists only files of this recording.
   bool owns_metadata() const;
 
  private:
@@ -32,5 +34,19 @@ class OutputFiles {
   std::string stem_;
   bool numbered_;
 };
+
+/// When a new file begins. Both 0: never.
+struct SplitPolicy {
+  std::uint64_t bytes = 0;        ///< a file does not grow beyond this, unless one message does
+  std::uint64_t duration_ns = 0;  ///< between the first and the last message of a file
+
+  bool on() const { return bytes > 0 || duration_ns > 0; }
+  /// Whether a file of that size, whose first message has that time, has room for one more message.
+  bool has_room(std::uint64_t file_bytes, std::uint64_t message_bytes, std::uint64_t first_ns,
+                std::uint64_t now_ns) const;
+};
+
+/// Parses "500MB", "1GiB", "60s", "5min", "1h"; empty for other texts.
+std::optional<SplitPolicy> parse_split(const std::string& text);
 
 }  // namespace rtd::recorder

@@ -15,7 +15,7 @@ mcap::WriterOptions writer_options(const RecordingOptions& options) {
   writer.profile = "ros2";
   writer.library = "rtd-slam";
   writer.compression = options.compression;
-  // Chunks are ended here, so that it is known which messages an ended one holds.
+  // This class ends the chunks itself, so that it knows which messages each of them contains.
   writer.chunk_size = std::numeric_limits<std::uint64_t>::max() / 2;
   return writer;
 }
@@ -77,7 +77,7 @@ mcap::ChannelId Recording::channel(std::size_t topic) {
   const ros2::TypeDefinition& type = described.type;
   auto schema = schemas_.find(type.name);
   if (schema == schemas_.end()) {
-    // rosbag2 takes the type's name from the schema, so an unknown type too has one, though without text.
+    // rosbag2 takes the type name from the schema, so an unknown type has one too, without text.
     schema = schemas_.emplace(type.name, writer_.add(mcap::Schema{0, type.name, type.encoding, type.text})).first;
   }
   const mcap::ChannelId id = writer_.add(mcap::Channel{

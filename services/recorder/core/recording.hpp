@@ -11,7 +11,7 @@
 
 #include "common/mcap/writer.hpp"
 #include "services/recorder/core/message_queue.hpp"
-#include "services/recorder/core/split_policy.hpp"
+#include "services/recorder/core/output_files.hpp"
 #include "services/recorder/core/sync_thread.hpp"
 #include "services/recorder/core/topic_book.hpp"
 
@@ -19,8 +19,8 @@ namespace rtd::recorder {
 
 struct RecordingOptions {
   mcap::Compression compression = mcap::Compression::kNone;
-  std::uint64_t chunk_bytes = 1024 * 1024;  ///< a chunk is ended when it has so many
-  std::int64_t chunk_age_ns = 100'000'000;  ///< or when its first message has waited that long
+  std::uint64_t chunk_bytes = 1024 * 1024;  ///< a chunk ends at this size
+  std::int64_t chunk_age_ns = 100'000'000;  ///< or when its first message has waited this long
   SplitPolicy split;
 };
 
@@ -30,8 +30,8 @@ struct FileSummary {
   std::uint64_t first_ns = 0, last_ns = 0;  ///< reception of its first and last message
 };
 
-/// Puts messages into MCAP files, chunk by chunk, and has each ended chunk made durable. Knows no clock: "now" is any
-/// steadily growing time. For one thread. IoError passes through: what was written before stays whole.
+/// Writes messages to MCAP files, chunk by chunk, and has each finished chunk made durable. "Now" is any steadily
+/// growing time. For one thread. IoError passes through: what was written before stays intact.
 class Recording {
  public:
   using OpenSink = std::function<std::shared_ptr<mcap::ByteSink>(std::size_t number)>;
@@ -67,5 +67,10 @@ class Recording {
   std::uint64_t bytes_before_ = 0;  ///< of ended files
   std::optional<std::int64_t> chunk_begun_ns_;
 };
+
+/// The text of rosbag2's metadata.yaml, version 5, which every version since ROS 2 Humble reads. `names` are the
+/// file names, relative to it.
+std::string bag_metadata_text(const std::vector<std::string>& names, const std::vector<FileSummary>& files,
+                              const std::vector<RecordedTopic>& topics);
 
 }  // namespace rtd::recorder

@@ -16,28 +16,28 @@
 
 namespace rtd::recorder {
 
-/// What is on disk for certain.
+/// What is certain to be on disk.
 struct Acknowledged {
   std::uint64_t bytes = 0;              ///< of all files of the recording
   std::vector<std::uint64_t> messages;  ///< by topic
 };
 
-/// Makes what was written survive a power cut, in a thread of its own, for fdatasync(2) may take long: the durable
+/// Makes written data survive a power cut. It has a thread of its own because fdatasync(2) may take long: the durable
 /// watermark follows the writing. Thread-safe.
 class SyncThread {
  public:
-  /// Between two syncs there is at least that pause, so that a disk is not kept busy with its journal.
+  /// At least `pause` passes between two syncs, so that the disk is not kept busy with its journal.
   explicit SyncThread(std::chrono::milliseconds pause);
   ~SyncThread() { finish(); }
   SyncThread(const SyncThread&) = delete;
   SyncThread& operator=(const SyncThread&) = delete;
 
-  /// The sink now ends with whole records that hold this. It is kept until that is durable.
+  /// The sink now contains `written` in complete records. It is kept alive until that is durable.
   void put(std::shared_ptr<mcap::ByteSink> sink, Acknowledged written);
   Acknowledged acknowledged() const;
-  /// Why a sync failed; empty: none did. Then nothing more is acknowledged.
+  /// Why a sync failed; empty: none did. After a failure nothing more is acknowledged.
   std::string failure() const;
-  /// Syncs what is left and ends.
+  /// Syncs the rest and ends.
   void finish();
 
  private:

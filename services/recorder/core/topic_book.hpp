@@ -12,17 +12,28 @@
 
 namespace rtd::recorder {
 
+/// Which topics are recorded: shell patterns (* ? [a-z], a star also crosses slashes) on the DDS name or the ROS 2
+/// name.
+class TopicFilter {
+ public:
+  explicit TopicFilter(std::vector<std::string> patterns) : patterns_(std::move(patterns)) {}
+  bool wants(const std::string& dds_topic) const;
+
+ private:
+  std::vector<std::string> patterns_;
+};
+
 struct TopicCounts {
   std::uint64_t written = 0, written_bytes = 0;  ///< in the file or its open chunk
   std::uint64_t acknowledged = 0;                ///< on disk
-  std::uint64_t lost_in_transit = 0;             ///< a writer sent them and they did not come
+  std::uint64_t lost_in_transit = 0;             ///< sent by a writer but not received
   std::uint64_t lost_in_queue = 0;               ///< the disk was too slow
   std::uint64_t lost() const { return lost_in_transit + lost_in_queue; }
 };
 
 struct RecordedTopic {
   std::string dds_name, dds_type;
-  std::string name;  ///< as the recording has it: /slam/odometry, rtd/frame
+  std::string name;  ///< in the recording: /slam/odometry, rtd/frame
   ros2::TypeDefinition type;
   std::vector<bus::RawQos> offered;  ///< each kind of QoS once
   TopicCounts counts;
@@ -37,7 +48,7 @@ class TopicBook {
   void count_written(std::size_t topic, std::uint64_t bytes);
   void count_acknowledged(const std::vector<std::uint64_t>& per_topic);
   void count_lost_in_transit(std::size_t topic, std::uint64_t messages);
-  /// What the transport says to have lost in all: some of it may never be revealed by a later message.
+  /// The total that the transport reports: a later message may never reveal some of it.
   void at_least_lost_in_transit(std::size_t topic, std::uint64_t messages);
   void count_lost_in_queue(std::size_t topic);
 

@@ -9,14 +9,14 @@
 
 namespace rtd::recording {
 
-/// What a message is told by, without its payload.
+/// Identifies a message without its payload.
 struct Fingerprint {
   mcap::Timestamp log_ns = 0, publish_ns = 0;
   std::uint32_t sequence = 0;
   std::uint64_t bytes = 0;
   std::uint64_t hash = 0;         ///< of the payload
-  std::uint64_t stable_hash = 0;  ///< of the payload without the fields of the run (payload_diff.hpp)
-  std::uint64_t key = 0;          ///< the first 8 bytes behind the CDR header: our seq or the stamp of a ROS header
+  std::uint64_t stable_hash = 0;  ///< of the payload without the fields of the run
+  std::uint64_t key = 0;          ///< the first 8 bytes after the CDR header: our seq or the stamp of a ROS header
 };
 
 struct TopicContents {

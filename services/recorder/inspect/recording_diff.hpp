@@ -4,10 +4,32 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
-#include "services/recorder/inspect/message_pairs.hpp"
+#include "services/recorder/inspect/recording_contents.hpp"
 
 namespace rtd::recording {
+
+enum class PairedBy {
+  kPublishTime,  ///< a recording of a replay
+  kContent,      ///< another run on the same input: our seq, or the stamp of a ROS header
+  kPosition,     ///< no better way: the first with the first
+};
+std::string name_of(PairedBy paired_by);
+
+struct MessagePair {
+  std::size_t a = 0, b = 0;  ///< positions in their topics
+};
+
+/// The messages of two recordings of a topic that correspond.
+struct MessagePairs {
+  PairedBy paired_by = PairedBy::kPosition;
+  std::vector<MessagePair> pairs;  ///< in the order of A
+  std::vector<std::size_t> only_a, only_b;
+};
+
+/// Uses the first way of PairedBy that pairs at least half of the messages of the shorter recording.
+MessagePairs pair_messages(const TopicContents& a, const TopicContents& b);
 
 /// What does not count as a difference.
 struct DiffOptions {
@@ -15,7 +37,7 @@ struct DiffOptions {
   bool ignore_stamps = false;      ///< publish times
 };
 
-/// A message that differs, told by where it is.
+/// Where a message that differs is.
 struct MessagePlace {
   std::size_t index_a = 0, index_b = 0;  ///< positions in the topic
   Fingerprint a, b;
@@ -30,11 +52,12 @@ struct TopicDiff {
   std::size_t payloads = 0;         ///< pairs whose payloads differ
   std::size_t run_fields_only = 0;  ///< of these, only in fields of the run
   std::size_t stamps = 0;           ///< pairs whose publish times differ
-  /// How far the time between two messages in a row, by log_time, is from that in the other recording; no difference.
+  /// By how much the log_time between consecutive messages differs from the other recording; does not count as a
+  /// difference.
   double timing_p50_ms = 0, timing_p99_ms = 0;
   std::size_t out_of_order = 0;              ///< pairs that stand in another order
   std::optional<MessagePlace> first;         ///< the first payload that differs and counts
-  std::optional<std::size_t> first_missing;  ///< position in A (or else in B) of the first without partner
+  std::optional<std::size_t> first_missing;  ///< position in A (or else in B) of the first message without a partner
 
   bool equal(const DiffOptions& options) const;
 };
@@ -45,10 +68,10 @@ struct RecordingDiff {
   bool equal() const;
 };
 
-/// Topic by topic. Order and contents are compared within a topic: between topics nothing orders messages.
+/// Compares topic by topic: messages of different topics have no defined order.
 RecordingDiff diff(const Contents& a, const Contents& b, const DiffOptions& options = {});
 
-/// Reads the first payloads that differ from both files and says why.
+/// Reads the first differing payloads from both files and fills in why they differ.
 void explain(RecordingDiff& diff, const mcap::ByteSource& a, const mcap::ByteSource& b);
 
 std::string to_text(const RecordingDiff& diff);

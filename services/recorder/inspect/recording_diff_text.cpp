@@ -44,7 +44,7 @@ std::string first_text(const TopicDiff& topic) {
 
 std::string missing_text(const TopicDiff& topic) {
   if (!topic.first_missing || topic.messages_a == 0 || topic.messages_b == 0) return "";
-  return fmt::format("\n{}: first message without partner: number {} of {}\n", topic.topic, *topic.first_missing,
+  return fmt::format("\n{}: first message without a partner: number {} of {}\n", topic.topic, *topic.first_missing,
                      topic.only_a > 0 ? "A" : "B");
 }
 
@@ -66,7 +66,7 @@ std::string to_text(const RecordingDiff& diff) {
                   "only A", "only B", "payloads differ", "stamps", "order", "dt p50 ms", "p99 ms");
   for (const TopicDiff& topic : diff.topics) text += row(topic, diff.options, width);
   for (const TopicDiff& topic : diff.topics) text += missing_text(topic) + first_text(topic);
-  return text + "dt: time between messages compared with the other recording, by log time; no difference\n" +
+  return text + "dt: by how much the log time between messages differs from the other recording (does not count as a difference)\n" +
          (diff.equal() ? "equal\n" : "");
 }
 

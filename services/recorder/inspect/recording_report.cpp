@@ -15,7 +15,7 @@ namespace {
 using mcap::ChannelId;
 using mcap::Timestamp;
 
-/// Collects what becomes a report.
+/// What is read before it becomes a report.
 struct Collected {
   struct PerChannel {
     std::vector<Timestamp> times_ns;
@@ -31,7 +31,7 @@ void take(RecordingReport& report, const mcap::Problems& problems) {
   report.data_lost = problems.data_lost();
 }
 
-/// Everything about the channels, where the definitions and the times are known.
+/// Adds the channels once their definitions and times are known.
 void add_channels(RecordingReport& report, Collected& collected, const std::map<ChannelId, mcap::Channel>& channels,
                   const std::map<mcap::SchemaId, mcap::Schema>& schemas) {
   for (const auto& [id, channel] : channels) {
@@ -41,12 +41,12 @@ void add_channels(RecordingReport& report, Collected& collected, const std::map<
       entry.schema_encoding = schema->second.encoding;
       entry.schema_text = !schema->second.data.empty();
     }
-    Collected::PerChannel& heard = collected.channels[id];
+    Collected::PerChannel& read = collected.channels[id];
     if (report.read_all) {
-      entry.payload_bytes = heard.payload_bytes;
-      entry.sequences = heard.sequences;
+      entry.payload_bytes = read.payload_bytes;
+      entry.sequences = read.sequences;
     }
-    entry.timing = timing_of(std::move(heard.times_ns));
+    entry.timing = timing_of(std::move(read.times_ns));
     report.messages += entry.timing.messages;
     report.channels.push_back(std::move(entry));
   }
@@ -67,7 +67,7 @@ void add_chunk(RecordingReport& report, const std::string& compression, std::uin
   chunks.without_crc += has_crc ? 0 : 1;
 }
 
-/// The times of the messages of one chunk, from the indexes behind it; false where these cannot be read.
+/// The times of the messages of one chunk, from the indexes after it; false when these cannot be read.
 bool read_index(const mcap::ByteSource& source, const mcap::ChunkIndex& chunk, Collected& collected) {
   const std::uint64_t offset = chunk.chunk_start_offset + chunk.chunk_length;
   if (offset > source.size() || chunk.message_index_length > source.size() - offset) return false;
@@ -83,7 +83,7 @@ bool read_index(const mcap::ByteSource& source, const mcap::ChunkIndex& chunk, C
   return !records.cut();
 }
 
-/// False when the indexes do not tell of every message: then the file has to be read.
+/// False when the indexes do not cover every message: then the file has to be read.
 bool report_from_summary(const mcap::ByteSource& source, RecordingReport& report) {
   mcap::IndexedReader reader(source);
   const mcap::Summary& summary = reader.summary();
@@ -125,7 +125,7 @@ void add_record(RecordingReport& report, Collected& collected, const mcap::Recor
 }
 
 void report_from_everything(const mcap::ByteSource& source, const ReportOptions& options, RecordingReport& report) {
-  mcap::Problems ignored(0);  // the reader below finds the same
+  mcap::Problems ignored(0);  // the reader below finds the same problems
   const std::optional<mcap::Summary> summary = mcap::read_summary(source, {}, ignored);
   mcap::StreamReader reader(source);
   if (summary) reader.assume(summary->schemas, summary->channels);
@@ -153,6 +153,42 @@ bool is_damage(const mcap::Problem& problem, bool being_written) {
 }
 
 }  // namespace
+
+Timing timing_of(std::vector<mcap::Timestamp> times_ns) {
+  Timing timing;
+  timing.messages = times_ns.size();
+  if (times_ns.empty()) return timing;
+  std::ranges::sort(times_ns);
+  timing.first_ns = times_ns.front();
+  timing.last_ns = times_ns.back();
+  std::vector<std::uint64_t> periods_ns;
+  for (std::size_t i = 1; i < times_ns.size(); ++i) {
+    periods_ns.push_back(times_ns[i] - times_ns[i - 1]);
+    if (periods_ns.back() <= timing.largest_gap_ns) continue;
+    timing.largest_gap_ns = periods_ns.back();
+    timing.largest_gap_at_ns = times_ns[i - 1];
+  }
+  if (timing.first_ns == timing.last_ns) return timing;
+  timing.rate_hz = static_cast<double>(periods_ns.size()) * 1e9 / static_cast<double>(timing.last_ns - timing.first_ns);
+  const auto middle = periods_ns.begin() + static_cast<std::ptrdiff_t>(periods_ns.size() / 2);
+  std::ranges::nth_element(periods_ns, middle);
+  timing.median_period_ns = *middle;
+  const double longest_ns = kGapPeriods * static_cast<double>(timing.median_period_ns);
+  timing.gaps = static_cast<std::uint64_t>(std::ranges::count_if(
+      periods_ns, [&](std::uint64_t period) { return static_cast<double>(period) > longest_ns; }));
+  return timing;
+}
+
+void SequenceCount::add(std::uint32_t sequence) {
+  numbered_ = numbered_ || sequence != 0;
+  if (any_ && sequence > last_ + 1) {
+    ++gaps_;
+    missing_ += sequence - last_ - 1;
+  }
+  if (any_ && sequence <= last_) ++restarts_;
+  last_ = sequence;
+  any_ = true;
+}
 
 std::map<std::string, std::string> RecordingReport::losses() const {
   constexpr char kLosses[] = "rtd:losses";

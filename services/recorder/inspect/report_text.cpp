@@ -40,8 +40,8 @@ std::string chunk_rows(const RecordingReport& report) {
 }
 
 std::string summary_row(const RecordingReport& report) {
-  if (report.being_written) return head_row("summary", "not yet: the file is being written");
-  return head_row("summary", report.has_summary ? "there" : "missing or unusable: the file was read from the start");
+  if (report.being_written) return head_row("summary", "not yet: the file is still being written");
+  return head_row("summary", report.has_summary ? "present" : "missing or unusable: the file was read from the start");
 }
 
 std::string metadata_rows(const RecordingReport& report) {
@@ -52,7 +52,7 @@ std::string metadata_rows(const RecordingReport& report) {
     for (const auto& [key, value] : metadata.metadata)
       values += fmt::format("{}{}={}", values.empty() ? "" : ", ", key, value);
     constexpr std::size_t kLongest = 200;
-    if (values.size() > kLongest) values = values.substr(0, kLongest) + "... (--json has all)";
+    if (values.size() > kLongest) values = values.substr(0, kLongest) + "... (--json shows all)";
     text += head_row("metadata", metadata.name + ": " + values);
   }
   for (const mcap::AttachmentIndex& attachment : report.attachments)
@@ -61,14 +61,14 @@ std::string metadata_rows(const RecordingReport& report) {
   return text;
 }
 
-/// Losses that the recorder knows of.
+/// The losses that the recorder reports.
 std::string loss_rows(const RecordingReport& report) {
   std::string text;
   for (const auto& [topic, lost] : report.losses()) {
     if (topic == "total") continue;
     text += head_row("lost", topic + ": " + lost);
   }
-  if (text.empty() && !report.losses().empty()) text = head_row("lost", "nothing, says the recorder");
+  if (text.empty() && !report.losses().empty()) text = head_row("lost", "nothing, according to the recorder");
   return text;
 }
 
@@ -99,14 +99,62 @@ std::string channel_table(const RecordingReport& report) {
                   type_width, "messages", "rate Hz", "median ms", "longest ms", "gaps", "lost", "size");
   for (const ChannelReport& channel : report.channels) text += channel_row(channel, topic_width, type_width);
   return text +
-         fmt::format("gaps: periods above {} medians; lost: numbers missing in the sequence, - where several wrote{}\n",
+         fmt::format("gaps: periods above {} medians; lost: missing sequence numbers, - with several writers{}\n",
                      kGapPeriods, report.read_all ? "" : " (--check counts them)");
+}
+
+using Json = nlohmann::ordered_json;
+
+double seconds(std::uint64_t ns) {
+  return static_cast<double>(ns) * 1e-9;
+}
+
+Json timing_json(const Timing& timing) {
+  return {{"messages", timing.messages},
+          {"first_ns", timing.first_ns},
+          {"last_ns", timing.last_ns},
+          {"rate_hz", timing.rate_hz},
+          {"median_period_s", seconds(timing.median_period_ns)},
+          {"largest_gap_s", seconds(timing.largest_gap_ns)},
+          {"largest_gap_at_ns", timing.largest_gap_at_ns},
+          {"gaps", timing.gaps}};
+}
+
+Json sequence_json(const std::optional<SequenceCount>& sequences) {
+  if (!sequences || !sequences->numbered()) return nullptr;
+  const std::optional<std::uint64_t> missing = sequences->missing();
+  return {
+      {"missing", missing ? Json(*missing) : Json()}, {"gaps", sequences->gaps()}, {"restarts", sequences->restarts()}};
+}
+
+Json channel_json(const ChannelReport& entry) {
+  Json json = {{"topic", entry.channel.topic},
+               {"id", entry.channel.id},
+               {"type", entry.type},
+               {"message_encoding", entry.channel.message_encoding},
+               {"schema_encoding", entry.schema_encoding},
+               {"schema_text", entry.schema_text},
+               {"metadata", entry.channel.metadata}};
+  json.update(timing_json(entry.timing));
+  json["payload_bytes"] = entry.payload_bytes ? Json(*entry.payload_bytes) : Json(nullptr);
+  json["sequence"] = sequence_json(entry.sequences);
+  return json;
+}
+
+Json chunks_json(const RecordingReport& report) {
+  Json chunks = Json::array();
+  for (const auto& [compression, of_one] : report.chunks)
+    chunks.push_back({{"compression", compression},
+                      {"count", of_one.chunks},
+                      {"bytes", of_one.bytes},
+                      {"uncompressed_bytes", of_one.uncompressed_bytes}});
+  return chunks;
 }
 
 }  // namespace
 
 std::string checksum_text(const RecordingReport& report) {
-  if (!report.read_all) return "those of the summary are right; --check reads the rest";
+  if (!report.read_all) return "correct in the summary; --check reads the rest";
   std::uint64_t chunks = 0, without = 0;
   for (const auto& [compression, of_one] : report.chunks) {
     chunks += of_one.chunks;
@@ -114,7 +162,8 @@ std::string checksum_text(const RecordingReport& report) {
   }
   const auto wrong = std::ranges::count(report.problems, mcap::ProblemKind::kCrcMismatch, &mcap::Problem::kind);
   if (wrong > 0) return fmt::format("{} WRONG, see below", wrong);
-  return fmt::format("all right, {} chunks{}", chunks, without > 0 ? fmt::format(", {} of them without", without) : "");
+  return fmt::format("all correct, {} chunks{}", chunks,
+                     without > 0 ? fmt::format(", {} of them without a checksum", without) : "");
 }
 
 std::string problems_text(const std::vector<mcap::Problem>& problems, std::uint64_t count, std::size_t most) {
@@ -135,6 +184,42 @@ std::string to_text(const RecordingReport& report, const std::string& name) {
   text += chunk_rows(report) + summary_row(report) + head_row("checksums", checksum_text(report));
   return text + loss_rows(report) + metadata_rows(report) + channel_table(report) +
          problems_text(report.problems, report.problem_count, kShownProblems);
+}
+
+Json to_json(const mcap::Problem& problem) {
+  return {{"kind", mcap::name_of(problem.kind)}, {"offset", problem.offset},       {"what", problem.what},
+          {"consequence", problem.consequence},  {"data_lost", problem.data_lost}, {"count", problem.count}};
+}
+
+Json to_json(const RecordingReport& report, const std::string& name) {
+  Json json = {{"file", name},
+               {"bytes", report.file_bytes},
+               {"profile", report.header.profile},
+               {"library", report.header.library},
+               {"being_written", report.being_written},
+               {"has_summary", report.has_summary},
+               {"read_all", report.read_all},
+               {"damaged", report.damaged()},
+               {"checksums", checksum_text(report)},
+               {"messages", report.messages},
+               {"start_ns", report.start_ns},
+               {"end_ns", report.end_ns},
+               {"duration_s", seconds(report.end_ns - report.start_ns)},
+               {"chunks", chunks_json(report)}};
+  json["topics"] = Json::array();
+  for (const ChannelReport& channel : report.channels) json["topics"].push_back(channel_json(channel));
+  json["losses"] = report.losses().empty() ? Json(nullptr) : Json(report.losses());
+  json["metadata"] = Json::array();
+  for (const mcap::Metadata& metadata : report.metadata)
+    json["metadata"].push_back({{"name", metadata.name}, {"values", metadata.metadata}});
+  json["attachments"] = Json::array();
+  for (const mcap::AttachmentIndex& attachment : report.attachments)
+    json["attachments"].push_back(
+        {{"name", attachment.name}, {"media_type", attachment.media_type}, {"bytes", attachment.data_size}});
+  json["problem_count"] = report.problem_count;
+  json["problems"] = Json::array();
+  for (const mcap::Problem& problem : report.problems) json["problems"].push_back(to_json(problem));
+  return json;
 }
 
 }  // namespace rtd::recording

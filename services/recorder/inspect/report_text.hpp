@@ -14,10 +14,10 @@ nlohmann::ordered_json to_json(const RecordingReport& report, const std::string&
 
 nlohmann::ordered_json to_json(const mcap::Problem& problem);
 
-/// The state of the checksums in a few words: "all 12 chunks right", "2 wrong", "not read".
+/// The state of the checksums in a few words.
 std::string checksum_text(const RecordingReport& report);
 
-/// The problems, one line each, at most `most` of them.
+/// The problems, one per line, at most `most` of them.
 std::string problems_text(const std::vector<mcap::Problem>& problems, std::uint64_t count, std::size_t most);
 
 }  // namespace rtd::recording

@@ -16,7 +16,7 @@ double seconds(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-9;
 }
 
-/// Exact where the poses are: no rounding makes equal ones differ.
+/// Exactly zero for equal poses: rounding must not make them differ.
 PoseDifference difference(const eval::StampedPose& a, const eval::StampedPose& b) {
   PoseDifference result{a.stamp_ns, 0, 0};
   if (a.T_world_body.matrix() == b.T_world_body.matrix()) return result;

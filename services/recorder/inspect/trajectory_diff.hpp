@@ -11,9 +11,9 @@
 
 namespace rtd::recording {
 
-/// What counts as the same pose. The worlds are taken as they are: nothing is aligned.
+/// What counts as the same pose. The trajectories are not aligned.
 struct PoseTolerance {
-  double stamp_s = 1e-4;  ///< poses are a pair when their stamps are not further apart
+  double stamp_s = 1e-4;  ///< poses whose stamps are at most this far apart form a pair
   double translation_m = 0, rotation_deg = 0;
 };
 

@@ -8,11 +8,11 @@
 
 namespace rtd::replay {
 
-/// What the person at the keyboard wants.
+/// What a key press asks for.
 enum class Command { kTogglePause, kStep, kFaster, kSlower, kBack, kForward, kStop };
 
-/// Turns the bytes of a terminal into commands, also where an escape sequence comes in pieces. The keys of rosbag2:
-/// space, right arrow (or s), up, down; and b, f (10 s back, forward), q.
+/// Turns the bytes of a terminal into commands, also when an escape sequence arrives in pieces. Keys as in rosbag2:
+/// space, right arrow (or s), up, down; also b and f (10 s back, forward) and q.
 class KeyCommands {
  public:
   std::optional<Command> next(char byte);

@@ -70,7 +70,7 @@ void MessageFeed::read_from(std::int64_t log_ns, std::uint64_t generation) {
   changed_.notify_all();
 }
 
-/// False when nobody wants what follows.
+/// False when the rest is not needed: closed, or a new seek.
 bool MessageFeed::put(PlayedMessage message, std::uint64_t generation) {
   std::unique_lock lock(mutex_);
   const std::uint64_t size = message.cdr->size();

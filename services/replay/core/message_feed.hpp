@@ -28,10 +28,10 @@ struct FeedOptions {
   std::function<bool(const mcap::Channel&)> wanted;
 };
 
-/// Reads the messages of a recording by time in a thread of its own, ahead of who plays them. One thread plays.
+/// Reads the messages of a recording in order of time, in a thread of its own, ahead of the one thread that plays them.
 class MessageFeed {
  public:
-  /// `reader` is the feed's until it is destroyed.
+  /// Only the feed may use `reader` while the feed exists.
   MessageFeed(mcap::IndexedReader& reader, FeedOptions options);
   ~MessageFeed();
   MessageFeed(const MessageFeed&) = delete;
@@ -39,7 +39,7 @@ class MessageFeed {
 
   /// The next message; waits for it. Empty at the end and after close().
   std::optional<PlayedMessage> next();
-  /// Goes on with the first message at or behind this time.
+  /// Continues with the first message at or after this time.
   void seek(std::int64_t log_ns);
   /// Ends the reading and wakes next(); any thread.
   void close();
@@ -56,7 +56,7 @@ class MessageFeed {
   std::condition_variable changed_;
   std::deque<PlayedMessage> messages_;
   std::uint64_t bytes_ = 0;
-  std::uint64_t generation_ = 1;  ///< counts the seeks: what was read for an earlier one is not wanted any more
+  std::uint64_t generation_ = 1;  ///< counts the seeks: what was read for an earlier one is dropped
   std::int64_t seek_ns_ = 0;
   bool at_end_ = false, closed_ = false;
   std::thread thread_;

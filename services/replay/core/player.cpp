@@ -38,7 +38,7 @@ PlayOutcome Player::run() {
   return *outcome_;
 }
 
-/// The time that a disk takes to get at a new place is not played.
+/// The time that the disk needs for a jump does not count.
 void Player::take_head() {
   head_ = feed_.next();
   if (jump_to_) schedule_.jump(*jump_to_, host_.now_ns());
@@ -57,7 +57,7 @@ void Player::play_head() {
   if (may_go(*head_)) send_head(due_ns);
 }
 
-/// False while a paced message waits for its turn; then the time until something changes has passed.
+/// False while a paced message waits for its turn; it has then waited until something changed.
 bool Player::may_go(const PlayedMessage& message) {
   if (!by_answers() || !host_.paced_seq(message)) return true;
   return follow(pacer_.next(message.log_ns));
@@ -97,7 +97,7 @@ void Player::send_head(std::int64_t due_ns) {
   host_.show(state());
 }
 
-/// Behind the last message: the answers that are missing, then the first message again or the end.
+/// After the last message: waits for missing answers, then starts again or ends.
 void Player::end_of_feed() {
   if (by_answers() && !pacer_.in_flight().empty() && !follow(pacer_.drain())) return;
   if (options_.loop && sent_ > 0) return seek(options_.start_ns);
@@ -168,7 +168,7 @@ void Player::seek(std::int64_t recorded_ns) {
   timing_.interrupt();
 }
 
-/// 0 when nothing is: then nothing is answered.
+/// 0 when nothing is in flight: then nothing is answered.
 std::uint64_t Player::oldest_in_flight() const {
   return pacer_.in_flight().empty() ? 0 : pacer_.in_flight().front();
 }

@@ -10,19 +10,18 @@
 #include "services/replay/core/key_commands.hpp"
 #include "services/replay/core/message_feed.hpp"
 #include "services/replay/core/schedule.hpp"
-#include "services/replay/core/timing_error.hpp"
 
 namespace rtd::replay {
 
 struct PlayerOptions {
   double rate = 1;            ///< 0: as fast as possible
-  camera::PacerConfig pacer;  ///< window > 0: the paced topic waits for answers, time does not count
+  camera::PacerConfig pacer;  ///< window > 0: the paced topic waits for answers instead of times
   bool paused = false, loop = false;
   std::int64_t start_ns = 0, end_ns = 0;  ///< log_time of the first and last message
   std::int64_t clock_period_ns = 0;       ///< 0: no clock
 };
 
-/// A consumer has answered the paced message with this number, and all before; without a number: the oldest one.
+/// A consumer has answered the paced message with this number and all earlier ones; without a number: the oldest one.
 struct Answer {
   std::optional<std::uint64_t> seq;
 };
@@ -35,7 +34,7 @@ struct PlayState {
   std::uint64_t sent = 0;
 };
 
-/// What the player plays on: time, outputs and what comes in.
+/// The world of the player: time, outputs, events.
 class PlayerHost {
  public:
   virtual ~PlayerHost() = default;
@@ -51,7 +50,7 @@ class PlayerHost {
 
 enum class PlayOutcome { kEnded, kStopped, kUnanswered };
 
-/// Plays a feed: when which message goes out, and what the keys do. No thread and no clock of its own.
+/// Plays a feed: decides when which message goes out and what the keys do. No thread and no clock of its own.
 class Player {
  public:
   Player(MessageFeed& feed, PlayerHost& host, const PlayerOptions& options);

@@ -8,27 +8,26 @@
 #include <utility>
 
 #include "common/ros2/names.hpp"
-#include "services/replay/core/replay_error.hpp"
 
 namespace rtd::replay {
 namespace {
 
 constexpr char kHeartbeats[] = "rtd/status";
 
-bool meets(const std::string& pattern, const std::string& topic) {
+bool matches(const std::string& pattern, const std::string& topic) {
   return fnmatch(pattern.c_str(), topic.c_str(), 0) == 0 ||
          fnmatch(pattern.c_str(), ros2::dds_topic(topic).c_str(), 0) == 0 ||
          fnmatch(pattern.c_str(), ros2::ros_topic(topic).c_str(), 0) == 0;
 }
 
-bool meets_any(const std::vector<std::string>& patterns, const std::string& topic) {
-  return std::ranges::any_of(patterns, [&](const std::string& pattern) { return meets(pattern, topic); });
+bool matches_any(const std::vector<std::string>& patterns, const std::string& topic) {
+  return std::ranges::any_of(patterns, [&](const std::string& pattern) { return matches(pattern, topic); });
 }
 
 std::string topic_name(const std::string& name, const std::string& whole) {
   if (name.empty() || name.find_first_of(" \t\n*?") != std::string::npos)
     throw ReplayError("--remap " + whole + ": '" + name +
-                      "' is no topic name; write old:=new, e.g. /slam/pose:=/old/pose");
+                      "' is not a topic name; write old:=new, e.g. /slam/pose:=/old/pose");
   return ros2::dds_topic(name);
 }
 
@@ -38,14 +37,14 @@ TopicChoice::TopicChoice(std::vector<std::string> wanted, std::vector<std::strin
     : wanted_(std::move(wanted)), excluded_(std::move(excluded)) {}
 
 bool TopicChoice::wants(const std::string& topic) const {
-  if (meets_any(excluded_, topic)) return false;
-  return wanted_.empty() ? topic != kHeartbeats : meets_any(wanted_, topic);
+  if (matches_any(excluded_, topic)) return false;
+  return wanted_.empty() ? topic != kHeartbeats : matches_any(wanted_, topic);
 }
 
 std::vector<std::string> TopicChoice::unmet(const std::vector<std::string>& topics) const {
   std::vector<std::string> unmet;
   for (const std::string& pattern : wanted_)
-    if (std::ranges::none_of(topics, [&](const std::string& topic) { return meets(pattern, topic); }))
+    if (std::ranges::none_of(topics, [&](const std::string& topic) { return matches(pattern, topic); }))
       unmet.push_back(pattern);
   return unmet;
 }

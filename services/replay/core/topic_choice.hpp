@@ -3,16 +3,23 @@
 #pragma once
 
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace rtd::replay {
 
+/// The recording or an option cannot be used; what() names the value, the cause and the fix.
+class ReplayError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Which topics of a recording are played. Patterns are those of a shell ("/slam/*") and meet the name in the recording
 /// as well as the DDS name ("/slam/pose", "rt/slam/pose").
 class TopicChoice {
  public:
-  /// No pattern in `wanted`: all but those of `excluded` and rtd/status, whose replay would make living services end as
+  /// No pattern in `wanted`: all but those of `excluded` and rtd/status, whose replay would make running services exit as
   /// duplicates of the recorded ones.
   TopicChoice(std::vector<std::string> wanted, std::vector<std::string> excluded);
 

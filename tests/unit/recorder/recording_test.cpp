@@ -11,7 +11,6 @@
 
 #include "common/mcap/indexed_reader.hpp"
 #include "common/ros2/offered_qos.hpp"
-#include "services/recorder/core/bag_metadata.hpp"
 
 namespace rtd::recorder {
 namespace {

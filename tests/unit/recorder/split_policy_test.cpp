@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recorder/core/split_policy.hpp"
+#include "services/recorder/core/output_files.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "services/replay/core/timing_error.hpp"
 
 namespace rtd::replay {
 namespace {

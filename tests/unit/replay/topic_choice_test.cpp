@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include "services/replay/core/replay_error.hpp"
 
 namespace rtd::replay {
 namespace {

@@ -7,8 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "services/recorder/inspect/diff_command.hpp"
-#include "services/recorder/inspect/info_command.hpp"
+#include "services/recorder/inspect/inspect_commands.hpp"
 #include "tests/unit/recorder/inspect/sample_recording.hpp"
 
 namespace rtd::recording {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recorder/inspect/timing.hpp"
+#include "services/recorder/inspect/recording_report.hpp"
 
 #include <gtest/gtest.h>
 

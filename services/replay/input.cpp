@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/replay/keyboard.hpp"
+#include "services/replay/input.hpp"
 
 #include <poll.h>
 #include <sys/eventfd.h>
@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdint>
 #include <utility>
 
@@ -19,6 +20,24 @@ bool in_foreground() {
 }
 
 }  // namespace
+
+void Inbox::post(Event event) {
+  {
+    const std::lock_guard lock(mutex_);
+    events_.push_back(event);
+  }
+  posted_.notify_one();
+}
+
+std::optional<Event> Inbox::take_until(std::int64_t deadline_ns) {
+  const std::chrono::steady_clock::time_point deadline{std::chrono::nanoseconds(deadline_ns)};
+  std::unique_lock lock(mutex_);
+  posted_.wait_until(lock, deadline, [this] { return !events_.empty(); });
+  if (events_.empty()) return std::nullopt;
+  const Event event = events_.front();
+  events_.pop_front();
+  return event;
+}
 
 Keyboard::Keyboard(std::function<void(Command)> on_command) : on_command_(std::move(on_command)) {
   if (!in_foreground() || tcgetattr(STDIN_FILENO, &before_) != 0) return;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recorder/inspect/diff_command.hpp"
+#include "services/recorder/inspect/inspect_commands.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -23,7 +23,7 @@ Contents read(const mcap::FileSource& source, const std::string& path, std::ostr
 void warn(const Contents& contents, const std::string& path, std::ostream& err) {
   constexpr std::size_t kShownProblems = 5;
   if (contents.data_lost)
-    err << "rtd diff: " << path << " is damaged, compared is what can be read:"
+    err << "rtd diff: " << path << " is damaged, only its readable part is compared:"
         << problems_text(contents.problems, contents.problems.size(), kShownProblems);
 }
 
@@ -66,20 +66,27 @@ CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
   command->add_flag("--json", request.json, "Print JSON instead of text");
   command
       ->add_option("--ignore", request.ignore,
-                   "Recordings: stamps (publish times), run (fields that say when or by which process a message was "
-                   "made: published_ns, finished_ns, stage_ms, source_id)")
+                   "Recordings: stamps (publish times), run (fields that depend on the process and time of a run: "
+                   "published_ns, finished_ns, stage_ms, source_id)")
       ->delimiter(',')
       ->check(CLI::IsMember({"stamps", "run"}));
-  command->add_option("--stamp-tolerance", request.tolerance.stamp_s, "Trajectories: stamps of a pair are closer [s]")
+  command
+      ->add_option("--stamp-tolerance", request.tolerance.stamp_s,
+                   "Trajectories: largest stamp difference of a pair [s]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--tolerance-m", request.tolerance.translation_m, "Trajectories: not more is equal [m]")
+  command
+      ->add_option("--tolerance-m", request.tolerance.translation_m,
+                   "Trajectories: largest difference that counts as equal [m]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--tolerance-deg", request.tolerance.rotation_deg, "Trajectories: not more is equal [deg]")
+  command
+      ->add_option("--tolerance-deg", request.tolerance.rotation_deg,
+                   "Trajectories: largest difference that counts as equal [deg]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->footer("Exit code: 0 equal, 1 different, 2 a file cannot be used, 3 equal as far as damage lets it be seen");
+  command->footer(
+      "Exit code: 0 equal, 1 different, 2 a file cannot be used, 3 equal in the readable part of damaged files");
   return command;
 }
 
@@ -88,7 +95,7 @@ int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
     const bool a = mcap::looks_like_recording(request.a), b = mcap::looks_like_recording(request.b);
     if (a != b)
       throw mcap::RecordingFileError((a ? request.a : request.b) + " is a recording, " + (a ? request.b : request.a) +
-                                     " is not: compare two of a kind");
+                                     " is not: compare two files of the same kind");
     return a ? diff_recordings(request, out, err) : diff_trajectories(request, out);
   } catch (const mcap::RecordingFileError& error) {
     err << "rtd diff: " << error.what() << "\n";
@@ -96,6 +103,37 @@ int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
     err << "rtd diff: " << error.what() << "\n";
   }
   return service::kUsageOrConfig;
+}
+
+CLI::App* add_info_command(CLI::App& parent, InfoOptions& options) {
+  CLI::App* command =
+      parent.add_subcommand("info", "Show what a recording (MCAP) contains: topics, rates, gaps, losses, damage");
+  command->add_option("file", options.file, "Recording")->required();
+  command->add_flag("--json", options.json, "Print JSON instead of text");
+  command->add_flag("--check", options.check,
+                    "Read everything and compare all checksums (always done for files up to 64 MB)");
+  return command;
+}
+
+int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
+  try {
+    const mcap::FileSource source = mcap::open_recording(options.file);
+    service::Progress progress(err, "reading", source.size());
+    ReportOptions how;
+    how.check = options.check;
+    how.on_progress = [&](std::uint64_t bytes) { progress.reach(bytes); };
+    RecordingReport report = report_on(source, how);
+    report.being_written = source.being_written();
+    if (options.json) {
+      out << to_json(report, options.file).dump(2) << "\n";
+    } else {
+      out << to_text(report, options.file);
+    }
+    return report.damaged() ? service::kPartialLoss : service::kOk;
+  } catch (const mcap::RecordingFileError& error) {
+    err << "rtd info: " << error.what() << "\n";
+    return service::kUsageOrConfig;
+  }
 }
 
 }  // namespace rtd::recording

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@ class App;
 
 namespace rtd::recording {
 
-/// What `rtd diff` was asked.
+/// The command line of `rtd diff`.
 struct DiffRequest {
   std::string a, b;
   bool json = false;
@@ -26,7 +27,21 @@ struct DiffRequest {
 CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request);
 
 /// Compares two recordings or two trajectories. Returns the exit code: 0 equal; 1 different; 2 when a file cannot be
-/// used; 3 when nothing differs in what can be read, but a recording is damaged.
+/// used; 3 when a recording is damaged and the readable part is equal.
 int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err);
+
+/// The command line of `rtd info`.
+struct InfoOptions {
+  std::string file;
+  bool json = false;
+  bool check = false;  ///< read everything, whatever the size
+};
+
+/// Adds the subcommand `info`; parsing fills `options`, which must outlive `parent`.
+CLI::App* add_info_command(CLI::App& parent, InfoOptions& options);
+
+/// Writes the report to `out`, progress and errors to `err`. Returns the exit code: 0; 2 when there is no such file or
+/// it is not MCAP; 3 when it is damaged or truncated, after everything readable was reported.
+int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err);
 
 }  // namespace rtd::recording
