@@ -176,11 +176,11 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
   ++frames_in_;
   while (!runtime_.stop.stop_requested()) {
     take_results();
-    const PaceDecision decision = pacer_.next(frame.image.stamp_ns, frames.waiting());
+    const service::PaceDecision decision = pacer_.next(frame.image.stamp_ns, frames.waiting());
     log_timeline(decision, frame);
     if (decision.late_ns > 0) frames.pass_over(frame.image.stamp_ns + decision.late_ns);
-    if (decision.action == PaceAction::kSkipLate) return Outcome::kDone;
-    if (decision.action == PaceAction::kSend) {
+    if (decision.action == service::PaceAction::kSkipLate) return Outcome::kDone;
+    if (decision.action == service::PaceAction::kSend) {
       runtime_.heartbeat.tick();
       send(frame.image);
       runtime_.heartbeat.idle();  // until the next frame, whenever it comes
@@ -195,10 +195,10 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
   return Outcome::kStopped;
 }
 
-CameraService::Outcome CameraService::follow(const PaceDecision& decision) {
-  if (decision.action == PaceAction::kWait) wait(decision.wait_ns);
-  if (decision.action == PaceAction::kResend) resend();
-  if (decision.action == PaceAction::kGiveUp) {
+CameraService::Outcome CameraService::follow(const service::PaceDecision& decision) {
+  if (decision.action == service::PaceAction::kWait) wait(decision.wait_ns);
+  if (decision.action == service::PaceAction::kResend) resend();
+  if (decision.action == service::PaceAction::kGiveUp) {
     return fail(fmt::format("no tracking result for frame {} within {:g} s: are filter and slam alive?",
                             pacer_.in_flight().front(), config_.result_timeout_s));
   }
@@ -214,8 +214,8 @@ CameraService::Outcome CameraService::drain() {
 CameraService::Outcome CameraService::drain_in_window() {
   while (!runtime_.stop.stop_requested()) {
     take_results();
-    const PaceDecision decision = pacer_.drain();
-    if (decision.action == PaceAction::kSend) return Outcome::kDone;
+    const service::PaceDecision decision = pacer_.drain();
+    if (decision.action == service::PaceAction::kSend) return Outcome::kDone;
     if (follow(decision) == Outcome::kFailed) return Outcome::kFailed;
   }
   return Outcome::kStopped;
@@ -275,7 +275,7 @@ void CameraService::log_skipped(const ReadItem& item) {
   }
 }
 
-void CameraService::log_timeline(const PaceDecision& decision, const SourceFrame& frame) {
+void CameraService::log_timeline(const service::PaceDecision& decision, const SourceFrame& frame) {
   if (decision.cut_gap_ns > 0) {
     SPDLOG_WARN("event=gap_cut frame={} cut_s={:.3f} played_s={:g}", frame.image.seq,
                 static_cast<double>(decision.cut_gap_ns) * 1e-9, config_.max_gap_s);
@@ -284,7 +284,7 @@ void CameraService::log_timeline(const PaceDecision& decision, const SourceFrame
     SPDLOG_WARN("event=timeline_shifted frame={} by_s={:.3f} cause=\"the source is slower than its stamps\"",
                 frame.image.seq, static_cast<double>(decision.shifted_ns) * 1e-9);
   }
-  if (decision.action == PaceAction::kSkipLate && late_log_.pass()) {
+  if (decision.action == service::PaceAction::kSkipLate && late_log_.pass()) {
     SPDLOG_WARN("event=frame_late frame={} total={}", frame.image.seq, late());
   }
 }

@@ -12,9 +12,9 @@
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
+#include "common/service/pacer.hpp"
 #include "common/service/runtime.hpp"
 #include "services/camera/config.hpp"
-#include "services/camera/core/pacer.hpp"
 #include "services/camera/core/read_ahead.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/camera/frame_publisher.hpp"
@@ -52,7 +52,7 @@ class CameraService {
   Outcome play(ReadAhead& frames);
   Outcome handle(SourceFrame frame, ReadAhead& frames);
   /// Carries out decisions that concern frames in flight; kDone when the next frame may go.
-  Outcome follow(const PaceDecision& decision);
+  Outcome follow(const service::PaceDecision& decision);
   Outcome drain();
   Outcome drain_in_window();
   void drain_by_time();
@@ -62,7 +62,7 @@ class CameraService {
   bool send(const vision::RgbdImage& image);
   void resend();
   void log_skipped(const ReadItem& item);
-  void log_timeline(const PaceDecision& decision, const SourceFrame& frame);
+  void log_timeline(const service::PaceDecision& decision, const SourceFrame& frame);
   void report_counters();
   void write_groundtruth();
   Outcome fail(const std::string& message);
@@ -73,7 +73,7 @@ class CameraService {
   service::Runtime& runtime_;
   std::shared_ptr<FrameSource> source_;
   bool realtime_;
-  Pacer pacer_;
+  service::Pacer pacer_;
   std::shared_ptr<Results> results_;                          ///< seq of every TrackingResult
   std::shared_ptr<concurrency::BoundedQueue<bool>> changes_;  ///< somebody became ready or matched
   FramePublisher publisher_;

@@ -43,8 +43,8 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
   binder.field("groundtruth_out", groundtruth_out, "file that gets the ground truth in TUM format, empty = none");
 }
 
-PacerConfig to_pacer_config(const ServiceConfig& config, service::Pace pace, const SourceInfo& source) {
-  PacerConfig pacer;
+service::PacerConfig to_pacer_config(const ServiceConfig& config, service::Pace pace, const SourceInfo& source) {
+  service::PacerConfig pacer;
   pacer.window = window_of(config, pace);
   pacer.at_once = source.live;
   pacer.period_ns = seconds_to_ns(1.0 / source.fps);

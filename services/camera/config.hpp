@@ -7,8 +7,8 @@
 
 #include "common/service/config.hpp"
 #include "common/service/pace.hpp"
+#include "common/service/pacer.hpp"
 #include "services/camera/core/frame_source.hpp"
-#include "services/camera/core/pacer.hpp"
 
 namespace rtd::camera {
 
@@ -30,6 +30,6 @@ struct ServiceConfig {
 };
 
 /// What the pacer needs for such a source.
-PacerConfig to_pacer_config(const ServiceConfig& config, service::Pace pace, const SourceInfo& source);
+service::PacerConfig to_pacer_config(const ServiceConfig& config, service::Pace pace, const SourceInfo& source);
 
 }  // namespace rtd::camera

@@ -9,9 +9,9 @@
 
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"
-#include "services/camera/core/mcap_export.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/camera/core/source_uri.hpp"
+#include "services/recorder/convert/mcap_export.hpp"
 
 namespace rtd::recording {
 namespace {
@@ -54,7 +54,7 @@ std::uint64_t write(camera::FrameSource& source, const ConvertOptions& options, 
     return camera::export_tum(source, destination.path, options.frames, on_frame);
   }
   const auto compression = mcap::compression_of(options.compression == "none" ? "" : options.compression);
-  return camera::export_mcap(source, destination.path, compression.value(), options.frames, on_frame);
+  return export_mcap(source, destination.path, compression.value(), options.frames, on_frame);
 }
 
 nlohmann::json to_json(const ConvertOptions& options, std::uint64_t frames, const camera::SourceCounters& counters) {
@@ -70,7 +70,7 @@ nlohmann::json to_json(const ConvertOptions& options, std::uint64_t frames, cons
 }
 
 void print(const ConvertOptions& options, std::uint64_t frames, camera::FrameSource& source, std::ostream& out,
-          std::ostream& err) {
+           std::ostream& err) {
   constexpr std::size_t kMostLines = 10;
   const std::vector<camera::SkippedInput> skipped = source.take_skipped();
   for (std::size_t i = 0; i < std::min(kMostLines, skipped.size()); ++i) {
@@ -88,7 +88,8 @@ void print(const ConvertOptions& options, std::uint64_t frames, camera::FrameSou
 }  // namespace
 
 void add_convert_command(CLI::App& app, ConvertOptions& options) {
-  CLI::App* command = app.add_subcommand("convert", "Convert a bag, an MCAP file, a TUM folder or any other source to TUM or MCAP");
+  CLI::App* command =
+      app.add_subcommand("convert", "Convert a bag, an MCAP file, a TUM folder or any other source to TUM or MCAP");
   command->add_option("source", options.source, "bag:FILE, mcap:FILE, tum:FOLDER or any other source; FILE.bag")
       ->required();
   command->add_option("destination", options.destination, "New tum:FOLDER or FILE.mcap; nothing is overwritten")
@@ -99,7 +100,8 @@ void add_convert_command(CLI::App& app, ConvertOptions& options) {
       ->capture_default_str();
   command->add_flag("--json", options.json, "Print the summary as JSON");
   command->footer(
-      "Exit codes: 0 done, 1 failed while converting, 2 nothing was written, 3 done but part of the source was damaged");
+      "Exit codes: 0 done, 1 failed while converting, 2 nothing was written, 3 done but part of the source was "
+      "damaged");
 }
 
 int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& err) {

@@ -63,15 +63,15 @@ bool Player::may_go(const PlayedMessage& message) {
   return follow(pacer_.next(message.log_ns));
 }
 
-bool Player::follow(const camera::PaceDecision& decision) {
+bool Player::follow(const service::PaceDecision& decision) {
   switch (decision.action) {
-    case camera::PaceAction::kWait:
+    case service::PaceAction::kWait:
       wait_until(host_.now_ns() + std::min(decision.wait_ns, kShowEveryNs));
       return false;
-    case camera::PaceAction::kResend:
+    case service::PaceAction::kResend:
       resend();
       return false;
-    case camera::PaceAction::kGiveUp:
+    case service::PaceAction::kGiveUp:
       outcome_ = PlayOutcome::kUnanswered;
       return false;
     default:

@@ -6,7 +6,7 @@
 #include <optional>
 #include <variant>
 
-#include "services/camera/core/pacer.hpp"
+#include "common/service/pacer.hpp"
 #include "services/replay/core/key_commands.hpp"
 #include "services/replay/core/message_feed.hpp"
 #include "services/replay/core/schedule.hpp"
@@ -14,8 +14,8 @@
 namespace rtd::replay {
 
 struct PlayerOptions {
-  double rate = 1;            ///< 0: as fast as possible
-  camera::PacerConfig pacer;  ///< window > 0: the paced topic waits for answers instead of times
+  double rate = 1;             ///< 0: as fast as possible
+  service::PacerConfig pacer;  ///< window > 0: the paced topic waits for answers instead of times
   bool paused = false, loop = false;
   std::int64_t start_ns = 0, end_ns = 0;  ///< log_time of the first and last message
   std::int64_t clock_period_ns = 0;       ///< 0: no clock
@@ -77,7 +77,7 @@ class Player {
   void seek(std::int64_t recorded_ns);
   void play_head();
   bool may_go(const PlayedMessage& message);
-  bool follow(const camera::PaceDecision& decision);
+  bool follow(const service::PaceDecision& decision);
   void send_head(std::int64_t due_ns);
   void end_of_feed();
   void resend();
@@ -88,7 +88,7 @@ class Player {
   PlayerHost& host_;
   const PlayerOptions options_;
   Schedule schedule_;
-  camera::Pacer pacer_;
+  service::Pacer pacer_;
   TimingError timing_;
   std::optional<PlayedMessage> head_;     ///< the next one
   std::deque<PlayedMessage> unanswered_;  ///< from the oldest paced message without an answer on

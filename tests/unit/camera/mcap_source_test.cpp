@@ -4,8 +4,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "services/camera/core/mcap_export.hpp"
 #include "services/camera/core/recording/recording.hpp"
+#include "services/recorder/convert/mcap_export.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/mcap_file.hpp"
 #include "tests/unit/camera/played_frames.hpp"
@@ -48,7 +48,7 @@ TEST_P(DepthFactors, WhatIsExportedComesBackPixelByPixel) {
   const auto file = folder.path() / "out.mcap";
   std::vector<std::uint64_t> told;
   const auto source = make_source(folder.uri());
-  EXPECT_EQ(export_mcap(*source, file, mcap::Compression::kZstd, 0, [&](auto n) { told.push_back(n); }), 3U);
+  EXPECT_EQ(recording::export_mcap(*source, file, mcap::Compression::kZstd, 0, [&](auto n) { told.push_back(n); }), 3U);
   EXPECT_THAT(told, testing::ElementsAre(1U, 2U, 3U));
 
   const Played before = play_all(folder.uri()), after = play_all("mcap:" + file.string());
@@ -76,7 +76,7 @@ TEST(McapExport, LeavesAnExistingFileAlone) {
   folder.three_frames();
   folder.write("out.mcap", "precious");
   const auto source = make_source(folder.uri());
-  EXPECT_THAT([&] { export_mcap(*source, folder.path() / "out.mcap", mcap::Compression::kNone, 0); },
+  EXPECT_THAT([&] { recording::export_mcap(*source, folder.path() / "out.mcap", mcap::Compression::kNone, 0); },
               ThrowsMessage<SourceError>(HasSubstr("out.mcap exists")));
   EXPECT_EQ(std::filesystem::file_size(folder.path() / "out.mcap"), 8U);
 }
@@ -206,7 +206,7 @@ TEST(McapSource, FindsTheFileInAFolderOfRosbag2) {
   folder.three_frames();
   const auto bag = folder.path() / "bag";
   std::filesystem::create_directory(bag);
-  export_mcap(*make_source(folder.uri()), bag / "bag_0.mcap", mcap::Compression::kNone, 0);
+  recording::export_mcap(*make_source(folder.uri()), bag / "bag_0.mcap", mcap::Compression::kNone, 0);
   EXPECT_THAT(play_all("mcap:" + bag.string()).frames, SizeIs(3));
   std::filesystem::copy_file(bag / "bag_0.mcap", bag / "bag_1.mcap");
   EXPECT_THAT([&] { make_source("mcap:" + bag.string()); }, ThrowsMessage<SourceError>(HasSubstr("2 MCAP files")));

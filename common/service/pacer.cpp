@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/pacer.hpp"
+#include "common/service/pacer.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace rtd::camera {
+namespace rtd::service {
 
 Pacer::Pacer(const PacerConfig& config, std::function<std::int64_t()> now_ns)
     : config_(config), now_ns_(std::move(now_ns)) {}
@@ -80,4 +80,4 @@ void Pacer::answered(std::uint64_t seq) {
   last_sent_ns_ = last_progress_ns_;  // the frames behind are being worked on: their silence starts now
 }
 
-}  // namespace rtd::camera
+}  // namespace rtd::service

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/mcap_export.hpp"
+#include "services/recorder/convert/mcap_export.hpp"
 
 #include <array>
 #include <cmath>
@@ -15,7 +15,10 @@
 #include "services/camera/core/recording/compressed_depth.hpp"
 #include "services/camera/core/recording/image_pairs.hpp"
 
-namespace rtd::camera {
+namespace rtd::recording {
+
+using namespace camera;
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -145,4 +148,4 @@ std::uint64_t export_mcap(FrameSource& source, const fs::path& file, mcap::Compr
   return frames;
 }
 
-}  // namespace rtd::camera
+}  // namespace rtd::recording

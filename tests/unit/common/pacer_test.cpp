@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/pacer.hpp"
+#include "common/service/pacer.hpp"
 
 #include <gmock/gmock.h>
 
-namespace rtd::camera {
+namespace rtd::service {
 namespace {
 
 using ::testing::ElementsAre;
@@ -149,4 +149,4 @@ TEST_F(PacerTest, DrainsUntilEveryFrameIsAnswered) {
 }
 
 }  // namespace
-}  // namespace rtd::camera
+}  // namespace rtd::service

@@ -7,7 +7,7 @@
 #include <functional>
 #include <optional>
 
-namespace rtd::camera {
+namespace rtd::service {
 
 /// When frames are sent.
 struct PacerConfig {
@@ -37,7 +37,7 @@ struct PaceDecision {
   std::int64_t shifted_ns = 0;  ///< realtime: how much the timeline was shifted because the source is too slow
 };
 
-/// Decides when the next frame goes out. No thread, no clock of its own: it is asked, and told what was sent and
+/// Decides when the next frame goes out. It has no thread and no clock: the caller asks, and reports what was sent and
 /// answered. A result for frame n answers all frames up to n.
 class Pacer {
  public:
@@ -71,4 +71,4 @@ class Pacer {
   std::uint64_t late_ = 0, resends_ = 0;
 };
 
-}  // namespace rtd::camera
+}  // namespace rtd::service
