@@ -40,7 +40,7 @@ std::string explain(const ByteSource& source) {
   if (begin.empty()) return "the file is empty: nothing was recorded, or the disk was full from the start";
   for (const KnownFormat& format : kOtherFormats)
     if (begin.starts_with(format.begin)) return std::string("this is ") + format.advice;
-  return "this is no MCAP file: it does not begin with its magic; 'rtd record' writes them";
+  return "this is not an MCAP file: it does not begin with the MCAP magic; 'rtd record' writes such files";
 }
 
 }  // namespace

@@ -7,17 +7,57 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <ostream>
 
 #include "common/bus/topic_roles.hpp"
 #include "common/bus/topics.hpp"
+#include "common/security/enclave.hpp"
 #include "common/security/keystore.hpp"
 #include "common/security/keystore_layout.hpp"
 #include "common/service/exit_code.hpp"
-#include "services/keystore/keystore_info.hpp"
 
 namespace rtd::keystore {
 namespace {
+
+namespace fs = std::filesystem;
+
+std::string advice(const security::EnclaveFiles& files) {
+  std::error_code error;
+  const fs::perms others = fs::perms::group_all | fs::perms::others_all;
+  const bool open = (fs::status(files.key(), error).permissions() & others) != fs::perms::none;
+  return open ? fmt::format("; other users can read its key: chmod 600 {}", files.key().string()) : std::string();
+}
+
+std::string describe(const security::Enclave& enclave) {
+  const security::Permissions& permissions = enclave.permissions;
+  return fmt::format("ok    {:<16} until {}  domains {}..{}  publishes {}  subscribes {}{}\n", enclave.name,
+                     security::to_utc(enclave.valid_until_s()).substr(0, 10), permissions.domains.first,
+                     permissions.domains.last, fmt::join(permissions.topics.publish, " "),
+                     fmt::join(permissions.topics.subscribe, " "), advice(enclave.files));
+}
+
+/// Prints a line for each enclave: until when and for which domains and topics it is valid, or why it is unusable. True
+/// when all are usable. Throws security::SecurityError when there is no keystore.
+bool print_info(const std::string& folder, std::int64_t now_s, std::ostream& out) {
+  const security::KeystoreLayout layout{folder};
+  std::error_code error;
+  if (!fs::is_directory(layout.enclaves(), error))
+    throw security::SecurityError(
+        fmt::format("{} is not a keystore: make one with 'rtd keystore create {}'", folder, folder));
+  out << folder << (fs::exists(layout.ca_key(), error) ? ": contains the CA's key (keep it off the robots)\n" : "\n");
+  bool all_good = true;
+  for (const std::string& name : enclaves_in(layout)) {
+    try {
+      const int first_domain = security::load_enclave(folder, name).permissions.domains.first;
+      out << describe(security::open_enclave(folder, name, first_domain, now_s));
+    } catch (const security::SecurityError& problem) {
+      out << fmt::format("FAIL  {:<16} {}\n", name, problem.what());
+      all_good = false;
+    }
+  }
+  return all_good;
+}
 
 constexpr std::int64_t kDay_s = 24 * 3600;
 constexpr std::int64_t kClockMargin_s = 3600;  // the clocks of two hosts may differ
@@ -51,8 +91,8 @@ void create(const KeystoreRequest& request, std::int64_t now_s, std::ostream& ou
   for (const std::string& role : bus::roles()) enclaves.push_back(enclave_of(role));
   security::add_enclaves(folder, enclaves, options.validity, options.governance.domains);
   out << fmt::format(
-      "{}: CA, governance and {} enclaves, until {}\nUse it with --secure --keystore {}; other hosts need enclaves/ "
-      "and public/, not private/.\n",
+      "{}: CA, governance and {} enclaves, valid until {}\nUse it with --secure --keystore {}; other hosts need "
+      "enclaves/ and public/, but not private/.\n",
       folder, enclaves.size(), security::to_utc(options.validity.not_after_s).substr(0, 10), folder);
 }
 
@@ -65,7 +105,7 @@ void add(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out) 
   subscribe.insert(subscribe.end(), request.subscribe.begin(), request.subscribe.end());
   if (publish.empty() && subscribe.empty())
     throw security::SecurityError("enclave " + enclave.name +
-                                  ": name its topics with --like, --publish or --subscribe");
+                                  ": give its topics with --like, --publish or --subscribe");
   security::add_enclaves(folder_of(request), {enclave}, from_now(now_s, request.days), domains_of(request));
   out << fmt::format("{}: may publish {}; may subscribe {}\n", enclave.name, fmt::join(publish, " "),
                      fmt::join(subscribe, " "));
@@ -78,7 +118,7 @@ void renew(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out
   const security::Validity validity = from_now(now_s, request.days);
   for (const std::string& name : enclaves)
     security::renew_enclave(folder, name, validity, {request.publish, request.subscribe});
-  out << fmt::format("{}: {} until {}\n", folder, fmt::join(enclaves, " "),
+  out << fmt::format("{}: {} valid until {}\n", folder, fmt::join(enclaves, " "),
                      security::to_utc(validity.not_after_s).substr(0, 10));
 }
 
@@ -92,7 +132,7 @@ CLI::App* add_action(CLI::App& app, KeystoreRequest& request, KeystoreRequest::A
 }
 
 void add_days(CLI::App& sub, KeystoreRequest& request) {
-  sub.add_option("--days", request.days, "Days that certificates and permissions are valid")
+  sub.add_option("--days", request.days, "Days for which certificates and permissions are valid")
       ->check(CLI::Range(1, 36500))
       ->capture_default_str();
 }
@@ -102,8 +142,8 @@ void add_domain(CLI::App& sub, KeystoreRequest& request) {
 }
 
 void add_topics(CLI::App& sub, KeystoreRequest& request) {
-  sub.add_option("--publish", request.publish, "Further DDS topics or patterns to publish, e.g. 'rt/my/*'");
-  sub.add_option("--subscribe", request.subscribe, "Further DDS topics or patterns to subscribe");
+  sub.add_option("--publish", request.publish, "More DDS topics or patterns to publish, e.g. 'rt/my/*'");
+  sub.add_option("--subscribe", request.subscribe, "More DDS topics or patterns to subscribe to");
 }
 
 }  // namespace
@@ -111,32 +151,33 @@ void add_topics(CLI::App& sub, KeystoreRequest& request) {
 void add_keystore_commands(CLI::App& app, KeystoreRequest& request) {
   using Action = KeystoreRequest::Action;
   app.require_subcommand(1);
-  CLI::App* const create = add_action(app, request, Action::kCreate, "create", "A CA and an enclave for each service");
+  CLI::App* const create =
+      add_action(app, request, Action::kCreate, "create", "Create a CA and an enclave for each service");
   add_days(*create, request);
   add_domain(*create, request);
   create->add_flag("--encrypt-frames", request.encrypt_frames,
-                   "Encrypt raw frames too: they then leave shared memory (docs/security.md tells the cost)");
-  CLI::App* const add = add_action(app, request, Action::kAdd, "add", "One more enclave");
+                   "Encrypt raw frames too: they then leave shared memory (docs/security.md has the cost)");
+  CLI::App* const add = add_action(app, request, Action::kAdd, "add", "Add an enclave");
   add->get_option("dir")->required();
   add->add_option("enclave", request.enclaves, "Its name, e.g. /rtd/observer2")->required()->expected(1);
-  add->add_option("--like", request.like, "With the topics of this role")->check(CLI::IsMember(bus::roles()));
+  add->add_option("--like", request.like, "Give it the topics of this role")->check(CLI::IsMember(bus::roles()));
   add_topics(*add, request);
   add_days(*add, request);
   add_domain(*add, request);
   CLI::App* const renew =
-      add_action(app, request, Action::kRenew, "renew", "New keys and dates; topics and domains stay");
-  renew->add_option("enclaves", request.enclaves, "Which (default: all)");
+      add_action(app, request, Action::kRenew, "renew", "Renew keys and dates; topics and domains stay");
+  renew->add_option("enclaves", request.enclaves, "Enclaves to renew (default: all)");
   add_topics(*renew, request);
   add_days(*renew, request);
-  add_action(app, request, Action::kInfo, "info", "Who may do what until when, and what cannot be used");
-  app.footer("Exit code: 0 done, 1 info found an enclave that cannot be used, 2 it cannot be done");
+  add_action(app, request, Action::kInfo, "info", "Show permissions and dates of all enclaves, and the problems");
+  app.footer("Exit code: 0 done, 1 info found an unusable enclave, 2 not possible");
 }
 
 int run_keystore(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out, std::ostream& err) {
   using Action = KeystoreRequest::Action;
   try {
     if (request.action == Action::kInfo)
-      return print_keystore_info(folder_of(request), now_s, out) ? service::kOk : service::kRunFailed;
+      return print_info(folder_of(request), now_s, out) ? service::kOk : service::kRunFailed;
     if (request.action == Action::kCreate) create(request, now_s, out);
     if (request.action == Action::kAdd) add(request, now_s, out);
     if (request.action == Action::kRenew) renew(request, now_s, out);

@@ -13,7 +13,7 @@ class App;
 
 namespace rtd::keystore {
 
-/// What `rtd keystore` was asked.
+/// The command line of `rtd keystore`.
 struct KeystoreRequest {
   enum class Action { kCreate, kAdd, kRenew, kInfo };
   Action action = Action::kInfo;
@@ -21,7 +21,7 @@ struct KeystoreRequest {
   std::vector<std::string> enclaves;  ///< to add or renew
   int days = 365;
   int domain = -1;              ///< the only one; -1 = all
-  bool encrypt_frames = false;  ///< also what stays in shared memory otherwise
+  bool encrypt_frames = false;  ///< also data that otherwise stays in shared memory
   std::string like;             ///< role whose topics a new enclave gets
   std::vector<std::string> publish, subscribe;
 };
@@ -29,8 +29,8 @@ struct KeystoreRequest {
 /// Adds `create`, `add`, `renew` and `info`; parsing fills `request`, which must outlive `app`.
 void add_keystore_commands(CLI::App& app, KeystoreRequest& request);
 
-/// Does it at the time `now_s` (seconds since 1970). Results to `out`, what prevents them to `err`. Returns the exit
-/// code: 0; 1 when `info` finds an enclave that cannot be used; 2 when it cannot be done.
+/// Runs the command at the time `now_s` (seconds since 1970). Results go to `out`, errors to `err`. Returns the exit
+/// code: 0; 1 when `info` finds an unusable enclave; 2 when the command is not possible.
 int run_keystore(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out, std::ostream& err);
 
 }  // namespace rtd::keystore

@@ -36,26 +36,27 @@ CLI::App* add_action(CLI::App& app, TopicsRequest& request, const char* name, co
 void add_topics_commands(CLI::App& app, TopicsRequest& request) {
   app.require_subcommand(1);
   add_action(app, request, "list", "Topics, types and what their writers offer")
-      ->add_option("--wait", request.wait_s, "Longest look, s; ends when nobody new has come for 2 s")
+      ->add_option("--wait", request.wait_s,
+                   "Search this long at most, s; ends when no new writer has appeared for 2 s")
       ->check(CLI::Range(0.1, kMaxSeconds))
       ->capture_default_str();
   CLI::App* hz = add_action(app, request, "hz", "Rate, jitter, size and losses of topics");
   hz->add_option("topics", request.topics, "Topics by ROS or DDS name (default: all)");
-  hz->add_option("--duration", request.duration_s, "Measure so long, s (default: 5)")
+  hz->add_option("--duration", request.duration_s, "Measure this long, s (default: 5)")
       ->check(CLI::Range(0.1, kMaxSeconds));
-  hz->add_option("--count", request.count, "End when each topic had so many messages");
+  hz->add_option("--count", request.count, "End when each topic has had this many messages");
   CLI::App* echo = add_action(app, request, "echo", "Messages of a topic, field by field");
   echo->add_option("topic", request.topics, "Topic by ROS or DDS name")->required()->expected(1);
   echo->add_flag("--once", request.once, "End after one message");
-  echo->add_option("--count", request.count, "End after so many messages");
-  echo->add_option("--duration", request.duration_s, "End after so long, s (default: at Ctrl-C)")
+  echo->add_option("--count", request.count, "End after this many messages");
+  echo->add_option("--duration", request.duration_s, "End after this time, s (default: at Ctrl-C)")
       ->check(CLI::Range(0.0, kMaxSeconds));
-  echo->add_option("--max-array", request.max_array, "Values shown of an array, 0 = all")->capture_default_str();
+  echo->add_option("--max-array", request.max_array, "Values shown per array, 0 = all")->capture_default_str();
 }
 
-/// Until nobody new has come for a while: participants announce themselves twice a second, and each then tells of its
-/// writers by and by. Who finds nobody looks as long as allowed.
-void look_around(double longest_s, TopicsSession& session) {
+/// Waits until no new writer has appeared for a while: participants announce themselves twice a second, and each then
+/// announces its writers one by one. Without any writer it waits as long as allowed.
+void discover(double longest_s, TopicsSession& session) {
   constexpr double kSettledS = 2;
   std::set<bus::WriterId> known;
   double last_new_s = 0;
@@ -67,7 +68,7 @@ void look_around(double longest_s, TopicsSession& session) {
 }
 
 int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err) {
-  look_around(request.wait_s, session);
+  discover(request.wait_s, session);
   const std::vector<TopicRow> rows = rows_of(session.writers());
   if (request.json) {
     out << list_json(rows).dump(2) << '\n';

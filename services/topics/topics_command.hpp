@@ -11,12 +11,12 @@
 
 namespace rtd::topics {
 
-/// What `rtd topics` was asked.
+/// The command line of `rtd topics`.
 struct TopicsRequest {
   std::string action;  ///< list, hz, echo
   service::BusArguments bus;
   std::vector<std::string> topics;  ///< hz: empty = all; echo: one. ROS or DDS names
-  double wait_s = 6;                ///< list: longest look
+  double wait_s = 6;                ///< list: longest search
   double duration_s = -1;           ///< hz: 5; echo: 0 = until Ctrl-C
   std::uint64_t count = 0;          ///< messages (of each topic), 0 = any number
   std::uint64_t max_array = 36;     ///< echo: values shown of an array, 0 = all
@@ -26,8 +26,8 @@ struct TopicsRequest {
 /// Adds `list`, `hz` and `echo`; parsing fills `request`, which must outlive `app`.
 void add_topics_commands(CLI::App& app, TopicsRequest& request);
 
-/// Results go to `out`, what hinders to `err`. Exit code 0; 1: nothing was found or came; 2: cannot be done (bus,
-/// unknown type); 3: some messages could not be read.
+/// Results go to `out`, errors to `err`. Exit code 0; 1: no topic or message was found; 2: not possible (bus, unknown
+/// type); 3: some messages could not be read.
 int run_topics(const TopicsRequest& request, std::ostream& out, std::ostream& err);
 
 }  // namespace rtd::topics

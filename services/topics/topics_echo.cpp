@@ -22,7 +22,7 @@ using Queue = concurrency::BoundedQueue<bus::RawSample>;
 
 constexpr std::size_t kQueue = 256;
 constexpr int kDepth = 64;
-constexpr double kHintS = 3;  // without a writer: say so
+constexpr double kHintS = 3;  // then report a missing writer
 
 /// Prints samples of one topic.
 class Printer {
@@ -44,7 +44,7 @@ class Printer {
     ++printed_;
   } catch (const ros::WireError& error) {
     ++unreadable_;
-    err_ << fmt::format("rtd topics: message {} of {} is no {}: {}\n", sample.sequence, ros2::ros_topic(topic.name),
+    err_ << fmt::format("rtd topics: message {} of {} is not a {}: {}\n", sample.sequence, ros2::ros_topic(topic.name),
                         ros2::ros_type(topic.type), error.what());
   }
   std::uint64_t printed() const { return printed_; }
@@ -67,7 +67,7 @@ bool in_time(const TopicsRequest& request, const TopicsSession& session) {
   return request.duration_s <= 0 || session.seconds() < request.duration_s;
 }
 
-/// The topic's first writer; empty when none came until the end.
+/// The topic's first writer; empty when none appeared in time.
 std::optional<bus::TopicWriter> wait_for_writer(const TopicsRequest& request, TopicsSession& session,
                                                 std::ostream& err) {
   bool hinted = false;
@@ -75,10 +75,10 @@ std::optional<bus::TopicWriter> wait_for_writer(const TopicsRequest& request, To
     if (auto writer = writer_called(session, request.topics.front())) return writer;
     if (!hinted && session.seconds() > kHintS) {
       hinted = true;
-      err << "rtd topics: " << session.nobody_publishes(request.topics.front()) << "; waiting\n";
+      err << "rtd topics: " << session.no_publisher_of(request.topics.front()) << "; waiting\n";
     }
   }
-  if (!hinted) err << "rtd topics: " << session.nobody_publishes(request.topics.front()) << '\n';
+  if (!hinted) err << "rtd topics: " << session.no_publisher_of(request.topics.front()) << '\n';
   return std::nullopt;
 }
 
@@ -99,7 +99,7 @@ int echo_topic(const TopicsRequest& request, TopicsSession& session, std::ostrea
   const bus::RawTopic topic = first->topic;
   if (!ros2::can_read(topic.type)) {
     err << fmt::format(
-        "rtd topics: {} bears type {}, whose fields are not known here; `rtd topics hz` and `rtd record` take any "
+        "rtd topics: {} has the type {}, whose fields are not known here; `rtd topics hz` and `rtd record` accept any "
         "type\n",
         request.topics.front(), ros2::ros_type(topic.type));
     return service::kUsageOrConfig;
@@ -121,12 +121,13 @@ int echo_topic(const TopicsRequest& request, TopicsSession& session, std::ostrea
   print_until_end(request, session, topic, queue, printer);
   session.bus().watch(nullptr);
   if (queue.dropped() > 0) {
-    err << fmt::format("rtd topics: {} messages left out, they came faster than they were printed\n", queue.dropped());
+    err << fmt::format("rtd topics: {} messages left out because they arrived faster than they could be printed\n",
+                       queue.dropped());
   }
   if (!refused.empty()) err << "rtd topics: " << refused << '\n';
   if (printer.unreadable() > 0) return service::kPartialLoss;
   if (printer.printed() > 0) return service::kOk;
-  err << fmt::format("rtd topics: {} has a publisher, but no message came within {:.1f} s\n", request.topics.front(),
+  err << fmt::format("rtd topics: {} has a publisher, but no message arrived within {:.1f} s\n", request.topics.front(),
                      session.seconds());
   return service::kRunFailed;
 }

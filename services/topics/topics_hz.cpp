@@ -20,12 +20,12 @@ using namespace std::chrono_literals;
 constexpr int kDepth = 64;
 constexpr double kUsualDurationS = 5;
 
-/// Listens to topics as their writers appear and measures each.
+/// Subscribes to topics as their writers appear and measures each.
 class Meters {
  public:
   Meters(TopicsSession& session, const std::vector<std::string>& wanted) : session_(session), wanted_(wanted) {
     session_.bus().watch([this](const bus::TopicWriter& writer, bus::WriterChange change) {
-      if (change == bus::WriterChange::kAppeared && !writer.own && wants(writer.topic)) listen(writer);
+      if (change == bus::WriterChange::kAppeared && !writer.own && wants(writer.topic)) subscribe(writer);
     });
   }
   ~Meters() { stop(); }
@@ -35,7 +35,7 @@ class Meters {
     const std::lock_guard lock(mutex_);
     for (auto& [key, meter] : meters_) meter.listener.reset();
   }
-  /// Every topic that is heard, and each of those asked for by name, has had so many messages.
+  /// Every topic that was found, and each topic named by the user, has had `count` messages.
   bool all_reached(std::uint64_t count) {
     const std::lock_guard lock(mutex_);
     const bool complete = std::all_of(wanted_.begin(), wanted_.end(), [this](const std::string& name) {
@@ -74,7 +74,7 @@ class Meters {
     return wanted_.empty() ||
            std::any_of(wanted_.begin(), wanted_.end(), [&](const std::string& name) { return is_called(topic, name); });
   }
-  void listen(const bus::TopicWriter& writer) try {
+  void subscribe(const bus::TopicWriter& writer) try {
     const std::lock_guard lock(mutex_);
     Meter& meter = meters_[writer.topic];
     if (meter.listener == nullptr) {
@@ -104,7 +104,7 @@ class Meters {
 
 int measure_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err) {
   const double duration_s = request.duration_s > 0 ? request.duration_s : kUsualDurationS;
-  err << fmt::format("measuring for {:g} s, Ctrl-C ends it\n", duration_s);
+  err << fmt::format("measuring for {:g} s, Ctrl-C ends earlier\n", duration_s);
   Meters meters(session, request.topics);
   while (session.seconds() < duration_s && session.goes_on(50ms)) {
     if (request.count > 0 && meters.all_reached(request.count)) break;
@@ -123,7 +123,7 @@ int measure_topics(const TopicsRequest& request, TopicsSession& session, std::os
   }
   for (const std::string& name : request.topics) {
     if (std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return is_called(row.topic, name); })) continue;
-    err << "rtd topics: " << session.nobody_publishes(name) << '\n';
+    err << "rtd topics: " << session.no_publisher_of(name) << '\n';
     code = service::kRunFailed;
   }
   return code;

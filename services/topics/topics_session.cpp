@@ -47,12 +47,12 @@ std::string TopicsSession::empty_place() const {
   return place() + bus::other_domains_hint(options_.domain);
 }
 
-std::string TopicsSession::nobody_publishes(const std::string& topic) const {
+std::string TopicsSession::no_publisher_of(const std::string& topic) const {
   std::set<std::string> names;
   for (const bus::TopicWriter& writer : writers()) names.insert(ros2::ros_topic(writer.topic.name));
   const std::string found = names.empty() ? "nothing is published" + bus::other_domains_hint(options_.domain)
-                                          : fmt::format("published are {}", fmt::join(names, ", "));
-  return fmt::format("nobody publishes {} in {}; {}", topic, place(), found);
+                                          : fmt::format("published topics: {}", fmt::join(names, ", "));
+  return fmt::format("{} has no publisher in {}; {}", topic, place(), found);
 }
 
 }  // namespace rtd::topics

@@ -14,10 +14,10 @@
 
 namespace rtd::topics {
 
-/// Whether a topic is meant by this name, its ROS or its DDS name.
+/// Whether the topic has this ROS or DDS name.
 bool is_called(const bus::RawTopic& topic, const std::string& name);
 
-/// A look at a domain from a terminal, until it is interrupted.
+/// A command that looks at a domain until it is interrupted.
 class TopicsSession {
  public:
   using Clock = std::chrono::steady_clock;
@@ -26,17 +26,17 @@ class TopicsSession {
   explicit TopicsSession(const service::BusArguments& arguments);
 
   bus::RawBus& bus() { return *bus_; }
-  /// Waits a moment for a signal; false from the first one on.
+  /// Waits a moment for a signal; false from the first signal on.
   bool goes_on(std::chrono::milliseconds moment);
   double seconds() const;  ///< since the start
-  /// Writers of others.
+  /// The writers of other participants.
   std::vector<bus::TopicWriter> writers() const;
   /// "DDS domain 0 (fastdds, this host only; --profile lan: also the network)".
   std::string place() const;
-  /// The same for somebody who finds nothing there: also in which domains of this host DDS runs.
+  /// The same when nothing was found there: also the domains in which DDS runs on this host.
   std::string empty_place() const;
-  /// Who publishes what, for somebody who asked for a topic that nobody publishes.
-  std::string nobody_publishes(const std::string& topic) const;
+  /// Says that a topic has no publisher, and which topics have one.
+  std::string no_publisher_of(const std::string& topic) const;
 
  private:
   service::InterruptSignals signals_;  // first: before any thread

@@ -154,7 +154,7 @@ Json chunks_json(const RecordingReport& report) {
 }  // namespace
 
 std::string checksum_text(const RecordingReport& report) {
-  if (!report.read_all) return "correct in the summary; --check reads the rest";
+  if (!report.read_all) return "right in the summary; --check reads the rest";
   std::uint64_t chunks = 0, without = 0;
   for (const auto& [compression, of_one] : report.chunks) {
     chunks += of_one.chunks;
@@ -162,7 +162,7 @@ std::string checksum_text(const RecordingReport& report) {
   }
   const auto wrong = std::ranges::count(report.problems, mcap::ProblemKind::kCrcMismatch, &mcap::Problem::kind);
   if (wrong > 0) return fmt::format("{} WRONG, see below", wrong);
-  return fmt::format("all correct, {} chunks{}", chunks,
+  return fmt::format("all right, {} chunks{}", chunks,
                      without > 0 ? fmt::format(", {} of them without a checksum", without) : "");
 }
 

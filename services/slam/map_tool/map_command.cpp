@@ -13,7 +13,6 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"
 #include "services/slam/map_file.hpp"
-#include "services/slam/map_tool/map_export.hpp"
 #include "services/slam/map_tool/map_report.hpp"
 
 namespace rtd::map_tool {
@@ -21,14 +20,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Something that the caller can put right; what() says how.
+/// An error that the caller can fix; what() says how.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 slam::MapContents read(const std::string& file, std::ostream& err) {
-  std::error_code unknown;  // the reader says what is wrong with the file
+  std::error_code unknown;  // the reader reports errors of the file
   service::Progress progress(err, "reading", fs::is_regular_file(file, unknown) ? fs::file_size(file, unknown) : 0);
   slam::MapReadOptions options;
   options.features = slam::StoredFeatures::kSkip;
@@ -46,20 +45,22 @@ void print_info(const MapRequest& request, std::ostream& out, std::ostream& err)
   }
 }
 
-/// The map that was asked for.
+/// The requested map.
 const MapPart& choose(const MapReport& report, long long id, std::ostream& err) {
   const auto& maps = report.maps;
   if (id < 0) {
     const auto largest = std::max_element(maps.begin(), maps.end(),
                                           [](const auto& a, const auto& b) { return a.keyframes < b.keyframes; });
     if (maps.size() > 1)
-      err << fmt::format("rtd map export: {} maps, each in a frame of its own: map {} has most keyframes (--map-id)\n",
-                         maps.size(), largest->id);
+      err << fmt::format(
+          "rtd map export: the file has {} maps, each in a frame of its own; exporting map {}, which has most "
+          "keyframes "
+          "(--map-id chooses another)\n",
+          maps.size(), largest->id);
     return *largest;
   }
   const auto found = std::find_if(maps.begin(), maps.end(), [&](const auto& part) { return part.id == id; });
-  if (found == maps.end())
-    throw UsageError(fmt::format("--map-id {}: there is no such map, 'rtd map info' lists them", id));
+  if (found == maps.end()) throw UsageError(fmt::format("--map-id {}: no such map, 'rtd map info' lists all", id));
   return *found;
 }
 
@@ -71,7 +72,7 @@ void write_part(const slam::MapContents& contents, const MapPart& part, const st
 
 /// Returns the exit code.
 int write_export(const MapRequest& request, std::ostream& out, std::ostream& err) {
-  if (fs::exists(request.out)) throw UsageError(request.out + " exists already: give another name");
+  if (fs::exists(request.out)) throw UsageError(request.out + " exists already: choose another name");
   const slam::MapContents contents = read(request.file, err);
   const MapReport report = report_on(contents, 0);
   const MapPart& part = choose(report, request.map_id, err);
@@ -99,18 +100,18 @@ constexpr const char* kExitCodes =
 
 void add_map_commands(CLI::App& app, MapRequest& request) {
   app.require_subcommand(1);
-  CLI::App* info = app.add_subcommand("info", "Keyframes, landmarks, maps, extent, path, time, camera, checksums");
+  CLI::App* info = app.add_subcommand("info", "Show keyframes, landmarks, maps, extent, path, time, camera, checksums");
   info->add_option("file", request.file, "Map file")->required();
   info->add_flag("--json", request.json, "Print JSON instead of text");
   info->callback([&request] { request.info = true; });
   info->footer(kExitCodes);
-  CLI::App* to_export = app.add_subcommand("export", "Landmarks as PLY or PCD, keyframe poses in TUM's format");
+  CLI::App* to_export = app.add_subcommand("export", "Export landmarks as PLY or PCD, keyframe poses in TUM format");
   to_export->add_option("file", request.file, "Map file")->required();
   to_export->add_option("--format", request.format, "ply, pcd (landmarks) or tum (keyframe poses)")
       ->check(CLI::IsMember({"ply", "pcd", "tum"}))
       ->required();
-  to_export->add_option("-o,--out", request.out, "File to write; nothing is overwritten")->required();
-  to_export->add_option("--map-id", request.map_id, "Which map of the file (default: that with most keyframes)")
+  to_export->add_option("-o,--out", request.out, "New file; nothing is overwritten")->required();
+  to_export->add_option("--map-id", request.map_id, "Map of the file (default: the one with most keyframes)")
       ->check(CLI::NonNegativeNumber);
   to_export->callback([&request] { request.to_export = true; });
   to_export->footer(kExitCodes);

@@ -11,22 +11,22 @@ class App;
 
 namespace rtd::map_tool {
 
-/// What `rtd map` was asked.
+/// The command line of `rtd map`.
 struct MapRequest {
   bool info = false, to_export = false;  ///< which of the two
   std::string file;
   bool json = false;
   std::string format;     ///< ply, pcd or tum
   std::string out;        ///< file to write
-  long long map_id = -1;  ///< which map of the file; -1 = that with most keyframes
+  long long map_id = -1;  ///< which map of the file; -1 = the one with most keyframes
 };
 
 /// Adds `info` and `export`; parsing fills `request`, which must outlive `app`.
 void add_map_commands(CLI::App& app, MapRequest& request);
 
-/// Writes report or file; what prevents it with the fix and the progress to `err`. Returns the exit code: 0; 1 when the
-/// output cannot be written; 2 when the file cannot be read, is no map or of another version, or the output exists; 3
-/// when it is damaged.
+/// Writes the report or the file; progress and errors go to `err`. Returns the exit code: 0; 1 when the output cannot
+/// be written; 2 when the file cannot be read, is not a map or has another version, or the output exists; 3 when it is
+/// damaged.
 int run_map(const MapRequest& request, std::ostream& out, std::ostream& err);
 
 }  // namespace rtd::map_tool

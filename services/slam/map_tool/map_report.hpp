@@ -4,11 +4,13 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <iosfwd>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "services/slam/core/map/map.hpp"
+#include "services/slam/core/map/trajectory.hpp"
 
 namespace rtd::map_tool {
 
@@ -35,5 +37,13 @@ MapReport report_on(const slam::MapContents& contents, std::uint64_t file_bytes)
 /// What `rtd map info` prints.
 std::string to_text(const MapReport& report, const std::string& name);
 nlohmann::ordered_json to_json(const MapReport& report, const std::string& name);
+
+/// The landmarks of one map of a file, by id.
+std::vector<slam::MapPoint> points_of(const slam::MapContents& contents, slam::MapId map);
+/// The poses of its keyframes, by time.
+std::vector<slam::StampedPose> poses_of(const slam::MapContents& contents, slam::MapId map);
+
+/// ASCII PCD 0.7: x y z static_probability, as the Point Cloud Library reads it.
+void write_pcd(std::ostream& out, const std::vector<slam::MapPoint>& points);
 
 }  // namespace rtd::map_tool

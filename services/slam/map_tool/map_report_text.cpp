@@ -8,7 +8,7 @@
 namespace rtd::map_tool {
 namespace {
 
-constexpr const char* kChecksums = "all right";  // a file in which one does not fit is not reported on
+constexpr const char* kChecksums = "all right";  // a file with a wrong checksum gets no report
 
 std::uint64_t unsigned_ns(std::int64_t time_ns) {
   return time_ns < 0 ? 0 : static_cast<std::uint64_t>(time_ns);

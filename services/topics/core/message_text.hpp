@@ -7,8 +7,8 @@
 
 namespace rtd::topics {
 
-/// A message (common/ros2/message_json.hpp) as YAML for people: a field a line, arrays of values in one line, "---"
-/// behind.
+/// A message (common/ros2/message_json.hpp) as YAML: one line per field, arrays of values in one line, "---" at
+/// the end.
 std::string message_text(const nlohmann::ordered_json& message);
 
 }  // namespace rtd::topics

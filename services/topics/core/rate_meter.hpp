@@ -6,10 +6,10 @@
 
 namespace rtd::topics {
 
-/// What a stream of messages looked like. Times in any clock that only goes forward.
+/// The rate of a stream of messages. Times are of any monotonic clock.
 struct Rate {
   std::uint64_t messages = 0, bytes = 0, lost = 0;
-  double hz = 0;  ///< of the periods between messages; 0 with fewer than two
+  double hz = 0;  ///< from the periods between messages; 0 for fewer than two messages
   double mean_ms = 0, deviation_ms = 0, shortest_ms = 0, longest_ms = 0;
 };
 

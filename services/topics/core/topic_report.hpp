@@ -11,17 +11,17 @@
 
 namespace rtd::topics {
 
-/// A topic and those who write it.
+/// A topic and its writers.
 struct TopicRow {
   bus::RawTopic topic;  ///< of its first writer
   std::vector<bus::TopicWriter> writers;
   Rate rate;  ///< `hz` only
 };
 
-/// By name; another type on the same name is a row of its own.
+/// Sorted by name; another type on the same name has a row of its own.
 std::vector<TopicRow> rows_of(const std::vector<bus::TopicWriter>& writers);
 
-/// The topics of a domain as a table, and as JSON with all that writers announce.
+/// The topics of a domain as a table, and as JSON with everything that writers announce.
 std::string list_text(const std::vector<TopicRow>& rows);
 nlohmann::ordered_json list_json(const std::vector<TopicRow>& rows);
 

@@ -147,7 +147,7 @@ TEST_F(ReplayServiceTest, says_who_does_not_answer) {
   record(frames_and_boxes());
   config_.start_timeout_s = 0.2;
   start(service::Pace::kLockstep);
-  EXPECT_EQ(ended(), service::kRunFailed) << "nobody publishes rtd/tracking";
+  EXPECT_EQ(ended(), service::kRunFailed) << "rtd/tracking has no publisher";
 }
 
 TEST_F(ReplayServiceTest, a_damaged_recording_is_played_as_far_as_it_can_be_read) {
@@ -164,7 +164,7 @@ TEST_F(ReplayServiceTest, names_what_is_wrong_with_the_recording) {
   EXPECT_THAT(refusal(), HasSubstr("/nonexistent/x.mcap"));
   config_.file = file_.path();
   std::ofstream(file_.path()) << "this is no recording at all";
-  EXPECT_THAT(refusal(), HasSubstr("no MCAP file"));
+  EXPECT_THAT(refusal(), HasSubstr("not an MCAP file"));
   record({});
   EXPECT_THAT(refusal(), HasSubstr("no topics"));
   config_.file.clear();

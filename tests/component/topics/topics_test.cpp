@@ -100,7 +100,7 @@ TEST_P(Topics, of_an_empty_domain_are_none_and_the_message_says_where) {
   request_.duration_s = 0.3;
   EXPECT_EQ(run("hz"), service::kRunFailed);
   EXPECT_EQ(run("echo", {"/slam/pose"}), service::kRunFailed);
-  EXPECT_THAT(err_.str(), AllOf(HasSubstr("nobody publishes /slam/pose"), HasSubstr("nothing is published")));
+  EXPECT_THAT(err_.str(), AllOf(HasSubstr("/slam/pose has no publisher"), HasSubstr("nothing is published")));
 }
 
 TEST_P(Topics, of_another_domain_are_hinted_at) {

@@ -55,7 +55,7 @@ TEST_F(RecordingCommandsTest, what_is_no_recording_is_named_with_a_way_out) {
   EXPECT_EQ(info(file("a.bag", std::string("#ROSBAG V2.0\nxxx"))), 2);
   EXPECT_THAT(err_.str(), HasSubstr("rtd convert"));
   EXPECT_EQ(info(file("a.txt", std::string("hello"))), 2);
-  EXPECT_THAT(err_.str(), HasSubstr("no MCAP file"));
+  EXPECT_THAT(err_.str(), HasSubstr("not an MCAP file"));
   EXPECT_EQ(info(file("empty.mcap", std::string())), 2);
   EXPECT_THAT(err_.str(), HasSubstr("empty"));
   EXPECT_EQ(info("/nonexistent/a.mcap"), 2);
@@ -101,7 +101,7 @@ TEST_F(RecordingCommandsTest, diff_compares_trajectories_and_no_two_kinds) {
   EXPECT_EQ(diff(a, b), 1);
   EXPECT_THAT(out_.str(), HasSubstr("1.100000000  0.5 m"));
   EXPECT_EQ(diff(a, file("a.mcap", recording_of(regular_messages("/pose", 5)))), 2);
-  EXPECT_THAT(err_.str(), HasSubstr("two of a kind"));
+  EXPECT_THAT(err_.str(), HasSubstr("of the same kind"));
 }
 
 }  // namespace

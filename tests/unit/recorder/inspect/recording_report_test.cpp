@@ -119,7 +119,7 @@ TEST(RecordingReport, tells_what_the_recorder_knows_to_be_lost) {
   RecordingReport report;
   EXPECT_TRUE(report.losses().empty());
   report.metadata.push_back({"rtd:losses", {{"total", "0"}}});
-  EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("nothing, says the recorder"));
+  EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("nothing, according to the recorder"));
   report.metadata[0].metadata = {{"/pose", "in_transit=3 in_queue=0"}, {"total", "3"}};
   EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("/pose: in_transit=3 in_queue=0"));
 }
