@@ -10,9 +10,7 @@
 namespace rtd::recorder {
 namespace {
 
-using nlohmann::json;
-
-json to_json(const RecordedTopic& topic) {
+nlohmann::json to_json(const RecordedTopic& topic) {
   return {{"name", topic.name},
           {"type", topic.type.name},
           {"definition", topic.type.encoding},
@@ -37,16 +35,16 @@ bool RecordingReport::partial() const {
 }
 
 std::string report_json(const RecordingReport& report) {
-  json out{{"folder", report.folder},
-           {"duration_s", report.duration_s},
-           {"acknowledged_bytes", report.acknowledged_bytes},
-           {"partial", report.partial()},
-           {"failure", report.failure},
-           {"messages", 0},
-           {"lost", 0},
-           {"bytes", 0},
-           {"files", json::array()},
-           {"topics", json::array()}};
+  nlohmann::json out{{"folder", report.folder},
+                     {"duration_s", report.duration_s},
+                     {"acknowledged_bytes", report.acknowledged_bytes},
+                     {"partial", report.partial()},
+                     {"failure", report.failure},
+                     {"messages", 0},
+                     {"lost", 0},
+                     {"bytes", 0},
+                     {"files", nlohmann::json::array()},
+                     {"topics", nlohmann::json::array()}};
   std::uint64_t messages = 0, lost = 0, bytes = 0;
   for (const RecordedTopic& topic : report.topics) {
     out["topics"].push_back(to_json(topic));

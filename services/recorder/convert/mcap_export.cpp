@@ -16,15 +16,12 @@
 #include "services/camera/core/recording/image_pairs.hpp"
 
 namespace rtd::recording {
-
-using namespace camera;
-
 namespace {
 
 namespace fs = std::filesystem;
 
 bool in_millimetres(double depth_scale_m) {
-  return std::abs(depth_scale_m - kMillimetre) < 1e-12;
+  return std::abs(depth_scale_m - camera::kMillimetre) < 1e-12;
 }
 
 std::string depth_factor_text(double depth_scale_m) {
@@ -35,7 +32,7 @@ std::string depth_factor_text(double depth_scale_m) {
 
 msg::Image to_message(const cv::Mat& pixels, const std::string& encoding, std::int64_t stamp_ns) {
   msg::Image message;
-  message.header = {msg::to_time(stamp_ns), kCameraFrame};
+  message.header = {msg::to_time(stamp_ns), camera::kCameraFrame};
   message.height = static_cast<std::uint32_t>(pixels.rows);
   message.width = static_cast<std::uint32_t>(pixels.cols);
   message.encoding = encoding;
@@ -65,7 +62,7 @@ msg::TFMessage truth_message(const geometry::StampedPose& pose) {
   const Eigen::Quaterniond q(pose.T_world_body.linear());
   msg::TransformStamped transform;
   transform.header = {msg::to_time(pose.stamp_ns), "world"};
-  transform.child_frame_id = kCameraFrame;
+  transform.child_frame_id = camera::kCameraFrame;
   transform.transform = {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}};
   return {{transform}};
 }
@@ -77,14 +74,14 @@ class Recorder {
       : sink_(file, mcap::IfExists::kReplace), writer_(sink_, options(compression)) {
     const mcap::SchemaId image = schema("sensor_msgs/msg/Image");
     color_ = channel("/camera/color/image_raw", image);
-    depth_ =
-        channel("/camera/aligned_depth_to_color/image_raw", image, {{kDepthFactor, depth_factor_text(depth_scale_m)}});
+    depth_ = channel("/camera/aligned_depth_to_color/image_raw", image,
+                     {{camera::kDepthFactor, depth_factor_text(depth_scale_m)}});
     info_ = channel("/camera/color/camera_info", schema("sensor_msgs/msg/CameraInfo"));
     truth_ = channel("/tf", schema("tf2_msgs/msg/TFMessage"));
   }
 
   void write(const vision::RgbdImage& image) {
-    write(info_, to_camera_info(image.camera, image.stamp_ns), image.stamp_ns);
+    write(info_, camera::to_camera_info(image.camera, image.stamp_ns), image.stamp_ns);
     write(color_, color_message(image), image.stamp_ns);
     write(depth_, depth_message(image), image.stamp_ns);
   }
@@ -128,15 +125,15 @@ class Recorder {
 
 }  // namespace
 
-std::uint64_t export_mcap(FrameSource& source, const fs::path& file, mcap::Compression compression,
-                          std::uint64_t max_frames, const OnFrame& on_frame) {
-  check_end(source, max_frames);
-  if (fs::exists(file)) throw SourceError(file.string() + " exists; name a new file or remove it");
+std::uint64_t export_mcap(camera::FrameSource& source, const fs::path& file, mcap::Compression compression,
+                          std::uint64_t max_frames, const camera::OnFrame& on_frame) {
+  camera::check_end(source, max_frames);
+  if (fs::exists(file)) throw camera::SourceError(file.string() + " exists; name a new file or remove it");
   const fs::path partial = file.string() + ".partial";
   Recorder recorder(partial, compression, source.info().depth_scale_m);
   std::uint64_t frames = 0;
   while (max_frames == 0 || frames < max_frames) {
-    const std::optional<SourceFrame> frame = source.next();
+    const std::optional<camera::SourceFrame> frame = source.next();
     if (!frame) break;
     recorder.write(frame->image);
     ++frames;

@@ -21,10 +21,10 @@ Contents read(const mcap::FileSource& source, const std::string& path, std::ostr
 }
 
 void warn(const Contents& contents, const std::string& path, std::ostream& err) {
-  constexpr std::size_t kShownProblems = 5;
+  constexpr std::size_t kMostProblems = 5;
   if (contents.data_lost)
     err << "rtd diff: " << path << " is damaged, only its readable part is compared:"
-        << problems_text(contents.problems, contents.problems.size(), kShownProblems);
+        << problems_text(contents.problems, contents.problems.size(), kMostProblems);
 }
 
 template <class Diff>
