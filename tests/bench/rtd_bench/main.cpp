@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"
 #include "services/camera/core/source_factory.hpp"
@@ -41,25 +42,22 @@ int run_features(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"Speed of single parts, beside a reference in the same run", "rtd bench"};
+  CLI::App app{"Measure single parts beside a reference in the same run", "rtd bench"};
   app.require_subcommand(1);
   CLI::App* features = app.add_subcommand("features", "Our ORB extractor beside cv::ORB on the same frames");
   features->add_option("--source", options.source, "tum:FOLDER, bag:FILE, mcap:FILE or synthetic:SCENE")
       ->capture_default_str();
-  features->add_option("--features", options.features.features, "Wanted per frame")
+  features->add_option("--features", options.features.features, "Features wanted per frame")
       ->check(CLI::Range(100, 1300))
       ->capture_default_str();
-  features->add_option("--frames", options.features.frames, "At most so many (they are read before)")
+  features->add_option("--frames", options.features.frames, "Number of frames at most (they are read before the measurement)")
       ->check(CLI::Range(1, 2000))
       ->capture_default_str();
   features->add_flag("--json", options.json, "Report as JSON");
   bench::add_transport_commands(app, options.transport);
-  app.footer("Exit codes: 0 done, 1 a case gave no numbers, 2 the source cannot be read or the options are wrong");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? service::kOk : service::kUsageOrConfig;
-  }
-  if (const auto code = bench::run_transport(app, options.transport)) return *code;
-  return run_features(options);
+  app.footer("Exit codes: 0 done, 1 a case gave no figures, 2 the source cannot be read or the options are wrong");
+  return service::run_command(app, argc, argv, [&] {
+    if (const auto code = bench::run_transport(app, options.transport)) return *code;
+    return run_features(options);
+  });
 }
