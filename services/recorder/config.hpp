@@ -32,7 +32,8 @@ struct ServiceConfig {
     binder.field("force", force, "replace an earlier recording");
     binder.field("beside", beside, "keep an earlier recording and take the next free name: run.1.mcap");
     binder.field("json", json, "print the final report as JSON on stdout");
-    binder.field("queue_mib", queue_mib, {1, 65536}, "what may wait for the disk; beyond it the newest message is lost");
+    binder.field("queue_mib", queue_mib, {1, 65536},
+                 "what may wait for the disk; beyond it the newest message is lost");
     binder.field("chunk_kib", chunk_kib, {1, 65536}, "size at which a chunk ends");
     binder.field("chunk_ms", chunk_ms, {1, 10000}, "age of its first message at which a chunk ends");
     binder.field("sync_pause_ms", sync_pause_ms, {0, 10000}, "pause between two syncs");

@@ -67,7 +67,8 @@ void print(const mcap::RecoverReport& report, const RecoverOptions& options) {
   }
   for (const mcap::Problem& problem : report.problems) std::cout << to_string(problem) << '\n';
   std::cout << report.recovered.message_count << " messages recovered to " << options.output;
-  if (const auto lost = report.messages_lost()) std::cout << ", " << *lost << " of those announced in the file are lost";
+  if (const auto lost = report.messages_lost())
+    std::cout << ", " << *lost << " of those announced in the file are lost";
   std::cout << '\n';
 }
 

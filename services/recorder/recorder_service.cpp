@@ -76,7 +76,8 @@ void prepare(const OutputFiles& files, bool force) {
 
 void RecorderService::add_options(CLI::App& app, Config& config) {
   app.add_option("--topics", config.topics, "Patterns of DDS or ROS 2 names: 'rtd/*' /slam/odometry (default: all)");
-  app.add_option("-o,--output", config.output, "FILE.mcap, or a folder in the layout of rosbag2 (default: rtd_DATE-TIME)");
+  app.add_option("-o,--output", config.output,
+                 "FILE.mcap, or a folder in the layout of rosbag2 (default: rtd_DATE-TIME)");
   app.add_option("--split", config.split, "Begin a new file at this size or duration: 500MB, 1GB, 60s, 5min");
   app.add_option("--compress", config.compression, "none, lz4 or zstd (default none)")
       ->check(CLI::IsMember({"none", "lz4", "zstd"}));

@@ -19,7 +19,8 @@ struct OutputOptions {
   std::map<std::string, std::string> remaps;  ///< by DDS name
   bool restamp = false;                       ///< published_ns of our frames and features becomes now
   bool wait_for_readers = false;              ///< never overtake a reliable reader: nothing else paces the messages
-  bool frames_apart = false;  ///< frames have a writing thread of their own, so that other topics do not wait a millisecond
+  bool frames_apart =
+      false;  ///< frames have a writing thread of their own, so that other topics do not wait a millisecond
 };
 
 /// A topic of the recording on the bus.

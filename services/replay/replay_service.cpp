@@ -57,7 +57,8 @@ void ReplayService::add_options(CLI::App& app, Config& config) {
   app.add_flag("-l,--loop", config.loop, "Start again at the end (replay.loop)");
   app.add_option("--start-offset", config.start_offset_s, "Start this many seconds after the first message");
   app.add_option("--duration", config.duration_s, "Play this many seconds, 0 = to the end");
-  app.add_option("--topics", config.topics, "Play only these topics or patterns, e.g. rtd/frame '/slam/*'")->delimiter(',');
+  app.add_option("--topics", config.topics, "Play only these topics or patterns, e.g. rtd/frame '/slam/*'")
+      ->delimiter(',');
   app.add_option("--exclude", config.exclude, "Leave these topics or patterns out")->delimiter(',');
   app.add_option("-m,--remap", config.remap, "Rename topics: old:=new");
   app.add_option("--clock", config.clock_hz, "Publish /clock at this rate (40 Hz without a number)")
@@ -67,11 +68,11 @@ void ReplayService::add_options(CLI::App& app, Config& config) {
   app.add_option("--read-ahead", config.read_ahead_mb, "Megabytes read before they are due (replay.read_ahead_mb)");
   app.add_option("--lockstep", config.lockstep,
                  "Send the next frame only after a message of this topic, e.g. rtd/tracking");
-  app.add_option("--paced-topic", config.paced_topic, "Topic that waits for these answers (default rtd/frame, else rtd/features)");
+  app.add_option("--paced-topic", config.paced_topic,
+                 "Topic that waits for these answers (default rtd/frame, else rtd/features)");
   app.add_option("--wait-for", config.wait_for, "Services that must be ready first, e.g. filter,slam")->delimiter(',');
   app.add_option("--wait-readers", config.wait_readers_s, "Longest wait for readers of reliable topics [s]");
-  app.add_option("--stand-in", config.stand_in, "Services to send heartbeats for, e.g. detector")
-      ->delimiter(',');
+  app.add_option("--stand-in", config.stand_in, "Services to send heartbeats for, e.g. detector")->delimiter(',');
   app.add_flag("--restamp", config.restamp, "Set published_ns of our frames and features to the time of the replay");
   app.add_flag("--json", config.json, "Print a report in JSON at the end");
   app.footer(

@@ -21,8 +21,8 @@ struct QueuedMessage {
   std::shared_ptr<const bus::ByteBlock> bytes;
 };
 
-/// The messages that wait for the disk, bounded in bytes. When it is full, the newest message is refused. Large messages
-/// are refused somewhat earlier, so that images do not displace poses. Thread-safe.
+/// The messages that wait for the disk, bounded in bytes. When it is full, the newest message is refused. Large
+/// messages are refused somewhat earlier, so that images do not displace poses. Thread-safe.
 class MessageQueue {
  public:
   explicit MessageQueue(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}

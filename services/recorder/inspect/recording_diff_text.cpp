@@ -66,7 +66,9 @@ std::string to_text(const RecordingDiff& diff) {
                   "only A", "only B", "payloads differ", "stamps", "order", "dt p50 ms", "p99 ms");
   for (const TopicDiff& topic : diff.topics) text += row(topic, diff.options, width);
   for (const TopicDiff& topic : diff.topics) text += missing_text(topic) + first_text(topic);
-  return text + "dt: by how much the log time between messages differs from the other recording (does not count as a difference)\n" +
+  return text +
+         "dt: by how much the log time between messages differs from the other recording (does not count as a "
+         "difference)\n" +
          (diff.equal() ? "equal\n" : "");
 }
 

@@ -19,8 +19,8 @@ class ReplayError : public std::runtime_error {
 /// as well as the DDS name ("/slam/pose", "rt/slam/pose").
 class TopicChoice {
  public:
-  /// No pattern in `wanted`: all but those of `excluded` and rtd/status, whose replay would make running services exit as
-  /// duplicates of the recorded ones.
+  /// No pattern in `wanted`: all but those of `excluded` and rtd/status, whose replay would make running services exit
+  /// as duplicates of the recorded ones.
   TopicChoice(std::vector<std::string> wanted, std::vector<std::string> excluded);
 
   bool wants(const std::string& topic) const;

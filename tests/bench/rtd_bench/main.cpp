@@ -50,7 +50,9 @@ int main(int argc, char** argv) {
   features->add_option("--features", options.features.features, "Features wanted per frame")
       ->check(CLI::Range(100, 1300))
       ->capture_default_str();
-  features->add_option("--frames", options.features.frames, "Number of frames at most (they are read before the measurement)")
+  features
+      ->add_option("--frames", options.features.frames,
+                   "Number of frames at most (they are read before the measurement)")
       ->check(CLI::Range(1, 2000))
       ->capture_default_str();
   features->add_flag("--json", options.json, "Report as JSON");
