@@ -26,7 +26,7 @@ ObjectDrift drift_of(const std::vector<int>& cells, const FeatureVotes& votes, s
 /// Is the shift larger than the noise of the features and of the pose?
 bool drifts(const ObjectDrift& drift, const BeliefConfig& config);
 
-/// What geometry says about an object with a class in this frame.
+/// What geometry finds out about an object with a class in this frame.
 enum class ObjectMotion { kUnknown, kMoving, kResting };
 
 /// All that geometry found out about a frame.

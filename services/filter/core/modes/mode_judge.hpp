@@ -40,7 +40,7 @@ enum class CellMotion : std::uint8_t {
 /// `others_rest`: cells that are not dynamic were found to be at rest.
 std::vector<CellMotion> to_cell_motion(const CellMask& dynamic, bool others_rest);
 
-/// What a mode says about one frame.
+/// The verdict of a mode on one frame.
 struct Verdict {
   std::vector<msg::Feature> features;                                ///< flagged and weighed, removed ones included
   std::vector<CellMotion> motion;                                    ///< per cell; empty in mode off

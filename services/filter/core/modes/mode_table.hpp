@@ -23,7 +23,7 @@ struct ModeEntry {
 std::span<const ModeEntry> all_modes();
 const ModeEntry& entry_of(FilterMode mode);
 
-/// Detections change what the mode says.
+/// Does the mode use detections?
 bool looks_at_boxes(FilterMode mode);
 
 /// The configuration that the algorithms work with: the techniques that belong to the mode and are not switched off,

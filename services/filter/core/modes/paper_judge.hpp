@@ -26,10 +26,10 @@ CellMask check_keypoint_depths(const vision::RgbdImage& image, const GridShape& 
 ///
 /// | the feature lies in        | it is removed                                   |
 /// | a high box (person)        | always                                          |
-/// | a medium box (chair, book) | when the multi-view check says moving           |
+/// | a medium box (chair, book) | when the multi-view check finds motion          |
 /// | a low box (tv)             | never                                           |
-/// | both a low and a high box  | when the multi-view check says moving           |
-/// | no box                     | when the multi-view check says moving           |
+/// | both a low and a high box  | when the multi-view check finds motion          |
+/// | no box                     | when the multi-view check finds motion          |
 class PaperJudge final : public ModeJudge {
  public:
   explicit PaperJudge(const FilterConfig& config) : config_(config.paper), ego_motion_(config.ego_motion) {}

@@ -22,7 +22,7 @@ class RtdJudge final : public ModeJudge {
   void reset() override;
 
  private:
-  /// What the classes of the objects say, before anything was compared with earlier views.
+  /// What the classes of the objects imply, before any comparison with earlier views.
   struct Foreground {
     DepthClusters clusters;  ///< every object is a cluster of its own
     CellMask high;           ///< per cell, 1 = on an object of a high level

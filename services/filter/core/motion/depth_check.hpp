@@ -12,7 +12,7 @@
 
 namespace rtd::filter {
 
-/// What the reference views say about each cell of the current frame.
+/// What the reference views show about each cell of the current frame.
 struct DepthEvidence {
   std::vector<std::uint8_t>
       violated;  ///< 1 = views saw through the place where the surface now is: two of them where there are four or more

@@ -35,8 +35,8 @@ struct ReferenceLimits {
 /// (about 0.4 MB each), with their poses.
 ///
 /// Poses come from the quick estimate until slam sends better ones; later poses are then corrected as well. If slam's
-/// pose is far from ours, slam has started a new map or relocalised: older views are dropped, because they lie in
-/// another world.
+/// pose is far from the estimate, slam has started a new map or relocalised: older views are dropped, because they lie
+/// in another world.
 class ViewStore {
  public:
   void add(View view);

@@ -90,10 +90,10 @@ std::vector<Pair> choose_pairs() {
       tries = 0;
     }
     const Pair candidate = draw_pair(random);
-    bool says_something_new = true;
+    bool is_independent = true;
     for (const Pair& taken : chosen)
-      says_something_new = says_something_new && std::abs(pair_correlation(candidate, taken)) < limit;
-    if (!says_something_new) continue;
+      is_independent = is_independent && std::abs(pair_correlation(candidate, taken)) < limit;
+    if (!is_independent) continue;
     chosen.push_back(candidate);
     tries = 0;
   }

@@ -68,7 +68,7 @@ class BoxTracks {
   /// Drops what has left the image or has not been seen for too long, then all boxes of the newest frame, best score
   /// first.
   std::vector<TrackedBox> boxes();
-  /// The object's depth as its mask in the newest frame says.
+  /// The object's depth according to its mask in the newest frame.
   void set_depth(int id, double depth_m);
   void clear();
 

@@ -24,7 +24,7 @@ struct Mover {
 
 /// Where movers without a class are, how large and how fast, in the world. What stays in sight is carried by the memory
 /// of dynamic surfaces (DynamicMemory); what was out of sight for a second or more, out of the view or in a hole of the
-/// depth image, is expected where its track says, until it was seen at rest or its place empty.
+/// depth image, is expected where its track predicts it, until it is seen at rest or its place empty.
 /// docs/theory/dynamic_points.md section 4. Bounded, deterministic.
 class MoverTracks {
  public:
