@@ -7,7 +7,7 @@
 /// The one list of a message's fields. One line beside each struct of common/msg, in namespace rtd::msg:
 ///   RTD_FIELDS(builtin_interfaces, Time, sec, nanosec)
 /// names its ROS package, the struct and all its fields, in the order of the wire. Codecs, schemas, type hashes and
-/// tools go by it; tests/unit/idl proves that the IDL files and the code that both DDS vendors generate agree with it.
+/// tools go by it; tests/unit/bus proves that the IDL files and the code that both DDS vendors generate agree with it.
 namespace rtd::msg {
 
 /// Which message type a function is about, where there is no message.

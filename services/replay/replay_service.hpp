@@ -20,7 +20,7 @@ class App;
 
 namespace rtd::replay {
 
-/// rtd-replay: publishes a recording, byte for byte (docs/recordings.md).
+/// rtd-replay: publishes a recording, byte for byte (services/replay/README.md).
 class ReplayService final : public PlayerHost {
  public:
   static constexpr const char* kName = "replay";
