@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "services/evaluation/core/removal/removal_quality.hpp"
+#include "services/evaluation/core/removal/removal.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
 #include "tests/support/evaluation_clip.hpp"
 

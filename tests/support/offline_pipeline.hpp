@@ -13,7 +13,7 @@
 #include "common/msg/tracking.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/frame_source.hpp"
-#include "services/evaluation/core/removal/removal_quality.hpp"
+#include "services/evaluation/core/removal/removal.hpp"
 #include "services/evaluation/core/trajectory/trajectory.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
 #include "services/slam/core/slam_system.hpp"

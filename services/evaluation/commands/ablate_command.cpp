@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -15,23 +14,12 @@
 #include "common/service/model_locator.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/camera/core/source_uri.hpp"
-#include "services/evaluation/commands/variant_run.hpp"
-#include "services/evaluation/core/ablation/ablation_html.hpp"
 #include "services/evaluation/core/ablation/ablation_text.hpp"
-#include "services/evaluation/core/removal/true_masks.hpp"
-#include "services/launcher/process/executable.hpp"
-#include "services/launcher/run/run_setup.hpp"
+#include "services/evaluation/core/report/report.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace fs = std::filesystem;
 namespace {
-
-void write_file(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.flush();
-  if (!file) throw std::runtime_error(path.string() + ": cannot be written");
-}
 
 /// After every run: what was measured survives whatever comes.
 void write_results(const Ablation& ablation, const fs::path& out_dir) {
@@ -191,7 +179,7 @@ void add_ablate_command(CLI::App& app, AblateOptions& options) {
   command->add_flag("--resume", options.resume, "Keep finished runs of the same settings in the folder");
 }
 
-int ablate(const AblateOptions& options) {
+int run_ablate(const AblateOptions& options) {
   try {
     return run_ablation(options);
   } catch (const AblationError& error) {
@@ -205,4 +193,4 @@ int ablate(const AblateOptions& options) {
   }
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

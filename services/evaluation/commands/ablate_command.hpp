@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "common/service/bus_config.hpp"
+#include "services/evaluation/core/ablation/ablation_result.hpp"
 
 namespace CLI {
 class App;
 }
 
-namespace rtd::launcher {
+namespace rtd::eval {
 
 /// The command line of `rtd ablate`.
 struct AblateOptions {
@@ -32,9 +33,28 @@ struct AblateOptions {
 
 void add_ablate_command(CLI::App& app, AblateOptions& options);
 
-/// `rtd ablate`: every mode, then mode rtd without each technique, on every source, through the real services. Writes
-/// ablation.json, .md and .html behind every run. Returns the exit code: 0; 1 when a run failed; 2 when nothing could
-/// be started; 130 when interrupted.
-int ablate(const AblateOptions& options);
+/// `rtd ablate`: every mode, then mode rtd without each technique, on every source, each with `rtd run`. Writes
+/// ablation.json, .md and .html after every run. Returns the exit code: 0; 1 when a run failed; 2 when nothing could be
+/// started; 130 when interrupted.
+int run_ablate(const AblateOptions& options);
 
-}  // namespace rtd::launcher
+/// What `rtd-<service> --print-config` prints. Throws service::ConfigError when it cannot be run.
+std::string printed_config(const std::string& service);
+
+/// One run of the experiment.
+struct VariantTask {
+  std::string source, source_name;
+  Variant variant;
+  int run = 1;
+};
+struct VariantRun {
+  Measurement measurement;
+  bool interrupted = false;
+  bool reused = false;  ///< measured by an earlier ablation
+};
+
+/// Runs it in OUT/<source>/<variant>/<run>. With --resume, an earlier result of the same settings is taken instead. A
+/// run that fails is a measurement with a reason. Throws service::ConfigError when nothing could be started.
+VariantRun run_variant(const AblateOptions& options, const VariantTask& task);
+
+}  // namespace rtd::eval

@@ -2,38 +2,84 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/commands/eval_command.hpp"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
 
 #include "common/service/exit_code.hpp"
-#include "services/evaluation/commands/eval_table.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
-#include "services/evaluation/core/trajectory/evaluation_json.hpp"
+#include "services/evaluation/core/trajectory/evaluation.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
+constexpr double kRadToDeg = 180 / std::numbers::pi;
+constexpr std::size_t kShownSpans = 5;
+
+double seconds(std::int64_t stamp_ns) {
+  return static_cast<double>(stamp_ns) * 1e-9;
+}
+
+std::string row(const std::string& name, const Statistics& s, double factor, const char* unit) {
+  if (s.count == 0) return fmt::format("{:<22} no pairs\n", name);
+  return fmt::format("{:<22} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:<4} {:>6}\n", name,
+                     s.rmse * factor, s.mean * factor, s.median * factor, s.std_dev * factor, s.min * factor,
+                     s.max * factor, unit, s.count);
+}
+
+std::string rpe_rows(const std::string& name, const RpeResult& rpe) {
+  return row(name, rpe.translation_m, 1, "m") + row("", rpe.rotation_rad, kRadToDeg, "deg");
+}
+
+std::string coverage_rows(const Coverage& coverage, std::int64_t start_ns) {
+  std::string text = coverage.frames > 0 ? fmt::format("coverage               {:.2f} % ({} of {} frames)\n",
+                                                       100 * coverage.fraction, coverage.tracked, coverage.frames)
+                                         : fmt::format("coverage               {:.2f} % of the ground truth's time\n",
+                                                       100 * coverage.fraction);
+  for (std::size_t i = 0; i < std::min(coverage.lost.size(), kShownSpans); ++i) {
+    const LostSpan& span = coverage.lost[i];
+    text += fmt::format("  without poses        {:.2f} s to {:.2f} s after the start",
+                        seconds(span.first_ns - start_ns), seconds(span.last_ns - start_ns));
+    text += span.frames > 0 ? fmt::format(" ({} frames)\n", span.frames) : "\n";
+  }
+  if (coverage.lost.size() > kShownSpans) {
+    text += fmt::format("  and {} more (--json lists all)\n", coverage.lost.size() - kShownSpans);
+  }
+  return text;
+}
+
+std::string alignment_rows(const Alignment& alignment) {
+  std::string text;
+  if (alignment.scale != 1) text += fmt::format("scale                  {:.6f}\n", alignment.scale);
+  if (!alignment.unique) {
+    text += "note                   poses lie on one line or point: the alignment is one of many, ATE is optimistic\n";
+  }
+  return text;
+}
+
 struct Inputs {
-  eval::Trajectory estimate, groundtruth;
+  Trajectory estimate, groundtruth;
   std::optional<std::vector<std::int64_t>> frames_ns;
 };
 
 Inputs read_inputs(const EvalOptions& options) {
-  Inputs inputs{eval::read_tum_trajectory(options.estimate), eval::read_tum_trajectory(options.groundtruth), {}};
-  if (!options.frames.empty()) inputs.frames_ns = eval::read_frame_stamps(options.frames);
+  Inputs inputs{read_tum_trajectory(options.estimate), read_tum_trajectory(options.groundtruth), {}};
+  if (!options.frames.empty()) inputs.frames_ns = read_frame_stamps(options.frames);
   return inputs;
 }
 
-eval::EvaluationOptions evaluation_options(const EvalOptions& options) {
-  eval::EvaluationOptions result;
+EvaluationOptions evaluation_options(const EvalOptions& options) {
+  EvaluationOptions result;
   result.association = {options.max_difference_s, options.offset_s};
-  result.alignment = options.scale ? eval::AlignmentKind::kSimilarity : eval::AlignmentKind::kRigid;
+  result.alignment = options.scale ? AlignmentKind::kSimilarity : AlignmentKind::kRigid;
   return result;
 }
 
@@ -43,14 +89,14 @@ class PlotError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-void write_plot(const eval::Evaluation& evaluation, const Inputs& inputs, const EvalOptions& options) {
+void write_plot(const Evaluation& evaluation, const Inputs& inputs, const EvalOptions& options) {
   const std::filesystem::path path = options.plot;
   if (path.extension() != ".svg") {
     throw PlotError("--plot " + options.plot + ": only SVG is written; give the file the ending .svg");
   }
-  eval::Trajectory groundtruth = inputs.groundtruth;  // on the estimate's clock, which is the plot's
+  Trajectory groundtruth = inputs.groundtruth;  // on the estimate's clock, which is the plot's
   const std::int64_t offset_ns = std::llround(options.offset_s * 1e9);
-  for (eval::StampedPose& pose : groundtruth) pose.stamp_ns -= offset_ns;
+  for (StampedPose& pose : groundtruth) pose.stamp_ns -= offset_ns;
   std::ofstream output(path);
   output << evaluation_svg(evaluation.ate, groundtruth, std::filesystem::path(options.estimate).filename().string());
   output.flush();
@@ -59,8 +105,35 @@ void write_plot(const eval::Evaluation& evaluation, const Inputs& inputs, const 
 
 }  // namespace
 
+std::string evaluation_table(const Evaluation& e, const EvalOptions& options) {
+  const std::int64_t start_ns = e.ate.points.empty() ? 0 : e.ate.points.front().stamp_ns;
+  return fmt::format("estimate               {} ({} poses)\nground truth           {} ({} poses)\n", options.estimate,
+                     e.estimate_poses, options.groundtruth, e.groundtruth_poses) +
+         coverage_rows(e.coverage, start_ns) + alignment_rows(e.ate.alignment) +
+         fmt::format("\n{:<22} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:<4} {:>6}\n", "", "rmse", "mean", "median", "std",
+                     "min", "max", "", "pairs") +
+         row(options.scale ? "ATE (Sim(3))" : "ATE (SE(3))", e.ate.error_m, 1, "m") +
+         rpe_rows("RPE per second", e.rpe_per_second) + rpe_rows("RPE per frame", e.rpe_per_frame) +
+         rpe_rows("RPE per metre", e.rpe_per_metre);
+}
+
+std::string explain_no_pairs(const Trajectory& estimate, const Trajectory& groundtruth, const EvalOptions& options) {
+  const auto span = [](const Trajectory& t) {
+    return fmt::format("{:.6f} to {:.6f} s", seconds(t.front().stamp_ns), seconds(t.back().stamp_ns));
+  };
+  return fmt::format(
+      "rtd eval: no poses associate within {} s.\n"
+      "  estimate     {}: {}\n"
+      "  ground truth {}: {}\n"
+      "Are these files of the same sequence? A constant difference of clocks goes into --offset (added to the\n"
+      "estimate; the starts differ by {:.6f} s), a coarse ground truth needs a larger --max-difference.\n",
+      options.max_difference_s, options.estimate, span(estimate), options.groundtruth, span(groundtruth),
+      seconds(groundtruth.front().stamp_ns - estimate.front().stamp_ns));
+}
+
 CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options) {
-  CLI::App* command = parent.add_subcommand("eval", "Compare a trajectory with its ground truth (both in TUM format)");
+  CLI::App* command =
+      parent.add_subcommand("trajectory", "Compare a trajectory with its ground truth (both in TUM format)");
   command->add_option("estimate", options.estimate, "Trajectory to judge: stamp tx ty tz qx qy qz qw")->required();
   command->add_option("groundtruth", options.groundtruth, "Ground truth in the same format")->required();
   command->add_flag("--json", options.json, "Print JSON instead of a table");
@@ -77,20 +150,20 @@ CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options) {
 int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
   try {
     const Inputs inputs = read_inputs(options);
-    const eval::Evaluation evaluation =
-        eval::evaluate(inputs.estimate, inputs.groundtruth, evaluation_options(options), inputs.frames_ns);
+    const Evaluation evaluation =
+        evaluate(inputs.estimate, inputs.groundtruth, evaluation_options(options), inputs.frames_ns);
     if (evaluation.ate.error_m.count == 0) {
       err << explain_no_pairs(inputs.estimate, inputs.groundtruth, options);
       return service::kRunFailed;
     }
     if (!options.plot.empty()) write_plot(evaluation, inputs, options);
     if (options.json) {
-      out << eval::to_json(evaluation).dump(2) << "\n";
+      out << to_json(evaluation).dump(2) << "\n";
     } else {
       out << evaluation_table(evaluation, options);
     }
     return service::kOk;
-  } catch (const eval::TrajectoryError& error) {
+  } catch (const TrajectoryError& error) {
     err << "rtd eval: " << error.what() << "\n";
     return service::kUsageOrConfig;
   } catch (const PlotError& error) {
@@ -99,4 +172,4 @@ int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
   }
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -9,7 +9,7 @@ namespace CLI {
 class App;
 }
 
-namespace rtd::launcher {
+namespace rtd::eval {
 
 /// What `rtd eval` was asked.
 struct EvalOptions {
@@ -29,4 +29,4 @@ CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options);
 /// Returns the exit code: 0; 1 when no poses associate; 2 when a file is missing, malformed or cannot be written.
 int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

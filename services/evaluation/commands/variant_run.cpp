@@ -1,27 +1,34 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/commands/variant_run.hpp"
-
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "services/evaluation/commands/ablate_command.hpp"
 #include "services/launcher/process/executable.hpp"
-#include "services/launcher/run/run_command.hpp"
+#include "common/service/interrupt_signals.hpp"
+#include "services/launcher/process/posix_process_host.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr char kTaskFile[] = "variant.json";
 
-/// What a run depends on: a result is kept only when nothing of it has changed.
+std::string require_executable(const std::string& name) {
+  std::string path = launcher::find_executable(name);
+  if (path.empty()) throw service::ConfigError(name + " is neither beside rtd-eval nor in PATH");
+  return path;
+}
+
+/// What a run depends on: a result is kept only when none of it has changed.
 nlohmann::json settings_of(const AblateOptions& options, const VariantTask& task) {
   return {{"version", RTD_VERSION},       {"source", task.source},
           {"mode", task.variant.mode},    {"settings", task.variant.settings},
@@ -30,21 +37,34 @@ nlohmann::json settings_of(const AblateOptions& options, const VariantTask& task
           {"detector", options.detector}, {"model", options.model}};
 }
 
-RunOptions run_options(const AblateOptions& options, const VariantTask& task, const fs::path& folder) {
-  RunOptions run;
-  run.source = task.source;
-  run.pace = options.pace;
-  run.filter_mode = task.variant.mode;
-  run.bus = options.bus;
-  run.config_file = options.config_file;
-  run.overrides = options.overrides;
-  run.overrides.insert(run.overrides.end(), task.variant.settings.begin(), task.variant.settings.end());
-  run.detector = options.detector;
-  run.model = options.model;
-  run.out_dir = folder.string();
-  run.quiet = true;
-  run.frames = options.frames;
-  return run;
+std::vector<std::string> run_command(const AblateOptions& options, const VariantTask& task, const fs::path& folder) {
+  std::vector<std::string> command = {require_executable("rtd"), "run"};
+  const auto add = [&](const std::string& option, const std::string& value) {
+    if (!value.empty()) command.insert(command.end(), {option, value});
+  };
+  add("--source", task.source);
+  add("--out", folder.string());
+  add("--pace", options.pace);
+  add("--filter", task.variant.mode);
+  add("--config", options.config_file);
+  add("--detector", options.detector);
+  add("--model", options.model);
+  if (options.frames > 0) add("--frames", std::to_string(options.frames));
+  for (const std::string& assignment : options.overrides) add("--set", assignment);
+  for (const std::string& assignment : task.variant.settings) add("--set", assignment);
+  const std::vector<std::string> bus = service::to_words(options.bus);
+  command.insert(command.end(), bus.begin(), bus.end());
+  command.emplace_back("--quiet");
+  return command;
+}
+
+/// The exit code of `rtd run`; Ctrl-C is passed on to it.
+int run_in_folder(const AblateOptions& options, const VariantTask& task, const fs::path& folder) {
+  service::InterruptSignals signals;
+  const launcher::ProcessExit exit =
+      launcher::run_to_end({"rtd run", run_command(options, task, folder)}, signals,
+                           [](const std::string&, const std::string& line) { std::cerr << line << std::endl; });
+  return exit.signal != 0 ? static_cast<int>(service::kRunFailed) : exit.code;
 }
 
 std::optional<Measurement> kept_measurement(const fs::path& folder, const nlohmann::json& settings) {
@@ -54,10 +74,6 @@ std::optional<Measurement> kept_measurement(const fs::path& folder, const nlohma
   std::optional<Measurement> measurement = read_measurement(folder);
   if (measurement) measurement->duration_s = before.value("duration_s", 0.0);
   return measurement;
-}
-
-std::string why_failed(const RunResult& result) {
-  return result.record.events.empty() ? "exit code " + std::to_string(result.code) : result.record.events.back();
 }
 
 Measurement named(Measurement m, const VariantTask& task) {
@@ -70,8 +86,7 @@ Measurement named(Measurement m, const VariantTask& task) {
 }  // namespace
 
 std::string printed_config(const std::string& service) {
-  const std::string executable = find_executable("rtd-" + service);
-  if (executable.empty()) throw service::ConfigError("rtd-" + service + " is neither beside rtd nor in PATH");
+  const std::string executable = require_executable("rtd-" + service);
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(("'" + executable + "' --print-config").c_str(), "r"), pclose);
   std::string text;
   std::array<char, 4096> part{};
@@ -89,22 +104,22 @@ VariantRun run_variant(const AblateOptions& options, const VariantTask& task) {
     if (const auto kept = kept_measurement(folder, settings)) return {named(*kept, task), false, true};
   }
   std::error_code ignored;
-  fs::remove(folder / kTaskFile, ignored);
+  for (const char* stale : {kTaskFile, "report.json"}) fs::remove(folder / stale, ignored);
   const std::int64_t start_ns = service::monotonic_ns();
-  const RunResult result = run(run_options(options, task, folder));
-  if (result.code == service::kInterrupted) return {{}, true, false};
-  if (result.code == service::kUsageOrConfig)
+  const int code = run_in_folder(options, task, folder);
+  if (code == service::kInterrupted) return {{}, true, false};
+  if (code == service::kUsageOrConfig)
     throw service::ConfigError("'" + task.variant.name + "' on " + task.source +
                                " could not be started (reason above)");
   const double duration_s = static_cast<double>(service::monotonic_ns() - start_ns) * 1e-9;
   Measurement measurement = named(read_measurement(folder).value_or(Measurement{}), task);
   measurement.duration_s = duration_s;
-  if (result.code != service::kOk) {
-    measurement.failure = why_failed(result);
-  } else {  // only what is whole may be kept
+  if (code != service::kOk) {
+    measurement.failure = last_event(folder).value_or("exit code " + std::to_string(code));
+  } else {  // only a complete run may be kept
     std::ofstream(folder / kTaskFile) << nlohmann::json{{"settings", settings}, {"duration_s", duration_s}}.dump(2);
   }
   return {measurement, false, false};
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

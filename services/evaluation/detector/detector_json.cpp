@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/detector/detector_json.hpp"
+#include "services/evaluation/detector/detector_report.hpp"
 
 #include <optional>
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 using nlohmann::json;
@@ -98,4 +98,4 @@ json to_json(const MaskResults& results) {
   return document;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

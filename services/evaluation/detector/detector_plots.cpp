@@ -1,16 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/detector/detector_plots.hpp"
+#include "services/evaluation/detector/detector_report.hpp"
 
 #include <array>
 #include <limits>
 
 #include "services/evaluation/core/plot/chart.hpp"
-#include "services/evaluation/core/plot/colour.hpp"
 #include "services/evaluation/core/report/html.hpp"
-#include "services/evaluation/detector/detector_tables.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 using plot::Chart;
@@ -98,4 +96,4 @@ std::string mask_html(const MaskResults& results) {
                         html::section("Figures", "", preformatted(mask_table(results))));
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

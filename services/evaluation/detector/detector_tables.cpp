@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/detector/detector_tables.hpp"
+#include "services/evaluation/detector/detector_report.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 constexpr std::size_t kShownProblems = 10;
@@ -101,4 +101,4 @@ std::string input_lines(const InputReport& input, const std::string& partner) {
   return text;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -9,12 +9,10 @@
 #include <ostream>
 
 #include "common/service/exit_code.hpp"
-#include "services/evaluation/detector/detector_json.hpp"
-#include "services/evaluation/detector/detector_plots.hpp"
-#include "services/evaluation/detector/detector_tables.hpp"
+#include "services/evaluation/detector/detector_report.hpp"
 #include "services/evaluation/detector/evaluate.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 /// "0:180:15" -> 0, 15 .. 180; "90" -> 90.
@@ -87,8 +85,8 @@ void add_mask_options(CLI::App& command, EvalDetectorOptions& options) {
 }  // namespace
 
 CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& options) {
-  CLI::App* command = parent.add_subcommand("eval-detector",
-                                            "Average precision, recall and time of detector models on labelled images");
+  CLI::App* command =
+      parent.add_subcommand("detector", "Average precision, recall and time of detector models on labelled images");
   command->add_option("--images", options.images, "Folder of images")->required();
   CLI::Option* labels =
       command->add_option("--labels", options.labels, "Folder of labels named like the images: YOLO .txt, VOC .xml");
@@ -122,4 +120,4 @@ int run_eval_detector(const EvalDetectorOptions& options, std::ostream& out, std
   }
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -3,14 +3,46 @@
 #pragma once
 
 #include <iosfwd>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
-#include "services/evaluation/detector/eval_detector_options.hpp"
+#include "services/detector/core/detector_config.hpp"
 
 namespace CLI {
 class App;
 }
 
-namespace rtd::launcher {
+namespace rtd::eval {
+
+/// Degrees from, to and step of `--roll`; from = to: one angle.
+struct RollRange {
+  double from_deg = 0, to_deg = 0, step_deg = 15;
+};
+
+/// What `rtd eval-detector` was asked.
+struct EvalDetectorOptions {
+  std::string images;                 ///< folder
+  std::string labels;                 ///< folder: average precision
+  std::string masks;                  ///< folder: recall on masks
+  std::string label_format = "auto";  ///< auto, yolo, voc
+  std::string names_file;             ///< class names, one a line; empty: those of the model
+  std::vector<std::string> models;    ///< files or names; empty: the default model
+  std::string json, out_dir;          ///< empty = none
+  double wanted_recall = 0.6;         ///< of objects of the high motion level
+  int step = 1;                       ///< every n-th image
+  std::string class_name = "person";  ///< what the masks show
+  bool dark_masks = false;            ///< objects are black in the masks
+  std::vector<double> thresholds = {detector::DecodeConfig{}.confidence_threshold};  ///< for the masks
+  RollRange roll;
+  bool derotate = false;  ///< masks: also with the image turned upright by the true roll
+};
+
+/// The input cannot be evaluated at all; what() names option, value and fix.
+class EvalDetectorError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// Adds the subcommand `eval-detector` to `parent`; parsing fills `options`, which must outlive `parent`.
 CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& options);
@@ -19,4 +51,4 @@ CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& optio
 /// usage, folders or models that are missing or hold nothing to evaluate, and files that cannot be written.
 int run_eval_detector(const EvalDetectorOptions& options, std::ostream& out, std::ostream& err);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

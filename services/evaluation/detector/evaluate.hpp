@@ -2,11 +2,49 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <iosfwd>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "services/evaluation/detector/evaluation_results.hpp"
+#include "services/detector/core/evaluation/accuracy_report.hpp"
+#include "services/detector/core/evaluation/mask_recall.hpp"
+#include "services/evaluation/detector/model_under_test.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
+
+/// What was wrong with the input.
+struct InputReport {
+  std::size_t images = 0;             ///< evaluated
+  std::size_t without_partner = 0;    ///< labels: taken as empty; masks: left out
+  std::size_t not_decoded = 0;        ///< images or masks that are no images, left out
+  std::vector<std::string> problems;  ///< a line each, with file, line and value
+};
+
+/// A model against labels.
+struct LabelledResult {
+  ModelFacts model;
+  detector::AccuracyReport accuracy;
+};
+struct LabelledResults {
+  InputReport input;
+  std::string format;
+  double wanted_recall = 0;
+  std::vector<LabelledResult> models;
+};
+
+/// A model against masks: by roll in degrees, then by confidence threshold.
+using RecallByRoll = std::map<double, std::map<double, detector::MaskRecall>>;
+struct MaskResult {
+  ModelFacts model;
+  RecallByRoll as_seen, upright;  ///< upright: de-rotated by the true roll; empty when not asked for
+};
+struct MaskResults {
+  InputReport input;
+  std::vector<MaskResult> models;
+};
 
 /// Runs all models on all images. Throws EvalDetectorError when the input cannot be used at all.
 LabelledResults evaluate_labels(const EvalDetectorOptions& options, std::ostream& err);
@@ -14,4 +52,4 @@ LabelledResults evaluate_labels(const EvalDetectorOptions& options, std::ostream
 /// Recall on masks, on images turned by each roll. Throws EvalDetectorError when the input cannot be used at all.
 MaskResults evaluate_masks(const EvalDetectorOptions& options, std::ostream& err);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

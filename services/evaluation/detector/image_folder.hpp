@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace rtd::launcher {
+#include "services/detector/core/evaluation/labels.hpp"
+
+namespace rtd::eval {
 
 /// Every `step`-th image of a folder (jpg, jpeg, png, bmp), by name. Throws EvalDetectorError when there is no such
 /// folder or no image in it; `option` is what names it on the command line.
@@ -19,4 +21,22 @@ std::filesystem::path partner_of(const std::filesystem::path& image, const std::
 /// Throws EvalDetectorError when `folder` is none.
 void require_folder(const std::string& folder, const std::string& option);
 
-}  // namespace rtd::launcher
+/// A folder of label files named like the images.
+class LabelFolder {
+ public:
+  /// `format`: yolo (.txt), voc (.xml) or auto: what the folder has. Throws EvalDetectorError when there is no such
+  /// folder, or auto finds both formats or none.
+  LabelFolder(const std::string& folder, const std::string& format);
+
+  const std::string& format() const { return format_; }
+  /// False: no file, and so no objects.
+  bool has(const std::filesystem::path& image) const;
+  detector::ImageLabels read(const std::filesystem::path& image, detector::ImageSize size,
+                             const std::vector<std::string>& class_names) const;
+
+ private:
+  std::filesystem::path file_of(const std::filesystem::path& image) const;
+  std::string folder_, format_;
+};
+
+}  // namespace rtd::eval

@@ -10,7 +10,7 @@
 
 #include "common/service/model_locator.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ std::vector<ModelUnderTest> load_models(const EvalDetectorOptions& options, doub
   return models;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

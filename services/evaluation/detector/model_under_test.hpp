@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "services/detector/core/detector.hpp"
-#include "services/evaluation/detector/eval_detector_options.hpp"
+#include "services/evaluation/detector/eval_detector_command.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 
 /// What a model file is.
 struct ModelFacts {
@@ -44,4 +44,4 @@ class ModelUnderTest {
 /// All models of the options, or the default one. Throws EvalDetectorError when one is missing or broken.
 std::vector<ModelUnderTest> load_models(const EvalDetectorOptions& options, double least_score);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

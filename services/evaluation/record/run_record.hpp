@@ -4,30 +4,45 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <map>
-#include <optional>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
-#include "services/evaluation/core/removal/removal_quality.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 
-/// What one run told about one frame: joined from rtd/features and rtd/tracking by seq.
+/// The filter's modes, from no removal to all techniques (docs/theory/dynamic_points.md "Modes").
+inline const std::vector<std::string> kFilterModes{"off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd"};
+
+/// What filter and slam published about one frame.
 struct FrameRecord {
   msg::TrackingResult tracking{};
   std::array<float, msg::kFilterStages> filter_stage_ms{};
-  msg::DetectionUse detection_use = msg::DetectionUse::kNone;
-  std::uint32_t objects = 0;
 };
 
-/// One frame kept for the report: its picture and the features drawn on it.
+/// A feature as the report needs it: where it is in the camera's own image, and what the filter decided.
+struct JudgedFeature {
+  float u_raw_px = 0, v_raw_px = 0;
+  bool removed = false;
+};
+std::vector<JudgedFeature> judged(std::span<const msg::Feature> features);
+
+/// The features of one frame, to be compared with the true moving pixels.
+struct JudgedFrame {
+  std::int64_t stamp_ns = 0;
+  std::vector<JudgedFeature> features;
+};
+
+/// One frame kept for the report: its image and the features drawn on it.
 struct SampleFrame {
   std::uint64_t seq = 0;
   std::vector<std::uint8_t> jpeg;
-  std::vector<msg::Feature> features;
+  std::vector<JudgedFeature> features;
 };
 
 struct ProcessUsage {
@@ -42,30 +57,37 @@ struct HostClock {
   double offset_ms = 0, round_trip_ms = 0;
 };
 
-/// Removed features against the true moving pixels, over a run and without its first second: until then there is
-/// little to compare with.
-struct RunRemoval {
-  std::size_t frames = 0;  ///< whose true moving pixels are known
-  eval::RemovalQuality all, settled;
-};
-
-/// Everything that `rtd run` observed, before it becomes report.json and report.html.
+/// Everything that `rtd run` observed. It travels to `rtd-eval` as run.json (services/evaluation/README.md).
 struct RunRecord {
+  std::string version;                                   ///< of rtd
   std::string source, pace, filter_mode, dds, detector;  ///< as given; detector: model name or "off (reason)"
-  std::string groundtruth_path;                          ///< TUM format; empty = none
-  std::string trajectory_path;                           ///< trajectory.txt written by slam (final poses)
-  std::string static_map_path;                           ///< static_map.ply written by dense; empty = none
-  std::uint64_t static_map_points = 0;
-  std::uint64_t frames_in = 0;          ///< frames the source delivered
-  std::uint64_t frames_dropped = 0;     ///< frames in without a TrackingResult
-  std::map<std::string, double> drops;  ///< by place, e.g. "camera.late", "filter.queue"
-  std::vector<FrameRecord> frames;      ///< ordered by seq
-  std::vector<SampleFrame> samples;
+  bool interrupted = false;                              ///< Ctrl-C ended the run
+  double duration_s = 0;                                 ///< from the first frame to the last pose
+  std::uint64_t frames_in = 0;                           ///< frames the source delivered
+  std::uint64_t frames_dropped = 0;                      ///< frames in without a TrackingResult
+  std::map<std::string, double> drops;                   ///< by place, e.g. "camera.late", "filter.queue"
   std::map<std::string, ProcessUsage> processes;
   std::vector<HostClock> clocks;    ///< of services on other hosts
   std::vector<std::string> events;  ///< restarts, degraded modes, warnings, in order
-  double duration_s = 0;
-  std::optional<RunRemoval> removal;  ///< of sources that know what moves
+  std::vector<FrameRecord> frames;  ///< ordered by seq
+  std::vector<SampleFrame> samples;
+  std::vector<JudgedFrame> judged_frames;  ///< in order of time; empty unless has_true_masks(source)
 };
 
-}  // namespace rtd::launcher
+/// Whether the source knows which pixels move: a synthetic scene, or a TUM folder with mask/.
+bool has_true_masks(const std::string& source_uri);
+/// The mask folder of a source "tum:FOLDER"; empty for other sources.
+std::filesystem::path mask_folder(const std::string& source_uri);
+bool is_synthetic(const std::string& source_uri);
+
+/// run.json cannot be written or read; what() names the file and the cause.
+class RunFileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Of a frame, only what the report needs is written: no covariance and no map ids. Throws RunFileError.
+void write_run_json(const RunRecord& record, const std::filesystem::path& file);
+RunRecord read_run_json(const std::filesystem::path& file);
+
+}  // namespace rtd::eval

@@ -19,13 +19,23 @@ struct ExternalCommand {
   const char* executable;  ///< "rtd-recording"; also the CMake target that builds it
   const char* help;
   const char* group = "Services";
+  const char* subcommand = nullptr;  ///< what the executable calls it, if not `name`
 
-  /// An executable with several commands gets the name as its first argument.
-  bool passes_name() const { return std::string("rtd-") + name != executable; }
+  /// An executable with several commands gets the command as its first argument.
+  std::vector<std::string> first_argument() const {
+    if (subcommand != nullptr) return {subcommand};
+    return std::string("rtd-") + name == executable ? std::vector<std::string>{} : std::vector<std::string>{name};
+  }
 };
 
 constexpr const char* kTools = "Tools";
 constexpr std::array kCommands = {
+    ExternalCommand{"eval", "rtd-eval", "Compare a trajectory with its ground truth (both in TUM format)", kTools,
+                    "trajectory"},
+    ExternalCommand{"eval-detector", "rtd-eval", "Measure precision, recall and time of detector models", kTools,
+                    "detector"},
+    ExternalCommand{"ablate", "rtd-eval", "Compare all filter modes, and mode rtd without each technique", kTools},
+    ExternalCommand{"report", "rtd-eval", "Write the report of a run again, from its run.json", kTools},
     ExternalCommand{"info", "rtd-recording", "Show what a recording (MCAP) contains: topics, rates, losses, damage",
                     kTools},
     ExternalCommand{"diff", "rtd-recording", "Compare two recordings (MCAP) or two trajectories (TUM format)", kTools},
@@ -86,8 +96,8 @@ int run_external_command(const std::string& name, const std::vector<std::string>
     std::cerr << "rtd: " << (command == nullptr ? unknown_command(name, built_in) : missing_executable(target)) << '\n';
     return service::kUsageOrConfig;
   }
-  std::vector<std::string> all = arguments;
-  if (command != nullptr && command->passes_name()) all.insert(all.begin(), name);
+  std::vector<std::string> all = command == nullptr ? std::vector<std::string>{} : command->first_argument();
+  all.insert(all.end(), arguments.begin(), arguments.end());
   const std::string failure = replace_process(executable, all);
   std::cerr << "rtd: " << failure << '\n';
   return service::kRunFailed;

@@ -9,9 +9,6 @@
 #include <vector>
 
 #include "common/service/exit_code.hpp"
-#include "services/evaluation/commands/ablate_command.hpp"
-#include "services/evaluation/commands/eval_command.hpp"
-#include "services/evaluation/detector/eval_detector_command.hpp"
 #include "services/launcher/cli/external_command.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
@@ -20,15 +17,11 @@
 namespace rtd::launcher {
 namespace {
 
-const std::vector<std::string> kBuiltIn = {"run",  "demo",          "doctor",  "ablate",
-                                           "eval", "eval-detector", "version", "help"};
+const std::vector<std::string> kBuiltIn = {"run", "demo", "doctor", "version", "help"};
 
 struct Requests {
   RunOptions run;
   DemoOptions demo;
-  AblateOptions ablate;
-  EvalOptions eval;
-  EvalDetectorOptions eval_detector;
   DoctorOptions doctor;
 };
 
@@ -95,9 +88,6 @@ void add_doctor_command(CLI::App& app, DoctorOptions& options) {
 int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("run")) return run(requests.run).code;
   if (app.got_subcommand("demo")) return demo(requests.demo);
-  if (app.got_subcommand("ablate")) return ablate(requests.ablate);
-  if (app.got_subcommand("eval")) return run_eval(requests.eval, std::cout, std::cerr);
-  if (app.got_subcommand("eval-detector")) return run_eval_detector(requests.eval_detector, std::cout, std::cerr);
   if (app.got_subcommand("doctor")) return doctor(requests.doctor, std::cout, std::cerr);
   if (app.got_subcommand("version")) {
     std::cout << "rtd " << RTD_VERSION << '\n';
@@ -119,9 +109,6 @@ int front(int argc, char** argv) {
   CLI::App app{"RTD-SLAM: RGB-D SLAM that stays accurate when people walk through the view", "rtd"};
   add_run_command(app, requests.run);
   add_demo_command(app, requests.demo);
-  add_ablate_command(app, requests.ablate);
-  add_eval_command(app, requests.eval);
-  add_eval_detector_command(app, requests.eval_detector);
   add_doctor_command(app, requests.doctor);
   app.add_subcommand("version", "Print the version");
   app.add_subcommand("help", "Print this text");

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/demo/demo_command.hpp"
 
-#include <fmt/format.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -11,8 +9,8 @@
 
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
-#include "services/evaluation/core/report/report.hpp"
 #include "services/launcher/demo/tum_dataset.hpp"
+#include "services/launcher/process/executable.hpp"
 #include "services/launcher/run/run_command.hpp"
 
 namespace rtd::launcher {
@@ -31,6 +29,15 @@ std::string choose_source(const DemoOptions& options) {
   return kSyntheticSource;
 }
 
+/// The report of a demo is its result: without rtd-eval there is nothing to show.
+std::string require_rtd_eval() {
+  std::string executable = find_executable("rtd-eval");
+  if (executable.empty())
+    throw service::ConfigError(
+        "rtd-eval is neither beside rtd nor in PATH: build it with 'cmake --build <build folder> --target rtd-eval'");
+  return executable;
+}
+
 /// Lockstep: the figures do not depend on how busy this host is, and a second demo gives the same ones.
 RunResult run_mode(const DemoOptions& options, const std::string& source, const std::string& mode) {
   RunOptions run_options;
@@ -43,21 +50,16 @@ RunResult run_mode(const DemoOptions& options, const std::string& source, const 
   return run(run_options);
 }
 
-std::string ate_text(const RunResult& result) {
-  if (!result.summary || !result.summary->final_trajectory) return "-";
-  return fmt::format("{:.4f} m", result.summary->final_trajectory->ate.error_m.rmse);
+/// Shows both runs on one page and prints their errors. Returns the exit code of rtd-eval.
+int compare(const std::string& out_dir, const std::string& page) {
+  const fs::path folder = out_dir;
+  return run_in_foreground(require_rtd_eval(),
+                           {"compare", (folder / "off").string(), (folder / "rtd").string(), "--label",
+                            "every point (--filter off)", "--label", "static points (--filter rtd)", "--page", page});
 }
 
-std::string coverage_text(const RunResult& result) {
-  return result.summary && result.record.frames_in > 0 ? fmt::format("{:.1f} %", 100 * result.summary->coverage) : "-";
-}
-
-void tell_comparison(const RunResult& off, const RunResult& with, const std::string& page) {
-  std::cout << fmt::format("\n  {:<28}{:>14}{:>12}\n", "", "ATE rmse", "coverage")
-            << fmt::format("  {:<28}{:>14}{:>12}\n", "every point (--filter off)", ate_text(off), coverage_text(off))
-            << fmt::format("  {:<28}{:>14}{:>12}\n", "static points (--filter rtd)", ate_text(with),
-                           coverage_text(with))
-            << "\n  both trajectories: " << page << "\n\n  next:\n"
+void print_next_steps(const std::string& page) {
+  std::cout << "\n  both trajectories: " << page << "\n\n  next:\n"
             << "    rtd run --source tum:FOLDER --out DIR                     your own TUM RGB-D sequence, at its "
                "recorded pace\n"
             << "    rtd run --source bag:FILE --out DIR                       a ROS 1 bag\n"
@@ -67,16 +69,17 @@ void tell_comparison(const RunResult& off, const RunResult& with, const std::str
 }
 
 int run_both(const DemoOptions& options, const std::string& source) {
-  std::cerr << "rtd demo, 1 of 2: every point is believed (--filter off)\n";
+  require_rtd_eval();
+  std::cerr << "rtd demo, 1 of 2: every point is used (--filter off)\n";
   const RunResult off = run_mode(options, source, "off");
-  if (!off.summary || off.code == service::kInterrupted) return off.code;
+  if (off.report != ReportState::kWritten || off.code == service::kInterrupted) return off.code;
   std::cerr << "\nrtd demo, 2 of 2: dynamic points are removed (--filter rtd)\n";
   const RunResult with = run_mode(options, source, "rtd");
-  if (!with.summary || with.code == service::kInterrupted) return with.code;
+  if (with.report != ReportState::kWritten || with.code == service::kInterrupted) return with.code;
 
-  const fs::path page = fs::path(options.out_dir) / "demo.html";
-  write_comparison_html({{"every point (off)", off.record}, {"static points (rtd)", with.record}}, page);
-  tell_comparison(off, with, page.string());
+  const std::string page = (fs::path(options.out_dir) / "demo.html").string();
+  if (compare(options.out_dir, page) != 0) return service::kRunFailed;
+  print_next_steps(page);
   return with.code;
 }
 

@@ -167,4 +167,16 @@ void PosixProcessHost::close_output(Child& child) {
   child.output_fd = -1;
 }
 
+ProcessExit run_to_end(const ProcessSpec& spec, service::InterruptSignals& signals, const PosixProcessHost::OnLine& on_line) {
+  constexpr std::chrono::milliseconds kPollPeriod{20};
+  PosixProcessHost host(on_line);
+  const ProcessId process = host.start(spec);
+  std::optional<ProcessExit> exit;
+  while (!(exit = host.poll_exit(process))) {
+    host.wait(kPollPeriod, signals.fd());
+    if (signals.take() > 0) host.terminate(process);
+  }
+  return *exit;
+}
+
 }  // namespace rtd::launcher

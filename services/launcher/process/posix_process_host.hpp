@@ -10,6 +10,7 @@
 
 #include "services/launcher/core/run/log_tail.hpp"
 #include "services/launcher/core/run/process_host.hpp"
+#include "common/service/interrupt_signals.hpp"
 
 namespace rtd::launcher {
 
@@ -46,5 +47,8 @@ class PosixProcessHost : public ProcessHost {
   OnLine on_line_;
   std::map<ProcessId, Child> children_;
 };
+
+/// Runs a command to its end. Each signal that arrives meanwhile is passed on as SIGTERM.
+ProcessExit run_to_end(const ProcessSpec& spec, service::InterruptSignals& signals, const PosixProcessHost::OnLine& on_line);
 
 }  // namespace rtd::launcher

@@ -83,17 +83,12 @@ bool Collector::tracked_any() const {
   return builder_.tracked_any();
 }
 
-std::vector<JudgedFrame> Collector::judged_frames() const {
-  const std::lock_guard lock(mutex_);
-  std::vector<JudgedFrame> frames;
-  for (const auto& [stamp_ns, features] : judged_) frames.push_back({stamp_ns, features});
-  return frames;
-}
-
-void Collector::fill(RunRecord& record) const {
+void Collector::fill(eval::RunRecord& record) const {
   const std::lock_guard lock(mutex_);
   builder_.fill(record);
   record.samples = samples_.samples();
+  record.judged_frames.clear();
+  for (const auto& [stamp_ns, features] : judged_) record.judged_frames.push_back({stamp_ns, features});
 }
 
 void Collector::encode_samples() {

@@ -11,7 +11,6 @@
 
 #include "common/bus/bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
-#include "services/evaluation/core/removal/true_masks.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/sample_keeper.hpp"
 
@@ -23,7 +22,7 @@ class Collector {
   struct Options {
     std::uint64_t samples = 12;
     std::uint64_t total = 0;     ///< frames expected, 0 = unknown
-    bool keep_features = false;  ///< for judged_frames()
+    bool keep_features = false;  ///< for RunRecord::judged_frames
   };
 
   Collector(bus::Bus& bus, const Options& options);
@@ -36,11 +35,9 @@ class Collector {
   LiveStatus live() const;
   std::optional<std::string> take_notice();
   bool tracked_any() const;
-  /// Writes what was heard (frames, counters, samples) into the record.
-  void fill(RunRecord& record) const;
-
-  /// The features of the first kMaxJudgedFrames frames, in order of time; none unless asked for in the options.
-  std::vector<JudgedFrame> judged_frames() const;
+  /// Writes what was received (frames, counters, samples, features of the first kMaxJudgedFrames frames) into the
+  /// record.
+  void fill(eval::RunRecord& record) const;
   static constexpr std::size_t kMaxJudgedFrames = 5000;  ///< about 15 kB each
 
  private:

@@ -12,11 +12,11 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/service/run_service.hpp"
 #include "services/camera/core/frame_source.hpp"
-#include "services/evaluation/core/report/report.hpp"
+#include "services/evaluation/record/run_record.hpp"
 #include "services/launcher/core/run/online_trajectory.hpp"
+#include "services/launcher/process/executable.hpp"
 #include "services/launcher/run/run_session.hpp"
 #include "services/launcher/run/run_setup.hpp"
-#include "services/launcher/run/run_summary_text.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -56,16 +56,30 @@ service::ExitCode exit_code(RunOutcome outcome, bool tracked_any) {
   return service::kRunFailed;
 }
 
-/// Everything that the run leaves in its folder beside what slam wrote. A run that slam could not finish is judged by
-/// the poses as they were published.
-void write_results(const RunSetup& setup, RunResult& result) {
-  const std::string online_path = setup.out_dir + "/trajectory_online.txt";
-  std::ofstream(online_path) << online_trajectory_text(result.record.frames);
-  if (result.record.trajectory_path.empty() && !result.record.frames.empty()) {
-    result.record.trajectory_path = online_path;
-    result.record.events.emplace_back("slam left no trajectory.txt: judged by the poses as they were published");
+/// What the launcher leaves in the folder of the run beside what the services wrote.
+void write_record(const eval::RunRecord& record, const std::string& out_dir) {
+  std::ofstream(out_dir + "/trajectory_online.txt") << online_trajectory_text(record.frames);
+  eval::write_run_json(record, out_dir + "/run.json");
+}
+
+/// rtd-eval makes the report from run.json and prints the table that ends a run.
+ReportState make_report(const std::string& out_dir, bool quiet, service::InterruptSignals& signals, Terminal& terminal) {
+  const std::string executable = find_executable("rtd-eval");
+  if (executable.empty()) {
+    terminal.warn("rtd: no report: rtd-eval is neither beside rtd (" + own_directory() +
+                  ") nor in PATH; build it with 'cmake --build <build folder> --target rtd-eval', then 'rtd report " +
+                  out_dir + "' makes the report");
+    return ReportState::kNone;
   }
-  result.summary = write_report(result.record, setup.out_dir);
+  std::string output;
+  std::vector<std::string> command = {executable, "report", out_dir};
+  if (quiet) command.emplace_back("--quiet");
+  const ProcessExit exit = run_to_end({"rtd-eval", command}, signals,
+                                      [&](const std::string&, const std::string& line) { output += line + '\n'; });
+  (exit.clean() ? std::cout : std::cerr) << output << std::flush;
+  if (exit.clean()) return ReportState::kWritten;
+  terminal.warn("rtd: no report: rtd-eval: " + describe(exit) + "; " + out_dir + "/run.json has the data of the run");
+  return ReportState::kFailed;
 }
 
 RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& plans, bool quiet) {
@@ -80,9 +94,9 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   const RunOutcome outcome = session.run(plans);
   result.code = exit_code(outcome, session.tracked_any());
   if (outcome == RunOutcome::kConfigError) return result;
-  result.record = session.record();
-  write_results(setup, result);
-  if (!quiet) std::cout << run_summary_text(result.record, *result.summary, setup.out_dir) << std::flush;
+  write_record(session.record(), setup.out_dir);
+  result.report = make_report(setup.out_dir, quiet, signals, terminal);
+  if (result.report == ReportState::kFailed) result.code = service::kRunFailed;
   if (outcome == RunOutcome::kComplete && !session.tracked_any()) terminal.warn("rtd: no frame got a pose");
   if (outcome != RunOutcome::kInterrupted) return result;
   terminal.say("rtd: interrupted, partial results are in " + setup.out_dir);
@@ -92,7 +106,7 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
 
 RunResult refuse(service::ExitCode code, const std::exception& error) {
   std::cerr << "rtd run: " << error.what() << '\n';
-  return {code, {}, std::nullopt};
+  return {code};
 }
 
 }  // namespace

@@ -2,20 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-
 #include "common/service/exit_code.hpp"
-#include "services/evaluation/core/report/run_summary.hpp"
-#include "services/evaluation/record/run_record.hpp"
 #include "services/launcher/run/run_options.hpp"
 
 namespace rtd::launcher {
 
-/// What a run left behind.
+/// Whether a run has report.json and report.html; without rtd-eval, run.json is all there is.
+enum class ReportState { kNone, kWritten, kFailed };
+
+/// How a run ended.
 struct RunResult {
   service::ExitCode code = service::kRunFailed;
-  RunRecord record;
-  std::optional<RunSummary> summary;  ///< empty: nothing was started
+  ReportState report = ReportState::kNone;
 };
 
 /// `rtd run`: checks, starts, supervises, reports. Prints progress to stderr, the summary to stdout. Never throws for

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "common/service/bus_config.hpp"
+#include "services/evaluation/record/run_record.hpp"
 
 namespace rtd::launcher {
 
-/// From nothing to everything; what each is made of: docs/theory/dynamic_points.md "Modes".
-inline const std::vector<std::string> kFilterModes{"off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd"};
+using eval::kFilterModes;
 /// Modes that look at no boxes need no detector.
 inline bool needs_detector(const std::string& filter_mode) {
   return filter_mode != "off" && filter_mode != "geometry";

@@ -4,11 +4,9 @@
 
 #include <sys/resource.h>
 
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "common/geometry/ply.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/launcher/core/run/process_usage.hpp"
 
@@ -20,7 +18,6 @@ using std::chrono::milliseconds;
 constexpr milliseconds kTick{50};
 constexpr milliseconds kMemoryPeriod{250};
 constexpr std::size_t kShownTailLines = 6;
-constexpr std::size_t kJudgedWhenInterrupted = 50;
 
 milliseconds now() {
   return milliseconds(service::monotonic_ns() / 1'000'000);
@@ -33,7 +30,7 @@ std::string read_file(const std::string& path) {
   return text.str();
 }
 
-ProcessUsage own_usage() {
+eval::ProcessUsage own_usage() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const auto seconds = [](const timeval& t) {
@@ -43,7 +40,7 @@ ProcessUsage own_usage() {
 }
 
 /// From the first frame handed to the bus to the last pose.
-double span_s(const std::vector<FrameRecord>& frames) {
+double span_s(const std::vector<eval::FrameRecord>& frames) {
   if (frames.empty()) return 0;
   return static_cast<double>(frames.back().tracking.finished_ns - frames.front().tracking.published_ns) * 1e-9;
 }
@@ -54,10 +51,6 @@ std::string begins_anew(const std::string& service) {
   return service == "dense" ? ": static_map.ply begins anew" : "";
 }
 
-std::string existing(const std::string& path) {
-  return std::filesystem::is_regular_file(path) ? path : std::string();
-}
-
 }  // namespace
 
 RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptSignals& signals, Terminal& terminal)
@@ -65,8 +58,8 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptS
       signals_(signals),
       terminal_(terminal),
       logs_(setup.out_dir + "/logs", terminal),
-      collector_(
-          bus, {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames, has_true_masks(setup.source)}),
+      collector_(bus, {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames,
+                       eval::has_true_masks(setup.source)}),
       host_([this](const std::string& service, const std::string& line) { logs_.add(service, line); }),
       supervisor_(host_, setup.launcher.supervisor(), [this](const SupervisorEvent& event) { on_event(event); }),
       own_cpu_before_s_(own_usage().cpu_s) {}
@@ -187,43 +180,22 @@ void RunSession::sample_memory(milliseconds time) {
   }
 }
 
-RunRecord RunSession::record() const {
-  RunRecord record;
+eval::RunRecord RunSession::record() const {
+  eval::RunRecord record;
+  record.version = RTD_VERSION;
   record.source = setup_.source;
   record.pace = setup_.pace;
   record.filter_mode = setup_.filter_mode;
   record.dds = setup_.bus.vendor;
   record.detector = setup_.detector_note;
-  record.groundtruth_path = existing(setup_.groundtruth_path());
-  record.trajectory_path = existing(setup_.out_dir + "/trajectory.txt");
-  record.static_map_path = existing(setup_.out_dir + "/static_map.ply");
-  if (std::ifstream map(record.static_map_path); map)
-    record.static_map_points = geometry::ply_vertices(map).value_or(0);
+  record.interrupted = supervisor_.outcome() == RunOutcome::kInterrupted;
   collector_.fill(record);
   record.events = events_;
-  judge(record);
   record.duration_s = span_s(record.frames);
   record.processes = usage_.usage();
   record.processes["launcher"] = own_usage();
   record.processes["launcher"].cpu_s -= own_cpu_before_s_;  // of an earlier run of the same launcher (demo)
   return record;
-}
-
-/// Nobody waits long for the end of what he has interrupted, and Ctrl-C goes on to count here.
-void RunSession::judge(RunRecord& record) const {
-  const bool interrupted = supervisor_.outcome() == RunOutcome::kInterrupted;
-  JudgeLimits limits;
-  if (interrupted) limits.most_frames = kJudgedWhenInterrupted;
-  limits.go_on = [this] { return signals_.take() == 0; };
-  const std::vector<JudgedFrame> frames = collector_.judged_frames();
-  try {
-    record.removal = judge_removal(setup_.source, frames, limits);
-  } catch (const std::exception& error) {
-    record.events.push_back(std::string("masks unusable: ") + error.what());
-  }
-  if (record.removal && record.removal->frames < frames.size() && interrupted)
-    record.events.push_back("interrupted: removal judged on " + std::to_string(record.removal->frames) + " of " +
-                            std::to_string(frames.size()) + " frames");
 }
 
 }  // namespace rtd::launcher

@@ -28,7 +28,7 @@ class RunSession {
   /// service::ConfigError when another run is heard in the same DDS domain.
   RunOutcome run(const std::vector<ServicePlan>& plans);
   /// What was observed; call it behind run().
-  RunRecord record() const;
+  eval::RunRecord record() const;
   bool tracked_any() const { return collector_.tracked_any(); }
 
  private:
@@ -44,7 +44,6 @@ class RunSession {
   void stop_when_decided(Milliseconds now);
   void sample_memory(Milliseconds now);
   void note(const std::string& text);
-  void judge(RunRecord& record) const;
 
   const RunSetup& setup_;
   service::InterruptSignals& signals_;

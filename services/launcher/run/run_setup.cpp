@@ -253,8 +253,9 @@ void clear_out_dir(const RunSetup& setup) {
   const bool needed = !setup.map.empty() && fs::equivalent(setup.map, map, error);  // --map of an earlier run here
   error.clear();
   if (!needed) fs::remove(map, error);
-  for (const char* left : {"logs", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply",
-                           "static_map.ply", "background.png", "groundtruth.txt", "report.json", "report.html"}) {
+  for (const char* left :
+       {"logs", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "static_map.ply",
+        "background.png", "groundtruth.txt", "run.json", "report.json", "report.html"}) {
     if (!error) fs::remove_all(out_dir / left, error);
   }
   if (!error) fs::create_directories(out_dir / "logs", error);

@@ -35,8 +35,8 @@ class CollectorTest : public testing::Test {
     result.finished_ns = 20'000'000;
     tracking_.write(result);
   }
-  RunRecord record_when_complete(std::size_t samples) {
-    RunRecord record;
+  eval::RunRecord record_when_complete(std::size_t samples) {
+    eval::RunRecord record;
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     do {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -60,7 +60,7 @@ TEST_F(CollectorTest, keeps_every_frame_and_a_few_pictures) {
     std::this_thread::sleep_for(
         std::chrono::milliseconds(3));  // a camera; the encoder lets pictures go rather than wait
   }
-  const RunRecord record = record_when_complete(6);
+  const eval::RunRecord record = record_when_complete(6);
   ASSERT_EQ(record.frames.size(), kFrames);
   EXPECT_EQ(record.frames_in, kFrames);
   ASSERT_EQ(record.samples.size(), 6U);
@@ -99,7 +99,7 @@ TEST_F(CollectorTest, a_frame_with_an_impossible_size_leaves_no_picture) {
   frame->height = 48;
   frames_.write(std::move(frame));
   publish(5);
-  RunRecord record;
+  eval::RunRecord record;
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
   while (record.samples.empty() && std::chrono::steady_clock::now() < give_up) collector_.fill(record);
   ASSERT_EQ(record.samples.size(), 1U);

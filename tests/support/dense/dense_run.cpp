@@ -9,7 +9,7 @@
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/evaluation/core/trajectory/association.hpp"
+#include "services/evaluation/core/trajectory/ate.hpp"
 
 namespace rtd::test_support {
 namespace {

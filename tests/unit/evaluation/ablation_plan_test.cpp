@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 using testing::AllOf;
@@ -84,4 +84,4 @@ TEST(AblationPlan, gives_every_source_a_folder_of_its_own) {
 }
 
 }  // namespace
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

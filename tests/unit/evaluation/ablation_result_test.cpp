@@ -9,10 +9,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "services/evaluation/core/ablation/ablation_html.hpp"
 #include "services/evaluation/core/ablation/ablation_text.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 namespace fs = std::filesystem;
@@ -150,4 +149,4 @@ TEST_F(AblationResultTest, draws_a_page_of_its_own_even_when_nothing_is_known) {
 }
 
 }  // namespace
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "services/evaluation/core/trajectory/association.hpp"
+#include "services/evaluation/core/trajectory/ate.hpp"
 #include "services/evaluation/core/trajectory/statistics.hpp"
 
 namespace rtd::eval {

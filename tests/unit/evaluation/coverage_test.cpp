@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/trajectory/coverage.hpp"
+#include "services/evaluation/core/trajectory/evaluation.hpp"
 
 #include <gtest/gtest.h>
 
-#include "services/evaluation/core/trajectory/evaluation.hpp"
 #include "tests/unit/evaluation/eval_paths.hpp"
 
 namespace rtd::eval {

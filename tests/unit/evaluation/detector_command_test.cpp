@@ -12,14 +12,14 @@
 #include "tests/support/detector/tiny_network.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
-using eval::testing_support::read_text;
-using eval::testing_support::TemporaryFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing_support::read_text;
+using testing_support::TemporaryFolder;
 
 struct Outcome {
   int code = -1;
@@ -52,7 +52,7 @@ class EvalDetectorCommand : public testing::Test {
     EvalDetectorOptions options;
     add_eval_detector_command(app, options);
     arguments.insert(arguments.begin(),
-                     {"eval-detector", "--model", folder_.file("tiny.onnx"), "--images", folder_.file("images")});
+                     {"detector", "--model", folder_.file("tiny.onnx"), "--images", folder_.file("images")});
     std::reverse(arguments.begin(), arguments.end());
     std::ostringstream out, err;
     try {
@@ -187,4 +187,4 @@ TEST_F(EvalDetectorCommand, refuses_a_roll_that_is_none) {
 }
 
 }  // namespace
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

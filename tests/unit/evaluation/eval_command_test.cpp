@@ -11,19 +11,19 @@
 #include "tests/unit/evaluation/eval_paths.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
-using eval::testing_support::moved;
-using eval::testing_support::read_text;
-using eval::testing_support::some_transform;
-using eval::testing_support::TemporaryFolder;
-using eval::testing_support::tum_text;
-using eval::testing_support::winding_path;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using testing_support::moved;
+using testing_support::read_text;
+using testing_support::some_transform;
+using testing_support::TemporaryFolder;
+using testing_support::tum_text;
+using testing_support::winding_path;
 
 struct Outcome {
   int code = -1;
@@ -33,8 +33,8 @@ struct Outcome {
 class EvalCommand : public testing::Test {
  protected:
   EvalCommand() {
-    const eval::Trajectory truth = winding_path(60, 0.1);
-    eval::Trajectory estimate = moved(truth, some_transform(), 0.5);
+    const Trajectory truth = winding_path(60, 0.1);
+    Trajectory estimate = moved(truth, some_transform(), 0.5);
     estimate.erase(estimate.begin() + 20, estimate.begin() + 30);
     truth_ = folder_.write("groundtruth.txt", tum_text(truth));
     estimate_ = folder_.write("trajectory.txt", tum_text(estimate));
@@ -45,7 +45,7 @@ class EvalCommand : public testing::Test {
     EvalOptions options;
     add_eval_command(app, options);
     std::vector<std::string> reversed{arguments.rbegin(), arguments.rend()};
-    reversed.push_back("eval");
+    reversed.push_back("trajectory");
     app.parse(reversed);
     std::ostringstream out, err;
     const int code = run_eval(options, out, err);
@@ -100,7 +100,7 @@ TEST_F(EvalCommand, frame_list_gives_the_coverage_of_frames) {
 }
 
 TEST_F(EvalCommand, offset_moves_the_estimate_in_time) {
-  eval::Trajectory late = winding_path(60, 0.1);
+  Trajectory late = winding_path(60, 0.1);
   for (auto& pose : late) pose.stamp_ns += 7'000'000'000'000;
   const std::string estimate = folder_.write("late.txt", tum_text(late));
   EXPECT_EQ(run({estimate, truth_}).code, 1);
@@ -108,7 +108,7 @@ TEST_F(EvalCommand, offset_moves_the_estimate_in_time) {
 }
 
 TEST_F(EvalCommand, no_pairs_is_exit_1_and_tells_both_spans_and_options) {
-  eval::Trajectory other = winding_path(10, 0.1);
+  Trajectory other = winding_path(10, 0.1);
   for (auto& pose : other) pose.stamp_ns += 5'000'000'000'000;
   const Outcome outcome = run({folder_.write("other.txt", tum_text(other)), truth_});
   EXPECT_EQ(outcome.code, 1);
@@ -146,7 +146,7 @@ TEST_F(EvalCommand, refuses_a_negative_time_limit) {
 }
 
 TEST_F(EvalCommand, line_shaped_paths_are_told_to_be_ambiguous) {
-  eval::Trajectory line;
+  Trajectory line;
   for (int i = 0; i < 20; ++i)
     line.push_back({(100 + i) * 1'000'000'000LL, Eigen::Isometry3d(Eigen::Translation3d(i, 0, 0))});
   const std::string path = folder_.write("line.txt", tum_text(line));
@@ -154,4 +154,4 @@ TEST_F(EvalCommand, line_shaped_paths_are_told_to_be_ambiguous) {
 }
 
 }  // namespace
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -5,14 +5,15 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/msg/transform_eigen.hpp"
-#include "services/evaluation/record/run_record.hpp"
+#include "services/evaluation/core/report/run_summary.hpp"
 #include "tests/unit/evaluation/eval_paths.hpp"
 
-namespace rtd::launcher::testing_support {
+namespace rtd::eval::testing_support {
 
 /// A run of 100 frames at 10 Hz along winding_path: frames 40..44 lost, frame 60 missing, 30 of 130 features removed.
-inline RunRecord fabricated_run() {
-  RunRecord record;
+inline Run fabricated_run() {
+  Run record;
+  record.version = "1.2.3";
   record.source = "synthetic:office";
   record.pace = "lockstep";
   record.filter_mode = "rtd";
@@ -25,7 +26,7 @@ inline RunRecord fabricated_run() {
   record.processes = {{"slam", {3.5, 120, 0}}, {"filter", {4.5, 80, 1}}};
   record.events = {"filter restarted"};
   std::uint64_t seq = 0;
-  for (const eval::StampedPose& pose : eval::testing_support::winding_path(100, 0.1)) {
+  for (const StampedPose& pose : winding_path(100, 0.1)) {
     FrameRecord frame;
     frame.tracking.seq = seq;
     frame.tracking.stamp_ns = pose.stamp_ns;
@@ -52,14 +53,8 @@ inline SampleFrame fabricated_sample(std::uint64_t seq) {
   SampleFrame sample;
   sample.seq = seq;
   cv::imencode(".jpg", cv::Mat(48, 64, CV_8UC3, cv::Scalar(90, 90, 90)), sample.jpeg);
-  msg::Feature kept{}, removed{};
-  kept.u_raw_px = 10;
-  kept.v_raw_px = 12;
-  removed.u_raw_px = 30;
-  removed.v_raw_px = 32;
-  removed.flags = msg::kFeatureRemoved;
-  sample.features = {kept, removed};
+  sample.features = {{10, 12, false}, {30, 32, true}};
   return sample;
 }
 
-}  // namespace rtd::launcher::testing_support
+}  // namespace rtd::eval::testing_support

@@ -9,9 +9,9 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "services/evaluation/core/removal/true_masks.hpp"
+#include "services/evaluation/core/removal/removal.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,8 +24,8 @@ cv::Mat square() {
 }
 
 TEST(RemovalQuality, counts_removed_points_on_the_grown_mask_and_kept_ones_on_the_mask) {
-  eval::RemovalQuality quality;
-  const std::vector<eval::JudgedFeature> features{
+  RemovalQuality quality;
+  const std::vector<JudgedFeature> features{
       {150, 150, true}, {202, 150, true}, {204, 150, true}, {150, 150, false}, {202, 150, false}};
   quality.count(features, square());
   EXPECT_EQ(quality.removed_rightly, 2U) << "3 px beside the mask still counts";
@@ -37,11 +37,11 @@ TEST(RemovalQuality, counts_removed_points_on_the_grown_mask_and_kept_ones_on_th
 }
 
 TEST(RemovalQuality, knows_what_it_does_not_know) {
-  eval::RemovalQuality quality;
-  quality.count(std::vector<eval::JudgedFeature>{{10, 10, false}}, cv::Mat());
+  RemovalQuality quality;
+  quality.count(std::vector<JudgedFeature>{{10, 10, false}}, cv::Mat());
   EXPECT_TRUE(std::isnan(quality.precision())) << "nothing was removed";
   EXPECT_TRUE(std::isnan(quality.recall())) << "nothing had to be";
-  quality.count(std::vector<eval::JudgedFeature>{{-50, 1e6F, true}}, square());
+  quality.count(std::vector<JudgedFeature>{{-50, 1e6F, true}}, square());
   EXPECT_EQ(quality.removed_wrongly, 1U) << "outside the image: the nearest pixel";
 }
 
@@ -53,7 +53,7 @@ TEST(TrueMasks, are_read_by_stamp_from_a_folder) {
   cv::imwrite((folder / "mask" / "cover.png").string(), square());
   const std::string uri = "tum:" + folder.string();
   EXPECT_TRUE(has_true_masks(uri + "?masks=1"));
-  const std::vector<eval::JudgedFeature> moving{{150, 150, true}};
+  const std::vector<JudgedFeature> moving{{150, 150, true}};
   const auto removal =
       judge_removal(uri, {{10'500'000'000, moving}, {11'000'000'000, moving}, {12'000'000'000, moving}});
   ASSERT_TRUE(removal);
@@ -68,7 +68,7 @@ TEST(TrueMasks, are_read_by_stamp_from_a_folder) {
 
 TEST(TrueMasks, of_a_synthetic_scene_are_rendered_again) {
   constexpr std::int64_t kFirstNs = 1'000'000'000'000;
-  std::vector<eval::JudgedFeature> everywhere;
+  std::vector<JudgedFeature> everywhere;
   for (int v = 2; v < 480; v += 8) {
     for (int u = 2; u < 640; u += 8) everywhere.push_back({static_cast<float>(u), static_cast<float>(v), true});
   }
@@ -82,7 +82,7 @@ TEST(TrueMasks, of_a_synthetic_scene_are_rendered_again) {
 /// Stamps come from other processes.
 TEST(TrueMasks, of_an_endless_scene_are_not_looked_for_at_the_end_of_time) {
   constexpr std::int64_t kEnd = std::numeric_limits<std::int64_t>::max();
-  const std::vector<eval::JudgedFeature> moving{{150, 150, true}};
+  const std::vector<JudgedFeature> moving{{150, 150, true}};
   const auto removal =
       judge_removal("synthetic:office?frames=0", {{-kEnd, moving}, {1'000'000'000'000, moving}, {kEnd - 7, moving}});
   ASSERT_TRUE(removal);
@@ -111,4 +111,4 @@ TEST(TrueMasks, are_looked_at_evenly_spread_or_until_somebody_loses_patience) {
 }
 
 }  // namespace
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "services/evaluation/core/plot/colour.hpp"
-
 namespace rtd::plot {
 namespace {
 
@@ -113,15 +111,6 @@ TEST(ErrorColour, runs_from_blue_to_red_and_clamps) {
 
 std::vector<unsigned char> bytes(const std::string& text) {
   return {text.begin(), text.end()};
-}
-
-TEST(Base64, matches_rfc_4648) {
-  EXPECT_EQ(base64({}), "");
-  EXPECT_EQ(base64(bytes("f")), "Zg==");
-  EXPECT_EQ(base64(bytes("fo")), "Zm8=");
-  EXPECT_EQ(base64(bytes("foo")), "Zm9v");
-  EXPECT_EQ(base64(bytes("foobar")), "Zm9vYmFy");
-  EXPECT_EQ(base64({0xFF, 0xFE, 0xFD}), "//79");
 }
 
 TEST(JpegSize, is_read_from_the_frame_header) {

@@ -9,33 +9,30 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "services/evaluation/core/report/comparison_html.hpp"
-#include "services/evaluation/core/report/report_html.hpp"
-#include "services/evaluation/core/report/report_json.hpp"
 #include "tests/unit/evaluation/fabricated_run.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
-using eval::testing_support::moved;
-using eval::testing_support::read_text;
-using eval::testing_support::some_transform;
-using eval::testing_support::TemporaryFolder;
-using eval::testing_support::tum_text;
-using eval::testing_support::winding_path;
 using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 using testing_support::fabricated_run;
 using testing_support::fabricated_sample;
+using testing_support::moved;
+using testing_support::read_text;
+using testing_support::some_transform;
+using testing_support::TemporaryFolder;
+using testing_support::tum_text;
+using testing_support::winding_path;
 
 /// The fabricated run with files: ground truth, and a final trajectory that is too large by 10 %.
 class Report : public testing::Test {
  protected:
   Report() : record_(fabricated_run()) {
-    const eval::Trajectory truth = winding_path(100, 0.1);
+    const Trajectory truth = winding_path(100, 0.1);
     record_.groundtruth_path = folder_.write("groundtruth.txt", tum_text(truth));
     record_.trajectory_path = folder_.write("trajectory.txt", tum_text(moved(truth, some_transform(), 1.1)));
     record_.samples = {fabricated_sample(3), fabricated_sample(50)};
@@ -45,7 +42,7 @@ class Report : public testing::Test {
   std::string page() const { return report_html(record_, summarize_run(record_)); }
 
   TemporaryFolder folder_;
-  RunRecord record_;
+  Run record_;
 };
 
 TEST_F(Report, json_has_the_promised_keys_with_the_right_values) {
@@ -138,7 +135,7 @@ TEST_F(Report, unusable_files_become_notes) {
 }
 
 TEST_F(Report, ground_truth_of_another_time_is_a_note) {
-  eval::Trajectory other = winding_path(100, 0.1);
+  Trajectory other = winding_path(100, 0.1);
   for (auto& pose : other) pose.stamp_ns += 900'000'000'000'000;
   record_.groundtruth_path = folder_.write("other.txt", tum_text(other));
   EXPECT_TRUE(json()["ate_rmse_m"].is_null());
@@ -233,7 +230,7 @@ TEST_F(Report, folder_that_does_not_exist_is_named) {
 
 TEST(EmptyRun, still_gives_a_valid_report) {
   TemporaryFolder folder;
-  write_report(RunRecord{}, folder.path());
+  write_report(Run{}, folder.path());
   const auto report = nlohmann::json::parse(read_text(folder.file("report.json")));
   EXPECT_EQ(report["frames_in"], 0);
   EXPECT_TRUE(report["coverage"].is_null());
@@ -244,7 +241,7 @@ TEST(EmptyRun, still_gives_a_valid_report) {
 
 TEST(EmptyRun, invalid_utf8_in_texts_does_not_stop_the_report) {
   TemporaryFolder folder;
-  RunRecord record;
+  Run record;
   record.source = "tum:/\xff\xfe";
   write_report(record, folder.path());
   EXPECT_TRUE(nlohmann::json::parse(read_text(folder.file("report.json"))).contains("source"));
@@ -262,7 +259,7 @@ TEST_F(Report, long_runs_give_small_pages) {
 }
 
 TEST_F(Report, comparison_names_both_runs_their_errors_and_the_ratio) {
-  RunRecord good = record_;
+  Run good = record_;
   good.trajectory_path = folder_.write("good.txt", tum_text(moved(winding_path(100, 0.1), some_transform(), 1.01)));
   record_.filter_mode = "off";
   const std::string html = comparison_html({{"filter off", record_}, {"filter rtd", good}});
@@ -274,7 +271,7 @@ TEST_F(Report, comparison_names_both_runs_their_errors_and_the_ratio) {
 }
 
 TEST_F(Report, comparison_tells_a_worse_and_an_equal_run_apart) {
-  RunRecord worse = record_;
+  Run worse = record_;
   worse.trajectory_path = folder_.write("worse.txt", tum_text(moved(winding_path(100, 0.1), some_transform(), 1.2)));
   EXPECT_THAT(comparison_html({{"a", record_}, {"b", worse}}), HasSubstr("2 times more than a"));
   EXPECT_THAT(comparison_html({{"a", record_}, {"b", record_}}), HasSubstr("as much as a"));
@@ -282,10 +279,9 @@ TEST_F(Report, comparison_tells_a_worse_and_an_equal_run_apart) {
 
 TEST_F(Report, comparison_without_ground_truth_or_runs_is_still_a_page) {
   record_.groundtruth_path.clear();
-  EXPECT_THAT(comparison_html({{"a", record_}, {"b", RunRecord{}}}),
-              AllOf(HasSubstr("unknown"), Not(HasSubstr("nan"))));
+  EXPECT_THAT(comparison_html({{"a", record_}, {"b", Run{}}}), AllOf(HasSubstr("unknown"), Not(HasSubstr("nan"))));
   EXPECT_THAT(comparison_html({}), HasSubstr("no runs to compare"));
 }
 
 }  // namespace
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

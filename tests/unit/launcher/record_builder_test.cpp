@@ -47,9 +47,9 @@ msg::ServiceStatus status_of(const std::string& service, std::int64_t pid, std::
   return status;
 }
 
-std::vector<std::uint64_t> seqs(const RunRecord& record) {
+std::vector<std::uint64_t> seqs(const eval::RunRecord& record) {
   std::vector<std::uint64_t> result;
-  for (const FrameRecord& frame : record.frames) result.push_back(frame.tracking.seq);
+  for (const eval::FrameRecord& frame : record.frames) result.push_back(frame.tracking.seq);
   return result;
 }
 
@@ -59,10 +59,9 @@ TEST(record_builder, joins_both_streams_by_seq_in_any_order) {
   builder.add(*features_of(1));
   builder.add(*features_of(0));
   builder.add(result_of(0));
-  RunRecord record;
+  eval::RunRecord record;
   builder.fill(record);
   ASSERT_THAT(seqs(record), ElementsAre(0, 1));
-  EXPECT_EQ(record.frames[1].objects, 2U);
   EXPECT_EQ(record.frames[1].tracking.inliers, 101U);
   EXPECT_FLOAT_EQ(record.frames[0].filter_stage_ms[msg::kStageExtract], 7.0F);
   EXPECT_EQ(record.frames_in, 2U);
@@ -74,7 +73,7 @@ TEST(record_builder, counts_frames_without_result_as_dropped) {
   builder.add(result_of(0));
   builder.add(*features_of(1));
   builder.add(result_of(4));
-  RunRecord record;
+  eval::RunRecord record;
   builder.fill(record);
   EXPECT_THAT(seqs(record), ElementsAre(0, 4));
   EXPECT_EQ(record.frames_in, 5U);
@@ -85,7 +84,7 @@ TEST(record_builder, the_cameras_own_count_wins_when_it_saw_more) {
   RecordBuilder builder;
   builder.add(result_of(0));
   builder.add(status_of("camera", 7, {{"frames_in", 10}}));
-  RunRecord record;
+  eval::RunRecord record;
   builder.fill(record);
   EXPECT_EQ(record.frames_in, 10U);
   EXPECT_EQ(record.frames_dropped, 9U);
@@ -97,7 +96,7 @@ TEST(record_builder, the_first_answer_counts_when_a_frame_was_sent_again) {
   msg::TrackingResult again = result_of(0);
   again.finished_ns += 2000 * kMs;
   builder.add(again);
-  RunRecord record;
+  eval::RunRecord record;
   builder.fill(record);
   ASSERT_EQ(record.frames.size(), 1U);
   EXPECT_EQ(record.frames[0].tracking.finished_ns, 20 * kMs);
@@ -109,7 +108,7 @@ TEST(record_builder, drops_are_named_by_place_and_survive_a_restart) {
   builder.add(status_of("filter", 8, {{"queue_dropped", 1}}));
   builder.add(status_of("filter", 8, {{"queue_dropped", 2}}));
   builder.add(status_of("camera", 9, {{"frames_late", 3}, {"frames_skipped", 0}}));
-  RunRecord record;
+  eval::RunRecord record;
   builder.fill(record);
   EXPECT_THAT(record.drops,
               UnorderedElementsAre(Pair("filter.queue_dropped", 6), Pair("camera.late", 3), Pair("camera.skipped", 0)));
@@ -192,7 +191,7 @@ TEST(record_builder, knows_the_clocks_of_other_hosts_from_slam) {
   RecordBuilder builder;
   builder.add(status_of("slam", 8, {{"clock.detector.offset_ms", 250.5}, {"clock.detector.round_trip_ms", 0.75}}));
   builder.add(status_of("detector", 9, {{"clock.slam.offset_ms", -250.5}, {"clock.slam.round_trip_ms", 0.75}}));
-  RunRecord record;
+  eval::RunRecord record;
   builder.fill(record);
   ASSERT_EQ(record.clocks.size(), 1u);
   EXPECT_EQ(record.clocks[0].service, "detector");
@@ -200,7 +199,7 @@ TEST(record_builder, knows_the_clocks_of_other_hosts_from_slam) {
   EXPECT_EQ(record.clocks[0].round_trip_ms, 0.75);
 }
 
-std::vector<SampleFrame> run_samples(SampleKeeper& keeper, std::uint64_t frames) {
+std::vector<eval::SampleFrame> run_samples(SampleKeeper& keeper, std::uint64_t frames) {
   for (std::uint64_t seq = 0; seq < frames; ++seq) {
     if (keeper.wants(seq)) keeper.add_picture(seq, {1, 2, 3});
     keeper.add_features(*features_of(seq));
@@ -232,7 +231,7 @@ TEST(sample_keeper, needs_picture_and_features) {
   keeper.add_features(*features_of(2));
   keeper.add_picture(4, {1});
   keeper.add_features(*features_of(4));
-  EXPECT_THAT(keeper.samples(), ElementsAre(Field(&SampleFrame::seq, 4)));
+  EXPECT_THAT(keeper.samples(), ElementsAre(Field(&eval::SampleFrame::seq, 4)));
 }
 
 TEST(sample_keeper, believes_no_count_beyond_the_message) {

@@ -1,19 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/ablation/ablation_html.hpp"
+#include "services/evaluation/core/ablation/ablation_text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "services/evaluation/core/ablation/ablation_text.hpp"
 #include "services/evaluation/core/plot/chart.hpp"
-#include "services/evaluation/core/plot/colour.hpp"
 #include "services/evaluation/core/report/html.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 namespace palette = plot::palette;
@@ -132,4 +130,4 @@ std::string ablation_html(const Ablation& ablation) {
                     body);
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

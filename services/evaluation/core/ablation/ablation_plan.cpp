@@ -9,7 +9,7 @@
 
 #include "common/service/config.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 const std::vector<std::string> kNothingWithoutDetector = {"semantic", "epipolar", "rtd-paper"};
@@ -121,4 +121,4 @@ std::vector<std::string> source_names(const std::vector<std::string>& sources) {
   return names;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace rtd::launcher {
+namespace rtd::eval {
 
 /// The mode that the others are compared with, and from which techniques are taken away.
 inline constexpr const char* kBaseline = "rtd";
@@ -56,4 +56,4 @@ AblationPlan plan_ablation(const AblationRequest& request, const std::vector<std
 /// Folder names for sources, each its own: "walk_xyz", "office", "office_2".
 std::vector<std::string> source_names(const std::vector<std::string>& sources);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 using Json = nlohmann::json;
@@ -78,6 +78,12 @@ std::optional<Measurement> read_measurement(const std::filesystem::path& folder)
   return m;
 }
 
+std::optional<std::string> last_event(const std::filesystem::path& folder) {
+  const Json json = Json::parse(content_of((folder / "report.json").string()), nullptr, false);
+  if (!json.is_object() || !json.contains("events") || json["events"].empty()) return std::nullopt;
+  return json["events"].back().get<std::string>();
+}
+
 Spread spread_of(const std::vector<double>& values) {
   std::vector<double> known;
   std::copy_if(values.begin(), values.end(), std::back_inserter(known), [](double v) { return std::isfinite(v); });
@@ -127,4 +133,4 @@ std::optional<double> remaining_s(const Ablation& ablation) {
   return remaining;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -10,7 +10,7 @@
 
 #include "services/evaluation/core/ablation/ablation_plan.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 
 /// One run of one variant on one source. Doubles are NaN where unknown.
 struct Measurement {
@@ -27,6 +27,8 @@ struct Measurement {
 
 /// What `rtd run` left in `folder`; empty without a readable report.json.
 std::optional<Measurement> read_measurement(const std::filesystem::path& folder);
+/// The last event in the report.json of `folder`: of a run that failed, the reason. Empty when there is none.
+std::optional<std::string> last_event(const std::filesystem::path& folder);
 
 /// Median and extremes of the known values.
 struct Spread {
@@ -63,4 +65,4 @@ std::vector<AblationRow> summarize(const Ablation& ablation);
 /// Seconds that the runs which remain will take, by the runs of the same source so far; empty before the first.
 std::optional<double> remaining_s(const Ablation& ablation);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -162,4 +162,4 @@ Json ablation_json(const Ablation& ablation) {
   return json;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -8,7 +8,7 @@
 
 #include "services/evaluation/core/ablation/ablation_result.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 
 /// Headings and cells of one row of the table; "-" = unknown. With several unequal runs: median (min..max).
 std::vector<std::string> ablation_head();
@@ -24,4 +24,7 @@ std::string ablation_markdown(const Ablation& ablation);
 /// ablation.json (keys: docs/evaluation.md)
 nlohmann::ordered_json ablation_json(const Ablation& ablation);
 
-}  // namespace rtd::launcher
+/// ablation.html: for each source the errors of the modes, what each technique is worth, the numbers. Self-contained.
+std::string ablation_html(const Ablation& ablation);
+
+}  // namespace rtd::eval

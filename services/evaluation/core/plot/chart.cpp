@@ -8,8 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "services/evaluation/core/plot/colour.hpp"
-
 namespace rtd::plot {
 namespace {
 

@@ -5,10 +5,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "services/evaluation/record/base64.hpp"
 
 namespace rtd::plot {
 namespace {
+
+using Rgb = std::array<double, 3>;
+constexpr std::array<Rgb, 5> kErrorStops{
+    {{35, 80, 160}, {38, 148, 150}, {120, 178, 70}, {232, 155, 40}, {196, 32, 38}}};
 
 constexpr const char* kFonts =
     "system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue','DejaVu Sans',Arial,sans-serif";
@@ -51,6 +58,17 @@ const char* anchor_name(Anchor anchor) {
 }
 
 }  // namespace
+
+std::string error_colour(double fraction) {
+  const double t = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 1.0;
+  const double position = t * (kErrorStops.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(position), kErrorStops.size() - 2);
+  const auto mix = [&](std::size_t channel) {
+    return std::lround(
+        std::lerp(kErrorStops[below][channel], kErrorStops[below + 1][channel], position - static_cast<double>(below)));
+  };
+  return fmt::format("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2));
+}
 
 std::string escape_markup(const std::string& text) {
   std::string safe;
@@ -134,7 +152,7 @@ void Svg::text(Point at, const std::string& content, const TextStyle& style) {
 
 void Svg::jpeg(const Area& area, const std::vector<unsigned char>& bytes) {
   body_ += fmt::format("<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" href=\"data:image/jpeg;base64,{}\"/>\n",
-                       number(area.x), number(area.y), number(area.width), number(area.height), base64(bytes));
+                       number(area.x), number(area.y), number(area.width), number(area.height), eval::to_base64(bytes));
 }
 
 std::string Svg::str() const {
@@ -152,6 +170,20 @@ std::string Svg::document() const {
   drawing.replace(0, 5, sized);
   drawing.insert(drawing.find(">\n") + 2, background);
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + drawing;
+}
+
+// ITU T.81: markers are 0xFF and a code; all but a few carry a length; the frame header (SOFn) holds height and width.
+PictureSize jpeg_size(const std::vector<unsigned char>& bytes) {
+  const auto u16 = [&](std::size_t at) { return bytes[at] << 8 | bytes[at + 1]; };
+  if (bytes.size() < 4 || u16(0) != 0xFFD8) return {};
+  std::size_t at = 2;
+  while (at + 9 < bytes.size() && bytes[at] == 0xFF) {
+    const unsigned code = bytes[at + 1];
+    const bool frame_header = code >= 0xC0 && code <= 0xCF && code != 0xC4 && code != 0xC8 && code != 0xCC;
+    if (frame_header) return {u16(at + 7), u16(at + 5)};
+    at += code == 0xFF ? 1 : 2 + static_cast<std::size_t>(u16(at + 2));
+  }
+  return {};
 }
 
 }  // namespace rtd::plot

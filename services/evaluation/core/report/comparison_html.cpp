@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/report/comparison_html.hpp"
+#include "services/evaluation/core/report/report.hpp"
 
 #include <fmt/format.h>
 
@@ -9,12 +9,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/evaluation/core/plot/colour.hpp"
 #include "services/evaluation/core/report/report_parts.hpp"
-#include "services/evaluation/core/report/run_charts.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 namespace palette = plot::palette;
@@ -25,7 +23,8 @@ constexpr std::array<const char*, 5> kRunColours{palette::kRed, palette::kBlue, 
 
 /// One run with its numbers and its colour.
 struct Entry {
-  const ComparedRun* run = nullptr;
+  std::string label;
+  const Run* run = nullptr;
   RunSummary summary;
   const char* colour = palette::kBlue;
 
@@ -34,9 +33,8 @@ struct Entry {
 
 std::vector<Entry> summarize_all(const std::vector<ComparedRun>& runs) {
   std::vector<Entry> entries;
-  for (const ComparedRun& run : runs) {
-    entries.push_back({&run, summarize_run(run.record), kRunColours[entries.size() % kRunColours.size()]});
-  }
+  for (const auto& [label, run] : runs)
+    entries.push_back({label, &run, summarize_run(run), kRunColours[entries.size() % kRunColours.size()]});
   return entries;
 }
 
@@ -45,9 +43,9 @@ std::string against_baseline(const Entry& baseline, const Entry& entry) {
   if (&baseline == &entry) return "";
   const double ratio = baseline.ate_m() / entry.ate_m();
   if (!std::isfinite(ratio)) return "";
-  if (std::abs(ratio - 1) < 0.02) return "as much as " + baseline.run->label;
-  return ratio >= 1 ? fmt::format("{:.3g} times less than {}", ratio, baseline.run->label)
-                    : fmt::format("{:.3g} times more than {}", 1 / ratio, baseline.run->label);
+  if (std::abs(ratio - 1) < 0.02) return "as much as " + baseline.label;
+  return ratio >= 1 ? fmt::format("{:.3g} times less than {}", ratio, baseline.label)
+                    : fmt::format("{:.3g} times more than {}", 1 / ratio, baseline.label);
 }
 
 std::string headline_cards(const std::vector<Entry>& entries) {
@@ -59,7 +57,7 @@ std::string headline_cards(const std::vector<Entry>& entries) {
     if (const std::string ratio = against_baseline(entries.front(), entry); !ratio.empty())
       detail = ratio + "; " + detail;
     cards.push_back(
-        {length_text(entry.ate_m()), "ATE RMSE, " + entry.run->label, detail, html::Tone::kNeutral, entry.colour});
+        {length_text(entry.ate_m()), "ATE RMSE, " + entry.label, detail, html::Tone::kNeutral, entry.colour});
   }
   return html::cards(cards);
 }
@@ -68,14 +66,14 @@ std::string headline_cards(const std::vector<Entry>& entries) {
 PathCurve run_path(const Entry& entry) {
   PathCurve curve;
   if (entry.summary.final_trajectory) {
-    for (const eval::AtePoint& point : entry.summary.final_trajectory->ate.points) {
+    for (const AtePoint& point : entry.summary.final_trajectory->ate.points) {
       curve.stamps_ns.push_back(point.stamp_ns);
       curve.points_m.push_back(point.estimate_m);
     }
   } else {
     curve = path_of(entry.summary.estimate);
   }
-  curve.label = entry.run->label;
+  curve.label = entry.label;
   if (entry.summary.final_trajectory) curve.label += ", ATE " + length_text(entry.ate_m());
   curve.colour = entry.colour;
   curve.stroke.width = 1.9;
@@ -87,7 +85,7 @@ PathCurve truth_path(const std::vector<Entry>& entries) {
   PathCurve curve;
   for (const Entry& entry : entries) {
     if (entry.summary.groundtruth.empty()) continue;
-    const RunTime time = run_time(entry.run->record, entry.summary);
+    const RunTime time = run_time(*entry.run, entry.summary);
     curve =
         path_of(within(entry.summary.groundtruth, time.start_ns, time.start_ns + std::llround(time.duration_s * 1e9)));
     break;
@@ -115,10 +113,10 @@ std::string errors_section(const std::vector<Entry>& entries) {
   double duration_s = 0;
   for (const Entry& entry : entries) {
     if (!entry.summary.final_trajectory) continue;
-    const RunTime time = run_time(entry.run->record, entry.summary);
+    const RunTime time = run_time(*entry.run, entry.summary);
     if (curves.empty()) start_ns = time.start_ns;
     duration_s = std::max(duration_s, time.duration_s);
-    curves.push_back({entry.run->label, entry.colour, &entry.summary.final_trajectory->ate});
+    curves.push_back({entry.label, entry.colour, &entry.summary.final_trajectory->ate});
   }
   if (curves.empty()) return "";
   plot::Svg svg(1080, 300, "Position error of the runs over time");
@@ -130,7 +128,7 @@ std::vector<std::string> numbers_row(const Entry& entry) {
   const RunSummary& s = entry.summary;
   const auto& e = s.final_trajectory;
   const double nan = std::nan("");
-  return {entry.run->label,
+  return {entry.label,
           length_text(entry.ate_m()),
           length_text(s.online_trajectory ? s.online_trajectory->ate.error_m.rmse : nan),
           length_text(e ? e->rpe_per_second.translation_m.rmse : nan),
@@ -156,24 +154,24 @@ std::string samples_section(const std::vector<Entry>& entries) {
   const auto best = std::max_element(entries.begin(), entries.end(),
                                      [&](const Entry& a, const Entry& b) { return removed(a) < removed(b); });
   if (best == entries.end()) return "";
-  const std::vector<html::Figure> figures = sample_figures(best->run->record, kShownSamples);
+  const std::vector<html::Figure> figures = sample_figures(*best->run, kShownSamples);
   if (figures.empty()) return "";
-  return html::section("Sample frames: " + best->run->label, "Green: kept as static. Red: removed as dynamic.",
+  return html::section("Sample frames: " + best->label, "Green: kept as static. Red: removed as dynamic.",
                        html::gallery(figures));
 }
 
 std::string notes_section(const std::vector<Entry>& entries) {
   std::vector<std::string> lines;
   for (const Entry& entry : entries) {
-    for (const std::string& event : entry.run->record.events) lines.push_back(entry.run->label + ": " + event);
-    for (const std::string& note : entry.summary.notes) lines.push_back(entry.run->label + ": not computed: " + note);
+    for (const std::string& event : entry.run->events) lines.push_back(entry.label + ": " + event);
+    for (const std::string& note : entry.summary.notes) lines.push_back(entry.label + ": not computed: " + note);
   }
   return lines.empty() ? "" : html::section("Events", "", html::list(lines));
 }
 
 std::string title_of(const std::vector<Entry>& entries) {
   std::string title = "RTD-SLAM:";
-  for (std::size_t i = 0; i < entries.size(); ++i) title += (i == 0 ? " " : " and ") + entries[i].run->label;
+  for (std::size_t i = 0; i < entries.size(); ++i) title += (i == 0 ? " " : " and ") + entries[i].label;
   return title;
 }
 
@@ -182,9 +180,9 @@ std::string title_of(const std::vector<Entry>& entries) {
 std::string comparison_html(const std::vector<ComparedRun>& runs) {
   const std::vector<Entry> entries = summarize_all(runs);
   if (entries.empty()) return html::page("RTD-SLAM", "no runs to compare", "");
-  return html::page(title_of(entries), runs.front().record.source,
+  return html::page(title_of(entries), runs.front().run.source,
                     headline_cards(entries) + paths_section(entries) + errors_section(entries) +
                         numbers_section(entries) + samples_section(entries) + notes_section(entries));
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

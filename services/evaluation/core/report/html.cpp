@@ -4,7 +4,7 @@
 
 #include "services/evaluation/core/plot/svg.hpp"
 
-namespace rtd::launcher::html {
+namespace rtd::eval::html {
 namespace {
 
 using plot::escape_markup;
@@ -121,4 +121,4 @@ std::string gallery(const std::vector<Figure>& figures) {
   return text + "</div>\n";
 }
 
-}  // namespace rtd::launcher::html
+}  // namespace rtd::eval::html

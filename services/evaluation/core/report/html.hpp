@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace rtd::launcher::html {
+namespace rtd::eval::html {
 
 /// A whole page: head with inline styles, heading, body. Self-contained, no script.
 std::string page(const std::string& title, const std::string& subtitle, const std::string& body);
@@ -46,4 +46,4 @@ struct Figure {
 };
 std::string gallery(const std::vector<Figure>& figures);
 
-}  // namespace rtd::launcher::html
+}  // namespace rtd::eval::html

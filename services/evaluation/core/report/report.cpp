@@ -2,16 +2,140 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/core/report/report.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "services/evaluation/core/report/comparison_html.hpp"
-#include "services/evaluation/core/report/report_html.hpp"
-#include "services/evaluation/core/report/report_json.hpp"
+#include "common/geometry/ply.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
+
+constexpr std::size_t kJudgedWhenInterrupted = 50;
+
+std::string existing(const std::string& path) {
+  return std::filesystem::is_regular_file(path) ? path : std::string();
+}
+
+std::string number(double value, const char* format, const char* unit) {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) + unit : std::string("-");
+}
+
+std::string ate_text(const std::optional<Evaluation>& evaluation) {
+  return evaluation ? number(evaluation->ate.error_m.rmse, "{:.4f}", " m") : "-";
+}
+
+std::string both_ates(const RunSummary& summary) {
+  if (summary.groundtruth.empty()) return "- (no ground truth)";
+  return ate_text(summary.final_trajectory) + "  (as published: " + ate_text(summary.online_trajectory) + ")";
+}
+
+std::string lost_places(const Run& run) {
+  std::string text;
+  for (const auto& [place, count] : run.drops) {
+    if (count > 0) text += fmt::format("{}{} {:.0f}", text.empty() ? "  (" : ", ", place, count);
+  }
+  return text.empty() ? text : text + ")";
+}
+
+std::string removal_text(const RunRemoval& removal) {
+  const auto percent = [](double share) { return number(100 * share, "{:.1f}", " %"); };
+  return "precision " + percent(removal.all.precision()) + ", recall " + percent(removal.all.recall()) +
+         "  (after 1 s: " + percent(removal.settled.precision()) + ", " + percent(removal.settled.recall()) + ")";
+}
+
+/// A difference of a few milliseconds is the measurement's own error.
+std::string clock_text(const HostClock& clock) {
+  constexpr double kWorthTellingMs = 10;
+  const bool differs = std::abs(clock.offset_ms) > kWorthTellingMs + clock.round_trip_ms / 2;
+  return fmt::format("host of {} is {:.1f} ms {}, round trip {:.1f} ms{}", clock.service, std::abs(clock.offset_ms),
+                     clock.offset_ms < 0 ? "behind" : "ahead", clock.round_trip_ms,
+                     differs ? ": WARNING, run chrony on both hosts before comparing their times" : "");
+}
+
+std::string usage_text(const Run& run) {
+  std::string text;
+  double total_mb = 0;
+  for (const auto& [name, process] : run.processes) {
+    text += fmt::format("{}{} {:.1f} s", text.empty() ? "" : ", ", name, process.cpu_s);
+    total_mb += process.peak_rss_mb;
+  }
+  return fmt::format("{}; peak memory together {:.0f} MB", text, total_mb);
+}
+
+}  // namespace
+
+Run load_run(const std::string& folder) {
+  Run run{read_run_json(folder + "/run.json")};
+  run.groundtruth_path = existing(folder + "/groundtruth.txt");
+  run.trajectory_path = existing(folder + "/trajectory.txt");
+  run.static_map_path = existing(folder + "/static_map.ply");
+  if (std::ifstream map(run.static_map_path); map) run.static_map_points = geometry::ply_vertices(map).value_or(0);
+  return run;
+}
+
+void judge_run(Run& run, const std::function<bool()>& go_on) {
+  JudgeLimits limits;
+  if (run.interrupted) limits.most_frames = kJudgedWhenInterrupted;
+  limits.go_on = go_on;
+  try {
+    run.removal = judge_removal(run.source, run.judged_frames, limits);
+  } catch (const std::exception& error) {
+    run.events.push_back(std::string("masks unusable: ") + error.what());
+  }
+  if (run.interrupted && run.removal && run.removal->frames < run.judged_frames.size())
+    run.events.push_back(
+        fmt::format("interrupted: removal judged on {} of {} frames", run.removal->frames, run.judged_frames.size()));
+}
+
+void choose_trajectory(Run& run, const std::string& folder) {
+  if (!run.trajectory_path.empty() || run.frames.empty()) return;
+  run.trajectory_path = folder + "/trajectory_online.txt";
+  run.events.emplace_back("slam left no trajectory.txt: judged by the poses as they were published");
+}
+
+std::string summary_text(const Run& run, const RunSummary& summary, const std::string& folder) {
+  const auto row = [](const char* name, const std::string& value) { return fmt::format("  {:<12}{}\n", name, value); };
+  std::string text = "\n";
+  text += row("frames", fmt::format("{} in, {} with pose, {} without answer{}", run.frames_in, summary.frames_tracked,
+                                    run.frames_dropped, lost_places(run)));
+  text += row("coverage", number(100 * summary.coverage, "{:.1f}", " %"));
+  text += row("ATE rmse", both_ates(summary));
+  if (run.removal) text += row("removed", removal_text(*run.removal));
+  text += row("speed", number(summary.fps, "{:.1f}", " frames/s"));
+  text += row("latency", fmt::format("p50 {}, p99 {}", number(summary.latency_ms.p50, "{:.1f}", " ms"),
+                                     number(summary.latency_ms.p99, "{:.1f}", " ms")));
+  text += row("map", fmt::format("{} keyframes, {} landmarks", summary.keyframes, summary.landmarks));
+  if (!run.static_map_path.empty())
+    text += row("static map", fmt::format("{} points, {}", run.static_map_points, run.static_map_path));
+  for (const HostClock& clock : run.clocks) text += row("clock", clock_text(clock));
+  text += row("CPU time", usage_text(run));
+  for (const std::string& note : summary.notes) text += row("note", note);
+  text += row("report", folder + "/report.html");
+  return text;
+}
+
+std::string comparison_text(const std::vector<ComparedRun>& runs) {
+  std::string text = fmt::format("\n  {:<28}{:>14}{:>12}\n", "", "ATE rmse", "coverage");
+  for (const ComparedRun& compared : runs) {
+    const RunSummary summary = summarize_run(compared.run);
+    text += fmt::format("  {:<28}{:>14}{:>12}\n", compared.label, ate_text(summary.final_trajectory),
+                        number(100 * summary.coverage, "{:.1f}", " %"));
+  }
+  return text;
+}
+
+RunSummary write_report(const Run& run, const std::filesystem::path& folder) {
+  RunSummary summary = summarize_run(run);
+  using Json = nlohmann::ordered_json;
+  const std::string json = report_json(run, summary).dump(2, ' ', false, Json::error_handler_t::replace);
+  write_file(folder / "report.json", json + "\n");
+  write_file(folder / "report.html", report_html(run, summary));
+  return summary;
+}
 
 void write_file(const std::filesystem::path& path, const std::string& content) {
   std::ofstream output(path, std::ios::binary);
@@ -21,19 +145,4 @@ void write_file(const std::filesystem::path& path, const std::string& content) {
     throw std::runtime_error(path.string() + ": cannot be written; check that the folder exists and has room");
 }
 
-}  // namespace
-
-RunSummary write_report(const RunRecord& record, const std::filesystem::path& folder) {
-  RunSummary summary = summarize_run(record);
-  using Json = nlohmann::ordered_json;
-  const std::string json = report_json(record, summary).dump(2, ' ', false, Json::error_handler_t::replace);
-  write_file(folder / "report.json", json + "\n");
-  write_file(folder / "report.html", report_html(record, summary));
-  return summary;
-}
-
-void write_comparison_html(const std::vector<ComparedRun>& runs, const std::filesystem::path& file) {
-  write_file(file, comparison_html(runs));
-}
-
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

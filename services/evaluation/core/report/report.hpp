@@ -3,26 +3,53 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "services/evaluation/core/report/run_summary.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 
-/// Writes DIR/report.json and DIR/report.html (self-contained) and returns the numbers. Throws std::runtime_error
-/// naming the file when one cannot be written; bad or missing trajectories become notes in both files.
-RunSummary write_report(const RunRecord& record, const std::filesystem::path& folder);
+/// Reads run.json and finds the other files of the run in `folder`. Throws RunFileError.
+Run load_run(const std::string& folder);
+
+/// Compares the removed points with the true masks of the source and sets Run::removal. An interrupted run is judged on
+/// a few frames only: the user waits. `go_on` is asked before each frame. Masks that cannot be used become an event.
+void judge_run(Run& run, const std::function<bool()>& go_on);
+
+/// When slam left no trajectory.txt, the run is judged by the poses as they were published; that becomes an event.
+void choose_trajectory(Run& run, const std::string& folder);
+
+/// The content of report.json (keys: docs/evaluation.md). Every key is always there; what is unknown is null.
+nlohmann::ordered_json report_json(const Run& run, const RunSummary& summary);
+
+/// The report page of one run: one HTML file with everything inside (styles, SVG charts, JPEG as data URIs), no
+/// references to the outside, no script.
+std::string report_html(const Run& run, const RunSummary& summary);
+
+/// The table that ends a run on the terminal.
+std::string summary_text(const Run& run, const RunSummary& summary, const std::string& folder);
+
+/// Writes DIR/report.json and DIR/report.html and returns the numbers. Throws std::runtime_error naming the file when
+/// one cannot be written; bad or missing trajectories become notes in both files.
+RunSummary write_report(const Run& run, const std::filesystem::path& folder);
 
 /// One run of a comparison.
 struct ComparedRun {
   std::string label;  ///< e.g. "filter off"
-  RunRecord record;
+  Run run;
 };
 
-/// Writes one self-contained page that shows runs of the same source beside each other: trajectories in one plot
-/// against the ground truth, errors over time, numbers, sample frames. The first run is the baseline. Throws
-/// std::runtime_error as above.
-void write_comparison_html(const std::vector<ComparedRun>& runs, const std::filesystem::path& file);
+/// A self-contained page that shows runs of the same source beside each other: trajectories in one plot against the
+/// ground truth, errors over time, numbers, sample frames. The first run is the baseline.
+std::string comparison_html(const std::vector<ComparedRun>& runs);
 
-}  // namespace rtd::launcher
+/// ATE and coverage of the runs, a line each, for the terminal.
+std::string comparison_text(const std::vector<ComparedRun>& runs);
+
+/// Throws std::runtime_error naming the file when it cannot be written.
+void write_file(const std::filesystem::path& path, const std::string& content);
+
+}  // namespace rtd::eval

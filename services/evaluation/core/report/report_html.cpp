@@ -1,18 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/report/report_html.hpp"
+#include "services/evaluation/core/report/report.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "services/evaluation/core/plot/colour.hpp"
 #include "services/evaluation/core/report/report_parts.hpp"
-#include "services/evaluation/core/report/run_charts.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 using html::Card;
@@ -43,7 +41,7 @@ Card accuracy_card(const RunSummary& summary) {
 
 Card drift_card(const RunSummary& summary) {
   if (!summary.final_trajectory) return {"unknown", "RPE per second", why_no_error(summary)};
-  const eval::RpeResult& rpe = summary.final_trajectory->rpe_per_second;
+  const RpeResult& rpe = summary.final_trajectory->rpe_per_second;
   return {length_text(rpe.translation_m.rmse), "RPE per second",
           number_text(rpe.rotation_rad.rmse * 180 / std::numbers::pi, 2, "deg") + " rotation"};
 }
@@ -62,25 +60,24 @@ Card removed_card(const RunSummary& summary) {
           number_text(summary.removed_mean, 0, "") + " of " + number_text(per_frame, 0, "") + " a frame"};
 }
 
-std::string summary_cards(const RunRecord& record, const RunSummary& summary) {
-  const Card coverage{
-      percent_text(summary.coverage), "frames with pose",
-      fmt::format("{} of {}, {} dropped", summary.frames_tracked, record.frames_in, record.frames_dropped),
-      coverage_tone(summary.coverage)};
+std::string summary_cards(const Run& run, const RunSummary& summary) {
+  const Card coverage{percent_text(summary.coverage), "frames with pose",
+                      fmt::format("{} of {}, {} dropped", summary.frames_tracked, run.frames_in, run.frames_dropped),
+                      coverage_tone(summary.coverage)};
   const Card speed{number_text(summary.fps, 1, "fps"), "frames per second",
-                   number_text(record.duration_s, 1, "s") + " from start to end"};
+                   number_text(run.duration_s, 1, "s") + " from start to end"};
   return html::cards(
       {accuracy_card(summary), coverage, drift_card(summary), latency_card(summary), speed, removed_card(summary)});
 }
 
-eval::Trajectory truth_during(const RunSummary& summary, const RunTime& time) {
+Trajectory truth_during(const RunSummary& summary, const RunTime& time) {
   const auto end_ns = time.start_ns + std::llround(time.duration_s * 1e9);
   return within(summary.groundtruth, time.start_ns, end_ns);
 }
 
 std::string trajectory_section(const RunSummary& summary, const RunTime& time) {
   if (summary.final_trajectory) {
-    const eval::Trajectory truth = truth_during(summary, time);
+    const Trajectory truth = truth_during(summary, time);
     const double height = fitting_height({path_of(truth)}, 700);
     plot::Svg svg(700, height, "Trajectory coloured by error");
     draw_error_path(svg, {0, 0, 700, height}, summary.final_trajectory->ate, truth);
@@ -114,28 +111,28 @@ std::string error_section(const RunSummary& summary, const RunTime& time) {
                        svg.str());
 }
 
-std::string removal_note(const RunRecord& record) {
-  if (!record.removal) return "";
-  const auto words = [](const eval::RemovalQuality& quality) {
+std::string removal_note(const Run& run) {
+  if (!run.removal) return "";
+  const auto words = [](const RemovalQuality& quality) {
     return percent_text(quality.precision()) + " of the removed points were on something that moved, " +
            percent_text(quality.recall()) + " of the points there were removed";
   };
-  return " Against the source's true moving pixels (grown by 3 px): " + words(record.removal->all) +
-         "; after the first second: " + words(record.removal->settled) + ".";
+  return " Against the source's true moving pixels (grown by 3 px): " + words(run.removal->all) +
+         "; after the first second: " + words(run.removal->settled) + ".";
 }
 
-std::string features_section(const RunRecord& record, const RunSummary& summary) {
-  if (record.frames.empty()) return "";
+std::string features_section(const Run& run, const RunSummary& summary) {
+  if (run.frames.empty()) return "";
   return html::section(
       "Static and dynamic points",
-      "Removed points were judged to lie on something that moves; tracking never uses them." + removal_note(record),
-      points_chart(record, summary));
+      "Removed points were judged to lie on something that moves; tracking never uses them." + removal_note(run),
+      points_chart(run, summary));
 }
 
-std::string latency_section(const RunRecord& record, const RunSummary& summary) {
+std::string latency_section(const Run& run, const RunSummary& summary) {
   if (summary.latency_ms.count == 0) return "";
   return html::section("Latency", "From handing the frame to the bus until its pose is ready.",
-                       latency_chart(record, summary));
+                       latency_chart(run, summary));
 }
 
 std::string stage_section(const RunSummary& summary) {
@@ -145,20 +142,20 @@ std::string stage_section(const RunSummary& summary) {
   return "";
 }
 
-std::string samples_section(const RunRecord& record) {
-  const std::vector<html::Figure> figures = sample_figures(record, kShownSamples);
+std::string samples_section(const Run& run) {
+  const std::vector<html::Figure> figures = sample_figures(run, kShownSamples);
   if (figures.empty()) return "";
   return html::section("Sample frames", "Green: kept as static. Red: removed as dynamic.", html::gallery(figures));
 }
 
-std::string processes_section(const RunRecord& record) {
-  if (record.processes.empty()) return "";
+std::string processes_section(const Run& run) {
+  if (run.processes.empty()) return "";
   html::Table table{{"process", "CPU time [s]", "of one core [%]", "peak memory [MB]", "restarts"}, {}};
   double cpu_s = 0, rss_mb = 0;
   const auto share = [&](double seconds) {
-    return record.duration_s > 0 ? number_text(100 * seconds / record.duration_s, 0, "") : std::string("unknown");
+    return run.duration_s > 0 ? number_text(100 * seconds / run.duration_s, 0, "") : std::string("unknown");
   };
-  for (const auto& [name, usage] : record.processes) {
+  for (const auto& [name, usage] : run.processes) {
     table.rows.push_back({name, number_text(usage.cpu_s, 1, ""), share(usage.cpu_s),
                           number_text(usage.peak_rss_mb, 0, ""), fmt::format("{}", usage.restarts)});
     cpu_s += usage.cpu_s;
@@ -170,9 +167,9 @@ std::string processes_section(const RunRecord& record) {
                        html::table(table));
 }
 
-std::string losses_section(const RunRecord& record, const RunSummary& summary) {
+std::string losses_section(const Run& run, const RunSummary& summary) {
   std::vector<std::string> lines;
-  for (const auto& [place, count] : record.drops) lines.push_back(fmt::format("{}: {:g} frames", place, count));
+  for (const auto& [place, count] : run.drops) lines.push_back(fmt::format("{}: {:g} frames", place, count));
   for (std::size_t i = 0; i < std::min(summary.lost.size(), kShownLostSpans); ++i) {
     const LostFrames& span = summary.lost[i];
     lines.push_back(span.frames() == 1 ? fmt::format("frame {} without pose, at {:.2f} s", span.first_seq, span.start_s)
@@ -186,42 +183,42 @@ std::string losses_section(const RunRecord& record, const RunSummary& summary) {
   return html::section("Drops and lost spans", "", lines.empty() ? "<p class=\"note\">None.</p>\n" : html::list(lines));
 }
 
-std::string events_section(const RunRecord& record, const RunSummary& summary) {
-  std::vector<std::string> lines = record.events;
+std::string events_section(const Run& run, const RunSummary& summary) {
+  std::vector<std::string> lines = run.events;
   for (const std::string& note : summary.notes) lines.push_back("not computed: " + note);
   if (lines.empty()) return "";
   return html::section("Events", "", html::list(lines));
 }
 
-std::string static_map_note(const RunRecord& record) {
-  return record.static_map_path.empty() ? std::string() : fmt::format("{} points", record.static_map_points);
+std::string static_map_note(const Run& run) {
+  return run.static_map_path.empty() ? std::string() : fmt::format("{} points", run.static_map_points);
 }
 
-std::string header_badges(const RunRecord& record, const RunSummary& summary) {
+std::string header_badges(const Run& run, const RunSummary& summary) {
   return "<div style=\"margin:-8px 0 18px\">" +
-         html::badges({{"filter", record.filter_mode},
-                       {"detector", record.detector},
-                       {"pace", record.pace},
-                       {"dds", record.dds},
+         html::badges({{"filter", run.filter_mode},
+                       {"detector", run.detector},
+                       {"pace", run.pace},
+                       {"dds", run.dds},
                        {"keyframes", fmt::format("{}", summary.keyframes)},
                        {"landmarks", fmt::format("{}", summary.landmarks)},
-                       {"static map", static_map_note(record)},
-                       {"version", summary.version}}) +
+                       {"static map", static_map_note(run)},
+                       {"version", run.version}}) +
          "</div>\n";
 }
 
 }  // namespace
 
-std::string report_html(const RunRecord& record, const RunSummary& summary) {
-  const RunTime time = run_time(record, summary);
+std::string report_html(const Run& run, const RunSummary& summary) {
+  const RunTime time = run_time(run, summary);
   // What went wrong stands first when something did.
   const bool poor = !(summary.coverage >= 0.9);
-  const std::string events = events_section(record, summary);
-  return html::page("RTD-SLAM run report", record.source,
-                    header_badges(record, summary) + summary_cards(record, summary) + (poor ? events : "") +
-                        trajectory_section(summary, time) + error_section(summary, time) + samples_section(record) +
-                        features_section(record, summary) + latency_section(record, summary) + stage_section(summary) +
-                        processes_section(record) + losses_section(record, summary) + (poor ? "" : events));
+  const std::string events = events_section(run, summary);
+  return html::page("RTD-SLAM run report", run.source,
+                    header_badges(run, summary) + summary_cards(run, summary) + (poor ? events : "") +
+                        trajectory_section(summary, time) + error_section(summary, time) + samples_section(run) +
+                        features_section(run, summary) + latency_section(run, summary) + stage_section(summary) +
+                        processes_section(run) + losses_section(run, summary) + (poor ? "" : events));
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -8,22 +8,21 @@
 #include <cmath>
 #include <numbers>
 
-#include "services/evaluation/core/report/run_charts.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 constexpr double kRadToDeg = 180 / std::numbers::pi;
 
-std::vector<std::string> length_row(const std::string& name, const eval::Statistics& s) {
+std::vector<std::string> length_row(const std::string& name, const Statistics& s) {
   if (s.count == 0) return {name, "-", "-", "-", "-"};
   const LengthUnit unit = length_unit(s.rmse);
   const auto text = [&](double value_m) { return fmt::format("{:.2f}", value_m * unit.per_metre); };
   return {name + " [" + unit.name + "]", text(s.rmse), text(s.median), text(s.max), fmt::format("{}", s.count)};
 }
 
-std::vector<std::string> angle_row(const std::string& name, const eval::Statistics& s) {
+std::vector<std::string> angle_row(const std::string& name, const Statistics& s) {
   if (s.count == 0) return {name, "-", "-", "-", "-"};
   const auto text = [&](double value_rad) { return fmt::format("{:.2f}", value_rad * kRadToDeg); };
   return {name + " [deg]", text(s.rmse), text(s.median), text(s.max), fmt::format("{}", s.count)};
@@ -31,7 +30,7 @@ std::vector<std::string> angle_row(const std::string& name, const eval::Statisti
 
 std::string caption(const SampleFrame& sample) {
   const auto removed = std::count_if(sample.features.begin(), sample.features.end(),
-                                     [](const msg::Feature& f) { return (f.flags & msg::kFeatureRemoved) != 0; });
+                                     [](const JudgedFeature& feature) { return feature.removed; });
   return fmt::format("frame {}: {} kept, {} removed", sample.seq,
                      sample.features.size() - static_cast<std::size_t>(removed), removed);
 }
@@ -50,7 +49,7 @@ std::string percent_text(double fraction) {
   return fmt::format("{:.{}f} %", percent, fraction == 1 ? 0 : 2);
 }
 
-html::Table accuracy_table(const eval::Evaluation& e) {
+html::Table accuracy_table(const Evaluation& e) {
   return {{"error", "RMSE", "median", "max", "pairs"},
           {length_row("ATE", e.ate.error_m), length_row("RPE per second", e.rpe_per_second.translation_m),
            angle_row("RPE per second", e.rpe_per_second.rotation_rad),
@@ -60,15 +59,15 @@ html::Table accuracy_table(const eval::Evaluation& e) {
            angle_row("RPE per metre", e.rpe_per_metre.rotation_rad)}};
 }
 
-std::vector<html::Figure> sample_figures(const RunRecord& record, std::size_t wanted) {
+std::vector<html::Figure> sample_figures(const Run& run, std::size_t wanted) {
   std::vector<html::Figure> figures;
-  const std::size_t count = std::min(wanted, record.samples.size());
+  const std::size_t count = std::min(wanted, run.samples.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const SampleFrame& sample = record.samples[(2 * i + 1) * record.samples.size() / (2 * count)];
+    const SampleFrame& sample = run.samples[(2 * i + 1) * run.samples.size() / (2 * count)];
     std::string picture = sample_picture(sample);
     if (!picture.empty()) figures.push_back({std::move(picture), caption(sample)});
   }
   return figures;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -7,7 +7,27 @@
 #include "services/evaluation/core/report/html.hpp"
 #include "services/evaluation/core/report/run_summary.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
+
+/// The time axis that all charts of a run share.
+struct RunTime {
+  std::int64_t start_ns = 0;  ///< stamp of the first frame
+  double duration_s = 0;      ///< to the last frame, source time
+};
+RunTime run_time(const Run& run, const RunSummary& summary);
+
+/// Features kept and removed per frame as stacked areas, inliers of tracking as a line, frames without pose as red
+/// bands.
+std::string points_chart(const Run& run, const RunSummary& summary);
+
+/// Latency of every frame over time with its distribution, p50 and p99.
+std::string latency_chart(const Run& run, const RunSummary& summary);
+
+/// One row per stage that ran: bar to the median, whisker to the 99th percentile.
+std::string stage_chart(const RunSummary& summary);
+
+/// A kept frame with its features drawn on it: green kept, red removed. Empty when the JPEG cannot be read.
+std::string sample_picture(const SampleFrame& sample);
 
 /// Parts that the page of one run and the page of a comparison share.
 
@@ -17,9 +37,9 @@ std::string number_text(double value, int decimals, const std::string& unit);
 std::string percent_text(double fraction);
 
 /// ATE and RPE of an evaluation with their statistics.
-html::Table accuracy_table(const eval::Evaluation& evaluation);
+html::Table accuracy_table(const Evaluation& evaluation);
 
 /// At most `wanted` sample frames, evenly spread, as figures with captions.
-std::vector<html::Figure> sample_figures(const RunRecord& record, std::size_t wanted);
+std::vector<html::Figure> sample_figures(const Run& run, std::size_t wanted);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

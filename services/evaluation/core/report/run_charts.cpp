@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/report/run_charts.hpp"
+#include "services/evaluation/core/report/report_parts.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,8 @@
 #include <cmath>
 
 #include "services/evaluation/core/plot/chart.hpp"
-#include "services/evaluation/core/plot/colour.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 using plot::Anchor;
@@ -32,17 +31,17 @@ struct FeatureSeries {
   std::vector<double> time_s, kept, total, inliers;
 };
 
-FeatureSeries feature_series(const RunRecord& record, const RunTime& time) {
+FeatureSeries feature_series(const Run& run, const RunTime& time) {
   FeatureSeries series;
-  const std::size_t bucket = record.frames.size() / kMaxColumns + 1;
-  for (std::size_t begin = 0; begin < record.frames.size(); begin += bucket) {
-    const std::size_t end = std::min(begin + bucket, record.frames.size());
+  const std::size_t bucket = run.frames.size() / kMaxColumns + 1;
+  for (std::size_t begin = 0; begin < run.frames.size(); begin += bucket) {
+    const std::size_t end = std::min(begin + bucket, run.frames.size());
     double time_s = 0, kept = 0, removed = 0, inliers = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      time_s += source_time_s(record.frames[i], time);
-      kept += record.frames[i].tracking.features_static;
-      removed += record.frames[i].tracking.features_removed;
-      inliers += record.frames[i].tracking.inliers;
+      time_s += source_time_s(run.frames[i], time);
+      kept += run.frames[i].tracking.features_static;
+      removed += run.frames[i].tracking.features_removed;
+      inliers += run.frames[i].tracking.inliers;
     }
     const auto n = static_cast<double>(end - begin);
     series.time_s.push_back(time_s / n);
@@ -73,9 +72,9 @@ struct LatencySeries {
   std::vector<double> time_s, ms;
 };
 
-LatencySeries latency_series(const RunRecord& record, const RunTime& time) {
+LatencySeries latency_series(const Run& run, const RunTime& time) {
   LatencySeries series;
-  for (const FrameRecord& frame : record.frames) {
+  for (const FrameRecord& frame : run.frames) {
     const auto latency = latency_ms(frame);
     if (!latency) continue;
     series.time_s.push_back(source_time_s(frame, time));
@@ -144,19 +143,19 @@ void draw_stage_row(plot::Svg& svg, const StageSummary& stage, double y, double 
 
 }  // namespace
 
-RunTime run_time(const RunRecord& record, const RunSummary& summary) {
-  if (!record.frames.empty()) {
-    const std::int64_t start_ns = record.frames.front().tracking.stamp_ns;
-    return {start_ns, std::max(0.0, static_cast<double>(record.frames.back().tracking.stamp_ns - start_ns) * 1e-9)};
+RunTime run_time(const Run& run, const RunSummary& summary) {
+  if (!run.frames.empty()) {
+    const std::int64_t start_ns = run.frames.front().tracking.stamp_ns;
+    return {start_ns, std::max(0.0, static_cast<double>(run.frames.back().tracking.stamp_ns - start_ns) * 1e-9)};
   }
   if (summary.estimate.empty()) return {};
   const std::int64_t start_ns = summary.estimate.front().stamp_ns;
   return {start_ns, static_cast<double>(summary.estimate.back().stamp_ns - start_ns) * 1e-9};
 }
 
-std::string points_chart(const RunRecord& record, const RunSummary& summary) {
-  const RunTime time = run_time(record, summary);
-  const FeatureSeries series = feature_series(record, time);
+std::string points_chart(const Run& run, const RunSummary& summary) {
+  const RunTime time = run_time(run, summary);
+  const FeatureSeries series = feature_series(run, time);
   plot::Svg svg(kChartWidth, 300, "Features per frame, kept and removed, over time");
   Chart chart(svg, {64, 30, kChartWidth - 64 - 20, 224}, {0, std::max(time.duration_s, 1e-3)},
               plot::range_from_zero(series.total));
@@ -164,7 +163,7 @@ std::string points_chart(const RunRecord& record, const RunSummary& summary) {
   fill_between(svg, chart, series.time_s, std::vector<double>(series.kept.size(), 0.0), series.kept, palette::kGreen);
   fill_between(svg, chart, series.time_s, series.kept, series.total, palette::kRed);
   chart.curve(series.time_s, series.inliers, {palette::kInk, 1.5}, kMaxGapS);
-  mark_lost(chart, summary, time, record.frames.size());
+  mark_lost(chart, summary, time, run.frames.size());
   std::vector<plot::LegendEntry> legend{{"kept as static", palette::kGreen},
                                         {"removed as dynamic", palette::kRed},
                                         {"used for the pose (inliers)", palette::kInk}};
@@ -173,9 +172,9 @@ std::string points_chart(const RunRecord& record, const RunSummary& summary) {
   return svg.str();
 }
 
-std::string latency_chart(const RunRecord& record, const RunSummary& summary) {
-  const RunTime time = run_time(record, summary);
-  const LatencySeries series = latency_series(record, time);
+std::string latency_chart(const Run& run, const RunSummary& summary) {
+  const RunTime time = run_time(run, summary);
+  const LatencySeries series = latency_series(run, time);
   const TimeSummary& latency = summary.latency_ms;
   plot::Svg svg(kChartWidth, 300, "Latency from camera to pose over time and its distribution");
   const double end_ms = latency.count > 0 ? latency_axis_end_ms(latency) : 1;
@@ -220,10 +219,8 @@ std::string sample_picture(const SampleFrame& sample) {
   plot::Svg svg(width, height, fmt::format("Frame {} with its features", sample.seq));
   svg.jpeg({0, 0, static_cast<double>(width), static_cast<double>(height)}, sample.jpeg);
   std::vector<Point> kept, removed;
-  for (const msg::Feature& feature : sample.features) {
-    const bool is_removed = (feature.flags & msg::kFeatureRemoved) != 0;
-    (is_removed ? removed : kept).push_back({feature.u_raw_px, feature.v_raw_px});
-  }
+  for (const JudgedFeature& feature : sample.features)
+    (feature.removed ? removed : kept).push_back({feature.u_raw_px, feature.v_raw_px});
   svg.dots(kept, 6, "#06351b", 0.55);
   svg.dots(kept, 4.4, "#35e07a");
   svg.dots(removed, 7, "#ffffff", 0.6);
@@ -231,4 +228,4 @@ std::string sample_picture(const SampleFrame& sample) {
   return svg.str();
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -7,7 +7,7 @@
 
 #include "common/msg/transform_eigen.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 constexpr std::array<const char*, msg::kStageFilterTotal + 1> kFilterStageNames{
@@ -23,33 +23,33 @@ bool is_tracked(const FrameRecord& frame) {
 }
 
 double mean_of(const std::vector<double>& values) {
-  return eval::summarize(values).mean;
+  return summarize(values).mean;
 }
 
-std::vector<double> latencies_ms(const RunRecord& record) {
+std::vector<double> latencies_ms(const Run& run) {
   std::vector<double> latencies;
-  for (const FrameRecord& frame : record.frames) {
+  for (const FrameRecord& frame : run.frames) {
     if (const auto latency = latency_ms(frame)) latencies.push_back(*latency);
   }
   return latencies;
 }
 
 template <std::size_t N, typename TimesOf>
-void append_stages(const RunRecord& record, const std::array<const char*, N>& names, TimesOf times_of,
+void append_stages(const Run& run, const std::array<const char*, N>& names, TimesOf times_of,
                    std::vector<StageSummary>& stages) {
   for (std::size_t stage = 0; stage < N; ++stage) {
     std::vector<double> times_ms;
-    for (const FrameRecord& frame : record.frames) {
+    for (const FrameRecord& frame : run.frames) {
       if (const float ms = times_of(frame)[stage]; ms >= kRanMs) times_ms.push_back(ms);
     }
     stages.push_back({names[stage], summarize_times(times_ms)});
   }
 }
 
-std::vector<LostFrames> lost_frames(const RunRecord& record) {
+std::vector<LostFrames> lost_frames(const Run& run) {
   std::vector<LostFrames> lost;
-  if (record.frames.empty()) return lost;
-  const std::int64_t start_ns = record.frames.front().tracking.stamp_ns;
+  if (run.frames.empty()) return lost;
+  const std::int64_t start_ns = run.frames.front().tracking.stamp_ns;
   const auto add = [&](std::uint64_t first_seq, std::uint64_t last_seq, std::int64_t stamp_ns) {
     if (!lost.empty() && lost.back().last_seq + 1 == first_seq) {
       lost.back().last_seq = last_seq;
@@ -57,9 +57,9 @@ std::vector<LostFrames> lost_frames(const RunRecord& record) {
       lost.push_back({first_seq, last_seq, static_cast<double>(stamp_ns - start_ns) * 1e-9});
     }
   };
-  std::uint64_t next_seq = record.frames.front().tracking.seq;
+  std::uint64_t next_seq = run.frames.front().tracking.seq;
   std::int64_t before_ns = start_ns;
-  for (const FrameRecord& frame : record.frames) {
+  for (const FrameRecord& frame : run.frames) {
     const auto& tracking = frame.tracking;
     if (tracking.seq > next_seq) add(next_seq, tracking.seq - 1, before_ns);
     if (!is_tracked(frame)) add(tracking.seq, tracking.seq, tracking.stamp_ns);
@@ -69,9 +69,9 @@ std::vector<LostFrames> lost_frames(const RunRecord& record) {
   return lost;
 }
 
-void count_features(const RunRecord& record, RunSummary& summary) {
+void count_features(const Run& run, RunSummary& summary) {
   std::vector<double> kept, removed;
-  for (const FrameRecord& frame : record.frames) {
+  for (const FrameRecord& frame : run.frames) {
     kept.push_back(frame.tracking.features_static);
     removed.push_back(frame.tracking.features_removed);
   }
@@ -79,23 +79,23 @@ void count_features(const RunRecord& record, RunSummary& summary) {
   summary.removed_mean = mean_of(removed);
 }
 
-eval::Trajectory read_or_note(const std::string& what, const std::string& path, std::vector<std::string>& notes) {
+Trajectory read_or_note(const std::string& what, const std::string& path, std::vector<std::string>& notes) {
   if (path.empty()) {
     notes.push_back("no " + what);
     return {};
   }
   try {
-    return eval::read_tum_trajectory(std::filesystem::path(path));
-  } catch (const eval::TrajectoryError& error) {
+    return read_tum_trajectory(std::filesystem::path(path));
+  } catch (const TrajectoryError& error) {
     notes.push_back(what + " unusable: " + error.what());
     return {};
   }
 }
 
-std::optional<eval::Evaluation> evaluate_or_note(const std::string& what, const eval::Trajectory& estimate,
-                                                 const eval::Trajectory& groundtruth, std::vector<std::string>& notes) {
+std::optional<Evaluation> evaluate_or_note(const std::string& what, const Trajectory& estimate,
+                                           const Trajectory& groundtruth, std::vector<std::string>& notes) {
   if (estimate.empty() || groundtruth.empty()) return std::nullopt;
-  eval::Evaluation evaluation = eval::evaluate(estimate, groundtruth);
+  Evaluation evaluation = evaluate(estimate, groundtruth);
   if (evaluation.ate.error_m.count == 0) {
     notes.push_back(what + ": no pose lies within 0.02 s of the ground truth");
     return std::nullopt;
@@ -118,13 +118,13 @@ std::optional<double> latency_ms(const FrameRecord& frame) {
 TimeSummary summarize_times(const std::vector<double>& times_ms) {
   std::vector<double> finite;
   std::copy_if(times_ms.begin(), times_ms.end(), std::back_inserter(finite), [](double t) { return std::isfinite(t); });
-  const eval::Statistics s = eval::summarize(finite);
-  return {finite.size(), s.mean, eval::percentile(finite, 0.5), eval::percentile(finite, 0.99), s.max};
+  const Statistics s = summarize(finite);
+  return {finite.size(), s.mean, percentile(finite, 0.5), percentile(finite, 0.99), s.max};
 }
 
-eval::Trajectory online_trajectory(const RunRecord& record) {
-  eval::Trajectory trajectory;
-  for (const FrameRecord& frame : record.frames) {
+Trajectory online_trajectory(const Run& run) {
+  Trajectory trajectory;
+  for (const FrameRecord& frame : run.frames) {
     const auto& tracking = frame.tracking;
     if (!is_tracked(frame)) continue;
     const Eigen::Isometry3d T_world_camera = msg::to_isometry(tracking.T_world_camera);
@@ -135,32 +135,30 @@ eval::Trajectory online_trajectory(const RunRecord& record) {
   return trajectory;
 }
 
-RunSummary summarize_run(const RunRecord& record) {
+RunSummary summarize_run(const Run& run) {
   RunSummary summary;
-  summary.version = RTD_VERSION;
-  summary.frames_tracked =
-      static_cast<std::uint64_t>(std::count_if(record.frames.begin(), record.frames.end(), is_tracked));
-  if (record.frames_in > 0) {
-    summary.coverage = static_cast<double>(summary.frames_tracked) / static_cast<double>(record.frames_in);
-    if (record.duration_s > 0) summary.fps = static_cast<double>(record.frames_in) / record.duration_s;
+  summary.frames_tracked = static_cast<std::uint64_t>(std::count_if(run.frames.begin(), run.frames.end(), is_tracked));
+  if (run.frames_in > 0) {
+    summary.coverage = static_cast<double>(summary.frames_tracked) / static_cast<double>(run.frames_in);
+    if (run.duration_s > 0) summary.fps = static_cast<double>(run.frames_in) / run.duration_s;
   }
-  summary.latency_ms = summarize_times(latencies_ms(record));
+  summary.latency_ms = summarize_times(latencies_ms(run));
   append_stages(
-      record, kFilterStageNames, [](const FrameRecord& f) -> auto& { return f.filter_stage_ms; }, summary.stages);
+      run, kFilterStageNames, [](const FrameRecord& f) -> auto& { return f.filter_stage_ms; }, summary.stages);
   append_stages(
-      record, kSlamStageNames, [](const FrameRecord& f) -> auto& { return f.tracking.stage_ms; }, summary.stages);
-  summary.lost = lost_frames(record);
-  count_features(record, summary);
-  if (!record.frames.empty()) {
-    summary.keyframes = record.frames.back().tracking.keyframes;
-    summary.landmarks = record.frames.back().tracking.landmarks;
+      run, kSlamStageNames, [](const FrameRecord& f) -> auto& { return f.tracking.stage_ms; }, summary.stages);
+  summary.lost = lost_frames(run);
+  count_features(run, summary);
+  if (!run.frames.empty()) {
+    summary.keyframes = run.frames.back().tracking.keyframes;
+    summary.landmarks = run.frames.back().tracking.landmarks;
   }
-  summary.groundtruth = read_or_note("ground truth", record.groundtruth_path, summary.notes);
-  summary.estimate = read_or_note("trajectory", record.trajectory_path, summary.notes);
+  summary.groundtruth = read_or_note("ground truth", run.groundtruth_path, summary.notes);
+  summary.estimate = read_or_note("trajectory", run.trajectory_path, summary.notes);
   summary.final_trajectory = evaluate_or_note("trajectory", summary.estimate, summary.groundtruth, summary.notes);
   summary.online_trajectory =
-      evaluate_or_note("published poses", online_trajectory(record), summary.groundtruth, summary.notes);
+      evaluate_or_note("published poses", online_trajectory(run), summary.groundtruth, summary.notes);
   return summary;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -9,10 +9,20 @@
 #include <string>
 #include <vector>
 
+#include "services/evaluation/core/removal/removal.hpp"
 #include "services/evaluation/core/trajectory/evaluation.hpp"
 #include "services/evaluation/record/run_record.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
+
+/// A run with the files of its folder and what is computed from its source.
+struct Run : RunRecord {
+  std::string trajectory_path;   ///< TUM format: final poses that slam wrote, else those published; empty = none
+  std::string groundtruth_path;  ///< TUM format; empty = none
+  std::string static_map_path;   ///< static_map.ply that dense wrote; empty = none
+  std::uint64_t static_map_points = 0;
+  std::optional<RunRemoval> removal;  ///< of sources that know what moves
+};
 
 /// Times in ms; NaN when nothing was measured.
 struct TimeSummary {
@@ -38,7 +48,6 @@ struct LostFrames {
 
 /// The numbers of a run, ready to be written. Doubles are NaN where unknown.
 struct RunSummary {
-  std::string version;
   std::uint64_t frames_tracked = 0;
   double coverage = std::numeric_limits<double>::quiet_NaN();  ///< frames with pose / frames in
   double fps = std::numeric_limits<double>::quiet_NaN();       ///< frames in / duration of the run
@@ -48,17 +57,17 @@ struct RunSummary {
   double kept_mean = std::numeric_limits<double>::quiet_NaN();     ///< features offered to tracking, per frame
   double removed_mean = std::numeric_limits<double>::quiet_NaN();  ///< features judged dynamic, per frame
   std::uint32_t keyframes = 0, landmarks = 0;                      ///< at the end
-  eval::Trajectory estimate, groundtruth;             ///< final trajectory and ground truth; empty when there is none
-  std::optional<eval::Evaluation> final_trajectory;   ///< trajectory.txt against ground truth
-  std::optional<eval::Evaluation> online_trajectory;  ///< poses as they were published, frame by frame
-  std::vector<std::string> notes;                     ///< what could not be computed, and why
+  Trajectory estimate, groundtruth;             ///< final trajectory and ground truth; empty when there is none
+  std::optional<Evaluation> final_trajectory;   ///< trajectory.txt against ground truth
+  std::optional<Evaluation> online_trajectory;  ///< poses as they were published, frame by frame
+  std::vector<std::string> notes;               ///< what could not be computed, and why
 };
 
-/// Reads the trajectories that the record names and computes everything. Never throws on bad data: that becomes a note.
-RunSummary summarize_run(const RunRecord& record);
+/// Reads the trajectories that the run names and computes everything. Never throws on bad data: that becomes a note.
+RunSummary summarize_run(const Run& run);
 
 /// The poses of the tracked frames as published, in order.
-eval::Trajectory online_trajectory(const RunRecord& record);
+Trajectory online_trajectory(const Run& run);
 
 /// Camera to pose, ms; nothing when the frame has no pose or was not timed.
 std::optional<double> latency_ms(const FrameRecord& frame);
@@ -66,4 +75,4 @@ std::optional<double> latency_ms(const FrameRecord& frame);
 /// Summary of the finite values.
 TimeSummary summarize_times(const std::vector<double>& times_ms);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -8,9 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "services/evaluation/core/plot/colour.hpp"
-
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace {
 
 using plot::Anchor;
@@ -64,7 +62,7 @@ void draw_path(plot::Svg& svg, const Chart& chart, const PathCurve& curve, Plane
 }
 
 /// Neighbouring points of about the same error share one line element.
-void draw_coloured_path(plot::Svg& svg, const Chart& chart, const eval::AteResult& ate, PlaneView plane, double max_m) {
+void draw_coloured_path(plot::Svg& svg, const Chart& chart, const AteResult& ate, PlaneView plane, double max_m) {
   const std::size_t stride = ate.points.size() / kMaxPathPoints + 1;
   std::vector<Point> run;
   int run_step = -1;
@@ -74,7 +72,7 @@ void draw_coloured_path(plot::Svg& svg, const Chart& chart, const eval::AteResul
   };
   std::int64_t before_ns = 0;
   for (std::size_t i = 0; i < ate.points.size(); i += stride) {
-    const eval::AtePoint& point = ate.points[i];
+    const AtePoint& point = ate.points[i];
     const Point at = chart.at(point.estimate_m[plane.horizontal], point.estimate_m[plane.vertical]);
     const int step = std::min(kColourSteps - 1, static_cast<int>(point.error_m / max_m * kColourSteps));
     const bool gap = i > 0 && seconds(point.stamp_ns - before_ns) > kMaxGapS * static_cast<double>(stride);
@@ -98,23 +96,23 @@ void mark_ends(plot::Svg& svg, Point start, Point end) {
 }
 
 /// A few extreme errors must not paint everything else blue: the scale then ends above the 95th percentile.
-double colour_scale_end_m(const eval::AteResult& ate) {
+double colour_scale_end_m(const AteResult& ate) {
   std::vector<double> errors_m;
-  for (const eval::AtePoint& point : ate.points) errors_m.push_back(point.error_m);
-  const double p95_m = eval::percentile(errors_m, 0.95);
+  for (const AtePoint& point : ate.points) errors_m.push_back(point.error_m);
+  const double p95_m = percentile(errors_m, 0.95);
   const double end_m = ate.error_m.max > 2.5 * p95_m ? 1.5 * p95_m : ate.error_m.max;
   return std::isfinite(end_m) ? std::max(end_m, 1e-6) : 1e-6;
 }
 
-std::vector<double> errors_in(const eval::AteResult& ate, const LengthUnit& unit) {
+std::vector<double> errors_in(const AteResult& ate, const LengthUnit& unit) {
   std::vector<double> errors;
-  for (const eval::AtePoint& point : ate.points) errors.push_back(point.error_m * unit.per_metre);
+  for (const AtePoint& point : ate.points) errors.push_back(point.error_m * unit.per_metre);
   return errors;
 }
 
-std::vector<double> times_since(const eval::AteResult& ate, std::int64_t start_ns) {
+std::vector<double> times_since(const AteResult& ate, std::int64_t start_ns) {
   std::vector<double> times;
-  for (const eval::AtePoint& point : ate.points) times.push_back(seconds(point.stamp_ns - start_ns));
+  for (const AtePoint& point : ate.points) times.push_back(seconds(point.stamp_ns - start_ns));
   return times;
 }
 
@@ -140,17 +138,17 @@ PlaneView widest_plane(const std::vector<Eigen::Vector3d>& points_m) {
   return {axes[0], axes[1]};
 }
 
-PathCurve path_of(const eval::Trajectory& trajectory) {
+PathCurve path_of(const Trajectory& trajectory) {
   PathCurve curve;
-  curve.stamps_ns = eval::stamps_of(trajectory);
-  for (const eval::StampedPose& pose : trajectory) curve.points_m.push_back(pose.T_world_body.translation());
+  curve.stamps_ns = stamps_of(trajectory);
+  for (const StampedPose& pose : trajectory) curve.points_m.push_back(pose.T_world_body.translation());
   return curve;
 }
 
-eval::Trajectory within(const eval::Trajectory& trajectory, std::int64_t first_ns, std::int64_t last_ns) {
-  eval::Trajectory part;
+Trajectory within(const Trajectory& trajectory, std::int64_t first_ns, std::int64_t last_ns) {
+  Trajectory part;
   std::copy_if(trajectory.begin(), trajectory.end(), std::back_inserter(part),
-               [&](const eval::StampedPose& p) { return p.stamp_ns >= first_ns && p.stamp_ns <= last_ns; });
+               [&](const StampedPose& p) { return p.stamp_ns >= first_ns && p.stamp_ns <= last_ns; });
   return part;
 }
 
@@ -164,12 +162,11 @@ double fitting_height(const std::vector<PathCurve>& curves, double width) {
   return std::clamp(kMarginY + (width - kMarginX) * 1.1 * up / across, kLowest, kHighest);
 }
 
-void draw_error_path(plot::Svg& svg, const Area& area, const eval::AteResult& ate,
-                     const eval::Trajectory& groundtruth) {
+void draw_error_path(plot::Svg& svg, const Area& area, const AteResult& ate, const Trajectory& groundtruth) {
   PathCurve truth = path_of(groundtruth);
   truth.stroke = {palette::kTruth, 2.2};
   std::vector<Eigen::Vector3d> all_m = truth.points_m;
-  for (const eval::AtePoint& point : ate.points) all_m.push_back(point.estimate_m);
+  for (const AtePoint& point : ate.points) all_m.push_back(point.estimate_m);
   const PlaneView plane = widest_plane(all_m);
 
   const Area frame{area.x + 58, area.y + 30, area.width - 58 - 92, area.height - 30 - 46};
@@ -177,7 +174,7 @@ void draw_error_path(plot::Svg& svg, const Area& area, const eval::AteResult& at
   draw_path(svg, chart, truth, plane);
   const double max_m = colour_scale_end_m(ate);
   draw_coloured_path(svg, chart, ate, plane, max_m);
-  const auto end_point = [&](const eval::AtePoint& p) {
+  const auto end_point = [&](const AtePoint& p) {
     return chart.at(p.estimate_m[plane.horizontal], p.estimate_m[plane.vertical]);
   };
   if (!ate.points.empty()) mark_ends(svg, end_point(ate.points.front()), end_point(ate.points.back()));
@@ -230,7 +227,7 @@ void draw_errors_over_time(plot::Svg& svg, const Area& area, const std::vector<E
   plot::draw_legend(svg, {frame.x, area.y + 14}, legend);
 }
 
-std::string evaluation_svg(const eval::AteResult& ate, const eval::Trajectory& groundtruth, const std::string& title) {
+std::string evaluation_svg(const AteResult& ate, const Trajectory& groundtruth, const std::string& title) {
   plot::Svg svg(900, 960, title);
   svg.text({20, 32}, title, {palette::kInk, 18, Anchor::kStart, true});
   svg.text({20, 54},
@@ -245,4 +242,4 @@ std::string evaluation_svg(const eval::AteResult& ate, const eval::Trajectory& g
   return svg.document();
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -8,7 +8,7 @@
 #include "services/evaluation/core/plot/chart.hpp"
 #include "services/evaluation/core/trajectory/ate.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 
 /// A length unit that gives readable numbers.
 struct LengthUnit {
@@ -34,17 +34,16 @@ struct PathCurve {
   plot::Stroke stroke;  ///< its colour is replaced by `colour`
 };
 
-PathCurve path_of(const eval::Trajectory& trajectory);
+PathCurve path_of(const Trajectory& trajectory);
 /// The poses from first_ns to last_ns.
-eval::Trajectory within(const eval::Trajectory& trajectory, std::int64_t first_ns, std::int64_t last_ns);
+Trajectory within(const Trajectory& trajectory, std::int64_t first_ns, std::int64_t last_ns);
 
 /// Height of a drawing of this width in which the paths, at equal aspect, leave little of it empty; within sensible
 /// limits.
 double fitting_height(const std::vector<PathCurve>& curves, double width);
 
 /// The estimate coloured by its error over the grey ground truth, equal aspect, colour scale at the right.
-void draw_error_path(plot::Svg& svg, const plot::Area& area, const eval::AteResult& ate,
-                     const eval::Trajectory& groundtruth);
+void draw_error_path(plot::Svg& svg, const plot::Area& area, const AteResult& ate, const Trajectory& groundtruth);
 
 /// Paths in one frame, equal aspect, with a legend; `plane` is chosen from the first one.
 void draw_paths(plot::Svg& svg, const plot::Area& area, const std::vector<PathCurve>& curves);
@@ -52,13 +51,13 @@ void draw_paths(plot::Svg& svg, const plot::Area& area, const std::vector<PathCu
 /// One error curve over time.
 struct ErrorCurve {
   std::string label, colour;
-  const eval::AteResult* ate = nullptr;
+  const AteResult* ate = nullptr;
 };
 /// Position errors over seconds since start_ns, with a line at each RMSE.
 void draw_errors_over_time(plot::Svg& svg, const plot::Area& area, const std::vector<ErrorCurve>& curves,
                            std::int64_t start_ns, double duration_s);
 
 /// One drawing for `rtd eval --plot`: path coloured by error, error over time, numbers in the title.
-std::string evaluation_svg(const eval::AteResult& ate, const eval::Trajectory& groundtruth, const std::string& title);
+std::string evaluation_svg(const AteResult& ate, const Trajectory& groundtruth, const std::string& title);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/core/trajectory/evaluation.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
 
 namespace rtd::eval {
 namespace {
+
+constexpr double kSameFrameS = 0.001;
 
 Coverage measure_coverage(const Trajectory& estimate, const Trajectory& groundtruth, const EvaluationOptions& options,
                           const std::optional<std::vector<std::int64_t>>& frames_ns) {
@@ -17,7 +22,83 @@ Coverage measure_coverage(const Trajectory& estimate, const Trajectory& groundtr
   return coverage_of_span(groundtruth.front().stamp_ns, groundtruth.back().stamp_ns, poses_ns, options.max_gap_s);
 }
 
+using Json = nlohmann::ordered_json;
+
+constexpr double kRadToDeg = 180 / std::numbers::pi;
+
+Json alignment_json(const Alignment& alignment) {
+  const Eigen::Quaterniond q(alignment.T_groundtruth_estimate.linear());
+  const Eigen::Vector3d t = alignment.T_groundtruth_estimate.translation();
+  return {{"translation_m", {t.x(), t.y(), t.z()}},
+          {"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}},
+          {"scale", alignment.scale},
+          {"unique", alignment.unique}};
+}
+
+Json rpe_json(const RpeResult& rpe) {
+  return {{"translation_m", to_json(rpe.translation_m)}, {"rotation_deg", to_json(rpe.rotation_rad, kRadToDeg)}};
+}
+
+Json coverage_json(const Coverage& coverage) {
+  Json spans = Json::array();
+  for (const LostSpan& span : coverage.lost) {
+    spans.push_back({{"first_s", static_cast<double>(span.first_ns) * 1e-9},
+                     {"last_s", static_cast<double>(span.last_ns) * 1e-9},
+                     {"frames", span.frames > 0 ? Json(span.frames) : Json(nullptr)}});
+  }
+  return {{"fraction", coverage.fraction},
+          {"of", coverage.frames > 0 ? "frames" : "groundtruth_span"},
+          {"frames", coverage.frames > 0 ? Json(coverage.frames) : Json(nullptr)},
+          {"tracked", coverage.tracked},
+          {"lost_spans", spans}};
+}
+
 }  // namespace
+
+Coverage coverage_of_frames(const std::vector<std::int64_t>& frames_ns, const std::vector<std::int64_t>& poses_ns) {
+  Coverage coverage;
+  coverage.frames = frames_ns.size();
+  std::vector<bool> tracked(frames_ns.size());
+  for (const MatchedPair& pair : associate(frames_ns, poses_ns, {kSameFrameS, 0.0})) tracked[pair.groundtruth] = true;
+  for (std::size_t i = 0; i < frames_ns.size(); ++i) {
+    if (tracked[i]) {
+      ++coverage.tracked;
+    } else if (i == 0 || tracked[i - 1]) {
+      coverage.lost.push_back({frames_ns[i], frames_ns[i], 1});
+    } else {
+      coverage.lost.back().last_ns = frames_ns[i];
+      ++coverage.lost.back().frames;
+    }
+  }
+  if (coverage.frames > 0)
+    coverage.fraction = static_cast<double>(coverage.tracked) / static_cast<double>(coverage.frames);
+  return coverage;
+}
+
+Coverage coverage_of_span(std::int64_t first_ns, std::int64_t last_ns, const std::vector<std::int64_t>& poses_ns,
+                          double max_gap_s) {
+  Coverage coverage;
+  if (last_ns <= first_ns) return coverage;
+  std::vector<std::int64_t> marks_ns{first_ns};
+  for (const std::int64_t pose_ns : poses_ns) {
+    if (pose_ns < first_ns || pose_ns > last_ns) continue;
+    marks_ns.push_back(pose_ns);
+    ++coverage.tracked;
+  }
+  marks_ns.push_back(last_ns);
+  const std::int64_t max_gap_ns = std::llround(max_gap_s * 1e9);
+  std::int64_t covered_ns = 0;
+  for (std::size_t i = 1; i < marks_ns.size(); ++i) {
+    const std::int64_t gap_ns = marks_ns[i] - marks_ns[i - 1];
+    if (gap_ns > max_gap_ns || coverage.tracked == 0) {
+      coverage.lost.push_back({marks_ns[i - 1], marks_ns[i], 0});
+    } else {
+      covered_ns += gap_ns;
+    }
+  }
+  coverage.fraction = static_cast<double>(covered_ns) / static_cast<double>(last_ns - first_ns);
+  return coverage;
+}
 
 Evaluation evaluate(const Trajectory& estimate, const Trajectory& groundtruth, const EvaluationOptions& options,
                     const std::optional<std::vector<std::int64_t>>& frames_ns) {
@@ -33,6 +114,24 @@ Evaluation evaluate(const Trajectory& estimate, const Trajectory& groundtruth, c
   evaluation.rpe_per_metre = rpe_per(RpeUnit::kMetres);
   evaluation.coverage = measure_coverage(estimate, groundtruth, options, frames_ns);
   return evaluation;
+}
+
+Json to_json(const Statistics& s, double factor) {
+  return {
+      {"count", s.count},          {"rmse", s.rmse * factor}, {"mean", s.mean * factor}, {"median", s.median * factor},
+      {"std", s.std_dev * factor}, {"min", s.min * factor},   {"max", s.max * factor}};
+}
+
+Json to_json(const Evaluation& e) {
+  return {{"estimate_poses", e.estimate_poses},
+          {"groundtruth_poses", e.groundtruth_poses},
+          {"ate_m", to_json(e.ate.error_m)},
+          {"alignment", alignment_json(e.ate.alignment)},
+          {"rpe",
+           {{"per_second", rpe_json(e.rpe_per_second)},
+            {"per_frame", rpe_json(e.rpe_per_frame)},
+            {"per_metre", rpe_json(e.rpe_per_metre)}}},
+          {"coverage", coverage_json(e.coverage)}};
 }
 
 }  // namespace rtd::eval

@@ -8,9 +8,9 @@
 
 namespace rtd::launcher {
 
-std::string online_trajectory_text(const std::vector<FrameRecord>& frames) {
+std::string online_trajectory_text(const std::vector<eval::FrameRecord>& frames) {
   std::string text;
-  for (const FrameRecord& frame : frames) {
+  for (const eval::FrameRecord& frame : frames) {
     if (!msg::is_measured_in_map(frame.tracking)) continue;
     const auto& [t, q] = frame.tracking.T_world_camera;
     fmt::format_to(std::back_inserter(text), "{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n",

@@ -10,6 +10,6 @@
 namespace rtd::launcher {
 
 /// The poses as they were published, one line per tracked frame in TUM's format: "stamp_s tx ty tz qx qy qz qw".
-std::string online_trajectory_text(const std::vector<FrameRecord>& frames);
+std::string online_trajectory_text(const std::vector<eval::FrameRecord>& frames);
 
 }  // namespace rtd::launcher

@@ -48,8 +48,6 @@ void RecordBuilder::add(const msg::FeatureFrame& features) {
   if (frame.has_features) return;
   frame.has_features = true;
   frame.record.filter_stage_ms = features.stage_ms;
-  frame.record.detection_use = features.detection_use;
-  frame.record.objects = features.objects;
 }
 
 void RecordBuilder::add(const msg::TrackingResult& result) {
@@ -147,7 +145,7 @@ std::string RecordBuilder::services_heard(bool without_detector) const {
   return text;
 }
 
-void RecordBuilder::fill(RunRecord& record) const {
+void RecordBuilder::fill(eval::RunRecord& record) const {
   record.frames.clear();
   for (const auto& [seq, frame] : frames_) {
     if (frame.has_result) record.frames.push_back(frame.record);
@@ -159,11 +157,11 @@ void RecordBuilder::fill(RunRecord& record) const {
 }
 
 /// slam runs on the first host; what it says of services on other hosts stands for all of the first host.
-std::vector<HostClock> RecordBuilder::clocks() const {
+std::vector<eval::HostClock> RecordBuilder::clocks() const {
   const std::string prefix = "clock.", suffix = ".offset_ms";
   const auto slam = services_.find("slam");
   if (slam == services_.end()) return {};
-  std::vector<HostClock> clocks;
+  std::vector<eval::HostClock> clocks;
   for (const auto& [name, counter] : slam->second.counters) {
     if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
     const std::string service = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());

@@ -38,7 +38,7 @@ class RecordBuilder {
   std::string services_heard(bool without_detector = false) const;
 
   /// Writes frames, frames_in, frames_dropped and drops.
-  void fill(RunRecord& record) const;
+  void fill(eval::RunRecord& record) const;
 
  private:
   struct Counter {
@@ -53,12 +53,12 @@ class RecordBuilder {
   };
 
   std::map<std::string, double> drops() const;
-  std::vector<HostClock> clocks() const;
+  std::vector<eval::HostClock> clocks() const;
   void note_troubles(const msg::ServiceStatus& status);
   double camera_counter(const std::string& name) const;
 
   struct Frame {
-    FrameRecord record;
+    eval::FrameRecord record;
     bool has_features = false, has_result = false;
   };
   std::map<std::uint64_t, Frame> frames_;  ///< by seq

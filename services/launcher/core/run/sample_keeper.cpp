@@ -23,7 +23,7 @@ void SampleKeeper::expect_total(std::uint64_t total) {
 
 void SampleKeeper::add_picture(std::uint64_t seq, std::vector<std::uint8_t> jpeg) {
   if (!wants(seq)) return;
-  SampleFrame& sample = kept_[seq];
+  eval::SampleFrame& sample = kept_[seq];
   sample.seq = seq;
   sample.jpeg = std::move(jpeg);
   thin_out();
@@ -31,10 +31,9 @@ void SampleKeeper::add_picture(std::uint64_t seq, std::vector<std::uint8_t> jpeg
 
 void SampleKeeper::add_features(const msg::FeatureFrame& features) {
   if (!wants(features.seq)) return;
-  SampleFrame& sample = kept_[features.seq];
+  eval::SampleFrame& sample = kept_[features.seq];
   sample.seq = features.seq;
-  const auto count = static_cast<std::ptrdiff_t>(std::min(features.count, msg::kMaxFeatures));
-  sample.features.assign(features.features.begin(), features.features.begin() + count);
+  sample.features = eval::judged({features.features.data(), std::min<std::size_t>(features.count, msg::kMaxFeatures)});
   thin_out();
 }
 
@@ -47,13 +46,13 @@ void SampleKeeper::thin_out() {
   }
 }
 
-std::vector<SampleFrame> SampleKeeper::samples() const {
-  std::vector<SampleFrame> complete;
+std::vector<eval::SampleFrame> SampleKeeper::samples() const {
+  std::vector<eval::SampleFrame> complete;
   for (const auto& [seq, sample] : kept_) {
     if (!sample.jpeg.empty() && !sample.features.empty()) complete.push_back(sample);
   }
   if (complete.size() <= wanted_) return complete;
-  std::vector<SampleFrame> result;
+  std::vector<eval::SampleFrame> result;
   for (std::uint64_t i = 0; i < wanted_; ++i) result.push_back(std::move(complete[i * complete.size() / wanted_]));
   return result;
 }

@@ -27,13 +27,13 @@ class SampleKeeper {
   void add_features(const msg::FeatureFrame& features);
 
   /// The kept frames that have both picture and features, by seq, at most `wanted`.
-  std::vector<SampleFrame> samples() const;
+  std::vector<eval::SampleFrame> samples() const;
 
  private:
   void thin_out();
 
   std::uint64_t wanted_, stride_;
-  std::map<std::uint64_t, SampleFrame> kept_;
+  std::map<std::uint64_t, eval::SampleFrame> kept_;
 };
 
 }  // namespace rtd::launcher

@@ -19,8 +19,8 @@ void UsageBook::add_exit(const std::string& service, const ProcessExit& exit) {
   if (!entry.sampled) entry.usage.peak_rss_mb = std::max(entry.usage.peak_rss_mb, exit.peak_rss_mb);
 }
 
-std::map<std::string, ProcessUsage> UsageBook::usage() const {
-  std::map<std::string, ProcessUsage> result;
+std::map<std::string, eval::ProcessUsage> UsageBook::usage() const {
+  std::map<std::string, eval::ProcessUsage> result;
   for (const auto& [name, entry] : entries_) result[name] = entry.usage;
   return result;
 }

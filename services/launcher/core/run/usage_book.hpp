@@ -20,12 +20,12 @@ class UsageBook {
   void add_sample(const std::string& service, double peak_rss_mb);
   void add_exit(const std::string& service, const ProcessExit& exit);
   void add_restart(const std::string& service) { ++entries_[service].usage.restarts; }
-  void set(const std::string& process, const ProcessUsage& usage) { entries_[process] = {usage, true}; }
-  std::map<std::string, ProcessUsage> usage() const;
+  void set(const std::string& process, const eval::ProcessUsage& usage) { entries_[process] = {usage, true}; }
+  std::map<std::string, eval::ProcessUsage> usage() const;
 
  private:
   struct Entry {
-    ProcessUsage usage;
+    eval::ProcessUsage usage;
     bool sampled = false;
   };
   std::map<std::string, Entry> entries_;

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "services/evaluation/core/plot/chart.hpp"
-#include "services/evaluation/core/plot/colour.hpp"
 #include "tests/bench/rtd_bench/percentile.hpp"
 #include "tests/bench/rtd_bench/transport/transport_bench.hpp"
 

@@ -2,12 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "services/evaluation/core/plot/svg.hpp"
-#include "services/evaluation/detector/evaluation_results.hpp"
+#include "services/evaluation/detector/evaluate.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
+
+/// Models side by side, motion levels, thresholds.
+std::string labelled_table(const LabelledResults& results);
+/// Recall by threshold (one roll) or by roll.
+std::string mask_table(const MaskResults& results);
+/// How many images, and what was wrong.
+std::string input_lines(const InputReport& input, const std::string& partner);
+
+/// docs/evaluation.md lists the keys.
+nlohmann::json to_json(const LabelledResults& results);
+nlohmann::json to_json(const MaskResults& results);
 
 /// Precision and recall of the high motion level over the confidence threshold, a colour for each model.
 plot::Svg threshold_plot(const LabelledResults& results);
@@ -18,4 +30,4 @@ plot::Svg roll_plot(const MaskResults& results);
 std::string labelled_html(const LabelledResults& results);
 std::string mask_html(const MaskResults& results);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

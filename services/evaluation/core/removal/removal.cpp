@@ -1,45 +1,45 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/removal/true_masks.hpp"
+#include "services/evaluation/core/removal/removal.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "services/camera/core/source_factory.hpp"
 #include "services/evaluation/core/trajectory/trajectory.hpp"
 
-namespace rtd::launcher {
+namespace rtd::eval {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr char kTum[] = "tum:", kSynthetic[] = "synthetic:";
+constexpr int kGrowPx = 3;
 constexpr std::int64_t kSettledNs = 1'000'000'000;
 
-bool is_synthetic(const std::string& uri) {
-  return uri.rfind(kSynthetic, 0) == 0;
+bool lies_on(const cv::Mat& mask, const JudgedFeature& feature) {
+  if (mask.empty()) return false;
+  const auto nearest = [](float px, int count) {
+    return static_cast<int>(std::lround(std::clamp(px, 0.0F, static_cast<float>(count - 1))));
+  };
+  return mask.at<std::uint8_t>(nearest(feature.v_raw_px, mask.rows), nearest(feature.u_raw_px, mask.cols)) != 0;
 }
 
-fs::path mask_folder(const std::string& uri) {
-  if (uri.rfind(kTum, 0) != 0) return {};
-  const std::string folder = uri.substr(sizeof kTum - 1);
-  return fs::path(folder.substr(0, folder.find('?'))) / "mask";
-}
-
-/// Gives the mask of a stamp; empty optional = unknown. Asked in order of time.
+/// Gives the mask of a stamp; an empty optional means unknown. Asked in order of time.
 using MaskOf = std::function<std::optional<cv::Mat>(std::int64_t stamp_ns)>;
 
 MaskOf masks_of_folder(const fs::path& folder) {
   std::map<std::int64_t, std::string> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     try {
-      files[eval::parse_stamp_ns(entry.path().stem().string())] = entry.path().string();
+      files[parse_stamp_ns(entry.path().stem().string())] = entry.path().string();
     } catch (const std::invalid_argument&) {
-      continue;  // not named by a stamp: belongs to nobody
+      continue;  // not named by a stamp: not a mask
     }
   }
   return [files](std::int64_t stamp_ns) -> std::optional<cv::Mat> {
@@ -51,7 +51,7 @@ MaskOf masks_of_folder(const fs::path& folder) {
   };
 }
 
-/// Plays the scene again: the same options give the same bits.
+/// Renders the scene again: the same options give the same bits.
 MaskOf masks_of_scene(const std::string& uri) {
   const std::shared_ptr<camera::FrameSource> source = camera::make_source(uri);
   return [source, frame = source->next()](std::int64_t stamp_ns) mutable -> std::optional<cv::Mat> {
@@ -66,10 +66,21 @@ MaskOf masks_of_scene(const std::string& uri) {
 
 }  // namespace
 
-bool has_true_masks(const std::string& source_uri) {
-  std::error_code error;
-  const fs::path folder = mask_folder(source_uri);
-  return is_synthetic(source_uri) || (!folder.empty() && fs::is_directory(folder, error));
+void RemovalQuality::count(std::span<const msg::Feature> features, const cv::Mat& moving) {
+  count(judged(features), moving);
+}
+
+void RemovalQuality::count(std::span<const JudgedFeature> features, const cv::Mat& moving) {
+  constexpr int kSide = 2 * kGrowPx + 1;
+  cv::Mat grown;
+  if (!moving.empty()) cv::dilate(moving, grown, cv::getStructuringElement(cv::MORPH_RECT, {kSide, kSide}));
+  for (const JudgedFeature& feature : features) {
+    if (feature.removed) {
+      ++(lies_on(grown, feature) ? removed_rightly : removed_wrongly);
+    } else {
+      ++(lies_on(moving, feature) ? kept_wrongly : kept_rightly);
+    }
+  }
 }
 
 std::optional<RunRemoval> judge_removal(const std::string& source_uri, const std::vector<JudgedFrame>& frames,
@@ -92,4 +103,4 @@ std::optional<RunRemoval> judge_removal(const std::string& source_uri, const std
   return removal;
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::eval

@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <type_traits>
+
+#include "services/evaluation/record/base64.hpp"
+#include "services/evaluation/record/run_record.hpp"
+
+namespace rtd::eval {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "features are stored in little-endian order");
+constexpr int kFormat = 1;
+constexpr std::size_t kFeatureBytes = 9;  // u and v as float32, one byte for "removed"
+
+/// JSON has no NaN and no infinity: both become null, which is read as NaN.
+template <typename T>
+Json to_value(const T& value) {
+  if constexpr (std::is_floating_point_v<T>) return std::isfinite(value) ? Json(value) : Json(nullptr);
+  if constexpr (std::is_enum_v<T>) return static_cast<std::underlying_type_t<T>>(value);
+  return value;
+}
+
+template <typename T, std::size_t N>
+Json to_value(const std::array<T, N>& values) {
+  Json list = Json::array();
+  for (const T& value : values) list.push_back(to_value(value));
+  return list;
+}
+
+template <typename T>
+void from_value(const Json& json, T& value) {
+  if constexpr (std::is_floating_point_v<T>) {
+    value = json.is_null() ? std::numeric_limits<T>::quiet_NaN() : json.get<T>();
+  } else if constexpr (std::is_enum_v<T>) {
+    value = static_cast<T>(json.get<std::underlying_type_t<T>>());
+  } else {
+    json.get_to(value);
+  }
+}
+
+template <typename T, std::size_t N>
+void from_value(const Json& json, std::array<T, N>& values) {
+  for (std::size_t i = 0; i < N; ++i) from_value(json.at(i), values[i]);
+}
+
+/// The columns of the frame table, named once for writer and reader.
+template <typename Visit>
+void each_column(const Visit& visit) {
+  visit(
+      "seq", [](auto& f) -> auto& { return f.tracking.seq; });
+  visit(
+      "stamp_ns", [](auto& f) -> auto& { return f.tracking.stamp_ns; });
+  visit(
+      "published_ns", [](auto& f) -> auto& { return f.tracking.published_ns; });
+  visit(
+      "finished_ns", [](auto& f) -> auto& { return f.tracking.finished_ns; });
+  visit(
+      "state", [](auto& f) -> auto& { return f.tracking.state; });
+  visit(
+      "translation_m", [](auto& f) -> auto& { return f.tracking.T_world_camera.translation_m; });
+  visit(
+      "rotation_xyzw", [](auto& f) -> auto& { return f.tracking.T_world_camera.rotation_xyzw; });
+  visit(
+      "inliers", [](auto& f) -> auto& { return f.tracking.inliers; });
+  visit(
+      "features_static", [](auto& f) -> auto& { return f.tracking.features_static; });
+  visit(
+      "features_removed", [](auto& f) -> auto& { return f.tracking.features_removed; });
+  visit(
+      "keyframes", [](auto& f) -> auto& { return f.tracking.keyframes; });
+  visit(
+      "landmarks", [](auto& f) -> auto& { return f.tracking.landmarks; });
+  visit(
+      "slam_stage_ms", [](auto& f) -> auto& { return f.tracking.stage_ms; });
+  visit(
+      "filter_stage_ms", [](auto& f) -> auto& { return f.filter_stage_ms; });
+}
+
+Json frames_json(const std::vector<FrameRecord>& frames) {
+  Json table;
+  each_column([&](const char* name, const auto& field) {
+    Json& column = table[name] = Json::array();
+    for (const FrameRecord& frame : frames) column.push_back(to_value(field(frame)));
+  });
+  return table;
+}
+
+std::vector<FrameRecord> read_frames(const Json& table) {
+  std::vector<FrameRecord> frames(table.at("seq").size());
+  each_column([&](const char* name, const auto& field) {
+    const Json& column = table.at(name);
+    for (std::size_t i = 0; i < frames.size(); ++i) from_value(column.at(i), field(frames[i]));
+  });
+  return frames;
+}
+
+std::string pack(const std::vector<JudgedFeature>& features) {
+  std::vector<std::uint8_t> bytes(features.size() * kFeatureBytes);
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    std::memcpy(&bytes[i * kFeatureBytes], &features[i].u_raw_px, sizeof(float));
+    std::memcpy(&bytes[i * kFeatureBytes + 4], &features[i].v_raw_px, sizeof(float));
+    bytes[i * kFeatureBytes + 8] = features[i].removed ? 1 : 0;
+  }
+  return to_base64(bytes);
+}
+
+std::vector<JudgedFeature> unpack(const std::string& text) {
+  const std::vector<std::uint8_t> bytes = from_base64(text);
+  std::vector<JudgedFeature> features(bytes.size() / kFeatureBytes);
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    std::memcpy(&features[i].u_raw_px, &bytes[i * kFeatureBytes], sizeof(float));
+    std::memcpy(&features[i].v_raw_px, &bytes[i * kFeatureBytes + 4], sizeof(float));
+    features[i].removed = bytes[i * kFeatureBytes + 8] != 0;
+  }
+  return features;
+}
+
+Json processes_json(const std::map<std::string, ProcessUsage>& processes) {
+  Json json = Json::object();
+  for (const auto& [name, usage] : processes) {
+    json[name] = {
+        {"cpu_s", to_value(usage.cpu_s)}, {"peak_rss_mb", to_value(usage.peak_rss_mb)}, {"restarts", usage.restarts}};
+  }
+  return json;
+}
+
+Json record_json(const RunRecord& record) {
+  Json json{{"format", kFormat},
+            {"version", record.version},
+            {"source", record.source},
+            {"pace", record.pace},
+            {"filter_mode", record.filter_mode},
+            {"dds", record.dds},
+            {"detector", record.detector},
+            {"interrupted", record.interrupted},
+            {"duration_s", to_value(record.duration_s)},
+            {"frames_in", record.frames_in},
+            {"frames_dropped", record.frames_dropped},
+            {"drops", Json::object()},
+            {"processes", processes_json(record.processes)},
+            {"clocks", Json::array()},
+            {"events", record.events},
+            {"frames", frames_json(record.frames)},
+            {"samples", Json::array()},
+            {"judged_frames", Json::array()}};
+  for (const auto& [place, count] : record.drops) json["drops"][place] = to_value(count);
+  for (const HostClock& clock : record.clocks) {
+    json["clocks"].push_back({{"service", clock.service},
+                              {"offset_ms", to_value(clock.offset_ms)},
+                              {"round_trip_ms", to_value(clock.round_trip_ms)}});
+  }
+  for (const SampleFrame& sample : record.samples) {
+    json["samples"].push_back(
+        {{"seq", sample.seq}, {"jpeg", to_base64(sample.jpeg)}, {"features", pack(sample.features)}});
+  }
+  for (const JudgedFrame& frame : record.judged_frames) {
+    json["judged_frames"].push_back({{"stamp_ns", frame.stamp_ns}, {"features", pack(frame.features)}});
+  }
+  return json;
+}
+
+void read_lists(const Json& json, RunRecord& record) {
+  for (const auto& [place, count] : json.at("drops").items()) from_value(count, record.drops[place]);
+  for (const auto& [name, usage] : json.at("processes").items()) {
+    ProcessUsage& process = record.processes[name];
+    from_value(usage.at("cpu_s"), process.cpu_s);
+    from_value(usage.at("peak_rss_mb"), process.peak_rss_mb);
+    usage.at("restarts").get_to(process.restarts);
+  }
+  for (const Json& entry : json.at("clocks")) {
+    HostClock clock{entry.at("service")};
+    from_value(entry.at("offset_ms"), clock.offset_ms);
+    from_value(entry.at("round_trip_ms"), clock.round_trip_ms);
+    record.clocks.push_back(clock);
+  }
+  for (const Json& sample : json.at("samples")) {
+    record.samples.push_back({sample.at("seq"), from_base64(sample.at("jpeg").get_ref<const std::string&>()),
+                              unpack(sample.at("features"))});
+  }
+  for (const Json& frame : json.at("judged_frames"))
+    record.judged_frames.push_back({frame.at("stamp_ns"), unpack(frame.at("features"))});
+}
+
+RunRecord read_record(const Json& json) {
+  if (const int format = json.at("format"); format != kFormat) {
+    throw std::invalid_argument("has format " + std::to_string(format) + ", this rtd-eval reads format " +
+                                std::to_string(kFormat));
+  }
+  RunRecord record;
+  for (const auto& [key, text] : {std::pair{"version", &record.version},
+                                  {"source", &record.source},
+                                  {"pace", &record.pace},
+                                  {"filter_mode", &record.filter_mode},
+                                  {"dds", &record.dds},
+                                  {"detector", &record.detector}}) {
+    json.at(key).get_to(*text);
+  }
+  json.at("interrupted").get_to(record.interrupted);
+  from_value(json.at("duration_s"), record.duration_s);
+  json.at("frames_in").get_to(record.frames_in);
+  json.at("frames_dropped").get_to(record.frames_dropped);
+  json.at("events").get_to(record.events);
+  record.frames = read_frames(json.at("frames"));
+  read_lists(json, record);
+  return record;
+}
+
+}  // namespace
+
+void write_run_json(const RunRecord& record, const std::filesystem::path& file) {
+  std::ofstream output(file, std::ios::binary);
+  output << record_json(record).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  output.flush();
+  if (!output) throw RunFileError(file.string() + ": cannot be written; check that the folder exists and has room");
+}
+
+RunRecord read_run_json(const std::filesystem::path& file) {
+  std::ifstream input(file, std::ios::binary);
+  if (!input) throw RunFileError(file.string() + ": cannot be opened; name a folder that 'rtd run --out' wrote");
+  try {
+    return read_record(Json::parse(input));
+  } catch (const nlohmann::json::exception& error) {
+    throw RunFileError(file.string() + ": is not the record of a run: " + error.what());
+  } catch (const std::invalid_argument& error) {
+    throw RunFileError(file.string() + ": " + error.what());
+  }
+}
+
+}  // namespace rtd::eval

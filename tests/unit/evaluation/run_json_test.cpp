@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "services/evaluation/commands/report_command.hpp"
+#include "services/evaluation/core/report/report.hpp"
+#include "services/evaluation/record/base64.hpp"
+#include "tests/unit/evaluation/fabricated_run.hpp"
+#include "tests/unit/evaluation/temporary_folder.hpp"
+
+namespace rtd::eval {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::fabricated_run;
+using testing_support::fabricated_sample;
+using testing_support::moved;
+using testing_support::read_text;
+using testing_support::some_transform;
+using testing_support::TemporaryFolder;
+using testing_support::tum_text;
+using testing_support::winding_path;
+
+std::vector<std::uint8_t> bytes(const std::string& text) {
+  return {text.begin(), text.end()};
+}
+
+TEST(Base64, matches_the_vectors_of_rfc_4648_both_ways) {
+  const std::vector<std::pair<std::string, std::string>> vectors{
+      {"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foobar", "Zm9vYmFy"}};
+  for (const auto& [plain, text] : vectors) {
+    EXPECT_EQ(to_base64(bytes(plain)), text);
+    EXPECT_EQ(from_base64(text), bytes(plain));
+  }
+  EXPECT_EQ(to_base64({0xFF, 0xFE, 0xFD}), "//79");
+}
+
+TEST(Base64, refuses_other_texts) {
+  for (const char* text : {"Zg=", "Z", "Zg!=", "Z===", "Zm9v\n"}) {
+    EXPECT_THROW(from_base64(text), std::invalid_argument) << text;
+  }
+}
+
+/// A run with every kind of data, written to run.json in a folder.
+class RunJson : public testing::Test {
+ protected:
+  RunJson() : run_(fabricated_run()) {
+    run_.version = "1.2.3";
+    run_.clocks = {{"detector", -3.25, 0.5}};
+    run_.samples = {fabricated_sample(3)};
+    run_.judged_frames = {{run_.frames[0].tracking.stamp_ns, {{1.5F, 2.25F, true}, {-0.1F, 479.0F, false}}}};
+    run_.frames[2].tracking.T_world_camera.translation_m[1] = std::numeric_limits<double>::quiet_NaN();
+    run_.frames[3].filter_stage_ms[0] = std::numeric_limits<float>::infinity();
+  }
+  RunRecord written_and_read() const {
+    write_run_json(run_, folder_.file("run.json"));
+    return read_run_json(folder_.file("run.json"));
+  }
+  std::string why_unreadable(const std::string& text) const {
+    folder_.write("run.json", text);
+    try {
+      read_run_json(folder_.file("run.json"));
+    } catch (const RunFileError& error) {
+      return error.what();
+    }
+    return "it can be read";
+  }
+
+  TemporaryFolder folder_;
+  Run run_;
+};
+
+TEST_F(RunJson, keeps_every_bit_that_the_report_needs) {
+  Run read{written_and_read()};
+  const RunSummary before = summarize_run(run_), after = summarize_run(read);
+  EXPECT_EQ(report_json(read, after).dump(), report_json(run_, before).dump());
+  EXPECT_EQ(report_html(read, after), report_html(run_, before));
+}
+
+TEST_F(RunJson, keeps_the_features_and_whether_the_run_was_interrupted) {
+  run_.interrupted = true;
+  const RunRecord read = written_and_read();
+  EXPECT_TRUE(read.interrupted);
+  ASSERT_EQ(read.judged_frames.size(), 1U);
+  EXPECT_EQ(read.judged_frames[0].stamp_ns, run_.judged_frames[0].stamp_ns);
+  ASSERT_EQ(read.judged_frames[0].features.size(), 2U);
+  EXPECT_EQ(read.judged_frames[0].features[1].u_raw_px, -0.1F);
+  EXPECT_TRUE(read.judged_frames[0].features[0].removed);
+  EXPECT_FALSE(read.judged_frames[0].features[1].removed);
+}
+
+TEST_F(RunJson, takes_what_is_not_finite_for_unknown) {
+  const RunRecord read = written_and_read();
+  EXPECT_TRUE(std::isnan(read.frames[2].tracking.T_world_camera.translation_m[1]));
+  EXPECT_TRUE(std::isnan(read.frames[3].filter_stage_ms[0]));
+}
+
+TEST_F(RunJson, that_cannot_be_used_is_named_with_the_cause) {
+  EXPECT_THAT(why_unreadable(""), HasSubstr("run.json: is not the record of a run"));
+  EXPECT_THAT(why_unreadable("{}"), HasSubstr("run.json: is not the record of a run"));
+  EXPECT_THAT(why_unreadable(R"({"format": 2})"), HasSubstr("has format 2, this rtd-eval reads format 1"));
+  write_run_json(run_, folder_.file("run.json"));
+  nlohmann::json json = nlohmann::json::parse(read_text(folder_.file("run.json")));
+  json["frames"]["stamp_ns"].erase(0);
+  EXPECT_THAT(why_unreadable(json.dump()), HasSubstr("run.json: is not the record of a run"));
+  json["samples"][0]["jpeg"] = "?";
+  EXPECT_THAT(why_unreadable(json.dump()), HasSubstr("run.json: "));
+  EXPECT_THROW(write_run_json(run_, folder_.file("nowhere/run.json")), RunFileError);
+}
+
+/// `rtd-eval report` on a folder as `rtd run` leaves it.
+class ReportCommand : public RunJson {
+ protected:
+  int report(std::function<bool()> go_on = [] { return true; }) {
+    write_run_json(run_, folder_.file("run.json"));
+    out_.str("");
+    err_.str("");
+    return run_report({folder_.path().string()}, go_on, out_, err_);
+  }
+  nlohmann::json json() const { return nlohmann::json::parse(read_text(folder_.file("report.json"))); }
+
+  std::ostringstream out_, err_;
+};
+
+TEST_F(ReportCommand, writes_both_reports_and_prints_the_table) {
+  folder_.write("groundtruth.txt", tum_text(winding_path(100, 0.1)));
+  folder_.write("trajectory.txt", tum_text(moved(winding_path(100, 0.1), some_transform(), 1.1)));
+  EXPECT_EQ(report(), 0) << err_.str();
+  EXPECT_GT(json()["ate_rmse_m"], 0.01);
+  EXPECT_EQ(json()["version"], "1.2.3");
+  EXPECT_THAT(read_text(folder_.file("report.html")), testing::EndsWith("</html>\n"));
+  EXPECT_THAT(out_.str(), testing::AllOf(HasSubstr("  frames      100 in, 94 with pose, 1 without answer"),
+                                         HasSubstr("ATE rmse"), HasSubstr("/report.html")));
+}
+
+TEST_F(ReportCommand, judges_the_published_poses_when_slam_left_no_trajectory) {
+  folder_.write("trajectory_online.txt", tum_text(winding_path(100, 0.1)));
+  EXPECT_EQ(report(), 0);
+  EXPECT_THAT(json()["events"].dump(), HasSubstr("slam left no trajectory.txt"));
+  EXPECT_THAT(json()["notes"].dump(), HasSubstr("no ground truth"));
+}
+
+TEST_F(ReportCommand, judges_few_frames_of_an_interrupted_run_and_none_when_the_user_stops_that) {
+  run_.source = "synthetic:office?frames=60";
+  run_.judged_frames.clear();
+  for (int i = 0; i < 60; ++i) run_.judged_frames.push_back({1'000'000'000'000 + i, {{1, 1, true}}});
+  run_.interrupted = true;
+  EXPECT_EQ(report(), 0);
+  EXPECT_EQ(json()["removal"]["frames"], 1) << "one stamp is that of a frame of the scene";
+  EXPECT_THAT(json()["events"].dump(), HasSubstr("interrupted: removal judged on 1 of 60 frames"));
+  EXPECT_EQ(report([] { return false; }), 0);
+  EXPECT_TRUE(json()["removal"].is_null());
+}
+
+TEST_F(ReportCommand, without_a_run_is_exit_code_2_and_without_room_1) {
+  EXPECT_EQ(run_report(
+                {folder_.file("nowhere")}, [] { return true; }, out_, err_),
+            2);
+  EXPECT_THAT(err_.str(), HasSubstr("nowhere/run.json: cannot be opened"));
+  std::filesystem::create_directory(folder_.file("report.json"));
+  EXPECT_EQ(report(), 1);
+  EXPECT_THAT(err_.str(), HasSubstr("report.json: cannot be written"));
+}
+
+TEST_F(ReportCommand, compares_runs_on_one_page) {
+  EXPECT_EQ(report(), 0);
+  const std::string folder = folder_.path().string(), page = folder_.file("both.html");
+  EXPECT_EQ(run_compare({{folder, folder}, {"first"}, page}, out_, err_), 0) << err_.str();
+  EXPECT_THAT(out_.str(), testing::AllOf(HasSubstr("  first "), HasSubstr("  " + folder), HasSubstr("94.0 %")));
+  EXPECT_THAT(read_text(page), HasSubstr("ATE RMSE, first"));
+}
+
+}  // namespace
+}  // namespace rtd::eval
