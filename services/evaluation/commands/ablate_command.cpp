@@ -21,7 +21,7 @@ namespace rtd::eval {
 namespace fs = std::filesystem;
 namespace {
 
-/// After every run: what was measured survives whatever comes.
+/// Called after every run, so that no measurement is lost.
 void write_results(const Ablation& ablation, const fs::path& out_dir) {
   write_file(out_dir / "ablation.json", ablation_json(ablation).dump(2) + "\n");
   write_file(out_dir / "ablation.md", ablation_markdown(ablation));
@@ -37,12 +37,12 @@ std::vector<Technique> known_techniques() {
   return techniques;
 }
 
-/// An ablation compares errors: a source without ground truth has nothing to tell.
+/// An ablation compares errors, so the source needs ground truth.
 void check_source(const std::string& uri, const AblateOptions& options, std::vector<std::string>& notes) {
   const auto source = camera::make_source(uri);
   const bool synthetic = uri.rfind("synthetic:", 0) == 0;
   if (source->info().frames == 0 && options.frames == 0)
-    throw service::ConfigError("--source " + uri + " is endless: say where to stop with --frames");
+    throw service::ConfigError("--source " + uri + " is endless: limit it with --frames");
   if (!synthetic && source->groundtruth().empty())
     throw service::ConfigError("--source " + uri +
                                " has no ground truth: there is no error to compare (groundtruth.txt)");
@@ -81,7 +81,7 @@ std::string result_text(const Measurement& m) {
   return m.failure.empty() ? fmt::format("ATE {:.4f} m, coverage {:.3f}", m.ate_m, m.coverage) : "failed: " + m.failure;
 }
 
-/// Tells what is run, as "[ 3/24] walk_xyz, without belief: ATE 0.0038 m, coverage 1.000 (14 s; 5 min left)".
+/// Prints what is run, as "[ 3/24] walk_xyz, without belief: ATE 0.0038 m, coverage 1.000 (14 s; 5 min left)".
 class Progress {
  public:
   explicit Progress(const Ablation& ablation)
@@ -107,7 +107,7 @@ class Progress {
   std::size_t total_;
 };
 
-/// False: interrupted.
+/// Returns false when interrupted.
 bool measure_all(const AblateOptions& options, Ablation& ablation) {
   const Progress progress(ablation);
   for (std::size_t i = 0; i < ablation.sources.size(); ++i) {
@@ -136,7 +136,7 @@ int run_ablation(const AblateOptions& options) {
     std::cout << ablation_text(ablation) << "  report: " << options.out_dir << "/ablation.html\n";
   }
   if (!finished) {
-    std::cerr << "\nrtd ablate: interrupted; go on with --resume\n";
+    std::cerr << "\nrtd ablate: interrupted; continue with --resume\n";
     return service::kInterrupted;
   }
   for (const Measurement& m : ablation.measurements) {

@@ -103,8 +103,6 @@ void write_plot(const Evaluation& evaluation, const Inputs& inputs, const EvalOp
   if (!output) throw PlotError("--plot " + options.plot + ": cannot be written; check that its folder exists");
 }
 
-}  // namespace
-
 std::string evaluation_table(const Evaluation& e, const EvalOptions& options) {
   const std::int64_t start_ns = e.ate.points.empty() ? 0 : e.ate.points.front().stamp_ns;
   return fmt::format("estimate               {} ({} poses)\nground truth           {} ({} poses)\n", options.estimate,
@@ -130,6 +128,8 @@ std::string explain_no_pairs(const Trajectory& estimate, const Trajectory& groun
       options.max_difference_s, options.estimate, span(estimate), options.groundtruth, span(groundtruth),
       seconds(groundtruth.front().stamp_ns - estimate.front().stamp_ns));
 }
+
+}  // namespace
 
 CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options) {
   CLI::App* command =

@@ -11,7 +11,7 @@ class App;
 
 namespace rtd::eval {
 
-/// What `rtd eval` was asked.
+/// The command line of `rtd eval`.
 struct EvalOptions {
   std::string estimate, groundtruth;  ///< trajectories in TUM format
   std::string frames;  ///< frame list (rgb.txt, associations.txt) for the coverage; empty = ground truth's span
@@ -22,10 +22,11 @@ struct EvalOptions {
   bool json = false;
 };
 
-/// Adds the subcommand `eval` with its arguments to `parent`; parsing fills `options`, which must outlive `parent`.
+/// Adds the subcommand `trajectory` with its arguments to `parent`; parsing fills `options`, which must outlive
+/// `parent`.
 CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options);
 
-/// Evaluates, writes the table or the JSON to `out`, what went wrong and the fix to `err`.
+/// Evaluates. Writes the table or the JSON to `out`, errors and how to fix them to `err`.
 /// Returns the exit code: 0; 1 when no poses associate; 2 when a file is missing, malformed or cannot be written.
 int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err);
 

@@ -14,7 +14,7 @@ namespace rtd::eval {
 std::string labelled_table(const LabelledResults& results);
 /// Recall by threshold (one roll) or by roll.
 std::string mask_table(const MaskResults& results);
-/// How many images, and what was wrong.
+/// Number of images, and the problems with the input.
 std::string input_lines(const InputReport& input, const std::string& partner);
 
 /// docs/evaluation.md lists the keys.

@@ -43,7 +43,7 @@ void make_folder(const std::string& folder) {
   if (error) throw EvalDetectorError("--out " + folder + ": cannot be created: " + error.message());
 }
 
-/// Before the long work, so that it is not in vain.
+/// Runs before the long work, so that a wrong path does not waste it.
 void check_outputs(const EvalDetectorOptions& options) {
   if (!options.out_dir.empty()) make_folder(options.out_dir);
   if (!options.json.empty()) write_file(options.json, "", "--json");
@@ -93,7 +93,7 @@ CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& optio
   command->add_option("--label-format", options.label_format, "auto, yolo or voc")
       ->check(CLI::IsMember({"auto", "yolo", "voc"}))
       ->capture_default_str();
-  command->add_option("--names", options.names_file, "Class names, one a line (default: those of the model)");
+  command->add_option("--names", options.names_file, "Class names, one per line (default: those of the model)");
   command->add_option("--model", options.models, "ONNX files, compared side by side (default: the usual model)");
   command->add_option("--recall", options.wanted_recall, "Wanted recall of the high motion level")
       ->check(CLI::Range(0.01, 1.0))
@@ -109,7 +109,7 @@ CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& optio
 int run_eval_detector(const EvalDetectorOptions& options, std::ostream& out, std::ostream& err) {
   try {
     if (options.labels.empty() && options.masks.empty()) {
-      throw EvalDetectorError("say --labels DIR (average precision) or --masks DIR (recall)");
+      throw EvalDetectorError("add --labels DIR (average precision) or --masks DIR (recall)");
     }
     check_outputs(options);
     options.labels.empty() ? run_on_masks(options, out, err) : run_on_labels(options, out, err);

@@ -20,13 +20,13 @@ struct RollRange {
   double from_deg = 0, to_deg = 0, step_deg = 15;
 };
 
-/// What `rtd eval-detector` was asked.
+/// The command line of `rtd eval-detector`.
 struct EvalDetectorOptions {
   std::string images;                 ///< folder
   std::string labels;                 ///< folder: average precision
   std::string masks;                  ///< folder: recall on masks
   std::string label_format = "auto";  ///< auto, yolo, voc
-  std::string names_file;             ///< class names, one a line; empty: those of the model
+  std::string names_file;             ///< class names, one per line; empty: those of the model
   std::vector<std::string> models;    ///< files or names; empty: the default model
   std::string json, out_dir;          ///< empty = none
   double wanted_recall = 0.6;         ///< of objects of the high motion level
@@ -44,11 +44,11 @@ class EvalDetectorError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Adds the subcommand `eval-detector` to `parent`; parsing fills `options`, which must outlive `parent`.
+/// Adds the subcommand `detector` to `parent`; parsing fills `options`, which must outlive `parent`.
 CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& options);
 
-/// Evaluates; tables to `out`, progress and what is wrong with the input to `err`. Returns the exit code: 0; 2 for
-/// usage, folders or models that are missing or hold nothing to evaluate, and files that cannot be written.
+/// Evaluates. Writes tables to `out`, progress and problems with the input to `err`. Returns the exit code: 0; 2 for
+/// wrong usage, folders or models that are missing or contain nothing to evaluate, and files that cannot be written.
 int run_eval_detector(const EvalDetectorOptions& options, std::ostream& out, std::ostream& err);
 
 }  // namespace rtd::eval

@@ -25,7 +25,7 @@ std::string level_of(const std::string& class_name) {
   return *level == vision::MotionLevel::kHigh ? "high" : *level == vision::MotionLevel::kMedium ? "medium" : "low";
 }
 
-/// One image with what every model finds in it.
+/// Runs every model on one image.
 void evaluate_image(const cv::Mat& image, const std::filesystem::path& path, const LabelFolder& labels,
                     std::vector<ModelUnderTest>& models, std::vector<std::vector<detector::EvaluatedImage>>& evaluated,
                     InputReport& input) {
@@ -42,12 +42,12 @@ void evaluate_image(const cv::Mat& image, const std::filesystem::path& path, con
 void require_objects(const EvalDetectorOptions& options, const InputReport& input,
                      const std::vector<detector::EvaluatedImage>& evaluated) {
   if (input.without_partner == input.images && input.images > 0) {
-    throw EvalDetectorError("--labels " + options.labels + ": no file there is named like an image of --images " +
+    throw EvalDetectorError("--labels " + options.labels + ": no file in it has the name of an image of --images " +
                             options.images + " (photo.jpg needs photo.txt or photo.xml)");
   }
   for (const detector::EvaluatedImage& image : evaluated)
     if (!image.truths.empty()) return;
-  throw EvalDetectorError("--labels " + options.labels + ": not one object can be used" +
+  throw EvalDetectorError("--labels " + options.labels + ": no object in it can be used" +
                           (input.problems.empty() ? "" : ", for example " + input.problems.front()));
 }
 
@@ -57,8 +57,8 @@ struct MaskedImage {
   cv::Mat image, mask;
 };
 
-/// What a camera rolled by this angle sees: the content turns counter-clockwise, about the centre; what was never in
-/// the picture is grey and not marked.
+/// The image of a camera rolled by this angle: the content turns counter-clockwise about the centre. Pixels outside the
+/// original image are grey and not marked.
 MaskedImage rolled(const MaskedImage& upright, double roll_deg) {
   if (roll_deg == 0) return upright;
   const cv::Size size = upright.image.size();
@@ -101,8 +101,8 @@ std::optional<MaskedImage> read_pair(const std::filesystem::path& path, const Ev
     ++input.not_decoded;
     input.problems.push_back(problem + ", left out");
   };
-  if (pair.image.empty()) return reject(path.filename().string() + ": is no image"), std::nullopt;
-  if (pair.mask.empty()) return reject(mask_path.filename().string() + ": is no image"), std::nullopt;
+  if (pair.image.empty()) return reject(path.filename().string() + ": is not an image"), std::nullopt;
+  if (pair.mask.empty()) return reject(mask_path.filename().string() + ": is not an image"), std::nullopt;
   if (pair.mask.size() != pair.image.size()) {
     reject(mask_path.filename().string() + ": is " + std::to_string(pair.mask.cols) + " x " +
            std::to_string(pair.mask.rows) + " px, its image is " + std::to_string(pair.image.cols) + " x " +
@@ -126,7 +126,7 @@ LabelledResults evaluate_labels(const EvalDetectorOptions& options, std::ostream
     const cv::Mat image = cv::imread(path.string());
     if (image.empty()) {
       ++results.input.not_decoded;
-      results.input.problems.push_back(path.filename().string() + ": is no image, left out");
+      results.input.problems.push_back(path.filename().string() + ": is not an image, left out");
     } else {
       evaluate_image(image, path, labels, models, evaluated, results.input);
     }
@@ -164,7 +164,7 @@ MaskResults evaluate_masks(const EvalDetectorOptions& options, std::ostream& err
     }
   }
   if (results.input.images == 0) {
-    throw EvalDetectorError("--masks " + options.masks + ": no mask there belongs to an image of --images " +
+    throw EvalDetectorError("--masks " + options.masks + ": no mask in it belongs to an image of --images " +
                             options.images + " (same name, same size)");
   }
   for (std::size_t m = 0; m < models.size(); ++m) results.models[m].model = models[m].facts();

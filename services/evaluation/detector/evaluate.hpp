@@ -15,12 +15,12 @@
 
 namespace rtd::eval {
 
-/// What was wrong with the input.
+/// The input and its problems.
 struct InputReport {
   std::size_t images = 0;             ///< evaluated
   std::size_t without_partner = 0;    ///< labels: taken as empty; masks: left out
-  std::size_t not_decoded = 0;        ///< images or masks that are no images, left out
-  std::vector<std::string> problems;  ///< a line each, with file, line and value
+  std::size_t not_decoded = 0;        ///< files that are not images, left out
+  std::vector<std::string> problems;  ///< one line each, with file, line and value
 };
 
 /// A model against labels.
@@ -39,7 +39,7 @@ struct LabelledResults {
 using RecallByRoll = std::map<double, std::map<double, detector::MaskRecall>>;
 struct MaskResult {
   ModelFacts model;
-  RecallByRoll as_seen, upright;  ///< upright: de-rotated by the true roll; empty when not asked for
+  RecallByRoll as_seen, upright;  ///< upright: de-rotated by the true roll; empty without --derotate
 };
 struct MaskResults {
   InputReport input;

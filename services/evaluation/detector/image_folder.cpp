@@ -33,7 +33,7 @@ std::string detect_format(const std::string& folder) {
   }
   if (yolo > 0 && voc > 0) {
     throw EvalDetectorError("--labels " + folder + ": has " + std::to_string(yolo) + " .txt and " +
-                            std::to_string(voc) + " .xml files; say --label-format yolo or voc");
+                            std::to_string(voc) + " .xml files; add --label-format yolo or voc");
   }
   if (yolo + voc == 0) throw EvalDetectorError("--labels " + folder + ": has neither .txt (YOLO) nor .xml (VOC) files");
   return yolo > 0 ? "yolo" : "voc";

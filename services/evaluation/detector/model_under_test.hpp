@@ -12,24 +12,24 @@
 
 namespace rtd::eval {
 
-/// What a model file is.
+/// Properties of a model file.
 struct ModelFacts {
   std::string name;  ///< file name
   double size_mb = 0;
   double parameters_m = 0;
   int input_width_px = 0, input_height_px = 0;
-  double median_ms = 0;  ///< CPU time of one image on one thread, whatever else the machine does
+  double median_ms = 0;  ///< CPU time of one image on one thread, independent of the load
 };
 
-/// One of the models that are compared.
+/// One of the compared models.
 class ModelUnderTest {
  public:
-  /// Keeps detections of `least_score` and more; without class names those of the file are used. Throws ModelError when
-  /// the file is missing or broken.
+  /// Keeps detections with a score of at least `least_score`. Without class names, those of the file are used. Throws
+  /// ModelError when the file is missing or broken.
   ModelUnderTest(const std::string& path, double least_score, const std::vector<std::string>& class_names);
 
   std::vector<vision::Detection> detect(const cv::Mat& image, double roll_rad = 0);
-  /// Takes the time of one image with the thresholds that rtd-detector uses.
+  /// Measures the time of one image with the thresholds of rtd-detector.
   void take_time(const cv::Mat& image);
 
   ModelFacts facts() const;

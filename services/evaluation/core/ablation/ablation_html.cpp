@@ -43,7 +43,7 @@ std::string bar_chart(const std::string& title, const std::vector<Bar>& bars, do
   return svg.str();
 }
 
-/// Errors differ by a hundred times between the modes: a logarithmic axis from the decade below the smallest.
+/// Errors of the modes differ by a factor of a hundred, so the axis is logarithmic, from the decade below the smallest.
 std::string modes_chart(const std::vector<AblationRow>& rows) {
   std::vector<const AblationRow*> known;
   for (const AblationRow& row : rows) {
@@ -68,9 +68,9 @@ std::string modes_chart(const std::vector<AblationRow>& rows) {
                                  bars, 0));
 }
 
-/// What the error becomes without a technique, as a factor: to the right the technique pays, to the left it costs.
+/// The error without a technique, as a factor: to the right the technique helps, to the left it harms.
 std::string techniques_chart(const std::vector<AblationRow>& rows) {
-  constexpr double kSmall = 0.02;  // less is no difference worth a colour
+  constexpr double kSmall = 0.02;  // a smaller difference is grey
   std::vector<Bar> bars;
   double reach = std::log2(1.25);
   for (const AblationRow& row : rows) {

@@ -8,17 +8,17 @@
 
 namespace rtd::eval {
 
-/// The mode that the others are compared with, and from which techniques are taken away.
+/// The mode that the others are compared with, and whose techniques are switched off one by one.
 inline constexpr const char* kBaseline = "rtd";
 
-/// A switch of a service that can be turned off alone.
+/// A part of a service that can be switched off alone.
 struct Technique {
   std::string key;      ///< "filter.techniques.depth_check"
   std::string without;  ///< what is done instead
   std::string name() const { return key.substr(key.rfind('.') + 1); }
 };
 
-/// The keys `<service>.techniques.*` in what `rtd-<service> --print-config` prints: a service knows best what it has.
+/// The keys `<service>.techniques.*` in the output of `rtd-<service> --print-config`.
 std::vector<Technique> read_techniques(const std::string& printed_config, const std::string& service);
 
 /// One column of the experiment: what is run on every source.
@@ -31,7 +31,7 @@ struct Variant {
   std::string folder() const;  ///< the name as a folder name
 };
 
-/// A wrong request; what() names the word and the nearest right one.
+/// A wrong request; what() names the value and the nearest valid one.
 class AblationError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -48,12 +48,12 @@ struct AblationPlan {
   std::vector<std::string> notes;
 };
 
-/// Modes, then the baseline without each technique. Without detector the modes that are nothing without one are left
-/// out, with a note. Throws AblationError.
+/// Modes, then the baseline without each technique. Without a detector, the modes that need one are left out, with a
+/// note. Throws AblationError.
 AblationPlan plan_ablation(const AblationRequest& request, const std::vector<std::string>& modes,
                            const std::vector<Technique>& techniques);
 
-/// Folder names for sources, each its own: "walk_xyz", "office", "office_2".
+/// A unique folder name for each source: "walk_xyz", "office", "office_2".
 std::vector<std::string> source_names(const std::vector<std::string>& sources);
 
 }  // namespace rtd::eval

@@ -17,17 +17,17 @@ struct Measurement {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   std::string source, variant;
   int run = 1;
-  std::string failure;  ///< why it counts for nothing; empty = it counts
+  std::string failure;  ///< why the run does not count; empty = it counts
   double ate_m = kUnknown, rpe_m = kUnknown, rpe_deg = kUnknown, coverage = kUnknown;
   double precision = kUnknown, recall = kUnknown;  ///< after the first second, of the whole run when it is shorter
   double filter_ms = kUnknown;                     ///< median, ORB extraction included
-  double duration_s = 0;                           ///< what it took, for the estimate of the remaining time
+  double duration_s = 0;                           ///< of the run, for the estimate of the remaining time
   std::string trajectory;                          ///< file
 };
 
-/// What `rtd run` left in `folder`; empty without a readable report.json.
+/// Reads the report.json that `rtd run` wrote to `folder`; empty when it cannot be read.
 std::optional<Measurement> read_measurement(const std::filesystem::path& folder);
-/// The last event in the report.json of `folder`: of a run that failed, the reason. Empty when there is none.
+/// The last event in the report.json of `folder`: when the run failed, the reason. Empty when there is none.
 std::optional<std::string> last_event(const std::filesystem::path& folder);
 
 /// Median and extremes of the known values.
@@ -43,11 +43,11 @@ struct AblationRow {
   int runs = 0, failed = 0;
   std::string failure;  ///< of the last run that failed
   Spread ate_m, rpe_m, rpe_deg, coverage, precision, recall, filter_ms;
-  double ratio = Measurement::kUnknown;  ///< ATE to the baseline's on the same source
-  bool unlike = false;                   ///< runs that should have been the same left different trajectories
+  double ratio = Measurement::kUnknown;  ///< ATE divided by the baseline's on the same source
+  bool unlike = false;                   ///< runs that should be equal have different trajectories
 };
 
-/// What an ablation is about and has measured so far.
+/// The plan of an ablation and its measurements so far.
 struct Ablation {
   std::string version, pace;
   int runs = 1;
@@ -62,7 +62,7 @@ struct Ablation {
 /// One row per source and variant that was run, in the order of the plan.
 std::vector<AblationRow> summarize(const Ablation& ablation);
 
-/// Seconds that the runs which remain will take, by the runs of the same source so far; empty before the first.
+/// Estimated duration of the remaining runs, from the runs of the same source so far; empty before the first run.
 std::optional<double> remaining_s(const Ablation& ablation);
 
 }  // namespace rtd::eval

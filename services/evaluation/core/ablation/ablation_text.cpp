@@ -99,7 +99,7 @@ std::vector<std::string> ablation_cells(const AblationRow& row) {
 std::vector<std::string> ablation_notes(const Ablation& ablation, const std::vector<AblationRow>& rows) {
   std::vector<std::string> notes = ablation.plan.notes;
   notes.insert(notes.end(), ablation.notes.begin(), ablation.notes.end());
-  if (!ablation.complete) notes.emplace_back("incomplete: go on with --resume");
+  if (!ablation.complete) notes.emplace_back("incomplete: continue with --resume");
   for (const AblationRow& row : rows) {
     if (row.failed > 0)
       notes.push_back(fmt::format("{}, {}: {} of {} runs failed: {}", row.source, row.variant.name, row.failed,

@@ -14,7 +14,7 @@ namespace rtd::eval {
 std::vector<std::string> ablation_head();
 std::vector<std::string> ablation_cells(const AblationRow& row);
 
-/// What the reader must know beside the table: what was left out, what failed, what is not as it should be.
+/// Notes beside the table: what was left out, what failed, what is unexpected.
 std::vector<std::string> ablation_notes(const Ablation& ablation, const std::vector<AblationRow>& rows);
 
 /// Tables for the terminal, aligned.
@@ -24,7 +24,7 @@ std::string ablation_markdown(const Ablation& ablation);
 /// ablation.json (keys: docs/evaluation.md)
 nlohmann::ordered_json ablation_json(const Ablation& ablation);
 
-/// ablation.html: for each source the errors of the modes, what each technique is worth, the numbers. Self-contained.
+/// ablation.html: for each source the errors of the modes, the effect of each technique, the numbers. Self-contained.
 std::string ablation_html(const Ablation& ablation);
 
 }  // namespace rtd::eval

@@ -28,7 +28,7 @@ struct AxisLabels {
   std::string x, y;  ///< with unit, e.g. "time [s]"
 };
 
-/// A value worth a line across a chart.
+/// A value that a line across the chart marks.
 struct Level {
   double y = 0;
   std::string label;
@@ -38,7 +38,7 @@ struct Level {
 /// A framed area with axes that maps data to the drawing.
 class Chart {
  public:
-  /// `area` is the plotting area itself; tick labels and axis titles stand left of it and below it.
+  /// `area` is the plotting area itself; tick labels and axis titles are left of it and below it.
   Chart(Svg& svg, const Area& area, const Range& x, const Range& y);
 
   /// Both axes get the same metres per pixel; the tighter range grows about its centre.
@@ -55,8 +55,7 @@ class Chart {
 
   /// Line through the data, interrupted where x jumps by more than max_gap_x.
   void curve(const std::vector<double>& x, const std::vector<double>& y, const Stroke& stroke, double max_gap_x);
-  /// Horizontal lines over the whole width, labelled at their right ends outside the frame; labels keep clear of each
-  /// other.
+  /// Horizontal lines over the whole width, labelled at their right ends outside the frame; labels do not overlap.
   void levels(std::vector<Level> levels);
   /// Vertical band.
   void band(double from_x, double to_x, const std::string& fill, double opacity);
@@ -76,11 +75,11 @@ struct LegendEntry {
 /// One row of entries, left-aligned at `at`.
 void draw_legend(Svg& svg, Point at, const std::vector<LegendEntry>& entries);
 
-/// What a bar of error_colour stands for.
+/// The values that a bar of error_colour shows.
 struct ErrorScale {
   double max = 1;           ///< value of the last colour
   std::string title;        ///< with unit
-  bool open_ended = false;  ///< the last colour also stands for all that is beyond `max`
+  bool open_ended = false;  ///< the last colour also shows all values beyond `max`
 };
 
 /// Vertical bar of error_colour with labelled ticks on its right and the title above.

@@ -7,7 +7,7 @@
 
 namespace rtd::plot {
 
-/// Colours of all our pages, chosen for a white background and to stay apart for colour-blind eyes.
+/// Colours of all pages, for a white background and distinct for colour-blind readers.
 namespace palette {
 inline constexpr const char* kInk = "#1c2733";
 inline constexpr const char* kMuted = "#64727f";
@@ -54,11 +54,11 @@ struct TextStyle {
 /// Text made safe for HTML and SVG: & < > " ' escaped, control characters replaced.
 std::string escape_markup(const std::string& text);
 
-/// Writes one SVG drawing. Shapes with coordinates that are not finite are left out, so that no bad number can spoil a
-/// page.
+/// Writes one SVG drawing. Shapes with coordinates that are not finite are left out, so that a bad number cannot break
+/// a page.
 class Svg {
  public:
-  /// label: what the picture shows, for screen readers.
+  /// label: what the drawing shows, for screen readers.
   Svg(double width, double height, const std::string& label);
 
   void line(Point from, Point to, const Stroke& stroke);
@@ -76,7 +76,7 @@ class Svg {
   double height() const { return height_; }
   /// The drawing, scalable to the width of its container.
   std::string str() const;
-  /// The drawing as a file of its own.
+  /// The drawing as a complete SVG file.
   std::string document() const;
 
  private:
@@ -84,7 +84,7 @@ class Svg {
   std::string label_, body_;
 };
 
-/// Width and height from the header of a JPEG, {0, 0} when it is none.
+/// Width and height from the header of a JPEG, {0, 0} when it is not one.
 struct PictureSize {
   int width = 0, height = 0;
 };

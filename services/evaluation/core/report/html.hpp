@@ -13,7 +13,7 @@ std::string page(const std::string& title, const std::string& subtitle, const st
 /// A titled block; `note` is a line of explanation under the title. Title and note are escaped, content is markup.
 std::string section(const std::string& title, const std::string& note, const std::string& content);
 
-/// How a number is to be taken.
+/// Whether a number is good or bad.
 enum class Tone { kNeutral, kGood, kWarn, kBad };
 
 /// A headline number.

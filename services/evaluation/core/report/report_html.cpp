@@ -211,7 +211,7 @@ std::string header_badges(const Run& run, const RunSummary& summary) {
 
 std::string report_html(const Run& run, const RunSummary& summary) {
   const RunTime time = run_time(run, summary);
-  // What went wrong stands first when something did.
+  // In a poor run, the events come first.
   const bool poor = !(summary.coverage >= 0.9);
   const std::string events = events_section(run, summary);
   return html::page("RTD-SLAM run report", run.source,

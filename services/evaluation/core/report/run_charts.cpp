@@ -19,7 +19,7 @@ using plot::Point;
 namespace palette = plot::palette;
 
 constexpr double kChartWidth = 1080;
-constexpr std::size_t kMaxColumns = 700;  // more values than this are averaged: a picture has no more columns
+constexpr std::size_t kMaxColumns = 700;  // more values are averaged: a chart has no more columns
 constexpr double kMaxGapS = 0.5;
 
 double source_time_s(const FrameRecord& frame, const RunTime& time) {

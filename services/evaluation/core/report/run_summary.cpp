@@ -16,7 +16,7 @@ constexpr std::array<const char*, msg::kStageFilterTotal + 1> kFilterStageNames{
 constexpr std::array<const char*, msg::kStageSlamTotal + 1> kSlamStageNames{
     "slam.match", "slam.local_map", "slam.pose", "slam.keyframe", "slam.mapping", "slam.total"};
 
-constexpr float kRanMs = 0.01F;  // a shorter time is that of asking whether there is anything to do
+constexpr float kRanMs = 0.01F;  // a shorter time only means that the stage had nothing to do
 
 bool is_tracked(const FrameRecord& frame) {
   return frame.tracking.state == msg::TrackingState::kOk;

@@ -63,7 +63,7 @@ struct RunSummary {
   std::vector<std::string> notes;               ///< what could not be computed, and why
 };
 
-/// Reads the trajectories that the run names and computes everything. Never throws on bad data: that becomes a note.
+/// Reads the trajectories of the run and computes everything. Never throws on bad data: bad data become a note.
 RunSummary summarize_run(const Run& run);
 
 /// The poses of the tracked frames as published, in order.

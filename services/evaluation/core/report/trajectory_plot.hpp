@@ -38,8 +38,7 @@ PathCurve path_of(const Trajectory& trajectory);
 /// The poses from first_ns to last_ns.
 Trajectory within(const Trajectory& trajectory, std::int64_t first_ns, std::int64_t last_ns);
 
-/// Height of a drawing of this width in which the paths, at equal aspect, leave little of it empty; within sensible
-/// limits.
+/// Height of a drawing of this width that the paths fill at equal aspect, within limits.
 double fitting_height(const std::vector<PathCurve>& curves, double width);
 
 /// The estimate coloured by its error over the grey ground truth, equal aspect, colour scale at the right.

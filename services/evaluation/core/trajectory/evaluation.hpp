@@ -15,7 +15,7 @@ namespace rtd::eval {
 /// A time without poses.
 struct LostSpan {
   std::int64_t first_ns = 0;  ///< frame list: first frame without pose; ground truth: last pose before the gap
-  std::int64_t last_ns = 0;   ///< frame list: last frame without pose; ground truth: first pose behind the gap
+  std::int64_t last_ns = 0;   ///< frame list: last frame without pose; ground truth: first pose after the gap
   std::size_t frames = 0;     ///< frames without pose; 0 when no frame list is known
 
   double duration_s() const { return static_cast<double>(last_ns - first_ns) * 1e-9; }
@@ -43,7 +43,7 @@ struct EvaluationOptions {
   double max_gap_s = 0.5;  ///< longer gaps between poses count as lost when there is no frame list
 };
 
-/// Everything that is known of an estimate once its ground truth is.
+/// All errors of an estimate compared with its ground truth.
 struct Evaluation {
   std::size_t estimate_poses = 0, groundtruth_poses = 0;
   AteResult ate;

@@ -74,7 +74,8 @@ Eigen::Isometry3d relative(const Eigen::Isometry3d& T_world_a, const Eigen::Isom
   return T_world_a.inverse() * T_world_b;
 }
 
-/// Angle of a rotation in [0, pi], by way of atan2: an arc cosine of the trace turns rounding into 1e-8 rad near zero.
+/// Angle of a rotation in [0, pi], computed with atan2: near zero, an arc cosine of the trace turns rounding into 1e-8
+/// rad.
 double angle_rad(const Eigen::Matrix3d& R) {
   return Eigen::AngleAxisd(R).angle();
 }
@@ -94,7 +95,7 @@ RpeResult rpe(const Trajectory& estimate, const Trajectory& groundtruth, const R
     const Eigen::Isometry3d* T_gt_j = lookup.find(estimate[j].stamp_ns);
     if (T_gt_i == nullptr || T_gt_j == nullptr) continue;
 
-    // The step backwards, from j to i: TUM's tool does it so, and forwards the translation differs in the third digit.
+    // The step goes backwards, from j to i, as in TUM's tool: forwards, the translation differs in the third digit.
     Eigen::Isometry3d T_j_i = relative(estimate[j].T_world_body, estimate[i].T_world_body);
     T_j_i.translation() *= options.scale;
     const Eigen::Isometry3d error = relative(T_j_i, relative(*T_gt_j, *T_gt_i));
