@@ -52,7 +52,7 @@ std::vector<std::string> run_command(const AblateOptions& options, const Variant
   if (options.frames > 0) add("--frames", std::to_string(options.frames));
   for (const std::string& assignment : options.overrides) add("--set", assignment);
   for (const std::string& assignment : task.variant.settings) add("--set", assignment);
-  const std::vector<std::string> bus = service::to_words(options.bus);
+  const std::vector<std::string> bus = service::to_command_line(options.bus);
   command.insert(command.end(), bus.begin(), bus.end());
   command.emplace_back("--quiet");
   return command;
