@@ -10,10 +10,10 @@
 
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/interrupt_signals.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/evaluation/commands/ablate_command.hpp"
 #include "services/launcher/process/executable.hpp"
-#include "common/service/interrupt_signals.hpp"
 #include "services/launcher/process/posix_process_host.hpp"
 
 namespace rtd::eval {
@@ -24,7 +24,7 @@ constexpr char kTaskFile[] = "variant.json";
 
 std::string require_executable(const std::string& name) {
   std::string path = launcher::find_executable(name);
-  if (path.empty()) throw service::ConfigError(name + " is neither beside rtd-eval nor in PATH");
+  if (path.empty()) throw service::ConfigError(launcher::missing_executable(name));
   return path;
 }
 

@@ -32,9 +32,7 @@ std::string choose_source(const DemoOptions& options) {
 /// The report of a demo is its result: without rtd-eval there is nothing to show.
 std::string require_rtd_eval() {
   std::string executable = find_executable("rtd-eval");
-  if (executable.empty())
-    throw service::ConfigError(
-        "rtd-eval is neither beside rtd nor in PATH: build it with 'cmake --build <build folder> --target rtd-eval'");
+  if (executable.empty()) throw service::ConfigError(missing_executable("rtd-eval"));
   return executable;
 }
 

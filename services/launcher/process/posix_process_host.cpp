@@ -167,7 +167,8 @@ void PosixProcessHost::close_output(Child& child) {
   child.output_fd = -1;
 }
 
-ProcessExit run_to_end(const ProcessSpec& spec, service::InterruptSignals& signals, const PosixProcessHost::OnLine& on_line) {
+ProcessExit run_to_end(const ProcessSpec& spec, service::InterruptSignals& signals,
+                       const PosixProcessHost::OnLine& on_line) {
   constexpr std::chrono::milliseconds kPollPeriod{20};
   PosixProcessHost host(on_line);
   const ProcessId process = host.start(spec);

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "common/service/interrupt_signals.hpp"
 #include "services/launcher/core/run/log_tail.hpp"
 #include "services/launcher/core/run/process_host.hpp"
-#include "common/service/interrupt_signals.hpp"
 
 namespace rtd::launcher {
 
@@ -49,6 +49,7 @@ class PosixProcessHost : public ProcessHost {
 };
 
 /// Runs a command to its end. Each signal that arrives meanwhile is passed on as SIGTERM.
-ProcessExit run_to_end(const ProcessSpec& spec, service::InterruptSignals& signals, const PosixProcessHost::OnLine& on_line);
+ProcessExit run_to_end(const ProcessSpec& spec, service::InterruptSignals& signals,
+                       const PosixProcessHost::OnLine& on_line);
 
 }  // namespace rtd::launcher

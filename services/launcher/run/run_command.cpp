@@ -63,12 +63,11 @@ void write_record(const eval::RunRecord& record, const std::string& out_dir) {
 }
 
 /// rtd-eval makes the report from run.json and prints the table that ends a run.
-ReportState make_report(const std::string& out_dir, bool quiet, service::InterruptSignals& signals, Terminal& terminal) {
+ReportState make_report(const std::string& out_dir, bool quiet, service::InterruptSignals& signals,
+                        Terminal& terminal) {
   const std::string executable = find_executable("rtd-eval");
   if (executable.empty()) {
-    terminal.warn("rtd: no report: rtd-eval is neither beside rtd (" + own_directory() +
-                  ") nor in PATH; build it with 'cmake --build <build folder> --target rtd-eval', then 'rtd report " +
-                  out_dir + "' makes the report");
+    terminal.warn("rtd: no report: " + missing_executable("rtd-eval") + ", then run 'rtd report " + out_dir + "'");
     return ReportState::kNone;
   }
   std::string output;

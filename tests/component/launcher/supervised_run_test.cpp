@@ -18,6 +18,7 @@ class SupervisedRunTest : public testing::Test {
   SupervisedRunTest() {
     fs::create_directories(scratch_ / "bin");
     fs::copy_file(RTD_EXECUTABLE, scratch_ / "bin/rtd");  // services are looked for beside it
+    fs::create_symlink(RTD_EVAL_EXECUTABLE, scratch_ / "bin/rtd-eval");
     script("detector", kServe);
     script("filter", kServe);
     script("slam", kServe);
@@ -69,6 +70,37 @@ TEST_F(SupervisedRunTest, a_run_without_a_pose_fails_and_says_so) {
   EXPECT_THAT(rtd_.output(), HasSubstr("no frame got a pose"));
   EXPECT_TRUE(fs::exists(scratch_ / "out/report.json"));
   EXPECT_TRUE(fs::exists(scratch_ / "out/report.html"));
+}
+
+TEST_F(SupervisedRunTest, without_rtd_eval_it_keeps_the_data_and_names_the_fix) {
+  fs::remove(scratch_ / "bin/rtd-eval");
+  setenv("PATH", "/usr/bin:/bin", 1);
+  EXPECT_EQ(rtd_.run(arguments()), 1);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("no report: rtd-eval is neither beside rtd"),
+                                   HasSubstr("then run 'rtd report " + (scratch_ / "out")), HasSubstr("no frame got")));
+  EXPECT_FALSE(fs::exists(scratch_ / "out/report.json"));
+  RtdCommand later(RTD_EVAL_EXECUTABLE);
+  EXPECT_EQ(later.run({"report", scratch_ / "out"}), 0) << later.output();
+  EXPECT_TRUE(fs::exists(scratch_ / "out/report.json"));
+}
+
+TEST_F(SupervisedRunTest, a_report_that_cannot_be_made_fails_the_run) {
+  fs::remove(scratch_ / "bin/rtd-eval");
+  script("eval", "echo 'rtd report: disk full' >&2; exit 1");
+  EXPECT_EQ(rtd_.run(arguments()), 1);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("rtd report: disk full"), HasSubstr("rtd-eval: exit code 1"),
+                                   HasSubstr("out/run.json has the data of the run")));
+}
+
+TEST_F(SupervisedRunTest, ctrl_c_while_the_report_is_made_is_passed_on) {
+  fs::remove(scratch_ / "bin/rtd-eval");
+  script("eval", "trap 'echo stopped early; exit 0' TERM; echo judging > " + (scratch_ / "judging") +
+                     "; while :; do sleep 0.05; done");
+  rtd_.start(arguments());
+  while (!fs::exists(scratch_ / "judging")) usleep(10'000);
+  rtd_.interrupt();
+  EXPECT_EQ(rtd_.wait(), 1) << "the run itself had ended without a pose";
+  EXPECT_THAT(rtd_.output(), HasSubstr("stopped early"));
 }
 
 TEST_F(SupervisedRunTest, a_refused_configuration_ends_the_run_with_the_services_own_words) {

@@ -117,25 +117,25 @@ TEST_F(EvalDetectorCommand, counts_and_says_what_is_wrong_and_goes_on) {
   folder_.write("labels/b.txt", "0 0.5\n7 0.5 0.5 0.1 0.1\n");
   const Outcome outcome = run_on_labels();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err,
-              AllOf(HasSubstr("3 images, 1 without label file"), HasSubstr("1 left out"),
-                    HasSubstr("d.png: is no image"), HasSubstr("b.txt:1: 2 columns"), HasSubstr("b.txt:2: class '7'")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("3 images, 1 without label file"), HasSubstr("1 left out"),
+                                 HasSubstr("d.png: is not an image"), HasSubstr("b.txt:1: 2 columns"),
+                                 HasSubstr("b.txt:2: class '7'")));
   EXPECT_EQ(json()["input"]["problems"].size(), 3U);
 }
 
 TEST_F(EvalDetectorCommand, refuses_folders_with_nothing_to_evaluate) {
   EXPECT_THAT(run({"--labels", folder_.file("nowhere")}).err, HasSubstr("nowhere: there is no such folder"));
   EXPECT_THAT(run({"--labels", folder_.file("masks")}).err, HasSubstr("neither .txt (YOLO) nor .xml"));
-  EXPECT_THAT(run({}).err, HasSubstr("say --labels DIR"));
+  EXPECT_THAT(run({}).err, HasSubstr("add --labels DIR"));
   folder_.write("labels/z.xml", "");
-  EXPECT_THAT(run_on_labels().err, HasSubstr("say --label-format"));
+  EXPECT_THAT(run_on_labels().err, HasSubstr("add --label-format"));
   for (const char* name : {"labels/a.txt", "labels/b.txt"}) folder_.write(name, "");
-  EXPECT_THAT(run_on_labels({"--label-format", "yolo"}).err, HasSubstr("not one object"));
+  EXPECT_THAT(run_on_labels({"--label-format", "yolo"}).err, HasSubstr("no object in it can be used"));
   std::filesystem::rename(folder_.path() / "labels/a.txt", folder_.path() / "labels/y.txt");
   std::filesystem::remove(folder_.path() / "labels/b.txt");
   const Outcome outcome = run_on_labels({"--label-format", "yolo"});
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("no file there is named like an image"));
+  EXPECT_THAT(outcome.err, HasSubstr("no file in it has the name of an image"));
   std::filesystem::remove_all(folder_.path() / "images");
   std::filesystem::create_directory(folder_.path() / "images");
   EXPECT_THAT(run_on_labels({"--label-format", "yolo"}).err, HasSubstr("has no images"));

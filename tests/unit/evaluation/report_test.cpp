@@ -42,7 +42,7 @@ class Report : public testing::Test {
   std::string page() const { return report_html(record_, summarize_run(record_)); }
 
   TemporaryFolder folder_;
-  Run record_;
+  eval::Run record_;
 };
 
 TEST_F(Report, json_has_the_promised_keys_with_the_right_values) {
@@ -230,7 +230,7 @@ TEST_F(Report, folder_that_does_not_exist_is_named) {
 
 TEST(EmptyRun, still_gives_a_valid_report) {
   TemporaryFolder folder;
-  write_report(Run{}, folder.path());
+  write_report(eval::Run{}, folder.path());
   const auto report = nlohmann::json::parse(read_text(folder.file("report.json")));
   EXPECT_EQ(report["frames_in"], 0);
   EXPECT_TRUE(report["coverage"].is_null());
@@ -241,7 +241,7 @@ TEST(EmptyRun, still_gives_a_valid_report) {
 
 TEST(EmptyRun, invalid_utf8_in_texts_does_not_stop_the_report) {
   TemporaryFolder folder;
-  Run record;
+  eval::Run record;
   record.source = "tum:/\xff\xfe";
   write_report(record, folder.path());
   EXPECT_TRUE(nlohmann::json::parse(read_text(folder.file("report.json"))).contains("source"));
@@ -259,7 +259,7 @@ TEST_F(Report, long_runs_give_small_pages) {
 }
 
 TEST_F(Report, comparison_names_both_runs_their_errors_and_the_ratio) {
-  Run good = record_;
+  eval::Run good = record_;
   good.trajectory_path = folder_.write("good.txt", tum_text(moved(winding_path(100, 0.1), some_transform(), 1.01)));
   record_.filter_mode = "off";
   const std::string html = comparison_html({{"filter off", record_}, {"filter rtd", good}});
@@ -271,7 +271,7 @@ TEST_F(Report, comparison_names_both_runs_their_errors_and_the_ratio) {
 }
 
 TEST_F(Report, comparison_tells_a_worse_and_an_equal_run_apart) {
-  Run worse = record_;
+  eval::Run worse = record_;
   worse.trajectory_path = folder_.write("worse.txt", tum_text(moved(winding_path(100, 0.1), some_transform(), 1.2)));
   EXPECT_THAT(comparison_html({{"a", record_}, {"b", worse}}), HasSubstr("2 times more than a"));
   EXPECT_THAT(comparison_html({{"a", record_}, {"b", record_}}), HasSubstr("as much as a"));
@@ -279,7 +279,8 @@ TEST_F(Report, comparison_tells_a_worse_and_an_equal_run_apart) {
 
 TEST_F(Report, comparison_without_ground_truth_or_runs_is_still_a_page) {
   record_.groundtruth_path.clear();
-  EXPECT_THAT(comparison_html({{"a", record_}, {"b", Run{}}}), AllOf(HasSubstr("unknown"), Not(HasSubstr("nan"))));
+  EXPECT_THAT(comparison_html({{"a", record_}, {"b", eval::Run{}}}),
+              AllOf(HasSubstr("unknown"), Not(HasSubstr("nan"))));
   EXPECT_THAT(comparison_html({}), HasSubstr("no runs to compare"));
 }
 

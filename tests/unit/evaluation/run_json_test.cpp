@@ -72,11 +72,11 @@ class RunJson : public testing::Test {
   }
 
   TemporaryFolder folder_;
-  Run run_;
+  eval::Run run_;
 };
 
 TEST_F(RunJson, keeps_every_bit_that_the_report_needs) {
-  Run read{written_and_read()};
+  eval::Run read{written_and_read()};
   const RunSummary before = summarize_run(run_), after = summarize_run(read);
   EXPECT_EQ(report_json(read, after).dump(), report_json(run_, before).dump());
   EXPECT_EQ(report_html(read, after), report_html(run_, before));
@@ -146,7 +146,7 @@ TEST_F(ReportCommand, judges_the_published_poses_when_slam_left_no_trajectory) {
 }
 
 TEST_F(ReportCommand, judges_few_frames_of_an_interrupted_run_and_none_when_the_user_stops_that) {
-  run_.source = "synthetic:office?frames=60";
+  run_.source = "synthetic:office?frames=60&width=160&height=120";
   run_.judged_frames.clear();
   for (int i = 0; i < 60; ++i) run_.judged_frames.push_back({1'000'000'000'000 + i, {{1, 1, true}}});
   run_.interrupted = true;
