@@ -35,6 +35,8 @@ endif()
 if(RTD_UNITY_BUILD)
   set(CMAKE_UNITY_BUILD ON)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
+  # Local types of one source look to g++ like types of a header once that source is included by another.
+  target_compile_options(rtd_compile_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()
 
 if(RTD_SANITIZE)
