@@ -15,7 +15,7 @@
 namespace rtd::bus::fastdds {
 namespace {
 
-namespace rtps = eprosima::fastdds::rtps;
+namespace transports = eprosima::fastdds::rtps;
 using eprosima::fastrtps::rtps::IPLocator;
 using eprosima::fastrtps::rtps::Locator_t;
 using eprosima::fastrtps::rtps::LocatorsIterator;
@@ -24,31 +24,31 @@ using eprosima::fastrtps::rtps::SenderResource;
 
 using OnProblem = std::function<void(const std::string&)>;
 
-class ScreeningDescriptor : public rtps::ChainingTransportDescriptor {
+class ScreeningDescriptor : public transports::ChainingTransportDescriptor {
  public:
-  ScreeningDescriptor(std::shared_ptr<rtps::TransportDescriptorInterface> transport, std::uint32_t largest_sent,
+  ScreeningDescriptor(std::shared_ptr<transports::TransportDescriptorInterface> transport, std::uint32_t largest_sent,
                       OnProblem problem)
       : ChainingTransportDescriptor(std::move(transport)), on_problem(std::move(problem)) {
     maxMessageSize = largest_sent;
   }
   std::uint32_t max_message_size() const override { return maxMessageSize; }
-  rtps::TransportInterface* create_transport() const override;
+  transports::TransportInterface* create_transport() const override;
 
   const OnProblem on_problem;
 };
 
-class ScreeningTransport : public rtps::ChainingTransport {
+class ScreeningTransport : public transports::ChainingTransport {
  public:
   explicit ScreeningTransport(const ScreeningDescriptor& descriptor)
       : ChainingTransport(descriptor), descriptor_(descriptor) {}
 
-  rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
+  transports::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
   bool send(SenderResource* sender, const octet* data, std::uint32_t size, LocatorsIterator* begin,
             LocatorsIterator* end, const std::chrono::steady_clock::time_point& timeout) override {
     return sender->send(data, size, begin, end, timeout);
   }
-  void receive(rtps::TransportReceiverInterface* next, const octet* data, std::uint32_t size, const Locator_t& local,
-               const Locator_t& remote) override {
+  void receive(transports::TransportReceiverInterface* next, const octet* data, std::uint32_t size,
+               const Locator_t& local, const Locator_t& remote) override {
     std::unique_lock one_at_a_time(mutex_);
     if (screen_.passes(std::as_bytes(std::span(data, size)))) return next->OnDataReceived(data, size, local, remote);
     one_at_a_time.unlock();
@@ -64,14 +64,15 @@ class ScreeningTransport : public rtps::ChainingTransport {
   std::mutex mutex_;
 };
 
-rtps::TransportInterface* ScreeningDescriptor::create_transport() const {
+transports::TransportInterface* ScreeningDescriptor::create_transport() const {
   return new ScreeningTransport(*this);
 }
 
 }  // namespace
 
-std::shared_ptr<rtps::TransportDescriptorInterface> screened(
-    std::shared_ptr<rtps::TransportDescriptorInterface> transport, std::uint32_t largest_sent, OnProblem on_problem) {
+std::shared_ptr<transports::TransportDescriptorInterface> screened(
+    std::shared_ptr<transports::TransportDescriptorInterface> transport, std::uint32_t largest_sent,
+    OnProblem on_problem) {
   return std::make_shared<ScreeningDescriptor>(std::move(transport), largest_sent, std::move(on_problem));
 }
 
