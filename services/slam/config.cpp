@@ -101,7 +101,8 @@ void bind_place(ConfigBinder& binder, PlaceConfig& c) {
   binder.field("place.candidates", c.candidates, {1, 100}, "places that a lost frame is compared with, in turn");
   binder.field("place.candidates_per_frame", c.candidates_per_frame, {1, 100}, "so many of them at one frame");
   binder.field("place.min_inliers", c.min_inliers, {10, 500}, "landmarks that a pose needs at a recognised place");
-  binder.field("place.min_found_ratio", c.min_found_ratio, {0.0, 1.0}, "of the landmarks that should be seen there, or of the features if fewer");
+  binder.field("place.min_found_ratio", c.min_found_ratio, {0.0, 1.0},
+               "of the landmarks that should be seen there, or of the features if fewer");
   binder.field("place.confirmations", c.confirmations, {0, 100},
                "frames that must agree before that pose is given out");
   binder.field("place.new_map_after_s", c.new_map_after_s, {0.0, 1e6},

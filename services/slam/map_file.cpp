@@ -2,9 +2,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/map_file.hpp"
 
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
 #include "services/slam/core/store/map_writer.hpp"
 
 namespace rtd::slam {
+namespace {
+
+constexpr double kTolerance = 0.05;  ///< of the focal length; Kinects differ by less than 0.04
+
+bool is_same(const MapCamera& a, const Frame& b) {
+  const vision::RgbdProjection &p = a.projection, &q = b.camera;
+  return p.fx == q.fx && p.fy == q.fy && p.cx == q.cx && p.cy == q.cy && a.width_px == b.width_px &&
+         a.height_px == b.height_px;
+}
+
+bool is_near(const MapCamera& camera, const msg::FeatureFrame& frame) {
+  const vision::RgbdProjection& p = camera.projection;
+  const auto& [fx, fy, cx, cy] = frame.intrinsics;
+  const double most_px = kTolerance * p.fx;
+  return static_cast<int>(frame.width) == camera.width_px && static_cast<int>(frame.height) == camera.height_px &&
+         std::abs(fx - p.fx) < most_px && std::abs(fy - p.fy) < most_px && std::abs(cx - p.cx) < most_px &&
+         std::abs(cy - p.cy) < most_px;
+}
+
+std::string text(int width, int height, double fx, double fy, double cx, double cy) {
+  return fmt::format("{}x{} fx {:.1f} fy {:.1f} cx {:.1f} cy {:.1f}", width, height, fx, fy, cx, cy);
+}
+
+}  // namespace
 
 std::uint64_t save_map_file(const std::filesystem::path& path, const MapSnapshot& snapshot) {
   std::filesystem::path unfinished = path;
@@ -28,6 +56,32 @@ MapContents load_map_file(const std::filesystem::path& path, const MapReadOption
   } catch (const MapFileError& error) {
     throw MapFileError(error.defect(), path.string() + ": " + error.what());
   }
+}
+
+MapCameras cameras_of(const MapContents& contents) {
+  MapCameras cameras;
+  for (const Keyframe& keyframe : contents.keyframes) {
+    const Frame& frame = *keyframe.frame;
+    const auto known = [&](const MapCamera& camera) { return is_same(camera, frame); };
+    if (std::none_of(cameras.rbegin(), cameras.rend(), known))
+      cameras.push_back({frame.camera, frame.width_px, frame.height_px});
+  }
+  return cameras;
+}
+
+std::string difference_to(const MapCameras& cameras, const msg::FeatureFrame& frame) {
+  if (cameras.empty()) return {};
+  if (std::any_of(cameras.begin(), cameras.end(), [&](const MapCamera& camera) { return is_near(camera, frame); }))
+    return {};
+  const auto& [fx, fy, cx, cy] = frame.intrinsics;
+  const MapCamera& camera = cameras.front();
+  const vision::RgbdProjection& p = camera.projection;
+  return fmt::format(
+      "the camera ({}) is not that of the map ({}): give the calibration that the map was made with, or map again "
+      "without "
+      "--map",
+      text(static_cast<int>(frame.width), static_cast<int>(frame.height), fx, fy, cx, cy),
+      text(camera.width_px, camera.height_px, p.fx, p.fy, p.cx, p.cy));
 }
 
 }  // namespace rtd::slam

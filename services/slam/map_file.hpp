@@ -3,10 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "common/mcap/byte_sink.hpp"
+#include "services/slam/core/map/map.hpp"
 #include "services/slam/core/store/map_reader.hpp"
-#include "services/slam/core/store/map_snapshot.hpp"
+#include "services/slam/core/store/map_writer.hpp"
 
 namespace rtd::slam {
 
@@ -16,5 +19,18 @@ std::uint64_t save_map_file(const std::filesystem::path& path, const MapSnapshot
 
 /// Throws mcap::IoError when it cannot be read, MapFileError when it is no map; both name the file.
 MapContents load_map_file(const std::filesystem::path& path, const MapReadOptions& options = {});
+
+struct MapCamera {
+  vision::RgbdProjection projection;
+  int width_px = 0, height_px = 0;
+};
+using MapCameras = std::vector<MapCamera>;
+
+/// The cameras that the keyframes of a map were seen with, each once.
+MapCameras cameras_of(const MapContents& contents);
+
+/// How the camera of a frame differs from all cameras of a map, and what to do; empty when it is near one of them:
+/// another specimen of the same kind finds its way in the map, another kind or a wrong calibration does not.
+std::string difference_to(const MapCameras& cameras, const msg::FeatureFrame& frame);
 
 }  // namespace rtd::slam

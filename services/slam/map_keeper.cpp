@@ -12,8 +12,6 @@
 namespace rtd::slam {
 namespace {
 
-constexpr int kNicer = 10;
-
 double ms_since(std::int64_t start_ns) {
   return static_cast<double>(service::monotonic_ns() - start_ns) * 1e-6;
 }
@@ -41,6 +39,7 @@ bool MapKeeper::save_at_end() {
 }
 
 void MapKeeper::loop() {
+  constexpr int kNicer = 10;
   concurrency::lower_thread_priority(kNicer);
   const std::chrono::milliseconds period(static_cast<std::int64_t>(config_.checkpoint_s * 1000));
   while (!ended_.wait_for(period)) {

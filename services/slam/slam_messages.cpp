@@ -22,12 +22,11 @@ msg::Pose to_pose(const msg::Transform& T) {
 }
 
 /// Covariance of a motion between two poses of known covariance, per second, in the camera frame.
-RowMajor6d twist_covariance(const msg::TrackingResult& result, const msg::TrackingResult& previous, double gap_s) {
-  const RowMajor6d sum =
-      Eigen::Map<const RowMajor6d>(result.covariance.data()) + Eigen::Map<const RowMajor6d>(previous.covariance.data());
-  const Eigen::Matrix3d R_camera_world = msg::to_isometry(result.T_world_camera).linear().transpose();
+RowMajor6d twist_covariance(const OdometryPose& pose, const OdometryPose& previous, double gap_s) {
+  const RowMajor6d sum = Eigen::Map<const RowMajor6d>(pose.result.covariance.data()) +
+                         Eigen::Map<const RowMajor6d>(previous.result.covariance.data());
   RowMajor6d turn = RowMajor6d::Zero();
-  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R_camera_world;
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = pose.T_odom_camera.linear().transpose();
   return turn * sum * turn.transpose() / (gap_s * gap_s);
 }
 
@@ -38,6 +37,35 @@ std::string text(double value) {
 
 }  // namespace
 
+msg::TrackingResult make_result(const FrameResult& result) {
+  msg::TrackingResult message{};
+  message.seq = result.seq;
+  message.stamp_ns = result.stamp_ns;
+  message.T_world_camera = msg::to_message(result.T_world_camera);
+  Eigen::Map<RowMajor6d>(message.covariance.data()) = result.covariance;
+  message.event_count = result.event_count;
+  message.state = result.state;
+  message.inliers = result.inliers;
+  message.features_static = result.features_static;
+  message.features_removed = result.features_removed;
+  message.keyframes = result.keyframes;
+  message.landmarks = result.landmarks;
+  message.map_id = result.map_id;
+  message.maps = result.maps;
+  message.stage_ms = result.stage_ms;
+  return message;
+}
+
+std::vector<msg::KeyframeEvent> make_events(const SlamOutput& output) {
+  std::vector<msg::KeyframeEvent> events;
+  std::uint64_t index = output.result.event_count - output.changes.size();
+  for (const KeyframeChange& change : output.changes) {
+    events.push_back(
+        {index++, change.frame_seq, change.stamp_ns, msg::to_message(change.T_world_camera), change.id, change.kind});
+  }
+  return events;
+}
+
 std::string map_frame(const msg::TrackingResult& result, const FrameNames& names) {
   return result.map_id == 0 ? names.map : names.map + "_" + std::to_string(result.map_id);
 }
@@ -46,8 +74,8 @@ msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& 
   return {{msg::to_time(result.stamp_ns), map_frame(result, names)}, to_pose(result.T_world_camera)};
 }
 
-msg::TFMessage make_tf(const msg::TrackingResult& result, const Eigen::Isometry3d& T_map_odom,
-                       const FrameNames& names) {
+msg::TFMessage make_tf(const OdometryPose& odometry, const Eigen::Isometry3d& T_map_odom, const FrameNames& names) {
+  const msg::TrackingResult& result = odometry.result;
   const auto link = [&](const std::string& parent, const std::string& child, const msg::Transform& T) {
     const msg::Pose pose = to_pose(T);
     return msg::TransformStamped{{msg::to_time(result.stamp_ns), parent},
@@ -55,33 +83,34 @@ msg::TFMessage make_tf(const msg::TrackingResult& result, const Eigen::Isometry3
                                  {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation}};
   };
   return {{link(map_frame(result, names), names.odom, msg::to_message(T_map_odom)),
-           link(names.odom, names.camera, to_odometry_frame(result, T_map_odom).T_world_camera)}};
+           link(names.odom, names.camera, result.T_world_camera)}};
 }
 
-msg::TrackingResult to_odometry_frame(const msg::TrackingResult& result, const Eigen::Isometry3d& T_map_odom) {
-  if (T_map_odom.matrix().isIdentity(0)) return result;  // to the last bit
+OdometryPose to_odometry_frame(const msg::TrackingResult& result, const Eigen::Isometry3d& T_map_odom) {
+  const Eigen::Isometry3d T_map_camera = msg::to_isometry(result.T_world_camera);
+  if (T_map_odom.matrix().isIdentity(0)) return {result, T_map_camera};  // to the last bit
   msg::TrackingResult moved = result;
-  moved.T_world_camera = msg::to_message(T_map_odom.inverse() * msg::to_isometry(result.T_world_camera));
+  moved.T_world_camera = msg::to_message(T_map_odom.inverse() * T_map_camera);
   RowMajor6d turn = RowMajor6d::Zero();
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = T_map_odom.linear().transpose();
   Eigen::Map<RowMajor6d>(moved.covariance.data()) =
       turn * Eigen::Map<const RowMajor6d>(result.covariance.data()) * turn.transpose();
-  return moved;
+  return {moved, msg::to_isometry(moved.T_world_camera)};
 }
 
-msg::Odometry make_odometry(const msg::TrackingResult& result, const std::optional<msg::TrackingResult>& previous,
+msg::Odometry make_odometry(const OdometryPose& pose, const std::optional<OdometryPose>& previous,
                             const FrameNames& names) {
+  const msg::TrackingResult& result = pose.result;
   msg::Odometry odometry;
   odometry.header = {msg::to_time(result.stamp_ns), names.odom};
   odometry.child_frame_id = names.camera;
   odometry.pose = {to_pose(result.T_world_camera), result.covariance};
-  if (!previous || previous->stamp_ns >= result.stamp_ns) return odometry;
-  const double gap_s = static_cast<double>(result.stamp_ns - previous->stamp_ns) / kNsPerS;
-  const Eigen::Isometry3d T_previous_camera =
-      msg::to_isometry(previous->T_world_camera).inverse() * msg::to_isometry(result.T_world_camera);
+  if (!previous || previous->result.stamp_ns >= result.stamp_ns) return odometry;
+  const double gap_s = static_cast<double>(result.stamp_ns - previous->result.stamp_ns) / kNsPerS;
+  const Eigen::Isometry3d T_previous_camera = previous->T_odom_camera.inverse() * pose.T_odom_camera;
   const geometry::Vector6d twist = geometry::se3_log(T_previous_camera) / gap_s;
   odometry.twist.twist = {{twist[0], twist[1], twist[2]}, {twist[3], twist[4], twist[5]}};
-  Eigen::Map<RowMajor6d>(odometry.twist.covariance.data()) = twist_covariance(result, *previous, gap_s);
+  Eigen::Map<RowMajor6d>(odometry.twist.covariance.data()) = twist_covariance(pose, *previous, gap_s);
   return odometry;
 }
 

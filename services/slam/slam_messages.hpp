@@ -10,7 +10,7 @@
 
 #include "common/msg/ros.hpp"
 #include "common/msg/tracking.hpp"
-#include "services/slam/core/map/trajectory.hpp"
+#include "services/slam/core/slam_system.hpp"
 
 namespace rtd::slam {
 
@@ -19,17 +19,27 @@ struct FrameNames {
   std::string map, odom, camera;
 };
 
+/// The result as it goes to our own services; published_ns and finished_ns are the caller's to fill.
+msg::TrackingResult make_result(const FrameResult& result);
+/// One event for each change, in their order.
+std::vector<msg::KeyframeEvent> make_events(const SlamOutput& output);
+
 /// Frame of the poses: `map`, or `map_N` while another map than the first is tracked and not merged.
 std::string map_frame(const msg::TrackingResult& result, const FrameNames& names);
 
 msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& names);
+
+/// A result with pose and covariance in frame odom.
+struct OdometryPose {
+  msg::TrackingResult result{};
+  Eigen::Isometry3d T_odom_camera = Eigen::Isometry3d::Identity();  ///< as readers of the result compute it
+};
+OdometryPose to_odometry_frame(const msg::TrackingResult& result, const Eigen::Isometry3d& T_map_odom);
 /// map -> odom, which takes up the jumps when the map is corrected, and odom -> camera, which is smooth.
-msg::TFMessage make_tf(const msg::TrackingResult& result, const Eigen::Isometry3d& T_map_odom, const FrameNames& names);
-/// The result with pose and covariance in frame odom.
-msg::TrackingResult to_odometry_frame(const msg::TrackingResult& result, const Eigen::Isometry3d& T_map_odom);
-/// Of results in frame odom: pose with covariance, and the twist in the camera frame: the motion since `previous`
-/// (state kOk, earlier stamp) divided by the time; zero without it.
-msg::Odometry make_odometry(const msg::TrackingResult& result, const std::optional<msg::TrackingResult>& previous,
+msg::TFMessage make_tf(const OdometryPose& pose, const Eigen::Isometry3d& T_map_odom, const FrameNames& names);
+/// Pose with covariance, and the twist in the camera frame: the motion since `previous` (earlier stamp) divided by the
+/// time; zero without it.
+msg::Odometry make_odometry(const OdometryPose& pose, const std::optional<OdometryPose>& previous,
                             const FrameNames& names);
 /// x y z and intensity (the static probability), all float32.
 msg::PointCloud2 make_cloud(const std::vector<MapPoint>& points, std::int64_t stamp_ns, const std::string& map_frame);

@@ -25,22 +25,22 @@ SlamPublisher::~SlamPublisher() {
   cloud_thread_.join();
 }
 
-void SlamPublisher::publish(const SlamOutput& output) {
-  for (const msg::KeyframeEvent& event : output.events) keyframes_.write(event);
-  tracking_.write(output.result);
-  const bool measured = output.result.state == msg::TrackingState::kOk;
+void SlamPublisher::publish(const SlamOutput& output, const msg::TrackingResult& result) {
+  for (const msg::KeyframeEvent& event : make_events(output)) keyframes_.write(event);
+  tracking_.write(result);
+  const bool measured = result.state == msg::TrackingState::kOk;
   // From a predicted pose to a measured one the estimate may step: that is no velocity.
-  if (measured && previous_ && previous_->state != msg::TrackingState::kOk) previous_.reset();
-  if (previous_ && previous_->map_id != output.result.map_id) previous_.reset();
-  if (!msg::has_pose(output.result.state)) {
+  if (measured && previous_ && previous_->result.state != msg::TrackingState::kOk) previous_.reset();
+  if (previous_ && previous_->result.map_id != result.map_id) previous_.reset();
+  if (!msg::has_pose(result.state)) {
     previous_.reset();
     return;
   }
-  const msg::TrackingResult smooth = to_odometry_frame(output.result, output.T_map_odom);
+  const OdometryPose smooth = to_odometry_frame(result, output.T_map_odom);
   odometry_.write(make_odometry(smooth, previous_, names_));
-  tf_.write(make_tf(output.result, output.T_map_odom, names_));
+  tf_.write(make_tf(smooth, output.T_map_odom, names_));
   previous_ = smooth;
-  if (measured) publish_pose(output.result);
+  if (measured) publish_pose(result);
 }
 
 void SlamPublisher::publish_pose(const msg::TrackingResult& result) {

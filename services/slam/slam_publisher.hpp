@@ -26,8 +26,9 @@ class SlamPublisher {
   SlamPublisher(const SlamPublisher&) = delete;
   SlamPublisher& operator=(const SlamPublisher&) = delete;
 
-  /// Events first, so that a reader of the result knows them all; then result and, when tracked, the pose.
-  void publish(const SlamOutput& output);
+  /// The keyframe changes of `output` first, so that a reader of the result knows them all; then its `result` and, when
+  /// tracked, the pose.
+  void publish(const SlamOutput& output, const msg::TrackingResult& result);
   /// The result again, for a frame that was sent again.
   void repeat(const msg::TrackingResult& result) { tracking_.write(result); }
   void publish_diagnostics(const msg::DiagnosticArray& diagnostics) { diagnostics_.write(diagnostics); }
@@ -50,7 +51,7 @@ class SlamPublisher {
   bus::Writer<msg::Path> path_;
   bus::Writer<msg::PointCloud2> map_points_;
   bus::Writer<msg::DiagnosticArray> diagnostics_;
-  std::optional<msg::TrackingResult> previous_;  ///< last tracked result in frame odom, for the twist
+  std::optional<OdometryPose> previous_;  ///< last tracked one, for the twist
   std::deque<msg::PoseStamped> poses_;
   std::int64_t path_published_ns_ = 0;
   std::atomic<std::int64_t> newest_stamp_ns_{-1};  ///< -1: nothing tracked yet

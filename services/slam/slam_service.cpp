@@ -123,11 +123,11 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
     return;
   }
   const msg::TrackingState previous = last_result_.state;
-  SlamOutput output = slam_.process(frame);
-  output.result.published_ns = frame.published_ns;
-  output.result.finished_ns = service::monotonic_ns();
-  publisher_.publish(output);
-  last_result_ = output.result;
+  const SlamOutput output = slam_.process(frame);
+  last_result_ = make_result(output.result);
+  last_result_.published_ns = frame.published_ns;
+  last_result_.finished_ns = service::monotonic_ns();
+  publisher_.publish(output, last_result_);
   last_problem_ = output.problem;
   count(output);
   log(output, previous);
@@ -157,7 +157,7 @@ void SlamService::count(const SlamOutput& output) {
 }
 
 void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
-  const msg::TrackingResult& result = output.result;
+  const FrameResult& result = output.result;
   const bool tracked = result.state == msg::TrackingState::kOk, was_tracked = previous == msg::TrackingState::kOk;
   if (tracked && counters_.tracked == 1 && !map_cameras_.empty()) {
     SPDLOG_INFO("event=relocalized frame={} inliers={} after_frames={}", result.seq, result.inliers, counters_.frames);

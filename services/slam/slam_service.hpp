@@ -12,7 +12,7 @@
 #include "common/service/runtime.hpp"
 #include "services/slam/config.hpp"
 #include "services/slam/core/slam_system.hpp"
-#include "services/slam/map_camera.hpp"
+#include "services/slam/map_file.hpp"
 #include "services/slam/map_keeper.hpp"
 #include "services/slam/slam_publisher.hpp"
 

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "common/geometry/se3.hpp"
-#include "services/slam/core/map/scale_pyramid.hpp"
+#include "services/slam/core/map/frame.hpp"
 #include "tests/support/feature_world.hpp"
 
 namespace rtd::test_support {

@@ -10,6 +10,7 @@
 #include "services/filter/config.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
 #include "services/filter/filter_messages.hpp"
+#include "services/slam/slam_messages.hpp"
 #include "tests/support/detector_pace.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
@@ -77,9 +78,11 @@ class Filtered final : public FrontEnd {
     return output;
   }
   void listen(const slam::SlamOutput& output) override {
-    for (const msg::KeyframeEvent& event : output.events) filter_.on_keyframe(filter::to_slam_keyframe(event));
-    if (const auto pose = filter::to_slam_pose(output.result)) filter_.on_pose(*pose);
-    if (roll_) roll_->on_tracking(output.result);
+    for (const msg::KeyframeEvent& event : slam::make_events(output))
+      filter_.on_keyframe(filter::to_slam_keyframe(event));
+    const msg::TrackingResult result = slam::make_result(output.result);
+    if (const auto pose = filter::to_slam_pose(result)) filter_.on_pose(*pose);
+    if (roll_) roll_->on_tracking(result);
   }
 
  private:

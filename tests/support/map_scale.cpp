@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "services/slam/core/map/trajectory.hpp"
-#include "services/slam/core/tracking/keyframe_policy.hpp"
 #include "services/slam/core/tracking/tracker.hpp"
 
 namespace rtd::test_support {

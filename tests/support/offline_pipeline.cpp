@@ -18,7 +18,7 @@
 namespace rtd::test_support {
 namespace {
 
-void add_stage_times(const msg::TrackingResult& result, OfflineReport& report) {
+void add_stage_times(const slam::FrameResult& result, OfflineReport& report) {
   static constexpr std::array<const char*, 6> kNames{"slam.match",    "slam.local_map", "slam.pose",
                                                      "slam.keyframe", "slam.mapping",   "slam.total"};
   for (std::size_t i = 0; i < kNames.size(); ++i) {

@@ -5,20 +5,18 @@
 #include <Eigen/Cholesky>
 
 #include "common/geometry/se3.hpp"
-#include "common/msg/tracking.hpp"
-#include "common/msg/transform_eigen.hpp"
+#include "services/slam/core/slam_system.hpp"
 
 namespace rtd::test_support {
 
 /// Normalised estimation error squared of a pose with 6 degrees of freedom, by the covariance that it came with:
 /// 6 in the mean if that is true. docs/theory/tracking.md Eq. (4).
-inline double nees(const msg::TrackingResult& result, const Eigen::Isometry3d& T_world_camera) {
-  const Eigen::Isometry3d found = msg::to_isometry(result.T_world_camera);
+inline double nees(const slam::FrameResult& result, const Eigen::Isometry3d& T_world_camera) {
+  const Eigen::Isometry3d& found = result.T_world_camera;
   geometry::Vector6d error;
   error.head<3>() = found.translation() - T_world_camera.translation();
   error.tail<3>() = geometry::so3_log(found.linear() * T_world_camera.linear().transpose());
-  const Eigen::Map<const geometry::Matrix6d> covariance(result.covariance.data());
-  return error.dot(covariance.ldlt().solve(error));
+  return error.dot(result.covariance.ldlt().solve(error));
 }
 
 }  // namespace rtd::test_support

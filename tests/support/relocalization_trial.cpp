@@ -24,7 +24,7 @@ class Player {
  public:
   Player(const slam::SlamConfig& config, slam::MappingMode mode)
       : slam_(config, mode, service::monotonic_ns), threaded_(mode == slam::MappingMode::kThreaded) {}
-  msg::TrackingResult play(const msg::FeatureFrame& frame) {
+  slam::FrameResult play(const msg::FeatureFrame& frame) {
     auto copy = std::make_unique<msg::FeatureFrame>(frame);
     copy->seq = next_;
     copy->stamp_ns = 1'000'000'000 + static_cast<std::int64_t>(next_++) * kPeriodNs;
@@ -113,9 +113,9 @@ WorldAlignment align_worlds(const FeatureClip& clip, const slam::SlamConfig& con
   Player player(config, slam::MappingMode::kSynchronous);
   std::vector<PosePair> pairs;
   for (std::size_t i = 0; i < clip.frames.size(); ++i) {
-    const msg::TrackingResult result = player.play(*clip.frames[i]);
+    const slam::FrameResult result = player.play(*clip.frames[i]);
     if (result.state != msg::TrackingState::kOk || !clip.T_world_camera[i]) continue;
-    pairs.push_back({msg::to_isometry(result.T_world_camera), *clip.T_world_camera[i]});
+    pairs.push_back({result.T_world_camera, *clip.T_world_camera[i]});
   }
   return WorldAlignment(pairs);
 }
@@ -130,14 +130,14 @@ RelocalizationOutcome run_relocalization(const FeatureClip& mapped, const Featur
   RelocalizationOutcome outcome;
   for (std::size_t i = 0; i < trial.covered; ++i) player.play(*covered);
   for (std::size_t i = trial.resume; i < std::min(trial.resume + trial.length, again.frames.size()); ++i) {
-    const msg::TrackingResult result = player.play(*again.frames[i]);
+    const slam::FrameResult result = player.play(*again.frames[i]);
     outcome.maps = std::max<std::size_t>(outcome.maps, result.maps);
     outcome.worst_ms = std::max(outcome.worst_ms, static_cast<double>(result.stage_ms[msg::kStageSlamTotal]));
     outcome.worst_search_ms =
         std::max(outcome.worst_search_ms, static_cast<double>(result.stage_ms[msg::kStageRelocalize]));
     if (trial.on_frame && !msg::has_pose(result.state)) trial.on_frame(result, 0, 0);
     if (!msg::has_pose(result.state) || !again.T_world_camera[i]) continue;
-    const PosePair pair{msg::to_isometry(result.T_world_camera), *again.T_world_camera[i]};
+    const PosePair pair{result.T_world_camera, *again.T_world_camera[i]};
     const double error_m = alignment.error_m(pair), error_deg = alignment.error_deg(pair);
     if (trial.on_frame) trial.on_frame(result, error_m, error_deg);
     if (result.map_id != 0 || error_m > kWrong_m || error_deg > kWrong_deg) ++outcome.wrong;

@@ -50,7 +50,7 @@ WorldAlignment align_worlds(const FeatureClip& clip, const slam::SlamConfig& con
 /// on. Frames are stamped anew, 30 a second.
 struct RelocalizationTrial {
   std::size_t mapped = 0, covered = 0, resume = 0, length = 30;
-  std::function<void(const msg::TrackingResult&, double error_m, double error_deg)> on_frame;  ///< after the cut
+  std::function<void(const slam::FrameResult&, double error_m, double error_deg)> on_frame;  ///< after the cut
 };
 
 struct RelocalizationOutcome {

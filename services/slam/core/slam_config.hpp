@@ -84,12 +84,12 @@ struct MapperConfig {
 /// How places are recognised: docs/theory/place_recognition.md.
 struct PlaceConfig {
   std::shared_ptr<const Vocabulary> vocabulary;  ///< null: the one that was built in
-  int candidates = 9;            ///< places that a lost frame is compared with before it begins again with the best
-  int candidates_per_frame = 2;  ///< so many of them at one frame: bounds the time that it takes
-  int min_inliers = 45;          ///< landmarks that a pose needs at a recognised place
+  int candidates = 9;             ///< places that a lost frame is compared with before it begins again with the best
+  int candidates_per_frame = 2;   ///< so many of them at one frame: bounds the time that it takes
+  int min_inliers = 45;           ///< landmarks that a pose needs at a recognised place
   double min_found_ratio = 0.13;  ///< of the landmarks that should be seen there, or of the features if fewer
-  int confirmations = 2;         ///< frames that must agree before the pose is given out
-  double new_map_after_s = 3.0;  ///< a new map begins after so long with views that nobody knows; 0 = never
+  int confirmations = 2;          ///< frames that must agree before the pose is given out
+  double new_map_after_s = 3.0;   ///< a new map begins after so long with views that nobody knows; 0 = never
 };
 
 /// When two places are one, and what follows: docs/theory/loop_closing.md.

@@ -4,30 +4,12 @@
 
 #include <algorithm>
 
-#include "common/msg/transform_eigen.hpp"
-
 namespace rtd::slam {
 namespace {
-
-msg::KeyframeEventKind to_message(KeyframeChange::Kind kind) {
-  switch (kind) {
-    case KeyframeChange::Kind::kCreated:
-      return msg::KeyframeEventKind::kCreated;
-    case KeyframeChange::Kind::kCorrected:
-      return msg::KeyframeEventKind::kCorrected;
-    case KeyframeChange::Kind::kRemoved:
-      break;
-  }
-  return msg::KeyframeEventKind::kRemoved;
-}
 
 const char* failure_name(msg::TrackingState state) {
   const bool says_more = state == msg::TrackingState::kPredicted || state == msg::TrackingState::kRelocalizing;
   return says_more ? msg::to_string(state) : "lost";
-}
-
-float to_ms(std::int64_t duration_ns) {
-  return static_cast<float>(static_cast<double>(duration_ns) * 1e-6);
 }
 
 }  // namespace
@@ -59,7 +41,8 @@ SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
   had_pose_ = msg::has_pose(outcome.state);
   if (outcome.map != nullptr) map_ = outcome.map->map;
   collect_events(output);
-  fill_result(message, input, outcome, output);
+  output.T_map_odom = odometry_.T_map_odom();
+  output.result = result_of(message, input, outcome);
   output.result.stage_ms[msg::kStageSlamTotal] = to_ms(now_ns_() - start_ns);
   return output;
 }
@@ -109,7 +92,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   if (input.frame == nullptr) {
     output.problem = input.error;
     TrackOutcome outcome;
-    outcome.state = tracker_.unlocated() ? msg::TrackingState::kRelocalizing : msg::TrackingState::kRecentlyLost;
+    outcome.state = tracker_.located() ? msg::TrackingState::kRecentlyLost : msg::TrackingState::kRelocalizing;
     return outcome;
   }
   const LocalMapPtr snapshot = mapping_.snapshot();
@@ -202,25 +185,21 @@ bool SlamSystem::follow_map(const LocalMap& map) {
 }
 
 void SlamSystem::collect_events(SlamOutput& output) {
-  constexpr std::size_t kMaxEvents = 48;  // of one frame; readers of rtd/keyframes keep 64
-  output.loops = mapping_.loops(loops_told_);
-  loops_told_ += output.loops.size();
-  news_.add(mapping_.take_changes());
-  for (const KeyframeChange& change : news_.take(kMaxEvents)) {
-    output.events.push_back({event_count_++, change.frame_seq, change.stamp_ns, msg::to_message(change.T_world_camera),
-                             change.id, to_message(change.kind)});
-  }
+  constexpr std::size_t kMaxChanges = 48;  // of one frame; readers of rtd/keyframes keep 64
+  output.loops = mapping_.loops(loops_reported_);
+  loops_reported_ += output.loops.size();
+  changes_.add(mapping_.take_changes());
+  output.changes = changes_.take(kMaxChanges);
+  event_count_ += output.changes.size();
 }
 
-void SlamSystem::fill_result(const msg::FeatureFrame& message, const FrameInput& input, const TrackOutcome& outcome,
-                             SlamOutput& output) {
-  msg::TrackingResult& result = output.result;
-  output.T_map_odom = odometry_.T_map_odom();
+FrameResult SlamSystem::result_of(const msg::FeatureFrame& message, const FrameInput& input,
+                                  const TrackOutcome& outcome) const {
+  FrameResult result;
   result.seq = message.seq;
   result.stamp_ns = message.stamp_ns;
-  result.T_world_camera =
-      msg::to_message(msg::has_pose(outcome.state) ? outcome.tracked.T_world_camera : Eigen::Isometry3d::Identity());
-  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(result.covariance.data()) = outcome.covariance;
+  if (msg::has_pose(outcome.state)) result.T_world_camera = outcome.tracked.T_world_camera;
+  result.covariance = outcome.covariance;
   result.event_count = event_count_;
   result.state = outcome.state;
   result.inliers = static_cast<std::uint32_t>(outcome.inliers);
@@ -233,6 +212,7 @@ void SlamSystem::fill_result(const msg::FeatureFrame& message, const FrameInput&
     result.map_id = (outcome.map != nullptr ? outcome.map : map)->map;
     result.maps = static_cast<std::uint32_t>(map->components);
   }
+  return result;
 }
 
 std::vector<StampedPose> SlamSystem::trajectory(MapId id) const {

@@ -8,19 +8,35 @@
 
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
+#include "services/slam/core/corrections.hpp"
 #include "services/slam/core/map/trajectory.hpp"
-#include "services/slam/core/mapping/keyframe_news.hpp"
 #include "services/slam/core/mapping/mapping_worker.hpp"
-#include "services/slam/core/tracking/odometry_frame.hpp"
 #include "services/slam/core/tracking/readout_estimator.hpp"
 #include "services/slam/core/tracking/tracker.hpp"
 
 namespace rtd::slam {
 
+/// What SLAM knows of one frame.
+struct FrameResult {
+  std::uint64_t seq = 0;
+  std::int64_t stamp_ns = 0;
+  msg::TrackingState state = msg::TrackingState::kInitializing;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< valid where msg::has_pose(state)
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();        ///< (x y z rx ry rz), m and rad, world frame
+  std::uint64_t event_count = 0;               ///< keyframe changes up to and including this frame
+  std::uint32_t inliers = 0;                   ///< landmarks that the pose agrees with
+  std::uint32_t features_static = 0;           ///< offered to tracking
+  std::uint32_t features_removed = 0;          ///< left out because the filter judged them dynamic
+  std::uint32_t keyframes = 0, landmarks = 0;  ///< size of the whole map
+  MapId map_id = 0;                            ///< component of the pose
+  std::uint32_t maps = 0;                      ///< components
+  std::array<float, msg::kSlamStages> stage_ms{};
+};
+
 /// What one frame led to.
 struct SlamOutput {
-  msg::TrackingResult result{};            ///< published_ns and finished_ns are the caller's to fill
-  std::vector<msg::KeyframeEvent> events;  ///< to be published before the result
+  FrameResult result;
+  std::vector<KeyframeChange> changes;                           ///< to be published before the result
   Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();  ///< takes up the jumps when the map is corrected
   std::vector<LoopClosure> loops;                                ///< closed since the last frame
   std::uint32_t invalid_features = 0;  ///< left out because a value is not finite or out of range
@@ -67,8 +83,7 @@ class SlamSystem {
   void follow_reference(const TrackOutcome& outcome);
   bool follow_map(const LocalMap& map);
   void collect_events(SlamOutput& output);
-  void fill_result(const msg::FeatureFrame& message, const FrameInput& input, const TrackOutcome& outcome,
-                   SlamOutput& output);
+  FrameResult result_of(const msg::FeatureFrame& message, const FrameInput& input, const TrackOutcome& outcome) const;
 
   SlamConfig config_;
   Clock now_ns_;
@@ -80,10 +95,10 @@ class SlamSystem {
   OdometryFrame odometry_;
   bool had_pose_ = false;  ///< the last frame
   MapId map_ = 0;          ///< component that it was tracked in
-  KeyframeNews news_;
+  KeyframeChangeQueue changes_;
   std::vector<FrameRecord> frames_;
   std::uint64_t event_count_ = 0;
-  std::size_t loops_told_ = 0;
+  std::size_t loops_reported_ = 0;
   std::uint64_t source_restarts_ = 0;
   std::optional<std::uint64_t> last_seq_;
   std::int64_t last_stamp_ns_ = 0;

@@ -170,7 +170,7 @@ int main(int argc, char** argv) {
       std::printf(
           "%4lu state %u inliers %4u static %4u removed %4u keyframes %3u landmarks %5u events %zu  %.1f ms %s\n",
           static_cast<unsigned long>(r.seq), static_cast<unsigned>(r.state), r.inliers, r.features_static,
-          r.features_removed, r.keyframes, r.landmarks, output.events.size(),
+          r.features_removed, r.keyframes, r.landmarks, output.changes.size(),
           static_cast<double>(r.stage_ms[rtd::msg::kStageSlamTotal]), output.problem.c_str());
     };
   }

@@ -13,8 +13,8 @@
 #include "services/camera/core/source_factory.hpp"
 #include "services/evaluation/core/trajectory/trajectory.hpp"
 #include "services/filter/core/orb/orb_extractor.hpp"
-#include "services/slam/core/place/built_in_vocabulary.hpp"
 #include "services/slam/core/place/keyframe_database.hpp"
+#include "services/slam/core/place/vocabulary.hpp"
 
 namespace {
 

@@ -22,7 +22,7 @@ struct Options {
   slam::SlamConfig slam;
 };
 
-void print_frame(const msg::TrackingResult& result, double error_m, double error_deg) {
+void print_frame(const slam::FrameResult& result, double error_m, double error_deg) {
   std::printf("   %llu %s: %u inliers of %u features, map %u, %.4f m %.2f deg\n",
               static_cast<unsigned long long>(result.seq), to_string(result.state), result.inliers,
               result.features_static, result.map_id, error_m, error_deg);

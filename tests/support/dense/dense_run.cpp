@@ -10,6 +10,7 @@
 #include "common/msg/transform_eigen.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/evaluation/core/trajectory/ate.hpp"
+#include "services/slam/slam_messages.hpp"
 
 namespace rtd::test_support {
 namespace {
@@ -87,14 +88,14 @@ DenseReport run_dense(const DenseOptions& options) {
     const slam::SlamOutput output = slam.process(*make_feature_frame(frame->image, front.features));
     front_end->listen(output);
     bool wanted = frame->image.seq % static_cast<std::uint64_t>(options.every) == 0;
-    for (const msg::KeyframeEvent& event : output.events) {
+    for (const msg::KeyframeEvent& event : slam::make_events(output)) {
       map.hear(event);
       wanted = wanted || (event.kind == msg::KeyframeEventKind::kCreated && event.frame_seq == frame->image.seq);
     }
     if (!wanted || output.result.state != msg::TrackingState::kOk) continue;
     const dense::DynamicMask mask =
         options.use_masks ? mask_of(*frame, front, options.front_end.mode) : dense::all_static();
-    const Eigen::Isometry3d T_world_camera = msg::to_isometry(output.result.T_world_camera);
+    const Eigen::Isometry3d T_world_camera = msg::to_isometry(slam::make_result(output.result).T_world_camera);
     const double start_ms = cpu_ms();
     const dense::FusionReport fusion = map.integrate(frame->image, mask, T_world_camera);
     total_ms += cpu_ms() - start_ms;

@@ -29,12 +29,45 @@ msg::TrackingResult result_at(std::int64_t stamp_ns, const Eigen::Isometry3d& T_
   return result;
 }
 
+OdometryPose odometry_at(std::int64_t stamp_ns, const Eigen::Isometry3d& T_odom_camera) {
+  return to_odometry_frame(result_at(stamp_ns, T_odom_camera), Eigen::Isometry3d::Identity());
+}
+
+TEST(Result, takes_over_pose_covariance_and_counters) {
+  FrameResult result;
+  result.seq = 7;
+  result.state = msg::TrackingState::kOk;
+  result.T_world_camera = geometry::se3_exp(Vector6d::Constant(0.3));
+  result.covariance(0, 5) = 2;
+  result.maps = 3;
+  const msg::TrackingResult message = make_result(result);
+  EXPECT_EQ(message.seq, 7U);
+  EXPECT_EQ(message.state, msg::TrackingState::kOk);
+  EXPECT_TRUE(msg::to_isometry(message.T_world_camera).isApprox(result.T_world_camera, 1e-12));
+  EXPECT_EQ(message.covariance[5], 2) << "row-major";
+  EXPECT_EQ(message.maps, 3U);
+}
+
+TEST(KeyframeEvents, are_numbered_without_gaps) {
+  SlamOutput output;
+  output.result.event_count = 12;
+  output.changes = {{KeyframeChange::Kind::kRemoved, 4, 40, 400, Eigen::Isometry3d::Identity()},
+                    {KeyframeChange::Kind::kCreated, 5, 50, 500, Eigen::Isometry3d::Identity()}};
+  const std::vector<msg::KeyframeEvent> events = make_events(output);
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].event_index, 10U);
+  EXPECT_EQ(events[1].event_index, 11U);
+  EXPECT_EQ(events[0].kind, msg::KeyframeEventKind::kRemoved);
+  EXPECT_EQ(events[1].keyframe_id, 5U);
+  EXPECT_EQ(events[1].frame_seq, 50U);
+}
+
 TEST(Odometry, twist_is_the_motion_per_second_in_the_camera_frame) {
   Eigen::Isometry3d T_world_first = Eigen::Isometry3d::Identity();
   T_world_first.linear() = Eigen::AngleAxisd(1.2, Eigen::Vector3d::UnitY()).toRotationMatrix();
   const Vector6d twist = (Vector6d() << 0.3, 0, 0.6, 0, 0.9, 0).finished();  // m/s, rad/s
-  const auto first = result_at(1'000'000'000, T_world_first);
-  const auto second = result_at(1'100'000'000, T_world_first * geometry::se3_exp(0.1 * twist));
+  const auto first = odometry_at(1'000'000'000, T_world_first);
+  const auto second = odometry_at(1'100'000'000, T_world_first * geometry::se3_exp(0.1 * twist));
   const msg::Odometry odometry = make_odometry(second, first, kNames);
   EXPECT_NEAR(odometry.twist.twist.linear.x, 0.3, 1e-6);
   EXPECT_NEAR(odometry.twist.twist.linear.z, 0.6, 1e-6);
@@ -46,15 +79,15 @@ TEST(Odometry, twist_is_the_motion_per_second_in_the_camera_frame) {
 }
 
 TEST(Odometry, has_no_twist_without_an_earlier_pose) {
-  const auto result = result_at(5, Eigen::Isometry3d::Identity());
-  EXPECT_EQ(make_odometry(result, std::nullopt, kNames).twist.twist.linear.x, 0);
-  EXPECT_EQ(make_odometry(result, result_at(5, geometry::se3_exp(Vector6d::Ones())), kNames).twist.twist.linear.x, 0);
+  const auto pose = odometry_at(5, Eigen::Isometry3d::Identity());
+  EXPECT_EQ(make_odometry(pose, std::nullopt, kNames).twist.twist.linear.x, 0);
+  EXPECT_EQ(make_odometry(pose, odometry_at(5, geometry::se3_exp(Vector6d::Ones())), kNames).twist.twist.linear.x, 0);
 }
 
 TEST(Tf, chains_map_to_odom_to_camera) {
   const Eigen::Isometry3d T_map_odom = geometry::se3_exp((Vector6d() << 0.4, -0.1, 0.2, 0.1, 0.5, -0.2).finished());
   const Eigen::Isometry3d T_map_camera = geometry::se3_exp(Vector6d::Constant(0.7));
-  const msg::TFMessage tf = make_tf(result_at(5, T_map_camera), T_map_odom, kNames);
+  const msg::TFMessage tf = make_tf(to_odometry_frame(result_at(5, T_map_camera), T_map_odom), T_map_odom, kNames);
   ASSERT_EQ(tf.transforms.size(), 2U);
   const auto T = [&](std::size_t i) {
     const auto& [t, q] = tf.transforms[i].transform;
@@ -70,10 +103,10 @@ TEST(Odometry, in_its_own_frame_turns_the_covariance_and_keeps_the_twist) {
   const Eigen::Isometry3d T_map_odom(Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitZ()));
   msg::TrackingResult result = result_at(5, Eigen::Isometry3d::Identity());
   result.covariance[0] = 9;  // map x is odom -y
-  const msg::TrackingResult smooth = to_odometry_frame(result, T_map_odom);
+  const msg::TrackingResult smooth = to_odometry_frame(result, T_map_odom).result;
   EXPECT_NEAR(smooth.covariance[7], 9, 1e-12);
   EXPECT_NEAR(smooth.covariance[0], 1e-4, 1e-12);
-  EXPECT_EQ(to_odometry_frame(result, Eigen::Isometry3d::Identity()).covariance, result.covariance);
+  EXPECT_EQ(to_odometry_frame(result, Eigen::Isometry3d::Identity()).result.covariance, result.covariance);
 }
 
 TEST(Cloud, lays_out_floats) {

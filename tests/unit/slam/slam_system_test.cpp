@@ -38,8 +38,8 @@ std::unique_ptr<msg::FeatureFrame> empty_view(std::uint64_t seq) {
   return frame;
 }
 
-double position_error_m(const msg::Transform& estimate, std::uint64_t seq) {
-  return (msg::to_isometry(estimate).translation() - FeatureWorld::T_world_camera(seq).translation()).norm();
+double position_error_m(const Eigen::Isometry3d& estimate, std::uint64_t seq) {
+  return (estimate.translation() - FeatureWorld::T_world_camera(seq).translation()).norm();
 }
 
 TEST(SlamSystem, follows_the_camera_through_an_exact_world) {
@@ -60,7 +60,7 @@ TEST(SlamSystem, stays_within_a_centimetre_with_noise) {
     ASSERT_EQ(output.result.state, TrackingState::kOk);
     EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 0.01) << "frame " << seq;
     if (seq == 0) continue;
-    const Eigen::Map<const Eigen::Matrix<double, 6, 6>> covariance(output.result.covariance.data());
+    const geometry::Matrix6d& covariance = output.result.covariance;
     const double sigma_m = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
     EXPECT_GT(sigma_m, 1e-5);
     EXPECT_LT(sigma_m, 0.01);
@@ -153,7 +153,7 @@ TEST(SlamSystem, stays_initializing_without_depth) {
     const SlamOutput output = slam.process(*frame);
     EXPECT_EQ(output.result.state, TrackingState::kInitializing);
     EXPECT_THAT(output.problem, ::testing::HasSubstr("depth"));
-    EXPECT_TRUE(output.events.empty());
+    EXPECT_TRUE(output.changes.empty());
   }
   EXPECT_EQ(slam.process(*view(world, 3)).result.state, TrackingState::kOk);
 }
@@ -244,29 +244,29 @@ TEST(SlamSystem, low_static_probability_takes_the_weight_from_movers) {
   EXPECT_LT(worst_m, 2e-3);
 }
 
-TEST(SlamSystem, events_tell_the_whole_story_of_the_keyframes) {
+TEST(SlamSystem, changes_are_the_whole_history_of_the_keyframes) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam();
-  std::uint64_t next_index = 0;
+  std::uint64_t changes = 0;
   std::set<std::uint32_t> known;
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
     const SlamOutput output = slam.process(*view(world, seq));
-    for (const msg::KeyframeEvent& event : output.events) {
-      EXPECT_EQ(event.event_index, next_index++);
-      switch (event.kind) {
-        case msg::KeyframeEventKind::kCreated:
-          EXPECT_TRUE(known.insert(event.keyframe_id).second);
-          EXPECT_EQ(event.frame_seq, seq);
+    for (const KeyframeChange& change : output.changes) {
+      switch (change.kind) {
+        case KeyframeChange::Kind::kCreated:
+          EXPECT_TRUE(known.insert(change.id).second);
+          EXPECT_EQ(change.frame_seq, seq);
           break;
-        case msg::KeyframeEventKind::kCorrected:
-          EXPECT_TRUE(known.count(event.keyframe_id));
+        case KeyframeChange::Kind::kCorrected:
+          EXPECT_TRUE(known.count(change.id));
           break;
-        case msg::KeyframeEventKind::kRemoved:
-          EXPECT_EQ(known.erase(event.keyframe_id), 1U);
+        case KeyframeChange::Kind::kRemoved:
+          EXPECT_EQ(known.erase(change.id), 1U);
           break;
       }
     }
-    EXPECT_EQ(output.result.event_count, next_index);
+    changes += output.changes.size();
+    EXPECT_EQ(output.result.event_count, changes);
     EXPECT_EQ(output.result.keyframes, known.size());
   }
 }

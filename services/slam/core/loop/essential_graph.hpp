@@ -2,13 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
 #include <map>
 #include <vector>
 
-#include "services/slam/core/loop/loop_edge.hpp"
+#include "services/slam/core/map/map.hpp"
 #include "services/slam/core/optimize/pose_graph.hpp"
 
 namespace rtd::slam {
+
+/// Two keyframes that were found to show the same place.
+struct LoopEdge {
+  KeyframeId older = kNoKeyframe, newer = kNoKeyframe;
+  Eigen::Isometry3d T_older_newer = Eigen::Isometry3d::Identity();  ///< between their cameras, as measured
+  int inliers = 0;  ///< landmarks of the old place that the newer keyframe was found to see
+};
 
 /// The pose graph of one component with the keyframes behind its nodes (ascending).
 struct EssentialGraph {

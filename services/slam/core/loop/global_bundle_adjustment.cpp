@@ -3,9 +3,10 @@
 #include "services/slam/core/loop/global_bundle_adjustment.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "services/slam/core/loop/essential_graph.hpp"
-#include "services/slam/core/map/scale_pyramid.hpp"
+#include "services/slam/core/map/frame.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -81,6 +82,49 @@ void apply_global_problem(Map& map, const GlobalProblem& problem) {
     landmark->position = problem.bundle.points[i];
     map.refresh_geometry(landmark->id);
   }
+}
+
+void GlobalAdjuster::run_in_background(std::function<void()> on_done) {
+  background_ = true;
+  on_done_ = std::move(on_done);
+}
+
+void GlobalAdjuster::start(GlobalProblem problem) {
+  cancel();
+  cancelled_ = false;
+  if (!background_) {
+    adjust(std::move(problem));
+    return;
+  }
+  thread_ = std::thread([this, own = std::move(problem)]() mutable {
+    adjust(std::move(own));
+    if (!cancelled_ && on_done_) on_done_();
+  });
+}
+
+void GlobalAdjuster::adjust(GlobalProblem problem) {
+  GlobalBundleOptions options = options_;
+  options.interrupted = [this] { return cancelled_.load(); };
+  adjust_globally(problem, options);
+  if (cancelled_) return;
+  const std::lock_guard lock(mutex_);
+  result_ = std::move(problem);
+}
+
+void GlobalAdjuster::cancel() {
+  cancelled_ = true;
+  wait();
+  const std::lock_guard lock(mutex_);
+  result_.reset();
+}
+
+void GlobalAdjuster::wait() {
+  if (thread_.joinable()) thread_.join();
+}
+
+std::optional<GlobalProblem> GlobalAdjuster::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(result_, std::nullopt);
 }
 
 }  // namespace rtd::slam

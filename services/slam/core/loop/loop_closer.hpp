@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "services/slam/core/loop/essential_graph.hpp"
 #include "services/slam/core/loop/loop_detector.hpp"
-#include "services/slam/core/loop/loop_edge.hpp"
 
 namespace rtd::slam {
 

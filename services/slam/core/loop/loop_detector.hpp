@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "services/slam/core/loop/place_verification.hpp"
+#include "services/slam/core/loop/place_meeting.hpp"
 #include "services/slam/core/place/keyframe_database.hpp"
 
 namespace rtd::slam {

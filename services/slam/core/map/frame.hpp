@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -14,6 +17,34 @@
 #include "services/slam/core/slam_config.hpp"
 
 namespace rtd::slam {
+
+/// The image pyramid behind the features: octave k is 1.2^k times smaller.
+inline constexpr int kOctaves = 8;
+inline constexpr double kScaleFactor = 1.2;
+
+inline constexpr std::array<double, kOctaves> kOctaveScale = [] {
+  std::array<double, kOctaves> scale{};
+  double value = 1;
+  for (double& s : scale) {
+    s = value;
+    value *= kScaleFactor;
+  }
+  return scale;
+}();
+
+/// Standard deviation of a keypoint of this octave, px of the full image.
+inline double sigma_px(int octave) {
+  return kOctaveScale[static_cast<std::size_t>(octave)];
+}
+
+/// 95 % of chi2 with 2 and 3 degrees of freedom: largest squared residual of an observation without and with depth.
+inline constexpr double kMaxChi2Pixel = 5.991, kMaxChi2Rgbd = 7.815;
+
+/// Octave in which a landmark appears at `distance_m` when octave 0 shows it at `max_distance_m`.
+inline int predict_octave(double max_distance_m, double distance_m) {
+  const double levels = std::log(max_distance_m / distance_m) / std::log(kScaleFactor);
+  return std::clamp(static_cast<int>(std::ceil(levels)), 0, kOctaves - 1);
+}
 
 /// One frame as SLAM sees it: the features that may be used, nothing of the image. Immutable once made and shared
 /// between tracker and mapper; not copyable because the grid refers to the features.
@@ -67,5 +98,16 @@ struct ShutterMotion {
 /// outside: never throws for its content.
 FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config,
                       RemovedFeatures removed = RemovedFeatures::kDrop, const ShutterMotion& motion = {});
+
+/// Time of a row relative to the middle one, in units of the readout time. Eq. (1).
+double row_time(double v_px, int height_px);
+
+/// How fast a static point in the camera's frame drifts back when the camera's motion is undone, m/s. Eq. (2).
+Eigen::Vector3d drift_of(const Eigen::Vector3d& p_camera, const geometry::Vector6d& velocity_per_s);
+
+/// Where (and how deep) a feature would have been seen had its row been exposed together with the middle one.
+/// Eq. (1), (2). A feature without depth is taken for far away: only the rotation moves it.
+msg::Feature undo_rolling_shutter(const msg::Feature& feature, const vision::RgbdProjection& camera, int height_px,
+                                  const ShutterMotion& motion);
 
 }  // namespace rtd::slam

@@ -3,8 +3,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <memory_resource>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "common/msg/features.hpp"
@@ -37,6 +44,109 @@ struct Landmark {
   double log_odds = 0.0;                               ///< of the same, with ProbabilityRule::kBelief
   msg::Descriptor descriptor{};                        ///< the observation that is nearest to all others
   std::vector<Observation> observations;               ///< ordered by keyframe, one per keyframe
+};
+
+/// What tracking gathered about a landmark since the last keyframe.
+struct LandmarkStatistics {
+  LandmarkId landmark = kNoLandmark;
+  std::uint32_t visible = 0, found = 0;  ///< frames that should have seen it / did
+  double log_odds = 0;                   ///< change of its static probability
+};
+using StatisticsById = std::pmr::unordered_map<LandmarkId, LandmarkStatistics>;
+
+/// A landmark's static probability as log odds: evidence adds up. docs/theory/tracking.md, "Belief".
+inline double to_probability(double log_odds) {
+  return 1 / (1 + std::exp(-log_odds));
+}
+
+/// What the first look says; one look proves little.
+inline double initial_log_odds(double feature_probability) {
+  constexpr double kMaxInitial = 2.0;
+  const double p = std::clamp(feature_probability, 1e-3, 1 - 1e-3);
+  return std::clamp(std::log(p / (1 - p)), -kMaxInitial, kMaxInitial);
+}
+
+/// `change`, cut so that `log_odds` + change stays within +-`bound`: the past counts only so much.
+inline double bounded_change(double log_odds, double change, double bound) {
+  return std::clamp(log_odds + change, -bound, bound) - log_odds;
+}
+
+/// Values by id, for ids that count up and of which most are soon gone again: a lookup is two loads, and pages without
+/// a value take no memory, wherever the ids lie. `kNone` is the value of ids that have none.
+template <class Value, Value kNone>
+class PagedIndex {
+ public:
+  Value find(std::uint32_t id) const {
+    const std::size_t page = id / kPageIds;
+    return page >= pages_.size() || pages_[page] == nullptr ? kNone : pages_[page]->values[id % kPageIds];
+  }
+  /// `id` must have no value yet, `value` must not be kNone.
+  void add(std::uint32_t id, Value value) {
+    const std::size_t page = id / kPageIds;
+    if (page >= pages_.size()) pages_.resize(page + 1);
+    if (pages_[page] == nullptr) {
+      pages_[page] = std::make_unique<Page>();
+      pages_[page]->values.fill(kNone);
+    }
+    pages_[page]->values[id % kPageIds] = value;
+    ++pages_[page]->used;
+  }
+  /// `id` must have a value.
+  void erase(std::uint32_t id) {
+    std::unique_ptr<Page>& page = pages_[id / kPageIds];
+    page->values[id % kPageIds] = kNone;
+    if (--page->used == 0) page.reset();
+  }
+  /// Ids that have a value, ascending.
+  template <class Visitor>
+  void for_each_id(Visitor&& visit) const {
+    for (std::size_t page = 0; page < pages_.size(); ++page) {
+      for (std::size_t i = 0; pages_[page] != nullptr && i < kPageIds; ++i) {
+        if (pages_[page]->values[i] != kNone) visit(static_cast<std::uint32_t>(page * kPageIds + i));
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kPageIds = 1024;
+  struct Page {
+    std::array<Value, kPageIds> values;
+    std::size_t used = 0;
+  };
+  std::vector<std::unique_ptr<Page>> pages_;  ///< by id / kPageIds; null where no id has a value
+};
+
+/// The landmarks of a map by id, in blocks whose places are used again: memory follows the landmarks that live. A
+/// landmark stays where it is while it lives.
+class LandmarkStore {
+ public:
+  /// Takes a landmark in; `id` must not be in use.
+  Landmark& emplace(LandmarkId id, Landmark landmark);
+  void erase(LandmarkId id);
+
+  /// Null when unknown.
+  const Landmark* find(LandmarkId id) const {
+    const Slot slot = slots_.find(id);
+    return slot == kNoSlot ? nullptr : &blocks_[slot / kBlockLandmarks][slot % kBlockLandmarks];
+  }
+  Landmark* find(LandmarkId id) {
+    const Slot slot = slots_.find(id);
+    return slot == kNoSlot ? nullptr : &blocks_[slot / kBlockLandmarks][slot % kBlockLandmarks];
+  }
+  /// Throws std::out_of_range when unknown.
+  Landmark& at(LandmarkId id);
+  std::size_t size() const { return size_; }
+  std::vector<LandmarkId> ids() const;  ///< ascending
+
+ private:
+  using Slot = std::uint32_t;
+  static constexpr Slot kNoSlot = std::numeric_limits<Slot>::max();
+  static constexpr std::size_t kBlockLandmarks = 256;
+
+  PagedIndex<Slot, kNoSlot> slots_;
+  std::vector<std::unique_ptr<Landmark[]>> blocks_;
+  std::vector<Slot> free_;
+  std::size_t size_ = 0;
 };
 
 }  // namespace rtd::slam

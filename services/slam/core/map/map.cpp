@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "common/vision/hamming.hpp"
-#include "services/slam/core/map/landmark_statistics.hpp"
-#include "services/slam/core/map/scale_pyramid.hpp"
+#include "services/slam/core/map/frame.hpp"
+#include "services/slam/core/map/landmark.hpp"
 
 namespace rtd::slam {
 namespace {

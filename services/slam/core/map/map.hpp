@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "services/slam/core/map/frame.hpp"
-#include "services/slam/core/map/landmark_store.hpp"
+#include "services/slam/core/map/landmark.hpp"
 
 namespace rtd::slam {
 

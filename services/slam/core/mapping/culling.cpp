@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/mapping/culling.hpp"
+#include "services/slam/core/mapping/mapping_steps.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/mapping/landmark_creation.hpp"
+#include "services/slam/core/mapping/mapping_steps.hpp"
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -8,16 +8,13 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/vision/hamming.hpp"
-#include "services/slam/core/map/scale_pyramid.hpp"
+#include "services/slam/core/map/frame.hpp"
 
 namespace rtd::slam {
 namespace {
 
-constexpr int kMaxHamming = 50;
 constexpr double kMaxRatio = 0.8;
-constexpr double kMaxChi2Line = 3.84;    // 95 %, 1 degree of freedom
-constexpr double kMaxChi2Pixel = 5.991;  // 2 degrees
-constexpr double kMaxChi2Rgbd = 7.815;   // 3 degrees
+constexpr double kMaxChi2Line = 3.84;  // 95 %, 1 degree of freedom
 
 /// A keyframe with what the search needs at hand.
 struct View {
@@ -64,6 +61,7 @@ std::optional<std::uint32_t> search_epipolar(const View& view1, std::uint32_t fe
   const msg::Feature& f1 = view1.frame.features[feature1];
   const Eigen::Vector3d line = F_1_2.transpose() * Eigen::Vector3d(f1.u_px, f1.v_px, 1);
   const double line_norm2 = line.head<2>().squaredNorm();
+  constexpr int kMaxHamming = 50;
   int best = kMaxHamming + 1, second = 257;
   std::optional<std::uint32_t> found;
   for (const std::uint32_t feature2 : free2) {

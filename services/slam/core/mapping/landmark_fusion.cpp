@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/mapping/landmark_fusion.hpp"
+#include "services/slam/core/mapping/mapping_steps.hpp"
 
 #include <algorithm>
 
 #include "common/vision/hamming.hpp"
-#include "services/slam/core/map/scale_pyramid.hpp"
-#include "services/slam/core/tracking/projection.hpp"
+#include "services/slam/core/map/frame.hpp"
+#include "services/slam/core/tracking/matcher.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -34,7 +34,6 @@ bool sees(const Landmark& landmark, KeyframeId keyframe) {
 /// The feature that shows the landmark: near its projection, within the reprojection chi2, most similar.
 std::optional<std::uint32_t> find_feature(const Frame& frame, const SearchPoint& point) {
   constexpr int kMaxHamming = 50;
-  constexpr double kMaxChi2Pixel = 5.991, kMaxChi2Rgbd = 7.815;
   int best = kMaxHamming + 1;
   std::optional<std::uint32_t> found;
   frame.grid.for_each(point.window, [&](std::uint32_t i) {

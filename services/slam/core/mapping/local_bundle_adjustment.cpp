@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/mapping/local_bundle_adjustment.hpp"
+#include "services/slam/core/mapping/mapping_steps.hpp"
 
 #include <algorithm>
 
-#include "services/slam/core/map/scale_pyramid.hpp"
+#include "services/slam/core/map/frame.hpp"
 #include "services/slam/core/optimize/bundle_adjustment.hpp"
 
 namespace rtd::slam {

@@ -5,10 +5,8 @@
 #include <algorithm>
 
 #include "common/geometry/se3.hpp"
-#include "services/slam/core/mapping/landmark_creation.hpp"
-#include "services/slam/core/mapping/landmark_fusion.hpp"
-#include "services/slam/core/mapping/local_bundle_adjustment.hpp"
-#include "services/slam/core/place/built_in_vocabulary.hpp"
+#include "services/slam/core/mapping/mapping_steps.hpp"
+#include "services/slam/core/place/vocabulary.hpp"
 
 namespace rtd::slam {
 namespace {

@@ -7,12 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include "services/slam/core/loop/global_adjuster.hpp"
+#include "common/msg/tracking.hpp"
+#include "services/slam/core/loop/global_bundle_adjustment.hpp"
 #include "services/slam/core/loop/loop_closer.hpp"
-#include "services/slam/core/map/landmark_statistics.hpp"
+#include "services/slam/core/map/landmark.hpp"
 #include "services/slam/core/map/local_map.hpp"
 #include "services/slam/core/map/map.hpp"
-#include "services/slam/core/mapping/culling.hpp"
+#include "services/slam/core/mapping/mapping_steps.hpp"
 #include "services/slam/core/place/keyframe_database.hpp"
 #include "services/slam/core/place/vocabulary.hpp"
 
@@ -29,9 +30,9 @@ struct KeyframeProposal {
   std::vector<LandmarkStatistics> statistics;
 };
 
-/// What became of a keyframe since it was last told.
+/// What became of a keyframe since it was last announced.
 struct KeyframeChange {
-  enum class Kind : std::uint8_t { kCreated, kCorrected, kRemoved };
+  using Kind = msg::KeyframeEventKind;
   Kind kind = Kind::kCreated;
   KeyframeId id = kNoKeyframe;
   std::uint64_t frame_seq = 0;
@@ -87,7 +88,7 @@ class Mapper {
   LoopCloser loop_closer_;
   std::vector<LoopClosure> loops_;
   GlobalAdjuster adjuster_;
-  std::map<KeyframeId, Eigen::Isometry3d> announced_;  ///< T_world_camera as last told
+  std::map<KeyframeId, Eigen::Isometry3d> announced_;  ///< T_world_camera as last announced
   KeyframeId next_checked_ = 0;                        ///< in turn, of those that were not adjusted
   std::vector<KeyframeChange> changes_;
   std::uint64_t snapshots_ = 0;

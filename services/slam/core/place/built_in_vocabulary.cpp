@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/place/built_in_vocabulary.hpp"
+#include "services/slam/core/place/vocabulary.hpp"
 
 // The file as it is, between two symbols: no 2 MB of source text to compile.
 __asm__(

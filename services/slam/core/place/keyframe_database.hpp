@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "services/slam/core/map/map.hpp"
-#include "services/slam/core/place/bag_of_words.hpp"
+#include "services/slam/core/place/vocabulary.hpp"
 
 namespace rtd::slam {
 

@@ -45,6 +45,18 @@ T take(std::span<const std::byte>& bytes) {
 
 }  // namespace
 
+float similarity(const BagOfWords& a, const BagOfWords& b) {
+  float sum = 0;
+  for (auto i = a.words.begin(), j = b.words.begin(); i != a.words.end() && j != b.words.end();) {
+    if (i->word == j->word) {
+      sum += std::min((i++)->weight, (j++)->weight);
+    } else {
+      ++(i->word < j->word ? i : j);
+    }
+  }
+  return sum;
+}
+
 Vocabulary::Vocabulary(std::vector<VocabularyNode> nodes, std::vector<float> idf)
     : nodes_(std::move(nodes)), idf_(std::move(idf)) {
   if (nodes_.size() < 2 || nodes_[0].children == 0) refuse("no words");

@@ -4,15 +4,31 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "common/msg/features.hpp"
-#include "services/slam/core/place/bag_of_words.hpp"
 
 namespace rtd::slam {
+
+using WordId = std::uint32_t;
+
+struct WeightedWord {
+  WordId word = 0;
+  float weight = 0;
+};
+
+/// What an image shows, as words of a Vocabulary.
+struct BagOfWords {
+  std::vector<WeightedWord> words;    ///< ascending, weights add up to 1; empty without features
+  std::vector<std::uint16_t> groups;  ///< per feature: an inner node of the tree; like features share one
+};
+
+/// Likeness of two images in [0, 1]: what their weights have in common. docs/theory/place_recognition.md Eq. (3).
+float similarity(const BagOfWords& a, const BagOfWords& b);
 
 /// A vocabulary file that cannot be used; the message names cause and fix.
 class VocabularyError : public std::runtime_error {
@@ -60,5 +76,9 @@ class Vocabulary {
   std::vector<VocabularyNode> nodes_;
   std::vector<float> idf_;
 };
+
+/// The vocabulary that was trained when this program was built (rtd-train-vocabulary) and lies inside it. Read at the
+/// first call, then shared. Any thread.
+std::shared_ptr<const Vocabulary> built_in_vocabulary();
 
 }  // namespace rtd::slam

@@ -4,7 +4,6 @@
 
 #include "common/mcap/crc32.hpp"
 #include "common/mcap/decode.hpp"
-#include "services/slam/core/store/field_io.hpp"
 
 namespace rtd::slam::map_format {
 namespace {

@@ -2,12 +2,70 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "common/mcap/byte_sink.hpp"
 #include "common/mcap/byte_source.hpp"
-#include "services/slam/core/store/map_file_error.hpp"
+#include "common/mcap/encode.hpp"
+#include "common/msg/features.hpp"
+#include "common/ros_codec/byte_cursor.hpp"
 #include "services/slam/core/store/map_format.hpp"
 
 namespace rtd::slam::map_format {
+
+/// Appends fields to a buffer.
+class FieldWriter {
+ public:
+  explicit FieldWriter(mcap::Bytes& out) : out_(out) {}
+
+  template <class... Fields>
+  void operator()(const Fields&... fields) {
+    (put(fields), ...);
+  }
+
+ private:
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void put(T value) { out_.insert(out_.end(), bytes(&value), bytes(&value) + sizeof(T)); }
+  void put(const msg::Descriptor& value) { out_.insert(out_.end(), bytes(&value), bytes(&value) + value.size()); }
+  void put(const Eigen::Vector3d& v) { (*this)(v.x(), v.y(), v.z()); }
+  void put(const Eigen::Isometry3d& T) {
+    for (int column = 0; column < 4; ++column) put(Eigen::Vector3d(T.matrix().col(column).head<3>()));
+  }
+  static const std::byte* bytes(const void* at) { return static_cast<const std::byte*>(at); }
+
+  mcap::Bytes& out_;
+};
+
+/// Takes fields off the front of a view. Throws ros::WireError instead of reading past its end.
+class FieldReader {
+ public:
+  explicit FieldReader(mcap::ByteView in) : cursor_({reinterpret_cast<const std::uint8_t*>(in.data()), in.size()}) {}
+
+  std::size_t left() const { return cursor_.remaining(); }
+  template <class... Fields>
+  void operator()(Fields&... fields) {
+    (get(fields), ...);
+  }
+  /// A part of the view, to be read on its own.
+  FieldReader part(std::size_t size) { return FieldReader(std::as_bytes(cursor_.take(size))); }
+
+ private:
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void get(T& value) { value = cursor_.read<T>(); }
+  void get(msg::Descriptor& value) { std::memcpy(value.data(), cursor_.take(value.size()).data(), value.size()); }
+  void get(Eigen::Vector3d& v) { (*this)(v.x(), v.y(), v.z()); }
+  void get(Eigen::Isometry3d& T) {
+    for (int column = 0; column < 4; ++column) {
+      Eigen::Vector3d v;
+      get(v);
+      T.matrix().col(column).head<3>() = v;
+    }
+  }
+
+  ros::ByteCursor cursor_;
+};
 
 /// Writes preamble and blocks of a map file, each with its CRC. Throws mcap::IoError.
 class BlockWriter {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "services/slam/core/store/soundness.hpp"
+#include "services/slam/core/store/map_format.hpp"
 
 namespace rtd::slam::map_format {
 namespace {

@@ -5,7 +5,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "services/slam/core/store/field_io.hpp"
+#include "services/slam/core/store/block_io.hpp"
 #include "services/slam/core/store/map_format.hpp"
 #include "services/slam/core/store/map_reader.hpp"
 

@@ -3,14 +3,38 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "services/slam/core/map/map.hpp"
 
+namespace rtd::slam {
+
+enum class MapFileDefect {
+  kNotAMap,  ///< another kind of file
+  kVersion,  ///< a map file of another version of the format
+  kDamaged,  ///< cut, changed, or not what a map can be
+};
+
+/// A file cannot be read as a map: what() says where, why and what can be done.
+class MapFileError : public std::runtime_error {
+ public:
+  MapFileError(MapFileDefect defect, const std::string& what) : std::runtime_error(what), defect_(defect) {}
+  MapFileDefect defect() const { return defect_; }
+
+ private:
+  MapFileDefect defect_;
+};
+
+}  // namespace rtd::slam
+
 /// The numbers of a map file, docs/map_file.md. All little-endian.
+/// What a value must be to be part of a map: asked before it is written and after it is read.
 namespace rtd::slam::map_format {
 
 constexpr std::string_view kMagic{"\x89RTDMAP\n", 8};
@@ -53,5 +77,25 @@ struct Head {
   ProbabilityRule probability_rule = ProbabilityRule::kMeanOfObservations;
   std::vector<StoredCamera> cameras;
 };
+
+inline bool is_rigid(const Eigen::Isometry3d& T) {
+  constexpr double kTolerance = 1e-6;
+  const Eigen::Matrix3d R = T.linear();
+  return T.translation().allFinite() && R.allFinite() &&
+         (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kTolerance && R.determinant() > 0;
+}
+
+inline bool is_sound(const Landmark& landmark) {
+  return landmark.position.allFinite() && landmark.normal.allFinite() && std::isfinite(landmark.min_distance_m) &&
+         std::isfinite(landmark.max_distance_m) && landmark.min_distance_m >= 0 && landmark.max_distance_m >= 0 &&
+         landmark.static_probability >= 0 && landmark.static_probability <= 1 && std::isfinite(landmark.log_odds);
+}
+
+inline bool is_sound(const StoredCamera& camera) {
+  const auto& [fx, fy, cx, cy, disparity_px_m] = camera.projection;
+  const auto side = [](int px) { return px > 0 && px <= kMaxImageSide_px; };
+  return std::isfinite(fx) && std::isfinite(fy) && std::isfinite(cx) && std::isfinite(cy) && fx > 1 && fy > 1 &&
+         std::isfinite(disparity_px_m) && disparity_px_m > 0 && side(camera.width_px) && side(camera.height_px);
+}
 
 }  // namespace rtd::slam::map_format

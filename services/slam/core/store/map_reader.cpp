@@ -4,7 +4,6 @@
 
 #include "services/slam/core/store/block_io.hpp"
 #include "services/slam/core/store/contents_builder.hpp"
-#include "services/slam/core/store/field_io.hpp"
 
 namespace rtd::slam {
 namespace {

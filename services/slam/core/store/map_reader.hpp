@@ -6,7 +6,7 @@
 
 #include "common/mcap/byte_source.hpp"
 #include "services/slam/core/map/map.hpp"
-#include "services/slam/core/store/map_file_error.hpp"
+#include "services/slam/core/store/map_format.hpp"
 
 namespace rtd::slam {
 

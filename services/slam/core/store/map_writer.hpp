@@ -2,10 +2,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "common/mcap/byte_sink.hpp"
-#include "services/slam/core/store/map_snapshot.hpp"
+#include "common/mcap/encode.hpp"
+#include "services/slam/core/store/map_format.hpp"
 
 namespace rtd::slam {
+
+/// What a map file needs of a map, copied out of it in moments so that mapping can go on while it is written: poses,
+/// links and landmarks are copies, the features of the keyframes are shared.
+struct MapSnapshot {
+  struct Keyframe {
+    FramePtr frame;
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+    KeyframeId id = kNoKeyframe, parent = kNoKeyframe;
+    MapId map = 0;
+    std::uint16_t camera = 0;          ///< index into head.cameras
+    std::size_t observations_end = 0;  ///< in `observations`; they begin where those of the keyframe before end
+  };
+  struct Observation {
+    LandmarkId landmark = kNoLandmark;
+    std::uint16_t feature = 0;
+  };
+
+  map_format::Head head;
+  mcap::Bytes landmarks;                 ///< records of blocks LAND
+  std::vector<LandmarkId> landmark_ids;  ///< of these records
+  std::vector<Keyframe> keyframes;       ///< by id
+  std::vector<Observation> observations;
+  mcap::Bytes removed;  ///< records of blocks REMV
+};
+
+/// Leaves out landmarks whose position is not finite, which no reader would take.
+MapSnapshot take_snapshot(const Map& map);
 
 /// Writes a map file (docs/map_file.md) in blocks of about 1 MiB: needs no more memory than that. Throws mcap::IoError,
 /// and std::runtime_error when the map could not be read back.

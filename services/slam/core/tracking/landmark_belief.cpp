@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/tracking/landmark_belief.hpp"
+#include "services/slam/core/tracking/tracking_steps.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "common/vision/hamming.hpp"
-#include "services/slam/core/map/scale_pyramid.hpp"
-#include "services/slam/core/tracking/projection.hpp"
+#include "services/slam/core/map/frame.hpp"
+#include "services/slam/core/tracking/matcher.hpp"
 
 namespace rtd::slam {
 namespace {

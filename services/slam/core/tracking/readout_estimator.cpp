@@ -8,8 +8,7 @@
 #include <limits>
 
 #include "common/vision/pose_optimizer.hpp"
-#include "services/slam/core/map/rolling_shutter.hpp"
-#include "services/slam/core/map/scale_pyramid.hpp"
+#include "services/slam/core/map/frame.hpp"
 
 namespace rtd::slam {
 namespace {

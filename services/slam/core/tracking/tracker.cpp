@@ -4,17 +4,13 @@
 
 #include <algorithm>
 
-#include "services/slam/core/tracking/landmark_belief.hpp"
+#include "services/slam/core/tracking/tracking_steps.hpp"
 
 namespace rtd::slam {
 namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
 constexpr double kMaxPredictionGap_s = 0.5;  ///< a longer gap says nothing about the motion
-
-float to_ms(std::int64_t duration_ns) {
-  return static_cast<float>(static_cast<double>(duration_ns) * 1e-6);
-}
 
 double seconds_between(const Frame& earlier, const Frame& later) {
   return static_cast<double>(later.stamp_ns - earlier.stamp_ns) / kNanosecondsPerSecond;
@@ -60,16 +56,16 @@ TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
   outcome.tracked = last_;
   outcome.inliers = static_cast<int>(map->landmarks.size());
   motion_.reset();
-  frames_since_keyframe_ = failed_frames_ = frames_at_place_ = 0;
-  unlocated_ = false;
-  outcome.map = place_ = std::move(map);
+  frames_since_keyframe_ = failed_frames_ = 0;
+  relocalizer_.settle(map);
+  outcome.map = std::move(map);
   return outcome;
 }
 
 TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
   const std::int64_t start_ns = now_ns_();
   TrackOutcome outcome;
-  outcome.map = choose_map(snapshot);
+  outcome.map = relocalizer_.choose_map(snapshot, last_.reference);
   adopt(*outcome.map);
   const PoseGuess guess = find_pose(*frame, *outcome.map);
   const std::int64_t matched_ns = now_ns_();
@@ -87,7 +83,7 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
     return outcome;
   }
   const std::int64_t failed_ns = now_ns_();
-  auto found = may_relocalize(*frame) ? relocalize(*frame, places_(frame, place_attempts_++), context()) : std::nullopt;
+  auto found = relocalizer_.search(frame, msg::has_pose(state_), context());
   outcome.stage_ms[msg::kStageRelocalize] = to_ms(now_ns_() - failed_ns);
   if (found) {
     enter_place(outcome, std::move(frame), std::move(*found));
@@ -107,17 +103,7 @@ void Tracker::await_relocalization() {
   last_ = TrackedFrame{};
   state_ = msg::TrackingState::kLost;
   failed_frames_ = config_.tracker.recently_lost_frames;
-  unlocated_ = true;
-}
-
-/// Where the camera entered the map, until the mapper's snapshots have followed it there: they come from another
-/// thread.
-LocalMapPtr Tracker::choose_map(const LocalMapPtr& snapshot) {
-  constexpr int kMaxFrames = 30;  // the keyframe that is waited for may have been removed meanwhile
-  if (place_ == nullptr) return snapshot;
-  if (snapshot->find_keyframe(last_.reference) == nullptr && ++frames_at_place_ <= kMaxFrames) return place_;
-  place_.reset();
-  return snapshot;
+  relocalizer_.await();
 }
 
 /// The map may have moved under the last frame, and the last frame may have become a keyframe with new landmarks.
@@ -179,13 +165,6 @@ PoseGuess Tracker::recover(const Frame& frame, const LocalMap& map) {
   return {};
 }
 
-/// Lost, or about to be although the view is rich: somebody has carried the camera away.
-bool Tracker::may_relocalize(const Frame& frame) const {
-  constexpr std::size_t kFeatures = 15, kRichView = 100;
-  if (!config_.techniques.place_recognition || !places_) return false;
-  return frame.features.size() >= (msg::has_pose(state_) ? kRichView : kFeatures);
-}
-
 bool Tracker::acceptable(const PoseGuess& guess) const {
   // After a loss a wrong place is the greater danger.
   const double strictness = msg::has_pose(state_) ? 1.0 : 1.5;
@@ -196,14 +175,12 @@ bool Tracker::acceptable(const PoseGuess& guess) const {
 void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking) {
   follow(std::move(frame), *outcome.map, tracking);
   outcome.tracked = last_;
-  if (state_ == msg::TrackingState::kRelocalizing && ++confirmations_ < config_.place.confirmations) {
-    outcome.state = state_;
+  if (!relocalizer_.confirm()) {
+    outcome.state = msg::TrackingState::kRelocalizing;
     return;
   }
   count(*last_.frame, *outcome.map, tracking);
   failed_frames_ = 0;
-  place_attempts_ = 0;
-  unlocated_ = false;
   ++frames_since_keyframe_;
   outcome.state = state_ = msg::TrackingState::kOk;
   const geometry::Matrix6d local = config_.sensor.shared_error * tracking.guess.covariance;
@@ -220,12 +197,11 @@ bool Tracker::believable(const Frame& frame, const PoseGuess& start, const Local
   return start.inliers >= config_.tracker.min_inliers || agrees_widely(frame, tracking, config_.place);
 }
 
-void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalization found) {
-  state_ = msg::TrackingState::kRelocalizing;
-  outcome.map = place_ = std::move(found.place);
+/// No pose yet: the next frames have to agree.
+void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalizer::Found found) {
+  state_ = msg::TrackingState::kRecentlyLost;
+  outcome.map = std::move(found.place);
   outcome.inliers = found.tracking.guess.inliers;
-  frames_at_place_ = 0;
-  confirmations_ = -1;  // the frame itself does not count
   motion_.reset();
   accept(outcome, std::move(frame), found.tracking);
 }
@@ -233,8 +209,7 @@ void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalization 
 /// The frame is the last tracked one from now on.
 void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking) {
   const double gap_s = last_.frame == nullptr ? 0 : seconds_between(*last_.frame, *frame);
-  const bool entered = state_ == msg::TrackingState::kRelocalizing && confirmations_ >= 0;
-  const bool in_time = (msg::has_pose(state_) || entered) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
+  const bool in_time = (msg::has_pose(state_) || relocalizer_.entered()) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
   const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * tracking.guess.T_world_camera;
   const bool continuous = in_time && (!motion_ || is_steady(*motion_, T_last_camera, gap_s));
   motion_.reset();
@@ -273,7 +248,8 @@ void Tracker::reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess&
   motion_.reset();
   state_ = failed_frames_ > config_.tracker.recently_lost_frames ? msg::TrackingState::kLost
                                                                  : msg::TrackingState::kRecentlyLost;
-  outcome.state = unlocated_ ? msg::TrackingState::kRelocalizing : state_;
+  relocalizer_.give_up();
+  outcome.state = relocalizer_.located() ? state_ : msg::TrackingState::kRelocalizing;
 }
 
 void Tracker::count(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking) {
@@ -319,6 +295,19 @@ KeyframeProposal Tracker::propose_keyframe() {
   statistics_.clear();
   frames_since_keyframe_ = 0;
   return proposal;
+}
+
+KeyframeDecision decide_keyframe(const KeyframeSituation& s, const KeyframeConfig& config) {
+  constexpr double kYoungMapRatio = 0.4;  // with one keyframe only, its landmarks are not yet confirmed
+  const double ratio = s.map_keyframes < 2 ? kYoungMapRatio : config.reference_ratio;
+  const bool starving_of_close =
+      s.close_tracked < config.min_close_tracked && s.close_untracked > config.min_close_untracked;
+  const bool overdue = s.frames_since_keyframe >= config.max_gap_frames;
+  const bool convenient = s.frames_since_keyframe >= config.min_gap_frames && s.mapper_idle;
+  const bool weak = s.inliers < config.weak_ratio * s.reference_landmarks || starving_of_close;
+  const bool new_view = s.inliers < ratio * s.reference_landmarks || starving_of_close;
+  const bool insert = (overdue || convenient || weak) && new_view && s.inliers > config.min_inliers;
+  return insert ? KeyframeDecision::kOffer : KeyframeDecision::kNo;
 }
 
 }  // namespace rtd::slam

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <memory_resource>
 #include <optional>
@@ -10,13 +11,31 @@
 
 #include "common/msg/tracking.hpp"
 #include "services/slam/core/mapping/mapper.hpp"
-#include "services/slam/core/tracking/keyframe_policy.hpp"
-#include "services/slam/core/tracking/map_uncertainty.hpp"
-#include "services/slam/core/tracking/motion_prediction.hpp"
-#include "services/slam/core/tracking/relocalization.hpp"
+#include "services/slam/core/slam_config.hpp"
+#include "services/slam/core/tracking/pose_uncertainty.hpp"
+#include "services/slam/core/tracking/relocalizer.hpp"
 #include "services/slam/core/tracking/tracking_steps.hpp"
 
 namespace rtd::slam {
+
+/// What the decision looks at.
+struct KeyframeSituation {
+  int frames_since_keyframe = 0;
+  int map_keyframes = 0;
+  int inliers = 0;              ///< landmarks tracked in this frame
+  int reference_landmarks = 0;  ///< confirmed landmarks of the reference keyframe
+  int close_tracked = 0;        ///< close features that are landmarks
+  int close_untracked = 0;      ///< close features that could become some
+  bool mapper_idle = true;
+};
+
+enum class KeyframeDecision : std::uint8_t {
+  kNo,
+  kOffer,  ///< insert if the mapper has room
+};
+
+/// ORB-SLAM2's rule for RGB-D, docs/theory/tracking.md Eq. (6).
+KeyframeDecision decide_keyframe(const KeyframeSituation& situation, const KeyframeConfig& config);
 
 /// What tracking says of one frame.
 struct TrackOutcome {
@@ -31,9 +50,6 @@ struct TrackOutcome {
   bool at_place() const { return state == msg::TrackingState::kRelocalizing && tracked.frame != nullptr; }
 };
 
-/// Parts of the map around places that look like a frame; every attempt of a search gives others. May be empty.
-using PlaceSource = std::function<std::vector<LocalMapPtr>(const FramePtr&, std::size_t attempt)>;
-
 /// Follows the camera through the map: motion model, else reference keyframe; then local map; when that fails, the
 /// places that look alike. Owns no map, sees it in snapshots only. docs/theory/tracking.md, place_recognition.md. Not
 /// thread-safe.
@@ -41,7 +57,7 @@ class Tracker {
  public:
   /// Without `places` a lost camera is found only around its last pose.
   Tracker(const SlamConfig& config, Clock now_ns, PlaceSource places = {})
-      : config_(config), now_ns_(std::move(now_ns)), places_(std::move(places)) {}
+      : config_(config), now_ns_(std::move(now_ns)), relocalizer_(config, std::move(places)) {}
 
   /// Whether a first keyframe can be made of this frame.
   bool can_initialize(const Frame& frame) const;
@@ -60,8 +76,8 @@ class Tracker {
 
   /// The map was there before the first frame: no pose until a frame is found in it.
   void await_relocalization();
-  /// Not found in that map so far.
-  bool unlocated() const { return unlocated_; }
+  /// False until then.
+  bool located() const { return relocalizer_.located(); }
 
   /// Whether the frame just tracked should become a keyframe, and what the mapper then needs.
   KeyframeSituation keyframe_situation(const LocalMap& map, bool mapper_idle) const;
@@ -69,14 +85,12 @@ class Tracker {
 
  private:
   TrackingContext context() const { return {config_, now_ns_, statistics_}; }
-  LocalMapPtr choose_map(const LocalMapPtr& snapshot);
   Eigen::Isometry3d predict(const Frame& frame) const;
   PoseGuess find_pose(const Frame& frame, const LocalMap& map);
   PoseGuess recover(const Frame& frame, const LocalMap& map);
-  bool may_relocalize(const Frame& frame) const;
   bool acceptable(const PoseGuess& guess) const;
   bool believable(const Frame& frame, const PoseGuess& start, const LocalMapTracking& tracking) const;
-  void enter_place(TrackOutcome& outcome, FramePtr frame, Relocalization found);
+  void enter_place(TrackOutcome& outcome, FramePtr frame, Relocalizer::Found found);
   void follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking);
   void accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking);
   void reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess& weak);
@@ -85,7 +99,7 @@ class Tracker {
 
   SlamConfig config_;
   Clock now_ns_;
-  PlaceSource places_;
+  Relocalizer relocalizer_;
   msg::TrackingState state_ = msg::TrackingState::kInitializing;
   TrackedFrame last_;
   MapUncertainty uncertainty_;
@@ -95,12 +109,7 @@ class Tracker {
   int inliers_ = 0;
   int frames_since_keyframe_ = 0;
   int failed_frames_ = 0;
-  bool unlocated_ = false;  ///< told as kRelocalizing; state_ is kLost meanwhile
   std::size_t next_recovery_ = 0;
-  std::size_t place_attempts_ = 0;  ///< of the search that is going on
-  int confirmations_ = 0;           ///< frames that agreed with the recognised place
-  LocalMapPtr place_;               ///< where the camera entered the map, until the snapshots have followed it
-  int frames_at_place_ = 0;
   std::pmr::unsynchronized_pool_resource statistics_memory_;  ///< used again from keyframe to keyframe
   StatisticsById statistics_{&statistics_memory_};
 };

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "services/slam/core/map/scale_pyramid.hpp"
-#include "services/slam/core/mapping/landmark_creation.hpp"
+#include "services/slam/core/map/frame.hpp"
+#include "services/slam/core/mapping/mapping_steps.hpp"
+#include "services/slam/core/tracking/matcher.hpp"
 #include "services/slam/core/tracking/pose_ransac.hpp"
-#include "services/slam/core/tracking/projection.hpp"
 
 namespace rtd::slam {
 namespace {

@@ -6,12 +6,15 @@
 #include <vector>
 
 #include "common/vision/pose_optimizer.hpp"
-#include "services/slam/core/map/landmark_statistics.hpp"
+#include "services/slam/core/map/landmark.hpp"
 #include "services/slam/core/map/local_map.hpp"
 
 namespace rtd::slam {
 
 using Clock = std::function<std::int64_t()>;  ///< ns, monotonic; injected
+inline float to_ms(std::int64_t duration_ns) {
+  return static_cast<float>(static_cast<double>(duration_ns) * 1e-6);
+}
 
 /// A frame whose pose is known, with the landmarks found in it.
 struct TrackedFrame {
@@ -66,5 +69,16 @@ struct LocalMapTracking {
 };
 LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const PoseGuess& guess,
                                  const TrackingContext& context);
+
+/// What one tracked frame says of a landmark.
+struct LandmarkEvidence {
+  LandmarkId landmark = kNoLandmark;
+  double log_odds = 0;  ///< above 0: static
+};
+
+/// Evidence of a tracked frame: found where it should be; matched elsewhere while its neighbours fit; taken for
+/// dynamic by the filter; or not found, and what is measured there lies behind it. docs/theory/tracking.md, "Belief".
+std::vector<LandmarkEvidence> judge_landmarks(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking,
+                                              const BeliefConfig& config);
 
 }  // namespace rtd::slam

@@ -11,9 +11,9 @@
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/slam/core/loop/essential_graph.hpp"
-#include "services/slam/core/loop/global_adjuster.hpp"
+#include "services/slam/core/loop/global_bundle_adjustment.hpp"
 #include "services/slam/core/loop/loop_closer.hpp"
-#include "services/slam/core/place/built_in_vocabulary.hpp"
+#include "services/slam/core/place/vocabulary.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/walk_world.hpp"
 
@@ -267,8 +267,8 @@ Lap walk(bool loop_closing) {
     message->intrinsics[0] *= 1.02, message->intrinsics[1] *= 1.02;
     const SlamOutput output = slam.process(*message);
     EXPECT_EQ(output.result.state, msg::TrackingState::kOk) << i << ": " << output.problem;
-    EXPECT_LE(output.events.size(), 48U);
-    const Eigen::Isometry3d T_map = msg::to_isometry(output.result.T_world_camera);
+    EXPECT_LE(output.changes.size(), 48U);
+    const Eigen::Isometry3d T_map = output.result.T_world_camera;
     const Eigen::Isometry3d T_odom = output.T_map_odom.inverse() * T_map;
     if (T_odom_before) {
       const auto step_m = [](const auto& a, const auto& b) { return (b.translation() - a.translation()).norm(); };

@@ -19,7 +19,7 @@ constexpr double kHallX_m = 7, kStep_m = 0.05, kFarEnd_m = -3;
 /// Two places side by side, so that a camera on the way sees both.
 class TwoPlaces : public ::testing::Test {
  protected:
-  msg::TrackingResult look_from(double x_m) {
+  FrameResult look_from(double x_m) {
     T_world_camera_.translation().x() = x_m;
     auto frame = desk_.view(next_, T_world_camera_);
     const auto hall = hall_.view(next_, Eigen::Translation3d(-kHallX_m, 0, 0) * T_world_camera_);
@@ -28,13 +28,13 @@ class TwoPlaces : public ::testing::Test {
     }
     return show(*frame);
   }
-  msg::TrackingResult look_at_nothing() { return show(*test_support::make_empty_view(next_)); }
-  msg::TrackingResult show(const msg::FeatureFrame& frame) {
+  FrameResult look_at_nothing() { return show(*test_support::make_empty_view(next_)); }
+  FrameResult show(const msg::FeatureFrame& frame) {
     ++next_;
     return slam_.process(frame).result;
   }
-  double error_m(const msg::TrackingResult& result) const {
-    return (msg::to_isometry(result.T_world_camera).translation() - T_world_camera_.translation()).norm();
+  double error_m(const FrameResult& result) const {
+    return (result.T_world_camera.translation() - T_world_camera_.translation()).norm();
   }
 
  private:
@@ -48,7 +48,7 @@ TEST_F(TwoPlaces, become_one_map_when_the_lost_camera_walks_back) {
   double x_m = 0;
   const auto walk_to = [&](double end_m, std::uint32_t while_maps) {
     const double step_m = end_m > x_m ? kStep_m : -kStep_m;
-    msg::TrackingResult result;
+    FrameResult result;
     for (result.maps = while_maps; std::abs(end_m - x_m) > kStep_m / 2 && result.maps == while_maps; x_m += step_m) {
       result = look_from(x_m);
       EXPECT_EQ(result.state, TrackingState::kOk) << "at " << x_m << " m";
@@ -60,7 +60,7 @@ TEST_F(TwoPlaces, become_one_map_when_the_lost_camera_walks_back) {
   for (int i = 0; i < 60; ++i) ASSERT_NE(look_at_nothing().state, TrackingState::kOk);
 
   x_m = kHallX_m + 2;  // nothing of the desk is seen from here
-  msg::TrackingResult result;
+  FrameResult result;
   for (int i = 0; i < 120 && result.state != TrackingState::kOk; ++i) result = look_from(x_m);
   ASSERT_EQ(result.state, TrackingState::kOk) << "no new map in four seconds";
   EXPECT_EQ(result.map_id, 1U);

@@ -3,9 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "common/geometry/se3.hpp"
-#include "services/slam/core/mapping/culling.hpp"
-#include "services/slam/core/mapping/landmark_creation.hpp"
-#include "services/slam/core/mapping/landmark_fusion.hpp"
+#include "services/slam/core/mapping/mapping_steps.hpp"
 #include "services/slam/core/tracking/pose_ransac.hpp"
 #include "tests/support/feature_world.hpp"
 

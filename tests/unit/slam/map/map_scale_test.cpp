@@ -6,7 +6,7 @@
 
 #include <ctime>
 
-#include "services/slam/core/map/landmark_store.hpp"
+#include "services/slam/core/map/landmark.hpp"
 
 namespace rtd::test_support {
 namespace {

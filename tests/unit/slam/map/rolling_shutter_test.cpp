@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/map/rolling_shutter.hpp"
+#include "services/slam/core/map/frame.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ RunResult run(double true_readout_s, const SlamConfig& config) {
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
     const SlamOutput output = slam.process(*world.rolling_view(seq, true_readout_s));
     EXPECT_EQ(output.result.state, msg::TrackingState::kOk) << "frame " << seq;
-    found.push_back(msg::to_isometry(output.result.T_world_camera));
+    found.push_back(output.result.T_world_camera);
     if (seq < kSettled) continue;
     const Eigen::Isometry3d true_motion =
         FeatureWorld::T_world_camera(seq - kSpan).inverse() * FeatureWorld::T_world_camera(seq);

@@ -9,7 +9,6 @@
 #include <set>
 
 #include "common/vision/hamming.hpp"
-#include "services/slam/core/place/built_in_vocabulary.hpp"
 #include "services/slam/core/place/vocabulary_training.hpp"
 
 namespace rtd::slam {

@@ -42,9 +42,7 @@ mcap::Bytes make_map(const FeatureWorld& world, std::uint64_t frames) {
 }
 
 double position_error_m(const SlamOutput& output, std::uint64_t seq) {
-  return (msg::to_isometry(output.result.T_world_camera).translation() -
-          FeatureWorld::T_world_camera(seq).translation())
-      .norm();
+  return (output.result.T_world_camera.translation() - FeatureWorld::T_world_camera(seq).translation()).norm();
 }
 
 class LoadedMap : public ::testing::Test {
@@ -85,7 +83,7 @@ TEST_F(LoadedMap, is_found_at_once_and_left_as_it_is) {
     const SlamOutput output = slam.process(*view(seq));
     ASSERT_EQ(output.result.state, TrackingState::kOk) << "frame " << seq << ": " << output.problem;
     EXPECT_LT(position_error_m(output, seq), 0.01) << "frame " << seq;
-    EXPECT_TRUE(output.events.empty());
+    EXPECT_TRUE(output.changes.empty());
   }
   EXPECT_EQ(map_of(slam), file_);
 }
@@ -145,8 +143,8 @@ TEST_F(LoadedMap, grows_on_when_mapping_goes_on) {
     const SlamOutput output = slam.process(*view(seq));
     ASSERT_EQ(output.result.state, TrackingState::kOk) << "frame " << seq << ": " << output.problem;
     EXPECT_LT(position_error_m(output, seq), 0.015) << "frame " << seq;
-    for (const msg::KeyframeEvent& event : output.events) {
-      EXPECT_GE(event.keyframe_id, first_free) << "others do not know the frames of the loaded keyframes";
+    for (const KeyframeChange& change : output.changes) {
+      EXPECT_GE(change.id, first_free) << "others do not know the frames of the loaded keyframes";
     }
   }
   slam.read_map([&](const Map& map) {

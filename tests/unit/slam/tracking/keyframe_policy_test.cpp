@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/tracking/keyframe_policy.hpp"
+#include "services/slam/core/tracking/tracker.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/slam/core/slam_system.hpp"
-#include "services/slam/core/tracking/motion_prediction.hpp"
+#include "services/slam/core/tracking/pose_uncertainty.hpp"
 #include "tests/support/feature_world.hpp"
 
 namespace rtd::slam {
@@ -30,17 +30,16 @@ std::unique_ptr<msg::FeatureFrame> crowded_view(const FeatureWorld& world, std::
 }
 
 /// Position and rotation error in the world frame, as the covariance has them.
-geometry::Vector6d error_of(const msg::Transform& estimate, std::uint64_t seq) {
-  const Eigen::Isometry3d T_estimate = msg::to_isometry(estimate), T_truth = FeatureWorld::T_world_camera(seq);
+geometry::Vector6d error_of(const Eigen::Isometry3d& T_estimate, std::uint64_t seq) {
+  const Eigen::Isometry3d T_truth = FeatureWorld::T_world_camera(seq);
   geometry::Vector6d error;
   error << T_estimate.translation() - T_truth.translation(),
       geometry::so3_log(T_estimate.linear() * T_truth.linear().transpose());
   return error;
 }
 
-geometry::Vector6d sigma_of(const msg::TrackingResult& result) {
-  const Eigen::Map<const geometry::Matrix6d> covariance(result.covariance.data());
-  return covariance.diagonal().cwiseSqrt();
+geometry::Vector6d sigma_of(const FrameResult& result) {
+  return result.covariance.diagonal().cwiseSqrt();
 }
 
 constexpr std::uint64_t kHoldFrames = 14;  // at 30 Hz the default half second
@@ -79,9 +78,9 @@ TEST(Prediction, error_stays_within_three_sigma) {
         const SlamOutput output = slam.process(*crowded_view(world, seq, 0));
         ASSERT_EQ(output.result.state, TrackingState::kPredicted);
         // The map's world is the first camera.
-        const Eigen::Isometry3d T_estimate = T_truth_world * msg::to_isometry(output.result.T_world_camera);
+        const Eigen::Isometry3d T_estimate = T_truth_world * output.result.T_world_camera;
         const Eigen::Matrix3d R = T_truth_world.linear().transpose();
-        geometry::Vector6d error = error_of(msg::to_message(T_estimate), seq);
+        geometry::Vector6d error = error_of(T_estimate, seq);
         error << R * error.head<3>().eval(), R * error.tail<3>().eval();
         const geometry::Vector6d sigma = sigma_of(output.result);
         for (int axis = 0; axis < 6; ++axis) {
@@ -163,7 +162,7 @@ TEST(Prediction, jump_bends_no_frame) {
   for (std::uint64_t seq = 10; seq < 13; ++seq) {
     const SlamOutput output = slam.process(*world.view(seq, T_world_camera));
     ASSERT_EQ(output.result.state, TrackingState::kOk) << "frame " << seq;
-    const Eigen::Isometry3d T_estimate = msg::to_isometry(output.result.T_world_camera);
+    const Eigen::Isometry3d T_estimate = output.result.T_world_camera;
     EXPECT_LT((T_estimate.translation() - T_world_camera.translation()).norm(), 0.003) << "frame " << seq;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/tracking/relocalization.hpp"
+#include "services/slam/core/tracking/relocalizer.hpp"
 
 #include <gmock/gmock.h>
 
@@ -50,19 +50,18 @@ class Relocalization : public ::testing::Test {
     for (int i = 0; i < frames; ++i) {
       dark->seq = next_;
       dark->stamp_ns = FeatureWorld::stamp_ns(next_);
-      const msg::TrackingResult result = show(*dark).result;
+      const FrameResult result = show(*dark).result;
       last_dark_ = result.state;
       EXPECT_NE(result.state, TrackingState::kOk);
     }
   }
-  static double error_m(const msg::TrackingResult& result, std::uint64_t pose_of) {
-    return (msg::to_isometry(result.T_world_camera).translation() - FeatureWorld::T_world_camera(pose_of).translation())
-        .norm();
+  static double error_m(const FrameResult& result, std::uint64_t pose_of) {
+    return (result.T_world_camera.translation() - FeatureWorld::T_world_camera(pose_of).translation()).norm();
   }
   /// Frames until the pose is back, at a view that moves on from `pose_of`; -1: not within a second.
   int frames_until_found(std::uint64_t pose_of) {
     for (int i = 0; i < 30; ++i) {
-      const msg::TrackingResult result = look(pose_of + static_cast<std::uint64_t>(i)).result;
+      const FrameResult result = look(pose_of + static_cast<std::uint64_t>(i)).result;
       if (result.state != TrackingState::kOk) continue;
       EXPECT_LT(error_m(result, pose_of + static_cast<std::uint64_t>(i)), 0.01) << "m";
       return i;
@@ -112,7 +111,7 @@ TEST_F(Relocalization, needs_no_depth_at_a_known_place) {
   for (int i = 0; i < 10; ++i) {
     auto frame = view(world_, 20);
     for (msg::Feature& feature : frame->features) feature.depth_m = 0;
-    const msg::TrackingResult result = show(*frame).result;
+    const FrameResult result = show(*frame).result;
     if (result.state != TrackingState::kOk) continue;
     EXPECT_LT(error_m(result, 20), 0.02);
     return;
@@ -128,9 +127,9 @@ TEST_F(Relocalization, gives_out_no_pose_before_the_next_frames_agree) {
   cover(kDark);
   const std::size_t tracked = slam_->frames_tracked();
   for (int i = 0; i < 3; ++i) {
-    const msg::TrackingResult result = look(20).result;
+    const FrameResult result = look(20).result;
     EXPECT_EQ(result.state, TrackingState::kRelocalizing);
-    EXPECT_EQ(msg::to_isometry(result.T_world_camera).matrix(), Eigen::Matrix4d::Identity());
+    EXPECT_EQ(result.T_world_camera.matrix(), Eigen::Matrix4d::Identity());
   }
   EXPECT_EQ(slam_->frames_tracked(), tracked);
   EXPECT_EQ(look(20).result.state, TrackingState::kOk);
@@ -150,7 +149,7 @@ TEST_F(Relocalization, recognises_nothing_elsewhere) {
 
 TEST_F(Relocalization, begins_a_new_map_where_nobody_knows_the_view_and_comes_back) {
   map_frames(60);
-  std::vector<msg::TrackingResult> results;
+  std::vector<FrameResult> results;
   for (std::uint64_t i = 0; i < 150; ++i) results.push_back(show(*view(elsewhere_, i)).result);
   const auto begun = std::find_if(results.begin(), results.end(), [](const auto& r) { return r.map_id == 1; });
   ASSERT_NE(begun, results.end());
@@ -159,7 +158,7 @@ TEST_F(Relocalization, begins_a_new_map_where_nobody_knows_the_view_and_comes_ba
   const auto origin = static_cast<std::uint64_t>(begun - results.begin());
   const Eigen::Isometry3d T_origin_last =
       FeatureWorld::T_world_camera(origin).inverse() * FeatureWorld::T_world_camera(149);
-  EXPECT_LT((msg::to_isometry(results.back().T_world_camera).translation() - T_origin_last.translation()).norm(), 0.02)
+  EXPECT_LT((results.back().T_world_camera.translation() - T_origin_last.translation()).norm(), 0.02)
       << "m, in the new map's own frame";
   EXPECT_EQ(results.back().maps, 2U);
   EXPECT_THAT(slam_->maps(), ::testing::ElementsAre(0U, 1U));
@@ -167,7 +166,7 @@ TEST_F(Relocalization, begins_a_new_map_where_nobody_knows_the_view_and_comes_ba
   EXPECT_EQ(slam_->trajectory(1).size(), static_cast<std::size_t>(results.end() - begun));
 
   for (int i = 0; i < 20; ++i) {  // home again
-    const msg::TrackingResult result = look(30).result;
+    const FrameResult result = look(30).result;
     if (result.state != TrackingState::kOk) continue;
     EXPECT_EQ(result.map_id, 0U);
     EXPECT_LT(error_m(result, 30), 0.01);
@@ -207,12 +206,12 @@ TEST_F(Relocalization, same_input_same_bits) {
     next_ = 0;
     map_frames(50);
     cover(20);
-    std::vector<msg::Transform> poses;
-    for (std::uint64_t i = 0; i < 10; ++i) poses.push_back(look(15 + i).result.T_world_camera);
+    std::vector<Eigen::Matrix4d> poses;
+    for (std::uint64_t i = 0; i < 10; ++i) poses.push_back(look(15 + i).result.T_world_camera.matrix());
     return poses;
   };
   const auto first = run(), second = run();
-  EXPECT_EQ(std::memcmp(first.data(), second.data(), first.size() * sizeof(msg::Transform)), 0);
+  EXPECT_EQ(std::memcmp(first.data(), second.data(), first.size() * sizeof(Eigen::Matrix4d)), 0);
 }
 
 TEST_F(Relocalization, without_place_recognition_the_window_is_searched_as_before) {

@@ -3,8 +3,13 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <vector>
 
 #include "common/geometry/se3.hpp"
+#include "services/slam/core/mapping/mapper.hpp"
 #include "services/slam/core/slam_config.hpp"
 
 namespace rtd::slam {
@@ -30,6 +35,20 @@ class OdometryFrame {
  private:
   LoopConfig config_;
   Eigen::Isometry3d T_map_odom_ = Eigen::Isometry3d::Identity();
+};
+
+/// Keyframe changes that wait to be published. A closed loop moves thousands of keyframes at once. Their corrections
+/// leave in portions that fit into every reader's history, newest keyframes first; a keyframe that moves again before
+/// its turn is published once, with its last pose. New and removed keyframes never wait behind corrections.
+class KeyframeChangeQueue {
+ public:
+  void add(const std::vector<KeyframeChange>& changes);
+  std::vector<KeyframeChange> take(std::size_t count);
+  bool empty() const { return in_order_.empty() && corrected_.empty(); }
+
+ private:
+  std::deque<KeyframeChange> in_order_;  ///< created and removed
+  std::map<KeyframeId, KeyframeChange> corrected_;
 };
 
 }  // namespace rtd::slam

@@ -26,4 +26,9 @@ struct PlaceMeeting {
 std::optional<PlaceMeeting> meet_place(const Map& map, KeyframeId keyframe, KeyframeId candidate,
                                        const SlamConfig& config);
 
+/// Joins the landmarks of a keyframe and its neighbours with those of the place it was found at; both stand where they
+/// belong already. First those that the meeting found, then by projection. Returns how many landmarks were joined or
+/// gained an observation. docs/theory/loop_closing.md, "Fusion".
+int fuse_place(Map& map, KeyframeId keyframe, const PlaceMeeting& meeting, int neighbours);
+
 }  // namespace rtd::slam

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "services/slam/core/mapping/keyframe_news.hpp"
-#include "services/slam/core/tracking/odometry_frame.hpp"
+#include "services/slam/core/corrections.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -25,15 +24,15 @@ std::vector<KeyframeId> ids(const std::vector<KeyframeChange>& changes) {
   return ids;
 }
 
-TEST(KeyframeNews, tells_thousands_of_corrections_in_portions_newest_first_and_loses_none) {
+TEST(KeyframeChangeQueue, tells_thousands_of_corrections_in_portions_newest_first_and_loses_none) {
   constexpr KeyframeId kCount = 5000;
-  KeyframeNews news;
+  KeyframeChangeQueue queue;
   std::vector<KeyframeChange> all;
   for (KeyframeId id = 0; id < kCount; ++id) all.push_back(change(Kind::kCorrected, id));
-  news.add(all);
+  queue.add(all);
   std::vector<KeyframeId> told;
-  while (!news.empty()) {
-    const auto portion = ids(news.take(48));
+  while (!queue.empty()) {
+    const auto portion = ids(queue.take(48));
     ASSERT_LE(portion.size(), 48U);
     told.insert(told.end(), portion.begin(), portion.end());
   }
@@ -41,19 +40,19 @@ TEST(KeyframeNews, tells_thousands_of_corrections_in_portions_newest_first_and_l
   for (KeyframeId i = 0; i < kCount; ++i) ASSERT_EQ(told[i], kCount - 1 - i);
 }
 
-TEST(KeyframeNews, new_and_removed_keyframes_do_not_wait_behind_corrections) {
-  KeyframeNews news;
-  news.add({change(Kind::kCorrected, 1), change(Kind::kCorrected, 2), change(Kind::kRemoved, 2)});
-  news.add({change(Kind::kCreated, 3)});
-  EXPECT_THAT(ids(news.take(2)), ElementsAre(2, 3));
-  EXPECT_THAT(ids(news.take(9)), ElementsAre(1)) << "nobody hears of a keyframe that is gone";
+TEST(KeyframeChangeQueue, new_and_removed_keyframes_do_not_wait_behind_corrections) {
+  KeyframeChangeQueue queue;
+  queue.add({change(Kind::kCorrected, 1), change(Kind::kCorrected, 2), change(Kind::kRemoved, 2)});
+  queue.add({change(Kind::kCreated, 3)});
+  EXPECT_THAT(ids(queue.take(2)), ElementsAre(2, 3));
+  EXPECT_THAT(ids(queue.take(9)), ElementsAre(1)) << "nobody hears of a keyframe that is gone";
 }
 
-TEST(KeyframeNews, a_keyframe_that_moves_again_is_told_once_where_it_stands_then) {
-  KeyframeNews news;
-  news.add({change(Kind::kCorrected, 1, 0.5)});
-  news.add({change(Kind::kCorrected, 1, 0.7)});
-  const auto told = news.take(9);
+TEST(KeyframeChangeQueue, a_keyframe_that_moves_again_is_told_once_where_it_stands_then) {
+  KeyframeChangeQueue queue;
+  queue.add({change(Kind::kCorrected, 1, 0.5)});
+  queue.add({change(Kind::kCorrected, 1, 0.7)});
+  const auto told = queue.take(9);
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told[0].T_world_camera.translation().x(), 0.7);
 }

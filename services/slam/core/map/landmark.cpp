@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/map/landmark_store.hpp"
+#include "services/slam/core/map/landmark.hpp"
 
 #include <stdexcept>
 #include <string>

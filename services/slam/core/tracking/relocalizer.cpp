@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/tracking/relocalizer.hpp"
+
+#include <algorithm>
+
+namespace rtd::slam {
+namespace {
+
+/// Descriptors of the place's centre, RANSAC, optimisation, then the landmarks around it where that pose shows them.
+/// Empty unless the frame clearly belongs there.
+std::optional<LocalMapTracking> find_at(const Frame& frame, const LocalMap& place, const TrackingContext& context) {
+  const PoseGuess coarse = track_keyframe(frame, place.keyframes.front(), place, context);
+  if (!coarse.success) return std::nullopt;
+  LocalMapTracking tracking = track_local_map(frame, place, coarse, context);
+  if (!tracking.guess.success) return std::nullopt;
+  tracking = track_local_map(frame, place, tracking.guess, context);  // from a coarse pose many are missed
+  if (!is_convincing(frame, tracking, context.config.place)) return std::nullopt;
+  return tracking;
+}
+
+}  // namespace
+
+bool agrees_widely(const Frame& frame, const LocalMapTracking& tracking, const PlaceConfig& config) {
+  const auto possible = static_cast<double>(std::min(tracking.visible.size(), frame.features.size()));
+  return tracking.guess.success && tracking.guess.inliers >= config.min_found_ratio * possible;
+}
+
+bool is_convincing(const Frame& frame, const LocalMapTracking& tracking, const PlaceConfig& config) {
+  return tracking.guess.inliers >= config.min_inliers && agrees_widely(frame, tracking, config);
+}
+
+void Relocalizer::settle(LocalMapPtr map) {
+  state_ = State::kIdle;
+  located_ = true;
+  place_ = std::move(map);
+  frames_at_place_ = 0;
+}
+
+LocalMapPtr Relocalizer::choose_map(const LocalMapPtr& snapshot, KeyframeId reference) {
+  constexpr int kMaxFrames = 30;  // the keyframe that is waited for may have been removed meanwhile
+  if (place_ == nullptr) return snapshot;
+  if (snapshot->find_keyframe(reference) == nullptr && ++frames_at_place_ <= kMaxFrames) return place_;
+  place_.reset();
+  return snapshot;
+}
+
+/// Lost, or about to be although the view is rich: somebody has carried the camera away.
+bool Relocalizer::may_search(const Frame& frame, bool had_pose) const {
+  constexpr std::size_t kFeatures = 15, kRichView = 100;
+  if (!config_.techniques.place_recognition || !places_) return false;
+  return frame.features.size() >= (had_pose ? kRichView : kFeatures);
+}
+
+std::optional<Relocalizer::Found> Relocalizer::search(const FramePtr& frame, bool had_pose,
+                                                      const TrackingContext& context) {
+  if (!may_search(*frame, had_pose)) return std::nullopt;
+  state_ = State::kSearching;
+  for (const LocalMapPtr& place : places_(frame, attempts_++)) {
+    auto tracking = find_at(*frame, *place, context);
+    if (!tracking) continue;
+    state_ = State::kConfirming;
+    confirmations_ = -1;  // the frame itself does not count
+    place_ = place;
+    frames_at_place_ = 0;
+    return Found{place, std::move(*tracking)};
+  }
+  return std::nullopt;
+}
+
+bool Relocalizer::confirm() {
+  if (state_ == State::kConfirming && ++confirmations_ < config_.place.confirmations) return false;
+  state_ = State::kIdle;
+  located_ = true;
+  attempts_ = 0;
+  return true;
+}
+
+void Relocalizer::give_up() {
+  if (state_ == State::kConfirming) state_ = State::kSearching;
+}
+
+double UnknownViewClock::observe(std::int64_t stamp_ns, bool rich) {
+  constexpr double kMaxGap_s = 0.5;
+  if (rich && last_ns_ && stamp_ns > *last_ns_) {
+    unknown_s_ += std::min(kMaxGap_s, static_cast<double>(stamp_ns - *last_ns_) * 1e-9);
+  }
+  last_ns_.reset();
+  if (rich) last_ns_ = stamp_ns;
+  return unknown_s_;
+}
+
+}  // namespace rtd::slam
