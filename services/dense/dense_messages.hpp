@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/msg/ros.hpp"
-#include "services/dense/core/dynamic_mask.hpp"
+#include "services/dense/core/depth_view.hpp"
 #include "services/dense/core/point_cloud.hpp"
 
 namespace rtd::dense {

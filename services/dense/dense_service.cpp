@@ -60,7 +60,7 @@ void DenseService::take_mask(const msg::Image& message) {
 }
 
 void DenseService::integrate(const JoinedFrame& joined) {
-  hear(joined.words);
+  update(joined.updates);
   if (const std::string cause = vision::defect(*joined.frame); !cause.empty()) {
     ++totals_.defective;
     if (defect_log_.pass()) SPDLOG_WARN("event=frame_defective frame={} cause=\"{}\"", joined.result.seq, cause);
@@ -83,14 +83,14 @@ void DenseService::integrate(const JoinedFrame& joined) {
   count(report);
 }
 
-void DenseService::hear(const std::vector<KeyframeWord>& words) {
-  for (const KeyframeWord& word : words) {
+void DenseService::update(const std::vector<KeyframeUpdate>& updates) {
+  for (const KeyframeUpdate& word : updates) {
     if (word.new_map) {
       SPDLOG_WARN("event=map_begun_anew voxels_forgotten={} cause=\"slam was started anew\"", map_.voxels());
       map_.clear();
       background_.clear();
     }
-    map_.hear(word.event);
+    map_.update(word.event);
   }
 }
 
@@ -100,8 +100,8 @@ void DenseService::count(const FusionReport& report) {
   totals_.masked += report.masked;
   totals_.refused += report.refused;
   totals_.carved += report.carved;
-  if (map_.full() && !full_said_) {
-    full_said_ = true;
+  if (map_.full() && !full_logged_) {
+    full_logged_ = true;
     SPDLOG_WARN(
         "event=map_full voxels={} effect=\"only known surfaces are refined\" fix=\"dense.fusion.max_voxels or "
         "a larger dense.fusion.voxel_m\"",
@@ -123,7 +123,7 @@ void DenseService::publish_cloud() {
 void DenseService::finish() {
   joiner_->close();
   while (const auto joined = joiner_->take(std::chrono::milliseconds(0))) integrate(*joined);
-  hear(joiner_->take_words());
+  update(joiner_->take_updates());
   report_state();
   const JoinCounters joins = joiner_->counters();
   SPDLOG_INFO(
@@ -137,8 +137,8 @@ void DenseService::finish() {
 bool DenseService::ready() {
   const bool heard = frame_reader_.matched() > 0 && tracking_reader_.matched() > 0 && keyframe_reader_.matched() > 0;
   const std::int64_t now_ns = service::monotonic_ns();
-  if (!heard) heard_ns_ = now_ns;
-  return heard && (mask_reader_.matched() > 0 || now_ns - heard_ns_ > kMaskPatienceNs);
+  if (!heard) updated_ns_ = now_ns;
+  return heard && (mask_reader_.matched() > 0 || now_ns - updated_ns_ > kMaskPatienceNs);
 }
 
 /// Why the service does less than it should; empty when it does not.

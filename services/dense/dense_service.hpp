@@ -36,7 +36,7 @@ class DenseService {
  private:
   void take_mask(const msg::Image& message);
   void integrate(const JoinedFrame& joined);
-  void hear(const std::vector<KeyframeWord>& words);
+  void update(const std::vector<KeyframeUpdate>& updates);
   void count(const FusionReport& report);
   void publish_cloud();
   void finish();
@@ -61,8 +61,8 @@ class DenseService {
   struct Totals {
     std::uint64_t frames = 0, defective = 0, points = 0, masked = 0, refused = 0, carved = 0;
   } totals_;
-  std::int64_t newest_stamp_ns_ = 0, published_ns_ = 0, heard_ns_ = 0;
-  bool full_said_ = false;
+  std::int64_t newest_stamp_ns_ = 0, published_ns_ = 0, updated_ns_ = 0;
+  bool full_logged_ = false;
   service::RateLimit defect_log_{std::chrono::seconds(1)}, mask_log_{std::chrono::seconds(5)};
 };
 

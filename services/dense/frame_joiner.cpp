@@ -63,11 +63,11 @@ void FrameJoiner::put(const msg::TrackingResult& result) {
 void FrameJoiner::put(const msg::KeyframeEvent& event) {
   {
     const std::lock_guard lock(mutex_);
-    const bool new_map = event.event_index < words_heard_;
-    if (new_map) words_.clear();
-    words_heard_ = event.event_index + 1;
-    words_.push_back({event, new_map});
-    keep_newest(words_, kWords);
+    const bool new_map = event.event_index < next_event_;
+    if (new_map) updates_.clear();
+    next_event_ = event.event_index + 1;
+    updates_.push_back({event, new_map});
+    keep_newest(updates_, kWords);
     if (event.kind == msg::KeyframeEventKind::kCreated) keyframe_seqs_.push_back(event.frame_seq);
     keep_newest(keyframe_seqs_, kKeyframes);
   }
@@ -107,7 +107,7 @@ FrameJoiner::Verdict FrameJoiner::judge(const msg::TrackingResult& result) {
     return Verdict::kDone;
   };
   if (!msg::is_measured_in_map(result)) return done(counters_.not_tracked);
-  if (words_heard_ < result.event_count && may_wait) return Verdict::kWait;
+  if (next_event_ < result.event_count && may_wait) return Verdict::kWait;
   if (!wanted(result)) return done(counters_.passed_over);
   const bool has_image = with_stamp(frames_, result.stamp_ns) != frames_.end();
   const bool has_mask = with_stamp(masks_, result.stamp_ns) != masks_.end();
@@ -128,9 +128,9 @@ JoinedFrame FrameJoiner::join(const msg::TrackingResult& result) {
   joined.frame = *with_stamp(frames_, result.stamp_ns);
   joined.result = result;
   if (const auto mask = with_stamp(masks_, result.stamp_ns); mask != masks_.end()) joined.mask = std::move(mask->mask);
-  while (!words_.empty() && words_.front().event.event_index < result.event_count) {
-    joined.words.push_back(words_.front());
-    words_.pop_front();
+  while (!updates_.empty() && updates_.front().event.event_index < result.event_count) {
+    joined.updates.push_back(updates_.front());
+    updates_.pop_front();
   }
   return joined;
 }
@@ -148,11 +148,11 @@ void FrameJoiner::close() {
   arrived_.notify_all();
 }
 
-std::vector<KeyframeWord> FrameJoiner::take_words() {
+std::vector<KeyframeUpdate> FrameJoiner::take_updates() {
   const std::lock_guard lock(mutex_);
-  std::vector<KeyframeWord> words(words_.begin(), words_.end());
-  words_.clear();
-  return words;
+  std::vector<KeyframeUpdate> updates(updates_.begin(), updates_.end());
+  updates_.clear();
+  return updates;
 }
 
 JoinCounters FrameJoiner::counters() const {

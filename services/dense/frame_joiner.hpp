@@ -13,12 +13,12 @@
 
 #include "common/msg/rgbd_frame.hpp"
 #include "common/msg/tracking.hpp"
-#include "services/dense/core/dynamic_mask.hpp"
+#include "services/dense/core/depth_view.hpp"
 
 namespace rtd::dense {
 
 /// A word of slam about its keyframes; the first one of a slam process that was started anew says so.
-struct KeyframeWord {
+struct KeyframeUpdate {
   msg::KeyframeEvent event;
   bool new_map = false;
 };
@@ -28,14 +28,14 @@ struct JoinedFrame {
   std::shared_ptr<const msg::RgbdFrame> frame;
   std::optional<DynamicMask> mask;  ///< empty: the filter said nothing
   msg::TrackingResult result{};
-  std::vector<KeyframeWord> words;  ///< those that slam said up to this frame, in its order
+  std::vector<KeyframeUpdate> updates;  ///< those that slam said up to this frame, in its order
 };
 
 /// What became of the frames that slam answered.
 struct JoinCounters {
   std::uint64_t joined = 0;
-  std::uint64_t passed_over = 0;  ///< neither every n-th nor a keyframe
-  std::uint64_t not_tracked = 0;  ///< or in another map
+  std::uint64_t passed_over = 0;    ///< neither every n-th nor a keyframe
+  std::uint64_t not_tracked = 0;    ///< or in another map
   std::uint64_t without_image = 0;  ///< it had gone before its turn, or never came
   std::uint64_t without_mask = 0;
 };
@@ -58,8 +58,8 @@ class FrameJoiner {
   std::optional<JoinedFrame> take(std::chrono::milliseconds timeout);
   /// Nothing more comes: what waits for a missing part is given up.
   void close();
-  /// All words not given out with a frame.
-  std::vector<KeyframeWord> take_words();
+  /// All updates not given out with a frame.
+  std::vector<KeyframeUpdate> take_updates();
   JoinCounters counters() const;
 
  private:
@@ -80,9 +80,9 @@ class FrameJoiner {
   std::deque<std::shared_ptr<const msg::RgbdFrame>> frames_;
   std::deque<StampedMask> masks_;
   std::deque<msg::TrackingResult> results_;
-  std::deque<KeyframeWord> words_;
+  std::deque<KeyframeUpdate> updates_;
   std::deque<std::uint64_t> keyframe_seqs_;
-  std::uint64_t words_heard_ = 0;  ///< words 0 .. n-1 have been heard or will never be
+  std::uint64_t next_event_ = 0;  ///< updates 0 .. n-1 have been heard or will never be
   std::optional<std::int64_t> last_stamp_ns_;
   JoinCounters counters_;
   bool closed_ = false;

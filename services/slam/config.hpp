@@ -4,32 +4,57 @@
 
 #include <string>
 
-#include "common/service/config.hpp"
 #include "services/slam/core/slam_config.hpp"
 
 namespace rtd::slam {
 
 /// Where the map comes from and goes to.
 struct MapFileConfig {
-  std::string load;          ///< map file to go on with; empty = a new map
-  std::string save;          ///< map file to write at the end and at checkpoints; empty = none
-  double checkpoint_s = 30;  ///< between two checkpoints; 0 = only at the end
+  std::string load, save;
+  double checkpoint_s = 30;
+
+  void bind(auto& binder) {
+    binder.field("load", load, "map file to continue; empty: a new map");
+    binder.field("save", save, "map file to write at checkpoints and at the end; empty: none");
+    binder.field("checkpoint_s", checkpoint_s, {0.0, 86400.0}, "time between two checkpoints; 0: only at the end");
+  }
 };
 
-/// Section `slam` of the configuration. The numbers of the core have their defaults in core/slam_config.hpp.
+/// Section `slam` of the configuration.
 struct ServiceConfig {
-  SlamConfig core;              ///< but for place.vocabulary: with_vocabulary()
-  std::string vocabulary_file;  ///< empty: the built-in vocabulary
+  SlamConfig core;  ///< without place.vocabulary, which with_vocabulary() adds
+  std::string vocabulary_file;
   MapFileConfig map;
-  std::string out_dir;  ///< trajectory, keyframes and map are written here at the end; empty = nowhere
+  std::string out_dir;
   std::string map_frame = "map";
   std::string odom_frame = "odom";
   std::string camera_frame = "camera_color_optical_frame";
-  int path_length = 2000;    ///< poses kept for rt/slam/path
-  int path_period_ms = 500;  ///< between two paths
-  int map_period_ms = 1000;  ///< between two clouds on rt/slam/map_points
+  int path_length = 2000;
+  int path_period_ms = 500;
+  int map_period_ms = 1000;
 
-  void bind(service::ConfigBinder& binder);
+  void bind(auto& binder) {
+    binder.section("techniques", core.techniques);
+    binder.section("sensor", core.sensor);
+    binder.section("tracker", core.tracker);
+    binder.section("prediction", core.prediction);
+    binder.section("belief", core.belief);
+    binder.section("keyframe", core.keyframe);
+    binder.section("mapper", core.mapper);
+    binder.section("place", core.place);
+    binder.field("place.vocabulary", vocabulary_file, "file of rtd-train-vocabulary; empty: the built-in one");
+    binder.section("loop", core.loop);
+    binder.section("map", map);
+    binder.field("map.localize_only", core.localize_only, "find poses in the loaded map and leave it as it is");
+    binder.field("out", out_dir,
+                 "folder for trajectory.txt, keyframes.txt and map.ply, written at the end; empty: none");
+    binder.field("map_frame", map_frame, "frame of the poses and of the map");
+    binder.field("odom_frame", odom_frame, "frame of the odometry: smooth, map -> odom takes up the corrections");
+    binder.field("camera_frame", camera_frame, "child frame of the poses: optical");
+    binder.field("path_length", path_length, {1, 1000000}, "poses kept for rt/slam/path");
+    binder.field("path_period_ms", path_period_ms, {1, 60000}, "time between two path messages");
+    binder.field("map_period_ms", map_period_ms, {1, 60000}, "time between two clouds on rt/slam/map_points");
+  }
   /// Throws service::ConfigError for keys that contradict each other.
   void validate() const;
 };

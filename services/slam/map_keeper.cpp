@@ -3,6 +3,10 @@
 #include "services/slam/map_keeper.hpp"
 
 #include <fmt/format.h>
+#include <fstream>
+#include <functional>
+#include <stdexcept>
+#include <string>
 
 #include "common/concurrency/thread_priority.hpp"
 #include "common/service/log.hpp"
@@ -14,6 +18,13 @@ namespace {
 
 double ms_since(std::int64_t start_ns) {
   return static_cast<double>(service::monotonic_ns() - start_ns) * 1e-6;
+}
+
+void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write) {
+  std::ofstream file(path);
+  write(file);
+  file.close();
+  if (!file) throw std::runtime_error("cannot write " + path.string() + ": check the folder and the free space");
 }
 
 }  // namespace
@@ -77,6 +88,21 @@ bool MapKeeper::save(const char* occasion) {
 void MapKeeper::note_trouble(std::string trouble) {
   const std::lock_guard lock(mutex_);
   trouble_ = std::move(trouble);
+}
+
+void write_run_files(const SlamSystem& slam, const std::filesystem::path& folder) {
+  std::error_code ignored;  // an existing folder is fine, an impossible one shows when the file is written
+  std::filesystem::create_directories(folder, ignored);
+  write_file(folder / "trajectory.txt",
+             [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.trajectory()); });
+  write_file(folder / "keyframes.txt",
+             [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.keyframes()); });
+  for (const MapId map : slam.maps()) {
+    if (map == 0) continue;
+    write_file(folder / ("trajectory_map_" + std::to_string(map) + ".txt"),
+               [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.trajectory(map)); });
+  }
+  write_file(folder / "map.ply", [&](std::ostream& out) { write_ply(out, slam.map_points()); });
 }
 
 }  // namespace rtd::slam

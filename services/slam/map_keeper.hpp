@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -47,5 +48,10 @@ class MapKeeper {
   service::StopToken ended_;
   std::thread thread_;
 };
+
+/// Writes trajectory.txt, keyframes.txt (TUM format) and map.ply of the first map into `folder`, which is made when
+/// missing, and trajectory_map_N.txt for each other map that was never merged: it has a world frame of its own. Call
+/// after SlamSystem::finish(). Throws std::runtime_error naming the file that cannot be written.
+void write_run_files(const SlamSystem& slam, const std::filesystem::path& folder);
 
 }  // namespace rtd::slam

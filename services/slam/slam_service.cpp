@@ -11,7 +11,7 @@
 #include "common/concurrency/thread_priority.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/slam/map_file.hpp"
-#include "services/slam/run_files.hpp"
+#include "services/slam/map_keeper.hpp"
 
 namespace rtd::slam {
 namespace {

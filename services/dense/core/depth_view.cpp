@@ -5,8 +5,73 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace rtd::dense {
+namespace {
+
+/// Largest value within `radius` along one axis: `count` values, `step` apart.
+void grow_line(const std::uint8_t* in, std::uint8_t* out, int count, int step, int radius) {
+  for (int i = 0; i < count; ++i) {
+    std::uint8_t largest = 0;
+    for (int k = std::max(0, i - radius); k <= std::min(count - 1, i + radius); ++k) {
+      largest = std::max(largest, in[static_cast<std::ptrdiff_t>(k) * step]);
+    }
+    out[static_cast<std::ptrdiff_t>(i) * step] = largest;
+  }
+}
+
+}  // namespace
+
+std::uint8_t DynamicMask::at(float u_px, float v_px, int width_px, int height_px) const {
+  if (!(u_px >= 0 && v_px >= 0)) return kUnknown;
+  const int column = static_cast<int>(u_px * static_cast<float>(columns) / static_cast<float>(width_px));
+  const int row = static_cast<int>(v_px * static_cast<float>(rows) / static_cast<float>(height_px));
+  if (column >= columns || row >= rows) return kUnknown;
+  return cells[static_cast<std::size_t>(row * columns + column)];
+}
+
+DynamicMask grow(const DynamicMask& mask, int radius) {
+  DynamicMask wide = mask, result = mask;
+  for (int row = 0; row < mask.rows; ++row) {
+    const std::ptrdiff_t first = std::ptrdiff_t{row} * mask.columns;
+    grow_line(mask.cells.data() + first, wide.cells.data() + first, mask.columns, 1, radius);
+  }
+  for (int column = 0; column < mask.columns; ++column) {
+    grow_line(wide.cells.data() + column, result.cells.data() + column, mask.rows, mask.columns, radius);
+  }
+  return result;
+}
+
+DynamicMask all_static() {
+  return {1, 1, {DynamicMask::kStatic}};
+}
+
+void PixelTable::fit(const geometry::CameraModel& camera) {
+  const auto& p = camera.parameters();
+  const auto& [k1, k2, p1, p2, k3] = p.distortion;
+  const std::array<double, 11> wanted{
+      p.fx, p.fy, p.cx, p.cy, k1, k2, p1, p2, k3, static_cast<double>(p.width), static_cast<double>(p.height)};
+  if (wanted == fitted_) return;
+  fitted_ = wanted;
+  width_ = p.width;
+  height_ = p.height;
+  fx_ = static_cast<float>(p.fx);
+  fy_ = static_cast<float>(p.fy);
+  cx_ = static_cast<float>(p.cx);
+  cy_ = static_cast<float>(p.cy);
+  undistorted_.clear();
+  raw_pixels_.clear();
+  for (int v = 0; v < height_; ++v) {
+    for (int u = 0; u < width_; ++u) {
+      undistorted_.emplace_back(camera.undistort({u, v}).cast<float>());
+      const Eigen::Vector2d raw = camera.distort({u, v});
+      const long column = std::lround(raw.x()), row = std::lround(raw.y());
+      const bool inside = column >= 0 && row >= 0 && column < width_ && row < height_;
+      raw_pixels_.push_back(inside ? static_cast<int>(row * width_ + column) : -1);
+    }
+  }
+}
 
 DepthView::DepthView(const vision::RgbdImage& image, const DynamicMask& mask, const PixelTable& table,
                      const FusionConfig& config)

@@ -8,108 +8,229 @@ namespace rtd::slam {
 
 class Vocabulary;
 
-/// Every number of the SLAM core with its default; bound to keys `slam.*` in services/slam/config.cpp.
+/// Every number of the SLAM core: default beside the member, key, range and meaning in bind().
 
 /// One switch for each technique beyond ORB-SLAM2's tracking and mapping, so that its worth can be measured.
 struct Techniques {
-  bool landmark_belief = false;  ///< landmarks bear a static probability over time; off: the mean of their observations
-  bool adaptive_kernel = true;   ///< robust loss fitted to the residuals; off: Huber with a fixed threshold
-  bool rolling_shutter = true;   ///< the readout time of the image is estimated and undone; off: all rows at once
-  bool prediction = true;        ///< a short, marked prediction when nothing static is in view; off: lost at once
-  bool place_recognition = true;  ///< places are known again by their words; off: only around the last pose
-  bool loop_closing = true;       ///< known places correct the map; off: drift stays
+  bool landmark_belief = false;
+  bool adaptive_kernel = true;
+  bool rolling_shutter = true;
+  bool prediction = true;
+  bool place_recognition = true;
+  bool loop_closing = true;
+
+  void bind(auto& binder) {
+    binder.field("landmark_belief", landmark_belief,
+                 "landmarks gather a static probability over time; off: the mean of their observations");
+    binder.field("adaptive_kernel", adaptive_kernel,
+                 "the robust loss is fitted to the residuals; off: Huber with a fixed threshold");
+    binder.field("rolling_shutter", rolling_shutter,
+                 "the readout time of the image is estimated and undone; off: all rows are exposed at once");
+    binder.field("prediction", prediction,
+                 "a short, marked prediction when nothing static is in view; off: lost at once");
+    binder.field("place_recognition", place_recognition,
+                 "a lost camera is found at places that it knows; off: only around its last pose");
+    binder.field("loop_closing", loop_closing, "known places correct the map; off: drift stays");
+  }
 };
 
 /// The camera and its features, as SLAM weighs them.
 struct SensorConfig {
-  double disparity_px_m = 40.0;  ///< weight of depth against pixels, vision::RgbdProjection::disparity_px_m
-  double close_depth_m = 4.0;    ///< nearer depths make landmarks at once, farther ones wait for a second view
-  double shared_error = 3.0;     ///< features share errors of image and depth: factor on the covariance of the pose
-  double readout_s = 0;          ///< of the image, first row to last, if it is known; 0: estimated while tracking
-  double max_depth_m = 8.0;      ///< depth beyond is not used at all
+  double disparity_px_m = 40.0;  ///< vision::RgbdProjection::disparity_px_m
+  double close_depth_m = 4.0;
+  double shared_error = 3.0;
+  double readout_s = 0;
+  double max_depth_m = 8.0;
+
+  void bind(auto& binder) {
+    binder.field("disparity_px_m", disparity_px_m, {1.0, 10000.0},
+                 "weight of depth: a disparity of this / depth counts like a pixel");
+    binder.field("close_depth_m", close_depth_m, {0.5, 20.0},
+                 "nearer depths make landmarks at once, farther ones wait for a second view");
+    binder.field("shared_error", shared_error, {0.1, 100.0},
+                 "factor on the covariance of the pose: features share errors of image and depth");
+    binder.field("readout_s", readout_s, {-0.1, 0.1},
+                 "readout time of the image, first row to last, if known; 0: estimated while tracking");
+    binder.field("max_depth_m", max_depth_m, {0.5, 50.0}, "farther depths are not used");
+  }
 };
 
 struct TrackerConfig {
-  int min_initial_points = 100;    ///< features with depth that the first keyframe needs
-  double motion_radius_px = 15.0;  ///< search radius of the motion model at the finest octave
-  double local_radius_px = 3.0;    ///< factor on 2.5 / 4 px when the local map is searched
-  int min_motion_matches = 20;     ///< matches with the last frame; fewer: track against the reference keyframe
-  int min_inliers = 30;            ///< landmarks that a pose needs to count as tracked
-  int recently_lost_frames = 30;   ///< failed frames before "recently lost" becomes "lost"
-  int recovery_keyframes = 3;      ///< keyframes tried in each frame while lost
+  int min_initial_points = 100;
+  double motion_radius_px = 15.0;
+  double local_radius_px = 3.0;
+  int min_motion_matches = 20;
+  int min_inliers = 30;
+  int recently_lost_frames = 30;
+  int recovery_keyframes = 3;
+
+  void bind(auto& binder) {
+    binder.field("min_initial_points", min_initial_points, {10, 2048},
+                 "features with depth that the first keyframe needs");
+    binder.field("motion_radius_px", motion_radius_px, {2.0, 200.0},
+                 "search radius around the predicted position at the finest octave");
+    binder.field("local_radius_px", local_radius_px, {1.0, 20.0},
+                 "factor on 2.5 / 4 px when the local map is searched");
+    binder.field("min_motion_matches", min_motion_matches, {5, 500},
+                 "matches with the last frame; with fewer, the reference keyframe is tried");
+    binder.field("min_inliers", min_inliers, {6, 500}, "landmarks that a pose needs to count as tracked");
+    binder.field("recently_lost_frames", recently_lost_frames, {0, 100000},
+                 "failed frames before 'recently lost' becomes 'lost'");
+    binder.field("recovery_keyframes", recovery_keyframes, {0, 100}, "keyframes tried in each frame while lost");
+  }
 };
 
-/// What is said of the pose while nothing static is in view: docs/theory/tracking.md, "Prediction".
+/// What is claimed of the pose while nothing static is in view: docs/theory/tracking.md, "Prediction".
 struct PredictionConfig {
-  double max_hold_s = 0.5;           ///< after the last measured pose; then tracking is lost
-  double velocity_decay_s = 0.5;     ///< the velocity fades with this time constant
-  double acceleration_m_s2 = 1.0;    ///< standard deviation of what a hand does meanwhile
-  double acceleration_rad_s2 = 3.0;  ///< the same for its rotation
-  int min_weak_inliers = 12;         ///< landmarks of a pose too weak to count as tracked but better than none
+  double max_hold_s = 0.5;
+  double velocity_decay_s = 0.5;
+  double acceleration_m_s2 = 1.0;
+  double acceleration_rad_s2 = 3.0;
+  int min_weak_inliers = 12;
+
+  void bind(auto& binder) {
+    binder.field("max_hold_s", max_hold_s, {0.0, 2.0}, "a pose is predicted for so long, then tracking is lost");
+    binder.field("velocity_decay_s", velocity_decay_s, {0.05, 100.0}, "time constant of the fading velocity");
+    binder.field("acceleration_m_s2", acceleration_m_s2, {0.0, 100.0},
+                 "standard deviation of the hand's acceleration: the covariance grows by it");
+    binder.field("acceleration_rad_s2", acceleration_rad_s2, {0.0, 100.0}, "the same for the rotation");
+    binder.field("min_weak_inliers", min_weak_inliers, {6, 500},
+                 "landmarks of a pose that is too weak to count as tracked but better than a prediction");
+  }
 };
 
-/// What a frame says of a landmark's static probability, as log odds: docs/theory/tracking.md, "Belief".
+/// What a frame says about a landmark's static probability, as log odds: docs/theory/tracking.md, "Belief".
 struct BeliefConfig {
-  double found = 0.4;            ///< found where it should be by a feature that is surely static; -0.4: surely dynamic
-  double rejected = 0.5;         ///< against it: matched, but does not fit a pose that its neighbours fit
-  double removed = 1.5;          ///< against it: the filter removed what looks like it
-  double seen_through = 0.5;     ///< against it: not found, and the depth measured there lies behind it
-  double max_log_odds = 4.0;     ///< bound: how long the past counts
-  double min_probability = 0.1;  ///< below: it leaves the map
+  double found = 0.4;  ///< of a feature that is surely static; -0.4: surely dynamic
+  double rejected = 0.5;
+  double removed = 1.5;
+  double seen_through = 0.5;
+  double max_log_odds = 4.0;
+  double min_probability = 0.1;
+
+  void bind(auto& binder) {
+    binder.field("found", found, {0.0, 5.0}, "log odds for a landmark that is found where it should be");
+    binder.field("rejected", rejected, {0.0, 5.0}, "against one that does not fit a pose that its neighbours fit");
+    binder.field("removed", removed, {0.0, 5.0}, "against one that looks like a feature which the filter removed");
+    binder.field("seen_through", seen_through, {0.0, 5.0},
+                 "against one that is not found, with depth measured behind it");
+    binder.field("max_log_odds", max_log_odds, {2.0, 20.0}, "bound of the log odds: limits how long the past counts");
+    binder.field("min_probability", min_probability, {0.0, 0.5}, "landmarks below leave the map");
+  }
 };
 
 /// When a frame becomes a keyframe: docs/theory/tracking.md, "Keyframes".
 struct KeyframeConfig {
-  int max_gap_frames = 30;       ///< a keyframe at least so often
-  int min_gap_frames = 0;        ///< and not more often
-  double reference_ratio = 0.9;  ///< tracked / reference landmarks below which the view is new
-  double weak_ratio = 0.25;      ///< below: insert although the mapper is busy
-  int min_close_tracked = 100;   ///< fewer close landmarks tracked ...
-  int min_close_untracked = 70;  ///< ... and more close features that could become landmarks: insert
-  int min_inliers = 15;          ///< fewer: a keyframe would rather harm
+  int max_gap_frames = 30;
+  int min_gap_frames = 0;
+  double reference_ratio = 0.9;
+  double weak_ratio = 0.25;
+  int min_close_tracked = 100;
+  int min_close_untracked = 70;
+  int min_inliers = 15;
+
+  void bind(auto& binder) {
+    binder.field("max_gap_frames", max_gap_frames, {1, 10000}, "a changed view becomes a keyframe at least so often");
+    binder.field("min_gap_frames", min_gap_frames, {0, 10000}, "frames between keyframes while tracking is strong");
+    binder.field("reference_ratio", reference_ratio, {0.1, 1.0},
+                 "tracked / reference landmarks: below, the view is new");
+    binder.field("weak_ratio", weak_ratio, {0.0, 1.0}, "below, a keyframe is inserted although the mapper is busy");
+    binder.field("min_close_tracked", min_close_tracked, {0, 2048}, "with fewer close landmarks tracked and ...");
+    binder.field("min_close_untracked", min_close_untracked, {0, 2048},
+                 "... more close features without landmark, a keyframe is inserted");
+    binder.field("min_inliers", min_inliers, {0, 500}, "with fewer landmarks a keyframe would harm");
+  }
 };
 
 struct MapperConfig {
-  int neighbours = 10;            ///< covisible keyframes for triangulation and fusion
-  double min_found_ratio = 0.25;  ///< landmarks found less often than they should be seen are removed
-  double redundant_ratio = 0.9;   ///< keyframes whose landmarks are seen by three others are removed
-  int ba_keyframes = 12;          ///< optimised keyframes of a local bundle adjustment
-  int ba_fixed_keyframes = 20;    ///< keyframes that hold the gauge
-  int ba_iterations_robust = 5;   ///< with Huber, before outliers are taken out
-  int ba_iterations = 0;          ///< after that, inliers only and no loss; 0 = no second stage
-  double correction_m = 0.002;    ///< a keyframe that moved more is announced again
+  int neighbours = 10;
+  double min_found_ratio = 0.25;
+  double redundant_ratio = 0.9;
+  int ba_keyframes = 12;
+  int ba_fixed_keyframes = 20;
+  int ba_iterations_robust = 5;
+  int ba_iterations = 0;
+  double correction_m = 0.002;
   double correction_rad = 0.001;
+
+  void bind(auto& binder) {
+    binder.field("neighbours", neighbours, {1, 100}, "covisible keyframes for triangulation and fusion");
+    binder.field("min_found_ratio", min_found_ratio, {0.0, 1.0},
+                 "landmarks found less often than they should be seen are removed");
+    binder.field("redundant_ratio", redundant_ratio, {0.5, 1.0},
+                 "keyframes of whose landmarks three others see so many are removed");
+    binder.field("ba_keyframes", ba_keyframes, {2, 200}, "keyframes that local bundle adjustment optimises");
+    binder.field("ba_fixed_keyframes", ba_fixed_keyframes, {1, 200}, "keyframes that hold the gauge");
+    binder.field("ba_iterations_robust", ba_iterations_robust, {1, 100},
+                 "iterations with Huber's loss, before outliers are taken out");
+    binder.field("ba_iterations", ba_iterations, {0, 100}, "iterations after that, on inliers; 0: no second stage");
+    binder.field("correction_m", correction_m, {0.0, 1.0}, "a keyframe that moved more is announced again");
+    binder.field("correction_rad", correction_rad, {0.0, 1.0}, "the same for its rotation");
+  }
 };
 
 /// How places are recognised: docs/theory/place_recognition.md.
 struct PlaceConfig {
-  std::shared_ptr<const Vocabulary> vocabulary;  ///< null: the one that was built in
-  int candidates = 9;             ///< places that a lost frame is compared with before it begins again with the best
-  int candidates_per_frame = 2;   ///< so many of them at one frame: bounds the time that it takes
-  int min_inliers = 45;           ///< landmarks that a pose needs at a recognised place
-  double min_found_ratio = 0.13;  ///< of the landmarks that should be seen there, or of the features if fewer
-  int confirmations = 2;          ///< frames that must agree before the pose is given out
-  double new_map_after_s = 3.0;   ///< a new map begins after so long with views that nobody knows; 0 = never
+  std::shared_ptr<const Vocabulary> vocabulary;  ///< null: the built-in one
+  int candidates = 9;
+  int candidates_per_frame = 2;
+  int min_inliers = 45;
+  double min_found_ratio = 0.13;
+  int confirmations = 2;
+  double new_map_after_s = 3.0;
+
+  void bind(auto& binder) {
+    binder.field("candidates", candidates, {1, 100},
+                 "places that a lost frame is compared with before it starts again with the best");
+    binder.field("candidates_per_frame", candidates_per_frame, {1, 100}, "so many of them at one frame");
+    binder.field("min_inliers", min_inliers, {10, 500}, "landmarks that a pose needs at a recognised place");
+    binder.field("min_found_ratio", min_found_ratio, {0.0, 1.0},
+                 "of the landmarks that should be seen there, or of the features if fewer");
+    binder.field("confirmations", confirmations, {0, 100}, "frames that must agree before that pose is published");
+    binder.field("new_map_after_s", new_map_after_s, {0.0, 1e6},
+                 "a new map begins after so long with unknown views; 0: never");
+  }
 };
 
 /// When two places are one, and what follows: docs/theory/loop_closing.md.
 struct LoopConfig {
-  int max_candidates = 3;             ///< places that each keyframe is compared with
-  double min_similarity = 0.75;       ///< of a place, over that of the keyframe's least similar neighbour
-  int min_inliers = 50;               ///< landmarks of the place that the keyframe must see
-  double min_found_share = 0.15;      ///< of those that it should see
-  int confirmations = 3;              ///< keyframes that must ask for the same correction
-  int max_misses = 2;                 ///< keyframes in between that find nothing
-  double agreement_m = 0.1;           ///< corrections that differ by less are the same
-  double agreement_rad = 0.04;        ///< the same for their rotation
-  double max_offset_m = 0.3;          ///< a correction is at most this ...
-  double max_drift_ratio = 0.05;      ///< ... and this times the way walked since
-  double max_offset_rad = 0.1;        ///< the same for its rotation
-  double max_drift_rad_m = 0.01;      ///< rad per metre
-  int graph_iterations = 30;          ///< of the pose graph
-  int global_iterations = 10;         ///< of global bundle adjustment; 0 = none
-  double max_odometry_step_m = 0.01;  ///< larger corrections go into map -> odom, smaller ones into the odometry
+  int max_candidates = 3;
+  double min_similarity = 0.75;
+  int min_inliers = 50;
+  double min_found_share = 0.15;
+  int confirmations = 3;
+  int max_misses = 2;
+  double agreement_m = 0.1;
+  double agreement_rad = 0.04;
+  double max_offset_m = 0.3;
+  double max_drift_ratio = 0.05;
+  double max_offset_rad = 0.1;
+  double max_drift_rad_m = 0.01;
+  int graph_iterations = 30;
+  int global_iterations = 10;
+  double max_odometry_step_m = 0.01;
   double max_odometry_step_rad = 0.005;
+
+  void bind(auto& binder) {
+    binder.field("max_candidates", max_candidates, {1, 100}, "places that each keyframe is compared with");
+    binder.field("min_similarity", min_similarity, {0.0, 1.0},
+                 "of a place, relative to the keyframe's least similar neighbour");
+    binder.field("min_inliers", min_inliers, {10, 1000}, "landmarks of the place that the keyframe must see");
+    binder.field("min_found_share", min_found_share, {0.0, 1.0}, "of those that it should see");
+    binder.field("confirmations", confirmations, {1, 20}, "keyframes that must ask for the same correction");
+    binder.field("max_misses", max_misses, {0, 20}, "keyframes in between that find nothing");
+    binder.field("agreement_m", agreement_m, {0.0, 10.0}, "corrections that differ by less are the same");
+    binder.field("agreement_rad", agreement_rad, {0.0, 1.0}, "the same for their rotation");
+    binder.field("max_offset_m", max_offset_m, {0.0, 100.0}, "a correction is at most this, and ...");
+    binder.field("max_drift_ratio", max_drift_ratio, {0.0, 1.0}, "... this times the distance travelled since");
+    binder.field("max_offset_rad", max_offset_rad, {0.0, 3.2}, "the same for its rotation, and ...");
+    binder.field("max_drift_rad_m", max_drift_rad_m, {0.0, 1.0}, "... rad per metre travelled since");
+    binder.field("graph_iterations", graph_iterations, {1, 1000}, "of the pose graph");
+    binder.field("global_iterations", global_iterations, {0, 100}, "of global bundle adjustment; 0: none");
+    binder.field("max_odometry_step_m", max_odometry_step_m, {0.0, 10.0},
+                 "larger corrections go into map -> odom, smaller ones into the odometry");
+    binder.field("max_odometry_step_rad", max_odometry_step_rad, {0.0, 1.0}, "the same for its rotation");
+  }
 };
 
 struct SlamConfig {

@@ -96,7 +96,7 @@ float depth_of_nearest(const msg::PointCloud2& cloud) {
 
 TEST_F(DenseServiceTest, publishes_the_wall_without_the_person_and_writes_it) {
   Inbox<msg::PointCloud2> clouds;
-  hear(bus::topics::kDensePoints, clouds);
+  update(bus::topics::kDensePoints, clouds);
   config_.publish_period_ms = 100;
   config_.out_dir = (folder_ / "run").string();
   config_.background = true;

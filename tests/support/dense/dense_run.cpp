@@ -89,7 +89,7 @@ DenseReport run_dense(const DenseOptions& options) {
     front_end->listen(output);
     bool wanted = frame->image.seq % static_cast<std::uint64_t>(options.every) == 0;
     for (const msg::KeyframeEvent& event : slam::make_events(output)) {
-      map.hear(event);
+      map.update(event);
       wanted = wanted || (event.kind == msg::KeyframeEventKind::kCreated && event.frame_seq == frame->image.seq);
     }
     if (!wanted || output.result.state != msg::TrackingState::kOk) continue;

@@ -74,8 +74,8 @@ TEST_F(FrameJoinerTest, waits_for_the_words_that_slam_said_before) {
   event(2);
   const auto joined = joiner_.take(kNow);
   ASSERT_TRUE(joined);
-  EXPECT_EQ(joined->words.size(), 2U) << "the third came after the frame";
-  EXPECT_EQ(joiner_.take_words().size(), 1U);
+  EXPECT_EQ(joined->updates.size(), 2U) << "the third came after the frame";
+  EXPECT_EQ(joiner_.take_updates().size(), 1U);
 }
 
 TEST_F(FrameJoinerTest, gives_up_a_frame_whose_mask_does_not_come) {
@@ -137,8 +137,8 @@ TEST_F(FrameJoinerTest, tells_that_slam_was_started_anew) {
   image(10), mask(10), pose(10, 1);
   const auto joined = joiner_.take(kNow);
   ASSERT_TRUE(joined);
-  ASSERT_EQ(joined->words.size(), 1U);
-  EXPECT_TRUE(joined->words[0].new_map);
+  ASSERT_EQ(joined->updates.size(), 1U);
+  EXPECT_TRUE(joined->updates[0].new_map);
 }
 
 TEST_F(FrameJoinerTest, ends_a_wait_when_closed) {

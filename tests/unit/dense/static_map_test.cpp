@@ -155,7 +155,7 @@ TEST(StaticMap, follows_another_calibration_and_image_size) {
 TEST(StaticMap, moves_with_the_keyframes_that_slam_corrects) {
   WallScene scene;
   StaticMap map(WallScene::config());
-  map.hear(keyframe(0, 0));
+  map.update(keyframe(0, 0));
   for (int i = 0; i < 3; ++i) map.integrate(scene.render(kPerson), all_static(), at_origin());
   const auto left_edge_m = [&map] {
     float left_m = 100;
@@ -165,11 +165,11 @@ TEST(StaticMap, moves_with_the_keyframes_that_slam_corrects) {
     return left_m;
   };
   const float before_m = left_edge_m();
-  map.hear(keyframe(1, 0));
-  map.hear(keyframe(0, 0.25, msg::KeyframeEventKind::kCorrected));
+  map.update(keyframe(1, 0));
+  map.update(keyframe(0, 0.25, msg::KeyframeEventKind::kCorrected));
   EXPECT_NEAR(left_edge_m(), before_m + 0.25F, 0.015) << "m";
-  map.hear(keyframe(0, 0, msg::KeyframeEventKind::kRemoved));  // keyframe 1 takes over
-  map.hear(keyframe(1, 0.5, msg::KeyframeEventKind::kCorrected));
+  map.update(keyframe(0, 0, msg::KeyframeEventKind::kRemoved));  // keyframe 1 takes over
+  map.update(keyframe(1, 0.5, msg::KeyframeEventKind::kCorrected));
   EXPECT_NEAR(left_edge_m(), before_m + 0.75F, 0.03) << "m";
 }
 

@@ -7,7 +7,7 @@
 
 #include "common/geometry/depth_noise.hpp"
 #include "services/dense/core/dense_config.hpp"
-#include "services/dense/core/dynamic_mask.hpp"
+#include "services/dense/core/depth_view.hpp"
 
 #include "common/vision/rgbd_image.hpp"
 
