@@ -13,7 +13,7 @@
 
 namespace rtd::dense {
 
-/// The filter's picture of what moves; empty when it is none (encoding, size or length wrong).
+/// The filter's mask of what moves; empty when encoding, size or length is wrong.
 std::optional<DynamicMask> from_message(const msg::Image& message);
 
 /// x y z and rgb (packed as usual in ROS), all float32.

@@ -16,7 +16,7 @@ namespace rtd::dense {
 namespace {
 
 constexpr std::chrono::milliseconds kStatePeriod{50};
-constexpr std::int64_t kMaskPatienceNs = 3'000'000'000;  // for a filter that knows nothing of masks
+constexpr std::int64_t kMaskPatienceNs = 3'000'000'000;  // for a filter that sends no masks
 
 }  // namespace
 
@@ -84,13 +84,13 @@ void DenseService::integrate(const JoinedFrame& joined) {
 }
 
 void DenseService::update(const std::vector<KeyframeUpdate>& updates) {
-  for (const KeyframeUpdate& word : updates) {
-    if (word.new_map) {
-      SPDLOG_WARN("event=map_begun_anew voxels_forgotten={} cause=\"slam was started anew\"", map_.voxels());
+  for (const KeyframeUpdate& update : updates) {
+    if (update.new_map) {
+      SPDLOG_WARN("event=map_restarted voxels_forgotten={} cause=\"slam was restarted\"", map_.voxels());
       map_.clear();
       background_.clear();
     }
-    map_.update(word.event);
+    map_.update(update.event);
   }
 }
 
@@ -109,7 +109,7 @@ void DenseService::count(const FusionReport& report) {
   }
 }
 
-/// Costs nothing unless somebody listens.
+/// Costs nothing without subscribers.
 void DenseService::publish_cloud() {
   const std::int64_t now_ns = service::monotonic_ns();
   const bool due = now_ns - published_ns_ >= std::int64_t{config_.publish_period_ms} * 1'000'000;
@@ -201,7 +201,7 @@ bool DenseService::write_background(const std::string& path) {
   bool written = false;
   try {
     written = cv::imwrite(path, picture);
-  } catch (const cv::Exception&) {  // said below
+  } catch (const cv::Exception&) {  // reported below
   }
   if (written) {
     SPDLOG_INFO("event=file_written path={} views={}", path, background_.views());

@@ -19,8 +19,8 @@ class App;
 
 namespace rtd::dense {
 
-/// Images, the filter's masks and slam's poses in, a dense static cloud out. Only listens: nobody ever waits for it,
-/// frames that it has no time for are counted. Writes static_map.ply (and background.png) when it is asked to stop.
+/// Images, the filter's masks and slam's poses in, a dense static cloud out. No other service ever waits for
+/// it; frames that it has no time for are counted. Writes static_map.ply (and background.png) when it is asked to stop.
 class DenseService {
  public:
   static constexpr const char* kName = "dense";

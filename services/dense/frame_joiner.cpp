@@ -59,7 +59,7 @@ void FrameJoiner::put(const msg::TrackingResult& result) {
   arrived_.notify_one();
 }
 
-/// One writer, reliable and in order: an index that goes back is that of a slam process started anew.
+/// One writer, reliable and in order: an index that goes back comes from a restarted slam process.
 void FrameJoiner::put(const msg::KeyframeEvent& event) {
   {
     const std::lock_guard lock(mutex_);

@@ -17,7 +17,7 @@
 
 namespace rtd::dense {
 
-/// A word of slam about its keyframes; the first one of a slam process that was started anew says so.
+/// A keyframe event of slam; the first one of a restarted slam process is marked.
 struct KeyframeUpdate {
   msg::KeyframeEvent event;
   bool new_map = false;
@@ -26,9 +26,9 @@ struct KeyframeUpdate {
 /// Everything about one frame that is to be fused.
 struct JoinedFrame {
   std::shared_ptr<const msg::RgbdFrame> frame;
-  std::optional<DynamicMask> mask;  ///< empty: the filter said nothing
+  std::optional<DynamicMask> mask;  ///< empty: the filter sent none
   msg::TrackingResult result{};
-  std::vector<KeyframeUpdate> updates;  ///< those that slam said up to this frame, in its order
+  std::vector<KeyframeUpdate> updates;  ///< those that slam published up to this frame, in order
 };
 
 /// What became of the frames that slam answered.
@@ -36,12 +36,12 @@ struct JoinCounters {
   std::uint64_t joined = 0;
   std::uint64_t passed_over = 0;    ///< neither every n-th nor a keyframe
   std::uint64_t not_tracked = 0;    ///< or in another map
-  std::uint64_t without_image = 0;  ///< it had gone before its turn, or never came
+  std::uint64_t without_image = 0;  ///< it was dropped before its turn, or never came
   std::uint64_t without_mask = 0;
 };
 
 /// Joins images, masks and poses by the stamp of the frame. Filled by bus threads, none of which ever waits; emptied by
-/// the worker. Bounded: 12 images, 64 masks, 256 poses; the oldest go first. Thread-safe.
+/// the worker. Bounded: 12 images, 64 masks, 256 poses; the oldest are dropped first. Thread-safe.
 class FrameJoiner {
  public:
   struct Options {
@@ -56,9 +56,9 @@ class FrameJoiner {
   void put(const msg::KeyframeEvent& event);
   /// The next frame to fuse, in slam's order; waits for one.
   std::optional<JoinedFrame> take(std::chrono::milliseconds timeout);
-  /// Nothing more comes: what waits for a missing part is given up.
+  /// Nothing more comes: frames that wait for a missing part are dropped.
   void close();
-  /// All updates not given out with a frame.
+  /// All updates that were not taken with a frame.
   std::vector<KeyframeUpdate> take_updates();
   JoinCounters counters() const;
 
@@ -82,7 +82,7 @@ class FrameJoiner {
   std::deque<msg::TrackingResult> results_;
   std::deque<KeyframeUpdate> updates_;
   std::deque<std::uint64_t> keyframe_seqs_;
-  std::uint64_t next_event_ = 0;  ///< updates 0 .. n-1 have been heard or will never be
+  std::uint64_t next_event_ = 0;  ///< events 0 .. n-1 have come or never will
   std::optional<std::int64_t> last_stamp_ns_;
   JoinCounters counters_;
   bool closed_ = false;

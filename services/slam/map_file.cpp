@@ -42,7 +42,7 @@ std::uint64_t save_map_file(const std::filesystem::path& path, const MapSnapshot
     write_map(snapshot, sink);
     sink.replace(path);
   } catch (...) {
-    std::error_code ignored;  // the first failure is the one to tell
+    std::error_code ignored;  // the first failure is the one to report
     std::filesystem::remove(unfinished, ignored);
     throw;
   }

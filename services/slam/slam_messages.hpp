@@ -19,7 +19,7 @@ struct FrameNames {
   std::string map, odom, camera;
 };
 
-/// The result as it goes to our own services; published_ns and finished_ns are the caller's to fill.
+/// The result for our own services; the caller fills in published_ns and finished_ns.
 msg::TrackingResult make_result(const FrameResult& result);
 /// One event for each change, in their order.
 std::vector<msg::KeyframeEvent> make_events(const SlamOutput& output);

@@ -23,7 +23,7 @@ class App;
 namespace rtd::slam {
 
 /// Features in, poses out. Every feature frame is answered by one TrackingResult, after the keyframe events that belong
-/// to it. Realtime pace: at most 4 frames wait, the oldest goes and is counted; asap and lockstep: none is lost.
+/// to it. Realtime pace: at most 4 frames wait, the oldest is dropped and counted; asap and lockstep: none is lost.
 /// Mapping runs in this thread at pace lockstep (same input, same map), else in its own.
 class SlamService {
  public:
@@ -62,7 +62,7 @@ class SlamService {
   SlamPublisher publisher_;
   std::shared_ptr<Arrivals> arrivals_;
   bus::Reader<msg::FeatureFrame> features_;
-  std::atomic<bool> source_ended_{false};  ///< the camera said so
+  std::atomic<bool> source_ended_{false};  ///< as the camera reports
   SlamCounters counters_;
   std::optional<MapKeeper> map_keeper_;  ///< ends before the system that it reads
   msg::TrackingResult last_result_{};

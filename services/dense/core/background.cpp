@@ -7,7 +7,7 @@
 
 namespace rtd::dense {
 
-/// The picture that is painted, in undistorted pixels of the target's camera.
+/// The painted image, in undistorted pixels of the target's camera.
 struct BackgroundPainter::Canvas {
   cv::Mat bgra;     ///< CV_8UC4
   cv::Mat depth_m;  ///< CV_32F of what was painted, infinite where nothing was
@@ -110,7 +110,7 @@ void BackgroundPainter::paint_view(const PastView& view, const Eigen::Isometry3d
   }
 }
 
-/// Coarser, but knows also what no kept view saw.
+/// Coarser, but it also covers what no kept view saw.
 void BackgroundPainter::paint_cloud(const std::vector<CloudPoint>& cloud, Canvas& canvas) const {
   const double fx = newest_.image.camera.parameters().fx;
   for (const CloudPoint& point : cloud) {

@@ -10,7 +10,7 @@
 
 namespace rtd::dense {
 
-/// A frame that is remembered: with copies of its images, hung on a keyframe.
+/// A kept frame with copies of its images, relative to a keyframe.
 struct PastView {
   vision::RgbdImage image;
   DynamicMask mask;  ///< already grown

@@ -49,7 +49,7 @@ struct CarvingConfig {
     binder.field("sigmas", sigmas, {0.0, 20.0}, "and so many standard deviations of depth");
     binder.field("frames", frames, {1, 10000}, "a voxel seen through so many times more often than seen is removed");
     binder.field("max_evidence", max_evidence, {1, 10000}, "more sightings do not count: old surfaces can leave, too");
-    binder.field("min_sightings", min_sightings, {1, 1000}, "voxels seen in fewer frames are not given out");
+    binder.field("min_sightings", min_sightings, {1, 1000}, "voxels seen in fewer frames are not published");
   }
 };
 

@@ -14,7 +14,7 @@
 
 namespace rtd::dense {
 
-/// What the filter says of the cells of one frame, in undistorted pixels.
+/// What the filter found out about the cells of one frame, in undistorted pixels.
 struct DynamicMask {
   enum : std::uint8_t { kStatic = 0, kUnknown = 128, kDynamic = 255 };
   int columns = 0, rows = 0;

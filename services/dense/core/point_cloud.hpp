@@ -10,7 +10,7 @@
 
 namespace rtd::dense {
 
-/// A point of the map that is given out.
+/// A point of the published map.
 struct CloudPoint {
   Eigen::Vector3f p_world = Eigen::Vector3f::Zero();  ///< m
   std::array<float, 3> bgr{};                         ///< 0..255

@@ -111,7 +111,7 @@ void StaticMap::follow_corrections() {
   });
 }
 
-/// Eq. (4): whoever stands nearer than what is measured behind him, is not there. That holds at pixels of movers too.
+/// Eq. (4): a voxel nearer than what is measured behind it has gone. That also holds at pixels of moving objects.
 std::uint64_t StaticMap::carve(const DepthView& view, const Eigen::Isometry3f& T_camera_world) {
   const auto& limits = config_.carving;
   const auto min_m = static_cast<float>(config_.fusion.min_depth_m);

@@ -19,15 +19,15 @@ namespace rtd::dense {
 /// Where slam's keyframes are now, and how far they have moved since the map last followed them.
 class KeyframePoses {
  public:
-  /// A keyframe that goes away: its points follow another one from now on.
+  /// A removed keyframe: its points follow another one from now on.
   struct Removed {
     AnchorId keyframe = kNoAnchor, follows = kNoAnchor;
   };
-  /// Takes one word of slam. Poses that are not finite are ignored.
+  /// Applies one event of slam. Poses that are not finite are ignored.
   std::optional<Removed> update(const msg::KeyframeEvent& event);
-  /// The keyframe that new points hang on: the newest; kNoAnchor before the first.
+  /// The keyframe that new points move with: the newest; kNoAnchor before the first.
   AnchorId newest() const { return newest_; }
-  /// T_world_keyframe as last heard; nullptr for an unknown one.
+  /// T_world_keyframe by the last event; nullptr for an unknown one.
   const Eigen::Isometry3d* pose(AnchorId keyframe) const;
   /// What the corrections since the last call do to points in the world, by keyframe: T_new * T_old^-1.
   std::map<AnchorId, Eigen::Isometry3f> take_motions();
@@ -36,7 +36,7 @@ class KeyframePoses {
  private:
   struct Keyframe {
     std::int64_t stamp_ns = 0;
-    Eigen::Isometry3d T_world_keyframe, T_world_applied;  ///< as heard; as the map's points have it
+    Eigen::Isometry3d T_world_keyframe, T_world_applied;  ///< by the last event; as applied to the map's points
   };
   AnchorId nearest_in_time(std::int64_t stamp_ns) const;
 
@@ -49,26 +49,26 @@ struct FusionReport {
   enum class Outcome { kFused, kBadPose, kBadImage };
   Outcome outcome = Outcome::kFused;
   std::uint64_t fused = 0;    ///< points that went in
-  std::uint64_t masked = 0;   ///< points left out because they move, may move or could not be judged
+  std::uint64_t masked = 0;   ///< points left out because they move, may move or are unknown
   std::uint64_t refused = 0;  ///< points that found no room
   std::uint64_t carved = 0;   ///< voxels that vanished because they were seen through
 };
 
 /// The dense static map: depth images without what moves, fused into voxels; what later turns out to be empty space
-/// vanishes. Points hang on slam's keyframes and move with them. docs/theory/dense_map.md. Deterministic in the order
+/// vanishes. Points belong to slam's keyframes and move with them. docs/theory/dense_map.md. Deterministic in the order
 /// of calls, never throws for the content of a frame. One thread.
 class StaticMap {
  public:
   explicit StaticMap(const DenseConfig& config);
 
   void update(const msg::KeyframeEvent& event);
-  /// Carves, then fuses. `mask` as it came from the filter; T_world_camera in slam's world as of the events heard.
+  /// Carves, then fuses. `mask` as it came from the filter; T_world_camera in slam's world as of the events so far.
   FusionReport integrate(const vision::RgbdImage& image, const DynamicMask& mask,
                          const Eigen::Isometry3d& T_world_camera);
   /// Forgets everything, e.g. when slam has begun a new map.
   void clear();
 
-  /// What is believed, after the corrections heard so far; in cells of the voxel size or, to keep to `max_points`,
+  /// What is believed, after the corrections so far; in cells of the voxel size or, to keep to `max_points`,
   /// larger ones.
   std::vector<CloudPoint> cloud(std::size_t max_points = SIZE_MAX);
   /// A believed voxel lies within one cell of the point.

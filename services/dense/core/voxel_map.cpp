@@ -14,7 +14,7 @@ constexpr int kMaxSteps = 3;
 
 }  // namespace
 
-/// kOutside for points that are not finite or farther from the origin than the key can tell.
+/// kOutside for points that are not finite or farther from the origin than the key can express.
 std::uint64_t VoxelMap::key_of(const Eigen::Vector3f& p_world) const {
   constexpr double kHalf = 1 << (kBits - 1);
   std::uint64_t key = 0;
@@ -100,7 +100,7 @@ void VoxelMap::merge(Voxel& into, const Voxel& other) const {
   into.last_frame = std::max(into.last_frame, other.last_frame);
 }
 
-/// First all leave their cells, then all arrive: nobody meets one who is about to leave.
+/// First all leave their cells, then all arrive: none meets one that is about to leave.
 void VoxelMap::move(const std::function<const Eigen::Isometry3f*(AnchorId)>& motion_of) {
   std::vector<Index> arriving;
   for (Index i = 0; i < voxels_.size(); ++i) {

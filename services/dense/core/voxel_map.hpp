@@ -50,11 +50,11 @@ class VoxelMap {
   /// Joins the heaviest voxel along the ray within the gate, else the one of its own cell, else makes a new one. False
   /// when that is refused: the map is full or the point lies out of bounds.
   bool add(const Sample& sample, std::uint32_t frame, AnchorId anchor);
-  /// Takes away the voxels for which `gone` says so; it may change them.
+  /// Removes the voxels for which `gone` is true; it may change them.
   std::size_t remove_if(const std::function<bool(Voxel&)>& gone);
-  /// Moves every voxel by what `motion_of` its anchor says (nullptr: stays); voxels that meet become one.
+  /// Moves every voxel by `motion_of` its anchor (nullptr: it stays); voxels that meet become one.
   void move(const std::function<const Eigen::Isometry3f*(AnchorId)>& motion_of);
-  /// Hangs the voxels of one anchor on another.
+  /// Gives the voxels of one anchor to another.
   void reanchor(AnchorId from, AnchorId to);
   void clear();
 

@@ -158,7 +158,7 @@ struct MapperConfig {
     binder.field("min_found_ratio", min_found_ratio, {0.0, 1.0},
                  "landmarks found less often than they should be seen are removed");
     binder.field("redundant_ratio", redundant_ratio, {0.5, 1.0},
-                 "keyframes of whose landmarks three others see so many are removed");
+                 "keyframes are removed when three others see this share of their landmarks");
     binder.field("ba_keyframes", ba_keyframes, {2, 200}, "keyframes that local bundle adjustment optimises");
     binder.field("ba_fixed_keyframes", ba_fixed_keyframes, {1, 200}, "keyframes that hold the gauge");
     binder.field("ba_iterations_robust", ba_iterations_robust, {1, 100},
@@ -182,7 +182,7 @@ struct PlaceConfig {
   void bind(auto& binder) {
     binder.field("candidates", candidates, {1, 100},
                  "places that a lost frame is compared with before it starts again with the best");
-    binder.field("candidates_per_frame", candidates_per_frame, {1, 100}, "so many of them at one frame");
+    binder.field("candidates_per_frame", candidates_per_frame, {1, 100}, "of these, how many are tried at one frame");
     binder.field("min_inliers", min_inliers, {10, 500}, "landmarks that a pose needs at a recognised place");
     binder.field("min_found_ratio", min_found_ratio, {0.0, 1.0},
                  "of the landmarks that should be seen there, or of the features if fewer");

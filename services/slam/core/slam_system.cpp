@@ -115,7 +115,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   if (!had_pose_ && outcome.map->map != map_) odometry_.correct(before, tracker_.T_world_camera());
   observe_shutter(*outcome.map, outcome);
   maybe_insert_keyframe(outcome);
-  // A loop that this very frame has closed: it is told where the corrected map has it.
+  // This very frame may have closed a loop: its pose is then that in the corrected map.
   if (const LocalMapPtr corrected = mapping_.snapshot(); follow_map(*corrected)) {
     outcome.tracked.T_world_camera = tracker_.T_world_camera();
     outcome.map = corrected;
@@ -123,7 +123,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   return outcome;
 }
 
-/// What the last frames tell of the motion during the next one.
+/// The motion during the next frame, as the last ones let expect.
 ShutterMotion SlamSystem::shutter_motion() const {
   if (!config_.techniques.rolling_shutter || !tracker_.motion()) return {};
   const double known_s = config_.sensor.readout_s;
@@ -142,7 +142,7 @@ void SlamSystem::observe_shutter(const LocalMap& map, const TrackOutcome& outcom
   readout_.add(*outcome.tracked.frame, outcome.tracked.T_world_camera, points, shutter_);
 }
 
-/// Lost for long, with views that nobody knows: the world goes on in a map of its own.
+/// Lost for long, with unknown views: the camera continues in a new map.
 bool SlamSystem::wants_new_map(const Frame& frame, const TrackOutcome& outcome) {
   if (config_.localize_only || msg::has_pose(outcome.state) || outcome.at_place()) {
     unknown_view_.reset();
@@ -177,7 +177,7 @@ void SlamSystem::follow_reference(const TrackOutcome& outcome) {
   mapping_.recentre(reference);
 }
 
-/// The map may have been corrected under the camera: the jump goes into map -> odom. True when there was one.
+/// The map may have been corrected under the camera: the jump is added to map -> odom. True when there was one.
 bool SlamSystem::follow_map(const LocalMap& map) {
   const Eigen::Isometry3d before = tracker_.T_world_camera();
   tracker_.adopt(map);

@@ -16,7 +16,7 @@
 
 namespace rtd::slam {
 
-/// What SLAM knows of one frame.
+/// What SLAM found out about one frame.
 struct FrameResult {
   std::uint64_t seq = 0;
   std::int64_t stamp_ns = 0;
@@ -37,7 +37,7 @@ struct FrameResult {
 struct SlamOutput {
   FrameResult result;
   std::vector<KeyframeChange> changes;                           ///< to be published before the result
-  Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();  ///< takes up the jumps when the map is corrected
+  Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();  ///< takes up the jumps of a corrected map
   std::vector<LoopClosure> loops;                                ///< closed since the last frame
   std::uint32_t invalid_features = 0;  ///< left out because a value is not finite or out of range
   std::string problem;                 ///< one line for people when the frame is not tracked; else empty
@@ -52,7 +52,7 @@ class SlamSystem {
 
   /// Goes on with a map that was saved, before the first frame: relocalizing until a frame is found in it.
   void restore(MapContents contents);
-  /// Never throws for the content of the message. Frames are expected in order; a seq that jumps back is taken for a
+  /// Never throws for the content of the message. Frames are expected in order; a seq that jumps back means a
   /// source that started again: motion is forgotten, the map stays.
   SlamOutput process(const msg::FeatureFrame& message);
   /// Ends mapping: everything queued is worked off. The trajectories are final after it.
@@ -63,7 +63,7 @@ class SlamSystem {
   std::vector<StampedPose> keyframes(MapId id = 0) const;
   std::vector<MapPoint> map_points(MapId id = 0) const;
   std::vector<MapId> maps() const;
-  /// Looks at the whole map: may wait for a bundle adjustment, and the mapper waits meanwhile.
+  /// Reads the whole map: may wait for a bundle adjustment, and the mapper waits until it is done.
   void read_map(const std::function<void(const Map&)>& look) const { mapping_.read(look); }
   std::vector<LoopClosure> loops() const { return mapping_.loops(); }
   std::size_t frames_tracked() const { return frames_.size(); }

@@ -9,7 +9,7 @@ namespace rtd::slam {
 namespace {
 
 /// Deviations of the motion between two neighbours that share `kStrong` landmarks: a part that is always there and one
-/// that grows with the motion. Fewer landmarks say less. docs/theory/loop_closing.md Eq. (6).
+/// that grows with the motion. Fewer landmarks carry less information. docs/theory/loop_closing.md Eq. (6).
 constexpr double kSigmaM = 0.002, kSigmaPerM = 0.01;
 constexpr double kSigmaRad = 0.0005, kSigmaPerRad = 0.02;
 constexpr double kStrong = 100;

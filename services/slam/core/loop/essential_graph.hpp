@@ -25,8 +25,8 @@ struct EssentialGraph {
 };
 
 /// Spanning tree, strong covisibility and loops of one component; the motions of the first two are those that the map
-/// has now. The first keyframe is held. docs/theory/loop_closing.md, "Essential graph". Loops with keyframes that are
-/// gone hang on what those hung on.
+/// has now. The first keyframe is held. docs/theory/loop_closing.md, "Essential graph". Loops with removed
+/// keyframes go to the closest remaining ancestors of those.
 EssentialGraph make_essential_graph(const Map& map, MapId component, const std::vector<LoopEdge>& loops);
 
 /// Moves keyframes to new poses; landmarks follow their reference keyframe.

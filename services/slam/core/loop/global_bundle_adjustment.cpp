@@ -24,7 +24,7 @@ void add_observations(const Map& map, const Landmark& landmark, std::uint32_t po
   }
 }
 
-/// New poses of all keyframes of the component: adjusted ones, and those made meanwhile behind their parents.
+/// New poses of all keyframes of the component: adjusted ones, and newer ones relative to their parents.
 KeyframePoses follow_parents(const Map& map, const GlobalProblem& problem) {
   KeyframePoses poses;
   for (std::size_t i = 0; i < problem.keyframes.size(); ++i) {

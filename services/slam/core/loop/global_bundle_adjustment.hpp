@@ -28,12 +28,12 @@ GlobalProblem copy_global_problem(const Map& map, MapId component);
 struct GlobalBundleOptions {
   int iterations = 10;
   int threads = 1;
-  std::function<bool()> interrupted;  ///< asked between iterations; then the result is not to be applied
+  std::function<bool()> interrupted;  ///< polled between iterations; if true, the result must not be applied
 };
 BundleSummary adjust_globally(GlobalProblem& problem, const GlobalBundleOptions& options);
 
-/// Takes an adjusted copy over. Keyframes made meanwhile follow their parents, landmarks made meanwhile their
-/// reference keyframe; what has been removed meanwhile is passed over.
+/// Applies an adjusted copy. Newer keyframes follow their parents, newer landmarks their reference keyframe; what was
+/// removed since is skipped.
 void apply_global_problem(Map& map, const GlobalProblem& problem);
 
 /// Adjusts copies of the map, in the caller's thread or in one of its own. start(), wait() and take(): one thread.

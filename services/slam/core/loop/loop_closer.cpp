@@ -72,7 +72,7 @@ void LoopCloser::straighten(Map& map, MapId component) {
   move_keyframes(map, poses);
 }
 
-/// Moves the younger map to where the loop says and makes it part of the older one.
+/// Moves the younger map to where the loop puts it and makes it part of the older one.
 MapId LoopCloser::merge(Map& map, const Loop& loop) {
   const Keyframe& keyframe = *map.find_keyframe(loop.keyframe);
   const MapId own = keyframe.map, met = map.find_keyframe(loop.meeting.place)->map;

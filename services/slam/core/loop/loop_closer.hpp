@@ -21,7 +21,7 @@ struct LoopClosure {
 };
 
 /// Finds loops and puts the map right: pose graph, fusion, or the younger of two maps moved into the older one. Global
-/// bundle adjustment is the caller's. docs/theory/loop_closing.md tells the story. One thread, that of the mapper.
+/// bundle adjustment is left to the caller. docs/theory/loop_closing.md. One thread, that of the mapper.
 class LoopCloser {
  public:
   explicit LoopCloser(const SlamConfig& config) : config_(config), detector_(config) {}

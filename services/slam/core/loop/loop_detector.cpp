@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMinShared = 15;  ///< landmarks in common that make neighbours
 
-/// The keyframe, its neighbours and theirs: what looks alike there is no news.
+/// The keyframe, its neighbours and theirs: likeness among them is expected.
 std::set<KeyframeId> neighbourhood(const Map& map, KeyframeId keyframe) {
   constexpr std::size_t kAll = 1000;
   std::set<KeyframeId> near{keyframe};
@@ -36,7 +36,8 @@ float least_similarity(const Map& map, const KeyframeDatabase& places, KeyframeI
   return least;
 }
 
-/// The correction that a meeting asks for: T_world_new = T_new_old T_world_old for the keyframe and what hangs on it.
+/// The correction that a meeting implies: T_world_new = T_new_old T_world_old for the keyframe and what is relative to
+/// it.
 Eigen::Isometry3d correction(const Keyframe& keyframe, const PlaceMeeting& meeting) {
   return meeting.T_world_camera * keyframe.T_world_camera.inverse();
 }
@@ -103,7 +104,7 @@ bool LoopDetector::plausible(const Map& map, KeyframeId newest, const PlaceMeeti
          geometry::rotation_angle_rad(T_old_new) <= config.max_offset_rad + config.max_drift_rad_m * way_m;
 }
 
-/// Both keyframes ask for the same correction of the newest one's pose, and of the same map.
+/// Both keyframes imply the same correction of the newest one's pose, and of the same map.
 bool LoopDetector::agrees(const Map& map, KeyframeId newest, const PlaceMeeting& meeting) const {
   const Keyframe* place_before = map.find_keyframe(hypothesis_->place);
   const Keyframe* keyframe_before = map.find_keyframe(hypothesis_->keyframe);

@@ -18,7 +18,7 @@ struct Loop {
 
 /// What became of the candidates so far; for diagnostics and tests.
 struct LoopCounters {
-  std::size_t candidates = 0;     ///< looked at
+  std::size_t candidates = 0;     ///< compared
   std::size_t met = 0;            ///< found by geometry
   std::size_t implausible = 0;    ///< of those, too far off for the way walked
   std::size_t contradictory = 0;  ///< of those, asking for another correction than the keyframe before
@@ -38,7 +38,7 @@ class LoopDetector {
   const LoopCounters& counters() const { return counters_; }
 
  private:
-  /// A correction that the last keyframes asked for.
+  /// A correction that the last keyframes agree on.
   struct Hypothesis {
     KeyframeId keyframe = kNoKeyframe, place = kNoKeyframe;  ///< the last that did
     Eigen::Isometry3d T_new_old = Eigen::Isometry3d::Identity();

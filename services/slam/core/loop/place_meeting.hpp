@@ -21,7 +21,7 @@ struct PlaceMeeting {
 };
 
 /// Looks for a place in a keyframe: descriptors, 3D-3D RANSAC, robust optimisation, then every landmark of the place
-/// that should be visible is looked for and the pose optimised with all of them, twice. Empty when that ends with
+/// that should be visible is searched and the pose optimised with all of them, twice. Empty when that ends with
 /// fewer than `min_inliers` landmarks or `min_found_share`. docs/theory/loop_closing.md, "Verification".
 std::optional<PlaceMeeting> meet_place(const Map& map, KeyframeId keyframe, KeyframeId candidate,
                                        const SlamConfig& config);

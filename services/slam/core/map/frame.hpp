@@ -60,7 +60,7 @@ struct Frame {
   std::vector<msg::Feature> features;  ///< usable ones only; depth_m is 0 where not measured or beyond max_depth_m
   vision::FeatureGrid grid;
   std::vector<msg::Feature>
-      removed;  ///< judged dynamic by the filter: never tracked, they only speak against landmarks; may be dropped
+      removed;  ///< judged dynamic by the filter: never tracked, only evidence against landmarks; may be dropped
   vision::FeatureGrid removed_grid;
 
   bool contains(const Eigen::Vector2d& pixel) const {
@@ -77,7 +77,7 @@ using FramePtr = std::shared_ptr<const Frame>;
 /// Whether all values of a feature are finite and in their ranges.
 bool usable(const msg::Feature& feature);
 
-/// Whether a frame keeps the features that the filter removed: only the landmark belief asks for them.
+/// Whether a frame keeps the features that the filter removed: only the landmark belief needs them.
 enum class RemovedFeatures { kDrop, kKeep };
 
 /// What make_frame() did with the message.
@@ -106,7 +106,7 @@ double row_time(double v_px, int height_px);
 Eigen::Vector3d drift_of(const Eigen::Vector3d& p_camera, const geometry::Vector6d& velocity_per_s);
 
 /// Where (and how deep) a feature would have been seen had its row been exposed together with the middle one.
-/// Eq. (1), (2). A feature without depth is taken for far away: only the rotation moves it.
+/// Eq. (1), (2). A feature without depth counts as far away: only the rotation moves it.
 msg::Feature undo_rolling_shutter(const msg::Feature& feature, const vision::RgbdProjection& camera, int height_px,
                                   const ShutterMotion& motion);
 

@@ -21,7 +21,7 @@ Landmark& LandmarkStore::emplace(LandmarkId id, Landmark landmark) {
 }
 
 void LandmarkStore::erase(LandmarkId id) {
-  at(id) = Landmark{};  // gives its observations back
+  at(id) = Landmark{};  // frees its observations
   free_.push_back(slots_.find(id));
   slots_.erase(id);
   --size_;

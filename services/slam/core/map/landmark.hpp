@@ -59,7 +59,7 @@ inline double to_probability(double log_odds) {
   return 1 / (1 + std::exp(-log_odds));
 }
 
-/// What the first look says; one look proves little.
+/// From the first observation; a single one proves little.
 inline double initial_log_odds(double feature_probability) {
   constexpr double kMaxInitial = 2.0;
   const double p = std::clamp(feature_probability, 1e-3, 1 - 1e-3);
@@ -71,7 +71,7 @@ inline double bounded_change(double log_odds, double change, double bound) {
   return std::clamp(log_odds + change, -bound, bound) - log_odds;
 }
 
-/// Values by id, for ids that count up and of which most are soon gone again: a lookup is two loads, and pages without
+/// Values by id, for ids that count up and most of which are soon removed: a lookup is two loads, and pages without
 /// a value take no memory, wherever the ids lie. `kNone` is the value of ids that have none.
 template <class Value, Value kNone>
 class PagedIndex {

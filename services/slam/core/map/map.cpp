@@ -14,7 +14,7 @@
 namespace rtd::slam {
 namespace {
 
-/// Descriptors compared when the most typical one is chosen; the newest of a long track say enough.
+/// Descriptors compared when the most typical one is chosen; the newest of a long track are enough.
 constexpr std::size_t kMaxComparedDescriptors = 16;
 
 int weight_of(const Keyframe& keyframe, std::uint32_t feature) {

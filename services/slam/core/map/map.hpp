@@ -28,7 +28,7 @@ struct Keyframe {
   bool is_origin() const { return parent == kNoKeyframe; }
 };
 
-/// Where a removed keyframe hangs now.
+/// Where a removed keyframe was, relative to its parent.
 struct RemovedKeyframe {
   KeyframeId parent = kNoKeyframe;
   Eigen::Isometry3d T_parent_camera = Eigen::Isometry3d::Identity();
@@ -37,10 +37,10 @@ struct RemovedKeyframe {
 /// Where a landmark's static probability comes from.
 enum class ProbabilityRule : std::uint8_t {
   kMeanOfObservations,  ///< of the features that it was seen as
-  kBelief,              ///< the first observation, then what tracking gathers (landmark_statistics.hpp)
+  kBelief,              ///< the first observation, then what tracking gathers (LandmarkStatistics)
 };
 
-/// All of a map that cannot be computed anew: what a map file holds.
+/// All of a map that cannot be recomputed: what a map file holds.
 struct MapContents {
   ProbabilityRule probability_rule = ProbabilityRule::kMeanOfObservations;
   std::vector<Keyframe> keyframes;                              ///< by id; without `covisible` and `children`
@@ -51,7 +51,8 @@ struct MapContents {
   MapId next_map = 0;
 };
 
-/// Keyframes, landmarks and who sees what. One writer (the mapper), no locks: readers get LocalMap snapshots.
+/// Keyframes, landmarks and which of them see each other. One writer (the mapper), no locks: readers get LocalMap
+/// snapshots.
 ///
 /// Invariants, checked by check_invariants(): an observation is known to both its keyframe and its landmark; every
 /// landmark has at least one; `covisible` counts exactly the landmarks in common and is symmetric; parents are older,
@@ -67,10 +68,10 @@ class Map {
   LandmarkId add_landmark(const Eigen::Vector3d& p_world, Observation observation);
   /// False when the keyframe sees this landmark already or its feature belongs to another one.
   bool add_observation(LandmarkId landmark, Observation observation);
-  /// Takes the observation of one keyframe away; the last one takes the landmark with it.
+  /// Removes the observation of one keyframe; removing the last one removes the landmark.
   void remove_observation(LandmarkId landmark, KeyframeId keyframe);
   void remove_landmark(LandmarkId landmark);
-  /// `kept` takes over what `lost` has been; where a keyframe sees both, `kept` keeps its own observation.
+  /// `kept` takes over the observations of `lost`; where a keyframe sees both, `kept` keeps its own observation.
   void replace_landmark(LandmarkId lost, LandmarkId kept);
   /// Removes a keyframe other than the first of its component; its children go to its parent, its pose stays known
   /// relative to it.
@@ -84,7 +85,7 @@ class Map {
   void refresh_landmark(LandmarkId landmark);
   void refresh_geometry(LandmarkId landmark);
 
-  /// Null when unknown (removed meanwhile).
+  /// Null when unknown or removed.
   const Landmark* find_landmark(LandmarkId id) const { return landmarks_.find(id); }
   Landmark* find_landmark(LandmarkId id) { return landmarks_.find(id); }
   const Keyframe* find_keyframe(KeyframeId id) const { return keyframe_index_.find(id); }
@@ -96,14 +97,14 @@ class Map {
   MapId map_of(KeyframeId id) const;
   /// The maps that there are, oldest first.
   std::vector<MapId> maps() const;
-  /// What a removed keyframe hangs on (possibly removed itself).
+  /// The keyframe that a removed one is relative to (possibly removed itself).
   KeyframeId parent_of_removed(KeyframeId id) const { return removed_.at(id).parent; }
   /// Up to `count` keyframes with at least `min_shared` landmarks in common, most first.
   std::vector<KeyframeId> best_covisible(KeyframeId id, std::size_t count, int min_shared = 15) const;
 
   const std::map<KeyframeId, Keyframe>& keyframes() const { return keyframes_; }
   std::vector<LandmarkId> landmark_ids() const { return landmarks_.ids(); }  ///< ascending
-  std::size_t keyframe_count(MapId map) const;  ///< of one component; 0 when there is none (any more)
+  std::size_t keyframe_count(MapId map) const;                               ///< of one component; 0 when there is none
   std::size_t component_count() const { return component_sizes_.size(); }
   std::size_t landmark_count() const { return landmarks_.size(); }
   bool empty() const { return keyframes_.empty(); }

@@ -19,7 +19,7 @@ std::string check_landmark(const Map& map, const Landmark& landmark) {
     previous = observation.keyframe;
     seen_by_reference = seen_by_reference || observation.keyframe == landmark.reference;
     const Keyframe* keyframe = map.find_keyframe(observation.keyframe);
-    if (keyframe == nullptr) return name + " is seen by a keyframe that is gone";
+    if (keyframe == nullptr) return name + " is seen by a keyframe that does not exist";
     if (keyframe->landmarks[observation.feature] != landmark.id) return name + " is unknown to its keyframe";
     weight += keyframe->frame->features[observation.feature].depth_m > 0 ? 2 : 1;
   }
@@ -51,7 +51,7 @@ std::string check_keyframe(const Map& map, const Keyframe& keyframe) {
   for (std::size_t feature = 0; feature < keyframe.landmarks.size(); ++feature) {
     if (keyframe.landmarks[feature] == kNoLandmark) continue;
     const Landmark* landmark = map.find_landmark(keyframe.landmarks[feature]);
-    if (landmark == nullptr) return name + " sees a landmark that is gone";
+    if (landmark == nullptr) return name + " sees a landmark that does not exist";
     bool known = false;
     for (const Observation& observation : landmark->observations) {
       if (observation.keyframe == keyframe.id) {
@@ -69,7 +69,7 @@ std::string check_keyframe(const Map& map, const Keyframe& keyframe) {
 
 std::string Map::check_invariants() const {
   for (const LandmarkId id : landmark_ids()) {
-    if (find_landmark(id)->id != id) return "landmark " + std::to_string(id) + " lies where another one should";
+    if (find_landmark(id)->id != id) return "landmark " + std::to_string(id) + " is stored under the id of another one";
     if (std::string error = check_landmark(*this, *find_landmark(id)); !error.empty()) return error;
   }
   std::map<MapId, std::size_t> sizes;

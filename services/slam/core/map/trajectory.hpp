@@ -13,7 +13,7 @@
 
 namespace rtd::slam {
 
-/// A tracked frame, hung on a keyframe so that it follows when the map is corrected.
+/// A tracked frame relative to a keyframe, so that it follows when the map is corrected.
 struct FrameRecord {
   std::uint64_t seq = 0;
   std::int64_t stamp_ns = 0;

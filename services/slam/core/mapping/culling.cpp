@@ -59,7 +59,7 @@ bool is_redundant_keyframe(const Map& map, KeyframeId id, double redundant_ratio
   for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
     if (is_close_landmark(keyframe, i, close_depth_m)) ++close;
   }
-  // Most keyframes are not redundant, which shows before all landmarks are looked at.
+  // Most keyframes are not redundant, which shows before all landmarks are checked.
   int seen = close;
   for (std::size_t i = 0; i < keyframe.landmarks.size() && seen > redundant_ratio * close; ++i) {
     if (!is_close_landmark(keyframe, i, close_depth_m)) continue;

@@ -123,7 +123,7 @@ std::vector<KeyframeId> apply(Map& map, const LocalProblem& problem) {
     const LandmarkId landmark = problem.landmarks[observation.point];
     if (observation.inlier || map.find_landmark(landmark) == nullptr) continue;
     map.remove_observation(landmark, problem.keyframes[observation.camera]);
-    // What a single view is left to vouch for, after another one contradicted, is not kept.
+    // A landmark that only a single view is left to see, after another one contradicted it, is not kept.
     const Landmark* rest = map.find_landmark(landmark);
     if (rest != nullptr && rest->observation_weight <= 2) map.remove_landmark(landmark);
   }

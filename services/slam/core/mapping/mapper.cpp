@@ -131,7 +131,7 @@ void Mapper::finish_adjustment() {
   apply_adjustment();
 }
 
-/// After a correction of the whole map; whoever publishes the changes portions them out.
+/// After a correction of the whole map; KeyframeChangeQueue splits the changes into portions.
 void Mapper::note_all_moved_keyframes() {
   std::vector<KeyframeId> all;
   all.reserve(announced_.size());
@@ -139,8 +139,8 @@ void Mapper::note_all_moved_keyframes() {
   for (const KeyframeId id : all) note_if_moved(id);
 }
 
-/// Looks at the adjusted keyframes, and at some of the others in turn: what a larger correction moved is told bit by
-/// bit, and the cost does not grow with the map.
+/// Looks at the adjusted keyframes, and at some of the others in turn: the changes of a larger correction are announced
+/// bit by bit, and the cost does not grow with the map.
 void Mapper::note_moved_keyframes(std::vector<KeyframeId> adjusted) {
   constexpr int kOthers = 40;  // with the adjusted ones fewer than readers of the topic keep
   auto next = announced_.lower_bound(next_checked_);
@@ -156,7 +156,7 @@ void Mapper::note_moved_keyframes(std::vector<KeyframeId> adjusted) {
 
 void Mapper::note_if_moved(KeyframeId id) {
   const auto announced = announced_.find(id);
-  if (announced == announced_.end()) return;  // culled meanwhile
+  if (announced == announced_.end()) return;  // culled since
   const Keyframe& keyframe = *map_.find_keyframe(id);
   const Eigen::Isometry3d T_announced_now = announced->second.inverse() * keyframe.T_world_camera;
   if (T_announced_now.translation().norm() < config_.mapper.correction_m &&

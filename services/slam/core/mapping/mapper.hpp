@@ -19,7 +19,7 @@
 
 namespace rtd::slam {
 
-/// A frame that is to become a keyframe. Its pose hangs on its reference keyframe, because the map may have moved
+/// A frame that is to become a keyframe. Its pose is relative to its reference keyframe, because the map may have moved
 /// since it was tracked.
 struct KeyframeProposal {
   FramePtr frame;
@@ -46,18 +46,18 @@ class Mapper {
  public:
   explicit Mapper(const SlamConfig& config);
 
-  /// Goes on with a map that was saved. Its keyframes are not announced: nobody else has their frames.
+  /// Continues a saved map. Its keyframes are not announced: no other service has their frames.
   void restore(MapContents contents);
   /// Takes a keyframe into the map. `interrupted` (another keyframe waits) shortens the work.
   KeyframeId insert(const KeyframeProposal& proposal, const std::function<bool()>& interrupted = {});
-  /// A snapshot around `centre`, or around what `centre` hung on when it was removed meanwhile.
+  /// A snapshot around `centre`, or around its closest remaining ancestor if it was removed.
   LocalMapPtr local_map(KeyframeId centre);
   /// The parts of the map around the places that look like this frame: `count` of them from rank `first` on, going
   /// round; fewer when there are fewer places. Empty without place recognition.
   std::vector<LocalMapPtr> places_like(const Frame& frame, std::size_t first, std::size_t count);
   /// Created, corrected and removed keyframes since the last call, in order.
   std::vector<KeyframeChange> take_changes();
-  /// Global bundle adjustment runs beside the mapper from now on; `on_done` says, from its thread, that
+  /// Global bundle adjustment runs beside the mapper from now on; `on_done` reports, from its thread, that
   /// apply_adjustment() has something to apply.
   void adjust_in_background(std::function<void()> on_done) { adjuster_.run_in_background(std::move(on_done)); }
   void apply_adjustment();

@@ -30,7 +30,7 @@ std::optional<Eigen::Vector3d> triangulate(const Eigen::Isometry3d& T_camera_wor
 
 /// Joins landmarks that are the same point seen twice: projects the landmarks of the keyframe into its neighbours and
 /// theirs into it; a feature found there becomes an observation, or, if it has a landmark of its own, the landmark
-/// with fewer observations goes. docs/theory/mapping.md, "Fusion". Returns how many landmarks were merged away.
+/// with fewer observations is removed. docs/theory/mapping.md, "Fusion". Returns how many landmarks were merged.
 int fuse_landmarks(Map& map, KeyframeId keyframe, int neighbours);
 
 /// The same for chosen landmarks and one keyframe that may see them.
@@ -52,7 +52,7 @@ class RecentLandmarks {
   std::vector<LandmarkId> landmarks_;
 };
 
-/// Covisible keyframes of the newest one that are looked at for redundancy.
+/// Covisible keyframes of the newest one that are checked for redundancy.
 inline constexpr std::size_t kMaxRedundancyCandidates = 30;
 
 /// Whether nearly all (`redundant_ratio`) close landmarks of a keyframe are seen by at least three others at the same

@@ -5,7 +5,7 @@
 namespace rtd::slam {
 namespace {
 
-/// Commands. Nobody ever waits for room: keyframes among them are bounded by room(), the others are one each.
+/// Commands. No caller ever waits for room: keyframes among them are bounded by room(), the others are one each.
 constexpr std::size_t kQueueCapacity = 16;
 constexpr int kMaxPendingKeyframes = 3;
 

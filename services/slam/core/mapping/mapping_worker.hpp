@@ -20,7 +20,7 @@ enum class MappingMode : std::uint8_t {
   kThreaded,     ///< beside tracking
 };
 
-/// Runs a Mapper in the caller's thread or in one of its own, and hands out what tracking needs of it.
+/// Runs a Mapper in the caller's thread or in one of its own, and provides what tracking needs from it.
 /// restore(), insert(), begin_map(), recentre(), places_like(), finish(): one thread (tracking). snapshot(),
 /// take_changes(), room(), idle(), read(): any.
 class MappingWorker {
@@ -29,20 +29,20 @@ class MappingWorker {
   MappingWorker(const SlamConfig& config, MappingMode mode, std::function<void()> on_thread_start);
   ~MappingWorker();
 
-  /// Goes on with a map that was saved; before the first keyframe.
+  /// Continues a saved map; before the first keyframe.
   void restore(MapContents contents);
   /// Room for another keyframe; idle: nothing queued or in work. Synchronous: both always true.
   bool room() const;
   bool idle() const { return pending_ == 0; }
-  /// Hands a keyframe over.
+  /// Passes a keyframe on.
   void insert(KeyframeProposal proposal);
   /// Inserts the first keyframe of a map before it returns, in both modes; snapshots are taken around it from now on.
   LocalMapPtr begin_map(KeyframeProposal first);
   /// Asks for snapshots around this keyframe from now on.
   void recentre(KeyframeId centre);
   /// Parts of the map around places that look like this frame; every `attempt` of a search, counted from 0, tries
-  /// others. Synchronous: at once. Threaded: never waits; the answer is that to an earlier frame, empty when it has
-  /// been given out or is not there yet.
+  /// others. Synchronous: at once. Threaded: never waits; the result belongs to an earlier frame and is empty when it
+  /// has been taken or is not ready yet.
   std::vector<LocalMapPtr> places_like(const FramePtr& frame, std::size_t attempt);
   /// Newest snapshot; null before the first keyframe.
   LocalMapPtr snapshot() const;
@@ -51,7 +51,7 @@ class MappingWorker {
   std::vector<LoopClosure> loops(std::size_t first = 0) const;
   /// Works off what is queued and ends the thread; later calls of insert() do nothing.
   void finish();
-  /// Looks at the whole map between two keyframes: may wait for a bundle adjustment.
+  /// Reads the whole map between two keyframes: may wait for a bundle adjustment.
   void read(const std::function<void(const Map&)>& look) const;
 
  private:

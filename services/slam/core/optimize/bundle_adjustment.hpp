@@ -43,7 +43,7 @@ struct BundleOptions {
   double max_chi2_pixel = 5.991, max_chi2_rgbd = 7.815;
   BundleSolver solver = BundleSolver::kDense;
   int threads = 1;  ///< of kSparse; the result does not depend on it beyond rounding
-  /// True ends early with what is reached. kDense asks every 0.1 ms, kSparse between iterations.
+  /// True ends early with what is reached. kDense polls every 0.1 ms, kSparse between iterations.
   std::function<bool()> interrupted;
 };
 

@@ -11,7 +11,7 @@
 namespace rtd::slam {
 
 /// Levenberg-Marquardt for a bundle of few cameras that see each other, docs/theory/mapping.md Eq. (1)-(3) and (7)-(9):
-/// the sums of Eq. (3) are formed landmark by landmark, without a Jacobian in between, and the flag is asked every few
+/// the sums of Eq. (3) are formed landmark by landmark, without a Jacobian in between, and the flag is polled every few
 /// landmarks. The same minimum as Ceres' Schur solvers find, five times sooner. Deterministic, one thread.
 class DenseBundle {
  public:

@@ -8,7 +8,7 @@
 
 namespace rtd::slam {
 
-/// Ends a solver of Ceres when somebody is waiting for the mapper: asked after each iteration.
+/// Ends a solver of Ceres when another keyframe waits for the mapper: polled after each iteration.
 class InterruptCallback final : public ceres::IterationCallback {
  public:
   explicit InterruptCallback(const std::function<bool()>& interrupted) : interrupted_(interrupted) {}

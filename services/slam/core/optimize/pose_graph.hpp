@@ -30,7 +30,7 @@ struct PoseGraph {
 
 struct PoseGraphOptions {
   int max_iterations = 30;
-  std::function<bool()> interrupted;  ///< asked between iterations; true ends early with what is reached
+  std::function<bool()> interrupted;  ///< polled between iterations; true ends early with what is reached
 };
 
 struct PoseGraphSummary {

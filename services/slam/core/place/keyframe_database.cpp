@@ -54,7 +54,7 @@ std::vector<ScoredKeyframe> KeyframeDatabase::query(const BagOfWords& bag,
                                                     const std::function<bool(KeyframeId)>& admitted) const {
   std::vector<KeyframeId> touched;
   for (const WeightedWord& word : bag.words) {
-    if (word.word >= postings_.size()) break;  // ascending: nobody shows the rest
+    if (word.word >= postings_.size()) break;  // ascending: no keyframe shows the rest
     for (const Posting& posting : postings_[word.word]) {
       float& score = scores_[posting.keyframe];
       if (score == 0) touched.push_back(posting.keyframe);

@@ -25,10 +25,10 @@ std::string name_of(BlockTag tag) {
   return {};
 }
 
-/// The preamble says which version wrote the rest, in every version alike.
+/// The preamble, which is the same in every version, names the version that wrote the rest.
 void check_preamble(mcap::ByteView preamble) {
   if (!std::ranges::equal(preamble.first(kMagic.size()), mcap::bytes_of(kMagic)))
-    throw MapFileError(MapFileDefect::kNotAMap, "this is no map file: it does not begin with RTDMAP");
+    throw MapFileError(MapFileDefect::kNotAMap, "this is not a map file: it does not begin with RTDMAP");
   const mcap::ByteView described = preamble.first(kPreambleBytes - kCrcBytes);
   if (mcap::load<std::uint32_t>(preamble.data() + described.size()) != mcap::crc32(described))
     fail_damaged(0, "the checksum of the file's beginning does not fit");
@@ -74,8 +74,9 @@ BlockReader::BlockReader(const mcap::ByteSource& source) : source_(source) {
   const std::size_t begins_with = static_cast<std::size_t>(std::min<std::uint64_t>(source.size(), kMagic.size()));
   const mcap::ByteView begin = read(begins_with, "beginning");
   if (!std::ranges::equal(begin, mcap::bytes_of(kMagic).first(begin.size())) || source.size() == 0)
-    throw MapFileError(MapFileDefect::kNotAMap,
-                       source.size() == 0 ? "the file is empty" : "this is no map file: it does not begin with RTDMAP");
+    throw MapFileError(MapFileDefect::kNotAMap, source.size() == 0
+                                                    ? "the file is empty"
+                                                    : "this is not a map file: it does not begin with RTDMAP");
   position_ = 0;
   check_preamble(read(kPreambleBytes, "beginning"));
 }
@@ -86,7 +87,7 @@ mcap::ByteView BlockReader::read(std::size_t size, const char* what) {
                                 " bytes): it was cut");
   if (buffer_.size() < size) buffer_.resize(size);
   const std::span<std::byte> bytes(buffer_.data(), size);
-  if (source_.read(position_, bytes) != size) fail_damaged(position_, "the disk does not give its bytes");
+  if (source_.read(position_, bytes) != size) fail_damaged(position_, "its bytes cannot be read from the disk");
   position_ += size;
   return bytes;
 }

@@ -21,7 +21,7 @@ enum class MapFileDefect {
   kDamaged,  ///< cut, changed, or not what a map can be
 };
 
-/// A file cannot be read as a map: what() says where, why and what can be done.
+/// A file cannot be read as a map: what() names the place, the cause and the fix.
 class MapFileError : public std::runtime_error {
  public:
   MapFileError(MapFileDefect defect, const std::string& what) : std::runtime_error(what), defect_(defect) {}
@@ -33,8 +33,8 @@ class MapFileError : public std::runtime_error {
 
 }  // namespace rtd::slam
 
-/// The numbers of a map file, docs/map_file.md. All little-endian.
-/// What a value must be to be part of a map: asked before it is written and after it is read.
+/// The numbers of a map file, docs/map_file.md, and what its values must be: checked before they are written and after
+/// they are read. All little-endian.
 namespace rtd::slam::map_format {
 
 constexpr std::string_view kMagic{"\x89RTDMAP\n", 8};

@@ -14,7 +14,7 @@ namespace rtd::slam {
 enum class StoredFeatures { kKeep, kSkip };
 
 struct MapReadOptions {
-  /// kSkip: frames know stamp and camera only.
+  /// kSkip: frames have stamp and camera only.
   StoredFeatures features = StoredFeatures::kKeep;
   std::function<void(std::uint64_t)> on_progress;  ///< called with the bytes read so far; may be empty
 };

@@ -18,7 +18,7 @@ vision::SearchWindow window_around(const Projection& projection, double radius_p
           static_cast<float>(radius_px), 0, kOctaves};
 }
 
-/// Whether most matches near a feature fit the pose: then the one that does not has itself to blame.
+/// Whether most matches near a feature fit the pose: then the one that does not is wrong itself.
 bool neighbours_fit(const Frame& frame, const LocalMapTracking& tracking, const Association& rejected) {
   constexpr float kNear_px = 60.0F;
   constexpr int kMinNeighbours = 4;
@@ -49,7 +49,7 @@ bool removed_by_filter(const Frame& frame, const LocalLandmark& landmark, const 
   return removed;
 }
 
-/// Whether all depth measured around the projection lies clearly behind the landmark: it has gone.
+/// Whether all depth measured around the projection lies clearly behind the landmark, which has gone.
 bool seen_through(const Frame& frame, const Projection& projection) {
   constexpr double kRadius_px = 8.0;
   constexpr int kMinReadings = 2;

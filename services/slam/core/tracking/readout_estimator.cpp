@@ -16,14 +16,14 @@ namespace {
 using geometry::Matrix6d;
 using geometry::Vector6d;
 
-/// Residuals of one frame share the errors of map and calibration: together they say less than so many independent
-/// ones. Factor on the variance.
+/// Residuals of one frame share the errors of map and calibration: together they carry less information than so many
+/// independent ones. Factor on the variance.
 constexpr double kVarianceInflation = 9.0;
 constexpr double kMinSureReadout_s = 0.004, kMaxReadout_s = 0.05, kSureSigmas = 4.0;
 /// The map is made of the same images and has taken up a part of the effect: only the rest shows. Measured: the
 /// estimate falls short by this factor, whatever readout time was undone before.
 constexpr double kVisibleShare = 0.5;
-constexpr double kMaxChi2 = 9.0;  // residuals beyond tell of a wrong match
+constexpr double kMaxChi2 = 9.0;  // larger residuals come from wrong matches
 
 /// Derivative of the residual (predicted minus measured) by the readout time. Eq. (3).
 Eigen::Vector3d readout_jacobian(const Frame& frame, std::uint32_t feature, const Eigen::Vector3d& p_camera,

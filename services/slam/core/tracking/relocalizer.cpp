@@ -38,14 +38,14 @@ void Relocalizer::settle(LocalMapPtr map) {
 }
 
 LocalMapPtr Relocalizer::choose_map(const LocalMapPtr& snapshot, KeyframeId reference) {
-  constexpr int kMaxFrames = 30;  // the keyframe that is waited for may have been removed meanwhile
+  constexpr int kMaxFrames = 30;  // the awaited keyframe may have been removed
   if (place_ == nullptr) return snapshot;
   if (snapshot->find_keyframe(reference) == nullptr && ++frames_at_place_ <= kMaxFrames) return place_;
   place_.reset();
   return snapshot;
 }
 
-/// Lost, or about to be although the view is rich: somebody has carried the camera away.
+/// Lost, or about to be although the view is rich: the camera was carried away.
 bool Relocalizer::may_search(const Frame& frame, bool had_pose) const {
   constexpr std::size_t kFeatures = 15, kRichView = 100;
   if (!config_.techniques.place_recognition || !places_) return false;

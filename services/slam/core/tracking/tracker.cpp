@@ -10,14 +10,14 @@ namespace rtd::slam {
 namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
-constexpr double kMaxPredictionGap_s = 0.5;  ///< a longer gap says nothing about the motion
+constexpr double kMaxPredictionGap_s = 0.5;  ///< nothing is known of the motion over a longer gap
 
 double seconds_between(const Frame& earlier, const Frame& later) {
   return static_cast<double>(later.stamp_ns - earlier.stamp_ns) / kNanosecondsPerSecond;
 }
 
 /// Whether a camera that moved like `motion` can have got there in `gap_s`. If not, frames in between are missing or it
-/// was carried away: the way to there over the gap is nobody's velocity.
+/// was carried away, and the distance over the gap is not its velocity.
 bool is_steady(const CameraMotion& motion, const Eigen::Isometry3d& T_last_camera, double gap_s) {
   constexpr double kMaxAcceleration_m_s2 = 50, kMaxAcceleration_rad_s2 = 200;  // a hand that is struck
   const Eigen::Isometry3d T_expected_camera =
@@ -171,7 +171,7 @@ bool Tracker::acceptable(const PoseGuess& guess) const {
   return guess.success && guess.inliers >= strictness * config_.tracker.min_inliers;
 }
 
-/// The frame was tracked. After a recognised place it takes some more that agree before a pose is given out.
+/// The frame was tracked. After a recognised place some more must agree before a pose counts.
 void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking) {
   follow(std::move(frame), *outcome.map, tracking);
   outcome.tracked = last_;
@@ -190,7 +190,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
 }
 
 /// Found by the reference keyframe's descriptors alone, or by hardly any landmark of the last frame, the camera may as
-/// well have been carried away to where things look alike.
+/// well have been carried away to a place that looks alike.
 bool Tracker::believable(const Frame& frame, const PoseGuess& start, const LocalMapTracking& tracking) const {
   if (!config_.techniques.place_recognition) return true;
   if (!start.guided) return is_convincing(frame, tracking, config_.place);
@@ -228,7 +228,7 @@ void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking
   inliers_ = tracking.guess.inliers;
 }
 
-/// Too little was found: predicts for a moment, or says lost. A pose from few landmarks that agrees with the
+/// Too little was found: predicts for a moment, or tracking is lost. A pose from few landmarks that agrees with the
 /// prediction is better than the prediction alone.
 void Tracker::reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess& weak) {
   constexpr double kMaxDistance2 = 16.8;  // 99 % of chi2 with 6 degrees of freedom

@@ -37,7 +37,7 @@ enum class KeyframeDecision : std::uint8_t {
 /// ORB-SLAM2's rule for RGB-D, docs/theory/tracking.md Eq. (6).
 KeyframeDecision decide_keyframe(const KeyframeSituation& situation, const KeyframeConfig& config);
 
-/// What tracking says of one frame.
+/// What tracking found out about one frame.
 struct TrackOutcome {
   LocalMapPtr map;  ///< the part of the map that the frame was compared with
   msg::TrackingState state = msg::TrackingState::kInitializing;

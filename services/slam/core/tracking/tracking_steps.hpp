@@ -70,14 +70,15 @@ struct LocalMapTracking {
 LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const PoseGuess& guess,
                                  const TrackingContext& context);
 
-/// What one tracked frame says of a landmark.
+/// What one tracked frame shows about a landmark.
 struct LandmarkEvidence {
   LandmarkId landmark = kNoLandmark;
   double log_odds = 0;  ///< above 0: static
 };
 
-/// Evidence of a tracked frame: found where it should be; matched elsewhere while its neighbours fit; taken for
-/// dynamic by the filter; or not found, and what is measured there lies behind it. docs/theory/tracking.md, "Belief".
+/// Evidence of a tracked frame: found where it should be; matched elsewhere while its neighbours fit; removed
+/// as dynamic by the filter; or not found, and what is measured there lies behind it. docs/theory/tracking.md,
+/// "Belief".
 std::vector<LandmarkEvidence> judge_landmarks(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking,
                                               const BeliefConfig& config);
 
