@@ -13,12 +13,6 @@ namespace {
 
 constexpr double kTolerance = 0.05;  ///< of the focal length; Kinects differ by less than 0.04
 
-bool is_same(const MapCamera& a, const Frame& b) {
-  const vision::RgbdProjection &p = a.projection, &q = b.camera;
-  return p.fx == q.fx && p.fy == q.fy && p.cx == q.cx && p.cy == q.cy && a.width_px == b.width_px &&
-         a.height_px == b.height_px;
-}
-
 bool is_near(const MapCamera& camera, const msg::FeatureFrame& frame) {
   const vision::RgbdProjection& p = camera.projection;
   const auto& [fx, fy, cx, cy] = frame.intrinsics;
@@ -62,7 +56,7 @@ MapCameras cameras_of(const MapContents& contents) {
   MapCameras cameras;
   for (const Keyframe& keyframe : contents.keyframes) {
     const Frame& frame = *keyframe.frame;
-    const auto known = [&](const MapCamera& camera) { return is_same(camera, frame); };
+    const auto known = [&](const MapCamera& camera) { return camera.is_of(frame); };
     if (std::none_of(cameras.rbegin(), cameras.rend(), known))
       cameras.push_back({frame.camera, frame.width_px, frame.height_px});
   }
@@ -78,8 +72,7 @@ std::string difference_to(const MapCameras& cameras, const msg::FeatureFrame& fr
   const vision::RgbdProjection& p = camera.projection;
   return fmt::format(
       "the camera ({}) is not that of the map ({}): give the calibration that the map was made with, or map again "
-      "without "
-      "--map",
+      "without --map",
       text(static_cast<int>(frame.width), static_cast<int>(frame.height), fx, fy, cx, cy),
       text(camera.width_px, camera.height_px, p.fx, p.fy, p.cx, p.cy));
 }

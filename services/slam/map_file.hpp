@@ -20,10 +20,7 @@ std::uint64_t save_map_file(const std::filesystem::path& path, const MapSnapshot
 /// Throws mcap::IoError when it cannot be read, MapFileError when it is no map; both name the file.
 MapContents load_map_file(const std::filesystem::path& path, const MapReadOptions& options = {});
 
-struct MapCamera {
-  vision::RgbdProjection projection;
-  int width_px = 0, height_px = 0;
-};
+using MapCamera = map_format::StoredCamera;
 using MapCameras = std::vector<MapCamera>;
 
 /// The cameras that the keyframes of a map were seen with, each once.

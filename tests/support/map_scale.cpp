@@ -43,8 +43,7 @@ class Walk {
     }
     frames_.push_back({frame->seq, frame->stamp_ns, outcome.tracked.reference, outcome.tracked.T_reference_camera});
     measure_motion(outcome.tracked.T_world_camera);
-    if (decide_keyframe(tracker_.keyframe_situation(*snapshot_, true), options_.slam.keyframe) ==
-        slam::KeyframeDecision::kOffer) {
+    if (wants_keyframe(tracker_.keyframe_situation(*snapshot_, true), options_.slam.keyframe)) {
       insert(tracker_.propose_keyframe());
     } else if (outcome.tracked.reference != snapshot_->keyframes.front().id) {
       take_snapshot(outcome.tracked.reference);

@@ -83,8 +83,7 @@ TrackOutcome SlamSystem::begin_map(const FrameInput& input) {
   requested_centre_ = outcome.tracked.reference;
   unknown_view_.reset();
   outcome.stage_ms[msg::kStageMapping] = to_ms(now_ns_() - start_ns);
-  frames_.push_back(
-      {input.frame->seq, input.frame->stamp_ns, outcome.tracked.reference, outcome.tracked.T_reference_camera});
+  record(outcome.tracked);
   return outcome;
 }
 
@@ -110,8 +109,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
                      std::to_string(config_.tracker.min_inliers) + " landmarks that a pose needs";
     return outcome;
   }
-  frames_.push_back(
-      {input.frame->seq, input.frame->stamp_ns, outcome.tracked.reference, outcome.tracked.T_reference_camera});
+  record(outcome.tracked);
   if (!had_pose_ && outcome.map->map != map_) odometry_.correct(before, tracker_.T_world_camera());
   observe_shutter(*outcome.map, outcome);
   maybe_insert_keyframe(outcome);
@@ -121,6 +119,10 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
     outcome.map = corrected;
   }
   return outcome;
+}
+
+void SlamSystem::record(const TrackedFrame& tracked) {
+  frames_.push_back({tracked.frame->seq, tracked.frame->stamp_ns, tracked.reference, tracked.T_reference_camera});
 }
 
 /// The motion during the next frame, as the last ones let expect.
@@ -155,8 +157,7 @@ bool SlamSystem::wants_new_map(const Frame& frame, const TrackOutcome& outcome) 
 void SlamSystem::maybe_insert_keyframe(TrackOutcome& outcome) {
   const std::int64_t start_ns = now_ns_();
   const KeyframeSituation situation = tracker_.keyframe_situation(*outcome.map, mapping_.idle());
-  const bool insert = !config_.localize_only &&
-                      decide_keyframe(situation, config_.keyframe) == KeyframeDecision::kOffer && mapping_.room();
+  const bool insert = !config_.localize_only && wants_keyframe(situation, config_.keyframe) && mapping_.room();
   outcome.stage_ms[msg::kStageKeyframe] = to_ms(now_ns_() - start_ns);
   const std::int64_t mapping_start_ns = now_ns_();
   if (insert) {

@@ -77,6 +77,7 @@ class SlamSystem {
   TrackOutcome begin_map(const FrameInput& input);
   bool wants_new_map(const Frame& frame, const TrackOutcome& outcome);
   TrackOutcome track(const FrameInput& input, SlamOutput& output);
+  void record(const TrackedFrame& tracked);
   ShutterMotion shutter_motion() const;
   void observe_shutter(const LocalMap& map, const TrackOutcome& outcome);
   void maybe_insert_keyframe(TrackOutcome& outcome);

@@ -7,6 +7,7 @@
 
 #include "services/slam/core/loop/essential_graph.hpp"
 #include "services/slam/core/map/frame.hpp"
+#include "services/slam/core/mapping/mapping_steps.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -16,11 +17,9 @@ void add_observations(const Map& map, const Landmark& landmark, std::uint32_t po
     const Keyframe& keyframe = *map.find_keyframe(observation.keyframe);
     const auto camera = std::lower_bound(problem.keyframes.begin(), problem.keyframes.end(), keyframe.id);
     if (camera == problem.keyframes.end() || *camera != keyframe.id) continue;
-    const msg::Feature& feature = keyframe.frame->features[observation.feature];
-    const double weight = std::min<double>(feature.static_probability, landmark.static_probability);
-    problem.bundle.observations.push_back({static_cast<std::uint32_t>(camera - problem.keyframes.begin()), point,
-                                           keyframe.frame->measurement(observation.feature), sigma_px(feature.octave),
-                                           std::max(weight, 1e-3), true});
+    const auto index = static_cast<std::uint32_t>(camera - problem.keyframes.begin());
+    problem.bundle.observations.push_back(
+        bundle_observation(*keyframe.frame, observation.feature, landmark, index, point));
   }
 }
 

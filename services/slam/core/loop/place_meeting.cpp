@@ -51,18 +51,12 @@ std::optional<PlaceMeeting> meet_place(const Map& map, KeyframeId id, KeyframeId
   const Clock no_clock = [] { return std::int64_t{0}; };
   const StatisticsById no_statistics;
   const TrackingContext context{config, no_clock, no_statistics};
-  const PoseGuess guess = track_keyframe(frame, place->keyframes.front(), *place, context);
-  if (!guess.success) return std::nullopt;
-  LocalMapTracking tracking = track_local_map(frame, *place, guess, context);
-  if (!tracking.guess.success) return std::nullopt;
-  tracking = track_local_map(frame, *place, tracking.guess, context);
-  const double share = found_share(tracking);
-  if (!tracking.guess.success || tracking.guess.inliers < config.loop.min_inliers ||
-      share < config.loop.min_found_share) {
-    return std::nullopt;
-  }
-  return PlaceMeeting{vote_reference(*place, tracking.guess.landmarks), tracking.guess.T_world_camera,
-                      tracking.guess.landmarks, tracking.guess.inliers, share};
+  const auto tracking = track_place(frame, *place, context);
+  if (!tracking || !tracking->guess.success || tracking->guess.inliers < config.loop.min_inliers) return std::nullopt;
+  const double share = found_share(*tracking);
+  if (share < config.loop.min_found_share) return std::nullopt;
+  return PlaceMeeting{vote_reference(*place, tracking->guess.landmarks), tracking->guess.T_world_camera,
+                      tracking->guess.landmarks, tracking->guess.inliers, share};
 }
 
 int fuse_place(Map& map, KeyframeId keyframe, const PlaceMeeting& meeting, int neighbours) {

@@ -31,14 +31,8 @@ bool rides_along(const Landmark& landmark) {
 
 /// Landmarks that tie the keyframes together, by id.
 std::vector<LandmarkId> landmarks_between(const Map& map, const std::vector<KeyframeId>& keyframes) {
-  std::vector<LandmarkId> landmarks;
-  for (const KeyframeId id : keyframes) {
-    for (const LandmarkId landmark : map.find_keyframe(id)->landmarks) {
-      if (landmark != kNoLandmark && !rides_along(*map.find_landmark(landmark))) landmarks.push_back(landmark);
-    }
-  }
-  std::sort(landmarks.begin(), landmarks.end());
-  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  std::vector<LandmarkId> landmarks = landmarks_of(map, keyframes);
+  std::erase_if(landmarks, [&](LandmarkId id) { return rides_along(*map.find_landmark(id)); });
   return landmarks;
 }
 
@@ -69,10 +63,8 @@ void add_observations(const Map& map, LocalProblem& problem) {
       const auto camera = problem.camera_index.find(observation.keyframe);
       if (camera == problem.camera_index.end()) continue;
       const Frame& frame = *map.find_keyframe(observation.keyframe)->frame;
-      const msg::Feature& feature = frame.features[observation.feature];
-      const double weight = std::min<double>(feature.static_probability, landmark.static_probability);
-      problem.bundle.observations.push_back({camera->second, point, frame.measurement(observation.feature),
-                                             sigma_px(feature.octave), std::max(weight, 1e-3), true});
+      problem.bundle.observations.push_back(
+          bundle_observation(frame, observation.feature, landmark, camera->second, point));
     }
   }
 }
@@ -134,6 +126,13 @@ std::vector<KeyframeId> apply(Map& map, const LocalProblem& problem) {
 }
 
 }  // namespace
+
+BundleObservation bundle_observation(const Frame& frame, std::uint32_t feature, const Landmark& landmark,
+                                     std::uint32_t camera, std::uint32_t point) {
+  const msg::Feature& f = frame.features[feature];
+  const double weight = std::min<double>(f.static_probability, landmark.static_probability);
+  return {camera, point, frame.measurement(feature), sigma_px(f.octave), std::max(weight, 1e-3), true};
+}
 
 std::vector<KeyframeId> adjust_local_map(Map& map, KeyframeId newest, const MapperConfig& config,
                                          const std::function<bool()>& interrupted) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "services/slam/core/map/map.hpp"
+#include "services/slam/core/optimize/bundle_adjustment.hpp"
 
 namespace rtd::slam {
 
@@ -64,5 +65,9 @@ bool is_redundant_keyframe(const Map& map, KeyframeId keyframe, double redundant
 /// adjustment". `interrupted` may end it early. Returns the keyframes that moved.
 std::vector<KeyframeId> adjust_local_map(Map& map, KeyframeId newest, const MapperConfig& config,
                                          const std::function<bool()>& interrupted);
+
+/// One observation of a landmark as bundle adjustment weighs it.
+BundleObservation bundle_observation(const Frame& frame, std::uint32_t feature, const Landmark& landmark,
+                                     std::uint32_t camera, std::uint32_t point);
 
 }  // namespace rtd::slam

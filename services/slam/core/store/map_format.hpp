@@ -66,6 +66,12 @@ constexpr int kMaxImageSide_px = 16384;
 struct StoredCamera {
   vision::RgbdProjection projection;
   int width_px = 0, height_px = 0;
+
+  bool is_of(const Frame& frame) const {
+    const vision::RgbdProjection &p = projection, &q = frame.camera;
+    return p.fx == q.fx && p.fy == q.fy && p.cx == q.cx && p.cy == q.cy && p.disparity_px_m == q.disparity_px_m &&
+           width_px == frame.width_px && height_px == frame.height_px;
+  }
 };
 
 /// Block HEAD: what the file holds.

@@ -16,12 +16,8 @@ using map_format::StoredCamera;
 
 /// Index of the camera of a frame, added when it is new. Nearly always all frames have one camera.
 std::uint16_t find_camera(std::vector<StoredCamera>& cameras, const Frame& frame) {
-  const auto same = [&](const StoredCamera& camera) {
-    const vision::RgbdProjection &a = camera.projection, &b = frame.camera;
-    return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy && a.disparity_px_m == b.disparity_px_m &&
-           camera.width_px == frame.width_px && camera.height_px == frame.height_px;
-  };
-  const auto found = std::find_if(cameras.rbegin(), cameras.rend(), same);
+  const auto found =
+      std::find_if(cameras.rbegin(), cameras.rend(), [&](const StoredCamera& camera) { return camera.is_of(frame); });
   if (found != cameras.rend()) return static_cast<std::uint16_t>(cameras.rend() - found - 1);
   if (cameras.size() == map_format::kMaxCameras) throw std::length_error("map file: more than 65535 cameras");
   cameras.push_back({frame.camera, frame.width_px, frame.height_px});

@@ -5,21 +5,6 @@
 #include <algorithm>
 
 namespace rtd::slam {
-namespace {
-
-/// Descriptors of the place's centre, RANSAC, optimisation, then the landmarks around it where that pose shows them.
-/// Empty unless the frame clearly belongs there.
-std::optional<LocalMapTracking> find_at(const Frame& frame, const LocalMap& place, const TrackingContext& context) {
-  const PoseGuess coarse = track_keyframe(frame, place.keyframes.front(), place, context);
-  if (!coarse.success) return std::nullopt;
-  LocalMapTracking tracking = track_local_map(frame, place, coarse, context);
-  if (!tracking.guess.success) return std::nullopt;
-  tracking = track_local_map(frame, place, tracking.guess, context);  // from a coarse pose many are missed
-  if (!is_convincing(frame, tracking, context.config.place)) return std::nullopt;
-  return tracking;
-}
-
-}  // namespace
 
 bool agrees_widely(const Frame& frame, const LocalMapTracking& tracking, const PlaceConfig& config) {
   const auto possible = static_cast<double>(std::min(tracking.visible.size(), frame.features.size()));
@@ -57,8 +42,8 @@ std::optional<Relocalizer::Found> Relocalizer::search(const FramePtr& frame, boo
   if (!may_search(*frame, had_pose)) return std::nullopt;
   state_ = State::kSearching;
   for (const LocalMapPtr& place : places_(frame, attempts_++)) {
-    auto tracking = find_at(*frame, *place, context);
-    if (!tracking) continue;
+    auto tracking = track_place(*frame, *place, context);
+    if (!tracking || !is_convincing(*frame, *tracking, config_.place)) continue;
     state_ = State::kConfirming;
     confirmations_ = -1;  // the frame itself does not count
     place_ = place;

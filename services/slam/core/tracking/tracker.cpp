@@ -297,7 +297,7 @@ KeyframeProposal Tracker::propose_keyframe() {
   return proposal;
 }
 
-KeyframeDecision decide_keyframe(const KeyframeSituation& s, const KeyframeConfig& config) {
+bool wants_keyframe(const KeyframeSituation& s, const KeyframeConfig& config) {
   constexpr double kYoungMapRatio = 0.4;  // with one keyframe only, its landmarks are not yet confirmed
   const double ratio = s.map_keyframes < 2 ? kYoungMapRatio : config.reference_ratio;
   const bool starving_of_close =
@@ -306,8 +306,7 @@ KeyframeDecision decide_keyframe(const KeyframeSituation& s, const KeyframeConfi
   const bool convenient = s.frames_since_keyframe >= config.min_gap_frames && s.mapper_idle;
   const bool weak = s.inliers < config.weak_ratio * s.reference_landmarks || starving_of_close;
   const bool new_view = s.inliers < ratio * s.reference_landmarks || starving_of_close;
-  const bool insert = (overdue || convenient || weak) && new_view && s.inliers > config.min_inliers;
-  return insert ? KeyframeDecision::kOffer : KeyframeDecision::kNo;
+  return (overdue || convenient || weak) && new_view && s.inliers > config.min_inliers;
 }
 
 }  // namespace rtd::slam

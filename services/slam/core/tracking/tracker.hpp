@@ -29,13 +29,8 @@ struct KeyframeSituation {
   bool mapper_idle = true;
 };
 
-enum class KeyframeDecision : std::uint8_t {
-  kNo,
-  kOffer,  ///< insert if the mapper has room
-};
-
-/// ORB-SLAM2's rule for RGB-D, docs/theory/tracking.md Eq. (6).
-KeyframeDecision decide_keyframe(const KeyframeSituation& situation, const KeyframeConfig& config);
+/// Whether to insert a keyframe if the mapper has room: ORB-SLAM2's rule for RGB-D, docs/theory/tracking.md Eq. (6).
+bool wants_keyframe(const KeyframeSituation& situation, const KeyframeConfig& config);
 
 /// What tracking found out about one frame.
 struct TrackOutcome {

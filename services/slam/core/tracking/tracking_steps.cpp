@@ -202,4 +202,12 @@ LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const 
   return result;
 }
 
+std::optional<LocalMapTracking> track_place(const Frame& frame, const LocalMap& place, const TrackingContext& context) {
+  const PoseGuess coarse = track_keyframe(frame, place.keyframes.front(), place, context);
+  if (!coarse.success) return std::nullopt;
+  const LocalMapTracking tracking = track_local_map(frame, place, coarse, context);
+  if (!tracking.guess.success) return std::nullopt;
+  return track_local_map(frame, place, tracking.guess, context);
+}
+
 }  // namespace rtd::slam

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "common/vision/pose_optimizer.hpp"
@@ -69,6 +70,10 @@ struct LocalMapTracking {
 };
 LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const PoseGuess& guess,
                                  const TrackingContext& context);
+
+/// Frame to a recognised place: track_keyframe() with its centre, then twice track_local_map(), because from a coarse
+/// pose many landmarks are missed. Empty when one of the first two fails.
+std::optional<LocalMapTracking> track_place(const Frame& frame, const LocalMap& place, const TrackingContext& context);
 
 /// What one tracked frame shows about a landmark.
 struct LandmarkEvidence {

@@ -20,7 +20,7 @@ KeyframeSituation steady() {
 }
 
 bool inserts(const KeyframeSituation& s) {
-  return decide_keyframe(s, {}) == KeyframeDecision::kOffer;
+  return wants_keyframe(s, {});
 }
 
 TEST(KeyframePolicy, leaves_a_well_known_view_alone) {
@@ -81,9 +81,9 @@ TEST(KeyframePolicy, keeps_the_configured_distance) {
   s.inliers = 200;
   KeyframeConfig config;
   config.min_gap_frames = 6;
-  EXPECT_EQ(decide_keyframe(s, config), KeyframeDecision::kNo);
+  EXPECT_FALSE(wants_keyframe(s, config));
   s.frames_since_keyframe = 6;
-  EXPECT_EQ(decide_keyframe(s, config), KeyframeDecision::kOffer);
+  EXPECT_TRUE(wants_keyframe(s, config));
 }
 
 }  // namespace
