@@ -20,8 +20,8 @@ enum class WalkPath : std::uint8_t { kAisles, kRoom };
 struct MapScaleOptions {
   WalkPath path = WalkPath::kAisles;
   std::size_t keyframes = 10000;  ///< aisles: in the map at the end; room: insertions
-  /// Apart from the first and the last `full_mapping` insertions the mapper is told that it is late, as a busy host
-  /// tells it: fusion and adjustment are left out, and a large map is there sooner. Default: no shortcut.
+  /// Apart from the first and the last `full_mapping` insertions the mapper is interrupted, as on a busy
+  /// host: fusion and adjustment are left out, and a large map is ready sooner. Default: no shortcut.
   std::size_t full_mapping = std::numeric_limits<std::size_t>::max();
   std::size_t compared_frames = 300;  ///< tracked with the small and the large map in turn
   WalkWorld::Options world;

@@ -17,7 +17,7 @@ namespace rtd::test_support {
 /// A source as slam sees it, with the true poses.
 struct FeatureClip {
   std::vector<std::shared_ptr<const msg::FeatureFrame>> frames;
-  std::vector<std::optional<Eigen::Isometry3d>> T_world_camera;  ///< empty where the truth says nothing
+  std::vector<std::optional<Eigen::Isometry3d>> T_world_camera;  ///< empty where the truth has none
 };
 
 /// ORB features of `count` frames of a source from `first` on; with `masks` without those on moving pixels. The truth's
@@ -29,7 +29,7 @@ struct PosePair {
   Eigen::Isometry3d estimate, truth;  ///< T_world_camera, each in its own world
 };
 
-/// Where the truth has what the estimate tells. The truth's body (markers of a motion capture) is turned against the
+/// Where the truth has the poses of the estimate. The truth's body (markers of a motion capture) is turned against the
 /// camera: R_truth = A R_estimate B; A and B are in turn the means over all poses. Positions alone, millimetres off on
 /// some decimetres of a path, leave degrees of A open.
 class WorldAlignment {
@@ -47,7 +47,7 @@ class WorldAlignment {
 WorldAlignment align_worlds(const FeatureClip& clip, const slam::SlamConfig& config);
 
 /// The camera maps the frames [0, mapped), sees nothing for `covered` frames, and then what `again` shows from `resume`
-/// on. Frames are stamped anew, 30 a second.
+/// on. Frames get new stamps, 30 a second.
 struct RelocalizationTrial {
   std::size_t mapped = 0, covered = 0, resume = 0, length = 30;
   std::function<void(const slam::FrameResult&, double error_m, double error_deg)> on_frame;  ///< after the cut

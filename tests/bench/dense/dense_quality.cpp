@@ -7,7 +7,7 @@
 
 #include "tests/support/dense/dense_run.hpp"
 
-/// Builds the static map of a source and says how many ghosts are in it: the instrument for tuning.
+/// Builds the static map of a source and reports how many ghosts are in it: the instrument for tuning.
 int main(int argc, char** argv) {
   CLI::App app("RTD-SLAM dense map: ghosts, completeness and times of one source");
   rtd::test_support::DenseOptions options;

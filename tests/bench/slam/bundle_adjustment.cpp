@@ -69,7 +69,7 @@ void measure_interrupt(const BundleScene& scene, BundleSolver solver, double who
 
 }  // namespace
 
-/// What one local bundle adjustment costs, and how soon it ends when somebody waits for the mapper.
+/// What one local bundle adjustment costs, and how soon it ends when a keyframe waits for the mapper.
 int main(int argc, char** argv) {
   CLI::App app("RTD-SLAM bundle adjustment: cost, and time from interrupt to return");
   rtd::test_support::BundleSceneOptions options;

@@ -112,7 +112,7 @@ TEST_F(DenseServiceTest, publishes_the_wall_without_the_person_and_writes_it) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "run" / "background.png"));
 }
 
-TEST_F(DenseServiceTest, fuses_nothing_without_masks_and_says_so) {
+TEST_F(DenseServiceTest, fuses_nothing_without_masks_and_reports_it) {
   start();
   for (std::uint64_t seq = 0; seq < 10; ++seq) send(seq);
   ASSERT_TRUE(wait_state(msg::ServiceState::kDegraded, "no masks"));
@@ -121,7 +121,7 @@ TEST_F(DenseServiceTest, fuses_nothing_without_masks_and_says_so) {
   for (const msg::Metric& metric : last->metrics) EXPECT_TRUE(metric.name != "frames" || metric.value == 0);
 }
 
-TEST_F(DenseServiceTest, fuses_everything_without_masks_when_told) {
+TEST_F(DenseServiceTest, fuses_everything_without_masks_when_configured) {
   config_.without_masks = true;
   start();
   for (std::uint64_t seq = 0; seq < 10; ++seq) send(seq);
@@ -146,7 +146,7 @@ TEST_F(DenseServiceTest, never_holds_up_a_camera_that_is_faster) {
   ASSERT_TRUE(wait_at_least("frames", 5)) << "newest wins, and nobody waited";
 }
 
-TEST_F(DenseServiceTest, says_that_its_map_is_full) {
+TEST_F(DenseServiceTest, reports_that_its_map_is_full) {
   config_.core.fusion.max_voxels = 1000;
   with_filter();
   start();

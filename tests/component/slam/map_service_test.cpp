@@ -101,7 +101,7 @@ TEST_F(MapServiceTest, finds_its_place_in_a_loaded_map_and_leaves_the_file_alone
   EXPECT_EQ(bytes(), before);
 }
 
-TEST_F(MapServiceTest, goes_on_with_a_loaded_map) {
+TEST_F(MapServiceTest, continues_a_loaded_map) {
   make_map();
   const std::size_t loaded = load_map_file(file_).keyframes.size();
   config_.map.load = config_.map.save = file_;
@@ -112,7 +112,7 @@ TEST_F(MapServiceTest, goes_on_with_a_loaded_map) {
   EXPECT_GT(load_map_file(file_).keyframes.size(), loaded);
 }
 
-TEST_F(MapServiceTest, says_that_it_looks_for_its_place) {
+TEST_F(MapServiceTest, reports_that_it_is_relocalizing) {
   make_map();
   config_.map.load = file_;
   start(service::Pace::kRealtime);
@@ -158,7 +158,7 @@ TEST_F(MapServiceTest, refuses_another_camera) {
   EXPECT_EQ(running_code(), service::kUsageOrConfig);
 }
 
-TEST_F(MapServiceTest, tracks_on_when_the_map_cannot_be_saved_and_says_so) {
+TEST_F(MapServiceTest, keeps_tracking_and_reports_when_the_map_cannot_be_saved) {
   config_.map.save = (folder_ / "none" / "room.rtdmap").string();
   config_.map.checkpoint_s = 0.02;
   start(service::Pace::kRealtime);

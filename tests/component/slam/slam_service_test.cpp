@@ -59,7 +59,7 @@ class SlamServiceTest : public test_support::ServiceFixture<SlamService> {
   bus::Writer<msg::ServiceStatus> status_writer_;
 };
 
-TEST_F(SlamServiceTest, answers_every_frame_with_pose_odometry_and_tf) {
+TEST_F(SlamServiceTest, publishes_pose_odometry_and_tf_for_every_frame) {
   start(service::Pace::kLockstep);
   constexpr std::uint64_t kFrames = 20;
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
@@ -90,7 +90,7 @@ TEST_F(SlamServiceTest, answers_every_frame_with_pose_odometry_and_tf) {
   EXPECT_TRUE(wait_state(msg::ServiceState::kRunning));
 }
 
-TEST_F(SlamServiceTest, tells_keyframes_before_the_result_that_counts_them) {
+TEST_F(SlamServiceTest, publishes_keyframes_before_the_result_that_counts_them) {
   start(service::Pace::kLockstep);
   for (std::uint64_t seq = 0; seq < 40; ++seq) {
     step(seq);
@@ -102,7 +102,7 @@ TEST_F(SlamServiceTest, tells_keyframes_before_the_result_that_counts_them) {
   EXPECT_EQ(events_.all().front()->frame_seq, 0U);
 }
 
-TEST_F(SlamServiceTest, answers_a_repeated_frame_with_the_same_result) {
+TEST_F(SlamServiceTest, repeats_the_result_of_a_repeated_frame) {
   start(service::Pace::kLockstep);
   for (std::uint64_t seq = 0; seq < 3; ++seq) step(seq);
   step(2);
@@ -127,7 +127,7 @@ TEST_F(SlamServiceTest, publishes_map_path_and_diagnostics) {
       diagnostics_.wait([](const auto& all) { return !all.empty() && all.back()->status.at(0).message == "ok"; }));
 }
 
-TEST_F(SlamServiceTest, writes_its_files_when_asked_to_stop) {
+TEST_F(SlamServiceTest, writes_its_files_when_it_stops) {
   config_.out_dir = (folder_ / "run").string();
   start(service::Pace::kLockstep);
   for (std::uint64_t seq = 0; seq < 5; ++seq) step(seq);
@@ -148,7 +148,7 @@ TEST_F(SlamServiceTest, fails_when_the_files_cannot_be_written) {
   EXPECT_EQ(stop(), service::kRunFailed);
 }
 
-TEST_F(SlamServiceTest, says_that_the_camera_is_gone_and_keeps_its_map) {
+TEST_F(SlamServiceTest, reports_that_the_camera_is_gone_and_keeps_its_map) {
   start(service::Pace::kRealtime);
   for (std::uint64_t seq = 0; seq < 5; ++seq) step(seq);
   ASSERT_TRUE(wait_state(msg::ServiceState::kDegraded, "no features for 0.5 s"));
@@ -184,7 +184,7 @@ TEST_F(SlamServiceTest, realtime_pace_never_blocks_the_filter) {
   ASSERT_TRUE(results_.wait([](const auto& all) { return !all.empty() && all.back()->seq == 59; })) << "newest wins";
 }
 
-TEST_F(SlamServiceTest, asap_pace_answers_every_frame) {
+TEST_F(SlamServiceTest, asap_pace_publishes_a_result_for_every_frame) {
   start(service::Pace::kAsap);
   constexpr std::uint64_t kInFlight = 3;  // the camera's window
   for (std::uint64_t seq = 0; seq < 60; ++seq) {

@@ -41,7 +41,7 @@ TEST(DenseClips, boxes_that_are_carried_about_leave_few_ghosts) {
   EXPECT_GT(report.ghosts.completeness, 0.9);
 }
 
-TEST(DenseClips, a_synthetic_room_is_mapped_without_its_movers) {
+TEST(DenseClips, a_synthetic_room_is_mapped_without_moving_objects) {
   DenseOptions synthetic = options("synthetic:office?frames=120", "rtd");
   synthetic.front_end.detector.kind = "truth";
   const DenseReport with_masks = run_dense(synthetic);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Whether poses are as uncertain as slam says, on rendered scenes: NEES, 6 degrees of freedom.
+// Whether poses are as uncertain as slam reports, on rendered scenes: NEES, 6 degrees of freedom.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -34,7 +34,7 @@ double mean_nees(const std::string& source, const std::string& mode) {
 
 /// Frames of a scene share their drift: each scene counts as one sample. 95 % of the mean of six chi2 values with 6
 /// degrees of freedom lie between 3.6 and 9.1; below is a promise more than kept.
-TEST(CovarianceScenes, mean_error_is_what_the_covariance_says) {
+TEST(CovarianceScenes, mean_error_agrees_with_the_covariance) {
   double mean = 0;
   for (const std::string seed : {"1", "2", "3"}) {
     mean += mean_nees("synthetic:static?frames=60&seed=" + seed, "off") / 6;

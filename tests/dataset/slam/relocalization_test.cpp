@@ -43,7 +43,7 @@ TEST(Relocalization, finds_the_camera_at_the_desk_of_fr1_xyz) {
   expect_found(features, alignment, {.mapped = 140, .covered = 0, .resume = 160, .length = 15});
 }
 
-TEST(Relocalization, knows_no_room_that_it_has_not_seen) {
+TEST(Relocalization, recognises_no_room_that_it_has_not_seen) {
   const FeatureClip known = record_features("synthetic:static?seed=21", 0, 40, false);
   const FeatureClip strange = record_features("synthetic:static?seed=22", 0, 40, false);
   const auto outcome =

@@ -13,9 +13,9 @@
 namespace rtd::test_support {
 
 struct DenseOptions {
-  std::string source;         ///< URI; with masks where the ghosts are to be told
+  std::string source;         ///< URI; with masks if ghosts are measured
   FrontEndOptions front_end;  ///< mode true-mask: the map is given the true mask too
-  bool use_masks = true;      ///< false: the map is not told what moves
+  bool use_masks = true;      ///< false: the map does not know what moves
   dense::DenseConfig map;
   int every = 5;        ///< as dense.every
   int judge_every = 5;  ///< frames that judge the cloud; 0 = none

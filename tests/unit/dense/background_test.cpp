@@ -53,7 +53,7 @@ TEST_F(BackgroundTest, fills_from_a_camera_that_stood_elsewhere) {
   EXPECT_GT(wall_share(painter_.paint(map_), kLeft), 0.97);
 }
 
-TEST_F(BackgroundTest, is_transparent_where_nobody_ever_looked) {
+TEST_F(BackgroundTest, is_transparent_where_no_view_looked) {
   for (int i = 0; i < 3; ++i) see(kLeft);
   const cv::Mat picture = painter_.paint(map_);
   EXPECT_EQ(picture.at<cv::Vec4b>(kLeft.y + 40, kLeft.x + 20)[3], 0);
@@ -66,7 +66,7 @@ TEST_F(BackgroundTest, keeps_a_bounded_number_of_views_spread_over_time) {
   EXPECT_GE(painter_.views(), 2U);
 }
 
-TEST_F(BackgroundTest, has_no_picture_before_the_first_frame) {
+TEST_F(BackgroundTest, has_no_image_before_the_first_frame) {
   EXPECT_TRUE(painter_.paint(map_).empty());
 }
 

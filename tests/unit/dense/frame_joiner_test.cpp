@@ -66,7 +66,7 @@ TEST_F(FrameJoinerTest, takes_every_second_frame_and_keyframes) {
   EXPECT_EQ(joiner_.counters().passed_over, 1U);
 }
 
-TEST_F(FrameJoinerTest, waits_for_the_words_that_slam_said_before) {
+TEST_F(FrameJoinerTest, waits_for_the_keyframe_events_before_a_result) {
   image(0), mask(0), pose(0, 2);
   event(0);
   EXPECT_EQ(next(), -1);
@@ -78,14 +78,14 @@ TEST_F(FrameJoinerTest, waits_for_the_words_that_slam_said_before) {
   EXPECT_EQ(joiner_.take_updates().size(), 1U);
 }
 
-TEST_F(FrameJoinerTest, gives_up_a_frame_whose_mask_does_not_come) {
+TEST_F(FrameJoinerTest, drops_a_frame_whose_mask_does_not_come) {
   for (std::uint64_t seq = 2; seq < 14; ++seq) image(seq), pose(seq);
   mask(8);
   EXPECT_EQ(next(), 8);
   EXPECT_EQ(joiner_.counters().without_mask, 3U);
 }
 
-TEST_F(FrameJoinerTest, does_without_masks_when_told) {
+TEST_F(FrameJoinerTest, does_without_masks_when_configured) {
   FrameJoiner joiner({.every = 1, .needs_masks = false});
   auto frame = std::make_shared<msg::RgbdFrame>();
   joiner.put(std::shared_ptr<const msg::RgbdFrame>(frame));
@@ -114,7 +114,7 @@ TEST_F(FrameJoinerTest, leaves_out_frames_of_another_map) {
   EXPECT_EQ(joiner_.counters().not_tracked, 1U);
 }
 
-TEST_F(FrameJoinerTest, keeps_the_newest_images_when_nobody_takes_them) {
+TEST_F(FrameJoinerTest, keeps_the_newest_images_when_none_is_taken) {
   for (std::uint64_t seq = 0; seq < 400; ++seq) image(seq), mask(seq), pose(seq);
   std::int64_t first = next(), last = first;
   for (std::int64_t seq = first; seq >= 0; seq = next()) last = seq;
@@ -129,7 +129,7 @@ TEST_F(FrameJoinerTest, takes_stamps_that_go_back) {
   for (const std::int64_t seq : {100, 102, 2, 4}) EXPECT_EQ(next(), seq);
 }
 
-TEST_F(FrameJoinerTest, tells_that_slam_was_started_anew) {
+TEST_F(FrameJoinerTest, notices_that_slam_was_restarted) {
   for (std::uint64_t i = 0; i < 5; ++i) event(i, i);
   image(0), mask(0), pose(0, 5);
   EXPECT_EQ(next(), 0);

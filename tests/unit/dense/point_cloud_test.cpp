@@ -15,7 +15,7 @@ namespace {
 
 const std::vector<CloudPoint> kPoints{{{1, 2, 3}, {10.4F, 20, 30}, 0.5F}, {{-1, 0, 2.5F}, {-4, 255.4F, 300}, 7}};
 
-TEST(Ply, holds_every_point_as_its_header_says) {
+TEST(Ply, holds_every_point_as_its_header_declares) {
   std::stringstream file;
   write_ply(file, kPoints);
   const std::string text = file.str();
@@ -60,7 +60,7 @@ TEST(CloudMessage, has_the_fields_that_viewers_expect) {
   EXPECT_THAT(std::vector(cloud.data.begin() + 12, cloud.data.begin() + 16), testing::ElementsAre(10, 20, 30, 0));
 }
 
-TEST(MaskMessage, becomes_cells_or_nothing) {
+TEST(MaskMessage, becomes_cells_or_is_refused) {
   msg::Image image;
   image.encoding = "mono8";
   image.width = 2;
@@ -81,7 +81,7 @@ TEST(MaskMessage, becomes_cells_or_nothing) {
   EXPECT_TRUE(broken([](auto& i) { i.width = i.height = 0xffffffff; }));
 }
 
-TEST(DynamicMask, grows_and_knows_nothing_outside) {
+TEST(DynamicMask, grows_and_is_unknown_outside) {
   DynamicMask mask{5, 4, std::vector<std::uint8_t>(20, 0)};
   mask.cells[0] = DynamicMask::kDynamic;
   mask.cells[19] = DynamicMask::kUnknown;

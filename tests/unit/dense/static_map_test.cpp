@@ -73,7 +73,7 @@ TEST(StaticMap, has_a_ghost_of_a_person_without_mask_until_it_is_seen_through) {
   EXPECT_LT(ghosts(map), 10U) << "after " << needed << " frames";
 }
 
-TEST(StaticMap, carves_by_movers_too) {
+TEST(StaticMap, carves_at_pixels_of_moving_objects_too) {
   WallScene scene;
   StaticMap map(WallScene::config());
   for (int i = 0; i < 5; ++i) map.integrate(scene.render(kPerson), all_static(), at_origin());
@@ -90,7 +90,7 @@ TEST(StaticMap, does_not_carve_a_static_wall) {
   EXPECT_LT(carved, map.voxels() / 100);
 }
 
-TEST(StaticMap, does_not_fuse_what_the_filter_could_not_judge_unless_told) {
+TEST(StaticMap, does_not_fuse_unknown_cells_unless_configured) {
   WallScene scene;
   const DynamicMask unknown{1, 1, {DynamicMask::kUnknown}};
   StaticMap map(WallScene::config());
@@ -101,7 +101,7 @@ TEST(StaticMap, does_not_fuse_what_the_filter_could_not_judge_unless_told) {
   EXPECT_GT(bold.integrate(scene.render(), unknown, at_origin()).fused, 10'000U);
 }
 
-TEST(StaticMap, stays_within_its_memory_and_says_what_it_refused) {
+TEST(StaticMap, stays_within_its_memory_and_counts_what_it_refused) {
   WallScene scene;
   DenseConfig config = WallScene::config();
   config.fusion.max_voxels = 2000;
@@ -173,7 +173,7 @@ TEST(StaticMap, moves_with_the_keyframes_that_slam_corrects) {
   EXPECT_NEAR(left_edge_m(), before_m + 0.75F, 0.03) << "m";
 }
 
-TEST(StaticMap, gives_no_more_points_than_asked_for) {
+TEST(StaticMap, gives_no_more_points_than_requested) {
   WallScene scene;
   StaticMap map(WallScene::config());
   for (int i = 0; i < 3; ++i) map.integrate(scene.render(), all_static(), at_origin());

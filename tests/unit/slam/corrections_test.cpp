@@ -24,7 +24,7 @@ std::vector<KeyframeId> ids(const std::vector<KeyframeChange>& changes) {
   return ids;
 }
 
-TEST(KeyframeChangeQueue, tells_thousands_of_corrections_in_portions_newest_first_and_loses_none) {
+TEST(KeyframeChangeQueue, publishes_thousands_of_corrections_in_portions_newest_first_and_loses_none) {
   constexpr KeyframeId kCount = 5000;
   KeyframeChangeQueue queue;
   std::vector<KeyframeChange> all;
@@ -48,7 +48,7 @@ TEST(KeyframeChangeQueue, new_and_removed_keyframes_do_not_wait_behind_correctio
   EXPECT_THAT(ids(queue.take(9)), ElementsAre(1)) << "nobody hears of a keyframe that is gone";
 }
 
-TEST(KeyframeChangeQueue, a_keyframe_that_moves_again_is_told_once_where_it_stands_then) {
+TEST(KeyframeChangeQueue, a_keyframe_that_moves_again_is_published_once_with_its_last_pose) {
   KeyframeChangeQueue queue;
   queue.add({change(Kind::kCorrected, 1, 0.5)});
   queue.add({change(Kind::kCorrected, 1, 0.7)});

@@ -53,7 +53,7 @@ TEST(GeneralLoss, heavier_tails_give_smaller_shapes) {
   EXPECT_LE(many, some);
 }
 
-TEST(GeneralLoss, few_residuals_say_nothing) {
+TEST(GeneralLoss, few_residuals_change_nothing) {
   const std::vector<SquaredResidual> few(5, SquaredResidual{3.0, 3});
   EXPECT_EQ(fit_general_loss(few, {0.5, 2.0}).shape, 0.5);
   EXPECT_EQ(fit_general_loss({}, {0.5, 2.0}).scale2, 2.0);

@@ -56,7 +56,7 @@ class MapCommand : public ::testing::Test {
   std::ostringstream out_, err_;
 };
 
-TEST_F(MapCommand, info_tells_what_is_in_the_file) {
+TEST_F(MapCommand, info_shows_what_is_in_the_file) {
   ASSERT_EQ(run({"info", file_}), 0) << err_.str();
   EXPECT_THAT(out_.str(), HasSubstr("keyframes    11 with 440 features; 2 removed"));
   EXPECT_THAT(out_.str(), HasSubstr(std::to_string(map_.landmark_count()) + " seen"));
@@ -66,7 +66,7 @@ TEST_F(MapCommand, info_tells_what_is_in_the_file) {
   EXPECT_THAT(out_.str(), HasSubstr("map 1        1 keyframes, 5 landmarks"));
 }
 
-TEST_F(MapCommand, info_tells_it_to_programs) {
+TEST_F(MapCommand, info_prints_json) {
   ASSERT_EQ(run({"info", file_, "--json"}), 0);
   const auto json = nlohmann::json::parse(out_.str());
   EXPECT_EQ(json["keyframes"], 11);
@@ -91,7 +91,7 @@ TEST_F(MapCommand, exports_landmarks_and_poses_of_one_map) {
   EXPECT_THAT(poses, StartsWith("1700000000.000000 0.000000000 "));
 }
 
-TEST_F(MapCommand, says_what_prevents_an_export) {
+TEST_F(MapCommand, names_what_prevents_an_export) {
   EXPECT_EQ(run({"export", file_, "--format", "ply", "-o", file_}), 2);
   EXPECT_THAT(err_.str(), HasSubstr("exists already"));
   EXPECT_EQ(run({"export", file_, "--format", "ply", "-o", path("none/a.ply")}), 1);
@@ -101,7 +101,7 @@ TEST_F(MapCommand, says_what_prevents_an_export) {
   EXPECT_EQ(run({"export", file_, "--format", "obj", "-o", path("a.obj")}), -1);
 }
 
-TEST_F(MapCommand, tells_damage_from_other_files) {
+TEST_F(MapCommand, distinguishes_damage_from_other_files) {
   EXPECT_EQ(run({"info", path("missing.rtdmap")}), 2);
   EXPECT_THAT(err_.str(), HasSubstr("No such file"));
   std::ofstream(folder_ / "text") << "a text";

@@ -109,7 +109,7 @@ TEST(SlamSystem, maps_in_a_thread_as_well) {
   }
 }
 
-TEST(SlamSystem, says_lost_without_features_and_finds_back) {
+TEST(SlamSystem, is_lost_without_features_and_recovers) {
   const FeatureWorld world({});
   SlamConfig config;
   config.tracker.recently_lost_frames = 5;
@@ -225,7 +225,7 @@ TEST(SlamSystem, never_uses_removed_features) {
   }
 }
 
-TEST(SlamSystem, low_static_probability_takes_the_weight_from_movers) {
+TEST(SlamSystem, low_static_probability_takes_the_weight_from_moving_objects) {
   const FeatureWorld world({});
   SlamSystem slam = make_slam();
   double worst_m = 0;

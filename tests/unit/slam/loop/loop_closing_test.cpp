@@ -40,7 +40,7 @@ WalkWorld sparse_world() {
   return WalkWorld(options);
 }
 
-/// A map made by hand: keyframes stand where they are told to, features of one descriptor are one landmark.
+/// A map made by hand: keyframes stand at given poses, features of one descriptor are one landmark.
 class MapByHand {
  public:
   explicit MapByHand(double noise = 0) {
@@ -190,7 +190,7 @@ TEST(GlobalBundleAdjustment, keyframes_and_landmarks_made_meanwhile_survive_it) 
   }
 }
 
-TEST(GlobalAdjuster, in_the_background_it_can_be_given_up_and_says_when_it_is_done) {
+TEST(GlobalAdjuster, in_the_background_it_can_be_cancelled_and_reports_when_it_is_done) {
   const MapByHand made = drifted_map(25);
   std::atomic<int> done{0};
   GlobalAdjuster adjuster({.iterations = 10, .threads = 1, .interrupted = {}});

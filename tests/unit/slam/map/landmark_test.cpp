@@ -39,7 +39,7 @@ TEST(Triangulate, finds_the_point_that_two_rays_meet_in) {
   EXPECT_LT((*p - p_world).norm(), 1e-9);
 }
 
-TEST(Triangulate, says_nothing_of_parallel_rays) {
+TEST(Triangulate, gives_no_point_for_parallel_rays) {
   EXPECT_FALSE(triangulate(shifted(0), {0.1, 0.1}, shifted(-0.2), {0.1, 0.1}));
 }
 
@@ -138,7 +138,7 @@ TEST(Culling, removes_landmarks_that_are_rarely_found) {
   EXPECT_NE(map.find_landmark(1), nullptr);
 }
 
-TEST(Culling, removes_landmarks_that_nobody_confirms_and_ends_probation) {
+TEST(Culling, removes_unconfirmed_landmarks_and_ends_probation) {
   Map map = two_views(true);
   const auto single = create_from_depth(map, 1, 10.0);
   RecentLandmarks recent;

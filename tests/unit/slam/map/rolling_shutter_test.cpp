@@ -23,7 +23,7 @@ FeatureWorld noisy_world() {
   return FeatureWorld(options);
 }
 
-/// Of the motion over half a second: the world itself hangs on the first frame, whose motion nobody knows.
+/// Of the motion over half a second: the world itself is relative to the first frame, whose motion is unknown.
 struct RunResult {
   double rotation_rmse_rad = 0, position_rmse_m = 0, readout_s = 0;
 };

@@ -33,7 +33,7 @@ TEST(ComposeTrajectory, follows_corrected_and_removed_keyframes) {
   EXPECT_EQ(keyframes[1].stamp_ns, 200);
 }
 
-TEST(Ply, tells_its_vertices) {
+TEST(Ply, counts_its_vertices) {
   std::ostringstream out;
   write_ply(out, {{{1, 2, 3}, 0.5F}, {{-1, 0, 4}, 1.0F}});
   EXPECT_THAT(out.str(), ::testing::StartsWith("ply\nformat ascii 1.0\n"));

@@ -63,7 +63,7 @@ TEST(KeyframeDatabase, scores_as_comparing_one_by_one_does) {
   }
 }
 
-TEST(KeyframeDatabase, forgets_what_is_removed_and_answers_again_the_same) {
+TEST(KeyframeDatabase, forgets_what_is_removed_and_gives_the_same_hits_again) {
   KeyframeDatabase database;
   database.add(4, bag_of({1, 2, 3}));
   database.add(2, bag_of({1, 2, 3}));
@@ -132,7 +132,7 @@ TEST(Places, neighbours_that_agree_beat_a_lone_keyframe) {
   EXPECT_EQ(more[1].map, 1U);
 }
 
-TEST(Places, asks_for_a_least_score_and_a_number) {
+TEST(Places, respects_a_minimum_score_and_a_maximum_number) {
   const Map map = make_map();
   KeyframeDatabase database;
   for (const KeyframeId id : {0U, 2U, 4U}) database.add(id, bag_of({1, 2, 3, 100 + id}));

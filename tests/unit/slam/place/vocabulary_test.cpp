@@ -119,7 +119,7 @@ TEST(Vocabulary, rare_words_weigh_more_and_weights_add_up_to_one) {
   const msg::Descriptor common = random_descriptor(random), rare = random_descriptor(random);
   const Vocabulary vocabulary = train_vocabulary({{common}, {common}, {common}, {common, rare}}, {2, 1, 5, 1});
   const BagOfWords bag = vocabulary.describe(features_of({common, rare}));
-  ASSERT_EQ(bag.words.size(), 1U);  // what every image shows says nothing: idf 0
+  ASSERT_EQ(bag.words.size(), 1U);  // what every image shows carries no information: idf 0
   EXPECT_EQ(bag.words[0].word, vocabulary.look_up(rare).word);
   EXPECT_FLOAT_EQ(bag.words[0].weight, 1.0F);
   EXPECT_EQ(bag.groups.size(), 2U);

@@ -132,7 +132,7 @@ TEST_F(LoadedMap, frame_that_cannot_be_used_does_not_end_the_search) {
   find_back(slam, seq);
 }
 
-TEST_F(LoadedMap, grows_on_when_mapping_goes_on) {
+TEST_F(LoadedMap, grows_when_mapping_continues) {
   SlamSystem slam = restart(false);
   slam.restore(read_bytes(file_));
   KeyframeId first_free = 0;
@@ -154,7 +154,7 @@ TEST_F(LoadedMap, grows_on_when_mapping_goes_on) {
   EXPECT_GE(slam.trajectory().size(), 58U);
 }
 
-TEST_F(LoadedMap, saved_with_mean_probabilities_is_believed_when_belief_is_asked_for) {
+TEST_F(LoadedMap, saved_with_mean_probabilities_starts_belief_from_them) {
   SlamConfig config;
   config.techniques.landmark_belief = true;
   SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);

@@ -60,7 +60,7 @@ TEST(MapFile, gives_features_a_grid_to_be_found_in) {
   EXPECT_THAT(frame.grid.find(window), ::testing::Contains(0U));
 }
 
-TEST(MapFile, a_restored_map_goes_on_with_new_ids) {
+TEST(MapFile, a_restored_map_continues_with_new_ids) {
   const Map map = sample_map();
   Map restored(read_bytes(bytes_of_map(map)));
   const KeyframeId next =
@@ -72,7 +72,7 @@ TEST(MapFile, a_restored_map_goes_on_with_new_ids) {
   EXPECT_EQ(restored.check_invariants(), "");
 }
 
-TEST(MapFile, is_read_without_features_for_those_who_need_none) {
+TEST(MapFile, can_be_read_without_features) {
   const MapContents contents = read_bytes(bytes_of_map(sample_map()), StoredFeatures::kSkip);
   EXPECT_THAT(contents.keyframes.front().landmarks, SizeIs(40));
   EXPECT_THAT(contents.keyframes.front().frame->features, SizeIs(0));

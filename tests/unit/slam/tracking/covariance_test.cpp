@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Whether poses are as uncertain as slam says: normalised estimation error squared (NEES), 6 degrees of freedom.
+// Whether poses are as uncertain as slam reports: normalised estimation error squared (NEES), 6 degrees of freedom.
 #include <gtest/gtest.h>
 
 #include "services/slam/core/slam_system.hpp"
@@ -44,7 +44,7 @@ std::array<double, kLooks.size()> mean_nees(double noise_px, double depth_noise_
 /// less than one keeps is the lesser evil.
 constexpr double kLeast = 2.5, kMost = 8.9;
 
-TEST(Covariance, tells_how_wrong_the_pose_is) {
+TEST(Covariance, agrees_with_the_error_of_the_pose) {
   for (const double mean : mean_nees(0.5, 0.0015)) {
     EXPECT_GT(mean, kLeast);
     EXPECT_LT(mean, kMost);

@@ -44,7 +44,7 @@ geometry::Vector6d sigma_of(const FrameResult& result) {
 
 constexpr std::uint64_t kHoldFrames = 14;  // at 30 Hz the default half second
 
-TEST(Prediction, bridges_half_a_second_and_says_so) {
+TEST(Prediction, bridges_half_a_second_and_marks_it) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam({}, MappingMode::kSynchronous, frozen_clock);
   std::uint64_t seq = 0;
@@ -93,7 +93,7 @@ TEST(Prediction, error_stays_within_three_sigma) {
   EXPECT_EQ(held, 3 * 10 * static_cast<int>(kHoldFrames));
 }
 
-TEST(Prediction, tracking_goes_on_in_the_same_map) {
+TEST(Prediction, tracking_continues_in_the_same_map) {
   for (const std::uint64_t gap : {4, 12, 40}) {
     const FeatureWorld world = FeatureWorld::noisy();
     SlamSystem slam({}, MappingMode::kSynchronous, frozen_clock);

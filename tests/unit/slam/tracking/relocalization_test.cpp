@@ -147,7 +147,7 @@ TEST_F(Relocalization, recognises_nothing_elsewhere) {
   EXPECT_EQ(slam_->maps().size(), 1U);
 }
 
-TEST_F(Relocalization, begins_a_new_map_where_nobody_knows_the_view_and_comes_back) {
+TEST_F(Relocalization, begins_a_new_map_at_unknown_views_and_comes_back) {
   map_frames(60);
   std::vector<FrameResult> results;
   for (std::uint64_t i = 0; i < 150; ++i) results.push_back(show(*view(elsewhere_, i)).result);
