@@ -9,6 +9,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
+#include "common/service/config.hpp"
 #include "services/slam/config.hpp"
 
 namespace rtd::slam {
