@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Samples of strangers: whatever their bytes, they make a message or none.
+// Samples of other programs: whatever their bytes, they give a message or nothing.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -51,7 +51,7 @@ class CycloneCodec : public testing::TestWithParam<MessageId> {
   }
 };
 
-TEST_P(CycloneCodec, every_mutation_is_a_message_or_none) {
+TEST_P(CycloneCodec, every_mutation_gives_a_message_or_nothing) {
   const int rounds = sample_type(id).plain_bytes > 100'000 ? 50 : 5000;
   for (int i = 0; i < rounds; ++i) (void)decode(id, mutated(*sample()));
 }

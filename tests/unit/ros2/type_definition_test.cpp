@@ -81,7 +81,7 @@ TEST(MessageFields, are_the_structs_of_the_idl_files) {
   EXPECT_EQ(structs, message_fields().size()) << "a struct of the IDL is not checked";
 }
 
-TEST(TypeDefinitions, and_hashes_are_the_recorded_ones) {
+TEST(TypeDefinitions, texts_and_hashes_are_the_recorded_ones) {
   std::istringstream recorded(text_of(std::string(IDENTITY_FOLDER) + "/schema_hashes.txt"));
   std::set<std::string> compared;
   for (std::string line; std::getline(recorded, line);) {
