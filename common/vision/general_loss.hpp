@@ -28,7 +28,7 @@ struct SquaredResidual {
 
 /// The loss under which these residuals are most likely: the scale from their median, the shape by the smallest
 /// negative logarithm of the density that belongs to it (cut off at kMaxNorm, so that heavy tails have one).
-/// docs/theory/tracking.md Eq. (9). Few residuals say nothing: `fallback`.
+/// docs/theory/tracking.md Eq. (9). With too few residuals: `fallback`.
 GeneralLoss fit_general_loss(std::span<const SquaredResidual> residuals, const GeneralLoss& fallback);
 
 }  // namespace rtd::vision

@@ -8,7 +8,7 @@
 
 namespace rtd::vision {
 
-/// How likely objects of a class move by themselves or in somebody's hand (paper section III-B).
+/// How likely objects of a class move by themselves or in a person's hand (paper section III-B).
 enum class MotionLevel {
   kHigh,    ///< moves by itself: person, animals, vehicles
   kMedium,  ///< is moved by people: chair, book, cup, ...

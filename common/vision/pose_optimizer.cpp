@@ -109,7 +109,7 @@ double chi2(const RgbdProjection& camera, const Eigen::Isometry3d& T_camera_worl
 /// The loss that suits the residuals of all observations, outliers too, at this pose.
 GeneralLoss fit_loss(const RgbdProjection& camera, const std::vector<PoseObservation>& observations,
                      const Eigen::Isometry3d& T_camera_world) {
-  constexpr double kMaxChi2 = 600;  // farther ones tell nothing of the shape
+  constexpr double kMaxChi2 = 600;  // larger ones carry no information about the shape
   std::vector<SquaredResidual> residuals;
   residuals.reserve(observations.size());
   for (const PoseObservation& observation : observations) {
@@ -134,7 +134,7 @@ void classify(const RgbdProjection& camera, const std::vector<PoseObservation>& 
   result.rmse_px = result.inliers > 0 ? std::sqrt(sum_chi2 / result.inliers) : 0.0;
 }
 
-/// What the inliers say of the pose in [rho; phi] at T_camera_world.
+/// Information of the inliers about the pose in [rho; phi] at T_camera_world.
 struct Information {
   Matrix6d pixels = Matrix6d::Zero(), depths = Matrix6d::Zero();  ///< Gauss-Newton Hessians, weights not squared
   Matrix6d pixels_squared = Matrix6d::Zero(), depths_squared = Matrix6d::Zero();  ///< weights squared
@@ -168,7 +168,7 @@ Information gather(const RgbdProjection& camera, const std::vector<PoseObservati
   return sum;
 }
 
-/// Variance of whitened residuals, as found. Few of them tell little: the assumed 1 counts like so many more.
+/// Variance of whitened residuals, as found. Few of them are uncertain: the assumed 1 counts as this many more.
 double found_variance(double chi2, double residuals) {
   constexpr double kAssumed = 12.0;
   return (chi2 + kAssumed) / (residuals + kAssumed);

@@ -4,8 +4,13 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <string>
 
 #include "common/geometry/camera_model.hpp"
+
+namespace rtd::msg {
+struct RgbdFrame;
+}
 
 namespace rtd::vision {
 
@@ -13,10 +18,20 @@ namespace rtd::vision {
 struct RgbdImage {
   std::uint64_t seq = 0;
   std::int64_t stamp_ns = 0;
-  cv::Mat color_bgr;            ///< CV_8UC3, the camera's own (distorted) image
-  cv::Mat depth;                ///< CV_16UC1, registered to colour, 0 = no measurement
-  double depth_scale_m = 0.0;   ///< metres of one depth unit
+  cv::Mat color_bgr;           ///< CV_8UC3, the camera's own (distorted) image
+  cv::Mat depth;               ///< CV_16UC1, registered to colour, 0 = no measurement
+  double depth_scale_m = 0.0;  ///< metres of one depth unit
   geometry::CameraModel camera;
 };
+
+/// Why a frame cannot be used (size, intrinsics or depth scale out of bounds); empty when it can.
+std::string defect(const msg::RgbdFrame& frame);
+
+/// The images of a message without copying: `frame` must outlive the result, which must not be written to. The frame
+/// has no defect().
+RgbdImage view_image(const msg::RgbdFrame& frame);
+
+/// The colour image alone; empty when its size is out of bounds. Otherwise as view_image().
+cv::Mat view_color(const msg::RgbdFrame& frame);
 
 }  // namespace rtd::vision

@@ -9,7 +9,7 @@
 
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "common/vision/frame_view.hpp"
+#include "common/vision/rgbd_image.hpp"
 #include "services/dense/dense_messages.hpp"
 
 namespace rtd::dense {

@@ -9,22 +9,55 @@
 #include <thread>
 #include <utility>
 
+#include "common/msg/transform_eigen.hpp"
+#include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/detector/detections_message.hpp"
+#include "common/vision/rgbd_image.hpp"
 
 namespace rtd::detector {
+
+msg::Detection2DArray to_message(const std::vector<vision::Detection>& detections, std::int64_t stamp_ns) {
+  msg::Detection2DArray message;
+  message.header = {msg::to_time(stamp_ns), kCameraFrame};
+  for (const vision::Detection& detection : detections) {
+    msg::ObjectHypothesisWithPose result;
+    result.hypothesis = {detection.class_name, detection.score};
+    msg::Detection2D box;
+    box.header = message.header;
+    box.results = {result};
+    box.bbox.center.position = {detection.x_px + 0.5 * detection.width_px, detection.y_px + 0.5 * detection.height_px};
+    box.bbox.size_x = detection.width_px;
+    box.bbox.size_y = detection.height_px;
+    message.detections.push_back(box);
+  }
+  return message;
+}
+
 namespace {
 
 constexpr std::size_t kEveryFrameQueue = 8;  // deeper than the camera's window of frames in flight
 constexpr std::chrono::milliseconds kStatePeriod{50};
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
 
+std::optional<Eigen::Isometry3d> pose_of(const msg::TrackingResult& result) {
+  if (!msg::has_pose(result.state)) return std::nullopt;
+  return msg::to_isometry(result.T_world_camera);
+}
+
+/// Where down is for the camera's roll.
+RollConfig roll_config(const ServiceConfig& config) {
+  return {down_of_first_camera(config.first_roll_deg * kRadPerDeg, config.first_pitch_deg * kRadPerDeg),
+          config.derotate_min_deg * kRadPerDeg};
+}
+
 Detector load_detector(const ServiceConfig& config) {
   const service::ModelSearch model = service::find_model(config.model, service::process_environment());
   if (!model) throw service::ConfigError(model.message);
   try {
-    return Detector(to_core(config, model.path));
+    DetectorConfig core = config.core;
+    core.model_path = model.path;
+    return Detector(std::move(core));
   } catch (const ModelError& error) {
     throw service::ConfigError(error.what());
   }
@@ -64,12 +97,13 @@ DetectorService::DetectorService(const Config& config, service::Runtime& runtime
     roll_ = std::make_shared<RollFeedback>(roll_config(config_));
     runtime_.stop.on_stop([roll = roll_] { roll->close(); });
     tracking_ = runtime.bus.reader<msg::TrackingResult>(
-        bus::topics::kTracking,
-        [roll = roll_](std::shared_ptr<const msg::TrackingResult> result) { roll->put(*result); });
+        bus::topics::kTracking, [roll = roll_](std::shared_ptr<const msg::TrackingResult> result) {
+          roll->put(result->stamp_ns, pose_of(*result));
+        });
   }
   const Detector& detector = *detectors_.front();
   SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} workers={}", detector.config().model_path,
-              detector.input_size().width_px, detector.input_size().height_px, config_.threads, detectors_.size());
+              detector.input_size().width_px, detector.input_size().height_px, config_.core.threads, detectors_.size());
 }
 
 /// A reader waits for its running callback, which may be blocked on the full queue.
@@ -82,13 +116,13 @@ service::ExitCode DetectorService::run() {
   for (std::size_t i = 1; i < detectors_.size(); ++i) others.emplace_back([this, i] { work(*detectors_[i]); });
   work(*detectors_.front());
   for (std::thread& other : others) other.join();
-  SPDLOG_INFO("event=summary frames={} dropped={} broken={} detect_ms={:.1f} detect_ms_max={:.1f}", answered_,
+  SPDLOG_INFO("event=summary frames={} dropped={} broken={} detect_ms={:.1f} detect_ms_max={:.1f}", detected_,
               arrivals_->dropped(), broken_,
-              total_detect_ms_ / static_cast<double>(std::max<std::uint64_t>(answered_, 1)), max_detect_ms_);
+              total_detect_ms_ / static_cast<double>(std::max<std::uint64_t>(detected_, 1)), max_detect_ms_);
   return service::kOk;
 }
 
-/// Answers images until the end. Several workers share the queue; their answers go out in the order of the images.
+/// Detects until the end. Several workers share the queue; their detections are published in the order of the images.
 void DetectorService::work(Detector& detector) {
   while (!runtime_.stop.stop_requested()) {
     runtime_.heartbeat.tick();
@@ -108,10 +142,10 @@ std::optional<DetectorService::Taken> DetectorService::take() {
   return Taken{std::move(*arrival), taken_++};
 }
 
-void DetectorService::publish_in_turn(std::uint64_t turn, const std::optional<msg::Detection2DArray>& answer) {
+void DetectorService::publish_in_turn(std::uint64_t turn, const std::optional<msg::Detection2DArray>& detections) {
   std::unique_lock lock(turn_mutex_);
   turn_changed_.wait(lock, [&] { return published_ == turn; });
-  if (answer) detections_.write(*answer);
+  if (detections) detections_.write(*detections);
   ++published_;
   turn_changed_.notify_all();
 }
@@ -123,33 +157,29 @@ std::optional<cv::Mat> DetectorService::image_of(const Arrival& arrival) {
     cv::Mat image = cv::imdecode(arrival.jpeg->data, cv::IMREAD_COLOR);
     return image.empty() ? std::nullopt : std::optional<cv::Mat>(std::move(image));
   }
-  const msg::RgbdFrame& frame = *arrival.frame;
-  if (frame.width == 0 || frame.height == 0 || frame.width > msg::kMaxFrameWidth ||
-      frame.height > msg::kMaxFrameHeight) {
-    return std::nullopt;
-  }
-  return cv::Mat(static_cast<int>(frame.height), static_cast<int>(frame.width), CV_8UC3,
-                 const_cast<std::uint8_t*>(frame.color_bgr.data()));  // read only: cv::Mat has no const view
+  const cv::Mat image = vision::view_color(*arrival.frame);
+  return image.empty() ? std::nullopt : std::optional(image);
 }
 
-/// Empty, counted and said for an image that cannot be used.
+/// Empty for an image that cannot be used, which is counted and logged.
 std::optional<msg::Detection2DArray> DetectorService::detect(Detector& detector, const Arrival& arrival) {
   const std::int64_t started_ns = service::monotonic_ns();
   try {
     if (const std::optional<cv::Mat> image = image_of(arrival)) {
-      msg::Detection2DArray answer = to_message(detector.detect_upright(*image, roll_for(arrival)), arrival.stamp_ns);
+      msg::Detection2DArray detections =
+          to_message(detector.detect_upright(*image, roll_for(arrival)), arrival.stamp_ns);
       count(static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs);
-      return answer;
+      return detections;
     }
-    skip(arrival, "no image of a size that can be read");
+    skip(arrival, "not an image of a readable size");
   } catch (const std::exception& error) {  // data from outside never ends the process
     skip(arrival, error.what());
   }
   return std::nullopt;
 }
 
-/// Lockstep: the roll after the image before, which slam has answered by now: same input, same boxes. Else that of the
-/// newest pose, as the filter takes slam's word.
+/// Lockstep: the roll after the image before, for which slam's result is waited: same input, same boxes. Otherwise the
+/// roll of the newest pose, as in the filter.
 double DetectorService::roll_for(const Arrival& arrival) {
   if (!roll_) return 0;
   if (runtime_.pace == service::Pace::kLockstep) {
@@ -174,18 +204,18 @@ void DetectorService::skip(const Arrival& arrival, const std::string& cause) {
 
 void DetectorService::count(double detect_ms) {
   const std::lock_guard lock(counters_mutex_);
-  ++answered_;
+  ++detected_;
   total_detect_ms_ += detect_ms;
   max_detect_ms_ = std::max(max_detect_ms_, detect_ms);
-  runtime_.heartbeat.set_metric("frames", static_cast<double>(answered_));
+  runtime_.heartbeat.set_metric("frames", static_cast<double>(detected_));
   runtime_.heartbeat.set_metric("frames_dropped", static_cast<double>(arrivals_->dropped()));
-  runtime_.heartbeat.set_metric("detect_ms", total_detect_ms_ / static_cast<double>(answered_));
+  runtime_.heartbeat.set_metric("detect_ms", total_detect_ms_ / static_cast<double>(detected_));
   runtime_.heartbeat.set_metric("detect_ms_max", max_detect_ms_);
 }
 
 bool DetectorService::peers_matched() const {
-  const bool hears_slam = !roll_ || runtime_.pace != service::Pace::kLockstep || tracking_.matched() > 0;
-  return input_->matched() > 0 && detections_.matched() > 0 && hears_slam;
+  const bool slam_matched = !roll_ || runtime_.pace != service::Pace::kLockstep || tracking_.matched() > 0;
+  return input_->matched() > 0 && detections_.matched() > 0 && slam_matched;
 }
 
 void DetectorService::report_state() {
@@ -193,7 +223,7 @@ void DetectorService::report_state() {
   if (!peers_matched()) {
     runtime_.heartbeat.set_state(msg::ServiceState::kStarting, "waits for a camera and a filter");
   } else {
-    runtime_.heartbeat.set_state(answered_ > 0 ? msg::ServiceState::kRunning : msg::ServiceState::kReady);
+    runtime_.heartbeat.set_state(detected_ > 0 ? msg::ServiceState::kRunning : msg::ServiceState::kReady);
   }
 }
 

@@ -13,13 +13,19 @@
 #include <vector>
 
 #include "common/concurrency/bounded_queue.hpp"
+#include "common/msg/ros.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
+#include "common/vision/detection.hpp"
 #include "services/detector/config.hpp"
+#include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/image_input.hpp"
-#include "services/detector/roll_feedback.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace CLI {
 class App;
@@ -27,8 +33,14 @@ class App;
 
 namespace rtd::detector {
 
+/// The optical frame of the colour camera, in which boxes are given (docs/frames.md).
+inline constexpr const char* kCameraFrame = "camera_color_optical_frame";
+
+/// vision_msgs: box centre and size in px, class_id = class name, header.stamp = stamp of the image.
+msg::Detection2DArray to_message(const std::vector<vision::Detection>& detections, std::int64_t stamp_ns);
+
 /// Images in, boxes out. Realtime pace: the newest image wins, what came meanwhile is dropped and counted. Asap and
-/// lockstep: every image is answered in order, with an empty array where nothing was found.
+/// lockstep: every image gets its detections, in order, an empty array where nothing was found.
 class DetectorService {
  public:
   static constexpr const char* kName = "detector";
@@ -44,7 +56,7 @@ class DetectorService {
   service::ExitCode run();
 
  private:
-  /// An image that a worker has taken, and its place in the order of answers.
+  /// An image that a worker has taken, and its place in the order of publishing.
   struct Taken {
     Arrival arrival;
     std::uint64_t turn = 0;
@@ -55,7 +67,7 @@ class DetectorService {
   void work(Detector& detector);
   std::optional<Taken> take();
   std::optional<msg::Detection2DArray> detect(Detector& detector, const Arrival& arrival);
-  void publish_in_turn(std::uint64_t turn, const std::optional<msg::Detection2DArray>& answer);
+  void publish_in_turn(std::uint64_t turn, const std::optional<msg::Detection2DArray>& detections);
   void skip(const Arrival& arrival, const std::string& cause);
   void count(double detect_ms);
   bool peers_matched() const;
@@ -69,16 +81,16 @@ class DetectorService {
   std::shared_ptr<Arrivals> arrivals_;
   bus::Writer<msg::Detection2DArray> detections_;
   std::unique_ptr<ImageInput> input_;
-  std::shared_ptr<RollFeedback> roll_;  ///< none: detector.derotate is off
+  std::shared_ptr<RollFeedback> roll_;  ///< null while detector.derotate is off
   bus::Reader<msg::TrackingResult> tracking_;
-  std::optional<std::int64_t> last_stamp_ns_;  ///< lockstep: of the image before, whose pose is waited for
+  std::optional<std::int64_t> last_stamp_ns_;  ///< lockstep: of the image before
   std::mutex take_mutex_;
   std::uint64_t taken_ = 0;
   std::mutex turn_mutex_;
   std::condition_variable turn_changed_;
   std::uint64_t published_ = 0;  ///< turns that are over
   std::mutex counters_mutex_;
-  std::atomic<std::uint64_t> answered_{0};
+  std::atomic<std::uint64_t> detected_{0};
   std::uint64_t broken_ = 0;
   double total_detect_ms_ = 0, max_detect_ms_ = 0;
   service::RateLimit broken_log_{std::chrono::seconds(1)}, roll_log_{std::chrono::seconds(1)};

@@ -10,7 +10,7 @@
 namespace rtd::detector {
 namespace {
 
-constexpr std::int64_t kMatchingTakesNs = 500'000'000;  // a camera of this host is heard and matched within this
+constexpr std::int64_t kMatchingTakesNs = 500'000'000;  // a camera of this host is found and matched within this
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void ImageInput::read_jpegs() {
       });
 }
 
-/// Ready cameras have their writers; what takes their place in a replay likewise.
+/// A camera that is ready has its writers; so has the replay in its place.
 bool ImageInput::camera_is_elsewhere() {
   if (!runtime_.heartbeat.ready("camera") && !runtime_.heartbeat.ready("replay")) {
     unmatched_since_ns_ = 0;

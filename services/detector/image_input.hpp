@@ -21,14 +21,14 @@ struct Arrival {
 };
 
 /// Where the images come from. Input "frame": shared memory; "jpeg": the network. "auto": raw frames, which never leave
-/// their host; while a camera is heard that has none here, it is on another host and its JPEGs are asked for, which the
-/// camera makes only then. Thread-safe.
+/// their host; a camera without raw frames here is on another host, and its JPEGs are
+/// subscribed to, which the camera encodes only then. Thread-safe.
 class ImageInput {
  public:
   using OnImage = std::function<void(Arrival)>;
   ImageInput(service::Runtime& runtime, const std::string& input, OnImage on_image);
 
-  /// Looks again where the camera is; to be called now and then.
+  /// Checks again where the camera is; to be called regularly.
   void update();
   /// Number of cameras matched.
   int matched() const;
@@ -41,7 +41,7 @@ class ImageInput {
   const OnImage on_image_;
   const bool automatic_;
   mutable std::mutex mutex_;
-  std::int64_t unmatched_since_ns_ = 0;  ///< a camera is heard, but there is no raw frame; 0: not so
+  std::int64_t unmatched_since_ns_ = 0;  ///< since when a camera is known without raw frames here; 0: there is none
   bus::Reader<msg::RgbdFrame> frames_;
   bus::Reader<msg::CompressedImage> jpegs_;
 };

@@ -30,7 +30,7 @@ int print_files(Detector& detector, const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     const cv::Mat image = cv::imread(file);
     if (image.empty()) {
-      std::cerr << "rtd-detector: " << file << " is missing or no image\n";
+      std::cerr << "rtd-detector: " << file << " is missing or not an image\n";
       code = service::kRunFailed;
       continue;
     }

@@ -6,7 +6,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "common/service/monotonic_clock.hpp"
-#include "common/vision/frame_view.hpp"
+#include "common/vision/rgbd_image.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
 #include "services/filter/filter_messages.hpp"
 

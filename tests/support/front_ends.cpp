@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "common/msg/transform_eigen.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/filter/config.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
@@ -82,7 +83,7 @@ class Filtered final : public FrontEnd {
       filter_.on_keyframe(filter::to_slam_keyframe(event));
     const msg::TrackingResult result = slam::make_result(output.result);
     if (const auto pose = filter::to_slam_pose(result)) filter_.on_pose(*pose);
-    if (roll_) roll_->on_tracking(result);
+    if (roll_ && msg::has_pose(result.state)) roll_->update(msg::to_isometry(result.T_world_camera));
   }
 
  private:

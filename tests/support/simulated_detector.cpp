@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "common/service/model_locator.hpp"
-#include "services/camera/core/synthetic/seeded_random.hpp"
-#include "services/detector/core/coco_classes.hpp"
+#include "services/camera/core/synthetic/texture.hpp"
 #include "services/detector/core/detector.hpp"
+#include "services/detector/core/detector_config.hpp"
 #include "tests/support/remembered_detections.hpp"
 
 namespace rtd::test_support {

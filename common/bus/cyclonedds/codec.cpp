@@ -7,7 +7,7 @@
 #include "common/bus/cyclonedds/sample_io.hpp"
 #include "common/bus/message_cdr.hpp"
 #include "common/bus/message_visit.hpp"
-#include "common/bus/plausible.hpp"
+#include "common/msg/plausible.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
@@ -26,7 +26,7 @@ std::shared_ptr<const void> decode_plain(const std::shared_ptr<const ByteBlock>&
   const ros::Bytes sample = bytes_of(*bytes);
   if (!is_plain_cdr<T>(sample)) return nullptr;
   const auto* const message = reinterpret_cast<const T*>(sample.data() + kHeader);
-  return is_plausible(*message) ? std::shared_ptr<const void>(bytes, message) : nullptr;
+  return msg::is_plausible(*message) ? std::shared_ptr<const void>(bytes, message) : nullptr;
 }
 
 template <class T>

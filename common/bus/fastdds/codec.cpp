@@ -6,7 +6,7 @@
 
 #include "common/bus/fastdds/message_type.hpp"
 #include "common/bus/message_pool.hpp"
-#include "common/bus/plausible.hpp"
+#include "common/msg/plausible.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
@@ -53,7 +53,7 @@ TakenSample MessageCodec<T>::take(dds::DataReader& reader) {
   dds::SampleInfo info;
   if (reader.take_next_sample(message.get(), &info) != ReturnCode_t::RETCODE_OK) return {};
   if (!info.valid_data) return {TakenSample::Kind::kNoData, nullptr};
-  if (!is_plausible(*message)) return {TakenSample::Kind::kUnusable, nullptr};
+  if (!msg::is_plausible(*message)) return {TakenSample::Kind::kUnusable, nullptr};
   return {TakenSample::Kind::kMessage, std::move(message)};
 }
 

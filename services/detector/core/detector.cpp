@@ -7,8 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "services/detector/core/letterbox.hpp"
-#include "services/detector/core/upright_view.hpp"
+#include "services/detector/core/network_input.hpp"
 #include "services/detector/core/yolo_decoder.hpp"
 #include "services/detector/core/yolo_network.hpp"
 

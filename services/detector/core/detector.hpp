@@ -8,7 +8,6 @@
 
 #include "common/vision/detection.hpp"
 #include "services/detector/core/detector_config.hpp"
-#include "services/detector/core/model_error.hpp"
 #include "services/detector/core/onnx_file.hpp"
 #include "services/detector/core/yolo_decoder.hpp"
 

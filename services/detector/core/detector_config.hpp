@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,17 @@ struct HeadLayout {
 
 /// When a cell of the network's output becomes a detection.
 struct DecodeConfig {
-  double confidence_threshold = 0.25;  ///< objectness x class score, [0, 1]
-  double objectness_threshold = 0.1;   ///< cells below are not decoded at all, [0, 1]
-  double nms_iou = 0.45;               ///< a box of the same class that overlaps a better one by more is dropped
-  int max_detections = 100;            ///< the best ones are kept
+  double confidence_threshold = 0.25;
+  double objectness_threshold = 0.1;
+  double nms_iou = 0.45;
+  int max_detections = 100;
+
+  void bind(auto& binder) {
+    binder.field("confidence_threshold", confidence_threshold, {0.01, 1.0}, "least objectness x class score");
+    binder.field("objectness_threshold", objectness_threshold, {0.0, 1.0}, "cells below are not decoded");
+    binder.field("nms_iou", nms_iou, {0.0, 1.0}, "boxes of a class that overlap a better one by more are dropped");
+    binder.field("max_detections", max_detections, {1, 1000}, "the best ones are published");
+  }
 };
 
 /// Strides and anchors of YOLOv5 and YOLOv5-Lite as published.
@@ -33,11 +41,29 @@ std::vector<HeadLayout> default_heads();
 /// Everything the detector needs.
 struct DetectorConfig {
   std::string model_path;  ///< ONNX file with one raw output per head (services/detector/README.md)
-  int input_width_px = 640, input_height_px = 480;  ///< used only when the file does not fix its input size
+  int input_width_px = 640, input_height_px = 480;
   DecodeConfig decode;
-  int threads = 1;                       ///< OpenCV threads; process-wide (cv::setNumThreads)
-  std::vector<std::string> class_names;  ///< empty: those in the file, else COCO's 80
-  std::vector<HeadLayout> heads;         ///< empty: those in the file, else default_heads()
+  int threads = 1;
+  std::vector<std::string> class_names;
+  std::vector<HeadLayout> heads;  ///< empty: those in the file, else default_heads()
+
+  void bind(auto& binder) {
+    binder.field("input_width_px", input_width_px, {32, 4096}, "network input, when the file does not fix it");
+    binder.field("input_height_px", input_height_px, {32, 4096}, "network input, when the file does not fix it");
+    decode.bind(binder);
+    binder.field("threads", threads, {1, 64}, "CPU threads of the network (OpenCV's, for the whole process)");
+    binder.field("class_names", class_names,
+                 "names in the order of the network's classes; empty: those in the file, else COCO's");
+  }
+};
+
+/// The 80 COCO class names in the order of the network's class outputs; person is 0.
+const std::vector<std::string>& coco_class_names();
+
+/// The network cannot be used; what() names the file, the cause and the fix.
+class ModelError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 }  // namespace rtd::detector

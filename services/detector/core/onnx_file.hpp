@@ -18,10 +18,10 @@ struct InputSize {
   int width_px = 0, height_px = 0;
 };
 
-/// What an ONNX file says of itself. OpenCV 4.6 tells none of it.
+/// Metadata of an ONNX file. OpenCV 4.6 gives no access to it.
 struct OnnxFile {
-  bool has_graph = false;                       ///< false: these bytes are no ONNX model, or only the beginning of one
-  std::optional<InputSize> input;               ///< of the first 1x3xHxW input, when H and W are fixed
+  bool has_graph = false;          ///< false: these bytes are not an ONNX model, or only the beginning of one
+  std::optional<InputSize> input;  ///< of the first 1x3xHxW input, when H and W are fixed
   std::map<std::string, std::string> metadata;  ///< ModelProto.metadata_props
   std::uint64_t parameters = 0;                 ///< numbers in the float tensors of the graph
 };

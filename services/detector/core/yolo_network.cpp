@@ -10,11 +10,70 @@
 #include <opencv2/dnn/all_layers.hpp>
 #include <utility>
 
-#include "services/detector/core/coco_classes.hpp"
+#include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/fast_sigmoid.hpp"
-#include "services/detector/core/model_error.hpp"
 
 namespace rtd::detector {
+namespace {
+
+constexpr std::size_t kObjectnessPlane = 4;
+
+}  // namespace
+
+PointwiseHead::PointwiseHead(const float* weights, std::vector<float> bias, std::size_t channels,
+                             std::size_t planes_per_anchor)
+    : channels_(channels),
+      planes_per_anchor_(planes_per_anchor),
+      bias_(std::move(bias)),
+      weights_(bias_.size() * channels) {
+  for (std::size_t plane = 0; plane < bias_.size(); ++plane) {
+    const std::size_t anchor = plane / planes_per_anchor, within = plane % planes_per_anchor;
+    for (std::size_t c = 0; c < channels; ++c) {
+      weights_[(anchor * channels + c) * planes_per_anchor + within] = weights[plane * channels + c];
+    }
+  }
+}
+
+void PointwiseHead::evaluate(const float* features, std::size_t cells, float min_objectness_logit,
+                             float* logits) const {
+  evaluate_objectness(features, cells, logits);
+  for (std::size_t anchor = 0; anchor * planes_per_anchor_ < planes(); ++anchor) {
+    float* const anchor_logits = logits + anchor * planes_per_anchor_ * cells;
+    const float* const objectness = anchor_logits + kObjectnessPlane * cells;
+    for (std::size_t i = 0; i < cells; ++i) {
+      if (objectness[i] >= min_objectness_logit) evaluate_cell(features + i, cells, anchor, anchor_logits + i);
+    }
+  }
+}
+
+void PointwiseHead::evaluate_objectness(const float* features, std::size_t cells, float* logits) const {
+  for (std::size_t anchor = 0; anchor * planes_per_anchor_ < planes(); ++anchor) {
+    const std::size_t plane = anchor * planes_per_anchor_ + kObjectnessPlane;
+    float* const objectness = logits + plane * cells;
+    std::fill_n(objectness, cells, bias_[plane]);
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const float weight = weights_[(anchor * channels_ + c) * planes_per_anchor_ + kObjectnessPlane];
+      const float* const channel = features + c * cells;
+      for (std::size_t i = 0; i < cells; ++i) objectness[i] += weight * channel[i];
+    }
+  }
+}
+
+/// All planes but the objectness of one cell; `features` and `cell_logits` point at its first channel and plane.
+void PointwiseHead::evaluate_cell(const float* features, std::size_t cells, std::size_t anchor,
+                                  float* cell_logits) const {
+  const auto first_bias = bias_.begin() + static_cast<std::ptrdiff_t>(anchor * planes_per_anchor_);
+  std::vector<float> sums(first_bias, first_bias + static_cast<std::ptrdiff_t>(planes_per_anchor_));
+  for (std::size_t c = 0; c < channels_; ++c) {
+    const float feature = features[c * cells];
+    const float* const weights = weights_.data() + (anchor * channels_ + c) * planes_per_anchor_;
+    for (std::size_t plane = 0; plane < planes_per_anchor_; ++plane) sums[plane] += weights[plane] * feature;
+  }
+  for (std::size_t plane = 0; plane < planes_per_anchor_; ++plane) {
+    if (plane != kObjectnessPlane) cell_logits[plane * cells] = sums[plane];
+  }
+}
+
 namespace {
 
 constexpr const char* kFix = "run `deploy/setup.sh --models`, or name another file with detector.model";
@@ -66,7 +125,11 @@ std::string join_shape(std::initializer_list<int> sizes) {
 
 }  // namespace
 
-YoloNetwork::YoloNetwork(DetectorConfig config) : config_(std::move(config)) {
+struct YoloNetwork::Graph {
+  cv::dnn::Net net;
+};
+
+YoloNetwork::YoloNetwork(DetectorConfig config) : config_(std::move(config)), graph_(std::make_unique<Graph>()) {
   const QuietOpenCv quiet;
   try {
     load();
@@ -76,17 +139,19 @@ YoloNetwork::YoloNetwork(DetectorConfig config) : config_(std::move(config)) {
   }
 }
 
+YoloNetwork::~YoloNetwork() = default;
+
 void YoloNetwork::load() {
   const std::vector<std::uint8_t> bytes = read_bytes(config_.model_path);
   const OnnxFile file = read_onnx_file(bytes.data(), bytes.size());
-  if (!file.has_graph) fail(config_.model_path, "is no ONNX model, or cut off");
+  if (!file.has_graph) fail(config_.model_path, "is not an ONNX model, or is cut off");
   complete_config(file);
   input_ = file.input.value_or(InputSize{config_.input_width_px, config_.input_height_px});
   const FastSigmoidScope fast_sigmoid;
-  net_ = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-  net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
-  for (const cv::String& name : net_.getUnconnectedOutLayersNames()) branches_.push_back(branch_of(name));
+  graph_->net = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  graph_->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+  graph_->net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+  for (const cv::String& name : graph_->net.getUnconnectedOutLayersNames()) branches_.push_back(branch_of(name));
   if (branches_.size() != config_.heads.size()) {
     fail(config_.model_path, "has " + std::to_string(branches_.size()) + " outputs, expected " +
                                  std::to_string(config_.heads.size()) + " (one per stride)");
@@ -109,11 +174,11 @@ void YoloNetwork::complete_config(const OnnxFile& file) {
 /// Looks behind the output for a 1x1 convolution of the right number of planes; OpenCV then stops before it.
 YoloNetwork::Branch YoloNetwork::branch_of(const std::string& output_name) {
   Branch branch{output_name, std::nullopt, {}, {}};
-  cv::Ptr<cv::dnn::Layer> layer = net_.getLayer(net_.getLayerId(output_name));
-  std::vector<cv::Ptr<cv::dnn::Layer>> inputs = net_.getLayerInputs(net_.getLayerId(layer->name));
+  cv::Ptr<cv::dnn::Layer> layer = graph_->net.getLayer(graph_->net.getLayerId(output_name));
+  std::vector<cv::Ptr<cv::dnn::Layer>> inputs = graph_->net.getLayerInputs(graph_->net.getLayerId(layer->name));
   while (layer->type == "Identity" && inputs.size() == 1) {
     layer = inputs[0];
-    inputs = net_.getLayerInputs(net_.getLayerId(layer->name));
+    inputs = graph_->net.getLayerInputs(graph_->net.getLayerId(layer->name));
   }
   const auto convolution = layer.dynamicCast<cv::dnn::ConvolutionLayer>();
   if (!convolution || inputs.size() != 1 || convolution->blobs.size() != 2 || inputs[0]->type == "Input") return branch;
@@ -129,8 +194,8 @@ YoloNetwork::Branch YoloNetwork::branch_of(const std::string& output_name) {
 }
 
 const std::vector<HeadLogits>& YoloNetwork::infer(const cv::Mat& blob) {
-  net_.setInput(blob);
-  net_.forward(outputs_, layer_names_);
+  graph_->net.setInput(blob);
+  graph_->net.forward(outputs_, layer_names_);
   if (heads_.empty()) assign_layouts();
   heads_.clear();
   const float gate = objectness_gate(config_.decode);
@@ -170,7 +235,7 @@ void YoloNetwork::assign_layouts() {
   }
 }
 
-/// "1x255x60x80"; what is no float tensor of four dimensions and one image is called so.
+/// "1x255x60x80"; everything but a float tensor of four dimensions and one image is "unsupported".
 std::string YoloNetwork::shape_of(std::size_t index) const {
   const cv::Mat& output = outputs_[index];
   if (output.dims != 4 || output.size[0] != 1 || output.type() != CV_32F || !output.isContinuous())

@@ -13,7 +13,6 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/model_locator.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/camera/core/source_uri.hpp"
 #include "services/evaluation/core/ablation/ablation_text.hpp"
 #include "services/evaluation/core/report/report.hpp"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/detector/core/evaluation/accuracy_report.hpp"
+#include "services/detector/core/evaluation/average_precision.hpp"
 #include "services/detector/core/evaluation/mask_recall.hpp"
 #include "services/evaluation/detector/model_under_test.hpp"
 

@@ -5,18 +5,16 @@
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
+#include "common/vision/rgbd_image.hpp"
+
 namespace rtd::launcher {
 namespace {
 
 constexpr int kJpegQuality = 80;
 
 std::vector<std::uint8_t> encode_jpeg(const msg::RgbdFrame& frame) {
-  if (frame.width == 0 || frame.height == 0 || frame.width > msg::kMaxFrameWidth ||
-      frame.height > msg::kMaxFrameHeight) {
-    return {};
-  }
-  const cv::Mat color(static_cast<int>(frame.height), static_cast<int>(frame.width), CV_8UC3,
-                      const_cast<std::uint8_t*>(frame.color_bgr.data()));
+  const cv::Mat color = vision::view_color(frame);
+  if (color.empty()) return {};
   std::vector<std::uint8_t> jpeg;
   cv::imencode(".jpg", color, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
   return jpeg;

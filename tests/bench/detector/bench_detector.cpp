@@ -10,7 +10,7 @@
 
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/detector.hpp"
-#include "services/detector/core/letterbox.hpp"
+#include "services/detector/core/network_input.hpp"
 #include "services/detector/core/yolo_decoder.hpp"
 #include "services/detector/core/yolo_network.hpp"
 

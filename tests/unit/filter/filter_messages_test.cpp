@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "common/msg/transform_eigen.hpp"
-#include "common/vision/frame_view.hpp"
+#include "common/vision/rgbd_image.hpp"
 
 namespace rtd::filter {
 namespace {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,7 +53,36 @@ BoxAccuracy evaluate_boxes(const std::vector<EvaluatedImage>& images, const Clas
 std::optional<OperatingPoint> best_f1(const std::vector<OperatingPoint>& curve);
 /// The highest threshold that finds at least `recall` of the objects. Empty: none does.
 std::optional<OperatingPoint> highest_threshold_with_recall(const std::vector<OperatingPoint>& curve, double recall);
-/// The point that a threshold stands for: everything scored at least so much. Recall 0, precision 1: nothing is.
+/// The point that a threshold stands for: everything scored at least so much. Recall 0 and precision 1 when there is
+/// nothing.
 OperatingPoint at_threshold(const std::vector<OperatingPoint>& curve, double threshold);
+
+enum class Outcome : unsigned char { kWrong, kCorrect, kIgnored };
+
+/// A detection and whether it was right, by overlap threshold.
+struct JudgedDetection {
+  float score = 0;
+  std::array<Outcome, kIouThresholds.size()> outcome{};
+};
+
+/// Judges the 100 best detections of one image against its objects, best first.
+std::vector<JudgedDetection> judge(const std::vector<vision::Detection>& detections,
+                                   const std::vector<LabelledBox>& truths);
+
+/// Intersection over union, [0, 1]; 0 for boxes without area.
+double overlap(const vision::Detection& detection, const LabelledBox& truth);
+
+/// The group (motion level) of a class; empty: of none.
+using GroupOf = std::function<std::string(const std::string& class_name)>;
+
+/// How good a detector is on a set of images.
+struct AccuracyReport {
+  double ap50 = 0, ap50_95 = 0;                ///< means over the classes that occur
+  std::map<std::string, BoxAccuracy> classes;  ///< those that occur
+  std::map<std::string, BoxAccuracy> groups;   ///< all classes of a group taken as one: the filter needs no more
+  BoxAccuracy person;                          ///< without values when there are no people
+};
+
+AccuracyReport evaluate_detector(const std::vector<EvaluatedImage>& images, const GroupOf& group_of);
 
 }  // namespace rtd::detector

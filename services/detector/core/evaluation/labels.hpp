@@ -12,7 +12,7 @@ struct ImageSize {
   int width_px = 0, height_px = 0;
 };
 
-/// An object that somebody marked: an axis-parallel box, top-left corner and size, px.
+/// A labelled object: an axis-parallel box, top-left corner and size, px.
 struct LabelledBox {
   std::string class_name;
   double x_px = 0, y_px = 0, width_px = 0, height_px = 0;
@@ -37,5 +37,9 @@ ImageLabels parse_yolo_labels(const LabelFile& file, ImageSize image, const std:
 /// Pascal VOC: `<annotation><object><name>, <bndbox>` with pixels counted from 1 to the last one inside. Boxes are
 /// scaled when `<size>` names another size than the image has.
 ImageLabels parse_voc_labels(const LabelFile& file, ImageSize image);
+
+/// Clips `box` to the image and keeps it; a box without area, outside the image or marked twice becomes a problem at
+/// `where` ("file:line").
+void add_label(const LabelledBox& box, ImageSize image, const std::string& where, ImageLabels& labels);
 
 }  // namespace rtd::detector

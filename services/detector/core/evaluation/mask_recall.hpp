@@ -15,7 +15,7 @@ struct MaskRecall {
   std::size_t images = 0, images_complete = 0;  ///< complete: every person in it found
   std::size_t pixels = 0, covered_pixels = 0;   ///< marked; marked and inside a box
   std::size_t people = 0, people_found = 0;     ///< connected marked areas of 400 px or more; half of it inside boxes
-  std::size_t boxes = 0, boxes_beside = 0;      ///< beside: less than 5 % of the box is marked (pictures of people)
+  std::size_t boxes = 0, boxes_beside = 0;      ///< beside: less than 5 % of the box is marked (posters of people)
 
   double pixel_recall() const;  ///< 1 when nothing is marked
   double image_share() const;   ///< images_complete / images

@@ -55,11 +55,11 @@ TEST(YoloLabels, name_file_line_and_value_of_what_is_wrong) {
       "0 0.5 0.5 0.2 0.4\n0 0.5 x 0.2 0.4\n0 0.5 0.5\n2 0.5 0.5 0.2 0.4\n-1 0.5 0.5 0.2 0.4\n0 nan 0.5 0.2 0.4\n0 0.5 "
       "0.5 0 0.4\n0 0.5 0.5 -0.2 0.4\n0 3 0.5 0.2 0.4\n0.5 0.5 0.5 0.2 0.4\n0 0.5 0.5 0.2 0.4 0.9\n");
   EXPECT_THAT(labels.boxes, SizeIs(1));
-  EXPECT_THAT(labels.problems, ElementsAre(AllOf(HasSubstr("a.txt:2: "), HasSubstr("'x' is no number")),
+  EXPECT_THAT(labels.problems, ElementsAre(AllOf(HasSubstr("a.txt:2: "), HasSubstr("'x' is not a number")),
                                            AllOf(HasSubstr("a.txt:3: "), HasSubstr("3 columns, expected 5")),
                                            AllOf(HasSubstr("a.txt:4: "), HasSubstr("'2' is not one of 0..1")),
                                            AllOf(HasSubstr("a.txt:5: "), HasSubstr("'-1' is not one of 0..1")),
-                                           AllOf(HasSubstr("a.txt:6: "), HasSubstr("'nan' is no number")),
+                                           AllOf(HasSubstr("a.txt:6: "), HasSubstr("'nan' is not a number")),
                                            AllOf(HasSubstr("a.txt:7: "), HasSubstr("has no area")),
                                            AllOf(HasSubstr("a.txt:8: "), HasSubstr("has no area")),
                                            AllOf(HasSubstr("a.txt:9: "), HasSubstr("outside the image of 200 x 100")),

@@ -7,26 +7,20 @@
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "common/msg/transform_eigen.hpp"
-
 namespace rtd::detector {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kTolerance_rad = 1e-9;
 
-/// slam's word when the camera stands turned by `angle_rad` about an axis of the first camera.
-msg::TrackingResult turned(double angle_rad, const Eigen::Vector3d& axis,
-                           msg::TrackingState state = msg::TrackingState::kOk) {
-  msg::TrackingResult result{};
-  result.state = state;
-  result.T_world_camera = msg::to_message(Eigen::Isometry3d(Eigen::AngleAxisd(angle_rad, axis)));
-  return result;
+/// Pose of a camera that stands turned by `angle_rad` about an axis of the first camera.
+Eigen::Isometry3d turned(double angle_rad, const Eigen::Vector3d& axis) {
+  return Eigen::Isometry3d(Eigen::AngleAxisd(angle_rad, axis));
 }
 
-double roll_after(const msg::TrackingResult& result, const RollConfig& config = {.min_roll_rad = 0}) {
+double roll_after(const Eigen::Isometry3d& T_world_camera, const RollConfig& config = {.min_roll_rad = 0}) {
   CameraRoll roll(config);
-  roll.on_tracking(result);
+  roll.update(T_world_camera);
   return roll.roll_rad();
 }
 
@@ -58,13 +52,13 @@ TEST(CameraRoll, ignores_small_angles) {
 }
 
 TEST(CameraRoll, stays_while_there_is_no_pose) {
-  CameraRoll roll({.min_roll_rad = 0});
-  roll.on_tracking(turned(1.0, Eigen::Vector3d::UnitZ()));
-  roll.on_tracking(turned(2.0, Eigen::Vector3d::UnitZ(), msg::TrackingState::kLost));
-  msg::TrackingResult broken = turned(0.5, Eigen::Vector3d::UnitZ());
-  broken.T_world_camera.rotation_xyzw.fill(std::numeric_limits<double>::quiet_NaN());
-  roll.on_tracking(broken);
-  EXPECT_NEAR(roll.roll_rad(), 1.0, kTolerance_rad);
+  RollFeedback feedback({.min_roll_rad = 0});
+  feedback.put(1, turned(1.0, Eigen::Vector3d::UnitZ()));
+  feedback.put(2, std::nullopt);
+  Eigen::Isometry3d broken = turned(0.5, Eigen::Vector3d::UnitZ());
+  broken.matrix().fill(std::numeric_limits<double>::quiet_NaN());
+  feedback.put(3, broken);
+  EXPECT_NEAR(feedback.roll_rad(), 1.0, kTolerance_rad);
 }
 
 TEST(CameraRoll, takes_gravity_from_a_first_camera_that_was_turned_itself) {

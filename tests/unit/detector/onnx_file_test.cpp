@@ -28,7 +28,7 @@ TEST(OnnxFile, reads_the_fixed_size) {
   EXPECT_EQ(file.input->height_px, 64);
 }
 
-TEST(OnnxFile, says_when_the_size_is_free) {
+TEST(OnnxFile, reports_a_free_input_size) {
   const OnnxFile file = read(test::tiny_network_onnx({.fixed_size = false}));
   EXPECT_TRUE(file.has_graph);
   EXPECT_FALSE(file.input);

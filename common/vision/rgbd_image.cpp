@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/vision/frame_view.hpp"
+#include "common/vision/rgbd_image.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "common/msg/plausible.hpp"
 
 namespace rtd::vision {
 namespace {
@@ -17,8 +19,7 @@ bool positive(double value) {
 }  // namespace
 
 std::string defect(const msg::RgbdFrame& frame) {
-  if (frame.width == 0 || frame.height == 0 || frame.width > msg::kMaxFrameWidth ||
-      frame.height > msg::kMaxFrameHeight) {
+  if (!msg::is_plausible(frame)) {
     return fmt::format("size {}x{} is not within 1x1 .. {}x{}", frame.width, frame.height, msg::kMaxFrameWidth,
                        msg::kMaxFrameHeight);
   }
@@ -29,7 +30,8 @@ std::string defect(const msg::RgbdFrame& frame) {
   const bool finite =
       std::all_of(frame.distortion.begin(), frame.distortion.end(), [](double k) { return std::isfinite(k); });
   if (!finite) return "distortion is not finite";
-  if (!positive(frame.depth_scale_m)) return fmt::format("depth scale {} m is not positive", frame.depth_scale_m.value());
+  if (!positive(frame.depth_scale_m))
+    return fmt::format("depth scale {} m is not positive", frame.depth_scale_m.value());
   return {};
 }
 
@@ -38,13 +40,19 @@ RgbdImage view_image(const msg::RgbdFrame& frame) {
   RgbdImage image;
   image.seq = frame.seq;
   image.stamp_ns = frame.stamp_ns;
-  // cv::Mat has no const view; nobody writes to these.
-  image.color_bgr = cv::Mat(rows, cols, CV_8UC3, const_cast<std::uint8_t*>(frame.color_bgr.data()));
+  image.color_bgr = view_color(frame);
   image.depth = cv::Mat(rows, cols, CV_16UC1, const_cast<std::uint16_t*>(frame.depth.data()));
   image.depth_scale_m = frame.depth_scale_m;
   const auto [fx, fy, cx, cy] = msg::aligned(frame.intrinsics);
   image.camera = geometry::CameraModel({fx, fy, cx, cy, msg::aligned(frame.distortion), cols, rows});
   return image;
+}
+
+cv::Mat view_color(const msg::RgbdFrame& frame) {
+  if (!msg::is_plausible(frame)) return {};
+  // cv::Mat has no const view; nothing may write to it.
+  return {static_cast<int>(frame.height), static_cast<int>(frame.width), CV_8UC3,
+          const_cast<std::uint8_t*>(frame.color_bgr.data())};
 }
 
 }  // namespace rtd::vision

@@ -52,11 +52,11 @@ TEST_F(ImageTable, prints_a_row_per_object) {
 
 TEST_F(ImageTable, goes_on_after_a_file_that_is_no_image) {
   EXPECT_EQ(run({"--image", path("tiny.onnx"), path("white.png"), "--model", path("tiny.onnx")}), 1);
-  EXPECT_THAT(errors_, HasSubstr("tiny.onnx is missing or no image"));
+  EXPECT_THAT(errors_, HasSubstr("tiny.onnx is missing or not an image"));
   EXPECT_THAT(out_, HasSubstr("person"));
 }
 
-TEST_F(ImageTable, says_what_to_run_when_there_are_no_weights) {
+TEST_F(ImageTable, names_the_command_to_run_without_weights) {
   EXPECT_EQ(run({"--image", path("white.png"), "--model", "/nowhere/model.onnx"}), 2);
   EXPECT_THAT(errors_, HasSubstr("deploy/setup.sh --models"));
 }

@@ -13,9 +13,9 @@
 
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/camera_roll.hpp"
-#include "services/detector/core/coco_classes.hpp"
 #include "services/detector/core/detector.hpp"
-#include "services/detector/core/evaluation/accuracy_report.hpp"
+#include "services/detector/core/detector_config.hpp"
+#include "services/detector/core/evaluation/average_precision.hpp"
 #include "services/detector/core/evaluation/mask_recall.hpp"
 
 namespace rtd::detector {

@@ -26,13 +26,13 @@ TEST(MaskRecall, counts_pixels_and_people_as_computed_by_hand) {
 
   EXPECT_EQ(recall.pixels, 1700U);
   EXPECT_EQ(recall.covered_pixels, 800U);  // overlapping boxes count once
-  EXPECT_EQ(recall.people, 2U);            // the speck is nobody
+  EXPECT_EQ(recall.people, 2U);            // the speck is not a person
   EXPECT_EQ(recall.people_found, 1U);
   EXPECT_EQ(recall.images_complete, 0U);
   EXPECT_EQ(recall.boxes_beside, 0U);
 }
 
-TEST(MaskRecall, counts_boxes_that_lie_on_nothing) {
+TEST(MaskRecall, counts_boxes_beside_the_mask) {
   const MaskRecall recall = measure_mask_recall(
       two_people(), {box(150, 10, 20, 20), box(-50, -50, 300, 300), box(500, 500, 10, 10), box(0, 0, 0, 0)});
   EXPECT_EQ(recall.boxes, 2U);

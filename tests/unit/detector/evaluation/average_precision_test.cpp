@@ -8,8 +8,6 @@
 #include <limits>
 #include <random>
 
-#include "services/detector/core/evaluation/accuracy_report.hpp"
-
 namespace rtd::detector {
 namespace {
 

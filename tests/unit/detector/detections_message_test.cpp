@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/detections_message.hpp"
+#include "services/detector/detector_service.hpp"
 
 #include <gmock/gmock.h>
 

@@ -10,7 +10,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "services/detector/core/coco_classes.hpp"
+#include "services/detector/core/detector_config.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 
 namespace rtd::detector {
@@ -130,7 +130,7 @@ TEST_F(DetectorTest, refuses_a_pixel_type_that_it_cannot_read) {
   EXPECT_THROW(detector.detect(cv::Mat::zeros(64, 64, CV_16UC1)), std::invalid_argument);
 }
 
-TEST_F(DetectorTest, answers_the_same_twice) {
+TEST_F(DetectorTest, gives_the_same_detections_twice) {
   Detector detector(config({}));
   const cv::Mat image = one_white_cell({64, 64}, 3, 5);
   const std::vector<vision::Detection> first = detector.detect(image), second = detector.detect(image);
@@ -144,7 +144,7 @@ void load(const std::string& path, DetectorConfig config = {}) {
   const Detector detector(config);
 }
 
-TEST_F(DetectorTest, says_which_file_is_missing_and_what_to_do) {
+TEST_F(DetectorTest, names_the_missing_file_and_the_fix) {
   EXPECT_THAT(
       [] { load("/nowhere/model.onnx"); },
       ThrowsMessage<ModelError>(AllOf(HasSubstr("/nowhere/model.onnx"), HasSubstr("deploy/setup.sh --models"))));

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "services/detector/core/letterbox.hpp"
+#include "services/detector/core/network_input.hpp"
 
 namespace rtd::detector {
 namespace {
