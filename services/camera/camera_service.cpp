@@ -6,11 +6,13 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fstream>
 #include <opencv2/core/utility.hpp>
 #include <utility>
 
+#include "common/service/config.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/ros2_feed.hpp"
@@ -20,10 +22,10 @@ namespace {
 
 constexpr std::size_t kReadAhead = 2;
 constexpr std::size_t kResultQueue = 64;
-constexpr std::chrono::milliseconds kReadinessCheck{50};      // a peer that falls silent makes no event
+constexpr std::chrono::milliseconds kReadinessCheck{50};      // a peer that falls silent causes no event
 constexpr std::chrono::milliseconds kLongestWait{100};        // between two looks at the stop token
 constexpr std::int64_t kLastResultTimeoutNs = 2'000'000'000;  // pace realtime
-constexpr std::chrono::milliseconds kFarewell{300};           // the last heartbeats reach everybody
+constexpr std::chrono::milliseconds kFarewell{300};           // the last heartbeats reach their readers
 constexpr int kReportEvery = 10;                              // frames
 
 std::shared_ptr<FrameSource> open_source(const ServiceConfig& config, const bus::BusOptions& bus,
@@ -65,7 +67,7 @@ void CameraService::add_options(CLI::App& app, Config& config) {
 CameraService::CameraService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
-      source_(open_source(config, runtime.bus_options, [this](const std::string& what) { tell_wait(what); })),
+      source_(open_source(config, runtime.bus_options, [this](const std::string& what) { report_wait(what); })),
       realtime_(runtime.pace == service::Pace::kRealtime),
       pacer_(to_pacer_config(config, runtime.pace, source_->info()), service::monotonic_ns),
       results_(std::make_shared<Results>(kResultQueue, concurrency::Overflow::kDropOldest)),
@@ -115,7 +117,7 @@ CameraService::Outcome CameraService::open() {
 }
 
 /// Called by the source: in open(), later in the thread that reads ahead.
-void CameraService::tell_wait(const std::string& what) {
+void CameraService::report_wait(const std::string& what) {
   if (what.empty()) {
     if (playing_) runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
     SPDLOG_INFO("event=camera_gives_frames");
@@ -187,7 +189,7 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
       last_seq_ = frame.image.seq;
       if (realtime_) return Outcome::kDone;
       pacer_.sent(frame.image.seq);
-      unanswered_.push_back(std::move(frame.image));
+      in_flight_.push_back(std::move(frame.image));
       return Outcome::kDone;
     }
     if (follow(decision) == Outcome::kFailed) return Outcome::kFailed;
@@ -248,7 +250,7 @@ void CameraService::note(std::uint64_t seq) {
   newest_result_ = any_result_ ? std::max(newest_result_, seq) : seq;
   any_result_ = true;
   pacer_.answered(seq);
-  while (!unanswered_.empty() && unanswered_.front().seq <= seq) unanswered_.pop_front();
+  while (!in_flight_.empty() && in_flight_.front().seq <= seq) in_flight_.pop_front();
 }
 
 bool CameraService::send(const vision::RgbdImage& image) {
@@ -261,9 +263,9 @@ bool CameraService::send(const vision::RgbdImage& image) {
 }
 
 void CameraService::resend() {
-  SPDLOG_WARN("event=frames_sent_again first={} frames={} silent_ms={}", pacer_.in_flight().front(), unanswered_.size(),
+  SPDLOG_WARN("event=frames_sent_again first={} frames={} silent_ms={}", pacer_.in_flight().front(), in_flight_.size(),
               config_.resend_after_ms);
-  for (const vision::RgbdImage& image : unanswered_) publisher_.publish(image);
+  for (const vision::RgbdImage& image : in_flight_) publisher_.publish(image);
   pacer_.resent();
 }
 

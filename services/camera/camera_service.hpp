@@ -25,7 +25,7 @@ class App;
 
 namespace rtd::camera {
 
-/// rtd-camera: plays a source onto the bus at the pace asked for (docs/architecture.md, "Pacing").
+/// rtd-camera: plays a source onto the bus at the requested pace (docs/architecture.md, "Pacing").
 class CameraService {
  public:
   static constexpr const char* kName = "camera";
@@ -46,7 +46,7 @@ class CameraService {
 
   /// Waits for the first frame of a running camera.
   Outcome open();
-  void tell_wait(const std::string& what);
+  void report_wait(const std::string& what);
   Outcome wait_for_others();
   std::vector<std::string> missing() const;
   Outcome play(ReadAhead& frames);
@@ -75,10 +75,10 @@ class CameraService {
   bool realtime_;
   service::Pacer pacer_;
   std::shared_ptr<Results> results_;                          ///< seq of every TrackingResult
-  std::shared_ptr<concurrency::BoundedQueue<bool>> changes_;  ///< somebody became ready or matched
+  std::shared_ptr<concurrency::BoundedQueue<bool>> changes_;  ///< a service became ready or a reader matched
   FramePublisher publisher_;
   bus::Reader<msg::TrackingResult> tracking_;
-  std::deque<vision::RgbdImage> unanswered_;  ///< kept for sending again; empty at pace realtime
+  std::deque<vision::RgbdImage> in_flight_;  ///< kept for sending again; empty at pace realtime
   SourceCounters counters_;
   std::uint64_t frames_in_ = 0, passed_over_ = 0, published_ = 0, refused_ = 0, last_seq_ = 0, newest_result_ = 0;
   bool any_result_ = false;

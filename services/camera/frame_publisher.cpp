@@ -2,15 +2,57 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/frame_publisher.hpp"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <cstring>
+#include <opencv2/imgcodecs.hpp>
 #include <random>
 #include <utility>
 
+#include "common/concurrency/thread_priority.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/camera/core/recording/camera_info.hpp"
+#include "services/camera/core/recording/ros_images.hpp"
 
 namespace rtd::camera {
+namespace {
+
+constexpr std::size_t kMaxWaiting = 2;
+constexpr int kNicer = 5;  // than the filter and slam, and before the detector
+
+/// Niceness orders no real-time threads: in a process that was started as such this one leaves them.
+void yield_to_poses() {
+  const sched_param ordinary{};
+  if (sched_getscheduler(0) != SCHED_OTHER) sched_setscheduler(0, SCHED_OTHER, &ordinary);
+  concurrency::lower_thread_priority(kNicer);
+}
+
+}  // namespace
+
+JpegPublisher::JpegPublisher(bus::Writer<msg::CompressedImage> writer, int quality, concurrency::Overflow overflow)
+    : writer_(std::move(writer)), quality_(quality), waiting_(kMaxWaiting, overflow), thread_([this] {
+        yield_to_poses();
+        while (const auto image = waiting_.pop()) publish(*image);
+      }) {}
+
+JpegPublisher::~JpegPublisher() {
+  waiting_.close();
+  thread_.join();
+}
+
+void JpegPublisher::offer(const cv::Mat& color_bgr, std::int64_t stamp_ns) {
+  if (writer_.matched() > 0) waiting_.push({color_bgr, stamp_ns});
+}
+
+void JpegPublisher::publish(const Waiting& image) {
+  msg::CompressedImage message;
+  message.header = {msg::to_time(image.stamp_ns), kCameraFrame};
+  message.format = "bgr8; jpeg compressed bgr8";
+  if (!cv::imencode(".jpg", image.color_bgr, message.data, {cv::IMWRITE_JPEG_QUALITY, quality_})) return;
+  ++encoded_;
+  writer_.write(message);
+}
+
 namespace {
 
 std::uint64_t random_id() {
@@ -28,9 +70,9 @@ void copy_packed(const cv::Mat& image, Array& target) {
   std::memset(bytes, 0, sizeof(target) - used);
 }
 
-bus::StatusCallbacks on_match(const std::function<void()>& tell) {
+bus::StatusCallbacks on_match(const std::function<void()>& notify) {
   bus::StatusCallbacks callbacks;
-  callbacks.on_matched = [tell](int) { tell(); };
+  callbacks.on_matched = [notify](int) { notify(); };
   return callbacks;
 }
 

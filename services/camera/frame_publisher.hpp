@@ -2,21 +2,56 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
+#include <opencv2/core/mat.hpp>
+#include <thread>
 
 #include "common/bus/bus.hpp"
+#include "common/concurrency/bounded_queue.hpp"
 #include "services/camera/core/frame_source.hpp"
-#include "services/camera/jpeg_publisher.hpp"
 
 namespace rtd::camera {
+
+/// Encodes images as JPEG and publishes them in a thread of its own that yields to everything else of the pipeline, so
+/// that a reader of the JPEG topic delays no pose. offer(): one thread.
+class JpegPublisher {
+ public:
+  /// `overflow`: what happens to an image while two others wait to be encoded.
+  JpegPublisher(bus::Writer<msg::CompressedImage> writer, int quality, concurrency::Overflow overflow);
+  /// Publishes what still waits.
+  ~JpegPublisher();
+  JpegPublisher(const JpegPublisher&) = delete;
+  JpegPublisher& operator=(const JpegPublisher&) = delete;
+
+  /// Takes an image (8-bit BGR, shared: not to be changed any more) if the topic has readers.
+  void offer(const cv::Mat& color_bgr, std::int64_t stamp_ns);
+  int readers() const { return writer_.matched(); }
+  std::uint64_t encoded() const { return encoded_; }
+  /// Images that a newer one has replaced.
+  std::uint64_t dropped() const { return waiting_.dropped(); }
+
+ private:
+  struct Waiting {
+    cv::Mat color_bgr;
+    std::int64_t stamp_ns = 0;
+  };
+  void publish(const Waiting& image);
+
+  bus::Writer<msg::CompressedImage> writer_;
+  int quality_;
+  std::atomic<std::uint64_t> encoded_{0};
+  concurrency::BoundedQueue<Waiting> waiting_;
+  std::thread thread_;
+};
 
 /// Fills every field of a loaned frame.
 void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::int64_t published_ns,
                 msg::RgbdFrame& frame);
 
-/// Puts frames on the bus: raw by loan, as JPEG while somebody listens (beside, a little later), and the camera's
-/// calibration. One thread.
+/// Publishes frames: raw by loan, as JPEG while that topic has readers (in another thread, a little later), and the
+/// camera's calibration. One thread.
 class FramePublisher {
  public:
   /// `jpeg_overflow`: what happens when JPEGs are wanted faster than they can be encoded. `on_matched` is called on a

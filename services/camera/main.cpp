@@ -1,8 +1,57 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <string>
+
+#include "common/service/exit_code.hpp"
 #include "common/service/run_service.hpp"
 #include "services/camera/camera_service.hpp"
-#include "services/camera/export_command.hpp"
+#include "services/camera/core/source_factory.hpp"
+#include "services/camera/core/tum/tum_export.hpp"
+
+namespace rtd::camera {
+namespace {
+
+/// Whether the command line asks for `rtd-camera --export FOLDER` instead of a service.
+bool wants_export(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc, [](const std::string& argument) {
+    return argument == "--export" || argument.rfind("--export=", 0) == 0;
+  });
+}
+
+/// `rtd-camera --export FOLDER --source URI [--frames N]`: no bus, no service. Returns the exit code.
+int run_export(int argc, char** argv) {
+  std::string folder, uri;
+  std::uint64_t frames = 0;
+  CLI::App app{"Write a source to a new folder in TUM's layout", "rtd-camera"};
+  app.add_option("--export", folder, "New folder")->required();
+  app.add_option("--source", uri, "tum:FOLDER, bag:FILE, mcap:FILE or synthetic:SCENE[?key=value&...]")->required();
+  app.add_option("--frames", frames, "At most this many frames, 0 = all");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    app.exit(error);
+    return service::kUsageOrConfig;
+  }
+  try {
+    const std::unique_ptr<FrameSource> source = make_source(uri);
+    std::cout << export_tum(*source, folder, frames) << " frames written to " << folder << '\n';
+    return service::kOk;
+  } catch (const SourceError& error) {
+    std::cerr << "rtd-camera: " << error.what() << '\n';
+    return service::kUsageOrConfig;
+  } catch (const std::exception& error) {
+    std::cerr << "rtd-camera: " << error.what() << '\n';
+    return service::kRunFailed;
+  }
+}
+
+}  // namespace
+}  // namespace rtd::camera
 
 int main(int argc, char** argv) {
   if (rtd::camera::wants_export(argc, argv)) return rtd::camera::run_export(argc, argv);

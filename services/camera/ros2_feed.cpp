@@ -21,7 +21,7 @@ constexpr const char* kImage = "sensor_msgs/Image";
 constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
 constexpr const char* kInfo = "sensor_msgs/CameraInfo";
 
-/// What rtd itself publishes is no camera's.
+/// rtd's own images come from no camera.
 bool is_ours(const std::string& dds_topic) {
   return dds_topic == bus::topics::kColorJpeg.name || dds_topic == bus::topics::kDynamicMask.name;
 }
@@ -63,14 +63,14 @@ void Ros2Feed::take_note(const bus::TopicWriter& writer, bus::WriterChange chang
   for (Line& line : lines_) {
     if (line.topic != topic || !line.types.contains(plain_dds_type(writer))) continue;
     try {
-      listen(line, writer);
+      subscribe(line, writer);
     } catch (const bus::BusError& error) {
       SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", topic, error.what());
     }
   }
 }
 
-void Ros2Feed::listen(Line& line, const bus::TopicWriter& writer) {
+void Ros2Feed::subscribe(Line& line, const bus::TopicWriter& writer) {
   if (line.listener == nullptr) {
     line.listener = std::make_unique<bus::TopicListener>(*bus_, handlers(line, writer), false, kReaderDepth);
   }
@@ -107,21 +107,21 @@ std::string Ros2Feed::state_of(const std::string& topic) const {
     }
   }
   if (writers > 0)
-    return fmt::format("{} of its type, but nothing comes", writers == 1 ? "one publisher" : "publishers");
+    return fmt::format("{} of its type, but no message arrives", writers == 1 ? "one publisher" : "publishers");
   if (!other_type.empty()) return fmt::format("it is published as {}, which is not read here", other_type);
-  return nobody_publishes();
+  return without_publisher();
 }
 
-std::string Ros2Feed::nobody_publishes() const {
+std::string Ros2Feed::without_publisher() const {
   std::set<std::string> images;
   for (const bus::TopicWriter& writer : bus_->writers()) {
     const std::string type = plain_dds_type(writer);
     if (is_ours(writer.topic.name)) continue;
     if (type == kImage || type == kCompressed) images.insert(ros2::ros_topic(writer.topic.name));
   }
-  const std::string where = fmt::format("nobody publishes it in DDS domain {}", domain_);
-  if (!images.empty()) return fmt::format("{}; images come on {}", where, fmt::join(images, ", "));
-  return fmt::format("{}{}, nor any image; does the driver run, and in this ROS_DOMAIN_ID?", where,
+  const std::string where = fmt::format("it has no publisher in DDS domain {}", domain_);
+  if (!images.empty()) return fmt::format("{}; images are published on {}", where, fmt::join(images, ", "));
+  return fmt::format("{}{}, and neither has any image topic; does the driver run, and in this ROS_DOMAIN_ID?", where,
                      loopback_only_ ? " on this host (--profile lan: also on the network)" : "");
 }
 

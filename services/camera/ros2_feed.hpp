@@ -9,12 +9,12 @@
 
 #include "common/bus/topic_listener.hpp"
 #include "common/concurrency/bounded_queue.hpp"
-#include "services/camera/core/live/live_feed.hpp"
+#include "services/camera/core/live/live_source.hpp"
 
 namespace rtd::camera {
 
 /// The topics of a ROS 2 camera driver, over a connection of its own. Each topic is read as its writers offer it
-/// (TopicListener): best effort where one does only that, ROS 2's sensor data profile.
+/// (TopicListener): best effort where a writer offers no more (ROS 2's sensor data profile).
 class Ros2Feed final : public LiveFeed {
  public:
   /// Throws BusError when the bus refuses.
@@ -37,15 +37,15 @@ class Ros2Feed final : public LiveFeed {
   };
 
   void take_note(const bus::TopicWriter& writer, bus::WriterChange change);
-  void listen(Line& line, const bus::TopicWriter& writer);
+  void subscribe(Line& line, const bus::TopicWriter& writer);
   bus::RawHandlers handlers(const Line& line, const bus::TopicWriter& writer);
-  std::string nobody_publishes() const;
+  std::string without_publisher() const;
 
   const std::uint32_t domain_;
   const bool loopback_only_;
   concurrency::BoundedQueue<LiveMessage> queue_;
   std::shared_ptr<bus::RawBus> bus_;
-  std::array<Line, 3> lines_;  ///< listeners: changed by the thread of the bus's watcher only
+  std::array<Line, 3> lines_;  ///< only the thread of the bus's watcher changes listeners
 };
 
 }  // namespace rtd::camera

@@ -15,7 +15,6 @@
 #include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
 #include "services/camera/core/frame_source.hpp"
-#include "services/camera/core/tum_cameras.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -104,7 +103,7 @@ Calibration parse_calibration(const std::string& text, const std::string& origin
   for (const io::TextLine& line : io::split_lines(text)) {
     if (line.fields.front() == "---" || line.fields.front().front() == '%') continue;  // YAML document start, directive
     if (const auto entry = parse_entry(line, origin); !values.insert(entry).second) {
-      throw SourceError(origin + ":" + std::to_string(line.number) + ": key '" + entry.first + "' stands twice");
+      throw SourceError(origin + ":" + std::to_string(line.number) + ": key '" + entry.first + "' occurs twice");
     }
   }
   return from_values(values, origin);

@@ -10,7 +10,7 @@
 
 namespace rtd::camera {
 
-/// What calibration.yaml says about an RGB-D camera.
+/// The content of a calibration.yaml.
 struct Calibration {
   geometry::CameraModel camera;
   double depth_scale_m = 1.0 / 5000.0;  ///< metres of one depth unit; the file gives its inverse, depth_factor
@@ -18,8 +18,8 @@ struct Calibration {
 };
 
 /// Reads "key: value" lines with the keys width height fx fy cx cy (needed) k1 k2 p1 p2 k3 depth_factor fps.
-/// Throws SourceError naming `origin`, line and fix: unknown or doubled key, no finite number, out of range, size above
-/// the frame type's.
+/// Throws SourceError naming `origin`, line and fix: unknown or doubled key, not a finite number, out of range, size
+/// above the frame type's.
 Calibration parse_calibration(const std::string& text, const std::string& origin);
 
 /// The same of a file. Throws SourceError also when it cannot be read.
@@ -29,7 +29,7 @@ Calibration read_calibration(const std::string& file);
 void check_frame_size(double width_px, double height_px, const std::string& origin);
 
 /// Calibration of a TUM-layout folder: its calibration.yaml, else the TUM family in its path (freiburg1 or fr1, ...;
-/// the values of config/cameras/, compiled in). Throws SourceError that says what to write.
+/// the values of config/cameras/, compiled in). Throws SourceError with what to write.
 Calibration load_calibration(const std::filesystem::path& folder);
 
 /// 1, 2 or 3 when the path names a TUM camera family, the innermost folder first.
@@ -37,5 +37,8 @@ std::optional<int> tum_family(const std::filesystem::path& folder);
 
 /// The calibration as a file that parse_calibration() reads back.
 std::string to_yaml(const Calibration& calibration);
+
+/// Text of config/cameras/tum_fr<family>.yaml, family 1..3. The definition is generated from these files.
+const std::string& tum_camera_yaml(int family);
 
 }  // namespace rtd::camera

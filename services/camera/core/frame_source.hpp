@@ -5,9 +5,11 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/geometry/trajectory.hpp"
@@ -32,7 +34,7 @@ enum class SkipReason {
   kDepthNot16Bit,    ///< 8-bit, float or several channels
   kSizeMismatch,     ///< colour, depth and calibration do not have one size
   kDamagedRecord,    ///< a piece of a recording that cannot be read
-  kOverrun,          ///< a running camera's: came faster than it was taken
+  kOverrun,          ///< running camera: the message came before earlier ones were processed
 };
 inline constexpr std::size_t kSkipReasons = 10;
 
@@ -99,10 +101,43 @@ class FrameSource {
   virtual const SourceInfo& info() const = 0;
   virtual const SourceCounters& counters() const = 0;
   /// Ground truth of the span covered: poses of the camera in a world frame of the source's own; empty when there is
-  /// none. Endless sources give what was played so far.
+  /// none. Endless sources give the part played so far.
   virtual geometry::Trajectory groundtruth() const = 0;
   /// What was skipped since the last call, for the log.
   virtual std::vector<SkippedInput> take_skipped() = 0;
 };
+
+/// Counts the skipped inputs of a source and keeps their log lines until take().
+class SkipLog {
+ public:
+  void add(SkippedInput input);
+  /// Gives a frame that is handed out its number and counts it.
+  void number(SourceFrame& frame);
+  SourceCounters& counters() { return counters_; }
+  const SourceCounters& counters() const { return counters_; }
+  std::vector<SkippedInput> take() { return std::exchange(skipped_, {}); }
+  /// ": 2 x size_mismatch, first: ..."; empty when nothing was left out.
+  std::string summary() const;
+
+ private:
+  SourceCounters counters_;
+  std::vector<SkippedInput> skipped_;
+};
+
+/// Ground truth is given this far beyond the first and last frame, so that an evaluator can interpolate.
+inline constexpr std::int64_t kGroundtruthMarginNs = 500'000'000;
+
+/// Why colour, depth and calibration do not make a frame; empty when they do. `name` is the colour image's.
+std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat& color, const cv::Mat& depth,
+                                          const geometry::CameraModel& camera);
+
+/// The frame that a pair of images makes; seq is given when it is handed out.
+SourceFrame to_frame(std::int64_t stamp_ns, cv::Mat color_bgr, cv::Mat depth, const SourceInfo& info);
+
+/// The poses between these stamps and kGroundtruthMarginNs around them.
+geometry::Trajectory poses_of_span(geometry::Trajectory poses, std::int64_t from_ns, std::int64_t to_ns);
+
+/// "640 x 480".
+std::string size_text(cv::Size size_px);
 
 }  // namespace rtd::camera

@@ -29,7 +29,7 @@ std::string_view to_view(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The end mark of PNG (IEND chunk) or JPEG (EOI) stands near the end of the file; other formats are left to the
+/// The end mark of PNG (IEND chunk) or JPEG (EOI) is near the end of the file; other formats are left to the
 /// decoder.
 bool complete(Bytes bytes) {
   constexpr std::size_t kTrailer = 256;  // some writers pad
@@ -53,7 +53,7 @@ ImageRead decode(Bytes bytes, const std::string& name, int flags, SkipReason unr
   } catch (const cv::Exception&) {
     result.image.release();
   }
-  if (result.image.empty()) return refuse(unreadable, name, "is no image that can be decoded");
+  if (result.image.empty()) return refuse(unreadable, name, "cannot be decoded as an image");
   return result;
 }
 

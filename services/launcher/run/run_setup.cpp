@@ -14,9 +14,8 @@
 #include "common/service/bus_config.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/pace.hpp"
-#include "services/camera/core/live/live_options.hpp"
+#include "services/camera/core/live/live_source.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/camera/core/source_uri.hpp"
 #include "services/launcher/process/executable.hpp"
 
 namespace rtd::launcher {

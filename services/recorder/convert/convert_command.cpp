@@ -10,7 +10,6 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/camera/core/source_uri.hpp"
 #include "services/recorder/convert/mcap_export.hpp"
 
 namespace rtd::recording {

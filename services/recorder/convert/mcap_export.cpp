@@ -11,9 +11,8 @@
 #include "common/ros2/names.hpp"
 #include "common/ros2/type_definition.hpp"
 #include "common/ros_codec/wire_writer.hpp"
-#include "services/camera/core/recording/camera_info.hpp"
-#include "services/camera/core/recording/compressed_depth.hpp"
-#include "services/camera/core/recording/image_pairs.hpp"
+#include "services/camera/core/recording/recording_source.hpp"
+#include "services/camera/core/recording/ros_images.hpp"
 
 namespace rtd::recording {
 namespace {
@@ -71,7 +70,7 @@ msg::TFMessage truth_message(const geometry::StampedPose& pose) {
 class Recorder {
  public:
   Recorder(const fs::path& file, mcap::Compression compression, double depth_scale_m)
-      : sink_(file, mcap::IfExists::kReplace), writer_(sink_, options(compression)) {
+      : sink_(file, io::IfExists::kReplace), writer_(sink_, options(compression)) {
     const mcap::SchemaId image = schema("sensor_msgs/msg/Image");
     color_ = channel("/camera/color/image_raw", image);
     depth_ = channel("/camera/aligned_depth_to_color/image_raw", image,
@@ -117,7 +116,7 @@ class Recorder {
     writer_.write(mcap::Message{channel, sequence_[channel]++, time, time, std::as_bytes(std::span(bytes))});
   }
 
-  mcap::FileSink sink_;
+  io::FileSink sink_;
   mcap::Writer writer_;
   mcap::ChannelId color_ = 0, depth_ = 0, info_ = 0, truth_ = 0;
   std::map<mcap::ChannelId, std::uint32_t> sequence_;

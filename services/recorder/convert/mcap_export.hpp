@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "common/mcap/compression.hpp"
-#include "services/camera/core/tum_export.hpp"
+#include "services/camera/core/tum/tum_export.hpp"
 
 namespace rtd::recording {
 
@@ -13,7 +13,7 @@ namespace rtd::recording {
 /// and that the tools of ROS 2 open: /camera/color/image_raw (rgb8), /camera/aligned_depth_to_color/image_raw (16UC1
 /// when the source's unit is a millimetre, else 32FC1 metres, as REP 118 says), /camera/color/camera_info, the ground
 /// truth as /tf from world to the camera; log time = stamp. The file is FILE.partial until it is complete. Returns the
-/// number of frames. Throws SourceError (endless source without max_frames, FILE exists) and mcap::IoError (disk).
+/// number of frames. Throws SourceError (endless source without max_frames, FILE exists) and io::IoError (disk).
 std::uint64_t export_mcap(camera::FrameSource& source, const std::filesystem::path& file, mcap::Compression compression,
                           std::uint64_t max_frames, const camera::OnFrame& on_frame = {});
 

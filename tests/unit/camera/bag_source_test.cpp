@@ -34,7 +34,7 @@ testing::AssertionResult refuses(const std::string& uri, const std::vector<std::
   return testing::AssertionFailure() << "was opened";
 }
 
-TEST(BagSource, PlaysPairsWithTheStampsOfTheirHeaders) {
+TEST(BagSource, plays_pairs_with_the_stamps_of_their_headers) {
   ImageBag bag;
   bag.three_frames();
   const std::string uri = bag.uri();
@@ -54,13 +54,13 @@ TEST(BagSource, PlaysPairsWithTheStampsOfTheirHeaders) {
   EXPECT_THAT(played.skipped, IsEmpty());
 }
 
-TEST(BagSource, PassesOverOldFramesWhichKeepTheirSeq) {
+TEST(BagSource, passes_over_old_frames_which_keep_their_seq) {
   ImageBag bag;
   bag.three_frames();
   test::expect_passes_over_two_of_three(bag.uri());
 }
 
-TEST(BagSource, DepthThatIsNoMeasurementBecomesZero) {
+TEST(BagSource, depth_without_a_measurement_becomes_zero) {
   ImageBag bag;
   bag.add_info();
   cv::Mat depth_m(ImageBag::kHeight, ImageBag::kWidth, CV_32FC1, cv::Scalar(1.5));
@@ -79,7 +79,7 @@ TEST(BagSource, DepthThatIsNoMeasurementBecomesZero) {
   EXPECT_EQ(played.counters.frames_without_depth, 1U);
 }
 
-TEST(BagSource, LeavesOutColourWithoutDepthAndStampsThatDoNotGrow) {
+TEST(BagSource, leaves_out_colour_without_depth_and_stamps_that_do_not_grow) {
   ImageBag bag;
   bag.three_frames();
   bag.add_color(1.3);
@@ -96,7 +96,7 @@ TEST(BagSource, LeavesOutColourWithoutDepthAndStampsThatDoNotGrow) {
   EXPECT_EQ(played.counters.of(SkipReason::kStampDoubled), 1U);
 }
 
-TEST(BagSource, RefusesABagWhoseColourNeverHasDepth) {
+TEST(BagSource, refuses_a_bag_whose_colour_never_has_depth) {
   ImageBag bag;
   bag.add_info();
   bag.add_color(1);
@@ -104,7 +104,7 @@ TEST(BagSource, RefusesABagWhoseColourNeverHasDepth) {
   EXPECT_TRUE(refuses(bag.uri(), {"no usable frame", "1 x no_depth_partner", "no depth image within 0.02 s"}));
 }
 
-TEST(BagSource, NamesTheTopicsThereAreWhenOneIsMissing) {
+TEST(BagSource, names_the_topics_there_are_when_one_is_missing) {
   ImageBag bag;
   bag.add_info();
   bag.add_color(1);
@@ -115,7 +115,7 @@ TEST(BagSource, NamesTheTopicsThereAreWhenOneIsMissing) {
   EXPECT_TRUE(refuses(uri + "?depth=/imu", {"depth=/imu is of type sensor_msgs/Imu"}));
 }
 
-TEST(BagSource, AsksWhichWhenSeveralTopicsFit) {
+TEST(BagSource, asks_which_when_several_topics_fit) {
   ImageBag two;
   two.add_info();
   for (const char* topic : {"/left/image", "/right/image"}) {
@@ -127,7 +127,7 @@ TEST(BagSource, AsksWhichWhenSeveralTopicsFit) {
   EXPECT_THAT(play_all(uri + "?color=/right/image").frames, SizeIs(1));
 }
 
-TEST(BagSource, NamesAnEncodingThatCannotBeRead) {
+TEST(BagSource, names_an_encoding_that_cannot_be_read) {
   ImageBag bayer;
   bayer.add_info();
   bayer.add_color(1, cv::Mat(ImageBag::kHeight, ImageBag::kWidth, CV_8UC1), "bayer_grbg8");
@@ -140,7 +140,7 @@ TEST(BagSource, NamesAnEncodingThatCannotBeRead) {
   EXPECT_TRUE(refuses(bag.uri(), {"'64FC1'", "16UC1 (mm)", "32FC1 (m)", ImageBag::kDepth}));
 }
 
-TEST(BagSource, LeavesOutFramesOfOtherSizesAndShortMessages) {
+TEST(BagSource, leaves_out_frames_of_other_sizes_and_short_messages) {
   ImageBag bag;
   bag.three_frames();
   bag.add_color(1.3, cv::Mat(10, 10, CV_8UC3, cv::Scalar(1, 2, 3)));
@@ -158,7 +158,7 @@ TEST(BagSource, LeavesOutFramesOfOtherSizesAndShortMessages) {
   EXPECT_THAT(played.skipped[1].detail, HasSubstr("10 x 10"));
 }
 
-TEST(BagSource, RefusesFramesLargerThanTheFrameType) {
+TEST(BagSource, refuses_frames_larger_than_the_frame_type) {
   ImageBag bag;
   msg::CameraInfo info = ImageBag::camera_info();
   info.width = 1280, info.height = 720;
@@ -168,7 +168,7 @@ TEST(BagSource, RefusesFramesLargerThanTheFrameType) {
   EXPECT_TRUE(refuses(bag.uri(), {"1280 x 720", "at most 640 x 480"}));
 }
 
-TEST(BagSource, NeedsACalibrationItUnderstands) {
+TEST(BagSource, needs_a_calibration_it_understands) {
   const auto with = [](msg::CameraInfo info) {
     ImageBag bag;
     bag.add_info(info);
@@ -186,7 +186,7 @@ TEST(BagSource, NeedsACalibrationItUnderstands) {
   EXPECT_TRUE(with(rational));
 }
 
-TEST(BagSource, TakesACalibrationOfItsOwn) {
+TEST(BagSource, takes_a_calibration_of_its_own) {
   ImageBag bag;
   bag.add_color(1);
   bag.add_depth(1);
@@ -198,7 +198,7 @@ TEST(BagSource, TakesACalibrationOfItsOwn) {
   EXPECT_DOUBLE_EQ(source->info().depth_scale_m, 1.0 / 5000);
 }
 
-TEST(BagSource, RectifiedImagesHaveTheProjectionsCamera) {
+TEST(BagSource, rectified_images_have_the_projections_camera) {
   msg::CameraInfo info = ImageBag::camera_info();
   info.d = {0.1, 0.2, 0, 0, 0};
   info.p = {28, 0, 14, 0, 0, 29, 11, 0, 0, 0, 1, 0};
@@ -212,7 +212,7 @@ TEST(BagSource, RectifiedImagesHaveTheProjectionsCamera) {
   EXPECT_FALSE(camera.distorted());
 }
 
-TEST(BagSource, GivesTheTruthOfAWorldOnly) {
+TEST(BagSource, gives_ground_truth_only_in_a_world_frame) {
   const auto bag_with = [](const char* root, const char* child) {
     auto bag = std::make_unique<ImageBag>();
     bag->three_frames();
@@ -239,7 +239,7 @@ TEST(BagSource, GivesTheTruthOfAWorldOnly) {
   EXPECT_THAT(truth(*bag_with("/kinect", "/kinect")), IsEmpty()) << "a ring";
 }
 
-TEST(BagSource, PlaysWhatIsLeftOfADamagedBagAndTells) {
+TEST(BagSource, plays_the_intact_part_of_a_damaged_bag_and_reports_the_loss) {
   ImageBag bag("none");
   bag.three_frames();
   const std::string whole = bag.bytes();
@@ -249,7 +249,7 @@ TEST(BagSource, PlaysWhatIsLeftOfADamagedBagAndTells) {
   EXPECT_THAT(cut.skipped[0].detail, HasSubstr("what follows is lost"));
 }
 
-TEST(BagSource, SaysWhatItKnows) {
+TEST(BagSource, names_the_parameters_it_knows) {
   EXPECT_TRUE(refuses("bag:", {"needs a file", "bag:FILE"}));
   EXPECT_TRUE(refuses("bag:x?colour=/a", {"unknown parameter 'colour'", "color, depth, info, calibration"}));
   EXPECT_TRUE(refuses("bag:/nowhere.bag", {"/nowhere.bag cannot be read"}));

@@ -23,7 +23,7 @@ auto refuses(const std::string& text, const std::string& part) {
   };
 }
 
-TEST(Calibration, HasDefaultsForWhatIsOptional) {
+TEST(Calibration, has_defaults_for_what_is_optional) {
   const Calibration calibration = parse_calibration(kMinimal, "x");
   EXPECT_DOUBLE_EQ(calibration.depth_scale_m, 1.0 / 5000);
   EXPECT_DOUBLE_EQ(calibration.fps, 30);
@@ -31,7 +31,7 @@ TEST(Calibration, HasDefaultsForWhatIsOptional) {
   EXPECT_EQ(calibration.camera.parameters().width, 320);
 }
 
-TEST(Calibration, SurvivesWritingAndReading) {
+TEST(Calibration, survives_writing_and_reading) {
   const Calibration before = parse_calibration(
       std::string(kMinimal) + "k1: 0.2624\nk2: -0.95\np1: -0.005\np2: 0.0026\nk3: 1.16\ndepth_factor: 1000\nfps: 15\n",
       "x");
@@ -42,10 +42,10 @@ TEST(Calibration, SurvivesWritingAndReading) {
   EXPECT_DOUBLE_EQ(after.fps, 15);
 }
 
-TEST(Calibration, RefusesWithKeyLineAndFix) {
+TEST(Calibration, refuses_with_key_line_and_fix) {
   refuses("width: 320\nfocal: 3\n", "cal.yaml:2: unknown key 'focal'")();
   refuses("width: 320\n", "is missing")();
-  refuses(std::string(kMinimal) + "fx: 262\n", "stands twice")();
+  refuses(std::string(kMinimal) + "fx: 262\n", "occurs twice")();
   refuses("width 320\n", "expected 'key: value'")();
   refuses("fx: nan\n", "cal.yaml:1: fx is 'nan'")();
   refuses("fx: inf\n", "fx is 'inf'")();
@@ -54,13 +54,13 @@ TEST(Calibration, RefusesWithKeyLineAndFix) {
   refuses("fx: 5x\n", "fx is '5x'")();
 }
 
-TEST(Calibration, RefusesSizesThatNoFrameTypeCarries) {
+TEST(Calibration, refuses_sizes_that_no_frame_type_carries) {
   EXPECT_THAT(
       [] { parse_calibration(SequenceFolder::calibration(1280, 720), "cal.yaml"); },
       ThrowsMessage<SourceError>(AllOf(HasSubstr("1280 x 720"), HasSubstr("at most 640 x 480"), HasSubstr("scale"))));
 }
 
-TEST(TumFamily, IsReadFromTheInnermostFolderThatNamesOne) {
+TEST(TumFamily, is_read_from_the_innermost_folder_that_names_one) {
   EXPECT_EQ(tum_family("/data/rgbd_dataset_freiburg1_xyz"), 1);
   EXPECT_EQ(tum_family("/data/fr2_desk"), 2);
   EXPECT_EQ(tum_family("/data/freiburg1/fr3_walking_xyz"), 3);
@@ -70,21 +70,21 @@ TEST(TumFamily, IsReadFromTheInnermostFolderThatNamesOne) {
   EXPECT_EQ(tum_family("/data/office"), std::nullopt);
 }
 
-TEST(LoadCalibration, TakesTheFileFirstThenTheFamily) {
+TEST(LoadCalibration, takes_the_file_first_then_the_family) {
   const SequenceFolder folder("freiburg2_desk");
   EXPECT_DOUBLE_EQ(load_calibration(folder.path()).camera.parameters().fx, 520.908620);
   folder.write("calibration.yaml", SequenceFolder::calibration());
   EXPECT_DOUBLE_EQ(load_calibration(folder.path()).camera.parameters().fx, 52);
 }
 
-TEST(LoadCalibration, KnowsAllThreeFamilies) {
+TEST(LoadCalibration, knows_all_three_families) {
   const SequenceFolder fr1("fr1_a"), fr3("fr3_a");
   EXPECT_DOUBLE_EQ(load_calibration(fr1.path()).camera.parameters().distortion[4], 1.163314);
   EXPECT_DOUBLE_EQ(load_calibration(fr3.path()).camera.parameters().fy, 539.2);
   EXPECT_FALSE(load_calibration(fr3.path()).camera.distorted());
 }
 
-TEST(LoadCalibration, SaysWhatToWriteOtherwise) {
+TEST(LoadCalibration, names_what_to_write_when_there_is_none) {
   const SequenceFolder folder("kitchen");
   EXPECT_THAT([&] { load_calibration(folder.path()); },
               ThrowsMessage<SourceError>(AllOf(HasSubstr("calibration.yaml"), HasSubstr("width height fx fy"))));

@@ -27,7 +27,7 @@ std::size_t textures_of(const CorridorPlan& plan, std::uint64_t seed) {
   return used.size();
 }
 
-TEST(Corridor, WalkComesBackToItsStart) {
+TEST(Corridor, walk_comes_back_to_its_start) {
   const CorridorPlan plan;
   const CorridorWalk walk(plan, 3);
   EXPECT_GT(walk.lap_m(), 60);
@@ -37,7 +37,7 @@ TEST(Corridor, WalkComesBackToItsStart) {
   EXPECT_LT(geometry::rotation_angle_rad(T_change), 0.15);
 }
 
-TEST(Corridor, WalkIsSteadyAndStaysBetweenTheWalls) {
+TEST(Corridor, walk_is_steady_and_stays_between_the_walls) {
   const CorridorPlan plan;
   const CorridorWalk walk(plan, 2);
   constexpr double kStepS = 0.1;
@@ -54,14 +54,14 @@ TEST(Corridor, WalkIsSteadyAndStaysBetweenTheWalls) {
   }
 }
 
-TEST(Corridor, SidesThatLookAlikeShareTheirTextures) {
+TEST(Corridor, sides_that_look_alike_share_their_textures) {
   CorridorPlan plan{.length_m = 8, .depth_m = 8};
   const std::size_t all_different = textures_of(plan, 4);
   plan.alike = true;
   EXPECT_EQ(4 * textures_of(plan, 4), all_different);
 }
 
-TEST(Corridor, AlikePlacesLookAlikeFromAlikePoses) {
+TEST(Corridor, alike_places_look_alike_from_alike_poses) {
   std::vector<Texture> textures;
   const std::vector<Face> faces = build_corridor({.length_m = 8, .depth_m = 8, .alike = true}, 4, textures);
   const std::size_t quarter = faces.size() / 4;
@@ -73,7 +73,7 @@ TEST(Corridor, AlikePlacesLookAlikeFromAlikePoses) {
   }
 }
 
-TEST(Corridor, FramesAgreeWithEachOther) {
+TEST(Corridor, frames_agree_with_each_other) {
   const auto frames = test::play("synthetic:corridor?frames=3&noise=0&seed=3");
   const test::Agreement all = test::agreement(frames[0], frames[2], frames[0].dynamic_mask);
   EXPECT_GT(all.pixels, 5000);

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <random>
 
-#include "services/camera/core/tum_lists.hpp"
+#include "services/camera/core/tum/tum_lists.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -29,7 +29,7 @@ std::vector<StampedFile> shaky_stamps(std::mt19937& random, double period_ms) {
   return stamps;
 }
 
-TEST(FramePairer, PairsAStreamAsTheListsOfAFolderArePaired) {
+TEST(FramePairer, pairs_a_stream_as_the_lists_of_a_folder_are_paired) {
   std::mt19937 random(5);
   const std::vector<StampedFile> colors = shaky_stamps(random, 33.3), depths = shaky_stamps(random, 33.4);
   const std::vector<int> expected = associate(colors, depths);
@@ -66,7 +66,7 @@ TEST(FramePairer, PairsAStreamAsTheListsOfAFolderArePaired) {
   EXPECT_EQ(skips.counters().of(SkipReason::kNoDepthPartner), colors.size() - expected_pairs.size());
 }
 
-TEST(FramePairer, HoldsAFewFramesOnlyWhenDepthNeverComes) {
+TEST(FramePairer, holds_a_few_frames_only_when_depth_never_comes) {
   FramePairer pairer;
   SkipLog skips;
   for (int i = 0; i < 1000; ++i) {
@@ -76,7 +76,7 @@ TEST(FramePairer, HoldsAFewFramesOnlyWhenDepthNeverComes) {
   EXPECT_GE(skips.counters().of(SkipReason::kNoDepthPartner), 1000 - FramePairer::kMaxPending);
 }
 
-TEST(FramePairer, GivesADepthImageOnce) {
+TEST(FramePairer, gives_a_depth_image_once) {
   FramePairer pairer;
   SkipLog skips;
   pairer.add_color(at(100 * kMs, 100 * kMs), skips);

@@ -78,7 +78,7 @@ class LiveSourceTest : public ::testing::Test {
   }
   LiveSource source(const std::string& uri = kUri) {
     LiveOptions options = parse_live_options(uri);
-    options.on_wait = [this](const std::string& what) { told_.push_back(what); };
+    options.on_wait = [this](const std::string& what) { reported_.push_back(what); };
     return {uri, std::make_unique<PlayedFeed>(script_), options};
   }
   /// The frame made of one pair of images.
@@ -88,7 +88,7 @@ class LiveSourceTest : public ::testing::Test {
   }
 
   PlayedFeed::Script script_;
-  std::vector<std::string> told_;
+  std::vector<std::string> reported_;
 };
 
 TEST_F(LiveSourceTest, pairs_by_stamp_as_soon_as_both_are_there_and_keeps_the_drivers_calibration) {
@@ -177,36 +177,37 @@ TEST_F(LiveSourceTest, refuses_encodings_sizes_and_byte_orders_by_name) {
       "big endian");
 }
 
-TEST_F(LiveSourceTest, says_what_it_waits_for_and_gives_up) {
+TEST_F(LiveSourceTest, reports_what_it_waits_for_and_gives_up) {
   LiveSource nothing = source();
   EXPECT_THAT([&] { nothing.open(); },
               ThrowsMessage<SourceError>(AllOf(HasSubstr("no frame within 30 s"), HasSubstr("colour image on /c"))));
-  ASSERT_FALSE(told_.empty());
-  EXPECT_THAT(told_.front(), HasSubstr("no colour image on /c: state of /c"));
+  ASSERT_FALSE(reported_.empty());
+  EXPECT_THAT(reported_.front(), HasSubstr("no colour image on /c: state of /c"));
 
-  told_.clear();
+  reported_.clear();
   for (int i = 0; i < 1500; ++i) color(1.0 + 0.033 * i), depth(1.0 + 0.033 * i);
   LiveSource no_info = source();
   EXPECT_THROW(no_info.open(), SourceError);
-  EXPECT_THAT(told_.front(), HasSubstr("no sensor_msgs/CameraInfo on /i: state of /i"));
+  EXPECT_THAT(reported_.front(), HasSubstr("no sensor_msgs/CameraInfo on /i: state of /i"));
 }
 
-TEST_F(LiveSourceTest, says_when_stamps_do_not_pair) {
+TEST_F(LiveSourceTest, reports_stamps_that_do_not_pair) {
   info();
   for (int i = 0; i < 1500; ++i) color(1.0 + 0.033 * i), depth(1001.0 + 0.033 * i);
   LiveSource played = source();
   EXPECT_THROW(played.open(), SourceError);
-  ASSERT_FALSE(told_.empty());
-  EXPECT_THAT(told_.front(), AllOf(HasSubstr("no pair"), HasSubstr(" ms apart, allowed are 20"), HasSubstr("tolerance_ms")));
+  ASSERT_FALSE(reported_.empty());
+  EXPECT_THAT(reported_.front(),
+              AllOf(HasSubstr("no pair"), HasSubstr(" ms apart, allowed are 20"), HasSubstr("tolerance_ms")));
 }
 
-TEST_F(LiveSourceTest, tells_of_a_pause_and_of_its_end) {
+TEST_F(LiveSourceTest, reports_a_pause_and_its_end) {
   info(), color(1.0), depth(1.0), color(1.1), depth(1.1);
   LiveSource played = source();
   only_frame(played);
   EXPECT_EQ(played.next(), std::nullopt) << "the feed closes after a minute";
-  ASSERT_FALSE(told_.empty());
-  EXPECT_THAT(told_.front(), HasSubstr("no colour image on /c"));
+  ASSERT_FALSE(reported_.empty());
+  EXPECT_THAT(reported_.front(), HasSubstr("no colour image on /c"));
 }
 
 TEST_F(LiveSourceTest, a_clock_that_steps_back_is_an_error_not_silence) {

@@ -53,7 +53,7 @@ class McapFile {
   }
 
  private:
-  mcap::MemorySink sink_;
+  io::MemorySink sink_;
   mcap::Writer writer_{sink_};
   std::map<std::string, mcap::ChannelId> channels_;
   std::optional<rtd::test::TemporaryFile> file_;

@@ -33,7 +33,7 @@ constexpr const char* kCompressed = "sensor_msgs/msg/CompressedImage";
 class DepthFactors : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(All, DepthFactors, testing::Values(5000, 1000, 5208));
 
-TEST_P(DepthFactors, WhatIsExportedComesBackPixelByPixel) {
+TEST_P(DepthFactors, what_is_exported_comes_back_pixel_by_pixel) {
   const SequenceFolder folder;
   std::string calibration = SequenceFolder::calibration() + "k1: 0.1\np2: -0.002\nk3: 0.3\n";
   calibration.replace(calibration.find("5000"), 4, std::to_string(GetParam()));
@@ -46,7 +46,7 @@ TEST_P(DepthFactors, WhatIsExportedComesBackPixelByPixel) {
   }
   folder.write("groundtruth.txt", "0.9 1 2 3 0.5 -0.5 0.5 0.5\n1.15 4 5 6 0 0 0 1\n");
   const auto file = folder.path() / "out.mcap";
-  std::vector<std::uint64_t> told;
+  std::vector<std::uint64_t> counts;
   const auto source = make_source(folder.uri());
   EXPECT_EQ(recording::export_mcap(*source, file, mcap::Compression::kZstd, 0, [&](auto n) { told.push_back(n); }), 3U);
   EXPECT_THAT(told, testing::ElementsAre(1U, 2U, 3U));
@@ -71,7 +71,7 @@ TEST_P(DepthFactors, WhatIsExportedComesBackPixelByPixel) {
   EXPECT_TRUE(poses[0].T_world_body.isApprox(source->groundtruth()[0].T_world_body, 1e-12));
 }
 
-TEST(McapExport, LeavesAnExistingFileAlone) {
+TEST(McapExport, leaves_an_existing_file_alone) {
   const SequenceFolder folder;
   folder.three_frames();
   folder.write("out.mcap", "precious");
@@ -81,7 +81,7 @@ TEST(McapExport, LeavesAnExistingFileAlone) {
   EXPECT_EQ(std::filesystem::file_size(folder.path() / "out.mcap"), 8U);
 }
 
-TEST(McapSource, PlaysWhatRos2Records) {
+TEST(McapSource, plays_what_ros2_records) {
   McapFile file;
   msg::CompressedImage color, depth;
   color.header = depth.header = {msg::to_time(1'000'000'000), "camera_color_optical_frame"};
@@ -100,7 +100,7 @@ TEST(McapSource, PlaysWhatRos2Records) {
   EXPECT_TRUE(same(played.frames[0].image.depth, ImageBag::depth()));
 }
 
-TEST(McapSource, PlaysBagsThatWereConvertedToMcap) {
+TEST(McapSource, plays_bags_that_were_converted_to_mcap) {
   McapFile file;
   const auto add = [&](const char* topic, const char* type, const auto& message) {
     file.add(topic, type, "ros1", ros::encode<ros::Wire::kRos1>(message), 1);
@@ -111,7 +111,7 @@ TEST(McapSource, PlaysBagsThatWereConvertedToMcap) {
   EXPECT_THAT(play_all(file.uri()).frames, SizeIs(1));
 }
 
-TEST(McapSource, WantsDepthRegisteredToColour) {
+TEST(McapSource, wants_depth_registered_to_colour) {
   McapFile file;
   msg::Image depth = ImageBag::image(ImageBag::depth(), "16UC1", 1);
   depth.header.frame_id = "camera_depth_optical_frame";
@@ -124,7 +124,7 @@ TEST(McapSource, WantsDepthRegisteredToColour) {
   EXPECT_THAT(play_all(uri + "?depth=/camera/depth/image_rect_raw").frames, SizeIs(1));
 }
 
-TEST(McapSource, PlaysFramesOfOurOwnFirst) {
+TEST(McapSource, plays_frames_of_our_own_first) {
   McapFile file;
   file.add("/camera/color/image_raw/compressed", kCompressed, msg::CompressedImage{}, 1);
   file.add_own(*own_frame(1'000'000'000, 10, 100), 1.0);
@@ -146,7 +146,7 @@ TEST(McapSource, PlaysFramesOfOurOwnFirst) {
   EXPECT_THAT(played.skipped, IsEmpty());
 }
 
-TEST(McapSource, LeavesOutOwnFramesThatWereSentAgainOrAreDamaged) {
+TEST(McapSource, leaves_out_own_frames_that_were_sent_again_or_are_damaged) {
   McapFile file;
   file.add_own(*own_frame(1'000'000'000, 1, 1), 1.0);
   file.add_own(*own_frame(1'000'000'000, 1, 1), 1.1);
@@ -169,7 +169,7 @@ TEST(McapSource, LeavesOutOwnFramesThatWereSentAgainOrAreDamaged) {
   EXPECT_EQ(played.counters.of(SkipReason::kSizeMismatch), 1U);
 }
 
-TEST(McapSource, RefusesADamagedFirstFrame) {
+TEST(McapSource, refuses_a_damaged_first_frame) {
   McapFile file;
   auto frame = own_frame(1, 1, 1);
   frame->intrinsics[0] = 0;
@@ -177,7 +177,7 @@ TEST(McapSource, RefusesADamagedFirstFrame) {
   EXPECT_THAT([&] { make_source(file.uri()); }, ThrowsMessage<SourceError>(HasSubstr("intrinsics fx 0")));
 }
 
-TEST(McapSource, PlaysWhatIsLeftOfACutFileAndTells) {
+TEST(McapSource, plays_the_intact_part_of_a_cut_file_and_reports_the_loss) {
   McapFile file;
   for (int i = 0; i < 4; ++i) {
     file.add_own(*own_frame(i * 100'000'000 + 1'000'000'000, 1, 1), 1.0 + 0.1 * i);
@@ -189,7 +189,7 @@ TEST(McapSource, PlaysWhatIsLeftOfACutFileAndTells) {
   EXPECT_GE(played.counters.of(SkipReason::kDamagedRecord), 1U);
 }
 
-TEST(McapSource, RefusesWhatIsNoMcapFileOrHasNothingToPlay) {
+TEST(McapSource, refuses_other_files_and_files_with_nothing_to_play) {
   const SequenceFolder folder;
   folder.write("x.mcap", "this is no MCAP");
   EXPECT_THAT([&] { make_source("mcap:" + (folder.path() / "x.mcap").string()); },
@@ -201,7 +201,7 @@ TEST(McapSource, RefusesWhatIsNoMcapFileOrHasNothingToPlay) {
               ThrowsMessage<SourceError>(HasSubstr("/slam/pose (geometry_msgs/PoseStamped, 1 messages)")));
 }
 
-TEST(McapSource, FindsTheFileInAFolderOfRosbag2) {
+TEST(McapSource, finds_the_file_in_a_folder_of_rosbag2) {
   const SequenceFolder folder;
   folder.three_frames();
   const auto bag = folder.path() / "bag";
@@ -212,7 +212,7 @@ TEST(McapSource, FindsTheFileInAFolderOfRosbag2) {
   EXPECT_THAT([&] { make_source("mcap:" + bag.string()); }, ThrowsMessage<SourceError>(HasSubstr("2 MCAP files")));
 }
 
-TEST(PlainType, IsTheSameForEveryWayToNameAType) {
+TEST(PlainType, is_the_same_for_every_way_to_name_a_type) {
   for (const char* name :
        {"sensor_msgs/Image", "sensor_msgs/msg/Image", "sensor_msgs::msg::dds_::Image_", "sensor_msgs::msg::Image"}) {
     EXPECT_EQ(plain_type(name), "sensor_msgs/Image") << name;

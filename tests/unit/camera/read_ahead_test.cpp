@@ -42,7 +42,7 @@ class CountingSource final : public FrameSource {
   SourceCounters counters_;
 };
 
-TEST(ReadAhead, HandsOverEveryFrameInOrderThenTheEnd) {
+TEST(ReadAhead, hands_over_every_frame_in_order_then_the_end) {
   CountingSource source(20, false);
   ReadAhead frames(source, 2, 0);
   for (std::uint64_t seq = 0; seq < 20; ++seq) {
@@ -58,7 +58,7 @@ TEST(ReadAhead, HandsOverEveryFrameInOrderThenTheEnd) {
   EXPECT_TRUE(end->error.empty());
 }
 
-TEST(ReadAhead, PassesOverWhatIsNoLongerWanted) {
+TEST(ReadAhead, passes_over_frames_that_are_too_old) {
   CountingSource source(1000, false);
   ReadAhead frames(source, 2, 0);
   frames.next();
@@ -75,7 +75,7 @@ TEST(ReadAhead, PassesOverWhatIsNoLongerWanted) {
   EXPECT_GE(passed_over, 490U);
 }
 
-TEST(ReadAhead, StopsAtTheLimit) {
+TEST(ReadAhead, stops_at_the_limit) {
   CountingSource source(20, false);
   ReadAhead frames(source, 2, 3);
   int count = 0;
@@ -83,7 +83,7 @@ TEST(ReadAhead, StopsAtTheLimit) {
   EXPECT_EQ(count, 3);
 }
 
-TEST(ReadAhead, CountsWhatItPassedOverAgainstTheLimit) {
+TEST(ReadAhead, counts_what_it_passed_over_against_the_limit) {
   CountingSource source(1000, false);
   ReadAhead frames(source, 2, 10);
   frames.pass_over(500);
@@ -96,14 +96,14 @@ TEST(ReadAhead, CountsWhatItPassedOverAgainstTheLimit) {
   EXPECT_EQ(read + passed_over, 10U);
 }
 
-TEST(ReadAhead, ReportsAFailingSource) {
+TEST(ReadAhead, reports_a_failing_source) {
   CountingSource source(1, true);
   ReadAhead frames(source, 2, 0);
   EXPECT_TRUE(frames.next()->frame);
   EXPECT_EQ(frames.next()->error, "the disk went away");
 }
 
-TEST(ReadAhead, EndsWhileItsQueueIsFull) {
+TEST(ReadAhead, ends_while_its_queue_is_full) {
   CountingSource source(1'000'000, false);
   const auto ended = std::async(std::launch::async, [&source] { const ReadAhead frames(source, 2, 0); });
   EXPECT_EQ(ended.wait_for(std::chrono::seconds(10)), std::future_status::ready);

@@ -41,7 +41,7 @@ float depth_at(const Rendering& rendering, int u, int v) {
   return inverse > 0 ? 1.0F / inverse : 0.0F;
 }
 
-TEST(Renderer, GivesThePlanesDepthAndExtent) {
+TEST(Renderer, gives_the_planes_depth_and_extent) {
   Renderer renderer(camera());
   const Rendering rendering = renderer.render({{facing_camera({0, 0, 4})}, {}}, {plain(100)}, kAtOrigin);
   EXPECT_NEAR(depth_at(rendering, 80, 60), 4.0F, 1e-5F);
@@ -54,7 +54,7 @@ TEST(Renderer, GivesThePlanesDepthAndExtent) {
   EXPECT_EQ(rendering.color_bgr.at<cv::Vec3b>(5, 5), cv::Vec3b(0, 0, 0));
 }
 
-TEST(Renderer, DepthIsAlongTheOpticalAxisOfTheMovedCamera) {
+TEST(Renderer, depth_is_along_the_optical_axis_of_the_moved_camera) {
   Renderer renderer(camera());
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   T_world_camera.linear() = Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY()).toRotationMatrix();
@@ -68,7 +68,7 @@ TEST(Renderer, DepthIsAlongTheOpticalAxisOfTheMovedCamera) {
       << "half a pixel on a plane slanted by 0.2 rad";
 }
 
-TEST(Renderer, DoesNotShowFacesFromBehind) {
+TEST(Renderer, does_not_show_faces_from_behind) {
   Renderer renderer(camera());
   Face face = facing_camera({0, 0, 4});
   std::swap(face.axis_s, face.axis_t);
@@ -76,7 +76,7 @@ TEST(Renderer, DoesNotShowFacesFromBehind) {
   EXPECT_EQ(cv::countNonZero(rendering.inverse_depth), 0);
 }
 
-TEST(Renderer, ShowsTheNearerOfTwoAndMasksWhatMoves) {
+TEST(Renderer, shows_the_nearer_of_two_and_masks_what_moves) {
   Renderer renderer(camera());
   Face near = facing_camera({1, 0, 2}, true);
   near.texture = 1;
@@ -89,7 +89,7 @@ TEST(Renderer, ShowsTheNearerOfTwoAndMasksWhatMoves) {
   EXPECT_EQ(rendering.moving_mask.at<std::uint8_t>(60, 70), 0);
 }
 
-TEST(Renderer, GivesTheBoundsOfWhatIsSeenOfAnObject) {
+TEST(Renderer, gives_the_bounds_of_what_is_seen_of_an_object) {
   Renderer renderer(camera());
   Geometry geometry;
   Face behind = facing_camera({0, 0, 4}, true), before = facing_camera({1, 0, 2});
@@ -105,7 +105,7 @@ TEST(Renderer, GivesTheBoundsOfWhatIsSeenOfAnObject) {
   EXPECT_EQ(rendering.objects[0].visible_px, rendering.objects[0].bounds_px.area());
 }
 
-TEST(Renderer, DrawsAnEllipsoidWhereItsSurfaceIs) {
+TEST(Renderer, draws_an_ellipsoid_where_its_surface_is) {
   Renderer renderer(camera());
   Ellipsoid ellipsoid;
   ellipsoid.T_world_body.translation() = Eigen::Vector3f(0, 0, 3);
@@ -119,7 +119,7 @@ TEST(Renderer, DrawsAnEllipsoidWhereItsSurfaceIs) {
   EXPECT_EQ(rendering.moving_mask.at<std::uint8_t>(60, 80), 255);
 }
 
-TEST(Renderer, LeavesOutWhatIsBehindTheCamera) {
+TEST(Renderer, leaves_out_what_is_behind_the_camera) {
   Renderer renderer(camera());
   Ellipsoid ellipsoid;
   ellipsoid.T_world_body.translation() = Eigen::Vector3f(0, 0, -3);
@@ -127,7 +127,7 @@ TEST(Renderer, LeavesOutWhatIsBehindTheCamera) {
   EXPECT_EQ(cv::countNonZero(rendering.inverse_depth), 0);
 }
 
-TEST(Renderer, ClosesTheRoomWithoutCracks) {
+TEST(Renderer, closes_the_room_without_cracks) {
   Renderer renderer(camera());
   Cuboid room;
   room.size_m = Eigen::Vector3f(4, 4, 3);

@@ -30,7 +30,7 @@ Statistics statistics_of(const cv::Mat& depth) {
           count / static_cast<double>(depth.total())};
 }
 
-TEST(Sensor, NoiseGrowsWithTheSquareOfDepth) {
+TEST(Sensor, noise_grows_with_the_square_of_depth) {
   const Sensor sensor({}, 1);
   for (const float depth_m : {1.0F, 2.0F, 4.0F}) {
     const Statistics measured = statistics_of(sensor.measure_depth(wall_at(depth_m), 0));
@@ -41,14 +41,14 @@ TEST(Sensor, NoiseGrowsWithTheSquareOfDepth) {
   }
 }
 
-TEST(Sensor, MeasuresNothingOutOfRange) {
+TEST(Sensor, measures_nothing_out_of_range) {
   const Sensor sensor({}, 1);
   EXPECT_EQ(cv::countNonZero(sensor.measure_depth(wall_at(0.3F), 0)), 0);
   EXPECT_EQ(cv::countNonZero(sensor.measure_depth(wall_at(7.0F), 0)), 0);
   EXPECT_EQ(cv::countNonZero(sensor.measure_depth(cv::Mat(10, 10, CV_32FC1, cv::Scalar(0)), 0)), 0);
 }
 
-TEST(Sensor, LosesTheProjectorsShadowLeftOfANearObject) {
+TEST(Sensor, loses_the_projectors_shadow_left_of_a_near_object) {
   cv::Mat scene = wall_at(4);
   scene.colRange(100, 150).setTo(1.0F);  // 1 m
   const cv::Mat depth = Sensor({}, 1).measure_depth(scene, 0);
@@ -57,7 +57,7 @@ TEST(Sensor, LosesTheProjectorsShadowLeftOfANearObject) {
   EXPECT_EQ(cv::countNonZero(depth.row(50).colRange(152, 200)), 48) << "none on the right";
 }
 
-TEST(Sensor, IdealSensorOnlyRounds) {
+TEST(Sensor, ideal_sensor_only_rounds) {
   SensorModel model;
   model.noise = false;
   const Sensor sensor(model, 1);
@@ -67,7 +67,7 @@ TEST(Sensor, IdealSensorOnlyRounds) {
   EXPECT_EQ(cv::norm(sensor.measure_color(color, 0), color), 0);
 }
 
-TEST(Sensor, NoiseIsTheSameForTheSameFrameOnly) {
+TEST(Sensor, noise_is_the_same_for_the_same_frame_only) {
   const Sensor a({}, 1), b({}, 1), other({}, 2);
   const cv::Mat wall = wall_at(3);
   const auto differ = [](const cv::Mat& x, const cv::Mat& y) { return cv::norm(x, y, cv::NORM_L1) > 0; };
@@ -76,7 +76,7 @@ TEST(Sensor, NoiseIsTheSameForTheSameFrameOnly) {
   EXPECT_TRUE(differ(a.measure_depth(wall, 4), other.measure_depth(wall, 4)));
 }
 
-TEST(Sensor, ColourNoiseHasTheStatedDeviation) {
+TEST(Sensor, colour_noise_has_the_stated_deviation) {
   const cv::Mat grey(100, 200, CV_8UC3, cv::Scalar::all(128));
   cv::Scalar mean, deviation;
   cv::meanStdDev(Sensor({}, 1).measure_color(grey, 3), mean, deviation);

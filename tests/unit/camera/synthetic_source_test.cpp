@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "services/camera/core/source_factory.hpp"
-#include "services/camera/core/tum_export.hpp"
+#include "services/camera/core/tum/tum_export.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"
 
@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
 
-TEST(SyntheticSource, GivesTheSameBitsForTheSameSeed) {
+TEST(SyntheticSource, gives_the_same_bits_for_the_same_seed) {
   const auto first = play("synthetic:office?frames=3&seed=7"), second = play("synthetic:office?frames=3&seed=7");
   const auto other = play("synthetic:office?frames=3&seed=8");
   ASSERT_THAT(first, SizeIs(3));
@@ -34,21 +34,21 @@ TEST(SyntheticSource, GivesTheSameBitsForTheSameSeed) {
   EXPECT_FALSE(same(first[2].image.color_bgr, other[2].image.color_bgr));
 }
 
-TEST(SyntheticSource, StampsFramesAtItsRate) {
+TEST(SyntheticSource, stamps_frames_at_its_rate) {
   const auto frames = play("synthetic:static?frames=4&fps=10&width=64&height=48");
   EXPECT_EQ(frames[3].image.seq, 3U);
   EXPECT_EQ(frames[3].image.stamp_ns - frames[0].image.stamp_ns, 300'000'000);
   EXPECT_EQ(frames[0].image.stamp_ns % 1000, 0) << "TUM files carry microseconds";
 }
 
-TEST(SyntheticSource, PosesAndDepthAgreeBetweenFrames) {
+TEST(SyntheticSource, poses_and_depth_agree_between_frames) {
   const auto frames = play("synthetic:office?frames=16&noise=0&seed=3");
   const Agreement all = agreement(frames.front(), frames.back(), frames.front().dynamic_mask);
   EXPECT_GT(all.pixels, 5000);
   EXPECT_GT(all.share, 0.97) << "the rest is uncovered or slanted background";
 }
 
-TEST(SyntheticSource, MaskedPixelsAreThoseThatMoved) {
+TEST(SyntheticSource, masked_pixels_are_those_that_moved) {
   const auto frames = play("synthetic:crowd?frames=10&noise=0&seed=3");
   cv::Mat still;
   cv::compare(frames.front().dynamic_mask, 0, still, cv::CMP_EQ);
@@ -56,7 +56,7 @@ TEST(SyntheticSource, MaskedPixelsAreThoseThatMoved) {
   EXPECT_LT(agreement(frames.front(), frames.back(), still).share, 0.5);
 }
 
-TEST(SyntheticSource, KnowsTheBoxesOfItsObjects) {
+TEST(SyntheticSource, knows_the_boxes_of_its_objects) {
   bool person = false, box = false;
   for (const SourceFrame& frame : play("synthetic:office?frames=60&fps=6&width=160&height=120")) {
     cv::Mat outside = frame.dynamic_mask.clone();
@@ -76,7 +76,7 @@ TEST(SyntheticSource, KnowsTheBoxesOfItsObjects) {
   EXPECT_TRUE(person && box);
 }
 
-TEST(SyntheticSource, ScenesHoldWhatTheirNamesSay) {
+TEST(SyntheticSource, scenes_contain_what_their_names_say) {
   const auto masked = [](const std::string& uri) {
     int pixels = 0;
     for (const SourceFrame& frame : play(uri)) pixels += cv::countNonZero(frame.dynamic_mask);
@@ -92,7 +92,7 @@ TEST(SyntheticSource, ScenesHoldWhatTheirNamesSay) {
   EXPECT_EQ(masked("synthetic:office" + few + "&people=0&boxes=0"), 0);
 }
 
-TEST(SyntheticSource, CameraStaysInItsPartOfTheRoomAndMovesLikeAHand) {
+TEST(SyntheticSource, camera_stays_in_its_part_of_the_room_and_moves_like_a_hand) {
   using Room = synthetic::CameraRoom;
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     const synthetic::CameraPath path(synthetic::CameraMotion::kHandHeld, seed);
@@ -109,14 +109,14 @@ TEST(SyntheticSource, CameraStaysInItsPartOfTheRoomAndMovesLikeAHand) {
   }
 }
 
-TEST(SyntheticSource, EveryViewIsRichInDepth) {
+TEST(SyntheticSource, every_view_is_rich_in_depth) {
   for (const SourceFrame& frame : play("synthetic:office?frames=40&fps=1")) {
     EXPECT_GT(cv::countNonZero(frame.image.depth), 640 * 480 * 3 / 4);
     EXPECT_TRUE(frame.has_depth);
   }
 }
 
-TEST(SyntheticSource, EndlessOneGivesGroundtruthOfWhatWasPlayed) {
+TEST(SyntheticSource, endless_source_gives_ground_truth_of_the_part_played) {
   const auto source = make_source("synthetic:static?frames=0&width=64&height=48");
   EXPECT_EQ(source->info().frames, 0U);
   for (int i = 0; i < 5; ++i) ASSERT_TRUE(source->next());
@@ -126,7 +126,7 @@ TEST(SyntheticSource, EndlessOneGivesGroundtruthOfWhatWasPlayed) {
   EXPECT_LT(poses[4].stamp_ns, sixth->image.stamp_ns);
 }
 
-TEST(SyntheticSource, PassesOverFramesWithoutChangingTheLaterOnes) {
+TEST(SyntheticSource, passes_over_frames_without_changing_the_later_ones) {
   const std::string uri = "synthetic:office?frames=6&width=64&height=48";
   const auto source = make_source(uri);
   const auto all = play(uri);
@@ -137,11 +137,12 @@ TEST(SyntheticSource, PassesOverFramesWithoutChangingTheLaterOnes) {
   EXPECT_TRUE(same(frame->image.depth, all[4].image.depth));
 }
 
-TEST(SyntheticSource, RefusesWhatItDoesNotKnow) {
-  EXPECT_THAT([] { make_source("synthetic:kitchen"); },
-              ThrowsMessage<SourceError>(
-                  AllOf(HasSubstr("'kitchen'"),
-                        HasSubstr("office, static, box, crowd, tour, sitting, fill, approach, slow, flicker, corridor, lookalike"))));
+TEST(SyntheticSource, refuses_what_it_does_not_know) {
+  EXPECT_THAT(
+      [] { make_source("synthetic:kitchen"); },
+      ThrowsMessage<SourceError>(AllOf(
+          HasSubstr("'kitchen'"),
+          HasSubstr("office, static, box, crowd, tour, sitting, fill, approach, slow, flicker, corridor, lookalike"))));
   EXPECT_THAT([] { make_source("synthetic:office?sed=1"); },
               ThrowsMessage<SourceError>(AllOf(HasSubstr("'sed'"), HasSubstr("seed"))));
   EXPECT_THAT([] { make_source("synthetic:office?width=1280"); }, ThrowsMessage<SourceError>(HasSubstr("[64, 640]")));
@@ -149,7 +150,7 @@ TEST(SyntheticSource, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT([] { make_source("synthetic:office?frames=nan"); }, ThrowsMessage<SourceError>(HasSubstr("frames")));
 }
 
-TEST(TumExport, IsReadBackAsItWas) {
+TEST(TumExport, is_read_back_as_it_was) {
   const test::SequenceFolder folder;
   const std::string scene = "synthetic:office?frames=4&width=160&height=120&seed=5";
   const auto source = make_source(scene);
@@ -168,7 +169,7 @@ TEST(TumExport, IsReadBackAsItWas) {
   EXPECT_TRUE(poses[3].T_world_body.isApprox(*before[3].T_world_camera, 1e-8));
 }
 
-TEST(TumExport, RefusesEndlessSourcesAndUsedFolders) {
+TEST(TumExport, refuses_endless_sources_and_used_folders) {
   const test::SequenceFolder folder;
   const auto endless = make_source("synthetic:static?frames=0&width=64&height=48");
   EXPECT_THAT([&] { export_tum(*endless, folder.path() / "clip", 0); },

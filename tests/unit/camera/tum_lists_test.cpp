@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/tum_lists.hpp"
+#include "services/camera/core/tum/tum_lists.hpp"
 
 #include <gmock/gmock.h>
 
@@ -21,7 +21,7 @@ std::vector<StampedFile> at_ms(std::initializer_list<int> stamps_ms) {
   return files;
 }
 
-TEST(ReadPairs, RefusesStampsThatAreNotFinite) {
+TEST(ReadPairs, refuses_stamps_that_are_not_finite) {
   for (const char* text : {"nan", "inf", "-inf", "1e300"}) {
     const SequenceFolder folder;
     folder.write("rgb.txt", std::string("1 rgb/a.png\n") + text + " rgb/b.png\n");
@@ -30,26 +30,26 @@ TEST(ReadPairs, RefusesStampsThatAreNotFinite) {
   }
 }
 
-TEST(Associate, TakesTheClosestPairFirst) {
+TEST(Associate, takes_the_closest_pair_first) {
   // 20 could go to 12 (8 ms) or 29 (9 ms); 30 is nearer to 29, so 20 gets 12.
   EXPECT_THAT(associate(at_ms({20, 30}), at_ms({12, 29})), ElementsAre(0, 1));
 }
 
-TEST(Associate, UsesEachDepthImageOnce) {
+TEST(Associate, uses_each_depth_image_once) {
   EXPECT_THAT(associate(at_ms({0, 10}), at_ms({4})), ElementsAre(0, -1));
 }
 
-TEST(Associate, LeavesOutWhatIsTooFarApart) {
+TEST(Associate, leaves_out_what_is_too_far_apart) {
   EXPECT_THAT(associate(at_ms({0, 100}), at_ms({20, 119})), ElementsAre(-1, 1));
 }
 
-TEST(ReadPairs, RefusesMissingAndEmptyFolders) {
+TEST(ReadPairs, refuses_missing_and_empty_folders) {
   EXPECT_THAT([] { read_pairs("/no/such/folder"); }, ThrowsMessage<SourceError>(HasSubstr("does not exist")));
   const SequenceFolder folder;
   EXPECT_THAT([&] { read_pairs(folder.path()); }, ThrowsMessage<SourceError>(HasSubstr("needs rgb.txt")));
 }
 
-TEST(ReadPairs, FollowsAssociationsEvenWhenDepthIsUsedTwice) {
+TEST(ReadPairs, follows_associations_even_when_depth_is_used_twice) {
   const SequenceFolder folder;
   folder.write("associations.txt", "1.0 rgb/a.png 1.01 depth/a.png\r\n1.1 rgb/b.png 1.01 depth/a.png\n");
   const PairList list = read_pairs(folder.path());
@@ -58,7 +58,7 @@ TEST(ReadPairs, FollowsAssociationsEvenWhenDepthIsUsedTwice) {
   EXPECT_EQ(list.pairs[1].color.stamp_ns, 1'100'000'000);
 }
 
-TEST(ReadPairs, AcceptsAssociationsThatNameDepthFirst) {
+TEST(ReadPairs, accepts_associations_that_name_depth_first) {
   const SequenceFolder folder;
   folder.write("associations.txt", "1.0 depth/a.png 1.01 rgb/a.png\n");
   const PairList list = read_pairs(folder.path());
@@ -67,7 +67,7 @@ TEST(ReadPairs, AcceptsAssociationsThatNameDepthFirst) {
   EXPECT_EQ(list.pairs[0].color.stamp_ns, 1'010'000'000);
 }
 
-TEST(ReadPairs, CountsStampsThatGoBackOrStandStill) {
+TEST(ReadPairs, counts_stamps_that_go_back_or_repeat) {
   const SequenceFolder folder;
   folder.write("rgb.txt", "1.0 a\n1.1 b\n1.1 c\n1.05 d\n1.2 e\n");
   folder.write("depth.txt", "1.0 a\n1.05 b\n1.1 c\n1.2 d\n");
@@ -79,7 +79,7 @@ TEST(ReadPairs, CountsStampsThatGoBackOrStandStill) {
   EXPECT_EQ(list.skipped[1].reason, SkipReason::kStampBackwards);
 }
 
-TEST(ReadPairs, CountsFramesWithoutDepthPartner) {
+TEST(ReadPairs, counts_frames_without_depth_partner) {
   const SequenceFolder folder;
   folder.write("rgb.txt", "1.0 a\n1.5 b\n");
   folder.write("depth.txt", "1.0 a\n1.6 b\n");
@@ -89,7 +89,7 @@ TEST(ReadPairs, CountsFramesWithoutDepthPartner) {
   EXPECT_EQ(list.skipped[0].reason, SkipReason::kNoDepthPartner);
 }
 
-TEST(ReadPairs, CountsMalformedLinesByFileAndNumber) {
+TEST(ReadPairs, counts_malformed_lines_by_file_and_number) {
   const SequenceFolder folder;
   folder.write("rgb.txt", "# stamps\n1.0 a\nhello world\n1.1\n1.2 b c\n");
   folder.write("depth.txt", "1.0 a\n");
@@ -100,14 +100,14 @@ TEST(ReadPairs, CountsMalformedLinesByFileAndNumber) {
   EXPECT_THAT(list.skipped[0].detail, HasSubstr("rgb.txt:3"));
 }
 
-TEST(ReadPairs, RefusesStampsThatAreNoNumber) {
+TEST(ReadPairs, refuses_stamps_that_are_not_numbers) {
   const SequenceFolder folder;
   folder.write("rgb.txt", "1.0 a\nnan b\n");
   folder.write("depth.txt", "1.0 a\n");
   EXPECT_THAT([&] { read_pairs(folder.path()); }, ThrowsMessage<SourceError>(HasSubstr("rgb.txt:2")));
 }
 
-TEST(ReadPairs, AcceptsStampsHoursApart) {
+TEST(ReadPairs, accepts_stamps_hours_apart) {
   const SequenceFolder folder;
   folder.write("rgb.txt", "1.0 a\n20000.0 b\n");
   folder.write("depth.txt", "1.0 a\n20000.0 b\n");

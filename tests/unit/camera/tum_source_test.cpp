@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/tum_source.hpp"
+#include "services/camera/core/tum/tum_source.hpp"
 
 #include <gmock/gmock.h>
 
@@ -24,7 +24,7 @@ Played play(const SequenceFolder& folder, const std::string& parameters = "") {
   return play_all(folder.uri() + parameters);
 }
 
-TEST(TumSource, PlaysFramesInOrderWithCalibration) {
+TEST(TumSource, plays_frames_in_order_with_calibration) {
   const SequenceFolder folder;
   folder.three_frames();
   const Played played = play(folder);
@@ -39,13 +39,13 @@ TEST(TumSource, PlaysFramesInOrderWithCalibration) {
   EXPECT_THAT(played.skipped, IsEmpty());
 }
 
-TEST(TumSource, PassesOverOldFramesWhichKeepTheirSeq) {
+TEST(TumSource, passes_over_old_frames_which_keep_their_seq) {
   const SequenceFolder folder;
   folder.three_frames();
   test::expect_passes_over_two_of_three(folder.uri());
 }
 
-TEST(TumSource, ReadsJpegColour) {
+TEST(TumSource, reads_jpeg_colour) {
   const SequenceFolder folder;
   folder.write("calibration.yaml", SequenceFolder::calibration());
   folder.image("rgb/a.jpg", SequenceFolder::color());
@@ -54,7 +54,7 @@ TEST(TumSource, ReadsJpegColour) {
   EXPECT_THAT(play(folder).frames, SizeIs(1));
 }
 
-TEST(TumSource, ReadsMasksWhenAsked) {
+TEST(TumSource, reads_masks_on_request) {
   const SequenceFolder folder;
   folder.three_frames();
   std::filesystem::create_directories(folder.path() / "mask");
@@ -68,7 +68,7 @@ TEST(TumSource, ReadsMasksWhenAsked) {
   EXPECT_TRUE(play(folder).frames[0].dynamic_mask.empty());
 }
 
-TEST(TumSource, SkipsMissingAndTruncatedImagesAndGoesOn) {
+TEST(TumSource, skips_missing_and_truncated_images_and_goes_on) {
   const SequenceFolder folder;
   folder.three_frames();
   for (const char* stamp : {"1.3", "1.4", "1.5", "1.6"}) folder.frame(stamp);
@@ -87,7 +87,7 @@ TEST(TumSource, SkipsMissingAndTruncatedImagesAndGoesOn) {
   EXPECT_THAT(played.skipped[1].detail, HasSubstr("truncated"));
 }
 
-TEST(TumSource, SkipsTruncatedJpegInsteadOfGreyFilling) {
+TEST(TumSource, skips_truncated_jpeg_instead_of_grey_filling) {
   const SequenceFolder folder;
   folder.three_frames();
   folder.image("rgb/b.jpg", SequenceFolder::color());
@@ -98,7 +98,7 @@ TEST(TumSource, SkipsTruncatedJpegInsteadOfGreyFilling) {
   EXPECT_EQ(played.counters.of(SkipReason::kColorUnreadable), 1U);
 }
 
-TEST(TumSource, NamesThePixelTypeOfDepthThatIsNot16Bit) {
+TEST(TumSource, names_the_pixel_type_of_depth_that_is_not_16_bit) {
   const SequenceFolder folder;
   folder.three_frames();
   folder.image("depth/1.1.png", cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_8UC1, cv::Scalar(9)));
@@ -112,7 +112,7 @@ TEST(TumSource, NamesThePixelTypeOfDepthThatIsNot16Bit) {
   EXPECT_THAT(played.skipped[1].detail, HasSubstr("32-bit float"));
 }
 
-TEST(TumSource, RefusesASequenceWithoutOneGoodFrame) {
+TEST(TumSource, refuses_a_sequence_without_one_good_frame) {
   const SequenceFolder folder;
   folder.write("calibration.yaml", SequenceFolder::calibration());
   for (const char* stamp : {"1.0", "1.1"}) {
@@ -122,7 +122,7 @@ TEST(TumSource, RefusesASequenceWithoutOneGoodFrame) {
               ThrowsMessage<SourceError>(AllOf(HasSubstr("2 x depth_not_16_bit"), HasSubstr("16-bit"))));
 }
 
-TEST(TumSource, RefusesEmptyLists) {
+TEST(TumSource, refuses_empty_lists) {
   const SequenceFolder folder;
   folder.write("calibration.yaml", SequenceFolder::calibration());
   folder.write("rgb.txt", "# nothing\n");
@@ -130,7 +130,7 @@ TEST(TumSource, RefusesEmptyLists) {
   EXPECT_THAT([&] { make_source(folder.uri()); }, ThrowsMessage<SourceError>(HasSubstr("lists are empty")));
 }
 
-TEST(TumSource, PassesFramesWithoutAnyDepthAndCountsThem) {
+TEST(TumSource, passes_frames_without_any_depth_and_counts_them) {
   const SequenceFolder folder;
   folder.three_frames();
   folder.frame("1.3", SequenceFolder::depth(0));
@@ -141,7 +141,7 @@ TEST(TumSource, PassesFramesWithoutAnyDepthAndCountsThem) {
   EXPECT_EQ(played.counters.frames_without_depth, 1U);
 }
 
-TEST(TumSource, TakesSaturatedDepthForNoMeasurement) {
+TEST(TumSource, treats_saturated_depth_as_missing) {
   const SequenceFolder folder;
   folder.three_frames();
   cv::Mat depth = SequenceFolder::depth();
@@ -153,7 +153,7 @@ TEST(TumSource, TakesSaturatedDepthForNoMeasurement) {
   EXPECT_EQ(played.frames[3].image.depth.at<std::uint16_t>(3, 5), 65534);
 }
 
-TEST(TumSource, RefusesFramesLargerThanTheFrameType) {
+TEST(TumSource, refuses_frames_larger_than_the_frame_type) {
   const SequenceFolder folder;
   folder.write("calibration.yaml", SequenceFolder::calibration());
   folder.image("rgb/a.png", SequenceFolder::color(800, 600));
@@ -163,7 +163,7 @@ TEST(TumSource, RefusesFramesLargerThanTheFrameType) {
               ThrowsMessage<SourceError>(AllOf(HasSubstr("800 x 600"), HasSubstr("at most 640 x 480"))));
 }
 
-TEST(TumSource, SkipsFramesOfAnotherSizeThanCalibrated) {
+TEST(TumSource, skips_frames_of_another_size_than_calibrated) {
   const SequenceFolder folder;
   folder.three_frames();
   folder.image("rgb/1.1.png", SequenceFolder::color(32, 32));
@@ -172,7 +172,7 @@ TEST(TumSource, SkipsFramesOfAnotherSizeThanCalibrated) {
   EXPECT_EQ(played.counters.of(SkipReason::kSizeMismatch), 1U);
 }
 
-TEST(TumSource, GivesGroundtruthOfItsSpanOnly) {
+TEST(TumSource, gives_groundtruth_of_its_span_only) {
   const SequenceFolder folder;
   folder.three_frames();
   folder.write("groundtruth.txt", "0.4 0 0 0 0 0 0 1\n0.6 1 0 0 0 0 0 1\n1.6 2 0 0 0 0 0 1\n1.8 3 0 0 0 0 0 1\n");
@@ -182,7 +182,7 @@ TEST(TumSource, GivesGroundtruthOfItsSpanOnly) {
   EXPECT_EQ(poses[1].T_world_body.translation().x(), 2);
 }
 
-TEST(TumSource, RefusesBrokenGroundtruthByLine) {
+TEST(TumSource, refuses_broken_groundtruth_by_line) {
   const SequenceFolder folder;
   folder.three_frames();
   folder.write("groundtruth.txt", "1.0 0 0 0 0 0 0 1\n1.1 nan 0 0 0 0 0 1\n");
@@ -190,7 +190,7 @@ TEST(TumSource, RefusesBrokenGroundtruthByLine) {
               ThrowsMessage<SourceError>(AllOf(HasSubstr("groundtruth.txt:2"), HasSubstr("nan"))));
 }
 
-TEST(MakeSource, NamesWhatItKnows) {
+TEST(MakeSource, names_the_schemes_it_knows) {
   EXPECT_THAT([] { make_source("folder"); }, ThrowsMessage<SourceError>(HasSubstr("tum:FOLDER")));
   EXPECT_THAT([] { make_source("rosbag:x"); },
               ThrowsMessage<SourceError>(HasSubstr("known: bag, mcap, ros2, synthetic, tum")));

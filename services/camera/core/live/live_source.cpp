@@ -5,22 +5,82 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <sstream>
 #include <utility>
+#include <vector>
 
+#include "common/io/text.hpp"
 #include "common/ros_codec/wire_reader.hpp"
 #include "services/camera/core/calibration.hpp"
-#include "services/camera/core/recording/camera_info.hpp"
-#include "services/camera/core/recording/compressed_depth.hpp"
+#include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/recording/ros_images.hpp"
-#include "services/camera/core/source_parts.hpp"
+#include "services/camera/core/source_factory.hpp"
 
 namespace rtd::camera {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{100};        // between two looks at what is missing
-constexpr std::int64_t kQuietNs = 1'000'000'000;       // without a frame: worth telling
-constexpr std::int64_t kTellPeriodNs = 1'000'000'000;  // while it lasts
-constexpr std::uint64_t kSteppedImages = 30;           // in a row with a stamp before that of the last frame
+constexpr const char* kForm = "ros2:COLOR_TOPIC,DEPTH_TOPIC[,INFO_TOPIC][?calibration=FILE&tolerance_ms=20]";
+
+std::vector<std::string> split_topics(const std::string& list) {
+  std::vector<std::string> topics;
+  std::istringstream names(list);
+  for (std::string topic; std::getline(names, topic, ',');) {
+    if (!topic.empty() && topic.front() != '/') topic.insert(topic.begin(), '/');
+    topics.push_back(topic);
+  }
+  return topics;
+}
+
+/// "camera_info" beside the image, as image_transport has it.
+std::string info_beside(std::string color) {
+  constexpr const char* kTransport = "/compressed";
+  if (color.ends_with(kTransport)) color.resize(color.size() - std::string(kTransport).size());
+  return color.substr(0, color.rfind('/')) + "/camera_info";
+}
+
+std::int64_t parse_tolerance_ns(const std::string& text, const std::string& value) {
+  constexpr double kMaxMs = 1000;
+  const std::optional<double> ms = io::parse_number(value);
+  if (!ms || !(*ms > 0) || *ms > kMaxMs) {
+    throw SourceError("source '" + text + "': tolerance_ms is '" + value + "', allowed: more than 0, at most 1000");
+  }
+  return static_cast<std::int64_t>(*ms * 1e6);
+}
+
+}  // namespace
+
+bool is_live(const std::string& uri) {
+  return uri.starts_with("ros2:");
+}
+
+LiveOptions parse_live_options(const std::string& text) {
+  const SourceUri uri = parse_source_uri(text);
+  const std::vector<std::string> topics = split_topics(uri.path);
+  bool complete = topics.size() == 2 || topics.size() == 3;
+  for (const std::string& topic : topics) complete = complete && topic.size() > 1;
+  if (!complete) throw SourceError("source '" + text + "' does not name its topics: " + kForm);
+  LiveOptions options;
+  options.topics = {topics[0], topics[1], topics.size() == 3 ? topics[2] : info_beside(topics[0])};
+  if (topics[0] == topics[1]) throw SourceError("source '" + text + "': colour and depth are one topic: " + kForm);
+  for (const auto& [key, value] : uri.parameters) {
+    if (key == "calibration") {
+      options.calibration_file = value;
+    } else if (key == "tolerance_ms") {
+      options.tolerance_ns = parse_tolerance_ns(text, value);
+    } else {
+      throw SourceError("source '" + text + "': unknown parameter '" + key +
+                        "'; ros2: knows calibration, tolerance_ms");
+    }
+  }
+  return options;
+}
+
+namespace {
+
+constexpr std::chrono::milliseconds kLook{100};          // between two looks at what is missing
+constexpr std::int64_t kQuietNs = 1'000'000'000;         // without a frame: worth a report
+constexpr std::int64_t kReportPeriodNs = 1'000'000'000;  // while it lasts
+constexpr std::uint64_t kSteppedImages = 30;             // in a row with a stamp before that of the last frame
 
 }  // namespace
 
@@ -43,7 +103,7 @@ bool LiveSource::open() {
   while (!feed_->closed()) {
     std::optional<LiveMessage> message = feed_->next(kLook);
     if (message && try_to_open(std::move(*message))) {
-      tell_frames_come();
+      report_frames();
       feed_->clear();
       dropped_ = feed_->dropped();
       return true;
@@ -52,7 +112,7 @@ bool LiveSource::open() {
       throw SourceError(
           fmt::format("no frame within {:g} s: {}", static_cast<double>(options_.open_timeout_ns) * 1e-9, missing()));
     }
-    tell_wait();
+    report_wait();
   }
   return false;
 }
@@ -103,9 +163,8 @@ std::optional<SourceFrame> LiveSource::next() {
   while (const std::optional<FramePairer::Pair> pair = next_pair()) {
     std::optional<SourceFrame> frame = decode(*pair);
     if (!frame) continue;
-    frame->image.seq = skips_.counters().frames++;
-    if (!frame->has_depth) ++skips_.counters().frames_without_depth;
-    tell_frames_come();
+    skips_.number(*frame);
+    report_frames();
     return frame;
   }
   return std::nullopt;
@@ -118,7 +177,7 @@ std::optional<FramePairer::Pair> LiveSource::next_pair() {
     if (message) take(std::move(*message));
     refuse_stepped_clock();
     count_dropped();
-    tell_wait();
+    report_wait();
   }
   return std::nullopt;
 }
@@ -132,7 +191,7 @@ void LiveSource::take(LiveMessage message) {
     Images& images = is_color ? color_ : depth_;
     images.type = std::move(message.type);
     images.stamp_ns = stamped.stamp_ns;
-    images.heard_ns = feed_->now_ns();
+    images.arrived_ns = feed_->now_ns();
     is_color ? pairer_.add_color(std::move(stamped), skips_) : pairer_.add_depth(std::move(stamped));
   } catch (const ros::WireError& error) {
     skips_.add({SkipReason::kDamagedRecord, name_of(message.message) + ": " + error.what()});
@@ -140,21 +199,15 @@ void LiveSource::take(LiveMessage message) {
 }
 
 std::optional<SourceFrame> LiveSource::decode(const FramePairer::Pair& pair) {
-  ImageRead color = decode_color(pair.color.message, color_.type);
-  if (color.problem) return skips_.add(*color.problem), std::nullopt;
-  ImageRead depth = decode_depth(pair.depth.message, depth_.type, kFloatDepthUnitM);
-  if (depth.problem) return skips_.add(*depth.problem), std::nullopt;
-  const auto mismatch = size_mismatch(name_of(pair.color.message), color.image, depth.image, info_.camera);
-  if (mismatch) return skips_.add(*mismatch), std::nullopt;
-  return to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info_);
+  return decode_pair(pair, {color_.type, depth_.type, kFloatDepthUnitM}, info_, skips_);
 }
 
-/// A driver or a simulation that began again gives stamps of the past: no frame would ever follow.
+/// A restarted driver or simulation gives stamps of the past, and no frame would ever follow.
 void LiveSource::refuse_stepped_clock() {
   if (skips_.counters().of(SkipReason::kStampBackwards) - backwards_at_last_pair_ < kSteppedImages) return;
-  throw SourceError(
-      fmt::format("the stamps on {} went back to {:.3f} s: was the driver or its clock set anew? Start again",
-                  options_.topics.color, static_cast<double>(color_.stamp_ns) * 1e-9));
+  throw SourceError(fmt::format(
+      "the stamps on {} went back to {:.3f} s: was the driver restarted or its clock reset? Start the camera again",
+      options_.topics.color, static_cast<double>(color_.stamp_ns) * 1e-9));
 }
 
 void LiveSource::count_dropped() {
@@ -163,15 +216,15 @@ void LiveSource::count_dropped() {
   }
 }
 
-void LiveSource::tell_wait() {
+void LiveSource::report_wait() {
   const std::int64_t now_ns = feed_->now_ns();
-  if (now_ns - last_pair_ns_ < kQuietNs || now_ns - told_ns_ < kTellPeriodNs) return;
+  if (now_ns - last_pair_ns_ < kQuietNs || now_ns - reported_ns_ < kReportPeriodNs) return;
   waiting_ = true;
-  told_ns_ = now_ns;
+  reported_ns_ = now_ns;
   options_.on_wait(missing());
 }
 
-void LiveSource::tell_frames_come() {
+void LiveSource::report_frames() {
   last_pair_ns_ = feed_->now_ns();
   backwards_at_last_pair_ = skips_.counters().of(SkipReason::kStampBackwards);
   if (std::exchange(waiting_, false)) options_.on_wait({});
@@ -193,7 +246,7 @@ std::string LiveSource::missing() const {
 }
 
 bool LiveSource::silent(const Images& images) const {
-  return images.type.empty() || feed_->now_ns() - images.heard_ns >= kQuietNs;
+  return images.type.empty() || feed_->now_ns() - images.arrived_ns >= kQuietNs;
 }
 
 }  // namespace rtd::camera

@@ -2,17 +2,66 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
-#include "services/camera/core/live/live_feed.hpp"
-#include "services/camera/core/live/live_options.hpp"
+#include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/recording/frame_pairer.hpp"
-#include "services/camera/core/skip_log.hpp"
+#include "services/camera/core/recording/recording.hpp"
+#include "services/camera/core/tum/tum_lists.hpp"
 
 namespace rtd::camera {
 
+/// The topics of a camera that runs now, by their ROS names.
+struct LiveTopics {
+  std::string color, depth, info;
+};
+
+/// A message of one of them, not yet decoded; message.topic is the ROS name, message.recorded_ns when it came.
+struct LiveMessage {
+  RecordedMessage message;
+  std::string type;  ///< plain_type()
+};
+
+/// Where the messages of a running camera come from. next() belongs to one thread, the rest is thread-safe.
+class LiveFeed {
+ public:
+  virtual ~LiveFeed() = default;
+  /// The oldest that waits; empty when none came within the time or the feed is closed.
+  virtual std::optional<LiveMessage> next(std::chrono::milliseconds timeout) = 0;
+  /// Drops the waiting messages: they are old by now.
+  virtual void clear() = 0;
+  /// Ends it and wakes next().
+  virtual void close() = 0;
+  virtual bool closed() const = 0;
+  virtual std::uint64_t dropped() const = 0;  ///< messages that were not fetched in time
+  virtual std::int64_t now_ns() const = 0;    ///< clock of recorded_ns
+  /// Who publishes a topic, for messages: "it has no publisher in DDS domain 0".
+  virtual std::string state_of(const std::string& topic) const = 0;
+};
+
+/// The parameters of `ros2:COLOR,DEPTH[,INFO][?calibration=FILE&tolerance_ms=20]`.
+struct LiveOptions {
+  LiveTopics topics;
+  std::string calibration_file;  ///< replaces the driver's calibration and depth unit
+  std::int64_t tolerance_ns = kPairingToleranceNs;
+  std::int64_t open_timeout_ns = 30'000'000'000;  ///< until the first frame
+  /// Receives what the source waits for, about once a second, and an empty text when frames arrive (again).
+  std::function<void(const std::string&)> on_wait = [](const std::string&) {};
+};
+
+/// Whether the URI is that of a running camera.
+bool is_live(const std::string& uri);
+
+/// Topics and parameters of such a URI; INFO is `camera_info` beside COLOR when not named. Throws SourceError.
+LiveOptions parse_live_options(const std::string& uri);
+
 /// Frames of a running ROS camera: colour and depth paired by their stamps, as soon as both are there. It ends only
-/// when it is stopped; while nothing comes it waits and says for what.
+/// when it is stopped; without frames it waits and reports what is missing.
 class LiveSource final : public FrameSource {
  public:
   LiveSource(std::string uri, std::unique_ptr<LiveFeed> feed, LiveOptions options);
@@ -33,7 +82,7 @@ class LiveSource final : public FrameSource {
   struct Images {
     std::string type;           ///< empty: nothing
     std::int64_t stamp_ns = 0;  ///< newest
-    std::int64_t heard_ns = 0;
+    std::int64_t arrived_ns = 0;
   };
 
   bool try_to_open(LiveMessage message);
@@ -44,9 +93,9 @@ class LiveSource final : public FrameSource {
   std::optional<SourceFrame> decode(const FramePairer::Pair& pair);
   void refuse_stepped_clock();
   void count_dropped();
-  /// Tells what is missing when no pair has come for a while.
-  void tell_wait();
-  void tell_frames_come();
+  /// Reports what is missing when no pair has come for a while.
+  void report_wait();
+  void report_frames();
   std::string missing() const;
   bool silent(const Images& images) const;
 
@@ -57,7 +106,7 @@ class LiveSource final : public FrameSource {
   FramePairer pairer_;
   bool calibrated_ = false, waiting_ = false;
   Images color_, depth_;
-  std::int64_t last_pair_ns_ = 0, told_ns_ = 0;
+  std::int64_t last_pair_ns_ = 0, reported_ns_ = 0;
   std::uint64_t backwards_at_last_pair_ = 0, dropped_ = 0;
 };
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "services/camera/core/recording/ros_images.hpp"
+
 namespace rtd::camera {
 namespace {
 
@@ -14,7 +16,7 @@ std::vector<StampedFile> stamps_of(const std::deque<StampedMessage>& messages) {
   return stamps;
 }
 
-std::string name_of(const StampedMessage& color) {
+std::string place_of(const StampedMessage& color) {
   return color.message.topic + " at " + std::to_string(color.stamp_ns) + " ns";
 }
 
@@ -29,10 +31,10 @@ std::string seconds_text(std::int64_t ns) {
 void FramePairer::add_color(StampedMessage color, SkipLog& skips) {
   newest_recorded_ns_ = std::max(newest_recorded_ns_, color.message.recorded_ns);
   if (last_color_ns_ && color.stamp_ns == *last_color_ns_) {
-    return skips.add({SkipReason::kStampDoubled, name_of(color) + " has the stamp of the frame before"});
+    return skips.add({SkipReason::kStampDoubled, place_of(color) + " has the stamp of the frame before"});
   }
   if (last_color_ns_ && color.stamp_ns < *last_color_ns_) {
-    return skips.add({SkipReason::kStampBackwards, name_of(color) + " is older than the frame before"});
+    return skips.add({SkipReason::kStampBackwards, place_of(color) + " is older than the frame before"});
   }
   last_color_ns_ = color.stamp_ns;
   colors_.push_back(std::move(color));
@@ -71,7 +73,7 @@ std::optional<FramePairer::Pair> FramePairer::next(SkipLog& skips) {
     colors_.pop_front();
     if (!partner) {
       skips.add({SkipReason::kNoDepthPartner,
-                 name_of(color) + " has no depth image within " + seconds_text(options_.tolerance_ns) + " s"});
+                 place_of(color) + " has no depth image within " + seconds_text(options_.tolerance_ns) + " s"});
       continue;
     }
     const auto place = depths_.begin() + static_cast<std::ptrdiff_t>(*partner);
@@ -81,6 +83,17 @@ std::optional<FramePairer::Pair> FramePairer::next(SkipLog& skips) {
     return pair;
   }
   return std::nullopt;
+}
+
+std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, const ImageTypes& types, const SourceInfo& info,
+                                       SkipLog& skips) {
+  ImageRead color = decode_color(pair.color.message, types.color);
+  if (color.problem) return skips.add(*color.problem), std::nullopt;
+  ImageRead depth = decode_depth(pair.depth.message, types.depth, types.float_unit_m);
+  if (depth.problem) return skips.add(*depth.problem), std::nullopt;
+  const auto mismatch = size_mismatch(name_of(pair.color.message), color.image, depth.image, info.camera);
+  if (mismatch) return skips.add(*mismatch), std::nullopt;
+  return to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info);
 }
 
 }  // namespace rtd::camera

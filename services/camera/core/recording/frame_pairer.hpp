@@ -5,9 +5,9 @@
 #include <deque>
 #include <optional>
 
+#include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/recording/recording.hpp"
-#include "services/camera/core/skip_log.hpp"
-#include "services/camera/core/tum_lists.hpp"
+#include "services/camera/core/tum/tum_lists.hpp"
 
 namespace rtd::camera {
 
@@ -56,5 +56,15 @@ class FramePairer {
   std::int64_t newest_recorded_ns_ = 0;
   bool finished_ = false;
 };
+
+/// What the images of two topics are.
+struct ImageTypes {
+  std::string color, depth;  ///< plain_type()
+  double float_unit_m = 0;   ///< metres of a unit that depth in floats is rounded to
+};
+
+/// The frame that a pair makes; empty, and counted, when it cannot be decoded or its sizes differ.
+std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, const ImageTypes& types, const SourceInfo& info,
+                                       SkipLog& skips);
 
 }  // namespace rtd::camera

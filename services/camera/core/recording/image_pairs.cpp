@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/recording/image_pairs.hpp"
-
 #include "common/io/text.hpp"
 #include "common/ros_codec/wire_reader.hpp"
 #include "services/camera/core/calibration.hpp"
-#include "services/camera/core/recording/camera_info.hpp"
-#include "services/camera/core/recording/compressed_depth.hpp"
+#include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/recording/frame_pairer.hpp"
+#include "services/camera/core/recording/recording_source.hpp"
 #include "services/camera/core/recording/ros_images.hpp"
-#include "services/camera/core/source_parts.hpp"
+#include "services/camera/core/recording/transform_log.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -19,7 +18,32 @@ double float_unit_of(const RecordedTopic& depth) {
   return value && *value >= 1 && *value <= 1e6 ? 1.0 / *value : kFloatDepthUnitM;
 }
 
-}  // namespace
+/// Frames from two topics of ROS images, one of their calibration and, where the recording has them, transforms.
+class ImagePairs final : public FrameAssembly {
+ public:
+  ImagePairs(Recording& recording, const RecordingOptions& options);
+
+  const SourceInfo& info() const override { return info_; }
+  std::optional<std::int64_t> advance(SkipLog& skips) override;
+  std::optional<SourceFrame> decode(SkipLog& skips) override;
+  geometry::Trajectory groundtruth() const override;
+
+ private:
+  void load_calibration(const RecordingOptions& options);
+  void look_at_first_images(bool depth_named);
+  void take(RecordedMessage message, SkipLog& skips);
+
+  Recording& recording_;
+  ImageTopics topics_;
+  std::string color_type_, depth_type_, camera_frame_;
+  double float_unit_m_;  ///< of depth in floats
+  SourceInfo info_;
+  FramePairer pairer_;
+  TransformLog transforms_;
+  std::optional<FramePairer::Pair> pair_;  ///< gone to
+  std::optional<std::int64_t> first_ns_;
+  std::int64_t last_ns_ = 0;
+};
 
 ImagePairs::ImagePairs(Recording& recording, const RecordingOptions& options)
     : recording_(recording), topics_(choose_topics(recording, options.topics)) {
@@ -96,19 +120,18 @@ void ImagePairs::take(RecordedMessage message, SkipLog& skips) try {
 }
 
 std::optional<SourceFrame> ImagePairs::decode(SkipLog& skips) {
-  const FramePairer::Pair pair = *std::exchange(pair_, std::nullopt);
-  ImageRead color = decode_color(pair.color.message, color_type_);
-  if (color.problem) return skips.add(*color.problem), std::nullopt;
-  ImageRead depth = decode_depth(pair.depth.message, depth_type_, float_unit_m_);
-  if (depth.problem) return skips.add(*depth.problem), std::nullopt;
-  const auto mismatch = size_mismatch(name_of(pair.color.message), color.image, depth.image, info_.camera);
-  if (mismatch) return skips.add(*mismatch), std::nullopt;
-  return to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info_);
+  return decode_pair(*std::exchange(pair_, std::nullopt), {color_type_, depth_type_, float_unit_m_}, info_, skips);
 }
 
 geometry::Trajectory ImagePairs::groundtruth() const {
   if (!first_ns_) return {};
   return poses_of_span(transforms_.world_poses(camera_frame_), *first_ns_, last_ns_);
+}
+
+}  // namespace
+
+std::unique_ptr<FrameAssembly> make_image_pairs(Recording& recording, const RecordingOptions& options) {
+  return std::make_unique<ImagePairs>(recording, options);
 }
 
 }  // namespace rtd::camera

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/recording/mcap_recording.hpp"
+#include "services/camera/core/recording/recording.hpp"
 
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
-#include "common/mcap/byte_sink.hpp"
-#include "common/mcap/byte_source.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/io/byte_source.hpp"
 #include "common/mcap/indexed_reader.hpp"
+#include "common/mcap/recording_file.hpp"
 #include "services/camera/core/frame_source.hpp"
 
 namespace rtd::camera {
@@ -68,7 +69,8 @@ class McapRecording final : public Recording {
   std::vector<std::string> take_damages() override {
     std::vector<std::string> damages;
     const auto& problems = reader_.problems().listed();
-    for (; told_ < problems.size(); ++told_) damages.push_back(name_ + ", " + mcap::to_string(problems[told_]));
+    for (; reported_ < problems.size(); ++reported_)
+      damages.push_back(name_ + ", " + mcap::to_string(problems[reported_]));
     return damages;
   }
 
@@ -113,31 +115,18 @@ class McapRecording final : public Recording {
   }
 
   std::string name_;
-  mcap::FileSource source_;
+  io::FileSource source_;
   mcap::IndexedReader reader_;
   std::vector<RecordedTopic> topics_;
   std::optional<mcap::MessageCursor> playing_;
-  std::size_t told_ = 0;
+  std::size_t reported_ = 0;
 };
-
-/// rosbag2 makes a folder with the file in it.
-fs::path file_of(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_directory(path, error)) return path;
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) {
-    if (entry.path().extension() == ".mcap") files.push_back(entry.path());
-  }
-  if (files.size() == 1) return files.front();
-  throw SourceError(path.string() + " is a folder with " + std::to_string(files.size()) +
-                    " MCAP files; name one: mcap:FILE");
-}
 
 }  // namespace
 
 std::unique_ptr<Recording> open_mcap(const fs::path& file) try {
-  return std::make_unique<McapRecording>(file_of(file));
-} catch (const mcap::IoError& error) {
+  return std::make_unique<McapRecording>(mcap::recording_path(file));
+} catch (const io::IoError& error) {
   throw SourceError(error.what());
 }
 

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/recording/own_frames.hpp"
-
 #include <cstring>
 #include <utility>
 
+#include "common/msg/rgbd_frame.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
-#include "common/vision/frame_view.hpp"
+#include "common/vision/rgbd_image.hpp"
+#include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/recording/recording_source.hpp"
 #include "services/camera/core/recording/ros_images.hpp"
-#include "services/camera/core/source_parts.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -23,17 +23,30 @@ std::unique_ptr<msg::RgbdFrame> to_frame_message(const RecordedMessage& message)
   return frame;
 }
 
-}  // namespace
+/// Frames that our own recorder took from the topic rtd/frame: colour, depth and calibration in one message, the same
+/// bytes as in memory.
+class OwnFrames final : public FrameAssembly {
+ public:
+  explicit OwnFrames(Recording& recording);
 
-std::string OwnFrames::topic_of(const Recording& recording) {
-  for (const RecordedTopic& topic : recording.topics()) {
-    if (topic.type == "rtd_msgs/RgbdFrame" && topic.messages > 0) return topic.name;
-  }
-  return {};
-}
+  const SourceInfo& info() const override { return info_; }
+  std::optional<std::int64_t> advance(SkipLog& skips) override;
+  std::optional<SourceFrame> decode(SkipLog& skips) override;
+  /// None: slam's estimate of the path is not ground truth.
+  geometry::Trajectory groundtruth() const override { return {}; }
+
+ private:
+  bool take(const RecordedMessage& message, SkipLog& skips);
+
+  Recording& recording_;
+  SourceInfo info_;
+  std::unique_ptr<msg::RgbdFrame> frame_;  ///< gone to
+  std::uint64_t source_id_ = 0;
+  std::optional<std::int64_t> last_ns_;
+};
 
 OwnFrames::OwnFrames(Recording& recording) : recording_(recording) {
-  const std::string topic = topic_of(recording);
+  const std::string topic = own_frames_topic(recording);
   const RecordedMessage first = first_of(recording, topic);
   try {
     const auto frame = to_frame_message(first);
@@ -76,6 +89,19 @@ std::optional<SourceFrame> OwnFrames::decode(SkipLog& skips) {
     return skips.add(*mismatch), std::nullopt;
   }
   return to_frame(image.stamp_ns, image.color_bgr.clone(), image.depth.clone(), info_);
+}
+
+}  // namespace
+
+std::string own_frames_topic(const Recording& recording) {
+  for (const RecordedTopic& topic : recording.topics()) {
+    if (topic.type == "rtd_msgs/RgbdFrame" && topic.messages > 0) return topic.name;
+  }
+  return {};
+}
+
+std::unique_ptr<FrameAssembly> make_own_frames(Recording& recording) {
+  return std::make_unique<OwnFrames>(recording);
 }
 
 }  // namespace rtd::camera

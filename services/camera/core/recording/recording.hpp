@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +33,7 @@ struct RecordedMessage {
 };
 
 /// A file with messages of many topics, whatever its format. Throws SourceError when the file cannot be used; damaged
-/// pieces are left out and told by take_damages(). Not thread-safe.
+/// pieces are left out and reported by take_damages(). Not thread-safe.
 class Recording {
  public:
   virtual ~Recording() = default;
@@ -47,6 +49,13 @@ class Recording {
   /// What was found damaged since the last call, one line each.
   virtual std::vector<std::string> take_damages() = 0;
 };
+
+/// Opens a ROS 1 bag. Throws SourceError.
+std::unique_ptr<Recording> open_bag(const std::filesystem::path& file);
+
+/// Opens an MCAP file, or the one in a folder that rosbag2 made. Messages in CDR (ROS 2, ours) and in ROS 1's encoding.
+/// Throws SourceError.
+std::unique_ptr<Recording> open_mcap(const std::filesystem::path& file);
 
 /// The first message of a topic. Throws SourceError when there is none that can be read.
 RecordedMessage first_of(Recording& recording, const std::string& topic);

@@ -5,16 +5,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "services/camera/core/recording/image_pairs.hpp"
-#include "services/camera/core/recording/own_frames.hpp"
-
 namespace rtd::camera {
 namespace {
 
 std::unique_ptr<FrameAssembly> assemble(Recording& recording, const RecordingOptions& options) {
   const bool named = !options.topics.color.empty() || !options.topics.depth.empty();
-  if (!named && !OwnFrames::topic_of(recording).empty()) return std::make_unique<OwnFrames>(recording);
-  return std::make_unique<ImagePairs>(recording, options);
+  if (!named && !own_frames_topic(recording).empty()) return make_own_frames(recording);
+  return make_image_pairs(recording, options);
 }
 
 }  // namespace
@@ -42,9 +39,7 @@ RecordingSource::RecordingSource(std::string uri, std::unique_ptr<Recording> rec
 
 std::optional<SourceFrame> RecordingSource::next() {
   std::optional<SourceFrame> frame = first_ ? std::exchange(first_, std::nullopt) : read_next();
-  if (!frame) return frame;
-  frame->image.seq = skips_.counters().frames++;
-  if (!frame->has_depth) ++skips_.counters().frames_without_depth;
+  if (frame) skips_.number(*frame);
   return frame;
 }
 

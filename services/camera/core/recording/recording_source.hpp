@@ -7,7 +7,6 @@
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/recording/recording.hpp"
 #include "services/camera/core/recording/topic_choice.hpp"
-#include "services/camera/core/skip_log.hpp"
 
 namespace rtd::camera {
 
@@ -26,11 +25,20 @@ class FrameAssembly {
 /// Fills in how many frames a topic promises and their nominal rate, the median of the first.
 void describe_rate(Recording& recording, const std::string& topic, SourceInfo& info);
 
-/// What the user may say about a recording.
+/// The user's parameters for a recording.
 struct RecordingOptions {
   ImageTopics topics;
   std::string calibration_file;  ///< replaces the recording's calibration and depth unit
 };
+
+/// Frames from two topics of ROS images, one of their calibration and, where the recording has them, transforms.
+/// Throws SourceError: topics, encodings, calibration. `recording` outlives the result.
+std::unique_ptr<FrameAssembly> make_image_pairs(Recording& recording, const RecordingOptions& options);
+
+/// The topic with frames that our own recorder took from rtd/frame; empty when there is none.
+std::string own_frames_topic(const Recording& recording);
+/// Frames from that topic. Throws SourceError when none can be used. `recording` outlives the result.
+std::unique_ptr<FrameAssembly> make_own_frames(Recording& recording);
 
 /// Plays a recording. Opening reads the first good frame. Throws SourceError: topics, calibration, no good frame.
 class RecordingSource final : public FrameSource {
@@ -53,7 +61,7 @@ class RecordingSource final : public FrameSource {
   SkipLog skips_;
   std::unique_ptr<Recording> recording_;
   std::unique_ptr<FrameAssembly> frames_;
-  std::optional<std::int64_t> gone_to_;  ///< stamp of the frame that frames_ stands on, not decoded yet
+  std::optional<std::int64_t> gone_to_;  ///< stamp of the current frame of frames_, not decoded yet
   std::optional<SourceFrame> first_;     ///< read while opening
 };
 

@@ -2,20 +2,71 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/recording/ros_images.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
+#include "common/ros_codec/byte_cursor.hpp"
 #include "common/ros_codec/wire_reader.hpp"
 #include "services/camera/core/frame_source.hpp"
-#include "services/camera/core/recording/compressed_depth.hpp"
 
 namespace rtd::camera {
 namespace {
 
-/// How the bytes of an encoding lie.
+constexpr double kMaxUnits = 65534;  // 65535 is TUM's "saturated"
+
+/// depth = a / (pixel - b), 0 = no measurement.
+cv::Mat from_inverse(const cv::Mat& pixels, float a, float b) {
+  cv::Mat depth_m(pixels.size(), CV_32FC1);
+  for (int row = 0; row < pixels.rows; ++row) {
+    for (int column = 0; column < pixels.cols; ++column) {
+      const std::uint16_t pixel = pixels.at<std::uint16_t>(row, column);
+      depth_m.at<float>(row, column) = pixel == 0 ? 0.0F : a / (static_cast<float>(pixel) - b);
+    }
+  }
+  return depth_m;
+}
+
+}  // namespace
+
+cv::Mat quantize_depth(const cv::Mat& depth_m, double unit_m) {
+  cv::Mat depth(depth_m.size(), CV_16UC1);
+  for (int row = 0; row < depth.rows; ++row) {
+    const auto* from = depth_m.ptr<float>(row);
+    auto* to = depth.ptr<std::uint16_t>(row);
+    for (int column = 0; column < depth.cols; ++column) {
+      const double units = std::round(from[column] / unit_m);
+      to[column] = units >= 0 && units <= kMaxUnits ? static_cast<std::uint16_t>(units) : 0;  // NaN compares false
+    }
+  }
+  return depth;
+}
+
+bool is_compressed_depth(const msg::CompressedImage& image) {
+  return image.format.find("compressedDepth") != std::string::npos;
+}
+
+ImageRead decode_compressed_depth(const msg::CompressedImage& image, const std::string& name, double float_unit_m) {
+  if (image.format.find("rvl") != std::string::npos || image.format.find("RVL") != std::string::npos) {
+    throw SourceError(name + " is encoded as '" + image.format + "', readable: compressedDepth with PNG");
+  }
+  ros::ByteCursor cursor(image.data);
+  cursor.read<std::int32_t>();  // the driver's own code of the format; the text says more
+  const auto a = cursor.read<float>(), b = cursor.read<float>();
+  ImageRead result = decode_depth(cursor.take(cursor.remaining()), name);
+  if (!result.problem && image.format.rfind("32FC1", 0) == 0) {
+    result.image = quantize_depth(from_inverse(result.image, a, b), float_unit_m);
+  }
+  return result;
+}
+
+namespace {
+
+/// How an encoding arranges its bytes.
 struct PixelLayout {
   int type;                        ///< OpenCV's
-  std::array<int, 3> bgr_channel;  ///< where blue, green and red stand
+  std::array<int, 3> bgr_channel;  ///< positions of blue, green and red
 };
 const std::map<std::string, PixelLayout> kColorLayouts = {
     {"bgr8", {CV_8UC3, {0, 1, 2}}},  {"8UC3", {CV_8UC3, {0, 1, 2}}},  {"rgb8", {CV_8UC3, {2, 1, 0}}},
@@ -111,6 +162,58 @@ double depth_unit_m(const RecordedMessage& message, const std::string& type, dou
     floats = depth_type(message, ros::decode<msg::Image>(message.wire, message.bytes)) == CV_32FC1;
   }
   return floats ? float_unit_m : kMillimetre;
+}
+
+namespace {
+
+constexpr const char* kFix = "; give a calibration of your own: ?calibration=FILE";
+
+void take_distortion(const msg::CameraInfo& info, const std::string& origin, std::array<double, 5>& distortion) {
+  const bool none = std::all_of(info.d.begin(), info.d.end(), [](double value) { return value == 0; });
+  if (none) return;
+  const bool tail_zero =
+      std::all_of(info.d.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, info.d.size())), info.d.end(),
+                  [](double value) { return value == 0; });
+  if (info.distortion_model == "equidistant" || info.distortion_model == "fisheye" || !tail_zero) {
+    throw SourceError(origin + ": distortion model '" + info.distortion_model + "' with " +
+                      std::to_string(info.d.size()) + " values; known: plumb_bob with k1 k2 p1 p2 k3" + kFix);
+  }
+  std::copy_n(info.d.begin(), std::min<std::size_t>(5, info.d.size()), distortion.begin());
+}
+
+}  // namespace
+
+msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns) {
+  const auto& p = camera.parameters();
+  msg::CameraInfo info;
+  info.header = {msg::to_time(stamp_ns), kCameraFrame};
+  info.width = static_cast<std::uint32_t>(p.width);
+  info.height = static_cast<std::uint32_t>(p.height);
+  info.distortion_model = "plumb_bob";
+  info.d.assign(p.distortion.begin(), p.distortion.end());
+  info.k = {p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1};
+  info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  info.p = {p.fx, 0, p.cx, 0, 0, p.fy, p.cy, 0, 0, 0, 1, 0};
+  return info;
+}
+
+geometry::CameraModel to_camera_model(const msg::CameraInfo& info, const std::string& color_topic,
+                                      const std::string& origin) {
+  geometry::CameraModel::Parameters p;
+  p.width = static_cast<int>(info.width), p.height = static_cast<int>(info.height);
+  if (color_topic.find("image_rect") != std::string::npos && info.p[0] > 0) {
+    p.fx = info.p[0], p.fy = info.p[5], p.cx = info.p[2], p.cy = info.p[6];
+  } else {
+    p.fx = info.k[0], p.fy = info.k[4], p.cx = info.k[2], p.cy = info.k[5];
+    take_distortion(info, origin, p.distortion);
+  }
+  const double sum = p.fx + p.fy + p.cx + p.cy + p.distortion[0] + p.distortion[1] + p.distortion[2] + p.distortion[3] +
+                     p.distortion[4];
+  if (!(p.fx > 0) || !(p.fy > 0) || !std::isfinite(sum)) {
+    throw SourceError(origin + ": fx is " + std::to_string(p.fx) + ", fy " + std::to_string(p.fy) +
+                      ": the camera was not calibrated" + kFix);
+  }
+  return geometry::CameraModel(p);
 }
 
 }  // namespace rtd::camera

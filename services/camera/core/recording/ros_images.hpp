@@ -2,10 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "common/geometry/camera_model.hpp"
+#include "common/msg/ros.hpp"
 #include "services/camera/core/image_files.hpp"
 #include "services/camera/core/recording/recording.hpp"
 
 namespace rtd::camera {
+
+inline constexpr double kMillimetre = 0.001;  ///< the unit of 16-bit depth in ROS (REP 118)
+/// TUM's depth unit: floats are rounded to it unless the recording names its unit.
+inline constexpr double kFloatDepthUnitM = 1.0 / 5000.0;
+/// Metadata of the depth topic's channel in an MCAP file that we wrote: the units of a metre in the source's images.
+inline constexpr const char* kDepthFactor = "depth_factor";
+
+/// CV_32FC1 metres -> CV_16UC1 in units of unit_m; NaN, infinity, negative and what does not fit become 0.
+cv::Mat quantize_depth(const cv::Mat& depth_m, double unit_m);
+
+/// Whether a compressed image comes from ROS's compressed_depth_image_transport.
+bool is_compressed_depth(const msg::CompressedImage& image);
+
+/// Its content: 12 bytes (a format, quantisation parameters a and b), then a 16-bit PNG; of floats the PNG holds
+/// a / depth + b (inverse depth). Throws SourceError for its other compression, RVL.
+ImageRead decode_compressed_depth(const msg::CompressedImage& image, const std::string& name, double float_unit_m);
 
 /// "/camera/rgb/image_color recorded at 1305031102175304000 ns": for messages.
 std::string name_of(const RecordedMessage& message);
@@ -21,5 +42,16 @@ ImageRead decode_depth(const RecordedMessage& message, const std::string& type, 
 
 /// Metres of a unit of what decode_depth() makes of such a message. Throws SourceError and ros::WireError.
 double depth_unit_m(const RecordedMessage& message, const std::string& type, double float_unit_m);
+
+inline constexpr const char* kCameraFrame = "camera_color_optical_frame";  ///< docs/frames.md
+
+/// The camera_info message of a camera, ROS conventions.
+msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns);
+
+/// The camera that a CameraInfo describes: K and D of the raw image, or P for a rectified one ("image_rect" in the
+/// colour topic's name). Throws SourceError naming `origin`: not calibrated, distortion model other than plumb_bob, not
+/// finite.
+geometry::CameraModel to_camera_model(const msg::CameraInfo& info, const std::string& color_topic,
+                                      const std::string& origin);
 
 }  // namespace rtd::camera

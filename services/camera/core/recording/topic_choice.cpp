@@ -39,7 +39,7 @@ bool is_depth(const RecordedTopic& topic) {
   return is_image(topic) && topic.name.find("depth") != std::string::npos;
 }
 bool is_color(const RecordedTopic& topic) {
-  const auto has = [&topic](const char* word) { return topic.name.find(word) != std::string::npos; };
+  const auto has = [&topic](const char* part) { return topic.name.find(part) != std::string::npos; };
   return is_image(topic) && !has("depth") && !has("/ir") && !has("infra") && !has("mask");
 }
 bool is_info(const RecordedTopic& topic) {
@@ -70,11 +70,11 @@ std::string check_named(const Recording& recording, const std::string& key, cons
   return name;
 }
 
-/// One topic of these; several are for the user to tell apart.
+/// The one candidate; the user must choose among several.
 std::string only(const Recording& recording, const std::string& key, const Topics& candidates) {
   if (candidates.size() == 1) return candidates.front().name;
   const std::string fix = "name it: ?" + key + "=TOPIC";
-  if (candidates.empty()) throw error(recording, "has no " + key + " images that can be told by name; " + fix);
+  if (candidates.empty()) throw error(recording, "has no " + key + " images that can be recognised by name; " + fix);
   throw error(recording, "has several topics that could be " + key + "; " + fix);
 }
 
@@ -89,7 +89,7 @@ std::string choose_image(const Recording& recording, const std::string& key, Fit
   return only(recording, key, candidates);
 }
 
-/// The calibration stands beside the image: /camera/rgb/image_color, /camera/rgb/camera_info.
+/// The calibration topic lies next to the image topic: /camera/rgb/image_color, /camera/rgb/camera_info.
 std::string choose_info(const Recording& recording, std::string color) {
   const Topics candidates = fitting(recording, is_info);
   for (std::size_t slash = color.rfind('/'); slash != std::string::npos; slash = color.rfind('/')) {

@@ -16,7 +16,7 @@ struct ImageTopics {
 
 /// Completes what the user named: by the names that TUM, the OpenNI and RealSense drivers and we ourselves give, else
 /// the only topic of a fitting type; the calibration is the one beside the colour image. `info` stays empty when there
-/// is none. Throws SourceError for a topic that is absent, of another type or not to be told from others, with the
+/// is none. Throws SourceError for a topic that is absent, of another type or ambiguous, listing the
 /// topics there are.
 ImageTopics choose_topics(const Recording& recording, const ImageTopics& named);
 

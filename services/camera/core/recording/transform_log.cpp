@@ -16,7 +16,7 @@ std::string bare(const std::string& frame) {
   return frame.substr(frame.rfind('/', 0) == 0 ? 1 : 0);
 }
 
-/// Empty for what is no rotation or not finite.
+/// Empty when it is not a rotation or not finite.
 std::optional<Eigen::Isometry3d> to_isometry(const msg::RosTransform& transform) {
   const auto& [t, q] = transform;
   const Eigen::Quaterniond rotation(q.w, q.x, q.y, q.z);

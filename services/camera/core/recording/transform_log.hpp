@@ -11,13 +11,13 @@
 
 namespace rtd::camera {
 
-/// The transforms (tf) of a recording, and the camera's true path in them: TUM's bags bear the motion capture as
+/// The transforms (tf) of a recording, and the camera's true path in them: TUM's bags contain the motion capture as
 /// /world -> /kinect and the mounting below it down to the frame of the colour image.
 class TransformLog {
  public:
   void add(const msg::TFMessage& message);
   /// T_world_camera at each measurement of the transform that begins at `world`; the transforms below are taken as they
-  /// were nearest in time. Empty when no chain leads from `world` to `camera_frame`: an odometry is no truth.
+  /// were nearest in time. Empty when no chain leads from `world` to `camera_frame`: odometry is not ground truth.
   geometry::Trajectory world_poses(const std::string& camera_frame) const;
 
  private:

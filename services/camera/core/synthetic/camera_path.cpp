@@ -4,12 +4,11 @@
 
 #include <cmath>
 
-#include "services/camera/core/synthetic/seeded_random.hpp"
+#include "services/camera/core/synthetic/texture.hpp"
 
 namespace rtd::camera::synthetic {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586;
 constexpr double kSecondShare = 0.3;    ///< of the amplitude, in a faster sway
 constexpr double kSecondRate = 2.618;   ///< times the rate: never in step with the first
 constexpr double kTremorShare = 0.004;  ///< of the amplitude

@@ -6,14 +6,13 @@
 #include <cmath>
 
 #include "services/camera/core/synthetic/camera_path.hpp"
-#include "services/camera/core/synthetic/seeded_random.hpp"
+#include "services/camera/core/synthetic/texture.hpp"
 
 namespace rtd::camera::synthetic {
 namespace {
 
 using Eigen::Vector3f;
 
-constexpr double kPi = 3.141592653589793;
 constexpr double kBendM = 0.9;  ///< radius of the walk round a corner
 constexpr int kSides = 4;
 constexpr float kWallTexelsPerM = 160, kFloorTexelsPerM = 96;

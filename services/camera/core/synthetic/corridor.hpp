@@ -15,7 +15,7 @@ namespace rtd::camera::synthetic {
 struct CorridorPlan {
   double length_m = 34, depth_m = 20;    ///< of the rectangle in the middle of the corridor
   double width_m = 2.2, height_m = 2.5;  ///< of the corridor
-  bool alike = false;                    ///< all sides (and, with an odd seed, their halves) bear the same textures
+  bool alike = false;                    ///< all sides (and, with an odd seed, their halves) have the same textures
   double speed_m_s = 2;
 };
 

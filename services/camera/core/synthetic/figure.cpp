@@ -4,14 +4,13 @@
 
 #include <cmath>
 
-#include "services/camera/core/synthetic/seeded_random.hpp"
+#include "services/camera/core/synthetic/texture.hpp"
 
 namespace rtd::camera::synthetic {
 namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kTwoPi = 6.2831853F;
 constexpr float kFigureTexelsPerM = 256;
 constexpr float kLegSwingRad = 0.42F, kArmSwingRad = 0.5F;
 constexpr float kHipHeightM = 0.86F, kKneeHeightM = 0.43F, kThighM = 0.43F;
@@ -65,7 +64,7 @@ ColorBgr vivid_color(SeededRandom& random) {
 Figure::Figure(std::uint64_t seed, std::vector<Texture>& textures, float breadth) : breadth_(breadth) {
   SeededRandom random(seed ^ 0x9E450AULL);
   height_scale_ = random.between(0.92F, 1.08F);
-  step_rate_rad_s_ = kTwoPi * random.between(0.8F, 1.0F);
+  step_rate_rad_s_ = kTwoPiF * random.between(0.8F, 1.0F);
   const TextureStyle skin{{120, 150, 205}, 5, 25, 0.02F, 0.05F, 0.15F};
   const TextureStyle shirt{vivid_color(random), 9, 45, 0.04F, 0.25F, 0.75F};
   const TextureStyle trousers{vivid_color(random), 9, 30, 0.03F, 0.12F, 0.35F};

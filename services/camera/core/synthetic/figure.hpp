@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "services/camera/core/synthetic/geometry.hpp"
-#include "services/camera/core/synthetic/seeded_random.hpp"
+#include "services/camera/core/synthetic/texture.hpp"
 
 namespace rtd::camera::synthetic {
 
@@ -13,7 +13,7 @@ inline constexpr float kSeatHeightM = 0.45F;
 
 /// How a figure stands or sits at one moment.
 struct Posture {
-  Eigen::Vector2f position_m = Eigen::Vector2f::Zero();  ///< on the floor: between the feet of one who stands
+  Eigen::Vector2f position_m = Eigen::Vector2f::Zero();  ///< on the floor, between the feet of a standing figure
   float raised_m = 0;                                    ///< above the floor, as on a step
   float heading_rad = 0;                                 ///< where it looks, from x towards y
   float swing = 0;                                       ///< of the limbs, [-1, 1]; 0 = at rest

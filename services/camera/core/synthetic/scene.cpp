@@ -2,9 +2,102 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/synthetic/scene.hpp"
 
-#include "services/camera/core/synthetic/staged_movers.hpp"
+#include <algorithm>
+
+#include "services/camera/core/synthetic/movers.hpp"
+#include "services/camera/core/synthetic/texture.hpp"
 
 namespace rtd::camera::synthetic {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kWallTexelsPerM = 192, kFloorTexelsPerM = 112, kFurnitureTexelsPerM = 224;
+
+/// Where a piece of furniture stands: middle of its lower side (m), size (m), turned about the vertical (rad).
+struct Furniture {
+  Vector3f position_m, size_m;
+  float turned_rad;
+};
+constexpr float kTableTopM = 0.62F;
+
+const std::vector<Furniture>& furniture() {
+  static const std::vector<Furniture> pieces = {
+      {{-2.4F, 2.85F, 0}, {1.3F, 0.45F, 1.9F}, 0},        // shelf, front wall
+      {{-0.9F, 2.75F, 0}, {1.2F, 0.6F, 0.8F}, 0},         // sideboard
+      {{-1.2F, 2.75F, 0.8F}, {0.35F, 0.3F, 0.4F}, 0.3F},  // things on it
+      {{-0.6F, 2.7F, 0.8F}, {0.25F, 0.2F, 0.28F}, -0.4F},
+      {{0.9F, 2.8F, 0}, {0.9F, 0.5F, 1.3F}, 0},  // cabinet
+      {{0.8F, 2.75F, 1.3F}, {0.4F, 0.3F, 0.35F}, 0.2F},
+      {{2.5F, 2.7F, 0}, {1.0F, 0.7F, 1.0F}, 0.1F},  // chest
+      {{2.6F, 2.7F, 1.0F}, {0.5F, 0.4F, 0.45F}, -0.3F},
+      {{-3.2F, 0.6F, 0}, {0.5F, 1.5F, 1.1F}, 0},  // left wall
+      {{-3.2F, 0.2F, 1.1F}, {0.3F, 0.4F, 0.5F}, 0.5F},
+      {{-3.2F, 1.0F, 1.1F}, {0.3F, 0.3F, 0.3F}, -0.2F},
+      {{3.2F, 0.7F, 0}, {0.5F, 1.3F, 1.6F}, 0},  // right wall
+      {{3.1F, -1.2F, 0}, {0.6F, 1.2F, 0.75F}, 0},
+      {{-3.1F, -1.6F, 0}, {0.7F, 1.0F, 0.9F}, 0.15F},
+      {{-1.6F, -2.9F, 0}, {1.2F, 0.5F, 1.7F}, 0},  // rear wall
+      {{1.4F, -2.9F, 0}, {1.6F, 0.5F, 0.9F}, 0},
+      {{0.1F, 2.0F, 0}, {1.3F, 0.5F, kTableTopM}, 0.12F},  // low table behind the movers
+      {{-0.3F, 1.95F, kTableTopM}, {0.24F, 0.18F, 0.16F}, 0.5F},
+      {{0.15F, 2.05F, kTableTopM}, {0.16F, 0.22F, 0.09F}, -0.3F},
+      {{0.5F, 2.0F, kTableTopM}, {0.18F, 0.14F, 0.24F}, 0.9F},
+      {{-2.0F, -0.4F, 0}, {0.45F, 0.4F, 0.5F}, 0.6F},  // boxes on the floor
+      {{2.1F, -0.4F, 0}, {0.5F, 0.4F, 0.55F}, -0.5F}};
+  return pieces;
+}
+
+TextureStyle random_style(SeededRandom& random, float patches_per_m2) {
+  const float brightness = random.between(90, 190);
+  const auto channel = [&] { return brightness + random.between(-16, 16); };
+  const float b = channel(), g = channel();
+  return {{b, g, channel()}, random.between(5, 9), patches_per_m2, 0.04F, 0.45F, random.between(0.5F, 0.95F)};
+}
+
+int add_texture(std::vector<Texture>& textures, float width_m, float height_m, float texels_per_m,
+                const TextureStyle& style, std::uint64_t seed) {
+  textures.push_back(paint_texture(width_m, height_m, texels_per_m, style, seed));
+  return static_cast<int>(textures.size()) - 1;
+}
+
+/// Walls, floor and ceiling, seen from inside.
+std::vector<Face> shell(SeededRandom& random, std::vector<Texture>& textures) {
+  constexpr float kX = kRoomWidthM / 2, kY = kRoomDepthM / 2;
+  const Vector3f x = Vector3f::UnitX(), y = Vector3f::UnitY(), z = Vector3f::UnitZ();
+  std::vector<Face> faces = {{{-kX, kY, 0}, x, z, kRoomWidthM, kRoomHeightM, 0, false},   // front: x cross z = -y
+                             {{kX, -kY, 0}, -x, z, kRoomWidthM, kRoomHeightM, 0, false},  // rear: +y
+                             {{-kX, -kY, 0}, y, z, kRoomDepthM, kRoomHeightM, 0, false},  // left: +x
+                             {{kX, kY, 0}, -y, z, kRoomDepthM, kRoomHeightM, 0, false},   // right: -x
+                             {{-kX, -kY, 0}, x, y, kRoomWidthM, kRoomDepthM, 0, false},   // floor: +z
+                             {{-kX, kY, kRoomHeightM}, x, -y, kRoomWidthM, kRoomDepthM, 0, false}};  // ceiling: -z
+  for (Face& face : faces) {
+    const bool wall = face.height_m == kRoomHeightM;
+    const TextureStyle style = random_style(random, wall ? 3.0F : 2.5F);
+    face.texture = add_texture(textures, face.width_m, face.height_m, wall ? kWallTexelsPerM : kFloorTexelsPerM, style,
+                               random.next());
+  }
+  return faces;
+}
+
+}  // namespace
+
+std::vector<Face> build_room(std::uint64_t seed, std::vector<Texture>& textures) {
+  SeededRandom random(seed ^ 0x5CE4EULL);
+  std::vector<Face> faces = shell(random, textures);
+  for (const Furniture& piece : furniture()) {
+    Cuboid cuboid;
+    cuboid.T_world_cuboid.translation() = piece.position_m;
+    cuboid.T_world_cuboid.linear() = Eigen::AngleAxisf(piece.turned_rad, Vector3f::UnitZ()).toRotationMatrix();
+    cuboid.size_m = piece.size_m;
+    const float width_m = std::max(piece.size_m.x(), piece.size_m.y());
+    cuboid.texture = add_texture(textures, width_m, std::max(piece.size_m.z(), width_m), kFurnitureTexelsPerM,
+                                 random_style(random, 12.0F), random.next());
+    for (const Face& face : outer_faces(cuboid)) faces.push_back(face);
+  }
+  return faces;
+}
+
 namespace {
 
 constexpr int kSlowBoxes = 3;

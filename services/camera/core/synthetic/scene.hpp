@@ -10,25 +10,32 @@
 
 #include "services/camera/core/synthetic/camera_path.hpp"
 #include "services/camera/core/synthetic/corridor.hpp"
-#include "services/camera/core/synthetic/lighting.hpp"
+#include "services/camera/core/synthetic/geometry.hpp"
 #include "services/camera/core/synthetic/movers.hpp"
-#include "services/camera/core/synthetic/room.hpp"
+#include "services/camera/core/synthetic/sensor.hpp"
 
 namespace rtd::camera::synthetic {
+
+/// Inner size of the room, m; the world frame's origin is on the floor in its middle, y towards the front wall.
+inline constexpr float kRoomWidthM = 7.0F, kRoomDepthM = 6.4F, kRoomHeightM = 2.8F;
+
+/// The furnished room: walls, floor, ceiling, shelves and cabinets along the walls, a low table with objects on it
+/// behind the movers, boxes. CameraRoom stays empty. Adds its textures to `textures`.
+std::vector<Face> build_room(std::uint64_t seed, std::vector<Texture>& textures);
 
 /// Movers with a plot; staged_movers.hpp.
 enum class Plot { kNone, kSitter, kBlocker, kAxialBox, kSlowBoxes };
 
-/// What is in a scene beside the room; or which corridor there is instead of it.
+/// What a scene contains in addition to the room, or which corridor replaces the room.
 struct SceneSpec {
   std::string name;
   int people = 0, boxes = 0;  ///< who walk about, which are carried about
   CameraMotion motion = CameraMotion::kHandHeld;
   WalkArea area = {};
   Plot plot = Plot::kNone;
-  std::uint64_t frames = 300;                 ///< of a clip, unless asked for otherwise
+  std::uint64_t frames = 300;                 ///< of a clip, by default
   double fps = 30;                            ///< the same
-  double range_m = 6;                         ///< depth is measured so far
+  double range_m = 6;                         ///< depth is measured up to this distance
   double depth_noise = 1;                     ///< factor on its noise
   double focal_error = 0;                     ///< relative: the calibration's focal length against the true one
   double grain = 2;                           ///< standard deviation of the colour noise, grey levels

@@ -136,7 +136,7 @@ std::optional<SourceFrame> SyntheticSource::next() {
 
 std::uint64_t SyntheticSource::pass_over(std::int64_t stamp_ns) {
   const std::uint64_t before = counters_.frames;
-  // A stamp may lie centuries ahead: near it in one step, and never where the next frame's stamp has no number.
+  // A stamp may be centuries ahead: go near it in one step, but stay where the next stamp fits into 64 bits.
   constexpr std::int64_t kLastNs = std::numeric_limits<std::int64_t>::max() - 3'600'000'000'000;
   stamp_ns = std::min(stamp_ns, kLastNs);
   const double near = (static_cast<double>(stamp_ns) - static_cast<double>(kFirstStampNs)) * 1e-9 * options_.fps - 2;

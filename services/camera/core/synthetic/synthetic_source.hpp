@@ -5,14 +5,14 @@
 #include <memory>
 
 #include "services/camera/core/frame_source.hpp"
-#include "services/camera/core/source_uri.hpp"
+#include "services/camera/core/source_factory.hpp"
 #include "services/camera/core/synthetic/renderer.hpp"
 #include "services/camera/core/synthetic/scene.hpp"
 #include "services/camera/core/synthetic/sensor.hpp"
 
 namespace rtd::camera {
 
-/// What `synthetic:NAME?key=value` asks for.
+/// The parameters of `synthetic:NAME?key=value`.
 struct SyntheticOptions {
   synthetic::SceneSpec scene;
   std::uint64_t seed = 1;

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/camera/core/synthetic/seeded_random.hpp"
-
 namespace rtd::camera::synthetic {
 namespace {
 

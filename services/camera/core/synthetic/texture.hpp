@@ -8,13 +8,44 @@
 
 namespace rtd::camera::synthetic {
 
+inline constexpr double kPi = 3.141592653589793, kTwoPi = 6.283185307179586;
+inline constexpr float kPiF = 3.1415927F, kTwoPiF = 6.2831853F;
+
+/// A small generator with the same numbers on every platform and library (splitmix64, Steele et al. 2014).
+class SeededRandom {
+ public:
+  explicit SeededRandom(std::uint64_t seed) : state_(seed) {}
+
+  std::uint64_t next() {
+    state_ += 0x9E3779B97F4A7C15ULL;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+    return z ^ (z >> 31);
+  }
+  /// In [0, 1).
+  float unit() { return static_cast<float>(next() >> 40) * (1.0F / 16777216.0F); }
+  float between(float low, float high) { return low + (high - low) * unit(); }
+  /// In [0, count).
+  int index(int count) { return static_cast<int>(next() % static_cast<std::uint64_t>(count)); }
+  /// Approximately normal, mean 0, variance 1 (sum of 12 uniform numbers).
+  float normal() {
+    float sum = -6.0F;
+    for (int i = 0; i < 12; ++i) sum += unit();
+    return sum;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
 /// One resolution of a texture. Texels are packed 0x00RRGGBB.
 struct MipLevel {
   int width = 0, height = 0;  ///< texels, >= 2
   std::vector<std::uint32_t> texels;
 };
 
-/// A picture on a surface with its smaller versions; level k has half the resolution of level k-1.
+/// An image on a surface with its smaller versions; level k has half the resolution of level k-1.
 struct Texture {
   float texels_per_m = 0;  ///< of level 0
   std::vector<MipLevel> levels;
@@ -34,14 +65,14 @@ struct TextureStyle {
 };
 
 /// Paints a texture of width_m x height_m: multi-octave value noise with plain, checkered, striped and framed
-/// rectangles over it, so that corners of all sizes stand everywhere. The same arguments give the same texels.
+/// rectangles over it, so that there are corners of all sizes everywhere. The same arguments give the same texels.
 Texture paint_texture(float width_m, float height_m, float texels_per_m, const TextureStyle& style, std::uint64_t seed);
 
 /// Bilinear sample; `s` and `t` in texels of this level, clamped to the border.
 inline std::uint32_t sample(const MipLevel& level, float s, float t) {
   constexpr std::uint64_t kLanes = 0x00FF00FF00FF00FFULL;
   const auto clamp = [](float coordinate, int size) {
-    const int fixed = static_cast<int>(coordinate * 256.0F) - 128;  // texel centres stand at half texels
+    const int fixed = static_cast<int>(coordinate * 256.0F) - 128;  // texel centres are at half texels
     const int last = (size - 1) * 256 - 1;
     return fixed < 0 ? 0 : (fixed > last ? last : fixed);
   };

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/tum_lists.hpp"
+#include "services/camera/core/tum/tum_lists.hpp"
 #include "common/io/text.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 #include <tuple>
-
 
 namespace rtd::camera {
 namespace {
@@ -16,11 +15,11 @@ namespace fs = std::filesystem;
 void check_folder(const fs::path& folder) {
   std::error_code error;
   if (!fs::exists(folder, error)) throw SourceError("folder " + folder.string() + " does not exist");
-  if (!fs::is_directory(folder, error)) throw SourceError(folder.string() + " is no folder");
+  if (!fs::is_directory(folder, error)) throw SourceError(folder.string() + " is not a folder");
   const bool listed = fs::exists(folder / "rgb.txt", error) && fs::exists(folder / "depth.txt", error);
   if (!listed && !fs::exists(folder / "associations.txt", error)) {
     throw SourceError("folder " + folder.string() +
-                      " is no TUM sequence: it needs rgb.txt and depth.txt, or associations.txt");
+                      " is not a TUM sequence: it needs rgb.txt and depth.txt, or associations.txt");
   }
 }
 

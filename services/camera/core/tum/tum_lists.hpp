@@ -36,7 +36,7 @@ struct PairList {
 std::vector<int> associate(const std::vector<StampedFile>& color, const std::vector<StampedFile>& depth,
                            std::int64_t tolerance_ns = kPairingToleranceNs);
 
-/// The pairs of a TUM folder: associations.txt as it stands when there is one (a depth image may occur twice there),
+/// The pairs of a TUM folder: associations.txt unchanged when there is one (a depth image may occur twice there),
 /// else rgb.txt and depth.txt associated. Throws SourceError for a missing folder or list and for stamps that are not
 /// finite.
 PairList read_pairs(const std::filesystem::path& folder);

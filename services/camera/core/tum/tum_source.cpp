@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/tum_source.hpp"
+#include "services/camera/core/tum/tum_source.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "common/msg/rgbd_frame.hpp"
+#include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/image_files.hpp"
-#include "services/camera/core/source_parts.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -41,9 +41,7 @@ TumSource::TumSource(std::string uri, std::filesystem::path folder, Options opti
 
 std::optional<SourceFrame> TumSource::next() {
   std::optional<SourceFrame> frame = first_ ? std::exchange(first_, std::nullopt) : read_next();
-  if (!frame) return frame;
-  frame->image.seq = skips_.counters().frames++;
-  if (!frame->has_depth) ++skips_.counters().frames_without_depth;
+  if (frame) skips_.number(*frame);
   return frame;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/tum_export.hpp"
+#include "services/camera/core/tum/tum_export.hpp"
 
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>

@@ -151,7 +151,7 @@ std::vector<std::uint64_t> counting_to(std::uint64_t count) {
   return seqs;
 }
 
-TEST_F(CameraServiceTest, LockstepSendsEveryFrameOnceAndOneAtATime) {
+TEST_F(CameraServiceTest, lockstep_sends_every_frame_once_and_one_at_a_time) {
   FakeTracker tracker(*bus_);
   config_.source = std::string(kTinyScene) + "40";
   EXPECT_EQ(run(service::Pace::kLockstep), service::kOk);
@@ -163,7 +163,7 @@ TEST_F(CameraServiceTest, LockstepSendsEveryFrameOnceAndOneAtATime) {
   EXPECT_EQ(last_status().state, msg::ServiceState::kFinished);
 }
 
-TEST_F(CameraServiceTest, AsapFillsItsWindowAndNeverExceedsIt) {
+TEST_F(CameraServiceTest, asap_fills_its_window_and_never_exceeds_it) {
   FakeTracker tracker(*bus_);
   tracker.manual = true;
   config_.source = std::string(kTinyScene) + "30";
@@ -178,7 +178,7 @@ TEST_F(CameraServiceTest, AsapFillsItsWindowAndNeverExceedsIt) {
   EXPECT_EQ(tracker.most_in_flight(), 3);
 }
 
-TEST_F(CameraServiceTest, SendsTheFrameAgainWhenNobodyAnswers) {
+TEST_F(CameraServiceTest, sends_the_frame_again_while_no_result_comes) {
   FakeTracker tracker(*bus_);
   tracker.answers = [](std::uint64_t message, std::uint64_t seq) { return seq != 1 || message == 3; };
   config_.source = std::string(kTinyScene) + "3";
@@ -189,7 +189,7 @@ TEST_F(CameraServiceTest, SendsTheFrameAgainWhenNobodyAnswers) {
   EXPECT_EQ(metric("frames_published"), 3);
 }
 
-TEST_F(CameraServiceTest, SendsTheWholeWindowAgainInOrder) {
+TEST_F(CameraServiceTest, sends_the_whole_window_again_in_order) {
   FakeTracker tracker(*bus_);
   tracker.answers = [](std::uint64_t message, std::uint64_t) { return message >= 3; };
   config_.source = std::string(kTinyScene) + "3";
@@ -198,7 +198,7 @@ TEST_F(CameraServiceTest, SendsTheWholeWindowAgainInOrder) {
   EXPECT_THAT(tracker.seqs(), ElementsAre(0, 1, 2, 0, 1, 2));
 }
 
-TEST_F(CameraServiceTest, FailsWhenNoResultEverComes) {
+TEST_F(CameraServiceTest, fails_when_no_result_ever_comes) {
   FakeTracker tracker(*bus_);
   tracker.manual = true;
   config_.source = std::string(kTinyScene) + "3";
@@ -208,7 +208,7 @@ TEST_F(CameraServiceTest, FailsWhenNoResultEverComes) {
   EXPECT_EQ(last_status().state, msg::ServiceState::kFailed);
 }
 
-TEST_F(CameraServiceTest, RealtimeDoesNotWaitForResults) {
+TEST_F(CameraServiceTest, realtime_does_not_wait_for_results) {
   FakeTracker tracker(*bus_);
   tracker.answers = [](std::uint64_t, std::uint64_t seq) { return seq == 9; };
   config_.source = std::string(kTinyScene) + "10&fps=100";
@@ -218,7 +218,7 @@ TEST_F(CameraServiceTest, RealtimeDoesNotWaitForResults) {
   EXPECT_EQ(tracker.seqs().size(), static_cast<std::size_t>(metric("frames_published")));
 }
 
-TEST_F(CameraServiceTest, FrameCarriesTheImageAndItsCalibration) {
+TEST_F(CameraServiceTest, frame_carries_the_image_and_its_calibration) {
   FakeTracker tracker(*bus_);
   config_.source = std::string(kTinyScene) + "2";
   EXPECT_EQ(run(service::Pace::kLockstep), service::kOk);
@@ -237,7 +237,7 @@ TEST_F(CameraServiceTest, FrameCarriesTheImageAndItsCalibration) {
   EXPECT_EQ(frame->depth[64 * 48], 0) << "beyond the image";
 }
 
-TEST_F(CameraServiceTest, EncodesJpegWhileSomebodyListens) {
+TEST_F(CameraServiceTest, encodes_jpeg_while_the_topic_has_readers) {
   std::promise<msg::CompressedImage> jpeg;
   std::promise<msg::CameraInfo> info;
   const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg,
@@ -259,14 +259,14 @@ TEST_F(CameraServiceTest, EncodesJpegWhileSomebodyListens) {
   EXPECT_EQ(received_info.get().width, 64U);
 }
 
-TEST_F(CameraServiceTest, DoesNotEncodeJpegForNobody) {
+TEST_F(CameraServiceTest, does_not_encode_jpeg_without_readers) {
   FramePublisher publisher(*bus_, 90, concurrency::Overflow::kBlock, [] {});
   const auto frame = make_source(std::string(kTinyScene) + "1")->next();
   EXPECT_TRUE(publisher.publish(frame->image));
   EXPECT_EQ(publisher.jpegs().encoded(), 0U);
 }
 
-TEST_F(CameraServiceTest, EncodesEveryJpegWhenNothingMayBeDropped) {
+TEST_F(CameraServiceTest, encodes_every_jpeg_when_nothing_may_be_dropped) {
   std::atomic<int> received{0};
   const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto&) { ++received; });
   constexpr int kImages = 20;
@@ -278,7 +278,7 @@ TEST_F(CameraServiceTest, EncodesEveryJpegWhenNothingMayBeDropped) {
   EXPECT_EQ(received, kImages) << "what waits at the end is published too";
 }
 
-TEST_F(CameraServiceTest, CountsTheJpegsThatNewerOnesReplaced) {
+TEST_F(CameraServiceTest, counts_jpegs_replaced_by_newer_ones) {
   std::atomic<std::uint64_t> received{0};
   const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto&) { ++received; });
   constexpr std::uint64_t kImages = 50;
@@ -293,7 +293,7 @@ TEST_F(CameraServiceTest, CountsTheJpegsThatNewerOnesReplaced) {
   EXPECT_EQ(received, kImages - dropped);
 }
 
-TEST_F(CameraServiceTest, WaitsForThoseItWasToldTo) {
+TEST_F(CameraServiceTest, waits_for_the_configured_services) {
   service::StopToken others;
   service::Heartbeat slam(*bus_, "slam", others);
   config_.wait_for = {"slam"};
@@ -309,14 +309,14 @@ TEST_F(CameraServiceTest, WaitsForThoseItWasToldTo) {
   EXPECT_THAT(tracker.seqs(), SizeIs(3));
 }
 
-TEST_F(CameraServiceTest, NamesWhoIsMissingWhenTheWaitIsOver) {
+TEST_F(CameraServiceTest, names_the_missing_services_when_the_wait_is_over) {
   config_.wait_for = {"filter", "slam"};
   config_.start_timeout_s = 0.1;
   EXPECT_EQ(run(service::Pace::kLockstep), service::kRunFailed);
   EXPECT_THAT(last_status().message, HasSubstr("filter; slam; 1 of 1 frame readers"));
 }
 
-TEST_F(CameraServiceTest, EndsAtOnceWhenAskedTo) {
+TEST_F(CameraServiceTest, ends_at_once_on_a_stop_request) {
   FakeTracker tracker(*bus_);
   config_.source = std::string(kTinyScene) + "0";
   auto running = start(service::Pace::kLockstep);
@@ -326,7 +326,7 @@ TEST_F(CameraServiceTest, EndsAtOnceWhenAskedTo) {
   EXPECT_EQ(running.get(), service::kOk);
 }
 
-TEST_F(CameraServiceTest, LimitsFramesAndWritesTheGroundtruth) {
+TEST_F(CameraServiceTest, limits_frames_and_writes_the_groundtruth) {
   FakeTracker tracker(*bus_);
   config_.source = std::string(kTinyScene) + "0";
   config_.frames = 4;
@@ -336,7 +336,7 @@ TEST_F(CameraServiceTest, LimitsFramesAndWritesTheGroundtruth) {
   EXPECT_THAT(geometry::read_tum_trajectory(config_.groundtruth_out), SizeIs(4));
 }
 
-TEST_F(CameraServiceTest, RefusesASourceThatCannotBeUsed) {
+TEST_F(CameraServiceTest, refuses_a_source_that_cannot_be_used) {
   config_.source = "tum:/no/such/folder";
   EXPECT_THAT([this] { run(service::Pace::kLockstep); },
               ThrowsMessage<service::ConfigError>(HasSubstr("/no/such/folder does not exist")));

@@ -27,7 +27,7 @@ class TumClips : public ::testing::Test {
   fs::path data_;
 };
 
-TEST_F(TumClips, PlaysAllPairsOfFr1XyzAsAssociated) {
+TEST_F(TumClips, plays_all_pairs_of_fr1_xyz_as_associated) {
   const auto source = make_source("tum:" + (data_ / "fr1_xyz").string());
   EXPECT_EQ(source->info().frames, 200U);
   std::vector<std::int64_t> stamps;
@@ -46,7 +46,7 @@ TEST_F(TumClips, PlaysAllPairsOfFr1XyzAsAssociated) {
   EXPECT_TRUE(source->info().camera.distorted());
 }
 
-TEST_F(TumClips, GroundtruthCoversTheClipAndLittleMore) {
+TEST_F(TumClips, groundtruth_covers_the_clip_and_half_a_second_around_it) {
   const auto source = make_source("tum:" + (data_ / "fr1_xyz").string());
   const auto poses = source->groundtruth();
   ASSERT_GT(poses.size(), 600U);
@@ -54,13 +54,13 @@ TEST_F(TumClips, GroundtruthCoversTheClipAndLittleMore) {
   EXPECT_GT(poses.back().stamp_ns, 1305031108811244000);
 }
 
-TEST_F(TumClips, PlaysOriginalPngsOfAFamilyWithoutCalibrationFile) {
+TEST_F(TumClips, plays_original_pngs_of_a_family_without_calibration_file) {
   const auto source = make_source("tum:" + (data_ / "fr1_desk_9").string());
   EXPECT_DOUBLE_EQ(source->info().camera.parameters().fx, 517.306408);
   ASSERT_TRUE(source->next());
 }
 
-TEST_F(TumClips, AssociatesTheListsAndSkipsImagesThatAreNotThere) {
+TEST_F(TumClips, associates_the_lists_and_skips_images_that_are_not_there) {
   const fs::path folder = fs::temp_directory_path() / ("fr1_desk_lists_" + std::to_string(getpid()));
   fs::create_directories(folder);
   for (const char* name : {"rgb", "depth", "rgb.txt", "depth.txt"}) {
@@ -76,7 +76,7 @@ TEST_F(TumClips, AssociatesTheListsAndSkipsImagesThatAreNotThere) {
   fs::remove_all(folder);
 }
 
-TEST_F(TumClips, ReadsTheMasksOfRenderedClips) {
+TEST_F(TumClips, reads_the_masks_of_rendered_clips) {
   const auto source = make_source("tum:" + (data_ / "walk_xyz").string() + "?masks=1");
   double masked = 0;
   for (int i = 0; i < 20; ++i) masked += cv::countNonZero(source->next()->dynamic_mask) / 307200.0;

@@ -9,7 +9,7 @@
 
 namespace rtd::camera {
 
-/// Told how many frames are written.
+/// Receives the number of frames written so far.
 using OnFrame = std::function<void(std::uint64_t)>;
 
 /// Throws SourceError for an endless source without max_frames.

@@ -8,8 +8,7 @@
 
 #include "services/camera/core/calibration.hpp"
 #include "services/camera/core/frame_source.hpp"
-#include "services/camera/core/skip_log.hpp"
-#include "services/camera/core/tum_lists.hpp"
+#include "services/camera/core/tum/tum_lists.hpp"
 
 namespace rtd::camera {
 

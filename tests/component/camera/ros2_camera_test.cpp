@@ -142,7 +142,7 @@ TEST_P(Ros2Camera, plays_a_driver_that_sends_best_effort) {
 
 TEST_P(Ros2Camera, waits_for_a_reliable_driver_bears_its_restart_and_stops_at_once) {
   auto running = start();
-  EXPECT_TRUE(said(msg::ServiceState::kStarting, "nobody publishes it in DDS domain"));
+  EXPECT_TRUE(said(msg::ServiceState::kStarting, "it has no publisher in DDS domain"));
   auto driver = std::make_unique<Driver>(options_, true);
   EXPECT_TRUE(frames_come());
   driver.reset();
