@@ -12,7 +12,7 @@ namespace rtd::geometry {
 
 enum class PlyFormat { kAscii, kBinaryLittleEndian };
 
-/// One value of a vertex: `type` is a PLY word, e.g. "float" or "uchar".
+/// One value of a vertex: `type` is a PLY type, e.g. "float" or "uchar".
 struct PlyProperty {
   std::string type, name;
 };
@@ -21,7 +21,7 @@ struct PlyProperty {
 void write_ply_header(std::ostream& out, PlyFormat format, const std::string& comment, std::size_t vertices,
                       const std::vector<PlyProperty>& properties);
 
-/// Number of points that the header announces; empty when it is no PLY header.
+/// Number of points that the header announces; empty when it is not a PLY header.
 std::optional<std::size_t> ply_vertices(std::istream& in);
 
 }  // namespace rtd::geometry

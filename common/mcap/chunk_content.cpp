@@ -3,11 +3,11 @@
 #include "common/mcap/chunk_content.hpp"
 
 #include <algorithm>
+#include <numeric>
 
+#include "common/io/bytes.hpp"
+#include "common/mcap/codec.hpp"
 #include "common/mcap/compression.hpp"
-#include "common/mcap/crc32.hpp"
-#include "common/mcap/decode.hpp"
-#include "common/mcap/encode.hpp"
 
 namespace rtd::mcap {
 
@@ -35,7 +35,7 @@ ChunkContent open_chunk(const Chunk& chunk, const ReaderOptions& options, Decomp
   if (!content.records) {
     content.fault = ProblemKind::kDamagedRecord;
   } else if (options.check_crcs && chunk.uncompressed_crc != 0) {
-    const std::uint32_t found = crc32(*content.records);
+    const std::uint32_t found = io::crc32(*content.records);
     if (found == chunk.uncompressed_crc) return content;
     return {{},
             ProblemKind::kCrcMismatch,
@@ -47,14 +47,54 @@ ChunkContent open_chunk(const Chunk& chunk, const ReaderOptions& options, Decomp
 std::optional<InnerRecord> RecordCursor::next() {
   if (cut_ || left() == 0) return std::nullopt;
   const ByteView rest = records_.subspan(position_);
-  if (rest.size() < kFrameBytes || load<std::uint64_t>(rest.data() + 1) > rest.size() - kFrameBytes) {
+  if (rest.size() < kFrameBytes || io::load<std::uint64_t>(rest.data() + 1) > rest.size() - kFrameBytes) {
     cut_ = true;
     return std::nullopt;
   }
-  const auto length = load<std::uint64_t>(rest.data() + 1);
+  const auto length = io::load<std::uint64_t>(rest.data() + 1);
   const InnerRecord record{static_cast<Opcode>(rest[0]), position_, rest.subspan(kFrameBytes, length)};
   position_ += kFrameBytes + length;
   return record;
+}
+
+ChunkContent ChunkCache::get(const ChunkIndex& index) {
+  const auto known = std::ranges::find(entries_, index.chunk_start_offset, &Entry::offset);
+  if (known != entries_.end()) {
+    entries_.splice(entries_.begin(), entries_, known);
+    return {entries_.front().records, {}, {}};
+  }
+  make_room(index.uncompressed_size);
+  entries_.emplace_front().offset = index.chunk_start_offset;
+  ChunkContent content = load(index, entries_.front());
+  if (!content.records) entries_.pop_front();
+  return content;
+}
+
+ChunkContent ChunkCache::load(const ChunkIndex& index, Entry& entry) {
+  if (index.chunk_length < kFrameBytes || index.chunk_length > options_.max_record_bytes)
+    return {{}, ProblemKind::kTooLarge, "its length is above the reader's limit"};
+  const std::optional<ByteView> record = file_.view(index.chunk_start_offset, index.chunk_length);
+  if (!record) return {{}, ProblemKind::kUnreadable, "the file cannot be read here"};
+  const std::optional<Chunk> chunk = decode<Chunk>(record->subspan(kFrameBytes));
+  if (!chunk) return {{}, ProblemKind::kDamagedRecord, "its fields do not fit"};
+  ChunkContent content = open_chunk(*chunk, options_, decompress_, entry.buffer);
+  if (!content.records) return content;
+  if (chunk->compression.empty()) {
+    // Still in the window, which moves on.
+    const std::span<std::byte> copy = entry.buffer.reset(content.records->size());
+    std::ranges::copy(*content.records, copy.begin());
+    content.records = copy;
+  }
+  entry.records = *content.records;
+  return content;
+}
+
+void ChunkCache::make_room(std::uint64_t bytes) {
+  const auto held = [&] {
+    return std::accumulate(entries_.begin(), entries_.end(), bytes,
+                           [](std::uint64_t sum, const Entry& entry) { return sum + entry.records.size(); });
+  };
+  while (!entries_.empty() && held() > options_.cache_bytes) entries_.pop_back();
 }
 
 }  // namespace rtd::mcap

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "common/mcap/buffer.hpp"
+#include "common/mcap/records.hpp"
 
 namespace rtd::mcap {
 
@@ -16,10 +16,10 @@ std::string name_of(Compression compression);
 std::optional<Compression> compression_of(const std::string& name);
 
 /// `data` as one LZ4 frame or one zstd frame, in `out`. `level`: 0 is the library's default, negative is faster.
-/// kNone returns `data` itself. Throws std::runtime_error with the library's words.
+/// kNone returns `data` itself. Throws std::runtime_error with the library's message.
 ByteView compress(Compression compression, int level, ByteView data, Buffer& out);
 
-/// Most bytes that `compressed_size` bytes can become, from how the formats code a run: what claims more is a lie.
+/// Most bytes that `compressed_size` bytes can become, from how the formats code a run: a larger claim is false.
 std::uint64_t largest_uncompressed_size(Compression compression, std::uint64_t compressed_size);
 
 /// Keeps the libraries' working memory from one chunk to the next. For one thread.

@@ -5,11 +5,29 @@
 #include <algorithm>
 #include <array>
 
+#include "common/mcap/codec.hpp"
 #include "common/mcap/compression.hpp"
-#include "common/mcap/decode.hpp"
-#include "common/mcap/encode.hpp"
 
 namespace rtd::mcap {
+
+std::optional<ByteView> SourceWindow::view(std::uint64_t offset, std::uint64_t length) {
+  if (!has(offset, length)) return std::nullopt;
+  const bool inside =
+      offset >= start_ && offset - start_ <= bytes_.size() && length <= bytes_.size() - (offset - start_);
+  if (!inside) {
+    constexpr std::uint64_t kReadAhead = 1 << 16;
+    const std::span<std::byte> into = buffer_.reset(std::min(std::max(length, kReadAhead), size() - offset));
+    bytes_ = into.first(source_.read(offset, into));
+    start_ = offset;
+    if (bytes_.size() < length) return std::nullopt;
+  }
+  return bytes_.subspan(offset - start_, length);
+}
+
+bool SourceWindow::peek(std::uint64_t offset, std::span<std::byte> into) const {
+  return has(offset, into.size()) && source_.read(offset, into) == into.size();
+}
+
 namespace {
 
 struct RecordKind {
@@ -41,7 +59,7 @@ std::size_t number(Opcode opcode) {
 bool is_magic(const SourceWindow& file, std::uint64_t offset) {
   std::array<std::byte, kMagic.size()> bytes;
   return file.size() - offset == bytes.size() && file.peek(offset, bytes) &&
-         std::ranges::equal(bytes, bytes_of(kMagic));
+         std::ranges::equal(bytes, io::bytes_of(kMagic));
 }
 
 /// The lengths inside a chunk agree with that of the record.
@@ -50,9 +68,9 @@ bool is_consistent_chunk(const SourceWindow& file, const Frame& frame) {
   std::array<std::byte, 40 + kLongestName> head{};
   const auto read = static_cast<std::size_t>(std::min<std::uint64_t>(head.size(), frame.length));
   if (!file.peek(frame.content(), std::span(head).first(read))) return false;
-  const auto name_length = load<std::uint32_t>(head.data() + 28);
+  const auto name_length = io::load<std::uint32_t>(head.data() + 28);
   if (name_length > kLongestName || 40 + name_length > frame.length) return false;
-  return load<std::uint64_t>(head.data() + 32 + name_length) == frame.length - 40 - name_length;
+  return io::load<std::uint64_t>(head.data() + 32 + name_length) == frame.length - 40 - name_length;
 }
 
 bool is_possible(const SourceWindow& file, const Frame& frame) {
@@ -99,7 +117,7 @@ bool is_known(Opcode opcode) {
 std::optional<Frame> frame_at(const SourceWindow& file, std::uint64_t offset) {
   std::array<std::byte, kFrameBytes> bytes;
   if (!file.peek(offset, bytes)) return std::nullopt;
-  return Frame{static_cast<Opcode>(bytes[0]), offset, load<std::uint64_t>(bytes.data() + 1)};
+  return Frame{static_cast<Opcode>(bytes[0]), offset, io::load<std::uint64_t>(bytes.data() + 1)};
 }
 
 bool begins_record(const SourceWindow& file, std::uint64_t offset) {
@@ -122,7 +140,7 @@ std::optional<std::uint64_t> find_record(SourceWindow& file, std::uint64_t from,
     const std::size_t places = block->size() - kFrameBytes + 1;
     for (std::size_t i = 0; i < places; ++i) {
       if (!stands_alone((*block)[i], loose_messages)) continue;
-      const bool fits = load<std::uint64_t>(block->data() + i + 1) <= file.size() - from - i - kFrameBytes;
+      const bool fits = io::load<std::uint64_t>(block->data() + i + 1) <= file.size() - from - i - kFrameBytes;
       if (fits && begins_record(file, from + i)) return from + i;
     }
     from += places;

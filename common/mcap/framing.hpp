@@ -2,10 +2,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/mcap/source_window.hpp"
+#include <optional>
 
-/// Where records begin and end in a file, also in one that lies about it.
+#include "common/io/byte_source.hpp"
+#include "common/mcap/records.hpp"
+
+/// Where records begin and end in a file, also in a damaged one.
 namespace rtd::mcap {
+
+/// The part of a source that a reader has in memory: views inside it cost no read.
+class SourceWindow {
+ public:
+  explicit SourceWindow(const io::ByteSource& source) : source_(source) {}
+
+  std::uint64_t size() const { return source_.size(); }
+  /// The bytes [offset, offset + length), until the next view(); empty when the source does not have or give them.
+  /// Allocates `length` bytes at most (64 KiB at least): the caller bounds it.
+  std::optional<ByteView> view(std::uint64_t offset, std::uint64_t length);
+  /// Copies bytes without moving the window; false when the source does not have or give them.
+  bool peek(std::uint64_t offset, std::span<std::byte> into) const;
+
+ private:
+  bool has(std::uint64_t offset, std::uint64_t length) const { return offset <= size() && length <= size() - offset; }
+
+  const io::ByteSource& source_;
+  Buffer buffer_;
+  std::uint64_t start_ = 0;
+  ByteView bytes_;
+};
 
 /// A record in a file before its content is looked at; its length may reach beyond the end of the file.
 struct Frame {
@@ -30,8 +54,8 @@ std::optional<Frame> frame_at(const SourceWindow& file, std::uint64_t offset);
 /// is possible (below 4 GiB); the second may be cut by the end of the file. Random bytes pass with less than 1e-9.
 bool begins_record(const SourceWindow& file, std::uint64_t offset);
 
-/// The first place at or behind `from` that begins a record which can stand alone: Chunk, Attachment, Metadata,
-/// DataEnd, Footer and, with `loose_messages`, Schema, Channel and Message, which also stand inside chunks.
+/// The first place at or behind `from` that begins a record that can occur alone: Chunk, Attachment, Metadata,
+/// DataEnd, Footer and, with `loose_messages`, Schema, Channel and Message, which also occur inside chunks.
 std::optional<std::uint64_t> find_record(SourceWindow& file, std::uint64_t from, bool loose_messages);
 
 }  // namespace rtd::mcap

@@ -3,10 +3,11 @@
 #include "common/mcap/indexed_reader.hpp"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
-#include "common/mcap/crc32.hpp"
-#include "common/mcap/decode.hpp"
-#include "common/mcap/encode.hpp"
+#include "common/io/bytes.hpp"
+#include "common/mcap/codec.hpp"
 #include "common/mcap/framing.hpp"
 
 namespace rtd::mcap {
@@ -19,7 +20,7 @@ std::optional<Message> head_of(const InnerRecord& record) {
 
 }  // namespace
 
-IndexedReader::IndexedReader(const ByteSource& source, ReaderOptions options)
+IndexedReader::IndexedReader(const io::ByteSource& source, ReaderOptions options)
     : options_(options),
       problems_(options.max_problems),
       file_(source),
@@ -115,7 +116,7 @@ std::optional<Attachment> IndexedReader::attachment(const AttachmentIndex& index
     // The CRC covers everything from the start of the content to the end of the data.
     const std::size_t covered = 32 + attachment->name.size() + attachment->media_type.size() + attachment->data.size();
     const std::optional<ByteView> content = file_.view(index.offset + kFrameBytes, covered);
-    if (!content || crc32(*content) != attachment->crc) what = "Attachment: its CRC is wrong";
+    if (!content || io::crc32(*content) != attachment->crc) what = "Attachment: its CRC is wrong";
   }
   if (what == nullptr) return attachment;
   problems_.add_repeated({attachment ? ProblemKind::kCrcMismatch : ProblemKind::kIndexMismatch, index.offset, what,

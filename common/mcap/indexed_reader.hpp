@@ -6,8 +6,8 @@
 #include <limits>
 #include <queue>
 
-#include "common/mcap/chunk_cache.hpp"
-#include "common/mcap/definitions.hpp"
+#include "common/mcap/audit.hpp"
+#include "common/mcap/chunk_content.hpp"
 #include "common/mcap/summary.hpp"
 
 namespace rtd::mcap {
@@ -28,7 +28,7 @@ class MessageCursor;
 class IndexedReader {
  public:
   /// `source` must outlive the reader. Never throws for what is in the file.
-  explicit IndexedReader(const ByteSource& source, ReaderOptions options = {});
+  explicit IndexedReader(const io::ByteSource& source, ReaderOptions options = {});
   IndexedReader(const IndexedReader&) = delete;
   IndexedReader& operator=(const IndexedReader&) = delete;
 

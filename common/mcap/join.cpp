@@ -14,7 +14,7 @@ namespace {
 /// The new file; remembers which of its channels stands for which one of the parts.
 class Joint {
  public:
-  Joint(ByteSink& sink, const WriterOptions& options) : sink_(sink), options_(options) {}
+  Joint(io::ByteSink& sink, const WriterOptions& options) : sink_(sink), options_(options) {}
 
   void begin_part() { channel_of_.clear(); }
   void add(const StreamReader& part, const Record& record) {
@@ -69,22 +69,22 @@ class Joint {
     return record.id;
   }
 
-  ByteSink& sink_;
+  io::ByteSink& sink_;
   WriterOptions options_;
   std::optional<Writer> writer_;
   std::vector<Schema> schemas_;
   std::vector<Channel> channels_;
   std::set<std::pair<std::string, std::map<std::string, std::string>>> metadata_;  ///< name and content
-  std::map<ChannelId, ChannelId> channel_of_;  ///< of the part in work
+  std::map<ChannelId, ChannelId> channel_of_;                                      ///< of the part in work
 };
 
 }  // namespace
 
-JoinReport join(std::span<const ByteSource* const> parts, ByteSink& sink, const JoinOptions& options) {
+JoinReport join(std::span<const io::ByteSource* const> parts, io::ByteSink& sink, const JoinOptions& options) {
   JoinReport report;
   Joint joint(sink, options.writer);
   std::uint64_t bytes_before = 0;
-  for (const ByteSource* const part : parts) {
+  for (const io::ByteSource* const part : parts) {
     StreamReader reader(*part, options.reader);
     Problems ignored(0);  // the streaming reader finds them, too
     if (const std::optional<Summary> summary = read_summary(*part, options.reader, ignored))

@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "common/mcap/byte_source.hpp"
+#include "common/io/byte_source.hpp"
 #include "common/mcap/chunk_content.hpp"
 #include "common/mcap/writer.hpp"
 
@@ -27,7 +27,7 @@ struct JoinReport {
 
 /// Copies the parts one behind the other into one well-formed file in the empty `sink`: messages byte by byte,
 /// channels that are the same in several parts as one, attachments and metadata as they are (equal metadata once).
-/// Throws IoError when the sink fails; nothing in the parts makes it throw.
-JoinReport join(std::span<const ByteSource* const> parts, ByteSink& sink, const JoinOptions& options = {});
+/// Throws io::IoError when the sink fails; nothing in the parts makes it throw.
+JoinReport join(std::span<const io::ByteSource* const> parts, io::ByteSink& sink, const JoinOptions& options = {});
 
 }  // namespace rtd::mcap

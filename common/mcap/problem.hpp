@@ -25,7 +25,7 @@ enum class ProblemKind {
   kNoSummary,              ///< no usable summary: the file had to be read from the start
 };
 
-/// The kind as a word for logs and JSON, e.g. "crc_mismatch".
+/// The name of the kind for logs and JSON, e.g. "crc_mismatch".
 std::string name_of(ProblemKind kind);
 
 /// One thing that is wrong with a file, for a person to read.

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/mcap/byte_sink.hpp"
+#include "common/io/byte_sink.hpp"
 #include "common/mcap/framing.hpp"
 
 namespace rtd::mcap {
@@ -29,13 +29,13 @@ constexpr std::array kOtherFormats = {
     KnownFormat{"\x1f\x8b", "compressed with gzip: unpack it first ('gunzip')"},
 };
 
-std::string first_bytes(const ByteSource& source) {
+std::string first_bytes(const io::ByteSource& source) {
   std::array<std::byte, 24> bytes{};
   const std::size_t count = source.read(0, bytes);
   return {reinterpret_cast<const char*>(bytes.data()), count};
 }
 
-std::string explain(const ByteSource& source) {
+std::string explain(const io::ByteSource& source) {
   const std::string begin = first_bytes(source);
   if (begin.empty()) return "the file is empty: nothing was recorded, or the disk was full from the start";
   for (const KnownFormat& format : kOtherFormats)
@@ -53,34 +53,34 @@ fs::path recording_path(const fs::path& path) {
     if (entry.path().extension() == ".mcap") files.push_back(entry.path());
   std::ranges::sort(files);
   if (files.size() == 1) return files.front();
-  if (files.empty()) throw IoError(EISDIR, path.string() + ": this folder holds no .mcap file");
-  throw IoError(EISDIR, path.string() + ": this folder holds " + std::to_string(files.size()) +
-                            " .mcap files: name one of them, e.g. " + files.front().string() +
-                            ", or join them: rtd record join " + path.string() + " -o FILE");
+  if (files.empty()) throw io::IoError(EISDIR, path.string() + ": this folder holds no .mcap file");
+  throw io::IoError(EISDIR, path.string() + ": this folder holds " + std::to_string(files.size()) +
+                                " .mcap files: name one of them, e.g. " + files.front().string() +
+                                ", or join them: rtd record join " + path.string() + " -o FILE");
 }
 
 bool looks_like_recording(const std::string& path) {
   try {
-    return looks_like_recording(FileSource(recording_path(path)));
-  } catch (const IoError& error) {
+    return looks_like_recording(io::FileSource(recording_path(path)));
+  } catch (const io::IoError& error) {
     throw RecordingFileError(error.what());
   }
 }
 
-bool looks_like_recording(const ByteSource& source) {
+bool looks_like_recording(const io::ByteSource& source) {
   if (first_bytes(source).starts_with(kMagic)) return true;
   const SourceWindow window(source);
   const auto header = frame_at(window, kMagic.size());
   return header && header->opcode == Opcode::kHeader && begins_record(window, kMagic.size());
 }
 
-FileSource open_recording(const std::string& path) {
+io::FileSource open_recording(const std::string& path) {
   try {
     const fs::path file = recording_path(path);
-    const FileSource source(file);
+    const io::FileSource source(file);
     if (!looks_like_recording(source)) throw RecordingFileError(path + ": " + explain(source));
-    return FileSource(file);
-  } catch (const IoError& error) {
+    return io::FileSource(file);
+  } catch (const io::IoError& error) {
     throw RecordingFileError(error.what());
   }
 }

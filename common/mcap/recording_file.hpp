@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "common/mcap/byte_source.hpp"
+#include "common/io/byte_source.hpp"
 
 namespace rtd::mcap {
 
@@ -16,16 +16,16 @@ class RecordingFileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The file that a person means: the path itself or, if it is a folder, the only .mcap file in it. Throws IoError
+/// The file that a person means: the path itself or, if it is a folder, the only .mcap file in it. Throws io::IoError
 /// (byte_sink.hpp): the folder holds no recording, or several parts of a split one.
 std::filesystem::path recording_path(const std::filesystem::path& path);
 
 /// Opens an MCAP file, or the only one of a folder. Throws RecordingFileError: missing, unreadable, empty, another
 /// format. A file whose first bytes are damaged passes when a header follows.
-FileSource open_recording(const std::string& path);
+io::FileSource open_recording(const std::string& path);
 
 /// True when the file begins as an MCAP file does, or as one whose magic is damaged.
-bool looks_like_recording(const ByteSource& source);
+bool looks_like_recording(const io::ByteSource& source);
 /// The same of a file, or of the only recording in a folder. Throws RecordingFileError.
 bool looks_like_recording(const std::string& path);
 

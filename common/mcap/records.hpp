@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <map>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "common/io/bytes.hpp"
 
 /// The records of an MCAP file, named as in the specification (https://mcap.dev/spec). Times are nanoseconds since an
 /// epoch that the recorder chose; offsets are bytes from the start of the file unless said otherwise. A span is a view
@@ -20,7 +20,9 @@ namespace rtd::mcap {
 using Timestamp = std::uint64_t;
 using SchemaId = std::uint16_t;
 using ChannelId = std::uint16_t;
-using ByteView = std::span<const std::byte>;
+using io::Buffer;
+using io::Bytes;
+using io::ByteView;
 
 constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
 

@@ -11,7 +11,7 @@ namespace {
 /// Writes the records of a reader into a new file.
 class Copy {
  public:
-  Copy(const StreamReader& reader, ByteSink& sink, const WriterOptions& options)
+  Copy(const StreamReader& reader, io::ByteSink& sink, const WriterOptions& options)
       : reader_(reader), sink_(sink), options_(options) {}
 
   void add(const Record& record) {
@@ -57,7 +57,7 @@ class Copy {
   }
 
   const StreamReader& reader_;
-  ByteSink& sink_;
+  io::ByteSink& sink_;
   WriterOptions options_;
   std::optional<Writer> writer_;
   std::set<ChannelId> defined_;
@@ -71,7 +71,7 @@ std::optional<std::uint64_t> RecoverReport::messages_lost() const {
   return whole - std::min(whole, recovered.message_count);
 }
 
-RecoverReport recover(const ByteSource& source, ByteSink& sink, const RecoverOptions& options) {
+RecoverReport recover(const io::ByteSource& source, io::ByteSink& sink, const RecoverOptions& options) {
   StreamReader reader(source, options.reader);
   Problems ignored(0);  // the streaming reader finds them, too
   if (const std::optional<Summary> summary = read_summary(source, options.reader, ignored))

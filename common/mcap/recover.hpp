@@ -5,7 +5,7 @@
 #include <functional>
 #include <optional>
 
-#include "common/mcap/byte_source.hpp"
+#include "common/io/byte_source.hpp"
 #include "common/mcap/chunk_content.hpp"
 #include "common/mcap/writer.hpp"
 
@@ -20,7 +20,7 @@ struct RecoverOptions {
 
 struct RecoverReport {
   Statistics recovered;                 ///< what the new file holds
-  std::optional<Statistics> announced;  ///< what the source says that it holds, where that can still be read
+  std::optional<Statistics> announced;  ///< the source's own statistics, where they can still be read
   std::vector<Problem> problems;        ///< of the source
   std::uint64_t problem_count = 0;      ///< with those that are not listed
   bool data_lost = false;
@@ -30,7 +30,7 @@ struct RecoverReport {
 };
 
 /// Copies everything of `source` that is whole, in file order, byte by byte, into a well-formed file with summary in
-/// the empty `sink`. Throws IoError when the sink fails; nothing in the source makes it throw.
-RecoverReport recover(const ByteSource& source, ByteSink& sink, const RecoverOptions& options = {});
+/// the empty `sink`. Throws io::IoError when the sink fails; nothing in the source makes it throw.
+RecoverReport recover(const io::ByteSource& source, io::ByteSink& sink, const RecoverOptions& options = {});
 
 }  // namespace rtd::mcap

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "common/mcap/crc32.hpp"
-#include "common/mcap/encode.hpp"
+#include "common/io/bytes.hpp"
+#include "common/mcap/codec.hpp"
 #include "common/mcap/stream_reader.hpp"
 
 namespace rtd::mcap {
@@ -25,7 +25,7 @@ bool StreamReader::check_chunk(const Frame& frame, const Chunk& chunk) {
   if (options_.check_crcs && chunk.compression.empty() && chunk.uncompressed_crc != 0 && data_end_ == 0) {
     // The CRC that was just checked is that of the bytes in the file, too.
     extend_crc(records_offset);
-    crc_ = crc32_combine(crc_, chunk.uncompressed_crc, chunk.records.size());
+    crc_ = io::crc32_combine(crc_, chunk.uncompressed_crc, chunk.records.size());
     crc_end_ = records_offset + chunk.records.size();
   }
   chunk_ = RecordCursor(*content.records);
@@ -74,7 +74,7 @@ bool StreamReader::check_attachment(const Frame& frame, ByteView content, const 
   audit_.attachment(frame.offset, frame.end() - frame.offset);
   if (!options_.check_crcs || attachment.crc == 0) return true;
   const auto covered = static_cast<std::size_t>(attachment.data.data() - content.data()) + attachment.data.size();
-  const std::uint32_t found = crc32(content.first(covered));
+  const std::uint32_t found = io::crc32(content.first(covered));
   if (found == attachment.crc) return true;
   report(ProblemKind::kCrcMismatch, frame.offset,
          "Attachment \"" + attachment.name + "\": its CRC is " + hex(found) + ", it says " + hex(attachment.crc),
@@ -116,7 +116,7 @@ void StreamReader::check_footer(const Frame& frame, const Footer& footer) {
     constexpr std::uint64_t kBlock = 1 << 16;
     const std::optional<ByteView> bytes = file_.view(at, std::min(kBlock, crc_field - at));
     if (!bytes) break;
-    found = crc32(*bytes, found);
+    found = io::crc32(*bytes, found);
     at += bytes->size();
   }
   if (found != footer.summary_crc)
@@ -129,8 +129,7 @@ void StreamReader::check_closing_magic(const Frame& frame) {
   const std::uint64_t left = file_.size() - frame.end();
   std::array<std::byte, kMagic.size()> magic{};
   const bool closes =
-      left == magic.size() && file_.peek(frame.end(), magic) && std::ranges::equal(magic, bytes_of(kMagic));
-  reached_footer_ = closes;
+      left == magic.size() && file_.peek(frame.end(), magic) && std::ranges::equal(magic, io::bytes_of(kMagic));
   at_end_ = left <= magic.size() || !begins_record(file_, frame.end());
   if (closes) return;
   if (left < magic.size())

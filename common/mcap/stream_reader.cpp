@@ -4,9 +4,8 @@
 
 #include <algorithm>
 
-#include "common/mcap/crc32.hpp"
-#include "common/mcap/decode.hpp"
-#include "common/mcap/encode.hpp"
+#include "common/io/bytes.hpp"
+#include "common/mcap/codec.hpp"
 
 namespace rtd::mcap {
 namespace {
@@ -17,7 +16,7 @@ std::string bytes_text(std::uint64_t count) {
 
 }  // namespace
 
-StreamReader::StreamReader(const ByteSource& source, ReaderOptions options)
+StreamReader::StreamReader(const io::ByteSource& source, ReaderOptions options)
     : options_(options), problems_(options.max_problems), file_(source), definitions_(problems_) {}
 
 void StreamReader::assume(const std::map<SchemaId, Schema>& schemas, const std::map<ChannelId, Channel>& channels) {
@@ -45,10 +44,10 @@ const Record* StreamReader::next() {
 bool StreamReader::begin() {
   const std::optional<Frame> header = frame_at(file_, kMagic.size());
   const std::optional<ByteView> magic = file_.view(0, kMagic.size());
-  if (magic && std::ranges::equal(*magic, bytes_of(kMagic))) {
+  if (magic && std::ranges::equal(*magic, io::bytes_of(kMagic))) {
     position_ = kMagic.size();
     if (header && header->opcode != Opcode::kHeader)
-      report(ProblemKind::kMisplacedRecord, position_, "the first record is no Header",
+      report(ProblemKind::kMisplacedRecord, position_, "the first record is not a Header",
              "profile and library are not known");
     return true;
   }
@@ -76,7 +75,7 @@ StreamReader::Step StreamReader::step() {
            "the last " + bytes_text(left) + " are not read", true);
     return Step::kEnd;
   }
-  const Frame frame{static_cast<Opcode>((*head)[0]), position_, load<std::uint64_t>(head->data() + 1)};
+  const Frame frame{static_cast<Opcode>((*head)[0]), position_, io::load<std::uint64_t>(head->data() + 1)};
   chunked_ = chunked_ || frame.opcode == Opcode::kChunk;
   return frame.fits(file_.size()) ? read(frame) : cut(frame);
 }
@@ -265,7 +264,7 @@ void StreamReader::extend_crc(std::uint64_t end) {
   while (options_.check_crcs && data_end_ == 0 && crc_end_ < end) {
     const std::uint64_t count = std::min(kBlock, end - crc_end_);
     // An unreadable place is reported where its record is read.
-    if (const std::optional<ByteView> bytes = file_.view(crc_end_, count)) crc_ = crc32(*bytes, crc_);
+    if (const std::optional<ByteView> bytes = file_.view(crc_end_, count)) crc_ = io::crc32(*bytes, crc_);
     crc_end_ += count;
   }
 }

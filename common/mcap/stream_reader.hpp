@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/mcap/audit.hpp"
 #include "common/mcap/chunk_content.hpp"
-#include "common/mcap/definitions.hpp"
 #include "common/mcap/framing.hpp"
-#include "common/mcap/index_audit.hpp"
 
 namespace rtd::mcap {
 
@@ -24,7 +23,7 @@ struct Location {
 class StreamReader {
  public:
   /// `source` must outlive the reader.
-  explicit StreamReader(const ByteSource& source, ReaderOptions options = {});
+  explicit StreamReader(const io::ByteSource& source, ReaderOptions options = {});
   StreamReader(const StreamReader&) = delete;
   StreamReader& operator=(const StreamReader&) = delete;
 
@@ -40,8 +39,6 @@ class StreamReader {
   const std::map<ChannelId, Channel>& channels() const { return definitions_.channels(); }
   /// Complete once next() has returned null.
   const Problems& problems() const { return problems_; }
-  /// True at the end of a file with header, footer and closing magic.
-  bool reached_footer() const { return reached_footer_; }
   std::uint64_t bytes_read() const { return position_; }  ///< for a progress bar
 
  private:
@@ -92,7 +89,7 @@ class StreamReader {
   std::uint32_t crc_ = 0;  ///< of [0, crc_end_)
   std::uint64_t crc_end_ = 0;
   std::uint64_t data_end_ = 0;  ///< where the DataEnd record ends; 0: not seen
-  bool started_ = false, chunked_ = false, reached_footer_ = false, at_end_ = false;
+  bool started_ = false, chunked_ = false, at_end_ = false;
 };
 
 }  // namespace rtd::mcap

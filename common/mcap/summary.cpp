@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 
-#include "common/mcap/crc32.hpp"
-#include "common/mcap/decode.hpp"
-#include "common/mcap/encode.hpp"
+#include "common/io/bytes.hpp"
+#include "common/mcap/codec.hpp"
 #include "common/mcap/framing.hpp"
+#include "common/mcap/stream_reader.hpp"
 
 namespace rtd::mcap {
 namespace {
@@ -29,7 +29,7 @@ std::optional<Footer> footer_of(SourceWindow& file) {
   const std::optional<ByteView> end = file.view(offset, kFooterBytes + kMagic.size());
   const std::optional<Frame> frame = frame_at(file, offset);
   if (!end || !frame || frame->opcode != Opcode::kFooter || frame->length != 20 ||
-      !std::ranges::equal(end->last(kMagic.size()), bytes_of(kMagic)))
+      !std::ranges::equal(end->last(kMagic.size()), io::bytes_of(kMagic)))
     return std::nullopt;
   return decode<Footer>(end->subspan(kFrameBytes, 20));
 }
@@ -79,25 +79,25 @@ Check read_records(ByteView bytes, std::uint64_t offset, Summary& summary) {
   return std::nullopt;
 }
 
-Check lie(const ChunkIndex& index, const std::string& what) {
+Check mismatch(const ChunkIndex& index, const std::string& what) {
   return Unusable{ProblemKind::kIndexMismatch, index.chunk_start_offset, "ChunkIndex: " + what};
 }
 
-/// The chunk stands where its index says and agrees with it.
+/// The chunk is where its index says and agrees with it.
 Check check_chunk(const SourceWindow& file, const ChunkIndex& index, std::uint64_t from, std::uint64_t to) {
   if (index.chunk_start_offset < from || index.chunk_start_offset > to ||
       index.chunk_length > to - index.chunk_start_offset)
-    return lie(index, "the chunk would not be in the data section, or inside another one");
+    return mismatch(index, "the chunk would not be in the data section, or inside another one");
   std::array<std::byte, kFrameBytes + 24> head;
-  if (!file.peek(index.chunk_start_offset, head)) return lie(index, "the file cannot be read there");
+  if (!file.peek(index.chunk_start_offset, head)) return mismatch(index, "the file cannot be read there");
   const bool is_chunk = static_cast<Opcode>(head[0]) == Opcode::kChunk &&
-                        load<std::uint64_t>(head.data() + 1) == index.chunk_length - kFrameBytes;
-  if (!is_chunk) return lie(index, "no chunk of " + std::to_string(index.chunk_length) + " bytes stands there");
+                        io::load<std::uint64_t>(head.data() + 1) == index.chunk_length - kFrameBytes;
+  if (!is_chunk) return mismatch(index, "no chunk of " + std::to_string(index.chunk_length) + " bytes stands there");
   const std::byte* const content = head.data() + kFrameBytes;
-  const bool agrees = load<std::uint64_t>(content) == index.message_start_time &&
-                      load<std::uint64_t>(content + 8) == index.message_end_time &&
-                      load<std::uint64_t>(content + 16) == index.uncompressed_size;
-  if (!agrees) return lie(index, "its times or size are not those of the chunk");
+  const bool agrees = io::load<std::uint64_t>(content) == index.message_start_time &&
+                      io::load<std::uint64_t>(content + 8) == index.message_end_time &&
+                      io::load<std::uint64_t>(content + 16) == index.uncompressed_size;
+  if (!agrees) return mismatch(index, "its times or size are not those of the chunk");
   return std::nullopt;
 }
 
@@ -109,12 +109,12 @@ Check check_chunks(const SourceWindow& file, Summary& summary, std::uint64_t dat
     from = index.chunk_start_offset + index.chunk_length;
     for (const auto& [channel, offset] : index.message_index_offsets)
       if (!summary.channels.contains(channel))
-        return lie(index, "it names channel " + std::to_string(channel) + ", which is not in the summary");
+        return mismatch(index, "it names channel " + std::to_string(channel) + ", which is not in the summary");
   }
   return std::nullopt;
 }
 
-/// The summary tells of all messages.
+/// The summary covers all messages.
 Check check_complete(const Summary& summary, std::uint64_t offset) {
   const auto incomplete = [&](const std::string& what) {
     return Unusable{ProblemKind::kNoSummary, offset, "the summary " + what};
@@ -147,10 +147,10 @@ Check read_checked(SourceWindow& file, const ReaderOptions& options, Summary& su
                     "Footer: no summary can be at offset " + std::to_string(start)};
   const std::optional<ByteView> bytes = file.view(start, footer_offset + kFrameBytes + 16 - start);
   if (!bytes) return Unusable{ProblemKind::kUnreadable, start, "the summary cannot be read"};
-  if (options.check_crcs && footer->summary_crc != 0 && crc32(*bytes) != footer->summary_crc)
+  if (options.check_crcs && footer->summary_crc != 0 && io::crc32(*bytes) != footer->summary_crc)
     return Unusable{
         ProblemKind::kCrcMismatch, start,
-        "the CRC of the summary is " + hex(crc32(*bytes)) + ", the Footer says " + hex(footer->summary_crc)};
+        "the CRC of the summary is " + hex(io::crc32(*bytes)) + ", the Footer says " + hex(footer->summary_crc)};
   if (Check check = read_records(bytes->first(footer_offset - start), start, summary)) return check;
   if (Check check = check_complete(summary, start)) return check;
   return check_chunks(file, summary, start);
@@ -165,10 +165,10 @@ void read_header(SourceWindow& file, const ReaderOptions& options, Header& heade
 
 }  // namespace
 
-std::optional<Summary> read_summary(const ByteSource& source, const ReaderOptions& options, Problems& problems) {
+std::optional<Summary> read_summary(const io::ByteSource& source, const ReaderOptions& options, Problems& problems) {
   SourceWindow file(source);
   const std::optional<ByteView> magic = file.view(0, kMagic.size());
-  if (!magic || !std::ranges::equal(*magic, bytes_of(kMagic))) {
+  if (!magic || !std::ranges::equal(*magic, io::bytes_of(kMagic))) {
     problems.add({ProblemKind::kNotMcap, 0, "the file does not begin with the MCAP magic", "its summary is not used"});
     return std::nullopt;
   }
@@ -179,6 +179,90 @@ std::optional<Summary> read_summary(const ByteSource& source, const ReaderOption
   }
   read_header(file, options, summary.header);
   return summary;
+}
+
+namespace {
+
+/// Makes a summary of the records as they come by.
+class Scan {
+ public:
+  Scan() { summary.scanned = true; }
+
+  void add(const Record& record, const Location& location) {
+    std::visit([&](const auto& typed) { take(typed, location); }, record);
+  }
+
+  Summary summary;
+  Statistics statistics;
+
+ private:
+  void take(const Header& header, const Location&) { summary.header = header; }
+  void take(const Chunk& chunk, const Location& location) {
+    ChunkIndex index;
+    index.message_start_time = chunk.message_start_time;
+    index.message_end_time = chunk.message_end_time;
+    index.chunk_start_offset = location.record.offset;
+    index.chunk_length = location.record.end() - location.record.offset;
+    index.compression = chunk.compression;
+    index.compressed_size = chunk.records.size();
+    index.uncompressed_size = chunk.uncompressed_size;
+    summary.chunk_indexes.push_back(std::move(index));
+    ++statistics.chunk_count;
+  }
+  void take(const Message& message, const Location& location) {
+    const bool first = statistics.message_count++ == 0;
+    statistics.message_start_time =
+        first ? message.log_time : std::min(statistics.message_start_time, message.log_time);
+    statistics.message_end_time = std::max(statistics.message_end_time, message.log_time);
+    ++statistics.channel_message_counts[message.channel_id];
+    if (location.in_chunk)
+      take_in_chunk(message);
+    else
+      summary.loose_messages.push_back({message.log_time, location.record.offset, message.channel_id});
+  }
+  /// The times are those of the messages, whatever the head of the chunk says.
+  void take_in_chunk(const Message& message) {
+    ChunkIndex& index = summary.chunk_indexes.back();
+    const bool first = index.message_index_offsets.empty();
+    index.message_index_offsets.try_emplace(message.channel_id, 0);
+    index.message_start_time = first ? message.log_time : std::min(index.message_start_time, message.log_time);
+    index.message_end_time = first ? message.log_time : std::max(index.message_end_time, message.log_time);
+  }
+  void take(const MessageIndex& index, const Location& location) {
+    if (summary.chunk_indexes.empty()) return;
+    ChunkIndex& chunk = summary.chunk_indexes.back();
+    chunk.message_index_length += location.record.end() - location.record.offset;
+    const auto known = chunk.message_index_offsets.find(index.channel_id);
+    if (known != chunk.message_index_offsets.end()) known->second = location.record.offset;
+  }
+  void take(const Attachment& attachment, const Location& location) {
+    summary.attachment_indexes.push_back({location.record.offset, location.record.end() - location.record.offset,
+                                          attachment.log_time, attachment.create_time, attachment.data.size(),
+                                          attachment.name, attachment.media_type});
+    ++statistics.attachment_count;
+  }
+  void take(const Metadata& metadata, const Location& location) {
+    summary.metadata_indexes.push_back(
+        {location.record.offset, location.record.end() - location.record.offset, metadata.name});
+    ++statistics.metadata_count;
+  }
+  template <class R>
+  void take(const R&, const Location&) {}
+};
+
+}  // namespace
+
+Summary scan(const io::ByteSource& source, const ReaderOptions& options, Problems& problems) {
+  StreamReader reader(source, options);
+  Scan scan;
+  while (const Record* record = reader.next()) scan.add(*record, reader.location());
+  scan.summary.schemas = reader.schemas();
+  scan.summary.channels = reader.channels();
+  scan.statistics.schema_count = static_cast<std::uint16_t>(reader.schemas().size());
+  scan.statistics.channel_count = static_cast<std::uint32_t>(reader.channels().size());
+  scan.summary.statistics = scan.statistics;
+  for (const Problem& problem : reader.problems().listed()) problems.add(problem);
+  return std::move(scan.summary);
 }
 
 }  // namespace rtd::mcap

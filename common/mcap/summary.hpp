@@ -3,11 +3,11 @@
 #pragma once
 
 #include "common/mcap/chunk_content.hpp"
-#include "common/mcap/source_window.hpp"
+#include "common/mcap/framing.hpp"
 
 namespace rtd::mcap {
 
-/// A message that stands outside of chunks.
+/// A message outside of chunks.
 struct LooseMessage {
   Timestamp log_time = 0;
   std::uint64_t offset = 0;
@@ -29,9 +29,9 @@ struct Summary {
 
 /// The summary at the end of a file when it is whole (CRC) and its chunk indexes point at chunks; else empty, with the
 /// reason as a problem.
-std::optional<Summary> read_summary(const ByteSource& source, const ReaderOptions& options, Problems& problems);
+std::optional<Summary> read_summary(const io::ByteSource& source, const ReaderOptions& options, Problems& problems);
 
 /// Reads the whole file. Chunks that cannot be opened are reported and not in the result.
-Summary scan(const ByteSource& source, const ReaderOptions& options, Problems& problems);
+Summary scan(const io::ByteSource& source, const ReaderOptions& options, Problems& problems);
 
 }  // namespace rtd::mcap

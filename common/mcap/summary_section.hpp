@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/mcap/crc32.hpp"
-#include "common/mcap/encode.hpp"
+#include "common/io/bytes.hpp"
+#include "common/mcap/codec.hpp"
 
 namespace rtd::mcap {
 
@@ -34,8 +34,8 @@ class SummarySection {
     append_record(out_, footer);
     // The CRC covers the footer up to itself.
     const std::size_t crc_at = out_.size() - sizeof(footer.summary_crc);
-    Encoder::store(out_.data() + crc_at, crc32(ByteView(out_).subspan(start_, crc_at - start_)));
-    Encoder(out_).rest(bytes_of(kMagic));
+    io::store(out_.data() + crc_at, io::crc32(ByteView(out_).subspan(start_, crc_at - start_)));
+    Encoder(out_).rest(io::bytes_of(kMagic));
   }
 
  private:

@@ -5,10 +5,28 @@
 #include <algorithm>
 #include <array>
 
-#include "common/mcap/crc32.hpp"
+#include "common/io/bytes.hpp"
 #include "common/mcap/summary_section.hpp"
 
 namespace rtd::mcap {
+
+void ChunkBuilder::add(const Message& message) {
+  MessageIndex& index = indexes_[message.channel_id];
+  index.channel_id = message.channel_id;
+  index.records.emplace_back(message.log_time, records_.size());
+  start_time_ = message_count_ == 0 ? message.log_time : std::min(start_time_, message.log_time);
+  end_time_ = std::max(end_time_, message.log_time);
+  ++message_count_;
+  append_record(records_, message);
+}
+
+void ChunkBuilder::clear() {
+  records_.clear();
+  indexes_.clear();
+  message_count_ = 0;
+  start_time_ = end_time_ = 0;
+}
+
 namespace {
 
 constexpr std::array kExtraData{std::byte{0x01}, std::byte{0xff}, std::byte{0xff}};
@@ -37,7 +55,7 @@ bool is_new(const std::map<Id, R>& known, const R& record, const char* kind) {
 
 }  // namespace
 
-Writer::Writer(ByteSink& sink, WriterOptions options) : sink_(&sink), options_(std::move(options)) {
+Writer::Writer(io::ByteSink& sink, WriterOptions options) : sink_(&sink), options_(std::move(options)) {
   require(options_.chunk_size > 0, "chunk_size is 0; give at least 1 byte, usually 1 to 4 MiB");
   begin();
 }
@@ -47,7 +65,7 @@ void Writer::begin() {
           "a file begins in an empty sink; this one holds " + std::to_string(sink_->position()) + " bytes");
   offset_ = data_crc_ = 0;
   Bytes start;
-  Encoder(start).rest(bytes_of(kMagic));
+  Encoder(start).rest(io::bytes_of(kMagic));
   append_record(start, Header{options_.profile, options_.library}, padding());
   append(start);
   statistics_ = {};
@@ -110,7 +128,7 @@ void Writer::write(const Attachment& attachment) {
   Bytes record;
   append_record(record, attachment, padding());
   const std::size_t crc_at = record.size() - padding().size() - sizeof(attachment.crc);
-  Encoder::store(record.data() + crc_at, crc32(ByteView(record).subspan(kFrameBytes, crc_at - kFrameBytes)));
+  io::store(record.data() + crc_at, io::crc32(ByteView(record).subspan(kFrameBytes, crc_at - kFrameBytes)));
   const AttachmentIndex index{
       offset_,         record.size(),        attachment.log_time, attachment.create_time, attachment.data.size(),
       attachment.name, attachment.media_type};
@@ -133,14 +151,14 @@ void Writer::end_chunk() {
   require_open();
   if (chunk_.empty()) return;
   const ByteView records = chunk_.records();
-  const std::uint32_t crc = crc32(records);
+  const std::uint32_t crc = io::crc32(records);
   const ByteView body = compress(options_.compression, options_.compression_level, records, compressed_);
   Chunk chunk{chunk_.start_time(), chunk_.end_time(), records.size(), crc, name_of(options_.compression), {}};
   Bytes head;
   append_record(head, chunk);
   // The records themselves go from where they are into the sink: only their lengths are put into the head.
-  Encoder::store(head.data() + 1, head.size() - kFrameBytes + body.size());
-  Encoder::store(head.data() + head.size() - sizeof(std::uint64_t), std::uint64_t{body.size()});
+  io::store(head.data() + 1, head.size() - kFrameBytes + body.size());
+  io::store(head.data() + head.size() - sizeof(std::uint64_t), std::uint64_t{body.size()});
   chunk.records = body;
   ChunkIndex index = index_of(chunk, head.size() + body.size());
   Bytes tail;
@@ -151,7 +169,7 @@ void Writer::end_chunk() {
     }
   }
   index.message_index_length = tail.size();
-  append(head, body, options_.compression == Compression::kNone ? crc : crc32(body), tail);
+  append(head, body, options_.compression == Compression::kNone ? crc : io::crc32(body), tail);
   chunk_indexes_.push_back(std::move(index));
   ++statistics_.chunk_count;
   chunk_.clear();
@@ -187,7 +205,7 @@ void Writer::close() {
   closed_ = true;
 }
 
-void Writer::split(ByteSink& next) {
+void Writer::split(io::ByteSink& next) {
   close();
   sink_ = &next;
   begin();
@@ -245,9 +263,9 @@ void Writer::append(ByteView record) {
 void Writer::append(ByteView head, ByteView body, std::uint32_t body_crc, ByteView tail) {
   sink_->append({head, body, tail});
   offset_ += head.size() + body.size() + tail.size();
-  data_crc_ = crc32(head, data_crc_);
-  if (!body.empty()) data_crc_ = crc32_combine(data_crc_, body_crc, body.size());
-  data_crc_ = crc32(tail, data_crc_);
+  data_crc_ = io::crc32(head, data_crc_);
+  if (!body.empty()) data_crc_ = io::crc32_combine(data_crc_, body_crc, body.size());
+  data_crc_ = io::crc32(tail, data_crc_);
 }
 
 }  // namespace rtd::mcap

@@ -4,11 +4,35 @@
 
 #include <set>
 
-#include "common/mcap/byte_sink.hpp"
-#include "common/mcap/chunk_builder.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/mcap/codec.hpp"
 #include "common/mcap/compression.hpp"
 
 namespace rtd::mcap {
+
+/// The records of one chunk before it is compressed, and their index.
+class ChunkBuilder {
+ public:
+  void add(const Schema& schema) { append_record(records_, schema); }
+  void add(const Channel& channel) { append_record(records_, channel); }
+  void add(const Message& message);
+
+  bool empty() const { return records_.empty(); }
+  std::uint64_t message_count() const { return message_count_; }
+  ByteView records() const { return records_; }
+  Timestamp start_time() const { return start_time_; }  ///< of its messages; 0 without any
+  Timestamp end_time() const { return end_time_; }
+  /// The entries of a channel in the order of the messages, as the conformance set has them.
+  const std::map<ChannelId, MessageIndex>& indexes() const { return indexes_; }
+  /// Keeps the memory.
+  void clear();
+
+ private:
+  Bytes records_;
+  std::map<ChannelId, MessageIndex> indexes_;
+  std::uint64_t message_count_ = 0;
+  Timestamp start_time_ = 0, end_time_ = 0;
+};
 
 /// The defaults make a file that every reader can open by index and check in full.
 struct WriterOptions {
@@ -41,12 +65,12 @@ struct Written {
 };
 
 /// Writes one MCAP file. Strict: what the format does not allow throws std::invalid_argument and leaves the file as it
-/// was. A sink's IoError passes through; nothing of the failed record is then in the file and the call may be repeated.
-/// For one thread. Destroying it without close() leaves the file as a crash would: readable, without summary.
+/// was. A sink's io::IoError passes through; nothing of the failed record is then in the file and the call may be
+/// repeated. For one thread. Destroying it without close() leaves the file as a crash would: readable, without summary.
 class Writer {
  public:
   /// Begins the file. `sink` must be empty and outlive the writer.
-  explicit Writer(ByteSink& sink, WriterOptions options = {});
+  explicit Writer(io::ByteSink& sink, WriterOptions options = {});
 
   /// Writes a record with the id that it has; the same id again must come with the same content and is then ignored.
   void write(const Schema& schema);
@@ -72,7 +96,7 @@ class Writer {
   /// Ends the file: open chunk, DataEnd, summary, footer. Writing more is an error then; close() again does nothing.
   void close();
   /// close(), then begins the next file in an empty sink with the same options, schemas and channels.
-  void split(ByteSink& next);
+  void split(io::ByteSink& next);
 
  private:
   void begin();
@@ -88,7 +112,7 @@ class Writer {
   void append(ByteView record);
   void append(ByteView head, ByteView body, std::uint32_t body_crc, ByteView tail);
 
-  ByteSink* sink_;
+  io::ByteSink* sink_;
   WriterOptions options_;
   std::map<SchemaId, Schema> schemas_;
   std::map<ChannelId, Channel> channels_;

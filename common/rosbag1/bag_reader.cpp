@@ -61,7 +61,7 @@ void BagReader::take_noting(const RecordPlace& place) try { take(place); } catch
 }
 
 void BagReader::check_bag_header(const RecordHeader& header) const {
-  if (header.op() != Op::kBagHeader) throw ros::WireError("it is no bag header");
+  if (header.op() != Op::kBagHeader) throw ros::WireError("it is not a bag header");
   if (const std::string encryptor = header.text("encryptor"); !encryptor.empty() && encryptor != "rosbag/NoEncryptor") {
     throw BagError(file_.path().string() + " is encrypted (" + encryptor + "); decrypt it with: rosbag decrypt FILE");
   }
@@ -79,7 +79,7 @@ void BagReader::take(const RecordPlace& place) {
   if (op != Op::kIndex && op != Op::kConnection) return;
   const std::vector<std::uint8_t> data = file_.read(place.data_begin, place.data_bytes);
   if (op == Op::kConnection) return take_connection(header, data);
-  if (chunks_.empty()) throw ros::WireError("an index stands before the first chunk");
+  if (chunks_.empty()) throw ros::WireError("an index precedes the first chunk");
   try {
     take_index(header, data);
   } catch (const ros::WireError&) {
@@ -111,7 +111,7 @@ void BagReader::distrust_index() {
   std::erase_if(messages_, [chunk = last_chunk()](const MessagePlace& message) { return message.chunk == chunk; });
 }
 
-/// Topic and type stand in the record's data, which is itself a list of fields.
+/// Topic and type are in the record's data, which is itself a list of fields.
 void BagReader::take_connection(const RecordHeader& header, Bytes data) {
   const RecordHeader fields(data);
   const std::string mapped = header.text("topic");

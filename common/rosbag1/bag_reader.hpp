@@ -81,7 +81,7 @@ class BagReader {
   std::deque<LoadedChunk> loaded_;  ///< the last ones used
   std::vector<std::string> damages_;
   bool indexed_ = false;
-  bool complete_ = true;  ///< connections stand behind the last chunk: its index was not cut
+  bool complete_ = true;  ///< connections follow the last chunk: its index was not cut
 };
 
 }  // namespace rtd::rosbag1

@@ -11,8 +11,8 @@
 namespace rtd::rosbag1 {
 
 /// The content of a chunk. `compression`: none, bz2 or lz4 (LZ4 frame format). `size` is what the chunk claims; memory
-/// is taken as content appears, so that a lie costs nothing. Throws ros::WireError: unknown compression (naming it and
-/// those known), damaged data, another size than claimed.
+/// is taken as content appears, so that a false claim costs nothing. Throws ros::WireError: unknown compression (naming
+/// it and those known), damaged data, another size than claimed.
 std::vector<std::uint8_t> decompress(const std::string& compression, std::vector<std::uint8_t> data, std::size_t size);
 
 }  // namespace rtd::rosbag1

@@ -28,7 +28,7 @@ int run_on_files(CLI::App& app, int argc, char** argv, const std::function<int()
   return service::run_command(app, argc, argv, [&]() -> int {
     try {
       return work();
-    } catch (const mcap::IoError& error) {
+    } catch (const io::IoError& error) {
       std::cerr << "rtd record: " << error.what() << '\n';
       return service::kUsageOrConfig;
     } catch (const std::exception& error) {
@@ -73,12 +73,12 @@ void print(const mcap::RecoverReport& report, const RecoverOptions& options) {
 }
 
 int recover(const RecoverOptions& options) {
-  const mcap::FileSource source(options.input);
+  const io::FileSource source(options.input);
   if (source.being_written()) {
     std::cerr << "rtd record: " << options.input << " is still being written: stop its recorder first\n";
     return service::kUsageOrConfig;
   }
-  mcap::FileSink sink(options.output, options.force ? mcap::IfExists::kReplace : mcap::IfExists::kFail);
+  io::FileSink sink(options.output, options.force ? io::IfExists::kReplace : io::IfExists::kFail);
   service::Progress progress(std::cerr, "recovering", source.size());
   mcap::RecoverOptions recovering;
   recovering.progress = [&](std::uint64_t bytes) { progress.reach(bytes); };
@@ -108,7 +108,7 @@ struct JoinOptions {
 };
 
 struct Part {
-  std::unique_ptr<mcap::FileSource> source;
+  std::unique_ptr<io::FileSource> source;
   mcap::Timestamp begin = 0;
 };
 
@@ -123,18 +123,18 @@ std::vector<fs::path> files_of(const std::vector<std::string>& inputs) {
     const std::size_t before = files.size();
     for (const fs::directory_entry& entry : fs::directory_iterator(input))
       if (entry.path().extension() == ".mcap") files.push_back(entry.path());
-    if (files.size() == before) throw mcap::IoError(EISDIR, input + ": this folder holds no .mcap file");
+    if (files.size() == before) throw io::IoError(EISDIR, input + ": this folder holds no .mcap file");
   }
   return files;
 }
 
 Part open_part(const fs::path& file) {
-  Part part{std::make_unique<mcap::FileSource>(file)};
-  if (part.source->being_written()) throw mcap::IoError(EBUSY, file.string() + ": stop its recorder first");
+  Part part{std::make_unique<io::FileSource>(file)};
+  if (part.source->being_written()) throw io::IoError(EBUSY, file.string() + ": stop its recorder first");
   const mcap::IndexedReader reader(*part.source);
   for (const mcap::Problem& problem : reader.problems().listed()) {
     if (problem.kind == mcap::ProblemKind::kNotMcap && problem.data_lost)
-      throw mcap::IoError(EINVAL, file.string() + ": this is not an MCAP file");
+      throw io::IoError(EINVAL, file.string() + ": this is not an MCAP file");
   }
   if (reader.summary().statistics) part.begin = reader.summary().statistics->message_start_time;
   return part;
@@ -165,13 +165,13 @@ void print(const mcap::JoinReport& report, const JoinOptions& options, std::size
 
 int join(const JoinOptions& options) {
   const std::vector<Part> parts = open_parts(options.inputs);
-  std::vector<const mcap::ByteSource*> sources;
+  std::vector<const io::ByteSource*> sources;
   std::uint64_t bytes = 0;
   for (const Part& part : parts) {
     sources.push_back(part.source.get());
     bytes += part.source->size();
   }
-  mcap::FileSink sink(options.output, options.force ? mcap::IfExists::kReplace : mcap::IfExists::kFail);
+  io::FileSink sink(options.output, options.force ? io::IfExists::kReplace : io::IfExists::kFail);
   service::Progress progress(std::cerr, "joining", bytes);
   mcap::JoinOptions joining;
   joining.progress = [&](std::uint64_t done) { progress.reach(done); };

@@ -101,14 +101,14 @@ RecorderService::RecorderService(const Config& config, service::Runtime& runtime
   sync_.emplace(std::chrono::milliseconds(config_.sync_pause_ms));
   try {
     recording_.emplace(options_of(config_), open, book_, *sync_);
-  } catch (const mcap::IoError& error) {
+  } catch (const io::IoError& error) {
     throw ConfigError(error.what());
   }
 }
 
-std::shared_ptr<mcap::ByteSink> RecorderService::open_sink(std::size_t number) const {
-  const auto if_exists = config_.force ? mcap::IfExists::kReplace : mcap::IfExists::kFail;
-  auto sink = std::make_shared<mcap::FileSink>(files_.file(number), if_exists, mcap::Cached::kDrop);
+std::shared_ptr<io::ByteSink> RecorderService::open_sink(std::size_t number) const {
+  const auto if_exists = config_.force ? io::IfExists::kReplace : io::IfExists::kFail;
+  auto sink = std::make_shared<io::FileSink>(files_.file(number), if_exists, io::Cached::kDrop);
   SPDLOG_INFO("event=file_begun path={}", files_.file(number).string());
   return sink;
 }
@@ -127,13 +127,13 @@ service::ExitCode RecorderService::run() {
 void RecorderService::record() {
   try {
     record_until_stopped();
-  } catch (const mcap::IoError& error) {
+  } catch (const io::IoError& error) {
     failure_ = error.what();
   }
   readers_->stop();
   try {
     finish();
-  } catch (const mcap::IoError& error) {
+  } catch (const io::IoError& error) {
     if (failure_.empty()) failure_ = error.what();
     SPDLOG_ERROR("event=file_without_summary cause=\"{}\" fix=\"rtd record recover {}\"", error.what(),
                  files_.file(recording_->files().size() - 1).string());

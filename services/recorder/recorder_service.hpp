@@ -25,8 +25,7 @@ namespace rtd::recorder {
 class RecorderService {
  public:
   static constexpr const char* kName = "record";
-  static constexpr const char* kDescription =
-      "Record topics of any type to MCAP files, byte for byte";
+  static constexpr const char* kDescription = "Record topics of any type to MCAP files, byte for byte";
   using Config = ServiceConfig;
   static void add_options(CLI::App& app, Config& config);
 
@@ -37,7 +36,7 @@ class RecorderService {
   service::ExitCode run();
 
  private:
-  std::shared_ptr<mcap::ByteSink> open_sink(std::size_t number) const;
+  std::shared_ptr<io::ByteSink> open_sink(std::size_t number) const;
   void record();
   void record_until_stopped();
   void finish();

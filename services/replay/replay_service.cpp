@@ -12,8 +12,8 @@
 #include <limits>
 #include <set>
 
-#include "common/mcap/byte_sink.hpp"
-#include "common/mcap/decode.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/mcap/codec.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/config.hpp"
@@ -44,7 +44,7 @@ std::int64_t signed_time(mcap::Timestamp time) {
 
 std::uint64_t seq_in(std::span<const std::byte> cdr) {
   constexpr std::size_t kSeqAt = 4;
-  return cdr.size() >= kSeqAt + 8 ? mcap::load<std::uint64_t>(cdr.data() + kSeqAt) : 0;
+  return cdr.size() >= kSeqAt + 8 ? io::load<std::uint64_t>(cdr.data() + kSeqAt) : 0;
 }
 
 }  // namespace
@@ -89,14 +89,14 @@ ReplayService::ReplayService(const Config& config, service::Runtime& runtime)
     open();
   } catch (const ReplayError& error) {
     throw service::ConfigError(error.what());
-  } catch (const mcap::IoError& error) {
+  } catch (const io::IoError& error) {
     throw service::ConfigError(error.what());
   }
   runtime_.stop.on_stop([inbox = inbox_] { inbox->post(Command::kStop); });
 }
 
 void ReplayService::open() {
-  source_ = std::make_unique<mcap::FileSource>(mcap::recording_path(config_.file));
+  source_ = std::make_unique<io::FileSource>(mcap::recording_path(config_.file));
   reader_ = std::make_unique<mcap::IndexedReader>(*source_);
   for (const mcap::Problem& problem : reader_->problems().listed())
     if (problem.kind == mcap::ProblemKind::kNotMcap && problem.data_lost)

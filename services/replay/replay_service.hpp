@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mcap/byte_source.hpp"
+#include "common/io/byte_source.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/runtime.hpp"
 #include "services/replay/config.hpp"
@@ -56,7 +56,7 @@ class ReplayService final : public PlayerHost {
   Config config_;
   service::Runtime& runtime_;
   int window_;
-  std::unique_ptr<mcap::FileSource> source_;
+  std::unique_ptr<io::FileSource> source_;
   std::unique_ptr<mcap::IndexedReader> reader_;
   std::vector<const mcap::Channel*> channels_;  ///< the ones played
   std::int64_t first_ns_ = 0, start_ns_ = 0, end_ns_ = 0;

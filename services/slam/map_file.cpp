@@ -31,7 +31,7 @@ std::string text(int width, int height, double fx, double fy, double cx, double 
 std::uint64_t save_map_file(const std::filesystem::path& path, const MapSnapshot& snapshot) {
   std::filesystem::path unfinished = path;
   unfinished += ".tmp";
-  mcap::FileSink sink(unfinished, mcap::IfExists::kReplace);
+  io::FileSink sink(unfinished, io::IfExists::kReplace);
   try {
     write_map(snapshot, sink);
     sink.replace(path);
@@ -44,7 +44,7 @@ std::uint64_t save_map_file(const std::filesystem::path& path, const MapSnapshot
 }
 
 MapContents load_map_file(const std::filesystem::path& path, const MapReadOptions& options) {
-  const mcap::FileSource source(path);
+  const io::FileSource source(path);
   try {
     return read_map(source, options);
   } catch (const MapFileError& error) {

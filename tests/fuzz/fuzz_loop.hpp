@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "common/mcap/encode.hpp"
+#include "common/mcap/codec.hpp"
 #include "tests/fuzz/mcap/allocation_watch.hpp"
 
 namespace rtd::testing {
@@ -25,7 +25,7 @@ int run_fuzz(int argc, char** argv, const char* failed_path, const Make& make, c
   std::mt19937_64 random(seed);
   watch_allocations();
   for (std::uint64_t i = 0; i < inputs; ++i) {
-    const mcap::Bytes input = make(random);
+    const io::Bytes input = make(random);
     peak_allocation();
     const std::string failure = test(input, random);
     if (failure.empty()) continue;

@@ -24,7 +24,7 @@ constexpr std::string_view kScheme = "mcap:";
 /// Messages by DDS name of the topic.
 std::map<std::string, std::uint64_t> counts_of(const std::string& file) {
   try {
-    const mcap::FileSource source = mcap::open_recording(file);
+    const io::FileSource source = mcap::open_recording(file);
     const mcap::IndexedReader reader(source);
     std::map<std::string, std::uint64_t> counts;
     for (const auto& [id, channel] : reader.summary().channels) {

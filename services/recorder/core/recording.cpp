@@ -33,7 +33,7 @@ Recording::Recording(RecordingOptions options, OpenSink open_sink, TopicBook& bo
 }
 
 void Recording::write(const QueuedMessage& message, std::int64_t now_ns) {
-  const mcap::ByteView data = message.bytes->view();
+  const io::ByteView data = message.bytes->view();
   const bool chunk_full =
       writer_.open_chunk_messages() > 0 && writer_.open_chunk_bytes() + data.size() > options_.chunk_bytes;
   if (chunk_full) end_chunk();
@@ -95,7 +95,7 @@ void Recording::end_chunk() {
 
 void Recording::begin_next_file() {
   end_chunk();
-  std::shared_ptr<mcap::ByteSink> next = open_sink_(ended_files_.size() + 1);
+  std::shared_ptr<io::ByteSink> next = open_sink_(ended_files_.size() + 1);
   writer_.split(*next);
   file_.bytes = sink_->position();
   sync_.put(sink_, {bytes(), messages_});

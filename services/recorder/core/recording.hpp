@@ -34,7 +34,7 @@ struct FileSummary {
 /// growing time. For one thread. IoError passes through: what was written before stays intact.
 class Recording {
  public:
-  using OpenSink = std::function<std::shared_ptr<mcap::ByteSink>(std::size_t number)>;
+  using OpenSink = std::function<std::shared_ptr<io::ByteSink>(std::size_t number)>;
 
   Recording(RecordingOptions options, OpenSink open_sink, TopicBook& book, SyncThread& sync);
 
@@ -57,7 +57,7 @@ class Recording {
   const OpenSink open_sink_;
   TopicBook& book_;
   SyncThread& sync_;
-  std::shared_ptr<mcap::ByteSink> sink_;
+  std::shared_ptr<io::ByteSink> sink_;
   mcap::Writer writer_;
   std::map<std::size_t, mcap::ChannelId> channels_;
   std::map<std::string, mcap::SchemaId> schemas_;

@@ -8,7 +8,7 @@ namespace rtd::recorder {
 
 SyncThread::SyncThread(std::chrono::milliseconds pause) : pause_(pause), thread_([this] { loop(); }) {}
 
-void SyncThread::put(std::shared_ptr<mcap::ByteSink> sink, Acknowledged written) {
+void SyncThread::put(std::shared_ptr<io::ByteSink> sink, Acknowledged written) {
   {
     const std::lock_guard lock(mutex_);
     // Of one sink only the newest mark counts.
@@ -56,7 +56,7 @@ void SyncThread::sync(const std::deque<Mark>& marks) {
     std::string failure;
     try {
       mark.sink->sync();
-    } catch (const mcap::IoError& error) {
+    } catch (const io::IoError& error) {
       failure = error.what();
     }
     const std::lock_guard lock(mutex_);

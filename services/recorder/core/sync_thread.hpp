@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "common/mcap/byte_sink.hpp"
+#include "common/io/byte_sink.hpp"
 
 namespace rtd::recorder {
 
@@ -33,7 +33,7 @@ class SyncThread {
   SyncThread& operator=(const SyncThread&) = delete;
 
   /// The sink now contains `written` in complete records. It is kept alive until that is durable.
-  void put(std::shared_ptr<mcap::ByteSink> sink, Acknowledged written);
+  void put(std::shared_ptr<io::ByteSink> sink, Acknowledged written);
   Acknowledged acknowledged() const;
   /// Why a sync failed; empty: none did. After a failure nothing more is acknowledged.
   std::string failure() const;
@@ -42,7 +42,7 @@ class SyncThread {
 
  private:
   struct Mark {
-    std::shared_ptr<mcap::ByteSink> sink;
+    std::shared_ptr<io::ByteSink> sink;
     Acknowledged written;
   };
   void loop();

@@ -15,7 +15,7 @@
 namespace rtd::recording {
 namespace {
 
-Contents read(const mcap::FileSource& source, const std::string& path, std::ostream& err) {
+Contents read(const io::FileSource& source, const std::string& path, std::ostream& err) {
   service::Progress progress(err, "reading " + path, source.size());
   return contents_of(source, [&](std::uint64_t bytes) { progress.reach(bytes); });
 }
@@ -37,7 +37,7 @@ void print(const Diff& diff, bool json, std::ostream& out) {
 }
 
 int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream& err) {
-  const mcap::FileSource a = mcap::open_recording(request.a), b = mcap::open_recording(request.b);
+  const io::FileSource a = mcap::open_recording(request.a), b = mcap::open_recording(request.b);
   const Contents in_a = read(a, request.a, err), in_b = read(b, request.b, err);
   const auto ignored = [&](const char* what) { return std::ranges::count(request.ignore, what) > 0; };
   RecordingDiff difference =
@@ -117,7 +117,7 @@ CLI::App* add_info_command(CLI::App& parent, InfoOptions& options) {
 
 int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
   try {
-    const mcap::FileSource source = mcap::open_recording(options.file);
+    const io::FileSource source = mcap::open_recording(options.file);
     service::Progress progress(err, "reading", source.size());
     ReportOptions how;
     how.check = options.check;

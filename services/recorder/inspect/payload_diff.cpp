@@ -101,7 +101,7 @@ class Comparison {
   std::vector<Field> fields_;
 };
 
-std::vector<std::string> first_byte(mcap::ByteView a, mcap::ByteView b) {
+std::vector<std::string> first_byte(io::ByteView a, io::ByteView b) {
   std::vector<std::string> lines;
   if (a.size() != b.size())
     lines.push_back("size: " + std::to_string(a.size()) + " | " + std::to_string(b.size()) + " bytes");
@@ -119,10 +119,10 @@ std::vector<ByteRange> run_ranges(const std::string& type) {
   return known == kRanges.end() ? std::vector<ByteRange>() : known->second;
 }
 
-std::vector<std::string> differences(const std::string& type, mcap::ByteView a, mcap::ByteView b) {
+std::vector<std::string> differences(const std::string& type, io::ByteView a, io::ByteView b) {
   const std::string dds_type = ros2::dds_type(type);
   if (!ros2::can_read(dds_type)) return first_byte(a, b);
-  const auto read = [&](mcap::ByteView payload) {
+  const auto read = [&](io::ByteView payload) {
     return ros2::message_json(dds_type, {reinterpret_cast<const std::uint8_t*>(payload.data()), payload.size()}, 0);
   };
   try {

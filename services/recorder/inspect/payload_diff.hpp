@@ -20,6 +20,6 @@ std::vector<ByteRange> run_ranges(const std::string& type);
 
 /// What differs between two payloads of one type, a line for each field: name, how many values, the first two. Payloads
 /// of an unknown type: the first byte that differs.
-std::vector<std::string> differences(const std::string& type, mcap::ByteView a, mcap::ByteView b);
+std::vector<std::string> differences(const std::string& type, io::ByteView a, io::ByteView b);
 
 }  // namespace rtd::recording

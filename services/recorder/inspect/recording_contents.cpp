@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/recorder/inspect/recording_contents.hpp"
 
-#include "common/mcap/decode.hpp"
+#include "common/mcap/codec.hpp"
 #include "common/mcap/stream_reader.hpp"
 #include "services/recorder/inspect/payload_diff.hpp"
 
 namespace rtd::recording {
 namespace {
 
-std::uint64_t hash_of(mcap::ByteView bytes) {
+std::uint64_t hash_of(io::ByteView bytes) {
   return std::hash<std::string_view>{}({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-std::uint64_t stable_hash_of(mcap::ByteView payload, const std::vector<ByteRange>& left_out) {
+std::uint64_t stable_hash_of(io::ByteView payload, const std::vector<ByteRange>& left_out) {
   std::uint64_t hash = 0;
   std::size_t from = 0;
   const auto add = [&](std::size_t to) { hash = hash * 31 + hash_of(payload.subspan(from, to - from)); };
@@ -32,13 +32,13 @@ Fingerprint fingerprint(const mcap::Message& message, const std::vector<ByteRang
   print.stable_hash = of_the_run.empty() ? print.hash : stable_hash_of(message.data, of_the_run);
   constexpr std::size_t kHeaderBytes = 4;
   if (message.data.size() >= kHeaderBytes + sizeof(print.key))
-    print.key = mcap::load<std::uint64_t>(message.data.data() + kHeaderBytes);
+    print.key = io::load<std::uint64_t>(message.data.data() + kHeaderBytes);
   return print;
 }
 
 }  // namespace
 
-Contents contents_of(const mcap::ByteSource& source, const std::function<void(std::uint64_t bytes)>& on_progress) {
+Contents contents_of(const io::ByteSource& source, const std::function<void(std::uint64_t bytes)>& on_progress) {
   Contents contents;
   struct Target {
     TopicContents* topic = nullptr;

@@ -3,9 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <string>
+#include <vector>
 
-#include "common/mcap/byte_source.hpp"
+#include "common/io/byte_source.hpp"
 #include "common/mcap/problem.hpp"
+#include "common/mcap/records.hpp"
 
 namespace rtd::recording {
 
@@ -31,6 +35,6 @@ struct Contents {
 };
 
 /// Reads a whole recording. `on_progress` gets the bytes read so far; may be empty.
-Contents contents_of(const mcap::ByteSource& source, const std::function<void(std::uint64_t bytes)>& on_progress = {});
+Contents contents_of(const io::ByteSource& source, const std::function<void(std::uint64_t bytes)>& on_progress = {});
 
 }  // namespace rtd::recording

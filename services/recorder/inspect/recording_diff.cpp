@@ -146,7 +146,7 @@ RecordingDiff diff(const Contents& a, const Contents& b, const DiffOptions& opti
   return result;
 }
 
-void explain(RecordingDiff& diff, const mcap::ByteSource& a, const mcap::ByteSource& b) {
+void explain(RecordingDiff& diff, const io::ByteSource& a, const io::ByteSource& b) {
   mcap::IndexedReader in_a(a), in_b(b);
   for (TopicDiff& topic : diff.topics) {
     if (!topic.first) continue;

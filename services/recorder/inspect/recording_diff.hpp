@@ -72,7 +72,7 @@ struct RecordingDiff {
 RecordingDiff diff(const Contents& a, const Contents& b, const DiffOptions& options = {});
 
 /// Reads the first differing payloads from both files and fills in why they differ.
-void explain(RecordingDiff& diff, const mcap::ByteSource& a, const mcap::ByteSource& b);
+void explain(RecordingDiff& diff, const io::ByteSource& a, const io::ByteSource& b);
 
 std::string to_text(const RecordingDiff& diff);
 nlohmann::ordered_json to_json(const RecordingDiff& diff);

@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "common/mcap/decode.hpp"
-#include "common/mcap/encode.hpp"
+#include "common/mcap/codec.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/stream_reader.hpp"
 
@@ -68,7 +67,7 @@ void add_chunk(RecordingReport& report, const std::string& compression, std::uin
 }
 
 /// The times of the messages of one chunk, from the indexes after it; false when these cannot be read.
-bool read_index(const mcap::ByteSource& source, const mcap::ChunkIndex& chunk, Collected& collected) {
+bool read_index(const io::ByteSource& source, const mcap::ChunkIndex& chunk, Collected& collected) {
   const std::uint64_t offset = chunk.chunk_start_offset + chunk.chunk_length;
   if (offset > source.size() || chunk.message_index_length > source.size() - offset) return false;
   std::vector<std::byte> bytes(chunk.message_index_length);
@@ -84,7 +83,7 @@ bool read_index(const mcap::ByteSource& source, const mcap::ChunkIndex& chunk, C
 }
 
 /// False when the indexes do not cover every message: then the file has to be read.
-bool report_from_summary(const mcap::ByteSource& source, RecordingReport& report) {
+bool report_from_summary(const io::ByteSource& source, RecordingReport& report) {
   mcap::IndexedReader reader(source);
   const mcap::Summary& summary = reader.summary();
   if (summary.scanned || !summary.statistics) return false;
@@ -124,7 +123,7 @@ void add_record(RecordingReport& report, Collected& collected, const mcap::Recor
   }
 }
 
-void report_from_everything(const mcap::ByteSource& source, const ReportOptions& options, RecordingReport& report) {
+void report_from_everything(const io::ByteSource& source, const ReportOptions& options, RecordingReport& report) {
   mcap::Problems ignored(0);  // the reader below finds the same problems
   const std::optional<mcap::Summary> summary = mcap::read_summary(source, {}, ignored);
   mcap::StreamReader reader(source);
@@ -201,7 +200,7 @@ bool RecordingReport::damaged() const {
          std::ranges::any_of(problems, [this](const mcap::Problem& p) { return is_damage(p, being_written); });
 }
 
-RecordingReport report_on(const mcap::ByteSource& source, const ReportOptions& options) {
+RecordingReport report_on(const io::ByteSource& source, const ReportOptions& options) {
   RecordingReport report;
   report.file_bytes = source.size();
   if (!options.check && source.size() > options.small_file_bytes && report_from_summary(source, report)) return report;

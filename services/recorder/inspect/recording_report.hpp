@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/mcap/byte_source.hpp"
+#include "common/io/byte_source.hpp"
 #include "common/mcap/problem.hpp"
 #include "common/mcap/records.hpp"
 
@@ -93,6 +93,6 @@ struct ReportOptions {
 
 /// Reads the summary and the message indexes, or the whole file if it is small, if these are missing or if asked to.
 /// The content of the file never makes it throw.
-RecordingReport report_on(const mcap::ByteSource& source, const ReportOptions& options = {});
+RecordingReport report_on(const io::ByteSource& source, const ReportOptions& options = {});
 
 }  // namespace rtd::recording

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <random>
 
-#include "common/mcap/crc32.hpp"
+#include "common/io/bytes.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/stream_reader.hpp"
 #include "common/mcap/writer.hpp"
@@ -35,7 +35,7 @@ struct TemporaryFile {
       std::filesystem::temp_directory_path() / ("bench_mcap" + std::to_string(getpid()) + ".mcap");
 };
 
-void write_frames(ByteSink& sink, const WriterOptions& options, std::uint64_t count) {
+void write_frames(io::ByteSink& sink, const WriterOptions& options, std::uint64_t count) {
   Writer writer(sink, options);
   const ChannelId frames = writer.add(Channel{0, 0, "/frame", "cdr", {}});
   const ChannelId poses = writer.add(Channel{0, 0, "/pose", "cdr", {}});
@@ -50,7 +50,7 @@ void write_frames(ByteSink& sink, const WriterOptions& options, std::uint64_t co
 
 void Crc32(benchmark::State& state) {
   const Bytes data = frame();
-  for (auto _ : state) benchmark::DoNotOptimize(crc32(data));
+  for (auto _ : state) benchmark::DoNotOptimize(io::crc32(data));
   state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * data.size()));
 }
 BENCHMARK(Crc32);
@@ -62,7 +62,7 @@ void Write(benchmark::State& state) {
   const std::uint64_t count = 60;
   TemporaryFile file;
   for (auto _ : state) {
-    FileSink sink(file.path, IfExists::kReplace);
+    io::FileSink sink(file.path, io::IfExists::kReplace);
     write_frames(sink, options, count);
   }
   state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * count * kFrame));
@@ -74,11 +74,11 @@ void Stream(benchmark::State& state) {
   const std::uint64_t count = 60;
   TemporaryFile file;
   {
-    FileSink sink(file.path);
+    io::FileSink sink(file.path);
     write_frames(sink, {}, count);
   }
   for (auto _ : state) {
-    const FileSource source(file.path);
+    const io::FileSource source(file.path);
     StreamReader reader(source);
     while (reader.next() != nullptr) continue;
   }
@@ -94,12 +94,12 @@ void OpenAndSeek(benchmark::State& state) {
   {
     WriterOptions options;
     options.compression = static_cast<Compression>(state.range(0));
-    FileSink sink(file.path);
+    io::FileSink sink(file.path);
     write_frames(sink, options, count);
   }
   std::mt19937_64 random(1);
   for (auto _ : state) {
-    const FileSource source(file.path);
+    const io::FileSource source(file.path);
     IndexedReader reader(source);
     MessageCursor cursor = reader.messages({random() % (count * kPeriod)});
     benchmark::DoNotOptimize(cursor.next());

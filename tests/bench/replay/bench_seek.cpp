@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t kFileBytes = 2'000'000'000, kFrameBytes = 1'536'124, kPeriodNs = 33'333'333;
 
 void write_file(const std::string& path) {
-  rtd::mcap::FileSink sink(path);
+  rtd::io::FileSink sink(path);
   rtd::mcap::Writer writer(sink, {.profile = "ros2"});
   const auto frame_type = writer.add(rtd::mcap::Schema{0, "rtd_msgs::msg::dds_::RgbdFrame_", "", ""});
   const auto pose_type = writer.add(rtd::mcap::Schema{0, "geometry_msgs/msg/PoseStamped", "", ""});
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   if (!std::filesystem::exists(path)) write_file(path);
 
   const Clock::time_point opening = Clock::now();
-  const rtd::mcap::FileSource source(path);
+  const rtd::io::FileSource source(path);
   rtd::mcap::IndexedReader reader(source);
   const auto statistics = reader.summary().statistics.value();
   const auto first = static_cast<std::int64_t>(statistics.message_start_time);

@@ -152,8 +152,8 @@ class RecordKill : public ::testing::Test {
   static RecordedFile recover(const fs::path& path) {
     const fs::path recovered = path.string() + ".recovered";
     {
-      const mcap::FileSource source(path);
-      mcap::FileSink sink(recovered, mcap::IfExists::kReplace);
+      const io::FileSource source(path);
+      io::FileSink sink(recovered, io::IfExists::kReplace);
       for (const mcap::Problem& problem : mcap::recover(source, sink).problems) {
         EXPECT_EQ(problem.kind, mcap::ProblemKind::kTruncated) << to_string(problem);
       }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mcap/byte_source.hpp"
+#include "common/io/byte_source.hpp"
 #include "common/mcap/indexed_reader.hpp"
 
 namespace rtd::recorder {
@@ -27,7 +27,7 @@ struct RecordedFile {
 };
 
 inline RecordedFile read_recording(const std::filesystem::path& path) {
-  const mcap::FileSource source(path);
+  const io::FileSource source(path);
   mcap::IndexedReader reader(source);
   RecordedFile file;
   for (const auto& [id, channel] : reader.summary().channels) {

@@ -127,7 +127,7 @@ TEST_F(RecorderTest, what_has_no_room_is_counted_named_and_makes_the_exit_code_3
   const RecordedFile file = read_recording(config_.output);
   EXPECT_TRUE(file.topics.at("some/thing").empty());
   EXPECT_EQ(file.topics.at("/slam/pose").size(), 1U);
-  const mcap::FileSource source(config_.output);
+  const io::FileSource source(config_.output);
   mcap::IndexedReader reader(source);
   ASSERT_EQ(reader.summary().metadata_indexes.size(), 1U);
   const auto losses = reader.metadata(reader.summary().metadata_indexes[0]);
@@ -143,7 +143,7 @@ TEST_F(RecorderTest, an_earlier_recording_is_replaced_only_by_force) {
 
 TEST_F(RecorderTest, refuses_a_file_that_another_recorder_writes) {
   config_.force = true;
-  const mcap::FileSink other(config_.output);
+  const io::FileSink other(config_.output);
   launch(service::Pace::kRealtime);
   EXPECT_THROW(stop(), service::ConfigError);
 }

@@ -48,7 +48,7 @@ inline std::string type_of(const std::string& topic) {
 
 /// Writes a recording as rtd record does: names of ROS 2, QoS in the channel.
 inline void write_recording(const std::string& path, const std::vector<Piece>& pieces, bool reliable = true) {
-  mcap::FileSink sink(path, mcap::IfExists::kReplace);
+  io::FileSink sink(path, io::IfExists::kReplace);
   mcap::Writer writer(sink, {.profile = "ros2", .chunk_size = 20'000});
   std::map<std::string, mcap::ChannelId> channels;
   bus::RawQos qos;
@@ -60,7 +60,7 @@ inline void write_recording(const std::string& path, const std::vector<Piece>& p
           0, schema, ros2::ros_topic(piece.topic), "cdr", {{"offered_qos_profiles", ros2::offered_qos_text({qos})}}});
     }
     writer.write(mcap::Message{channels.at(piece.topic), 1, static_cast<mcap::Timestamp>(piece.log_ns),
-                               static_cast<mcap::Timestamp>(piece.publish_ns), mcap::bytes_of(piece.cdr)});
+                               static_cast<mcap::Timestamp>(piece.publish_ns), io::bytes_of(piece.cdr)});
   }
   writer.close();
 }

@@ -174,7 +174,7 @@ Bytes write_case(const ConformanceCase& test) {
   const Json header = fields_of(test.records.at(0));
   options.profile = text(header, "profile");
   options.library = text(header, "library");
-  MemorySink sink;
+  io::MemorySink sink;
   Writer writer(sink, options);
   for (const Json& record : test.records) {
     if (record.at("type") == "DataEnd") break;
@@ -185,7 +185,7 @@ Bytes write_case(const ConformanceCase& test) {
 }
 
 Json read_case(ByteView file, std::string& problems) {
-  const MemorySource source(file);
+  const io::MemorySource source(file);
   StreamReader reader(source);
   Json records = Json::array();
   while (const Record* record = reader.next()) {
@@ -197,7 +197,7 @@ Json read_case(ByteView file, std::string& problems) {
 }
 
 Json read_case_by_index(ByteView file, std::string& problems) {
-  const MemorySource source(file);
+  const io::MemorySource source(file);
   IndexedReader reader(source);
   MessageCursor cursor = reader.messages();
   Json messages = Json::array();

@@ -29,8 +29,8 @@ std::string uri_of(const std::string& source) {
   return clip_uri(source);
 }
 
-mcap::Bytes save(const slam::SlamSystem& slam) {
-  mcap::MemorySink file;
+io::Bytes save(const slam::SlamSystem& slam) {
+  io::MemorySink file;
   slam.read_map([&](const slam::Map& map) { slam::write_map(slam::take_snapshot(map), file); });
   return file.bytes();
 }
@@ -43,12 +43,12 @@ TEST_P(SavedMap, gives_the_second_session_its_poses) {
   if (options.source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no " << GetParam().source;
   options.front_end.mode = GetParam().mode;
   options.max_frames = 100;
-  mcap::Bytes file, file_after;
+  io::Bytes file, file_after;
   options.on_end = [&](slam::SlamSystem& slam) { file = save(slam); };
   const OfflineReport mapping = run_offline(options);
 
   options.slam.localize_only = true;
-  options.on_start = [&](slam::SlamSystem& slam) { slam.restore(slam::read_map(mcap::MemorySource(file))); };
+  options.on_start = [&](slam::SlamSystem& slam) { slam.restore(slam::read_map(io::MemorySource(file))); };
   options.on_end = [&](slam::SlamSystem& slam) { file_after = save(slam); };
   std::size_t frames_before_pose = 0;
   bool found = false;

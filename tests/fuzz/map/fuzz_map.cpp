@@ -3,8 +3,7 @@
 /// Feeds changed map files to the reader: fuzz_map [inputs] [seed]. What must hold for every input: no crash, no
 /// sanitizer report, bounded memory; it is refused, or what is read is a sound map that is written as it was read. Exit
 /// code 1 and the input in fuzz_map_failed.rtdmap otherwise. The preset asan-ubsan gives it its teeth.
-#include "common/mcap/crc32.hpp"
-#include "common/mcap/decode.hpp"
+#include "common/io/bytes.hpp"
 #include "services/slam/core/store/map_reader.hpp"
 #include "services/slam/core/store/map_writer.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"
@@ -14,14 +13,14 @@
 namespace rtd::slam {
 namespace {
 
-using mcap::Bytes;
-using mcap::ByteView;
+using io::Bytes;
+using io::ByteView;
 
 // What the reader allows itself, a block twice, and the map that is made of it.
 constexpr std::size_t kMostPerByte = 96, kMostAllocated = 24 << 20;
 
 Bytes bytes_of(const Map& map) {
-  mcap::MemorySink sink;
+  io::MemorySink sink;
   write_map(take_snapshot(map), sink);
   return sink.bytes();
 }
@@ -38,11 +37,11 @@ std::vector<Bytes> seeds() {
 void reseal(Bytes& file) {
   constexpr std::size_t kPreamble = 12, kHead = 8, kCrc = 4;
   if (file.size() < kPreamble + kCrc) return;
-  mcap::Encoder::store(file.data() + kPreamble, mcap::crc32(ByteView(file).first(kPreamble)));
+  io::store(file.data() + kPreamble, io::crc32(ByteView(file).first(kPreamble)));
   for (std::size_t at = kPreamble + kCrc; at + kHead + kCrc <= file.size();) {
-    const std::size_t size = mcap::load<std::uint32_t>(file.data() + at + 4);
+    const std::size_t size = io::load<std::uint32_t>(file.data() + at + 4);
     if (size > file.size() - at - kHead - kCrc) return;
-    mcap::Encoder::store(file.data() + at + kHead + size, mcap::crc32(ByteView(file).subspan(at, kHead + size)));
+    io::store(file.data() + at + kHead + size, io::crc32(ByteView(file).subspan(at, kHead + size)));
     at += kHead + size + kCrc;
   }
 }
@@ -56,7 +55,7 @@ void change_values(Bytes& file, std::mt19937_64& random) {
     const std::size_t width = std::size_t{1} << (random() % 4);
     const std::size_t at = kBlocks + random() % (file.size() - kBlocks - width);
     std::byte bytes[8];
-    mcap::Encoder::store(bytes, random() % 2 == 0 ? kValues[random() % kValues.size()] : random() % 32);
+    io::store(bytes, random() % 2 == 0 ? kValues[random() % kValues.size()] : random() % 32);
     std::copy_n(bytes, width, file.begin() + static_cast<std::ptrdiff_t>(at));
   }
 }
@@ -74,7 +73,7 @@ Bytes make_input(const std::vector<Bytes>& files, std::mt19937_64& random) {
 /// Why the input is a failure; empty when it is none. Counts the inputs that are maps.
 std::string try_input(const Bytes& file, std::uint64_t& maps) {
   try {
-    const mcap::MemorySource source(file);
+    const io::MemorySource source(file);
     const std::size_t skimmed = read_map(source, {StoredFeatures::kSkip, {}}).keyframes.size();
     const Map map(read_map(source));
     if (std::string broken = map.check_invariants(); !broken.empty()) return "it became an unsound map: " + broken;
@@ -93,10 +92,10 @@ std::string try_input(const Bytes& file, std::uint64_t& maps) {
 
 int main(int argc, char** argv) {
   using namespace rtd;
-  const std::vector<mcap::Bytes> files = slam::seeds();
+  const std::vector<io::Bytes> files = slam::seeds();
   std::uint64_t maps = 0;
   return testing::run_fuzz(
       argc, argv, "fuzz_map_failed.rtdmap", [&](std::mt19937_64& random) { return slam::make_input(files, random); },
-      [&](const mcap::Bytes& input, std::mt19937_64& /*random*/) { return slam::try_input(input, maps); },
+      [&](const io::Bytes& input, std::mt19937_64& /*random*/) { return slam::try_input(input, maps); },
       [&] { return std::to_string(maps) + " of them maps"; });
 }

@@ -24,10 +24,10 @@ std::vector<Bytes> seeds() {
       options.use_chunks = chunks;
       options.chunk_size = 300;
       options.add_extra_data_to_records = compression == Compression::kLz4;
-      MemorySink sink;
+      io::MemorySink sink;
       Writer writer(sink, options);
       write_all(writer, sample_messages(12, 20));
-      writer.write(Attachment{1, 2, "a.yaml", "text/yaml", bytes_of("fx: 1"), 0});
+      writer.write(Attachment{1, 2, "a.yaml", "text/yaml", io::bytes_of("fx: 1"), 0});
       writer.write(Metadata{"m", {{"key", "value"}}});
       writer.close();
       files.push_back(sink.bytes());
@@ -43,7 +43,7 @@ std::uint64_t touch(ByteView data) {
   return sum;
 }
 
-std::uint64_t read_by_index(const ByteSource& source, const ReaderOptions& options) {
+std::uint64_t read_by_index(const io::ByteSource& source, const ReaderOptions& options) {
   IndexedReader reader(source, options);
   std::uint64_t sum = 0;
   MessageCursor cursor = reader.messages({2, 100, [](const Channel& channel) { return channel.topic != "/pose"; }});
@@ -57,14 +57,14 @@ std::uint64_t read_by_index(const ByteSource& source, const ReaderOptions& optio
 /// Why the input is a failure; empty when it is none.
 std::string try_input(const Bytes& file, bool check_crcs, std::uint64_t& sum) {
   ReaderOptions options{kMaxRecord, kCache, 50, check_crcs};
-  const MemorySource source(file);
+  const io::MemorySource source(file);
   sum += read_by_index(source, options);
-  MemorySink sink;
+  io::MemorySink sink;
   RecoverOptions recovery;
   recovery.reader = options;
   sum += recover(source, sink, recovery).recovered.message_count;
   const ReadBack again = stream(sink.bytes());
-  for (const StoredMessage& message : again.messages) sum += touch(bytes_of(message.data));
+  for (const StoredMessage& message : again.messages) sum += touch(io::bytes_of(message.data));
   if (!again.problems.empty()) return "the recovered file has problems: " + texts(again.problems);
   if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated)
     return "it made the readers hold " + std::to_string(peak) + " bytes";
@@ -76,13 +76,13 @@ std::string try_input(const Bytes& file, bool check_crcs, std::uint64_t& sum) {
 
 int main(int argc, char** argv) {
   using namespace rtd;
-  const std::vector<mcap::Bytes> files = mcap::seeds();
+  const std::vector<io::Bytes> files = mcap::seeds();
   std::uint64_t sum = 0;
   return testing::run_fuzz(
       argc, argv, "fuzz_mcap_failed.mcap",
       [&](std::mt19937_64& random) {
         return mcap::mutate(files[random() % files.size()], files[random() % files.size()], random);
       },
-      [&](const mcap::Bytes& input, std::mt19937_64& random) { return mcap::try_input(input, random() % 2 == 0, sum); },
+      [&](const io::Bytes& input, std::mt19937_64& random) { return mcap::try_input(input, random() % 2 == 0, sum); },
       [&] { return "sum of all bytes read " + std::to_string(sum); });
 }

@@ -18,7 +18,7 @@ void overwrite_integer(Bytes& file, std::mt19937_64& random) {
   const std::size_t width = std::size_t{1} << below(4, random);
   if (file.size() < width) return;
   std::byte bytes[8];
-  Encoder::store(bytes, kValues[below(kValues.size(), random)] + below(3, random) - 1);
+  io::store(bytes, kValues[below(kValues.size(), random)] + below(3, random) - 1);
   std::copy_n(bytes, width, file.begin() + static_cast<std::ptrdiff_t>(below(file.size() - width + 1, random)));
 }
 

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "common/mcap/encode.hpp"
+#include "common/mcap/codec.hpp"
 
 namespace rtd::mcap {
 

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "common/mcap/byte_source.hpp"
-#include "common/mcap/crc32.hpp"
+#include "common/io/byte_source.hpp"
+#include "common/io/bytes.hpp"
 #include "common/mcap/indexed_reader.hpp"
 
 namespace {
@@ -25,7 +25,7 @@ struct TopicDigest {
 };
 
 int print_digest(const char* path) {
-  const rtd::mcap::FileSource source(path);
+  const rtd::io::FileSource source(path);
   rtd::mcap::IndexedReader reader(source);
   std::map<std::string, TopicDigest> topics;
   std::uint64_t first = 0, last = 0, count = 0;
@@ -34,7 +34,7 @@ int print_digest(const char* path) {
     TopicDigest& topic = topics[cursor.channel().topic];
     const auto schema = reader.summary().schemas.find(cursor.channel().schema_id);
     if (schema != reader.summary().schemas.end()) topic.type = schema->second.name;
-    topic.crc = rtd::mcap::crc32(message->data, topic.crc);
+    topic.crc = rtd::io::crc32(message->data, topic.crc);
     ++topic.count;
     if (count++ == 0) first = message->log_time;
     last = message->log_time;

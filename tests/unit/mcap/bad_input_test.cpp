@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/mcap/crc32.hpp"
+#include "common/io/bytes.hpp"
 #include "tests/unit/mcap/sample_file.hpp"
 
 namespace rtd::mcap {
@@ -24,7 +24,7 @@ auto kind(ProblemKind kind) {
 class RawFile {
  public:
   RawFile() {
-    Encoder(bytes_).rest(bytes_of(kMagic));
+    Encoder(bytes_).rest(io::bytes_of(kMagic));
     add(Header{"", "test"});
   }
   template <class R>
@@ -46,7 +46,7 @@ class RawFile {
     if (!summary.empty()) footer.summary_start = bytes_.size();
     Encoder(bytes_).rest(summary);
     add(footer);
-    Encoder(bytes_).rest(bytes_of(kMagic));
+    Encoder(bytes_).rest(io::bytes_of(kMagic));
     return bytes_;
   }
   std::uint64_t size() const { return bytes_.size(); }
@@ -57,18 +57,18 @@ class RawFile {
 
 Bytes message_record(ChannelId channel, const std::string& data, Timestamp log_time = 5) {
   Bytes record;
-  append_record(record, Message{channel, 0, log_time, 5, bytes_of(data)});
+  append_record(record, Message{channel, 0, log_time, 5, io::bytes_of(data)});
   return record;
 }
 
 Chunk chunk_of(ByteView records) {
-  return Chunk{5, 5, records.size(), crc32(records), "", records};
+  return Chunk{5, 5, records.size(), io::crc32(records), "", records};
 }
 
 TEST(BadInput, not_an_mcap) {
   for (const std::string text : {"", "x", "#ROSBAG V2.0\n and much more than a header", "\x89MCAP1\r\n"}) {
-    EXPECT_THAT(stream(bytes_of(text)).problems, ElementsAre(kind(ProblemKind::kNotMcap))) << text;
-    EXPECT_THAT(by_index(bytes_of(text)).messages, IsEmpty());
+    EXPECT_THAT(stream(io::bytes_of(text)).problems, ElementsAre(kind(ProblemKind::kNotMcap))) << text;
+    EXPECT_THAT(by_index(io::bytes_of(text)).messages, IsEmpty());
   }
 }
 
@@ -82,7 +82,7 @@ TEST(BadInput, unknown_compression) {
   EXPECT_TRUE(result.problems[0].data_lost);
 }
 
-TEST(BadInput, missing_schema_is_told_and_costs_nothing) {
+TEST(BadInput, missing_schema_is_reported_and_loses_nothing) {
   const Bytes records = message_record(1, "abc");
   const ReadBack result = stream(RawFile().add_channel(1, 9).add(chunk_of(records)).finish());
   ASSERT_THAT(result.problems, ElementsAre(kind(ProblemKind::kMissingSchema)));
@@ -139,7 +139,7 @@ TEST(BadInput, message_longer_than_its_chunk) {
   EXPECT_THAT(by_index(RawFile().add_channel().add(chunk_of(records)).finish()).messages, SizeIs(1));
 }
 
-TEST(BadInput, index_that_lies_about_offsets_is_not_used) {
+TEST(BadInput, index_with_wrong_offsets_is_not_used) {
   const Bytes records = message_record(1, "abc");
   for (const std::uint64_t offset : {std::uint64_t{9}, std::uint64_t{60}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
     RawFile file;
@@ -155,7 +155,7 @@ TEST(BadInput, index_that_lies_about_offsets_is_not_used) {
   }
 }
 
-TEST(BadInput, message_index_that_lies) {
+TEST(BadInput, reports_a_wrong_message_index) {
   const Bytes records = message_record(1, "abc");
   for (const MessageIndex& index : {MessageIndex{1, {{5, 7}}}, MessageIndex{1, {{6, 0}}}, MessageIndex{2, {{5, 0}}},
                                     MessageIndex{1, {{5, 0}, {5, 0}}}, MessageIndex{1, {}}}) {
@@ -168,7 +168,7 @@ TEST(BadInput, message_index_that_lies) {
 TEST(BadInput, unknown_records_are_skipped) {
   const Bytes records = message_record(1, "abc");
   const ReadBack result =
-      stream(RawFile().add_raw(0x85, 3, bytes_of("own")).add_channel().add(chunk_of(records)).finish());
+      stream(RawFile().add_raw(0x85, 3, io::bytes_of("own")).add_channel().add(chunk_of(records)).finish());
   ASSERT_THAT(result.problems, ElementsAre(kind(ProblemKind::kUnknownRecord)));
   EXPECT_FALSE(result.problems[0].data_lost);
   EXPECT_THAT(result.messages, SizeIs(1));
@@ -181,20 +181,20 @@ TEST(BadInput, contradicting_definitions) {
 
 TEST(BadInput, bytes_behind_the_end) {
   Bytes file = RawFile().add_channel().finish();
-  Encoder(file).rest(bytes_of("something that somebody added"));
+  Encoder(file).rest(io::bytes_of("something appended later"));
   EXPECT_THAT(stream(file).problems, ElementsAre(kind(ProblemKind::kMisplacedRecord)));
 }
 
 TEST(BadInput, damaged_attachment_is_left_out) {
-  MemorySink sink;
+  io::MemorySink sink;
   Writer writer(sink);
-  writer.write(Attachment{1, 1, "notes", "text/plain", bytes_of("abcdef"), 0});
+  writer.write(Attachment{1, 1, "notes", "text/plain", io::bytes_of("abcdef"), 0});
   writer.close();
   Bytes file = sink.bytes();
-  const auto data = std::ranges::search(file, bytes_of("abcdef"));
+  const auto data = std::ranges::search(file, io::bytes_of("abcdef"));
   data.front() = std::byte{'x'};
   EXPECT_THAT(stream(file).problems, Contains(kind(ProblemKind::kCrcMismatch)));
-  const MemorySource source(file);
+  const io::MemorySource source(file);
   IndexedReader reader(source);
   EXPECT_FALSE(reader.attachment(reader.summary().attachment_indexes.at(0)));
   EXPECT_TRUE(reader.problems().data_lost());
@@ -205,7 +205,7 @@ TEST(BadInput, decompression_bomb_is_bounded_by_what_the_format_can_do) {
   Buffer buffer;
   const std::string zeros(1 << 20, '\0');
   for (const Compression compression : {Compression::kLz4, Compression::kZstd}) {
-    const ByteView packed = compress(compression, 0, bytes_of(zeros), buffer);
+    const ByteView packed = compress(compression, 0, io::bytes_of(zeros), buffer);
     EXPECT_LE(zeros.size(), largest_uncompressed_size(compression, packed.size()));
   }
 }
@@ -217,7 +217,7 @@ TEST(Problems, are_bounded_and_counted) {
     records.insert(records.end(), message.begin(), message.end());
   }
   const Bytes file = RawFile().add_channel().add(chunk_of(records)).finish();
-  const MemorySource source(file);
+  const io::MemorySource source(file);
   ReaderOptions options;
   options.max_problems = 5;
   StreamReader reader(source, options);

@@ -30,7 +30,7 @@ WriterOptions options_of(const Shape& shape, std::uint64_t chunk_size) {
 
 /// By how many bytes of the file each message is whole: the end of its chunk, or its own without chunks.
 std::vector<std::uint64_t> ends_of_messages(const Bytes& file) {
-  const MemorySource source(file);
+  const io::MemorySource source(file);
   StreamReader reader(source);
   std::vector<std::uint64_t> ends;
   while (const Record* record = reader.next())
@@ -77,8 +77,8 @@ TEST_P(Damage, a_file_cut_at_any_byte_is_made_whole_again) {
   const Bytes file = file_of(messages, options_of(GetParam(), 200));
   const std::vector<std::uint64_t> ends = ends_of_messages(file);
   for (std::size_t cut = 0; cut < file.size(); ++cut) {
-    MemorySink sink;
-    const RecoverReport report = recover(MemorySource(ByteView(file).first(cut)), sink);
+    io::MemorySink sink;
+    const RecoverReport report = recover(io::MemorySource(ByteView(file).first(cut)), sink);
     ASSERT_FALSE(report.problems.empty()) << "cut at " << cut;
     const ReadBack again = stream(sink.bytes());
     ASSERT_THAT(again.problems, IsEmpty()) << "cut at " << cut << '\n' << texts(again.problems);
@@ -94,7 +94,7 @@ TEST_P(Damage, ten_thousand_random_cuts_of_a_bigger_file_give_every_whole_chunk)
   constexpr int kCuts = 10000 / 4;  // a quarter for each shape
   for (int i = 0; i < kCuts; ++i) {
     const std::size_t cut = random() % file.size();
-    const MemorySource source(ByteView(file).first(cut));
+    const io::MemorySource source(ByteView(file).first(cut));
     StreamReader reader(source);
     std::size_t count = 0;
     while (const Record* record = reader.next()) count += std::holds_alternative<Message>(*record) ? 1 : 0;
@@ -115,16 +115,16 @@ class BitFlips : public ::testing::TestWithParam<Compression> {
     WriterOptions options;
     options.compression = GetParam();
     options.self_contained_chunks = true;
-    MemorySink sink;
+    io::MemorySink sink;
     Writer writer(sink, options);
     write_all(writer, {});
     for (std::size_t i = 0; i < messages_.size(); ++i) {
       if (i % kMessagesPerChunk == 0) writer.end_chunk();
       const StoredMessage& message = messages_[i];
       writer.write(Message{static_cast<ChannelId>(message.topic == "/pose" ? 1 : 2), message.sequence, message.log_time,
-                           message.publish_time, bytes_of(message.data)});
+                           message.publish_time, io::bytes_of(message.data)});
     }
-    writer.write(Attachment{1, 1, "a", "text/plain", bytes_of("abc"), 0});
+    writer.write(Attachment{1, 1, "a", "text/plain", io::bytes_of("abc"), 0});
     writer.write(Metadata{"m", {{"k", "v"}}});
     writer.close();
     return sink.bytes();
@@ -167,15 +167,15 @@ TEST_P(BitFlips, several_at_once_are_reported_too) {
 INSTANTIATE_TEST_SUITE_P(Compressions, BitFlips,
                          ::testing::Values(Compression::kNone, Compression::kLz4, Compression::kZstd));
 
-TEST(Recover, says_what_was_lost_and_keeps_the_rest) {
+TEST(Recover, reports_the_loss_and_keeps_the_rest) {
   const auto messages = sample_messages(40, 50);
   WriterOptions options;
   options.profile = "ros2";
   options.chunk_size = 400;
   Bytes file = file_of(messages, options);
   file[400] ^= std::byte{1};  // in the first chunk: the channels come from the summary then
-  MemorySink sink;
-  const RecoverReport report = recover(MemorySource(file), sink);
+  io::MemorySink sink;
+  const RecoverReport report = recover(io::MemorySource(file), sink);
   EXPECT_TRUE(report.data_lost);
   ASSERT_TRUE(report.announced);
   EXPECT_EQ(*report.messages_lost() + report.recovered.message_count, messages.size());
@@ -183,7 +183,7 @@ TEST(Recover, says_what_was_lost_and_keeps_the_rest) {
   const ReadBack again = stream(sink.bytes());
   EXPECT_THAT(again.problems, IsEmpty()) << texts(again.problems);
   EXPECT_TRUE(is_part_of(again.messages, messages));
-  EXPECT_EQ(IndexedReader(MemorySource(sink.bytes())).summary().header.profile, "ros2");
+  EXPECT_EQ(IndexedReader(io::MemorySource(sink.bytes())).summary().header.profile, "ros2");
 }
 
 }  // namespace

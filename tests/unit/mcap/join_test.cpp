@@ -10,24 +10,24 @@ namespace rtd::mcap {
 namespace {
 
 Bytes joined(const std::vector<Bytes>& parts, JoinReport& report) {
-  std::vector<MemorySource> sources;
+  std::vector<io::MemorySource> sources;
   for (const Bytes& part : parts) sources.emplace_back(part);
-  std::vector<const ByteSource*> pointers;
-  for (const MemorySource& source : sources) pointers.push_back(&source);
-  MemorySink sink;
+  std::vector<const io::ByteSource*> pointers;
+  for (const io::MemorySource& source : sources) pointers.push_back(&source);
+  io::MemorySink sink;
   report = join(pointers, sink);
   return sink.bytes();
 }
 
 /// A file with one channel whose ids are not those of sample_file.hpp.
 Bytes file_with_other_ids(const std::vector<StoredMessage>& messages) {
-  MemorySink sink;
+  io::MemorySink sink;
   Writer writer(sink);
   writer.write(Schema{7, "geometry_msgs/msg/PoseStamped", "ros2msg", "std_msgs/Header header"});
   writer.write(Channel{1, 0, "/log", "json", {}});
   writer.write(Channel{9, 7, "/pose", "cdr", {{"offered_qos_profiles", "- history: 1"}}});
   for (const StoredMessage& message : messages)
-    writer.write(Message{9, message.sequence, message.log_time, message.publish_time, bytes_of(message.data)});
+    writer.write(Message{9, message.sequence, message.log_time, message.publish_time, io::bytes_of(message.data)});
   writer.write(Metadata{"rosbag2", {{"a", "b"}}});
   writer.close();
   return sink.bytes();
@@ -54,7 +54,7 @@ TEST(Join, gives_every_message_of_all_parts_in_their_order) {
   EXPECT_EQ(report.joined.metadata_count, 1U);
 }
 
-TEST(Join, takes_what_is_whole_of_a_damaged_part_and_says_so) {
+TEST(Join, takes_the_intact_part_of_a_damaged_file_and_reports_it) {
   const std::vector<StoredMessage> all = sample_messages(100, 300);
   WriterOptions small;
   small.chunk_size = 2000;

@@ -54,7 +54,7 @@ TEST_P(RoundTrip, finds_times_and_topics) {
 
 TEST_P(RoundTrip, reads_what_is_there_of_a_file_that_was_never_closed) {
   const auto messages = sample_messages(100, GetParam().message_size);
-  MemorySink sink;
+  io::MemorySink sink;
   Writer writer(sink, options());
   write_all(writer, messages);
   const Written written = writer.written();
@@ -90,17 +90,17 @@ TEST(IndexedReader, orders_messages_of_overlapping_chunks_by_time_and_then_by_pl
 }
 
 TEST(IndexedReader, gives_attachments_and_metadata) {
-  MemorySink sink;
+  io::MemorySink sink;
   Writer writer(sink);
-  writer.write(Attachment{1, 2, "calibration.yaml", "text/yaml", bytes_of("fx: 525"), 0});
+  writer.write(Attachment{1, 2, "calibration.yaml", "text/yaml", io::bytes_of("fx: 525"), 0});
   writer.write(Metadata{"rtd", {{"robot", "r2"}}});
   writer.close();
-  const MemorySource source(sink.bytes());
+  const io::MemorySource source(sink.bytes());
   IndexedReader reader(source);
   ASSERT_EQ(reader.summary().attachment_indexes.size(), 1U);
   const auto attachment = reader.attachment(reader.summary().attachment_indexes[0]);
   ASSERT_TRUE(attachment);
-  EXPECT_TRUE(std::ranges::equal(attachment->data, bytes_of("fx: 525")));
+  EXPECT_TRUE(std::ranges::equal(attachment->data, io::bytes_of("fx: 525")));
   const auto metadata = reader.metadata(reader.summary().metadata_indexes.at(0));
   ASSERT_TRUE(metadata);
   EXPECT_EQ(metadata->metadata.at("robot"), "r2");
@@ -109,7 +109,7 @@ TEST(IndexedReader, gives_attachments_and_metadata) {
 
 TEST(IndexedReader, reads_a_closed_file_without_scanning_it) {
   const Bytes file = file_of(sample_messages(10, 10));
-  const MemorySource source(file);
+  const io::MemorySource source(file);
   EXPECT_FALSE(IndexedReader(source).summary().scanned);
 }
 

@@ -32,7 +32,7 @@ struct ReadBack {
 
 /// All messages in file order, and what the reader found wrong.
 inline ReadBack stream(ByteView file, const ReaderOptions& options = {}) {
-  const MemorySource source(file);
+  const io::MemorySource source(file);
   StreamReader reader(source, options);
   ReadBack result;
   while (const Record* record = reader.next())
@@ -44,7 +44,7 @@ inline ReadBack stream(ByteView file, const ReaderOptions& options = {}) {
 
 /// The messages of the query by time.
 inline ReadBack by_index(ByteView file, const MessageQuery& query = {}, const ReaderOptions& options = {}) {
-  const MemorySource source(file);
+  const io::MemorySource source(file);
   IndexedReader reader(source, options);
   MessageCursor cursor = reader.messages(query);
   ReadBack result;
@@ -71,12 +71,12 @@ inline void write_all(Writer& writer, const std::vector<StoredMessage>& messages
     channels[topic] = writer.add(Channel{0, schema, topic, "cdr", {{"offered_qos_profiles", "- history: 1"}}});
   for (const StoredMessage& message : messages)
     writer.write(Message{channels.at(message.topic), message.sequence, message.log_time, message.publish_time,
-                         bytes_of(message.data)});
+                         io::bytes_of(message.data)});
 }
 
 /// A closed file of these messages.
 inline Bytes file_of(const std::vector<StoredMessage>& messages, const WriterOptions& options = {}) {
-  MemorySink sink;
+  io::MemorySink sink;
   Writer writer(sink, options);
   write_all(writer, messages);
   writer.close();

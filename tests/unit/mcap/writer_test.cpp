@@ -20,13 +20,13 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 /// A sink that is full after `room` bytes, until it is given more.
-class SmallSink final : public ByteSink {
+class SmallSink final : public io::ByteSink {
  public:
   explicit SmallSink(std::uint64_t room) : room_(room) {}
   void append(std::initializer_list<ByteView> parts) override {
     std::uint64_t size = 0;
     for (const ByteView part : parts) size += part.size();
-    if (memory_.position() + size > room_) throw IoError(ENOSPC, "sink");
+    if (memory_.position() + size > room_) throw io::IoError(ENOSPC, "sink");
     memory_.append(parts);
   }
   std::uint64_t position() const override { return memory_.position(); }
@@ -35,12 +35,12 @@ class SmallSink final : public ByteSink {
   void give_room() { room_ = 1 << 30; }
 
  private:
-  MemorySink memory_;
+  io::MemorySink memory_;
   std::uint64_t room_;
 };
 
 TEST(Writer, refuses_what_the_format_does_not_allow) {
-  MemorySink sink;
+  io::MemorySink sink;
   Writer writer(sink);
   EXPECT_THROW(writer.write(Message{7}), std::invalid_argument);
   EXPECT_THROW(writer.write(Channel{1, 9, "/a", "cdr"}), std::invalid_argument);
@@ -56,7 +56,7 @@ TEST(Writer, refuses_what_the_format_does_not_allow) {
 }
 
 TEST(Writer, gives_free_ids) {
-  MemorySink sink;
+  io::MemorySink sink;
   Writer writer(sink);
   writer.write(Schema{2, "taken", "ros2msg", "x"});
   EXPECT_EQ(writer.add(Schema{0, "a", "ros2msg", "x"}), 1);
@@ -64,8 +64,8 @@ TEST(Writer, gives_free_ids) {
   EXPECT_EQ(writer.add(Channel{0, 3, "/b", "cdr"}), 1);
 }
 
-TEST(Writer, ends_a_chunk_whenever_it_is_told_to) {
-  MemorySink sink;
+TEST(Writer, ends_a_chunk_on_request) {
+  io::MemorySink sink;
   Writer writer(sink);
   const auto messages = sample_messages(3, 100);
   write_all(writer, messages);
@@ -88,10 +88,10 @@ TEST(Writer, goes_on_after_a_full_disk_without_loss_or_repetition) {
   int refusals = 0;
   for (const StoredMessage& message : messages) {
     const ChannelId channel = message.topic == "/pose" ? 1 : 2;
-    const Message record{channel, message.sequence, message.log_time, message.publish_time, bytes_of(message.data)};
+    const Message record{channel, message.sequence, message.log_time, message.publish_time, io::bytes_of(message.data)};
     try {
       writer.write(record);
-    } catch (const IoError& error) {
+    } catch (const io::IoError& error) {
       ++refusals;
       EXPECT_EQ(error.code().value(), ENOSPC);
       EXPECT_EQ(writer.written().offset, sink.position());
@@ -108,14 +108,14 @@ TEST(Writer, goes_on_after_a_full_disk_without_loss_or_repetition) {
 
 TEST(Writer, splits_into_files_that_each_stand_alone) {
   const auto messages = sample_messages(30, 50);
-  MemorySink first, second;
+  io::MemorySink first, second;
   Writer writer(first);
   write_all(writer, {messages.begin(), messages.begin() + 20});
   writer.split(second);
   write_all(writer, {});  // the ids of the first file are still known: these are two more channels
   for (std::size_t i = 20; i < 30; ++i)
     writer.write(Message{static_cast<ChannelId>(messages[i].topic == "/pose" ? 1 : 2), messages[i].sequence,
-                         messages[i].log_time, messages[i].publish_time, bytes_of(messages[i].data)});
+                         messages[i].log_time, messages[i].publish_time, io::bytes_of(messages[i].data)});
   writer.close();
   ReadBack both = stream(first.bytes());
   const ReadBack rest = stream(second.bytes());
@@ -150,7 +150,7 @@ class FileSinkTest : public ::testing::Test {
 std::string reason_of(const std::function<void()>& call) {
   try {
     call();
-  } catch (const IoError& error) {
+  } catch (const io::IoError& error) {
     return error.what();
   }
   return "";
@@ -158,15 +158,15 @@ std::string reason_of(const std::function<void()>& call) {
 
 TEST_F(FileSinkTest, round_trip_and_durable_position) {
   const auto messages = sample_messages(50, 5000);
-  FileSink sink(path_);
+  io::FileSink sink(path_);
   Writer writer(sink);
   write_all(writer, messages);
   writer.end_chunk();
   EXPECT_EQ(sink.sync(), writer.written().offset);
   EXPECT_EQ(std::filesystem::file_size(path_), writer.written().offset);
-  EXPECT_TRUE(FileSource(path_).being_written());
+  EXPECT_TRUE(io::FileSource(path_).being_written());
   writer.close();
-  const FileSource source(path_);
+  const io::FileSource source(path_);
   StreamReader reader(source);
   std::size_t count = 0;
   while (const Record* record = reader.next()) count += std::holds_alternative<Message>(*record);
@@ -174,16 +174,17 @@ TEST_F(FileSinkTest, round_trip_and_durable_position) {
   EXPECT_THAT(reader.problems().listed(), IsEmpty());
 }
 
-TEST_F(FileSinkTest, says_why_it_cannot_write) {
-  { FileSink sink(path_); }
-  EXPECT_FALSE(FileSource(path_).being_written());
-  EXPECT_THAT(reason_of([&] { FileSink sink(path_); }), HasSubstr("exists already"));
-  FileSink open(path_, IfExists::kReplace);
-  EXPECT_THAT(reason_of([&] { FileSink sink(path_, IfExists::kReplace); }), HasSubstr("another process is writing it"));
-  EXPECT_THAT(reason_of([&] { FileSink sink(folder_ / "no" / "a.mcap"); }), HasSubstr("no such folder"));
-  EXPECT_THAT(reason_of([&] { FileSink sink("/proc/a.mcap"); }), HasSubstr("/proc/a.mcap"));
-  EXPECT_THAT(reason_of([&] { FileSource source(folder_ / "none.mcap"); }), HasSubstr("none.mcap"));
-  EXPECT_THAT(reason_of([&] { FileSource source(folder_); }), HasSubstr("directory"));
+TEST_F(FileSinkTest, names_the_reason_when_it_cannot_write) {
+  { io::FileSink sink(path_); }
+  EXPECT_FALSE(io::FileSource(path_).being_written());
+  EXPECT_THAT(reason_of([&] { io::FileSink sink(path_); }), HasSubstr("exists already"));
+  io::FileSink open(path_, io::IfExists::kReplace);
+  EXPECT_THAT(reason_of([&] { io::FileSink sink(path_, io::IfExists::kReplace); }),
+              HasSubstr("another process is writing it"));
+  EXPECT_THAT(reason_of([&] { io::FileSink sink(folder_ / "no" / "a.mcap"); }), HasSubstr("no such folder"));
+  EXPECT_THAT(reason_of([&] { io::FileSink sink("/proc/a.mcap"); }), HasSubstr("/proc/a.mcap"));
+  EXPECT_THAT(reason_of([&] { io::FileSource source(folder_ / "none.mcap"); }), HasSubstr("none.mcap"));
+  EXPECT_THAT(reason_of([&] { io::FileSource source(folder_); }), HasSubstr("directory"));
 }
 
 /// Files of this process cannot grow beyond `bytes` while it lives: a disk that is full in the middle of a record.
@@ -205,7 +206,7 @@ class FileSizeLimit {
 };
 
 TEST_F(FileSinkTest, full_disk_leaves_whole_records) {
-  FileSink sink(path_);
+  io::FileSink sink(path_);
   Writer writer(sink);
   const auto messages = sample_messages(10, 5000);
   write_all(writer, messages);
@@ -215,7 +216,7 @@ TEST_F(FileSinkTest, full_disk_leaves_whole_records) {
     EXPECT_EQ(std::filesystem::file_size(path_), writer.written().offset);
   }
   writer.close();
-  const FileSource source(path_);
+  const io::FileSource source(path_);
   EXPECT_EQ(IndexedReader(source).summary().statistics->message_count, messages.size());
   EXPECT_FALSE(IndexedReader(source).summary().scanned);
 }

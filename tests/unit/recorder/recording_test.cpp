@@ -19,22 +19,22 @@ using namespace std::chrono_literals;
 constexpr std::int64_t kMs = 1'000'000;
 
 /// A disk of limited size.
-class SmallDisk final : public mcap::ByteSink {
+class SmallDisk final : public io::ByteSink {
  public:
   explicit SmallDisk(std::uint64_t size) : size_(size) {}
-  void append(std::initializer_list<mcap::ByteView> parts) override {
+  void append(std::initializer_list<io::ByteView> parts) override {
     std::uint64_t more = 0;
     for (const auto part : parts) more += part.size();
-    if (memory_.position() + more > size_) throw mcap::IoError(ENOSPC, "no room");
+    if (memory_.position() + more > size_) throw io::IoError(ENOSPC, "no room");
     memory_.append(parts);
   }
   std::uint64_t position() const override { return memory_.position(); }
   std::uint64_t sync() override { return position(); }
-  const mcap::Bytes& bytes() const { return memory_.bytes(); }
+  const io::Bytes& bytes() const { return memory_.bytes(); }
 
  private:
   std::uint64_t size_;
-  mcap::MemorySink memory_;
+  io::MemorySink memory_;
 };
 
 class RecordingTest : public ::testing::Test {
@@ -55,7 +55,7 @@ class RecordingTest : public ::testing::Test {
     return {topic, ++sequence_, received_ns, received_ns - 5, std::move(block)};
   }
   std::uint64_t messages_in(std::size_t disk) const {
-    const mcap::MemorySource source(disks_[disk]->bytes());
+    const io::MemorySource source(disks_[disk]->bytes());
     mcap::IndexedReader reader(source);
     std::uint64_t count = 0;
     mcap::MessageCursor cursor = reader.messages();
@@ -107,7 +107,7 @@ TEST_F(RecordingTest, says_what_ros2_tools_look_for) {
   recording_->write(message(pose, 64, 1000), 0);
   recording_->finish({mcap::Metadata{"rtd:losses", {{"total", "0"}}}});
 
-  const mcap::MemorySource source(disks_[0]->bytes());
+  const io::MemorySource source(disks_[0]->bytes());
   mcap::IndexedReader reader(source);
   EXPECT_EQ(reader.problems().total(), 0U);
   const mcap::Summary& summary = reader.summary();
@@ -166,8 +166,8 @@ TEST_F(RecordingTest, a_full_disk_keeps_what_was_written) {
   const auto fill = [&] {
     for (std::uint64_t i = 0; i < 100; ++i) recording_->write(message(pose, 1000, 1000 + i), 0);
   };
-  EXPECT_THROW(fill(), mcap::IoError);
-  EXPECT_THROW(recording_->finish({}), mcap::IoError);
+  EXPECT_THROW(fill(), io::IoError);
+  EXPECT_THROW(recording_->finish({}), io::IoError);
   sync_.finish();
   const std::uint64_t acknowledged = sync_.acknowledged().messages.at(pose);
   EXPECT_GT(acknowledged, 30U);

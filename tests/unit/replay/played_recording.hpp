@@ -26,8 +26,8 @@ class PlayedRecording {
   mcap::IndexedReader& reader() { return reader_; }
 
  private:
-  static mcap::Bytes file_of(const std::vector<RecordedPiece>& pieces, std::uint64_t chunk_size) {
-    mcap::MemorySink sink;
+  static io::Bytes file_of(const std::vector<RecordedPiece>& pieces, std::uint64_t chunk_size) {
+    io::MemorySink sink;
     mcap::WriterOptions options;
     options.chunk_size = chunk_size;
     mcap::Writer writer(sink, options);
@@ -36,14 +36,14 @@ class PlayedRecording {
       if (!channels.contains(piece.topic))
         channels[piece.topic] = writer.add(mcap::Channel{0, 0, piece.topic, "cdr", {}});
       const auto time = static_cast<mcap::Timestamp>(piece.log_ns);
-      writer.write(mcap::Message{channels.at(piece.topic), 0, time, time, mcap::bytes_of(piece.payload)});
+      writer.write(mcap::Message{channels.at(piece.topic), 0, time, time, io::bytes_of(piece.payload)});
     }
     writer.close();
     return sink.bytes();
   }
 
-  mcap::Bytes bytes_;
-  mcap::MemorySource source_;
+  io::Bytes bytes_;
+  io::MemorySource source_;
   mcap::IndexedReader reader_;
 };
 

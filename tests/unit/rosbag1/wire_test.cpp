@@ -34,7 +34,7 @@ msg::CameraInfo camera_info() {
   return info;
 }
 
-TEST(Wire, BothFormatsGiveBackWhatWasWritten) {
+TEST(Wire, both_formats_give_back_what_was_written) {
   const auto check = [](Wire wire, const auto& tf_bytes, const auto& info_bytes) {
     const auto tf = decode<msg::TFMessage>(wire, tf_bytes);
     ASSERT_EQ(tf.transforms.size(), 2U);
@@ -52,7 +52,7 @@ TEST(Wire, BothFormatsGiveBackWhatWasWritten) {
   check(Wire::kCdr, encode<Wire::kCdr>(transforms()), encode<Wire::kCdr>(camera_info()));
 }
 
-TEST(Wire, CdrIsAlignedFromBehindItsHeader) {
+TEST(Wire, cdr_is_aligned_from_behind_its_header) {
   const std::vector<std::uint8_t> bytes = encode<Wire::kCdr>(msg::Header{{1, 2}, "ab"});
   EXPECT_THAT(bytes, ElementsAre(0, 1, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0, 'a', 'b', 0));
   msg::CameraInfo info;
@@ -63,12 +63,12 @@ TEST(Wire, CdrIsAlignedFromBehindItsHeader) {
   EXPECT_EQ((padded.size() - 4) % 4, 1U) << "ends with the byte do_rectify";
 }
 
-TEST(Wire, Ros1IsPackedAndItsHeaderCounts) {
+TEST(Wire, ros1_is_packed_and_its_header_counts) {
   EXPECT_THAT(encode<Wire::kRos1>(msg::Header{{1, 2}, "ab"}),
               ElementsAre(0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 'a', 'b'));
 }
 
-TEST(Wire, EveryCutIsNoticed) {
+TEST(Wire, every_cut_is_noticed) {
   const auto check = [](Wire wire, const std::vector<std::uint8_t>& bytes) {
     for (std::size_t size = 0; size < bytes.size(); ++size) {
       EXPECT_THROW(decode<msg::TFMessage>(wire, Bytes(bytes).first(size)), WireError) << size;
@@ -78,7 +78,7 @@ TEST(Wire, EveryCutIsNoticed) {
   check(Wire::kCdr, encode<Wire::kCdr>(transforms()));
 }
 
-TEST(Wire, AClaimOf4GbTakesNoMemory) {
+TEST(Wire, a_claim_of4_gb_takes_no_memory) {
   std::vector<std::uint8_t> bytes = encode<Wire::kRos1>(transforms());
   std::fill_n(bytes.begin(), 4, 0xFF);
   EXPECT_THROW(decode<msg::TFMessage>(Wire::kRos1, bytes), WireError);
@@ -90,7 +90,7 @@ TEST(Wire, AClaimOf4GbTakesNoMemory) {
               ThrowsMessage<WireError>(HasSubstr("4294967295 bytes are claimed")));
 }
 
-TEST(Wire, RefusesOtherEncapsulationsOfCdr) {
+TEST(Wire, refuses_other_encapsulations_of_cdr) {
   std::vector<std::uint8_t> bytes = encode<Wire::kCdr>(transforms());
   bytes[1] = 0;
   EXPECT_THAT([&] { decode<msg::TFMessage>(Wire::kCdr, bytes); },

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/core/store/block_io.hpp"
 
-#include "common/mcap/crc32.hpp"
-#include "common/mcap/decode.hpp"
+#include "common/io/bytes.hpp"
 
 namespace rtd::slam::map_format {
 namespace {
@@ -17,7 +16,7 @@ std::string name_of(BlockTag tag) {
     case BlockTag::kKeyframes:
     case BlockTag::kRemoved:
     case BlockTag::kEnd: {
-      mcap::Bytes letters;
+      io::Bytes letters;
       FieldWriter{letters}(static_cast<std::uint32_t>(tag));
       return {reinterpret_cast<const char*>(letters.data()), letters.size()};
     }
@@ -26,13 +25,13 @@ std::string name_of(BlockTag tag) {
 }
 
 /// The preamble, which is the same in every version, names the version that wrote the rest.
-void check_preamble(mcap::ByteView preamble) {
-  if (!std::ranges::equal(preamble.first(kMagic.size()), mcap::bytes_of(kMagic)))
+void check_preamble(io::ByteView preamble) {
+  if (!std::ranges::equal(preamble.first(kMagic.size()), io::bytes_of(kMagic)))
     throw MapFileError(MapFileDefect::kNotAMap, "this is not a map file: it does not begin with RTDMAP");
-  const mcap::ByteView described = preamble.first(kPreambleBytes - kCrcBytes);
-  if (mcap::load<std::uint32_t>(preamble.data() + described.size()) != mcap::crc32(described))
+  const io::ByteView described = preamble.first(kPreambleBytes - kCrcBytes);
+  if (io::load<std::uint32_t>(preamble.data() + described.size()) != io::crc32(described))
     fail_damaged(0, "the checksum of the file's beginning does not fit");
-  const auto version = mcap::load<std::uint32_t>(preamble.data() + kMagic.size());
+  const auto version = io::load<std::uint32_t>(preamble.data() + kMagic.size());
   if (version == kVersion) return;
   throw MapFileError(MapFileDefect::kVersion,
                      "the map file has version " + std::to_string(version) + " of the format, this program reads " +
@@ -48,32 +47,32 @@ void fail_damaged(std::uint64_t offset, const std::string& cause) {
                                                   cause + "; use a copy or the last checkpoint, or map again");
 }
 
-BlockWriter::BlockWriter(mcap::ByteSink& sink) : sink_(sink) {
-  mcap::Bytes preamble(mcap::bytes_of(kMagic).begin(), mcap::bytes_of(kMagic).end());
+BlockWriter::BlockWriter(io::ByteSink& sink) : sink_(sink) {
+  io::Bytes preamble(io::bytes_of(kMagic).begin(), io::bytes_of(kMagic).end());
   FieldWriter write(preamble);
   write(kVersion);
-  write(mcap::crc32(preamble));
+  write(io::crc32(preamble));
   sink_.append({preamble});
 }
 
-void BlockWriter::write(BlockTag tag, mcap::ByteView payload) {
-  mcap::Bytes head, crc;
+void BlockWriter::write(BlockTag tag, io::ByteView payload) {
+  io::Bytes head, crc;
   FieldWriter{head}(static_cast<std::uint32_t>(tag), static_cast<std::uint32_t>(payload.size()));
-  FieldWriter{crc}(mcap::crc32(payload, mcap::crc32(head)));
+  FieldWriter{crc}(io::crc32(payload, io::crc32(head)));
   sink_.append({head, payload, crc});
   ++blocks_;
 }
 
 void BlockWriter::end() {
-  mcap::Bytes payload;
+  io::Bytes payload;
   FieldWriter{payload}(blocks_, sink_.position());
   write(BlockTag::kEnd, payload);
 }
 
-BlockReader::BlockReader(const mcap::ByteSource& source) : source_(source) {
+BlockReader::BlockReader(const io::ByteSource& source) : source_(source) {
   const std::size_t begins_with = static_cast<std::size_t>(std::min<std::uint64_t>(source.size(), kMagic.size()));
-  const mcap::ByteView begin = read(begins_with, "beginning");
-  if (!std::ranges::equal(begin, mcap::bytes_of(kMagic).first(begin.size())) || source.size() == 0)
+  const io::ByteView begin = read(begins_with, "beginning");
+  if (!std::ranges::equal(begin, io::bytes_of(kMagic).first(begin.size())) || source.size() == 0)
     throw MapFileError(MapFileDefect::kNotAMap, source.size() == 0
                                                     ? "the file is empty"
                                                     : "this is not a map file: it does not begin with RTDMAP");
@@ -81,7 +80,7 @@ BlockReader::BlockReader(const mcap::ByteSource& source) : source_(source) {
   check_preamble(read(kPreambleBytes, "beginning"));
 }
 
-mcap::ByteView BlockReader::read(std::size_t size, const char* what) {
+io::ByteView BlockReader::read(std::size_t size, const char* what) {
   if (size > source_.size() - position_)
     fail_damaged(position_, "the file ends inside its " + std::string(what) + " (" + std::to_string(source_.size()) +
                                 " bytes): it was cut");
@@ -94,16 +93,16 @@ mcap::ByteView BlockReader::read(std::size_t size, const char* what) {
 
 Block BlockReader::next() {
   const std::uint64_t offset = position_;
-  const mcap::ByteView head = read(kBlockHeadBytes, "blocks");
-  const auto tag = static_cast<BlockTag>(mcap::load<std::uint32_t>(head.data()));
-  const auto size = mcap::load<std::uint32_t>(head.data() + 4);
-  const std::uint32_t head_crc = mcap::crc32(head);
+  const io::ByteView head = read(kBlockHeadBytes, "blocks");
+  const auto tag = static_cast<BlockTag>(io::load<std::uint32_t>(head.data()));
+  const auto size = io::load<std::uint32_t>(head.data() + 4);
+  const std::uint32_t head_crc = io::crc32(head);
   const std::string name = name_of(tag);
   if (name.empty()) fail_damaged(offset, "a block of an unknown kind");
   if (size > kMaxBlockBytes) fail_damaged(offset, "block " + name + " of " + std::to_string(size) + " bytes");
-  const mcap::ByteView rest = read(size + kCrcBytes, "blocks");
-  const mcap::ByteView payload = rest.first(size);
-  if (mcap::load<std::uint32_t>(rest.data() + size) != mcap::crc32(payload, head_crc))
+  const io::ByteView rest = read(size + kCrcBytes, "blocks");
+  const io::ByteView payload = rest.first(size);
+  if (io::load<std::uint32_t>(rest.data() + size) != io::crc32(payload, head_crc))
     fail_damaged(offset, "the checksum of block " + name + " does not fit");
   ++blocks_;
   return {tag, offset, payload};

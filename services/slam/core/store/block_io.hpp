@@ -4,9 +4,9 @@
 
 #include <Eigen/Geometry>
 
-#include "common/mcap/byte_sink.hpp"
-#include "common/mcap/byte_source.hpp"
-#include "common/mcap/encode.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/io/byte_source.hpp"
+#include "common/io/bytes.hpp"
 #include "common/msg/features.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
 #include "services/slam/core/store/map_format.hpp"
@@ -16,7 +16,7 @@ namespace rtd::slam::map_format {
 /// Appends fields to a buffer.
 class FieldWriter {
  public:
-  explicit FieldWriter(mcap::Bytes& out) : out_(out) {}
+  explicit FieldWriter(io::Bytes& out) : out_(out) {}
 
   template <class... Fields>
   void operator()(const Fields&... fields) {
@@ -34,13 +34,13 @@ class FieldWriter {
   }
   static const std::byte* bytes(const void* at) { return static_cast<const std::byte*>(at); }
 
-  mcap::Bytes& out_;
+  io::Bytes& out_;
 };
 
 /// Takes fields off the front of a view. Throws ros::WireError instead of reading past its end.
 class FieldReader {
  public:
-  explicit FieldReader(mcap::ByteView in) : cursor_({reinterpret_cast<const std::uint8_t*>(in.data()), in.size()}) {}
+  explicit FieldReader(io::ByteView in) : cursor_({reinterpret_cast<const std::uint8_t*>(in.data()), in.size()}) {}
 
   std::size_t left() const { return cursor_.remaining(); }
   template <class... Fields>
@@ -67,29 +67,29 @@ class FieldReader {
   ros::ByteCursor cursor_;
 };
 
-/// Writes preamble and blocks of a map file, each with its CRC. Throws mcap::IoError.
+/// Writes preamble and blocks of a map file, each with its CRC. Throws io::IoError.
 class BlockWriter {
  public:
-  explicit BlockWriter(mcap::ByteSink& sink);
-  void write(BlockTag tag, mcap::ByteView payload);
+  explicit BlockWriter(io::ByteSink& sink);
+  void write(BlockTag tag, io::ByteView payload);
   /// The last block; a file without it is cut.
   void end();
 
  private:
-  mcap::ByteSink& sink_;
+  io::ByteSink& sink_;
   std::uint32_t blocks_ = 0;
 };
 
 struct Block {
   BlockTag tag{};
   std::uint64_t offset = 0;  ///< in the file
-  mcap::ByteView payload;    ///< valid until the next one is read
+  io::ByteView payload;      ///< valid until the next one is read
 };
 
 /// Reads them back, one block in memory at a time. Throws MapFileError for everything that is not as it was written.
 class BlockReader {
  public:
-  explicit BlockReader(const mcap::ByteSource& source);
+  explicit BlockReader(const io::ByteSource& source);
   /// The next block, its checksum compared.
   Block next();
   /// `last` must be the end block, and nothing may follow.
@@ -98,10 +98,10 @@ class BlockReader {
   std::uint64_t size() const { return source_.size(); }
 
  private:
-  mcap::ByteView read(std::size_t size, const char* what);
+  io::ByteView read(std::size_t size, const char* what);
 
-  const mcap::ByteSource& source_;
-  mcap::Bytes buffer_;
+  const io::ByteSource& source_;
+  io::Bytes buffer_;
   std::uint64_t position_ = 0;
   std::uint32_t blocks_ = 0;
 };

@@ -12,7 +12,7 @@ using namespace map_format;
 
 class MapReader {
  public:
-  MapReader(const mcap::ByteSource& source, const MapReadOptions& options) : options_(options), blocks_(source) {}
+  MapReader(const io::ByteSource& source, const MapReadOptions& options) : options_(options), blocks_(source) {}
 
   MapContents read() {
     const Head head = read_head();
@@ -72,7 +72,7 @@ class MapReader {
 
 }  // namespace
 
-MapContents read_map(const mcap::ByteSource& source, const MapReadOptions& options) {
+MapContents read_map(const io::ByteSource& source, const MapReadOptions& options) {
   return MapReader(source, options).read();
 }
 

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "common/mcap/byte_source.hpp"
+#include "common/io/byte_source.hpp"
 #include "services/slam/core/map/map.hpp"
 #include "services/slam/core/store/map_format.hpp"
 
@@ -21,6 +21,6 @@ struct MapReadOptions {
 
 /// Reads a map file (docs/map_file.md). What it returns is sound: every number is possible, every cross reference
 /// holds. Throws MapFileError for everything else, whatever the bytes are; holds a bounded multiple of their size.
-MapContents read_map(const mcap::ByteSource& source, const MapReadOptions& options = {});
+MapContents read_map(const io::ByteSource& source, const MapReadOptions& options = {});
 
 }  // namespace rtd::slam

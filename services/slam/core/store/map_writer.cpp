@@ -57,8 +57,8 @@ void copy_removed(const Map& map, MapSnapshot& snapshot) {
 
 using namespace map_format;
 
-mcap::Bytes encode_head(const Head& head) {
-  mcap::Bytes bytes;
+io::Bytes encode_head(const Head& head) {
+  io::Bytes bytes;
   FieldWriter write(bytes);
   write(head.keyframes, head.landmarks, head.removed, head.next_keyframe, head.next_landmark, head.next_map,
         static_cast<std::uint8_t>(head.probability_rule), static_cast<std::uint16_t>(head.cameras.size()));
@@ -71,7 +71,7 @@ mcap::Bytes encode_head(const Head& head) {
 }
 
 /// Records of one size that are encoded already.
-void write_records(BlockWriter& blocks, BlockTag tag, mcap::ByteView records, std::size_t record_bytes) {
+void write_records(BlockWriter& blocks, BlockTag tag, io::ByteView records, std::size_t record_bytes) {
   const std::size_t block_bytes = kBlockBytes / record_bytes * record_bytes;
   for (; !records.empty(); records = records.subspan(std::min(block_bytes, records.size())))
     blocks.write(tag, records.first(std::min(block_bytes, records.size())));
@@ -86,7 +86,7 @@ class KeyframeEncoder {
  public:
   explicit KeyframeEncoder(const MapSnapshot& snapshot) : snapshot_(snapshot) {}
 
-  void append(const MapSnapshot::Keyframe& keyframe, mcap::Bytes& out) {
+  void append(const MapSnapshot::Keyframe& keyframe, io::Bytes& out) {
     check(keyframe);
     FieldWriter write(out);
     const auto observations = observations_of(keyframe);
@@ -121,7 +121,7 @@ class KeyframeEncoder {
 
 void write_keyframes(BlockWriter& blocks, const MapSnapshot& snapshot) {
   KeyframeEncoder encoder(snapshot);
-  mcap::Bytes block;
+  io::Bytes block;
   const auto flush = [&] {
     if (!block.empty()) blocks.write(BlockTag::kKeyframes, block);
     block.clear();
@@ -150,7 +150,7 @@ MapSnapshot take_snapshot(const Map& map) {
   return snapshot;
 }
 
-void write_map(const MapSnapshot& snapshot, mcap::ByteSink& sink) {
+void write_map(const MapSnapshot& snapshot, io::ByteSink& sink) {
   BlockWriter blocks(sink);
   blocks.write(BlockTag::kHead, encode_head(snapshot.head));
   write_records(blocks, BlockTag::kLandmarks, snapshot.landmarks, kLandmarkBytes);

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "common/mcap/byte_sink.hpp"
-#include "common/mcap/encode.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/io/bytes.hpp"
 #include "services/slam/core/store/map_format.hpp"
 
 namespace rtd::slam {
@@ -27,18 +27,18 @@ struct MapSnapshot {
   };
 
   map_format::Head head;
-  mcap::Bytes landmarks;                 ///< records of blocks LAND
+  io::Bytes landmarks;                   ///< records of blocks LAND
   std::vector<LandmarkId> landmark_ids;  ///< of these records
   std::vector<Keyframe> keyframes;       ///< by id
   std::vector<Observation> observations;
-  mcap::Bytes removed;  ///< records of blocks REMV
+  io::Bytes removed;  ///< records of blocks REMV
 };
 
 /// Leaves out landmarks whose position is not finite, which no reader would take.
 MapSnapshot take_snapshot(const Map& map);
 
-/// Writes a map file (docs/map_file.md) in blocks of about 1 MiB: needs no more memory than that. Throws mcap::IoError,
+/// Writes a map file (docs/map_file.md) in blocks of about 1 MiB: needs no more memory than that. Throws io::IoError,
 /// and std::runtime_error when the map could not be read back.
-void write_map(const MapSnapshot& snapshot, mcap::ByteSink& sink);
+void write_map(const MapSnapshot& snapshot, io::ByteSink& sink);
 
 }  // namespace rtd::slam

@@ -22,15 +22,15 @@ class RecordingCommandsTest : public testing::Test {
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
   }
-  std::string file(const std::string& name, const mcap::Bytes& bytes) const {
+  std::string file(const std::string& name, const io::Bytes& bytes) const {
     const std::string path = (folder_ / name).string();
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     return path;
   }
   std::string file(const std::string& name, const std::string& text) const {
-    const mcap::ByteView view = mcap::bytes_of(text);
-    return file(name, mcap::Bytes(view.begin(), view.end()));
+    const io::ByteView view = io::bytes_of(text);
+    return file(name, io::Bytes(view.begin(), view.end()));
   }
   int info(const std::string& path, bool json = false) { return run_info({path, json}, out_, err_); }
   int diff(const std::string& a, const std::string& b) { return run_diff({a, b}, out_, err_); }
@@ -45,7 +45,7 @@ TEST_F(RecordingCommandsTest, info_of_a_good_file_is_exit_code_0) {
 }
 
 TEST_F(RecordingCommandsTest, info_of_a_cut_file_is_exit_code_3_behind_what_can_be_read) {
-  mcap::Bytes bytes = recording_of(regular_messages("/pose", 5));
+  io::Bytes bytes = recording_of(regular_messages("/pose", 5));
   bytes.resize(bytes.size() - 10);
   EXPECT_EQ(info(file("a.mcap", bytes), true), 3);
   EXPECT_THAT(out_.str(), HasSubstr("\"messages\": 5"));
@@ -86,7 +86,7 @@ TEST_F(RecordingCommandsTest, diff_says_equal_and_different_by_its_exit_code) {
 TEST_F(RecordingCommandsTest, diff_of_a_damaged_recording_is_no_clean_bill) {
   mcap::WriterOptions options;
   options.chunk_size = 100;
-  mcap::Bytes bytes = recording_of(regular_messages("/pose", 5), options);
+  io::Bytes bytes = recording_of(regular_messages("/pose", 5), options);
   const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   bytes[text.find("payload 2")] ^= std::byte{1};
   const std::string damaged = file("a.mcap", bytes);

@@ -17,8 +17,8 @@ using testing::HasSubstr;
 
 RecordingDiff compare(const std::vector<SampleMessage>& a, const std::vector<SampleMessage>& b,
                       const DiffOptions& options = {}, const std::string& type = {}) {
-  const mcap::Bytes file_a = recording_of(a, {}, type), file_b = recording_of(b, {}, type);
-  const mcap::MemorySource source_a(file_a), source_b(file_b);
+  const io::Bytes file_a = recording_of(a, {}, type), file_b = recording_of(b, {}, type);
+  const io::MemorySource source_a(file_a), source_b(file_b);
   RecordingDiff result = diff(contents_of(source_a), contents_of(source_b), options);
   explain(result, source_a, source_b);
   return result;

@@ -33,8 +33,8 @@ const ChannelReport& channel(const RecordingReport& report, const std::string& t
   throw std::runtime_error("no " + topic);
 }
 
-RecordingReport report_of(const mcap::Bytes& file, const ReportOptions& options = {}) {
-  return report_on(mcap::MemorySource(file), options);
+RecordingReport report_of(const io::Bytes& file, const ReportOptions& options = {}) {
+  return report_on(io::MemorySource(file), options);
 }
 
 void expect_the_gap(const RecordingReport& report) {
@@ -81,7 +81,7 @@ TEST(RecordingReport, reads_everything_where_the_indexes_are_missing) {
 }
 
 TEST(RecordingReport, a_cut_file_gives_what_is_readable_and_what_is_wrong) {
-  mcap::Bytes file = recording_of(messages_with_a_gap(), small_chunks());
+  io::Bytes file = recording_of(messages_with_a_gap(), small_chunks());
   file.resize(file.size() / 2);
   const RecordingReport report = report_of(file);
   EXPECT_GT(report.messages, 0U);
@@ -92,7 +92,7 @@ TEST(RecordingReport, a_cut_file_gives_what_is_readable_and_what_is_wrong) {
 }
 
 TEST(RecordingReport, names_the_chunk_whose_checksum_is_wrong) {
-  mcap::Bytes file = recording_of(messages_with_a_gap(), small_chunks());
+  io::Bytes file = recording_of(messages_with_a_gap(), small_chunks());
   const std::string text(reinterpret_cast<const char*>(file.data()), file.size());
   file[text.find("/pose payload 3")] ^= std::byte{1};
   const RecordingReport report = report_of(file);
@@ -102,10 +102,10 @@ TEST(RecordingReport, names_the_chunk_whose_checksum_is_wrong) {
 }
 
 TEST(RecordingReport, the_end_that_a_file_being_written_does_not_have_is_no_damage) {
-  mcap::MemorySink sink;
+  io::MemorySink sink;
   mcap::Writer writer(sink);
   const mcap::ChannelId id = writer.add(mcap::Channel{0, 0, "/pose", "cdr", {}});
-  writer.write(mcap::Message{id, 1, 10, 10, mcap::bytes_of("abc")});
+  writer.write(mcap::Message{id, 1, 10, 10, io::bytes_of("abc")});
   writer.end_chunk();
   RecordingReport report = report_of(sink.bytes());
   EXPECT_TRUE(report.damaged());

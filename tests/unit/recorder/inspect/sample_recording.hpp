@@ -18,10 +18,10 @@ struct SampleMessage {
 };
 
 /// A file of these messages; the type of a topic is "test_msgs/msg/" and its last word unless `type` is given.
-inline mcap::Bytes recording_of(const std::vector<SampleMessage>& messages, mcap::WriterOptions options = {},
-                                const std::string& type = {}) {
+inline io::Bytes recording_of(const std::vector<SampleMessage>& messages, mcap::WriterOptions options = {},
+                              const std::string& type = {}) {
   options.profile = "ros2";
-  mcap::MemorySink sink;
+  io::MemorySink sink;
   mcap::Writer writer(sink, options);
   std::map<std::string, mcap::ChannelId> channels;
   for (const SampleMessage& message : messages) {
@@ -33,7 +33,7 @@ inline mcap::Bytes recording_of(const std::vector<SampleMessage>& messages, mcap
     }
     writer.write(mcap::Message{channels.at(message.topic), message.sequence, message.time_ns,
                                message.publish_ns != 0 ? message.publish_ns : message.time_ns,
-                               mcap::bytes_of(message.payload)});
+                               io::bytes_of(message.payload)});
   }
   writer.write(mcap::Metadata{"note", {{"made_by", "test"}}});
   writer.close();

@@ -28,14 +28,14 @@ FeatureWorld::Options noisy(std::uint64_t seed = 1) {
   return options;
 }
 
-mcap::Bytes map_of(const SlamSystem& slam) {
-  mcap::Bytes bytes;
+io::Bytes map_of(const SlamSystem& slam) {
+  io::Bytes bytes;
   slam.read_map([&](const Map& map) { bytes = bytes_of_map(map); });
   return bytes;
 }
 
 /// The map of a first session, as a file.
-mcap::Bytes make_map(const FeatureWorld& world, std::uint64_t frames) {
+io::Bytes make_map(const FeatureWorld& world, std::uint64_t frames) {
   SlamSystem slam(SlamConfig{}, MappingMode::kSynchronous, frozen_clock);
   for (std::uint64_t seq = 0; seq < frames; ++seq) slam.process(*world.view(seq, FeatureWorld::T_world_camera(seq)));
   return map_of(slam);
@@ -71,7 +71,7 @@ class LoadedMap : public ::testing::Test {
 
   static constexpr std::uint64_t kMapped = 90;
   const FeatureWorld world_{noisy()};
-  const mcap::Bytes file_ = make_map(world_, kMapped);
+  const io::Bytes file_ = make_map(world_, kMapped);
 };
 
 TEST_F(LoadedMap, is_found_at_once_and_left_as_it_is) {

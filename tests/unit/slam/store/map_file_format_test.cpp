@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "common/mcap/crc32.hpp"
+#include "common/io/bytes.hpp"
 #include "tests/support/sample_map.hpp"
 #include "tests/unit/slam/store/memory_map_file.hpp"
 
@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 /// Why the bytes are no map; empty when they are one.
-std::string refusal(mcap::ByteView bytes) {
+std::string refusal(io::ByteView bytes) {
   try {
     read_bytes(bytes);
     return {};
@@ -28,13 +28,13 @@ std::string refusal(mcap::ByteView bytes) {
   }
 }
 
-mcap::Bytes tiny_file() {
+io::Bytes tiny_file() {
   return bytes_of_map(sample_map({.keyframes = 3, .features = 8, .seen_per_keyframe = 3, .new_per_keyframe = 2}));
 }
 
 TEST(MapFile, gives_the_same_map_back) {
   const Map map = sample_map({.keyframes = 30, .features = 100, .seen_per_keyframe = 40, .new_per_keyframe = 15});
-  const mcap::Bytes bytes = bytes_of_map(map);
+  const io::Bytes bytes = bytes_of_map(map);
   const Map restored(read_bytes(bytes));
   EXPECT_EQ(restored.check_invariants(), "");
   EXPECT_EQ(bytes_of_map(restored), bytes);
@@ -94,16 +94,16 @@ TEST(MapFile, is_not_written_with_a_pose_that_cannot_be_read) {
 }
 
 TEST(MapFile, cut_at_any_byte_is_refused) {
-  const mcap::Bytes file = tiny_file();
+  const io::Bytes file = tiny_file();
   ASSERT_EQ(refusal(file), "");
   for (std::size_t size = 0; size < file.size(); ++size)
-    ASSERT_NE(refusal(mcap::ByteView(file).first(size)), "") << "cut at byte " << size << " of " << file.size();
-  EXPECT_THAT(refusal(mcap::ByteView(file).first(file.size() - 1)), HasSubstr("it was cut"));
+    ASSERT_NE(refusal(io::ByteView(file).first(size)), "") << "cut at byte " << size << " of " << file.size();
+  EXPECT_THAT(refusal(io::ByteView(file).first(file.size() - 1)), HasSubstr("it was cut"));
   EXPECT_THAT(refusal({}), HasSubstr("the file is empty"));
 }
 
 TEST(MapFile, with_any_bit_flipped_is_refused) {
-  mcap::Bytes file = tiny_file();
+  io::Bytes file = tiny_file();
   for (std::size_t bit = 0; bit < 8 * file.size(); ++bit) {
     const std::byte mask = std::byte{1} << (bit % 8);
     file[bit / 8] ^= mask;
@@ -113,10 +113,10 @@ TEST(MapFile, with_any_bit_flipped_is_refused) {
 }
 
 TEST(MapFile, with_many_bits_flipped_is_refused) {
-  const mcap::Bytes whole = bytes_of_map(sample_map());
+  const io::Bytes whole = bytes_of_map(sample_map());
   std::mt19937_64 random(3);
   for (int i = 0; i < 2000; ++i) {
-    mcap::Bytes file = whole;
+    io::Bytes file = whole;
     for (std::uint64_t flips = 1 + random() % 20; flips > 0; --flips)
       file[random() % file.size()] ^= std::byte{1} << (random() % 8);
     if (file != whole) {
@@ -126,15 +126,15 @@ TEST(MapFile, with_many_bits_flipped_is_refused) {
 }
 
 TEST(MapFile, with_something_behind_its_end_is_refused) {
-  mcap::Bytes file = tiny_file();
+  io::Bytes file = tiny_file();
   file.push_back(std::byte{0});
   EXPECT_THAT(refusal(file), HasSubstr("follows the end"));
 }
 
-mcap::Bytes file_of_version(std::uint32_t version) {
-  mcap::Bytes file = tiny_file();
-  mcap::Encoder::store(file.data() + 8, version);
-  mcap::Encoder::store(file.data() + 12, mcap::crc32(mcap::ByteView(file).first(12)));
+io::Bytes file_of_version(std::uint32_t version) {
+  io::Bytes file = tiny_file();
+  io::store(file.data() + 8, version);
+  io::store(file.data() + 12, io::crc32(io::ByteView(file).first(12)));
   return file;
 }
 
@@ -147,7 +147,7 @@ TEST(MapFile, of_another_version_is_refused_naming_both) {
 
 TEST(MapFile, of_another_kind_is_refused) {
   const std::string text = "ply\nformat ascii 1.0\n";
-  EXPECT_THAT(refusal(mcap::bytes_of(text)), HasSubstr("no map file"));
+  EXPECT_THAT(refusal(io::bytes_of(text)), HasSubstr("no map file"));
 }
 
 /// A file whose checksums are right and whose contents are not.
@@ -161,7 +161,7 @@ void PrintTo(const Lie& lie, std::ostream* out) {
 }
 
 template <class T>
-void overwrite(mcap::Bytes& bytes, std::size_t at, T value) {
+void overwrite(io::Bytes& bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof(T));
 }
 

@@ -2,25 +2,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/mcap/byte_sink.hpp"
-#include "common/mcap/byte_source.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/io/byte_source.hpp"
 #include "services/slam/core/store/map_reader.hpp"
 #include "services/slam/core/store/map_writer.hpp"
 
 namespace rtd::slam {
 
-inline mcap::Bytes bytes_of_map(const MapSnapshot& snapshot) {
-  mcap::MemorySink sink;
+inline io::Bytes bytes_of_map(const MapSnapshot& snapshot) {
+  io::MemorySink sink;
   write_map(snapshot, sink);
   return sink.bytes();
 }
 
-inline mcap::Bytes bytes_of_map(const Map& map) {
+inline io::Bytes bytes_of_map(const Map& map) {
   return bytes_of_map(take_snapshot(map));
 }
 
-inline MapContents read_bytes(mcap::ByteView bytes, StoredFeatures features = StoredFeatures::kKeep) {
-  return read_map(mcap::MemorySource(bytes), {features, {}});
+inline MapContents read_bytes(io::ByteView bytes, StoredFeatures features = StoredFeatures::kKeep) {
+  return read_map(io::MemorySource(bytes), {features, {}});
 }
 
 }  // namespace rtd::slam

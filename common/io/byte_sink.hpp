@@ -8,9 +8,9 @@
 #include <initializer_list>
 #include <system_error>
 
-#include "common/mcap/encode.hpp"
+#include "common/io/bytes.hpp"
 
-namespace rtd::mcap {
+namespace rtd::io {
 
 /// A sink or source failed: what() names the path and the system's reason, code() is the errno.
 class IoError : public std::system_error {
@@ -18,7 +18,7 @@ class IoError : public std::system_error {
   IoError(int error_number, const std::string& what) : std::system_error(error_number, std::generic_category(), what) {}
 };
 
-/// Where a Writer puts its bytes, in order. append() is for one thread; sync() and the positions for any.
+/// Where a writer puts its bytes, in order. append() is for one thread; sync() and the positions for any.
 class ByteSink {
  public:
   virtual ~ByteSink() = default;
@@ -47,8 +47,8 @@ class MemorySink final : public ByteSink {
 
 enum class IfExists { kFail, kReplace };
 
-/// What becomes of the kernel's copy in memory of what is on disk. A recorder that drops it pushes nobody else's files
-/// out, and saves the processor the work of getting ever new pages.
+/// What becomes of the kernel's copy in memory of what is on disk. A recorder that drops it leaves other files in
+/// memory and saves the processor the work of getting ever new pages.
 enum class Cached { kKeep, kDrop };
 
 /// A file, written with writev(2) from where the caller has the bytes: no copy of its own. It is locked (flock) while
@@ -64,8 +64,8 @@ class FileSink final : public ByteSink {
   void append(std::initializer_list<ByteView> parts) override;
   std::uint64_t position() const override { return position_.load(std::memory_order_acquire); }
   std::uint64_t sync() override;
-  /// Makes everything durable and gives the file another name, in one step replacing what has it: after a crash there is
-  /// the one or the other, whole. Same file system. Throws IoError.
+  /// Makes everything durable and gives the file another name, in one step replacing what has it: after a crash there
+  /// is the one or the other, whole. Same file system. Throws IoError.
   void replace(const std::filesystem::path& path);
   const std::filesystem::path& path() const { return path_; }
 
@@ -80,4 +80,4 @@ class FileSink final : public ByteSink {
   std::atomic<bool> folder_synced_{false};
 };
 
-}  // namespace rtd::mcap
+}  // namespace rtd::io

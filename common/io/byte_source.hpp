@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "common/mcap/records.hpp"
+#include "common/io/bytes.hpp"
 
-namespace rtd::mcap {
+namespace rtd::io {
 
 /// Where a reader gets its bytes. Const members may be called from several threads.
 class ByteSource {
@@ -17,7 +17,7 @@ class ByteSource {
   virtual std::size_t read(std::uint64_t offset, std::span<std::byte> into) const = 0;
 };
 
-/// Bytes that somebody else keeps alive.
+/// Bytes that the caller keeps alive.
 class MemorySource final : public ByteSource {
  public:
   explicit MemorySource(ByteView bytes) : bytes_(bytes) {}
@@ -48,4 +48,4 @@ class FileSource final : public ByteSource {
   std::uint64_t size_ = 0;
 };
 
-}  // namespace rtd::mcap
+}  // namespace rtd::io

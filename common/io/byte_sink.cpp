@@ -8,9 +8,9 @@
 #include <array>
 #include <cerrno>
 
-#include "common/mcap/byte_sink.hpp"
+#include "common/io/byte_sink.hpp"
 
-namespace rtd::mcap {
+namespace rtd::io {
 namespace {
 
 constexpr std::size_t kMostParts = 16;
@@ -71,7 +71,7 @@ FileSink::FileSink(std::filesystem::path path, IfExists if_exists, Cached cached
   const int exclusive = if_exists == IfExists::kFail ? O_EXCL : 0;
   fd_ = ::open(path_.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC | exclusive, 0644);
   if (fd_ < 0) fail(path_, errno);
-  // The content goes only when nobody else is writing it.
+  // The content is deleted only when no other process writes the file.
   if (::flock(fd_, LOCK_EX | LOCK_NB) != 0 || ::ftruncate(fd_, 0) != 0) {
     const int error_number = errno;
     ::close(fd_);
@@ -84,7 +84,7 @@ FileSink::~FileSink() {
 }
 
 void FileSink::append(std::initializer_list<ByteView> parts) {
-  if (parts.size() > kMostParts) throw std::logic_error("MCAP: a sink takes at most 16 parts at once");
+  if (parts.size() > kMostParts) throw std::logic_error("a byte sink takes at most 16 parts at once");
   Parts vectors;
   std::size_t count = 0;
   std::uint64_t size = 0;
@@ -105,7 +105,8 @@ void FileSink::append(std::initializer_list<ByteView> parts) {
 std::uint64_t FileSink::sync() {
   const std::uint64_t covered = position();
   if (::fdatasync(fd_) != 0) fail(path_, errno);
-  if (cached_ == Cached::kDrop) ::posix_fadvise(fd_, 0, static_cast<off_t>(covered), POSIX_FADV_DONTNEED);  // a wish
+  if (cached_ == Cached::kDrop)
+    ::posix_fadvise(fd_, 0, static_cast<off_t>(covered), POSIX_FADV_DONTNEED);  // a hint only
   if (!folder_synced_.load()) sync_folder();
   return covered;
 }
@@ -125,9 +126,9 @@ void FileSink::sync_folder() {
   const int result = ::fsync(fd);
   const int error_number = errno;
   ::close(fd);
-  // Some file systems cannot sync a folder and say EINVAL; they then need no such thing.
+  // Some file systems cannot sync a folder and return EINVAL; they do not need it.
   if (result != 0 && error_number != EINVAL) fail(folder, error_number);
   folder_synced_ = true;
 }
 
-}  // namespace rtd::mcap
+}  // namespace rtd::io

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mcap/byte_source.hpp"
+#include "common/io/byte_source.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -10,9 +10,9 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "common/mcap/byte_sink.hpp"
+#include "common/io/byte_sink.hpp"
 
-namespace rtd::mcap {
+namespace rtd::io {
 
 std::size_t MemorySource::read(std::uint64_t offset, std::span<std::byte> into) const {
   if (offset >= bytes_.size()) return 0;
@@ -57,4 +57,4 @@ bool FileSource::being_written() const {
   return false;
 }
 
-}  // namespace rtd::mcap
+}  // namespace rtd::io
