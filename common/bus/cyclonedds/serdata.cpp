@@ -20,7 +20,7 @@ extern "C" {
 namespace rtd::bus::cyclonedds {
 namespace {
 
-constexpr std::size_t kHeader = ByteBlock::kCdrHeaderBytes;
+constexpr std::size_t kHeaderBytes = ByteBlock::kCdrHeaderBytes;
 
 Serdata& ours(ddsi_serdata* sample) {
   return *static_cast<Serdata*>(sample);
@@ -68,7 +68,7 @@ bool copy_fragments(const nn_rdata* fragment, std::span<std::byte> target) {
 
 ddsi_serdata* from_packets(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragments,
                            std::size_t size) {
-  if (size < kHeader) return nullptr;
+  if (size < kHeaderBytes) return nullptr;
   auto block = block_of(type, size);
   if (!copy_fragments(fragments, block->bytes())) return nullptr;
   Serdata* const sample = create_serdata(type, kind, std::move(block));
@@ -79,7 +79,7 @@ ddsi_serdata* from_packets(const ddsi_sertype* type, ddsi_serdata_kind kind, con
 
 ddsi_serdata* from_pieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
                           const ddsrt_iovec_t* pieces, std::size_t size) {
-  if (size < kHeader) return nullptr;
+  if (size < kHeaderBytes) return nullptr;
   auto block = block_of(type, size);
   std::size_t copied = 0;
   for (ddsrt_msg_iovlen_t i = 0; i < count && copied < size; ++i) {
@@ -95,11 +95,11 @@ ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) {
 }
 
 std::shared_ptr<ByteBlock> block_from_plain(const ddsi_sertype* type, const void* plain) {
-  constexpr std::byte kLittleEndianCdr[kHeader] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  constexpr std::byte kLittleEndianCdr[kHeaderBytes] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
   const std::size_t size = static_cast<const Sertype*>(type)->description.plain_bytes;
-  auto block = block_of(type, kHeader + size);
-  std::memcpy(block->bytes().data(), kLittleEndianCdr, kHeader);
-  std::memcpy(block->bytes().data() + kHeader, plain, size);
+  auto block = block_of(type, kHeaderBytes + size);
+  std::memcpy(block->bytes().data(), kLittleEndianCdr, kHeaderBytes);
+  std::memcpy(block->bytes().data() + kHeaderBytes, plain, size);
   return block;
 }
 
@@ -110,12 +110,12 @@ ddsi_serdata* from_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, cons
 }
 
 std::uint32_t size(const ddsi_serdata* sample) {
-  return static_cast<std::uint32_t>(std::max(bytes_of(sample).size(), kHeader));
+  return static_cast<std::uint32_t>(std::max(bytes_of(sample).size(), kHeaderBytes));
 }
 
 /// The range may end in the padding.
 const std::byte* range(const ddsi_serdata* sample, std::size_t offset) {
-  static const std::byte kEmptyCdr[kHeader] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  static const std::byte kEmptyCdr[kHeaderBytes] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
   const auto bytes = bytes_of(sample);
   return (bytes.empty() ? kEmptyCdr : bytes.data()) + offset;
 }
