@@ -14,6 +14,8 @@ SOURCE_SUFFIXES = (".cpp", ".hpp", ".c", ".h", ".py", ".sh", ".mjs", ".cmake", "
 MAX_LINE = 120
 OUTPUT_AND_EXTERNAL_FILES = {"ablation.md", "associate.py"}
 
+PATH_IN_COMMENT = re.compile(rf"(?<![\w/.-])(?:{'|'.join(TOP_FOLDERS)})/[\w./-]*\w")
+
 # Words that a native engineer would not write; left: pattern, right: what to write instead.
 WORDS = {
     r"\banew\b": "again",
@@ -98,6 +100,18 @@ class Docs(unittest.TestCase):
                     problems.append(f"{page}:{number}: {code} does not exist")
         self.assert_none(problems)
 
+    def test_paths_in_comments_exist(self):
+        problems, paths = [], [str(path) for path in FILES]
+        for path in FILES:
+            if path.suffix not in (".cpp", ".hpp", ".py", ".sh", ".cmake", ".txt") or path.name == "docs_test.py":
+                continue
+            for number, line in enumerate(text_of(path).split("\n"), 1):
+                comment = re.search(r"(?://|#(?!include)).*", line)
+                for code in PATH_IN_COMMENT.findall(comment.group() if comment else ""):
+                    if not any(name.startswith(code) for name in paths):
+                        problems.append(f"{path}:{number}: {code} does not exist")
+        self.assert_none(problems)
+
     def test_named_source_files_exist(self):
         problems = []
         for page in PAGES:
@@ -126,7 +140,8 @@ class Docs(unittest.TestCase):
         """A name such as test_bus_${test} in a loop stands for every word of the lists of tests."""
         lists = "\n".join(text_of(path) for path in FILES if path.name == "CMakeLists.txt" and path.parts[0] == "tests")
         words = set(re.findall(r"\w+", lists))
-        loops = {re.sub(r"\$\{\w+\}", r"(\\w+)", name) for name in re.findall(r"\b(?:test|fuzz)_[\w${}]*\$[\w{}]+", lists)}
+        in_loops = re.findall(r"\b(?:test|fuzz)_[\w${}]*\$[\w{}]+", lists)
+        loops = {re.sub(r"\$\{\w+\}", r"(\\w+)", name) for name in in_loops}
 
         def known(name):
             matches = (re.fullmatch(loop, name) for loop in loops)
@@ -146,6 +161,11 @@ class Docs(unittest.TestCase):
         self.assert_none([f"{page}:{number}: {len(line)} characters" for page in PAGES
                           for number, line in enumerate(without_code_blocks(text_of(page)), 1)
                           if len(line) > MAX_LINE and not line.startswith("|") and "://" not in line])
+
+    def test_no_document_outside_the_project_is_cited(self):
+        self.assert_none([f"{path}: {found.group()}" for path in FILES
+                          if path.suffix in (".cpp", ".hpp", ".txt", ".cmake", ".idl", ".yaml")
+                          and (found := re.search(r"DESIGN(?:\.md| section|, section)", text_of(path)))])
 
     def test_words_are_plain(self):
         problems = []
