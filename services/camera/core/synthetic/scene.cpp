@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kWallTexelsPerM = 192, kFloorTexelsPerM = 112, kFurnitureTexelsPerM = 224;
+constexpr float kRoomWallTexelsPerM = 192, kRoomFloorTexelsPerM = 112, kFurnitureTexelsPerM = 224;
 
 /// Where a piece of furniture stands: middle of its lower side (m), size (m), turned about the vertical (rad).
 struct Furniture {
@@ -74,8 +74,8 @@ std::vector<Face> shell(SeededRandom& random, std::vector<Texture>& textures) {
   for (Face& face : faces) {
     const bool wall = face.height_m == kRoomHeightM;
     const TextureStyle style = random_style(random, wall ? 3.0F : 2.5F);
-    face.texture = add_texture(textures, face.width_m, face.height_m, wall ? kWallTexelsPerM : kFloorTexelsPerM, style,
-                               random.next());
+    face.texture = add_texture(textures, face.width_m, face.height_m, wall ? kRoomWallTexelsPerM : kRoomFloorTexelsPerM,
+                               style, random.next());
   }
   return faces;
 }
