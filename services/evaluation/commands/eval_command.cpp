@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
@@ -21,7 +20,6 @@
 namespace rtd::eval {
 namespace {
 
-constexpr double kRadToDeg = 180 / std::numbers::pi;
 constexpr std::size_t kShownSpans = 5;
 
 double seconds(std::int64_t stamp_ns) {

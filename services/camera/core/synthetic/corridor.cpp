@@ -15,7 +15,7 @@ using Eigen::Vector3f;
 
 constexpr double kBendM = 0.9;  ///< radius of the walk round a corner
 constexpr int kSides = 4;
-constexpr float kWallTexelsPerM = 160, kFloorTexelsPerM = 96;
+constexpr float kCorridorWallTexelsPerM = 160, kCorridorFloorTexelsPerM = 96;
 
 /// One side of the corridor. Frame: origin at the outer corner where the side begins, x along the walk (counter-
 /// clockwise), y inwards, z up. It covers the square of its first corner, the next side that of its last.
@@ -85,7 +85,7 @@ class SideBuilder {
     constexpr float kPatchesPerM2 = 1.3F;
     const auto height = static_cast<float>(plan_.height_m);
     const float piece_m = length_m / static_cast<float>(repeats);
-    const int painted = texture(piece_m, height, kWallTexelsPerM, kPatchesPerM2);
+    const int painted = texture(piece_m, height, kCorridorWallTexelsPerM, kPatchesPerM2);
     for (int i = 0; i < repeats; ++i) {
       const Vector3f begin = start + x * (piece_m * static_cast<float>(i));
       if (start.y() > 0) {
@@ -99,9 +99,9 @@ class SideBuilder {
   void floor_and_ceiling(float length_m, float width, float height) {
     constexpr float kFloorPatchesPerM2 = 0.8F, kCeilingPatchesPerM2 = 0.5F;
     add({0, 0, 0}, Vector3f::UnitX(), Vector3f::UnitY(), length_m, width,
-        texture(length_m, width, kFloorTexelsPerM, kFloorPatchesPerM2));
+        texture(length_m, width, kCorridorFloorTexelsPerM, kFloorPatchesPerM2));
     add({0, width, height}, Vector3f::UnitX(), -Vector3f::UnitY(), length_m, width,
-        texture(length_m, width, kFloorTexelsPerM, kCeilingPatchesPerM2));
+        texture(length_m, width, kCorridorFloorTexelsPerM, kCeilingPatchesPerM2));
   }
 
   /// Cabinets and pillars along both walls.

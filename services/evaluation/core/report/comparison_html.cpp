@@ -17,7 +17,6 @@ namespace {
 
 namespace palette = plot::palette;
 
-constexpr std::size_t kShownSamples = 6;
 constexpr std::array<const char*, 5> kRunColours{palette::kRed, palette::kBlue, palette::kPurple, palette::kAmber,
                                                  palette::kGreen};
 

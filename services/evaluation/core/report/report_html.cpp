@@ -17,7 +17,6 @@ using html::Card;
 using html::Tone;
 namespace palette = plot::palette;
 
-constexpr std::size_t kShownSamples = 6;
 constexpr std::size_t kShownLostSpans = 20;
 
 Tone coverage_tone(double coverage) {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "services/evaluation/core/trajectory/evaluation.hpp"
 
@@ -12,8 +11,6 @@ namespace rtd::eval {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kRadToDeg = 180 / std::numbers::pi;
 
 Json number_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);

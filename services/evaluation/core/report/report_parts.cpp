@@ -6,14 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 
 namespace rtd::eval {
 namespace {
-
-constexpr double kRadToDeg = 180 / std::numbers::pi;
 
 std::vector<std::string> length_row(const std::string& name, const Statistics& s) {
   if (s.count == 0) return {name, "-", "-", "-", "-"};

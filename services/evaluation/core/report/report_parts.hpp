@@ -9,6 +9,8 @@
 
 namespace rtd::eval {
 
+inline constexpr std::size_t kShownSamples = 6;  ///< frames of a run that its page shows
+
 /// The time axis that all charts of a run share.
 struct RunTime {
   std::int64_t start_ns = 0;  ///< stamp of the first frame

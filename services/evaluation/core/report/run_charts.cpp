@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "services/evaluation/core/plot/chart.hpp"
+#include "services/evaluation/core/report/trajectory_plot.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -20,7 +21,6 @@ namespace palette = plot::palette;
 
 constexpr double kChartWidth = 1080;
 constexpr std::size_t kMaxColumns = 700;  // more values are averaged: a chart has no more columns
-constexpr double kMaxGapS = 0.5;
 
 double source_time_s(const FrameRecord& frame, const RunTime& time) {
   return static_cast<double>(frame.tracking.stamp_ns - time.start_ns) * 1e-9;

@@ -17,7 +17,6 @@ using plot::Chart;
 using plot::Point;
 namespace palette = plot::palette;
 
-constexpr double kMaxGapS = 0.5;  // longer times without poses interrupt a line
 constexpr std::size_t kMaxPathPoints = 4000;
 constexpr int kColourSteps = 32;
 constexpr std::array<const char*, 3> kAxisNames{"x [m]", "y [m]", "z [m]"};

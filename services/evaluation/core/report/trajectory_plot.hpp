@@ -10,6 +10,8 @@
 
 namespace rtd::eval {
 
+inline constexpr double kMaxGapS = 0.5;  ///< longer times without poses interrupt a line
+
 /// A length unit that gives readable numbers.
 struct LengthUnit {
   const char* name;  ///< "mm", "cm" or "m"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 namespace rtd::eval {
 namespace {
@@ -23,8 +22,6 @@ Coverage measure_coverage(const Trajectory& estimate, const Trajectory& groundtr
 }
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kRadToDeg = 180 / std::numbers::pi;
 
 Json alignment_json(const Alignment& alignment) {
   const Eigen::Quaterniond q(alignment.T_groundtruth_estimate.linear());

@@ -4,9 +4,12 @@
 
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 namespace rtd::eval {
+
+inline constexpr double kRadToDeg = 180 / std::numbers::pi;
 
 /// Summary of a set of non-negative errors, in their unit. All NaN when count is 0.
 struct Statistics {
