@@ -36,7 +36,7 @@ std::string require_rtd_eval() {
   return executable;
 }
 
-/// Lockstep: the figures do not depend on how busy this host is, and a second demo gives the same ones.
+/// Lockstep: the figures do not depend on the load of this host, and a second demo gives the same ones.
 RunResult run_mode(const DemoOptions& options, const std::string& source, const std::string& mode) {
   RunOptions run_options;
   run_options.source = source;
@@ -63,7 +63,7 @@ void print_next_steps(const std::string& page) {
             << "    rtd run --source bag:FILE --out DIR                       a ROS 1 bag\n"
             << "    rtd run --source 'synthetic:office?frames=0' --out DIR    no data at all, endless: Ctrl-C\n"
             << "    rtd demo --dataset fr3_walking_xyz                        a real sequence with people (download)\n"
-            << "    rtd eval DIR/trajectory.txt GROUNDTRUTH                   judge any trajectory\n";
+            << "    rtd eval DIR/trajectory.txt GROUNDTRUTH                   evaluate any trajectory\n";
 }
 
 int run_both(const DemoOptions& options, const std::string& source) {

@@ -26,7 +26,7 @@ fs::path cache_folder() {
   const std::string cache = environment("XDG_CACHE_HOME"), home = environment("HOME");
   if (!cache.empty()) return fs::path(cache) / "rtd-slam" / "datasets";
   if (!home.empty()) return fs::path(home) / ".cache" / "rtd-slam" / "datasets";
-  throw std::runtime_error("no place for the data set: set HOME or XDG_CACHE_HOME");
+  throw std::runtime_error("no folder for the data set: set HOME or XDG_CACHE_HOME");
 }
 
 void run_tool(const std::string& tool, const std::vector<std::string>& arguments, const std::string& failure) {
@@ -40,9 +40,9 @@ void unpack(const fs::path& archive, const fs::path& folder, const std::string& 
   fs::remove_all(unpacking);
   fs::create_directories(unpacking);
   run_tool("tar", {"-xzf", archive.string(), "-C", unpacking.string()},
-           archive.string() + " is no complete archive: try again");
+           archive.string() + " is not a complete archive: try again");
   if (!fs::is_directory(unpacking / name)) {
-    throw std::runtime_error(archive.string() + " holds no folder " + name + ": is RTD_TUM_URL right?");
+    throw std::runtime_error(archive.string() + " has no folder " + name + ": is RTD_TUM_URL right?");
   }
   fs::rename(unpacking / name, folder / name);
   fs::remove_all(unpacking);
@@ -73,7 +73,7 @@ std::string fetch_tum_dataset(const std::string& name) {
   run_tool(
       "curl", {"--fail", "--location", "--show-error", "--progress-bar", "--output", archive.string(), dataset.url},
       "cannot download " + dataset.url + ": without a network use 'rtd demo' (no download), or unpack the sequence " +
-          "yourself and 'rtd run --source tum:FOLDER'; a mirror goes into RTD_TUM_URL");
+          "yourself and 'rtd run --source tum:FOLDER'; set RTD_TUM_URL to use a mirror");
   unpack(archive, cache, dataset.folder);
   return folder.string();
 }

@@ -6,13 +6,13 @@
 
 namespace rtd::launcher {
 
-/// Where a sequence of the TUM RGB-D benchmark is on the network and on this host.
+/// A sequence of the TUM RGB-D benchmark, on the network and on this host.
 struct TumDataset {
   std::string url;     ///< of the archive
   std::string folder;  ///< name of the folder in the archive, e.g. rgbd_dataset_freiburg3_walking_xyz
 };
 
-/// "fr3_walking_xyz" -> archive and folder below `base_url`. Throws service::ConfigError for a name that is none.
+/// "fr3_walking_xyz" -> archive and folder below `base_url`. Throws service::ConfigError for other names.
 TumDataset tum_dataset(const std::string& name, const std::string& base_url);
 
 /// The folder of the sequence; downloaded (curl) and unpacked (tar) into the user's cache when it is not there yet.

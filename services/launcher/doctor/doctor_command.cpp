@@ -19,9 +19,7 @@
 #include "common/service/bus_config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/model_locator.hpp"
-#include "services/launcher/doctor/findings.hpp"
-#include "services/launcher/doctor/keystore_checks.hpp"
-#include "services/launcher/doctor/network_checks.hpp"
+#include "services/launcher/doctor/checks.hpp"
 #include "services/launcher/process/executable.hpp"
 
 namespace rtd::launcher {
@@ -48,12 +46,12 @@ void check_services(Findings& findings) {
   if (missing.empty()) {
     findings.push_back({Verdict::kOk, "services: camera, detector, filter, slam, dense and record found"});
   } else {
-    findings.push_back(
-        {Verdict::kFail, "services: missing" + missing + "; build all of them: cmake --build <build folder>"});
+    findings.push_back({Verdict::kFail, "services: missing" + missing +
+                                            "; build them with 'cmake --build <build folder> --target rtd_services'"});
   }
 }
 
-/// What the bus tells of its troubles while it is joined.
+/// The problems that the bus reports after joining.
 class Problems {
  public:
   void add(const std::string& problem) {
@@ -74,13 +72,13 @@ class Problems {
   std::vector<std::string> all_;
 };
 
-/// A Discovery Server is known to be missing only after a while, strangers in a secured domain are heard by and by.
+/// A missing Discovery Server is noticed only after a while, and so are participants without keys in a secured domain.
 std::chrono::milliseconds patience(const bus::BusOptions& options) {
   if (!options.network.discovery_server.empty()) return bus::kServerPatience + std::chrono::milliseconds(500);
   return std::chrono::milliseconds(options.security.enabled() ? 1000 : 0);
 }
 
-/// The vendor in use must work; another one that does not is worth a word.
+/// The vendor in use must work; another vendor that does not is a warning.
 void check_vendor(Findings& findings, bus::BusOptions options, const std::string& vendor) {
   const bool used = options.vendor == vendor;
   options.vendor = vendor;
@@ -90,7 +88,7 @@ void check_vendor(Findings& findings, bus::BusOptions options, const std::string
     const std::shared_ptr<bus::Bus> bus = bus::connect(options);
     findings.push_back({Verdict::kOk, "bus: " + bus->vendor() + " joins domain " + std::to_string(options.domain) +
                                           (used ? "" : " (--dds " + vendor + ")")});
-    // Strangers in a secured domain do not hinder; without its server nobody is found.
+    // Participants without keys do no harm; without its Discovery Server no participant is found.
     const Verdict verdict = options.network.discovery_server.empty() ? Verdict::kWarn : Verdict::kFail;
     for (const std::string& problem : problems.wait(patience(options)))
       findings.push_back({verdict, "bus: " + problem});
@@ -125,7 +123,6 @@ void check_bus(bus::BusOptions options, Findings& findings) {
   check_host(options, findings);
 }
 
-/// A MiB count for people.
 std::string mib(std::uint64_t bytes) {
   return std::to_string((bytes + (1U << 20) - 1) >> 20) + " MiB";
 }
@@ -135,10 +132,10 @@ void check_leftovers(Findings& findings) {
   findings.push_back(
       report.removed.empty()
           ? Finding{Verdict::kOk, "shared memory: no leftovers of killed processes"}
-          : Finding{Verdict::kWarn, "shared memory: " + std::to_string(report.removed.size()) + " files, " +
-                                        mib(report.removed_bytes()) +
-                                        " left by killed processes; 'rtd doctor --clean', or the next service that "
-                                        "starts, removes them"});
+          : Finding{Verdict::kWarn, "shared memory: killed processes left " + mib(report.removed_bytes()) + " in " +
+                                        std::to_string(report.removed.size()) +
+                                        " files behind; 'rtd doctor --clean' or the next service that starts "
+                                        "removes them"});
 }
 
 void check_weights(Findings& findings) {
@@ -155,7 +152,7 @@ void check_data(Findings& findings) {
     findings.push_back({Verdict::kOk, std::string("data: ") + folder});
   } else {
     findings.push_back({Verdict::kOk,
-                        "data: RTD_DATA_DIR names no folder with walk_xyz, 'rtd demo' shows the synthetic room; "
+                        "data: RTD_DATA_DIR has no folder walk_xyz, so 'rtd demo' uses the synthetic room; "
                         "'rtd demo --dataset fr3_walking_xyz' downloads a real sequence"});
   }
 }

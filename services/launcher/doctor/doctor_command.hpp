@@ -9,13 +9,13 @@
 namespace rtd::launcher {
 
 struct DoctorOptions {
-  bool clean = false;  ///< remove what killed processes left in /dev/shm, say what and why the rest stays, and end
-  service::BusArguments bus;      ///< how the services are going to join the bus
-  service::ConfigSources config;  ///< as theirs
+  bool clean = false;  ///< only remove what killed processes left in /dev/shm, and list what was removed and what stays
+  service::BusArguments bus;      ///< how the services will join the bus
+  service::ConfigSources config;  ///< the same as theirs
 };
 
-/// `rtd doctor`: one line per check (ok, warn, FAIL), each problem with the command that cures it. Returns 0 when a run
-/// can start so, 1 when something failed, 2 when the arguments or the configuration are wrong (said to `err`).
+/// `rtd doctor`: one line per check (ok, warn, FAIL), each problem with the command that fixes it. Returns 0 when a
+/// run can start with these options, 1 when a check failed, 2 when arguments or configuration are wrong (see `err`).
 int doctor(const DoctorOptions& options, std::ostream& out, std::ostream& err);
 
 }  // namespace rtd::launcher

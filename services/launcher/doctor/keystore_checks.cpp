@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/doctor/keystore_checks.hpp"
+#include "services/launcher/doctor/checks.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,11 +13,11 @@
 namespace rtd::launcher {
 namespace {
 
-constexpr std::int64_t kDayS = 24 * 3600, kWarnDays = 30;  // as the services warn
+constexpr std::int64_t kDayS = 24 * 3600, kWarnDays = 30;  // as in the services
 const std::vector<std::string> kServices = {"/rtd/camera", "/rtd/detector", "/rtd/filter",  "/rtd/slam",
                                             "/rtd/dense",  "/rtd/record",   "/rtd/launcher"};
 
-/// The enclaves that can join, and what is wrong with the others.
+/// The enclaves that can join; findings about the others.
 std::vector<security::Enclave> usable(const bus::BusOptions& options, const std::vector<std::string>& names,
                                       std::int64_t now_s, Findings& findings) {
   std::vector<security::Enclave> good;
@@ -31,14 +31,15 @@ std::vector<security::Enclave> usable(const bus::BusOptions& options, const std:
   return good;
 }
 
-void tell_missing(const std::vector<std::string>& there, Findings& findings) {
+void report_missing(const std::vector<std::string>& there, Findings& findings) {
   std::vector<std::string> missing;
   for (const std::string& service : kServices)
     if (std::find(there.begin(), there.end(), service) == there.end()) missing.push_back(service);
   if (missing.empty()) return;
-  findings.push_back({Verdict::kWarn, fmt::format("keystore: no enclave {}: that cannot run on this host; copy it here "
-                                                  "from the keystore where it was made, if it shall",
-                                                  fmt::join(missing, ", "))});
+  findings.push_back(
+      {Verdict::kWarn, fmt::format("keystore: no enclave {}, so it cannot run on this host; if it should, "
+                                   "copy it here from the keystore where it was made",
+                                   fmt::join(missing, ", "))});
 }
 
 }  // namespace
@@ -48,16 +49,17 @@ std::string check_keystore(const bus::BusOptions& options, std::int64_t now_s, F
   const security::KeystoreLayout layout{folder};
   std::error_code error;
   if (!std::filesystem::is_directory(layout.enclaves(), error)) {
-    findings.push_back({Verdict::kFail, fmt::format("keystore: {} is none: make one with 'rtd keystore create {}', or "
-                                                    "name another with --keystore",
-                                                    folder, folder)});
+    findings.push_back(
+        {Verdict::kFail, fmt::format("keystore: {} is not a keystore: make one with 'rtd keystore create "
+                                     "{}', or choose another with --keystore",
+                                     folder, folder)});
     return {};
   }
   const std::vector<std::string> names = security::enclaves_in(layout);
   const std::vector<security::Enclave> good = usable(options, names, now_s, findings);
-  tell_missing(names, findings);
+  report_missing(names, findings);
   if (good.empty()) {
-    findings.push_back({Verdict::kFail, fmt::format("keystore: {} holds no enclave that can join DDS domain {}: 'rtd "
+    findings.push_back({Verdict::kFail, fmt::format("keystore: {} has no enclave that can join DDS domain {}: 'rtd "
                                                     "keystore info {}'",
                                                     folder, options.domain, folder)});
     return {};
@@ -69,10 +71,10 @@ std::string check_keystore(const bus::BusOptions& options, std::int64_t now_s, F
       {days < kWarnDays ? Verdict::kWarn : Verdict::kOk,
        fmt::format("keystore: {}, {} enclaves; {} is the first to expire, in {} days{}", folder, good.size(),
                    first->name, days, days < kWarnDays ? fmt::format(": 'rtd keystore renew {}'", folder) : "")});
-  const auto asked = std::find_if(good.begin(), good.end(), [&](const security::Enclave& enclave) {
+  const auto requested = std::find_if(good.begin(), good.end(), [&](const security::Enclave& enclave) {
     return enclave.name == options.security.enclave;
   });
-  return asked != good.end() ? asked->name : good.front().name;
+  return requested != good.end() ? requested->name : good.front().name;
 }
 
 }  // namespace rtd::launcher

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/doctor/network_checks.hpp"
+#include "services/launcher/doctor/checks.hpp"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace {
 /// camera, detector, filter, slam, dense, record and rtd itself.
 constexpr int kProcessesOfRun = 7;
 
-/// Whether the kernel knows a way there; sends nothing.
+/// Whether the kernel has a route there; sends nothing.
 bool has_route(const std::string& address) {
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (probe < 0) return true;
@@ -35,9 +35,9 @@ bool has_route(const std::string& address) {
 }
 
 Finding interfaces(const bus::NetworkOptions& network) try {
-  if (network.loopback_only) return {Verdict::kOk, "network: this host only; --profile lan or wifi: also others"};
+  if (network.loopback_only) return {Verdict::kOk, "network: this host only; --profile lan or wifi adds other hosts"};
   return {Verdict::kOk, fmt::format("network: {} beside loopback, {}", fmt::join(interface_addresses(network), ", "),
-                                    network.multicast ? "multicast" : "no multicast: who joins must name a peer")};
+                                    network.multicast ? "multicast" : "no multicast: each process must name a peer")};
 } catch (const bus::BusError& error) {
   return {Verdict::kFail, std::string("network: ") + error.what()};
 }
@@ -51,7 +51,7 @@ Finding named_host(const std::string& host, const std::string& option) try {
   return {Verdict::kFail, std::string("network: ") + error.what()};
 }
 
-/// Of peers outside with loopback only, or a server with the wrong vendor.
+/// Settings that contradict each other: outside peers with loopback only, a server with the wrong vendor.
 void contradictions(const bus::BusOptions& options, Findings& findings) try {
   bus::require_network(options);
 } catch (const bus::BusError& error) {
@@ -63,12 +63,15 @@ void contradictions(const bus::BusOptions& options, Findings& findings) try {
 
 Finding participant_ports(std::uint32_t domain) {
   const int free = bus::free_participant_ports(domain);
-  const std::string text = fmt::format("ports: {} of {} are free from UDP {} on, one for each process of DDS domain {}",
-                                       free, bus::kPeerParticipants, bus::participant_port(domain, 0), domain);
+  const std::string text =
+      fmt::format("ports: {} of {} from UDP {} on are free; each process of DDS domain {} needs one", free,
+                  bus::kPeerParticipants, bus::participant_port(domain, 0), domain);
   if (free >= kProcessesOfRun) return {Verdict::kOk, text};
-  return {free == 0 ? Verdict::kFail : Verdict::kWarn,
-          text + fmt::format("; a run takes up to {}: see who has them with 'ss -ulpn', or choose another --domain",
-                             kProcessesOfRun)};
+  return {
+      free == 0 ? Verdict::kFail : Verdict::kWarn,
+      text + fmt::format(
+                 "; a run needs up to {}: list the programs that hold them with 'ss -ulpn', or choose another --domain",
+                 kProcessesOfRun)};
 }
 
 void ports(const bus::BusOptions& options, Findings& findings) {

@@ -10,13 +10,13 @@
 
 #include "common/service/interrupt_signals.hpp"
 #include "services/launcher/core/run/log_tail.hpp"
-#include "services/launcher/core/run/process_host.hpp"
+#include "services/launcher/core/run/supervisor.hpp"
 
 namespace rtd::launcher {
 
 /// Child processes of this process. Each is the leader of its own process group, so that Ctrl-C of the terminal reaches
-/// only the launcher; each is asked to end (SIGTERM) by the kernel when the launcher dies. stdin is /dev/null, stdout
-/// and stderr come back line by line through on_line. Belongs to one thread, which must outlive the children.
+/// only the launcher; the kernel sends it SIGTERM when the launcher dies. stdin is /dev/null; stdout and stderr come
+/// back line by line through on_line. Belongs to one thread, which must outlive the children.
 class PosixProcessHost : public ProcessHost {
  public:
   using OnLine = std::function<void(const std::string& name, const std::string& line)>;
@@ -31,7 +31,7 @@ class PosixProcessHost : public ProcessHost {
   void terminate(ProcessId process) override;
   void kill(ProcessId process) override;
 
-  /// Waits until a child writes or ends, `wake_fd` becomes readable (-1: none) or the time is over; hands out complete
+  /// Waits until a child writes or ends, `wake_fd` becomes readable (-1: none) or the time is over; passes on complete
   /// lines.
   void wait(std::chrono::milliseconds timeout, int wake_fd = -1);
 

@@ -45,13 +45,13 @@ Collector::Collector(bus::Bus& bus, const Options& options)
       const std::lock_guard lock(mutex_);
       if (!samples_.wants(frame->seq)) return;
     }
-    pictures_.push(frame);
+    images_.push(frame);
   });
   encoder_ = std::thread([this] { encode_samples(); });  // last: the bus may refuse a reader
 }
 
 Collector::~Collector() {
-  pictures_.close();
+  images_.close();
   encoder_.join();
 }
 
@@ -59,9 +59,9 @@ bool Collector::connected(bool with_filter) const {
   return tracking_.matched() > 0 && (!with_filter || features_.matched() > 0);
 }
 
-std::string Collector::services_heard(bool without_detector) const {
+std::string Collector::active_services(bool without_detector) const {
   const std::lock_guard lock(mutex_);
-  return builder_.services_heard(without_detector);
+  return builder_.active_services(without_detector);
 }
 
 LiveStatus Collector::live() const {
@@ -90,10 +90,10 @@ void Collector::fill(eval::RunRecord& record) const {
 }
 
 void Collector::encode_samples() {
-  while (const auto frame = pictures_.pop()) {
+  while (const auto frame = images_.pop()) {
     std::vector<std::uint8_t> jpeg = encode_jpeg(**frame);
     const std::lock_guard lock(mutex_);
-    if (!jpeg.empty()) samples_.add_picture((*frame)->seq, std::move(jpeg));
+    if (!jpeg.empty()) samples_.add_image((*frame)->seq, std::move(jpeg));
   }
 }
 

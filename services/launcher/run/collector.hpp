@@ -16,7 +16,7 @@
 
 namespace rtd::launcher {
 
-/// Listens to a run and keeps its record. Thread-safe.
+/// Subscribes to the topics of a run and keeps its record. Thread-safe.
 class Collector {
  public:
   struct Options {
@@ -28,10 +28,10 @@ class Collector {
   Collector(bus::Bus& bus, const Options& options);
   ~Collector();
 
-  /// Slam is heard, and the filter where there is one: from now on no frame is missed.
+  /// Connected to slam, and to the filter if there is one: from now on no frame is missed.
   bool connected(bool with_filter = true) const;
-  /// As RecordBuilder::services_heard.
-  std::string services_heard(bool without_detector = false) const;
+  /// As RecordBuilder::active_services.
+  std::string active_services(bool without_detector = false) const;
   LiveStatus live() const;
   std::optional<std::string> take_notice();
   bool tracked_any() const;
@@ -49,7 +49,7 @@ class Collector {
   std::uint64_t total_;
   bool keep_features_;
   std::map<std::int64_t, std::vector<eval::JudgedFeature>> judged_;  ///< by stamp
-  concurrency::BoundedQueue<std::shared_ptr<const msg::RgbdFrame>> pictures_{2, concurrency::Overflow::kDropOldest};
+  concurrency::BoundedQueue<std::shared_ptr<const msg::RgbdFrame>> images_{2, concurrency::Overflow::kDropOldest};
   std::thread encoder_;
   bus::Reader<msg::TrackingResult> tracking_;
   bus::Reader<msg::FeatureFrame> features_;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/run/replay_setup.hpp"
+#include "services/launcher/run/run_setup.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -79,10 +79,9 @@ ReplaySetup choose_replay(const RunOptions& options, const std::string& source) 
   if (!source.starts_with(kScheme))
     throw ConfigError("--replay-topics needs a recording: --source mcap:FILE, not " + source);
   if (options.frames > 0)
-    throw ConfigError(
-        "--frames does not go with --replay-topics: frames and what was made of them are played to the end");
+    throw ConfigError("--frames cannot be combined with --replay-topics: a replay always plays to the end");
   if (options.dense && replay.features)
-    throw ConfigError("--dense does not go with --replay-topics features: its masks come from a living filter");
+    throw ConfigError("--dense cannot be combined with --replay-topics features: its masks come from a running filter");
   replay.file = source.substr(kScheme.size());
   choose_topics(replay, counts_of(replay.file));
   return replay;

@@ -13,7 +13,7 @@
 #include "common/service/run_service.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/evaluation/record/run_record.hpp"
-#include "services/launcher/core/run/online_trajectory.hpp"
+#include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/process/executable.hpp"
 #include "services/launcher/run/run_session.hpp"
 #include "services/launcher/run/run_setup.hpp"
@@ -32,13 +32,13 @@ Terminal open_terminal(bool quiet) {
   return Terminal(std::cerr, options);
 }
 
-void tell_setup(const RunSetup& setup, Terminal& terminal) {
+void print_setup(const RunSetup& setup, Terminal& terminal) {
   if (!setup.weights_advice.empty()) terminal.warn("rtd: geometry only: " + setup.weights_advice);
-  terminal.say(fmt::format("source {}{}, pace {}, filter {}, detector {}, {} domain {}", setup.source,
-                           setup.total_frames > 0 ? fmt::format(" ({} frames)", setup.total_frames) : "", setup.pace,
-                           setup.filter_mode,
-                           setup.model_path.empty() && !setup.remote_detector ? "off" : setup.detector_note,
-                           setup.bus.vendor, setup.bus.domain));
+  terminal.print(fmt::format("source {}{}, pace {}, filter {}, detector {}, {} domain {}", setup.source,
+                             setup.total_frames > 0 ? fmt::format(" ({} frames)", setup.total_frames) : "", setup.pace,
+                             setup.filter_mode,
+                             setup.model_path.empty() && !setup.remote_detector ? "off" : setup.detector_note,
+                             setup.bus.vendor, setup.bus.domain));
 }
 
 service::ExitCode exit_code(RunOutcome outcome, bool tracked_any) {
@@ -86,7 +86,7 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   Terminal terminal = open_terminal(quiet);
   service::BoundedEnd end("rtd run", kEndOfBus);
   const std::shared_ptr<bus::Bus> bus = bus::connect(setup.bus);
-  tell_setup(setup, terminal);
+  print_setup(setup, terminal);
   RunSession session(setup, *bus, signals, terminal);
 
   RunResult result;
@@ -98,7 +98,7 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   if (result.report == ReportState::kFailed) result.code = service::kRunFailed;
   if (outcome == RunOutcome::kComplete && !session.tracked_any()) terminal.warn("rtd: no frame got a pose");
   if (outcome != RunOutcome::kInterrupted) return result;
-  terminal.say("rtd: interrupted, partial results are in " + setup.out_dir);
+  terminal.print("rtd: interrupted, partial results are in " + setup.out_dir);
   end.begin(result.code);
   return result;
 }

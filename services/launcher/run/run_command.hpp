@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/service/exit_code.hpp"
-#include "services/launcher/run/run_options.hpp"
+#include "services/launcher/run/run_setup.hpp"
 
 namespace rtd::launcher {
 

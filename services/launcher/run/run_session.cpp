@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "common/service/monotonic_clock.hpp"
-#include "services/launcher/core/run/process_usage.hpp"
+#include "services/launcher/core/run/usage_book.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -45,10 +45,10 @@ double span_s(const std::vector<eval::FrameRecord>& frames) {
   return static_cast<double>(frames.back().tracking.finished_ns - frames.front().tracking.published_ns) * 1e-9;
 }
 
-std::string begins_anew(const std::string& service) {
+std::string restart_effect(const std::string& service) {
   if (service == "slam") return ": trajectory.txt begins anew, the map with its last checkpoint";
   if (service == "record") return ": it goes on in a file beside";
-  return service == "dense" ? ": static_map.ply begins anew" : "";
+  return service == "dense" ? ": static_map.ply starts again" : "";
 }
 
 }  // namespace
@@ -74,18 +74,18 @@ RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
   return supervisor_.outcome();
 }
 
-/// Two runs in one domain would feed each other's filters and trackers until the services notice.
+/// Two runs in one domain would mix their frames until the services notice.
 void RunSession::require_free_domain() {
   const milliseconds until = now() + milliseconds(setup_.launcher.domain_check_ms);
   while (now() < until) {
     host_.wait(kTick);
-    const std::string others = collector_.services_heard(setup_.remote_detector);
+    const std::string others = collector_.active_services(setup_.remote_detector);
     if (others.empty()) continue;
-    const bool only_detector = collector_.services_heard(true).empty();
+    const bool only_detector = collector_.active_services(true).empty();
     throw service::ConfigError(
         "DDS domain " + std::to_string(setup_.bus.domain) + " is taken by " + others +
-        (only_detector ? ": --detector remote takes its boxes; else stop it" : ": stop them first") +
-        " or choose another domain with --domain");
+        (only_detector ? ": use its boxes with --detector remote, stop it" : ": stop them") +
+        ", or choose another domain with --domain");
   }
 }
 
@@ -105,18 +105,18 @@ void RunSession::supervise(const ServicePlan& camera) {
       camera_started = true;
     }
     sample_memory(time);
-    keep_notices();
+    record_notices();
     if (!supervisor_.stopping()) terminal_.status(format_live_status(collector_.live()), time);
   }
 }
 
-/// Whoever names a map file wants the map in it, however large it is.
+/// A user who names a map file wants the complete map in it, however large it is.
 milliseconds RunSession::interrupt_grace() const {
   return milliseconds(setup_.save_map_asked ? setup_.launcher.finish_grace_ms : setup_.launcher.interrupt_grace_ms);
 }
 
-/// Who answers the first frame is heard here, so that no answer is missed. When somebody never comes, the camera names
-/// them.
+/// Waits until the services that answer the first frame are connected, so that no answer is missed. If a service never
+/// appears, the camera names it.
 bool RunSession::camera_may_start(milliseconds time) const {
   return collector_.connected(!setup_.replay.features) ||
          time - started_ >= milliseconds(setup_.launcher.connect_timeout_ms);
@@ -125,7 +125,7 @@ bool RunSession::camera_may_start(milliseconds time) const {
 void RunSession::stop_when_decided(milliseconds time) {
   if (supervisor_.stopping() || supervisor_.outcome() == RunOutcome::kRunning) return;
   if (supervisor_.outcome() == RunOutcome::kConfigError)
-    logs_.mute();  // the others only say that they are asked to end
+    logs_.mute();  // the others only log that they were asked to end
   supervisor_.stop(time, milliseconds(setup_.launcher.finish_grace_ms), supervisor_.outcome());
 }
 
@@ -136,7 +136,7 @@ void RunSession::on_event(const SupervisorEvent& event) {
       return;
     case Kind::kRestarted:
       usage_.add_restart(event.service);
-      return note(event.text + begins_anew(event.service));
+      return note(event.text + restart_effect(event.service));
     case Kind::kEnded:
       usage_.add_exit(event.service, event.exit);
       if (!event.exit.clean()) note(event.text);
@@ -162,8 +162,8 @@ void RunSession::explain(const std::string& service, const std::vector<std::stri
   terminal_.warn("  log: " + logs_.path(service));
 }
 
-/// For the report; on the terminal the service's own warning says it.
-void RunSession::keep_notices() {
+/// For the report; the terminal shows the service's own warning.
+void RunSession::record_notices() {
   while (const auto notice = collector_.take_notice()) events_.push_back(*notice);
 }
 

@@ -19,15 +19,15 @@
 
 namespace rtd::launcher {
 
-/// One run from the first process to the last: starts the services, watches them, listens, ends them.
+/// One run from the first process to the last: starts, supervises and ends the services, and records the run.
 class RunSession {
  public:
   RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptSignals& signals, Terminal& terminal);
 
   /// Returns when no process is left. Throws ProcessError when a service cannot be started at all,
-  /// service::ConfigError when another run is heard in the same DDS domain.
+  /// service::ConfigError when another run is in the same DDS domain.
   RunOutcome run(const std::vector<ServicePlan>& plans);
-  /// What was observed; call it behind run().
+  /// What was observed; call it after run().
   eval::RunRecord record() const;
   bool tracked_any() const { return collector_.tracked_any(); }
 
@@ -39,7 +39,7 @@ class RunSession {
   bool camera_may_start(Milliseconds now) const;
   void on_event(const SupervisorEvent& event);
   void explain(const std::string& service, const std::vector<std::string>& lines);
-  void keep_notices();
+  void record_notices();
   std::chrono::milliseconds interrupt_grace() const;
   void stop_when_decided(Milliseconds now);
   void sample_memory(Milliseconds now);

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using service::ConfigError;
 namespace {
 
-/// In realtime nobody waits for the detector, so it takes the processor time that the pose does not need.
+/// In realtime no process waits for the detector, so it only gets the processor time that the pose does not need.
 constexpr int kRealtimeNiceness = 10;
 
 void check_sections(const std::vector<std::string>& overrides) {
@@ -37,7 +37,7 @@ void check_sections(const std::vector<std::string>& overrides) {
   }
 }
 
-/// The launcher reads its own sections; those of the services are checked by the services when they start.
+/// The launcher reads its own sections; the services check theirs when they start.
 void load_config(const RunOptions& options, RunSetup& setup) {
   service::BusConfig bus;
   service::ConfigBinder binder;
@@ -49,7 +49,7 @@ void load_config(const RunOptions& options, RunSetup& setup) {
   setup.bus = service::to_bus_options(bus, "rtd");
 }
 
-/// Whoever is not named uses the vendor of --dds.
+/// A service that is not named uses the vendor of --dds.
 void choose_vendors(const RunOptions& options, RunSetup& setup) {
   const std::vector<std::string> services = {"camera", "detector", "filter", "slam", "dense", "record", "replay"};
   const std::vector<std::string> vendors = bus::dds_vendors();
@@ -63,10 +63,11 @@ void choose_vendors(const RunOptions& options, RunSetup& setup) {
                                     fmt::join(services, ", "), fmt::join(vendors, ", ")));
     }
     if (setup.bus.security.enabled() && vendor != setup.bus.vendor) {
-      throw ConfigError(fmt::format(
-          "--secure with --dds-of {}: {} and {} cannot agree on keys, a secured domain needs one vendor; leave one of "
-          "the two options out",
-          pair, setup.bus.vendor, vendor));
+      throw ConfigError(
+          fmt::format("--secure with --dds-of {}: {} and {} cannot agree on keys, a secured domain needs one vendor; "
+                      "leave out one of "
+                      "the two options",
+                      pair, setup.bus.vendor, vendor));
     }
     setup.vendors_of[name] = vendor;
   }
@@ -83,7 +84,7 @@ std::string peek(const RunOptions& options, const std::string& section, const st
     const YAML::Node root = YAML::LoadFile(options.config_file);
     return root[section][key] ? root[section][key].as<std::string>() : std::string();
   } catch (const YAML::Exception&) {
-    return {};  // the service that owns the key says what is wrong with it
+    return {};  // the service that owns the key reports the error
   }
 }
 
@@ -117,12 +118,13 @@ void choose_detector(const RunOptions& options, RunSetup& setup) {
     return;
   }
   if (options.detector == "off") {
-    setup.detector_note = "off (asked for)";
+    setup.detector_note = "off (as requested)";
     return;
   }
   if (options.detector == "remote") {
     if (setup.bus.network.loopback_only)
-      throw ConfigError("--detector remote: only this host is open, add --profile lan or wifi (docs/two-hosts.md)");
+      throw ConfigError(
+          "--detector remote: the bus is limited to this host, add --profile lan or wifi (docs/two-hosts.md)");
     setup.remote_detector = true;
     setup.detector_note = "on another host";
     return;
@@ -170,9 +172,9 @@ ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole rol
 
 void choose_map(const RunOptions& options, RunSetup& setup) {
   if (!options.map.empty() && !fs::is_regular_file(options.map))
-    throw ConfigError("--map " + options.map + ": there is no such file");
+    throw ConfigError("--map " + options.map + ": no such file");
   if (options.localize_only && options.map.empty())
-    throw ConfigError("--localize-only needs a map: name its file with --map");
+    throw ConfigError("--localize-only needs a map: give its file with --map");
   if (options.localize_only && !options.save_map.empty())
     throw ConfigError("--save-map " + options.save_map + ": with --localize-only the map does not change");
   setup.map = options.map;
@@ -183,7 +185,7 @@ void choose_map(const RunOptions& options, RunSetup& setup) {
   if (setup.save_map.empty() && !map_stays) setup.save_map = options.out_dir + "/map.rtdmap";
 }
 
-/// When slam died it goes on with the map of its last checkpoint. A file of an earlier run is none.
+/// A restarted slam continues with the map of its last checkpoint. A file of an earlier run does not count.
 std::function<std::vector<std::string>()> load_checkpoint(const std::string& save_map) {
   if (save_map.empty()) return {};
   const auto saved_at = [save_map] {
@@ -241,7 +243,7 @@ RunSetup prepare_run(const RunOptions& options) {
   setup.out_dir = options.out_dir;
   choose_map(options, setup);
   create_out_dir(setup.out_dir);
-  if (fs::exists(setup.record)) throw ConfigError("--record " + setup.record + " exists already: give another name");
+  if (fs::exists(setup.record)) throw ConfigError("--record " + setup.record + " exists already: choose another name");
   return setup;
 }
 
@@ -265,7 +267,7 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
   std::vector<ServicePlan> plans;
   const bool detector = !setup.model_path.empty(), filter = !setup.replay.features;
   if (!setup.record.empty()) {
-    // Restarted it goes on in a file beside; the first time an earlier recording is refused.
+    // Restarted, it continues in a second file; an earlier recording is refused before the run starts.
     plans.push_back(plan(setup, "record", ServiceRole::kOptional, {"-o", setup.record, "--beside"}));
     plans.back().ends_last = true;
   }
@@ -281,7 +283,7 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
     if (setup.pace == "realtime" && (service.name == "detector" || service.name == "dense"))
       service.niceness = kRealtimeNiceness;
   }
-  // In realtime nobody waits for boxes: the run begins with geometry and takes them when they come.
+  // In realtime no service waits for boxes: the run starts with geometry and uses boxes when they arrive.
   if (setup.remote_detector && setup.pace != "realtime") wait_for.emplace_back("detector");
   if (setup.replay) {
     plans.push_back(plan(setup, "replay", ServiceRole::kSource, setup.replay.arguments(wait_for)));

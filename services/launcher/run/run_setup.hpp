@@ -8,13 +8,58 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/service/bus_config.hpp"
+#include "services/evaluation/record/run_record.hpp"
 #include "services/launcher/config.hpp"
-#include "services/launcher/run/replay_setup.hpp"
-#include "services/launcher/run/run_options.hpp"
 
 namespace rtd::launcher {
 
-/// A run whose parts have all been found: what is started and with which arguments.
+using eval::kFilterModes;
+/// Modes without boxes need no detector.
+inline bool needs_detector(const std::string& filter_mode) {
+  return filter_mode != "off" && filter_mode != "geometry";
+}
+
+/// The command line of `rtd run`.
+struct RunOptions {
+  std::string source;
+  std::string pace = "realtime";
+  std::string filter_mode;  ///< one of kFilterModes; empty: configuration, default rtd
+  service::BusArguments bus;
+  std::vector<std::string> dds_of;  ///< "SERVICE=VENDOR": another DDS for one service
+  std::string config_file;
+  std::vector<std::string> overrides;  ///< "key=value" for any service
+  std::string detector = "auto";  ///< "auto": when weights are found and the filter mode needs them; "off"; "remote"
+  std::string model;              ///< ONNX file; empty: search
+  std::string out_dir;
+  std::string map;                         ///< map file to continue; empty: a new map
+  std::string save_map;                    ///< map file to write; empty: map.rtdmap in out_dir
+  bool localize_only = false;              ///< leave the map as it is
+  bool dense = false;                      ///< also fuse a dense static map
+  std::string record;                      ///< also record all topics: FILE.mcap or a folder; empty = no
+  std::vector<std::string> replay_topics;  ///< "detections", "features": recorded ones instead of their services
+  bool quiet = false;
+  std::uint64_t frames = 0;  ///< end after so many frames; 0 = all
+};
+
+/// The part of a recording that replaces services of a run: rtd-replay plays it instead of the camera.
+struct ReplaySetup {
+  std::string file;                 ///< empty: nothing is replayed
+  bool detections = false;          ///< the recorded boxes; no detector runs
+  bool features = false;            ///< the recorded features; neither detector nor filter runs
+  std::uint64_t frames = 0;         ///< of the run
+  std::vector<std::string> topics;  ///< to play: the needed ones, then optional ones
+
+  explicit operator bool() const { return !file.empty(); }
+  /// For rtd-replay.
+  std::vector<std::string> arguments(const std::vector<std::string>& wait_for) const;
+};
+
+/// From --replay-topics. Throws service::ConfigError: not an MCAP source, a recording without the topic (the
+/// message lists its topics), options that need a camera.
+ReplaySetup choose_replay(const RunOptions& options, const std::string& source);
+
+/// A checked run: what is started, and with which arguments.
 struct RunSetup {
   LauncherConfig launcher;
   bus::BusOptions bus;
@@ -25,8 +70,8 @@ struct RunSetup {
   std::string pace, filter_mode, out_dir;
   std::string model_path;        ///< empty: no detector in this run
   std::string detector_note;     ///< model file name, or "off (why)"
-  bool remote_detector = false;  ///< it runs on another host and is not ours to start
-  std::string weights_advice;    ///< the filter mode wants a detector, but there are no weights: where to get them
+  bool remote_detector = false;  ///< it runs on another host; the launcher does not start it
+  std::string weights_advice;    ///< where to get weights, when the filter mode needs a detector and there are none
   std::string map, save_map;     ///< map files that slam reads and writes; empty: none
   bool save_map_asked = false;   ///< the user named the file
   bool localize_only = false;
@@ -47,7 +92,7 @@ RunSetup prepare_run(const RunOptions& options);
 /// Removes what an earlier run left in the output folder. Throws service::ConfigError.
 void clear_out_dir(const RunSetup& setup);
 
-/// The services of the run in starting order, the camera or what stands in for it last. Throws service::ConfigError
+/// The services of the run in starting order, the camera or the replay last. Throws service::ConfigError
 /// naming an executable that is missing.
 std::vector<ServicePlan> plan_services(const RunSetup& setup);
 

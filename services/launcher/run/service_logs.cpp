@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kMaxShownPerService = 10;
 
-/// "warning slam event=..." of "12:34:56.789 warning slam event=..."; empty for a line that is no log event: why a
-/// service died is told together with its death.
+/// "warning slam event=..." of "12:34:56.789 warning slam event=..."; empty for a line that is not a log event: the
+/// reason of a death is reported together with the death.
 std::string event_of(const std::string& line) {
   const std::size_t space = line.find(' ');
   const bool has_time = space == 12 && line[2] == ':' && line[5] == ':';

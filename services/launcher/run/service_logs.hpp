@@ -12,13 +12,13 @@
 
 namespace rtd::launcher {
 
-/// Writes what the services print to FOLDER/<service>.log, shows their warnings and errors, remembers the last lines.
+/// Writes the output of the services to FOLDER/<service>.log, shows warnings and errors, remembers the last lines.
 class ServiceLogs {
  public:
   ServiceLogs(std::string folder, Terminal& terminal) : folder_(std::move(folder)), terminal_(terminal) {}
 
   void add(const std::string& service, const std::string& line);
-  /// Why the service ended, in its own words; empty when they were shown already.
+  /// The service's own reason for its end; empty when it was already shown.
   std::vector<std::string> reason(const std::string& service) const;
   std::vector<std::string> tail(const std::string& service) const;
   std::string path(const std::string& service) const { return folder_ + "/" + service + ".log"; }

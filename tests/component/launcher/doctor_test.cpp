@@ -12,7 +12,7 @@
 
 #include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
-#include "services/launcher/doctor/keystore_checks.hpp"
+#include "services/launcher/doctor/checks.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
 
 namespace rtd::launcher {
@@ -106,7 +106,7 @@ TEST_F(DoctorTest, ports_in_use_are_named) {
 TEST_F(DoctorTest, a_missing_keystore_is_named_with_the_command_that_makes_one) {
   EXPECT_EQ(doctor({"--secure", "--keystore", scratch_ / "none"}), 1);
   EXPECT_THAT(rtd_.output(),
-              HasSubstr("FAIL keystore: " + scratch_ / "none" + " is none: make one with 'rtd keystore"));
+              HasSubstr("FAIL keystore: " + scratch_ / "none" + " is not a keystore: make one with 'rtd keystore"));
 }
 
 TEST_F(DoctorTest, the_enclaves_of_a_keystore_are_checked) {

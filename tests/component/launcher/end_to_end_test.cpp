@@ -122,7 +122,7 @@ TEST_F(EndToEndTest, a_filter_killed_during_the_run_is_restarted_and_the_run_com
   ASSERT_EQ(::kill(pid_of("filter"), SIGKILL), 0);
   EXPECT_EQ(rtd_.wait(), 0) << rtd_.output();
   EXPECT_THAT(rtd_.output(),
-              AllOf(HasSubstr("filter died: killed by signal 9 (SIGKILL)"), HasSubstr("filter restarted (1. time)")));
+              AllOf(HasSubstr("filter died: killed by signal 9 (SIGKILL)"), HasSubstr("filter restarted (1st time)")));
   const nlohmann::json json = report();
   EXPECT_EQ(json["frames_in"], 150);
   EXPECT_GT(json["frames_tracked"], 60) << "the restarted filter serves again";

@@ -124,7 +124,7 @@ TEST_F(SupervisedRunTest, a_killed_service_is_named_and_restarted_and_the_others
   script("camera", "sleep 1");
   rtd_.run(arguments());
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("slam died: killed by signal 9 (SIGKILL), restart in 200 ms"),
-                                   HasSubstr("| last words"), HasSubstr("slam restarted (1. time)")));
+                                   HasSubstr("| last words"), HasSubstr("slam restarted (1st time)")));
   EXPECT_THAT(rtd_.output(), Not(HasSubstr("filter died")));
 }
 
@@ -135,7 +135,7 @@ TEST_F(SupervisedRunTest, a_crashed_service_is_restarted_and_the_report_says_why
   rtd_.run(arguments());
   for (const std::string& told : {rtd_.output(), text_of(scratch_ / "out/report.json")})
     EXPECT_THAT(told, AllOf(HasSubstr("filter died: killed by signal 11 (SIGSEGV), restart in 200 ms"),
-                            HasSubstr("filter restarted (1. time)")));
+                            HasSubstr("filter restarted (1st time)")));
 }
 
 TEST_F(SupervisedRunTest, a_service_that_keeps_dying_fails_the_run) {

@@ -174,17 +174,17 @@ TEST(record_builder, tells_a_degraded_service_once) {
 
 TEST(record_builder, names_the_services_that_are_heard_and_have_not_finished) {
   RecordBuilder builder;
-  EXPECT_EQ(builder.services_heard(), "");
+  EXPECT_EQ(builder.active_services(), "");
   builder.add(status_of("slam", 8, {}));
   builder.add(status_of("filter", 7, {}));
   msg::ServiceStatus finished = status_of("camera", 9, {});
   finished.state = msg::ServiceState::kFinished;
   builder.add(finished);
   builder.add(status_of("record", 10, {}));
-  EXPECT_EQ(builder.services_heard(), "filter (pid 7), slam (pid 8)") << "a recorder disturbs nobody";
+  EXPECT_EQ(builder.active_services(), "filter (pid 7), slam (pid 8)") << "a recorder disturbs nobody";
   builder.add(status_of("detector", 11, {}));
-  EXPECT_EQ(builder.services_heard(), "detector (pid 11), filter (pid 7), slam (pid 8)");
-  EXPECT_EQ(builder.services_heard(true), "filter (pid 7), slam (pid 8)") << "the detector of another host is expected";
+  EXPECT_EQ(builder.active_services(), "detector (pid 11), filter (pid 7), slam (pid 8)");
+  EXPECT_EQ(builder.active_services(true), "filter (pid 7), slam (pid 8)") << "the detector of another host is expected";
 }
 
 TEST(record_builder, knows_the_clocks_of_other_hosts_from_slam) {
@@ -201,7 +201,7 @@ TEST(record_builder, knows_the_clocks_of_other_hosts_from_slam) {
 
 std::vector<eval::SampleFrame> run_samples(SampleKeeper& keeper, std::uint64_t frames) {
   for (std::uint64_t seq = 0; seq < frames; ++seq) {
-    if (keeper.wants(seq)) keeper.add_picture(seq, {1, 2, 3});
+    if (keeper.wants(seq)) keeper.add_image(seq, {1, 2, 3});
     keeper.add_features(*features_of(seq));
   }
   return keeper.samples();
@@ -227,16 +227,16 @@ TEST(sample_keeper, stays_even_and_bounded_over_an_unknown_length) {
 
 TEST(sample_keeper, needs_picture_and_features) {
   SampleKeeper keeper(12, 24);
-  keeper.add_picture(0, {1});
+  keeper.add_image(0, {1});
   keeper.add_features(*features_of(2));
-  keeper.add_picture(4, {1});
+  keeper.add_image(4, {1});
   keeper.add_features(*features_of(4));
   EXPECT_THAT(keeper.samples(), ElementsAre(Field(&eval::SampleFrame::seq, 4)));
 }
 
 TEST(sample_keeper, believes_no_count_beyond_the_message) {
   SampleKeeper keeper;
-  keeper.add_picture(0, {1});
+  keeper.add_image(0, {1});
   keeper.add_features(*features_of(0, 4'000'000'000U));
   EXPECT_EQ(keeper.samples().at(0).features.size(), msg::kMaxFeatures);
 }

@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "services/launcher/core/run/online_trajectory.hpp"
+#include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/terminal.hpp"
 #include "services/launcher/core/run/usage_book.hpp"
 
@@ -51,7 +51,7 @@ TEST(terminal, repeats_plain_lines_every_two_seconds_without_a_terminal) {
 TEST(terminal, quiet_shows_warnings_only) {
   std::ostringstream out;
   Terminal terminal(out, {false, true, 80});
-  terminal.say("hello");
+  terminal.print("hello");
   terminal.status("frame 1", milliseconds(0));
   terminal.warn("slam died");
   EXPECT_EQ(out.str(), "slam died\n");

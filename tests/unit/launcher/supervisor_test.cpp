@@ -158,7 +158,7 @@ TEST_F(SupervisorTest, goes_on_without_an_optional_service) {
   start_all();
   die_and_wait("detector", 6);
   EXPECT_EQ(supervisor.outcome(), RunOutcome::kRunning);
-  EXPECT_THAT(told.back(), HasSubstr("the run goes on without it"));
+  EXPECT_THAT(told.back(), HasSubstr("the run continues without it"));
 }
 
 TEST_F(SupervisorTest, a_healthy_life_starts_a_new_row) {

@@ -9,17 +9,17 @@ namespace {
 
 constexpr std::size_t kMaxLineBytes = 4096;
 
-std::string_view second_word(std::string_view line) {
+std::string_view second_token(std::string_view line) {
   const std::size_t space = line.find(' ');
   if (space == std::string_view::npos) return {};
   const std::string_view rest = line.substr(space + 1);
   return rest.substr(0, rest.find(' '));
 }
 
-/// The word without ANSI colour sequences around it.
-std::string_view strip_color(std::string_view word) {
-  while (!word.empty() && word.front() == '\033') word.remove_prefix(std::min(word.find('m'), word.size() - 1) + 1);
-  return word.substr(0, word.find('\033'));
+/// The text without ANSI colour sequences around it.
+std::string_view strip_color(std::string_view text) {
+  while (!text.empty() && text.front() == '\033') text.remove_prefix(std::min(text.find('m'), text.size() - 1) + 1);
+  return text.substr(0, text.find('\033'));
 }
 
 }  // namespace
@@ -46,9 +46,9 @@ void LogTail::add(const std::string& line) {
 
 LogLevel level_of(std::string_view line) {
   if (line.rfind("rtd-", 0) == 0 || line.rfind("terminate called", 0) == 0) return LogLevel::kError;
-  const std::string_view word = strip_color(second_word(line));
-  if (word == "warning") return LogLevel::kWarning;
-  if (word == "error" || word == "critical") return LogLevel::kError;
+  const std::string_view text = strip_color(second_token(line));
+  if (text == "warning") return LogLevel::kWarning;
+  if (text == "error" || text == "critical") return LogLevel::kError;
   return LogLevel::kInfo;
 }
 

@@ -11,12 +11,12 @@
 
 namespace rtd::launcher {
 
-/// Cuts a byte stream into lines. A line longer than 4096 bytes is handed out in pieces.
+/// Splits a byte stream into lines. A line longer than 4096 bytes comes in pieces.
 class LineSplitter {
  public:
   /// Calls `on_line` for every line that `bytes` completes (without its newline).
   void feed(std::string_view bytes, const std::function<void(const std::string&)>& on_line);
-  /// Hands out what is left without a newline.
+  /// Passes on the rest that has no newline.
   void finish(const std::function<void(const std::string&)>& on_line);
 
  private:
@@ -40,7 +40,7 @@ enum class LogLevel { kInfo, kWarning, kError };
 /// The level of a service's log line: "12:34:56.789 warning slam event=..." or "rtd-slam: why it cannot run".
 LogLevel level_of(std::string_view line);
 
-/// The lines that say why a service refused to start: its last error line, else its last lines.
+/// Why a service refused to start: its last error line, else its last lines.
 std::vector<std::string> reason_lines(const std::vector<std::string>& tail);
 
 }  // namespace rtd::launcher

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/core/run/record_builder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <vector>
 
 namespace rtd::launcher {
@@ -11,11 +14,11 @@ namespace {
 
 constexpr std::size_t kRecentFrames = 30;
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
-constexpr std::array<const char*, 5> kLossWords = {"dropped", "late", "skipped", "lost", "refused"};
+constexpr std::array<const char*, 5> kLossNames = {"dropped", "late", "skipped", "lost", "refused"};
 
 bool counts_losses(const std::string& metric) {
-  return std::any_of(kLossWords.begin(), kLossWords.end(),
-                     [&](const char* word) { return metric.find(word) != std::string::npos; });
+  return std::any_of(kLossNames.begin(), kLossNames.end(),
+                     [&](const char* name) { return metric.find(name) != std::string::npos; });
 }
 
 /// "frames_late" of camera -> "camera.late".
@@ -70,16 +73,16 @@ void RecordBuilder::add(const msg::ServiceStatus& status) {
   for (const msg::Metric& metric : status.metrics) service.counters[metric.name].current = metric.value;
 
   note_troubles(status);
-  const bool degraded = status.state == msg::ServiceState::kDegraded;  // one that failed ends, and says why itself
+  const bool degraded = status.state == msg::ServiceState::kDegraded;  // a failed one ends and gives the reason itself
   const bool news = service.state != status.state || service.message != status.message;
   if (degraded && news && !status.message.empty()) notices_.push_back(status.service + ": " + status.message);
   service.state = status.state;
   service.message = status.message;
 }
 
-/// Several services may tell the same of a peer; it is news again once the peer was heard.
+/// Several services may report the same about a peer; it counts as new again after the peer was seen.
 void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
-  const auto tell_once = [this](const std::string& about, const std::string& text) {
+  const auto report_once = [this](const std::string& about, const std::string& text) {
     if (troubles_.emplace(about, text).second) notices_.push_back(text);
   };
   troubles_.erase(status.service);
@@ -88,11 +91,11 @@ void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
     const std::string what = name.substr(name.rfind('.') + 1);
     if (name.starts_with("peer.") && (what == "dead" || what == "hung")) {
       const std::string peer = name.substr(5, name.size() - 6 - what.size());
-      tell_once(peer, peer + " is " + what + ": no heartbeat");
+      report_once(peer, peer + " is " + what + ": no heartbeat");
     } else if (name.starts_with("topic.") &&
                (what == "rejected" || what == "incompatible_qos" || what == "type_mismatch")) {
       const std::string topic = name.substr(6, name.size() - 7 - what.size());
-      tell_once(status.service + ' ' + name, status.service + ": " + topic + ": " + what);
+      report_once(status.service + ' ' + name, status.service + ": " + topic + ": " + what);
     }
   }
 }
@@ -110,9 +113,9 @@ LiveStatus RecordBuilder::live() const {
   status.frames = end_of_seen_;
   status.total = static_cast<std::uint64_t>(camera_counter("frames_total"));
   for (const auto& [place, count] : drops()) {
-    const bool on_the_way_to_the_pose = place.rfind("detector.", 0) != 0 &&
-                                        place.find(".topic.") == std::string::npos;  // its job is the newest frame only
-    if (on_the_way_to_the_pose) status.dropped += static_cast<std::uint64_t>(count);
+    const bool before_the_pose = place.rfind("detector.", 0) != 0 &&
+                                 place.find(".topic.") == std::string::npos;  // it only needs the newest frame
+    if (before_the_pose) status.dropped += static_cast<std::uint64_t>(count);
   }
   if (const auto camera = services_.find("camera"); camera != services_.end()) {
     status.camera_message = camera->second.message;
@@ -135,10 +138,10 @@ std::optional<std::string> RecordBuilder::take_notice() {
   return notice;
 }
 
-std::string RecordBuilder::services_heard(bool without_detector) const {
+std::string RecordBuilder::active_services(bool without_detector) const {
   std::string text;
   for (const auto& [name, service] : services_) {
-    if (service.state == msg::ServiceState::kFinished || name == "record") continue;  // a recorder only listens
+    if (service.state == msg::ServiceState::kFinished || name == "record") continue;  // a recorder only subscribes
     if (without_detector && name == "detector") continue;
     text += (text.empty() ? "" : ", ") + name + " (pid " + std::to_string(service.pid) + ")";
   }
@@ -156,7 +159,7 @@ void RecordBuilder::fill(eval::RunRecord& record) const {
   record.clocks = clocks();
 }
 
-/// slam runs on the first host; what it says of services on other hosts stands for all of the first host.
+/// Slam runs on the first host, so its measurements of other hosts stand for all services of the first host.
 std::vector<eval::HostClock> RecordBuilder::clocks() const {
   const std::string prefix = "clock.", suffix = ".offset_ms";
   const auto slam = services_.find("slam");
@@ -187,6 +190,29 @@ double RecordBuilder::camera_counter(const std::string& name) const {
   if (camera == services_.end()) return 0;
   const auto counter = camera->second.counters.find(name);
   return counter == camera->second.counters.end() ? 0 : counter->second.current;
+}
+
+std::string format_live_status(const LiveStatus& status) {
+  const std::string count = status.total > 0 ? fmt::format("frame {}/{}", status.frames, status.total)
+                                             : fmt::format("frame {}", status.frames);
+  if (!status.tracking) {
+    return count + "  " +
+           (status.camera_message.empty() ? "waiting for the first pose" : "camera " + status.camera_message);
+  }
+  return fmt::format("{}  {:.1f} fps  {}  inliers {}  dynamic {}  dropped {}  latency {:.0f} ms", count,
+                     status.frames_per_s, to_string(status.state), status.inliers, status.dynamic_points,
+                     status.dropped, status.latency_ms);
+}
+
+std::string online_trajectory_text(const std::vector<eval::FrameRecord>& frames) {
+  std::string text;
+  for (const eval::FrameRecord& frame : frames) {
+    if (!msg::is_measured_in_map(frame.tracking)) continue;
+    const auto& [t, q] = frame.tracking.T_world_camera;
+    fmt::format_to(std::back_inserter(text), "{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n",
+                   static_cast<double>(frame.tracking.stamp_ns) * 1e-9, t[0], t[1], t[2], q[0], q[1], q[2], q[3]);
+  }
+  return text;
 }
 
 }  // namespace rtd::launcher

@@ -7,35 +7,53 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/msg/features.hpp"
 #include "common/msg/status.hpp"
 #include "common/msg/tracking.hpp"
 #include "services/evaluation/record/run_record.hpp"
-#include "services/launcher/core/run/live_status.hpp"
 
 namespace rtd::launcher {
 
+/// Content of the status line, as of the newest tracked frame.
+struct LiveStatus {
+  std::uint64_t frames = 0;    ///< frames of the source so far
+  std::uint64_t total = 0;     ///< length of the source, 0 = unknown or endless
+  std::string camera_message;  ///< the camera's own status, e.g. what it waits for
+  bool tracking = false;       ///< false until the first TrackingResult: the fields below are empty
+  msg::TrackingState state = msg::TrackingState::kInitializing;
+  double frames_per_s = 0;  ///< over the last second or so
+  std::uint32_t inliers = 0;
+  std::uint32_t dynamic_points = 0;
+  std::uint64_t dropped = 0;  ///< lost between camera and pose
+  double latency_ms = 0;      ///< camera -> pose, median of the last frames
+};
+
+/// "frame 123/210  29.8 fps  ok  inliers 213  dynamic 87  dropped 0  latency 31 ms", always short enough for 100
+/// columns.
+std::string format_live_status(const LiveStatus& status);
+
 /// Joins the message streams of a run into its record. Messages may be missing, doubled or out of order: the first
-/// message of a frame counts, because a repeated one is an answer to a repeated question. Not thread-safe.
+/// message of a frame counts, because later ones answer a frame that was sent again. Not thread-safe.
 class RecordBuilder {
  public:
   void add(const msg::FeatureFrame& features);
   void add(const msg::TrackingResult& result);
   /// Counters of a service. Those named *dropped*, *late*, *skipped*, *lost* or *refused* become RunRecord::drops; they
-  /// go on counting when the service is restarted.
+  /// continue when the service is restarted.
   void add(const msg::ServiceStatus& status);
 
-  /// Frames that the source delivered: the camera's own count, else what was seen of it.
+  /// Frames that the source delivered: the camera's own count, else the frames seen.
   std::uint64_t frames_in() const;
   bool tracked_any() const;  ///< at least one frame got a pose
   LiveStatus live() const;
-  /// The newest message of a service that is degraded; told once each time it changes.
+  /// The newest message of a degraded service; returned once each time it changes.
   std::optional<std::string> take_notice();
 
-  /// "filter (pid 42), slam (pid 43)": every service heard that has not said goodbye; a recorder only
-  /// listens and does not count, nor does a detector of another host if so asked. Empty when there is none.
-  std::string services_heard(bool without_detector = false) const;
+  /// "filter (pid 42), slam (pid 43)": every service seen that has not ended. A recorder only subscribes
+  /// and does not count; `without_detector` also ignores a detector. Empty when there is none.
+  std::string active_services(bool without_detector = false) const;
 
   /// Writes frames, frames_in, frames_dropped and drops.
   void fill(eval::RunRecord& record) const;
@@ -64,10 +82,13 @@ class RecordBuilder {
   std::map<std::uint64_t, Frame> frames_;  ///< by seq
   std::map<std::string, Service> services_;
   std::deque<std::string> notices_;
-  std::map<std::string, std::string> troubles_;  ///< told: by the service or the counter concerned
+  std::map<std::string, std::string> troubles_;  ///< already reported, by service or counter
   std::deque<msg::TrackingResult> recent_;
   std::uint64_t end_of_seen_ = 0;  ///< highest seq seen + 1
   bool tracked_any_ = false;
 };
+
+/// The poses as they were published, one line per tracked frame in TUM's format: "stamp_s tx ty tz qx qy qz qw".
+std::string online_trajectory_text(const std::vector<eval::FrameRecord>& frames);
 
 }  // namespace rtd::launcher

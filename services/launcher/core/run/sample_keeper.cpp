@@ -21,7 +21,7 @@ void SampleKeeper::expect_total(std::uint64_t total) {
   if (total > 0 && kept_.empty()) stride_ = (total + wanted_ - 1) / wanted_;
 }
 
-void SampleKeeper::add_picture(std::uint64_t seq, std::vector<std::uint8_t> jpeg) {
+void SampleKeeper::add_image(std::uint64_t seq, std::vector<std::uint8_t> jpeg) {
   if (!wants(seq)) return;
   eval::SampleFrame& sample = kept_[seq];
   sample.seq = seq;

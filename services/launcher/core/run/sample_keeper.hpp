@@ -12,8 +12,8 @@
 namespace rtd::launcher {
 
 /// Keeps about `wanted` frames, evenly spread over a source whose length need not be known: every stride-th frame is
-/// kept, and whenever twice the wanted number is reached, the stride doubles and every second kept frame goes. So few
-/// pictures are ever encoded and memory is bounded for an endless run. Not thread-safe.
+/// kept, and whenever twice the wanted number is reached, the stride doubles and every second kept frame is dropped. So
+/// few images are encoded, and memory stays bounded in an endless run. Not thread-safe.
 class SampleKeeper {
  public:
   /// total: length of the source in frames, 0 = unknown.
@@ -23,10 +23,10 @@ class SampleKeeper {
   void expect_total(std::uint64_t total);
   /// True when frame `seq` is one to keep.
   bool wants(std::uint64_t seq) const { return seq % stride_ == 0; }
-  void add_picture(std::uint64_t seq, std::vector<std::uint8_t> jpeg);
+  void add_image(std::uint64_t seq, std::vector<std::uint8_t> jpeg);
   void add_features(const msg::FeatureFrame& features);
 
-  /// The kept frames that have both picture and features, by seq, at most `wanted`.
+  /// The kept frames that have both image and features, by seq, at most `wanted`.
   std::vector<eval::SampleFrame> samples() const;
 
  private:

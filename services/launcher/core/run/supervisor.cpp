@@ -3,12 +3,20 @@
 #include "services/launcher/core/run/supervisor.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 namespace rtd::launcher {
 namespace {
 
 constexpr int kExitUsageOrConfig = 2;
+
+/// "1st", "2nd", "3rd", "4th", ..., "11th".
+std::string ordinal(int number) {
+  const int last = number % 100 / 10 == 1 ? 0 : number % 10;
+  const char* ending = last == 1 ? "st" : last == 2 ? "nd" : last == 3 ? "rd" : "th";
+  return std::to_string(number) + ending;
+}
 
 Supervisor::Clock backoff(const SupervisorOptions& options, int deaths_in_row) {
   Supervisor::Clock pause = options.first_backoff;
@@ -109,7 +117,7 @@ void Supervisor::relaunch(Child& child, Clock now) {
     return;
   }
   report(SupervisorEvent::Kind::kRestarted, child,
-         child.plan.name + " restarted (" + std::to_string(child.restarts) + ". time)");
+         child.plan.name + " restarted (" + ordinal(child.restarts) + " time)");
 }
 
 void Supervisor::on_exit(Child& child, const ProcessExit& exit, Clock now) {
@@ -142,7 +150,7 @@ void Supervisor::on_death(Child& child, const ProcessExit& exit, Clock now) {
     const bool optional = child.plan.role == ServiceRole::kOptional;
     report(SupervisorEvent::Kind::kGivenUp, child,
            what + ", " + std::to_string(child.deaths_in_row) + " times in a row: given up" +
-               (optional ? ", the run goes on without it" : ""),
+               (optional ? ", the run continues without it" : ""),
            exit);
     if (!optional) decide(RunOutcome::kFailed);
     return;
@@ -160,6 +168,12 @@ void Supervisor::decide(RunOutcome outcome) {
 void Supervisor::report(SupervisorEvent::Kind kind, const Child& child, const std::string& text,
                         const ProcessExit& exit) {
   if (on_event_) on_event_({kind, child.plan.name, text, child.process, exit});
+}
+
+std::string describe(const ProcessExit& exit) {
+  if (exit.signal == 0) return "exit code " + std::to_string(exit.code);
+  const char* name = sigabbrev_np(exit.signal);
+  return "killed by signal " + std::to_string(exit.signal) + (name == nullptr ? "" : std::string(" (SIG") + name + ")");
 }
 
 }  // namespace rtd::launcher

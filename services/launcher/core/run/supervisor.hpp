@@ -3,13 +3,53 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "services/launcher/core/run/process_host.hpp"
-
 namespace rtd::launcher {
+
+/// A process could not be started; what() names the executable and the reason.
+class ProcessError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+using ProcessId = std::int64_t;
+
+/// How a process ended and what it used.
+struct ProcessExit {
+  int code = 0;    ///< exit code, meaningful when signal == 0
+  int signal = 0;  ///< the signal that ended it, 0 = it exited by itself
+  double cpu_s = 0;
+  double peak_rss_mb = 0;
+
+  bool clean() const { return code == 0 && signal == 0; }
+};
+
+/// "exit code 1" or "killed by signal 9 (KILL)".
+std::string describe(const ProcessExit& exit);
+
+struct ProcessSpec {
+  std::string name;                  ///< for messages and logs
+  std::vector<std::string> command;  ///< path of the executable and its arguments
+  int niceness = 0;  ///< added to the launcher's own: 0 = the same priority, 19 = only idle processor time
+};
+
+/// Starts and ends processes. Injected, so that the supervisor is tested without an operating system.
+class ProcessHost {
+ public:
+  virtual ~ProcessHost() = default;
+  /// Throws ProcessError when the executable cannot be run.
+  virtual ProcessId start(const ProcessSpec& spec) = 0;
+  /// How the process ended; empty while it runs. Returned once, then the id is gone.
+  virtual std::optional<ProcessExit> poll_exit(ProcessId process) = 0;
+  virtual void terminate(ProcessId process) = 0;  ///< asks (SIGTERM)
+  virtual void kill(ProcessId process) = 0;       ///< forces (SIGKILL)
+};
 
 /// What the death of a service means for the run.
 enum class ServiceRole {
@@ -24,8 +64,8 @@ struct ServicePlan {
   std::vector<std::string> command;  ///< executable and arguments
   ServiceRole role = ServiceRole::kEssential;
   int niceness = 0;        ///< see ProcessSpec
-  bool ends_last = false;  ///< asked to end when all others have ended: a recorder hears their last words
-  /// Further arguments when it is started again; may be empty. Asked at each restart.
+  bool ends_last = false;  ///< stopped after all others: a recorder still receives their last messages
+  /// More arguments for a restart; may be empty. Called at each restart.
   std::function<std::vector<std::string>()> when_restarted = {};
 };
 
@@ -41,10 +81,10 @@ enum class RunOutcome {
   kComplete,     ///< the source ended by itself
   kFailed,       ///< the source or an essential service failed for good
   kConfigError,  ///< a service refused its arguments or configuration (exit code 2 at its first start)
-  kInterrupted,  ///< stopped from outside
+  kInterrupted,  ///< stopped by the user
 };
 
-/// Something to tell people about.
+/// Something to report to the user.
 struct SupervisorEvent {
   enum class Kind { kStarted, kDied, kRestarted, kGivenUp, kRefused, kEnded, kKilled };
   Kind kind;
@@ -64,10 +104,10 @@ class Supervisor {
 
   /// Starts a service. Throws ProcessError when its executable cannot be run.
   void start(const ServicePlan& plan, Clock now);
-  /// Looks for deaths, restarts what is due, kills what did not end within the grace of stop(). Call it often.
+  /// Looks for deaths, restarts services when due, kills those that outlive the grace of stop(). Call it often.
   void update(Clock now);
-  /// Asks every service to end, those that end last when the others have; who is still there `grace` after it was
-  /// asked is killed by update(). The first outcome stays. A second stop is in a hurry: all are asked at once.
+  /// Asks every service to end, those with ends_last after the others; update() kills those still there `grace` after
+  /// they were asked. The first outcome stays. A second stop asks all at once.
   void stop(Clock now, Clock grace, RunOutcome why);
 
   RunOutcome outcome() const { return outcome_; }

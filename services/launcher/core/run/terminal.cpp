@@ -9,7 +9,7 @@ constexpr std::chrono::milliseconds kRewriteEvery{100}, kRepeatEvery{2000};
 
 }  // namespace
 
-void Terminal::say(const std::string& line) {
+void Terminal::print(const std::string& line) {
   if (!options_.quiet) warn(line);
 }
 

@@ -8,8 +8,8 @@
 
 namespace rtd::launcher {
 
-/// What people see of a run: messages, and one status line that is rewritten in place on a terminal and repeated every
-/// two seconds elsewhere. Time comes in as an argument. Not thread-safe.
+/// Output of a run: messages, and one status line that is updated in place on a terminal and repeated every two seconds
+/// elsewhere. Time comes in as an argument. Not thread-safe.
 class Terminal {
  public:
   struct Options {
@@ -20,8 +20,8 @@ class Terminal {
 
   Terminal(std::ostream& out, Options options) : out_(out), options_(options) {}
 
-  void say(const std::string& line);   ///< not shown when quiet
-  void warn(const std::string& line);  ///< always shown
+  void print(const std::string& line);  ///< not shown when quiet
+  void warn(const std::string& line);   ///< always shown
   void status(const std::string& line, std::chrono::milliseconds now);
   /// Ends the status line, so that what follows starts on a fresh one.
   void end_status();

@@ -3,6 +3,7 @@
 #include "services/launcher/core/run/usage_book.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 namespace rtd::launcher {
 
@@ -23,6 +24,15 @@ std::map<std::string, eval::ProcessUsage> UsageBook::usage() const {
   std::map<std::string, eval::ProcessUsage> result;
   for (const auto& [name, entry] : entries_) result[name] = entry.usage;
   return result;
+}
+
+double peak_rss_mb(const std::string& proc_status) {
+  const std::string key = "VmHWM:";
+  const std::size_t at = proc_status.find(key);
+  if (at == std::string::npos) return -1;
+  std::istringstream value(proc_status.substr(at + key.size()));
+  double kib = 0;
+  return value >> kib ? kib / 1024.0 : -1;
 }
 
 }  // namespace rtd::launcher

@@ -6,15 +6,15 @@
 #include <string>
 
 #include "services/evaluation/record/run_record.hpp"
-#include "services/launcher/core/run/process_host.hpp"
+#include "services/launcher/core/run/supervisor.hpp"
 
 namespace rtd::launcher {
 
 /// Adds up what each service used, over all its lives.
 ///
 /// CPU time comes from the kernel's final account. Peak memory comes from samples of VmHWM: the final account
-/// (ru_maxrss) also holds the launcher's own memory at the time of the fork, so it only stands in for a process too
-/// short to be sampled.
+/// (ru_maxrss) also contains the launcher's own memory at the time of the fork, so it only counts for a process too
+/// short-lived to be sampled.
 class UsageBook {
  public:
   void add_sample(const std::string& service, double peak_rss_mb);
@@ -30,5 +30,8 @@ class UsageBook {
   };
   std::map<std::string, Entry> entries_;
 };
+
+/// Peak resident memory in MB (VmHWM), from the text of /proc/PID/status; -1 when absent (the process is ending).
+double peak_rss_mb(const std::string& proc_status);
 
 }  // namespace rtd::launcher

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus_factory.hpp"
+
+namespace rtd::launcher {
+
+enum class Verdict { kOk, kWarn, kFail };
+
+/// One line of the doctor; a problem names its fix.
+struct Finding {
+  Verdict verdict;
+  std::string text;
+};
+using Findings = std::vector<Finding>;
+
+/// With --secure: does the keystore exist, and can every enclave in it join the domain at `now_s`? A host need not have
+/// all enclaves. Returns a usable enclave for a test of the bus, preferably the one of the options; empty: none.
+std::string check_keystore(const bus::BusOptions& options, std::int64_t now_s, Findings& findings);
+
+/// Checks what the network settings need on this host: interfaces that are up, peers that resolve and are reachable,
+/// free UDP ports.
+void check_network(const bus::BusOptions& options, Findings& findings);
+
+}  // namespace rtd::launcher
