@@ -11,10 +11,8 @@
 namespace rtd::eval {
 namespace {
 
-using Json = nlohmann::json;
-
-double number(const Json& json, const char* pointer) {
-  const Json::json_pointer at(pointer);
+double number(const nlohmann::json& json, const char* pointer) {
+  const nlohmann::json::json_pointer at(pointer);
   return json.contains(at) && json.at(at).is_number() ? json.at(at).get<double>() : Measurement::kUnknown;
 }
 
@@ -64,7 +62,7 @@ bool unlike(const std::vector<const Measurement*>& runs) {
 }  // namespace
 
 std::optional<Measurement> read_measurement(const std::filesystem::path& folder) {
-  const Json json = Json::parse(content_of((folder / "report.json").string()), nullptr, false);
+  const nlohmann::json json = nlohmann::json::parse(content_of((folder / "report.json").string()), nullptr, false);
   if (!json.is_object() || !json.contains("frames_in")) return std::nullopt;
   Measurement m;
   m.ate_m = number(json, "/ate_rmse_m");
@@ -79,7 +77,7 @@ std::optional<Measurement> read_measurement(const std::filesystem::path& folder)
 }
 
 std::optional<std::string> last_event(const std::filesystem::path& folder) {
-  const Json json = Json::parse(content_of((folder / "report.json").string()), nullptr, false);
+  const nlohmann::json json = nlohmann::json::parse(content_of((folder / "report.json").string()), nullptr, false);
   if (!json.is_object() || !json.contains("events") || json["events"].empty()) return std::nullopt;
   return json["events"].back().get<std::string>();
 }
