@@ -16,10 +16,10 @@ using ::testing::FloatNear;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr HeadLayout kStride8 = {8, {{{10, 13}, {16, 30}, {33, 23}}}};
 
-float sigmoid(float x) {
+float sigmoid_of(float x) {
   return 1.0F / (1.0F + std::exp(-x));
 }
 
@@ -60,13 +60,13 @@ std::vector<Candidate> decode_everything(Head& head, int rows, int cols, int cla
         Candidate box;
         for (int k = 1; k < class_count; ++k)
           if (head.at(a, 5 + k, r, c) > head.at(a, 5 + box.class_index, r, c)) box.class_index = k;
-        const float objectness = sigmoid(head.at(a, 4, r, c));
-        box.score = objectness * sigmoid(head.at(a, 5 + box.class_index, r, c));
-        const float x = (2 * sigmoid(head.at(a, 0, r, c)) - 0.5F + static_cast<float>(c)) * 8;
-        const float y = (2 * sigmoid(head.at(a, 1, r, c)) - 0.5F + static_cast<float>(r)) * 8;
+        const float objectness = sigmoid_of(head.at(a, 4, r, c));
+        box.score = objectness * sigmoid_of(head.at(a, 5 + box.class_index, r, c));
+        const float x = (2 * sigmoid_of(head.at(a, 0, r, c)) - 0.5F + static_cast<float>(c)) * 8;
+        const float y = (2 * sigmoid_of(head.at(a, 1, r, c)) - 0.5F + static_cast<float>(r)) * 8;
         const Anchor anchor = kStride8.anchors[static_cast<std::size_t>(a)];
-        const float w = std::pow(2 * sigmoid(head.at(a, 2, r, c)), 2.0F) * anchor.width_px;
-        const float h = std::pow(2 * sigmoid(head.at(a, 3, r, c)), 2.0F) * anchor.height_px;
+        const float w = std::pow(2 * sigmoid_of(head.at(a, 2, r, c)), 2.0F) * anchor.width_px;
+        const float h = std::pow(2 * sigmoid_of(head.at(a, 3, r, c)), 2.0F) * anchor.height_px;
         box = {box.class_index, box.score, x - w / 2, y - h / 2, x + w / 2, y + h / 2};
         if (objectness >= config.objectness_threshold && box.score >= config.confidence_threshold) all.push_back(box);
       }
@@ -126,7 +126,7 @@ TEST(YoloDecoder, ignores_not_a_number) {
     head.at(0, 4, 0, 0) = 10.0F;
     head.at(0, 5, 0, 0) = 10.0F;
     ASSERT_THAT(decode_heads({head.view()}, 2, {}), SizeIs(1));
-    head.at(0, plane, 0, 0) = kNan;
+    head.at(0, plane, 0, 0) = kNotANumber;
     EXPECT_THAT(decode_heads({head.view()}, 2, {}), IsEmpty()) << "plane " << plane;
   }
 }
@@ -134,7 +134,7 @@ TEST(YoloDecoder, ignores_not_a_number) {
 TEST(YoloDecoder, takes_the_other_class_when_one_is_not_a_number) {
   Head head(2, 2, 2);
   head.at(0, 4, 0, 0) = 10.0F;
-  head.at(0, 5, 0, 0) = kNan;
+  head.at(0, 5, 0, 0) = kNotANumber;
   head.at(0, 6, 0, 0) = 3.0F;
   const std::vector<Candidate> found = decode_heads({head.view()}, 2, {});
   ASSERT_THAT(found, SizeIs(1));

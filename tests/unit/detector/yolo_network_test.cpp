@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <opencv2/dnn.hpp>
 #include <random>
 
 #include "common/service/model_locator.hpp"
@@ -26,8 +27,8 @@ TEST(FastSigmoid, is_the_sigmoid) {
 }
 
 TEST(FastSigmoid, works_in_place_and_at_the_ends) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  std::vector<float> values = {0.0F, kInfinity, -kInfinity, 1e30F, -1e30F};
+  const float infinity = std::numeric_limits<float>::infinity();
+  std::vector<float> values = {0.0F, infinity, -infinity, 1e30F, -1e30F};
   sigmoid(values.data(), values.data(), values.size());
   EXPECT_FLOAT_EQ(values[0], 0.5F);
   EXPECT_FLOAT_EQ(values[1], 1.0F);
