@@ -21,7 +21,7 @@ using testing::Not;
 using testing_support::read_text;
 using testing_support::TemporaryFolder;
 
-struct Outcome {
+struct DetectorOutcome {
   int code = -1;
   std::string out, err;
 };
@@ -47,7 +47,7 @@ class EvalDetectorCommand : public testing::Test {
     mask(cv::Rect(40, 22, 8, 12)).setTo(255);
     cv::imwrite(folder_.file("masks/" + name), mask);
   }
-  Outcome run(std::vector<std::string> arguments) const {
+  DetectorOutcome run(std::vector<std::string> arguments) const {
     CLI::App app;
     EvalDetectorOptions options;
     add_eval_detector_command(app, options);
@@ -63,7 +63,7 @@ class EvalDetectorCommand : public testing::Test {
     const int code = run_eval_detector(options, out, err);
     return {code, out.str(), err.str()};
   }
-  Outcome run_on_labels(const std::vector<std::string>& more = {}) const {
+  DetectorOutcome run_on_labels(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {"--labels", folder_.file("labels"), "--json", folder_.file("out.json")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
@@ -74,7 +74,7 @@ class EvalDetectorCommand : public testing::Test {
 };
 
 TEST_F(EvalDetectorCommand, prints_and_writes_the_average_precision) {
-  const Outcome outcome = run_on_labels({"--out", folder_.file("pages")});
+  const DetectorOutcome outcome = run_on_labels({"--out", folder_.file("pages")});
 
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("tiny.onnx"), HasSubstr("64x64"), HasSubstr("best F1")));
@@ -91,7 +91,7 @@ TEST_F(EvalDetectorCommand, prints_and_writes_the_average_precision) {
 
 TEST_F(EvalDetectorCommand, compares_models) {
   folder_.write("other.onnx", test::tiny_network_onnx({.metadata = {{"rtd.class_names", "box\nperson"}}}));
-  const Outcome outcome =
+  const DetectorOutcome outcome =
       run_on_labels({"--model", folder_.file("other.onnx"), "--names", folder_.write("names.txt", "person\nbox\n")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(json()["models"].size(), 2U);
@@ -104,7 +104,7 @@ TEST_F(EvalDetectorCommand, reads_voc_labels_by_itself) {
   folder_.write("labels/a.xml",
                 "<annotation><object><name>person</name><bndbox><xmin>40</xmin><ymin>22</ymin><xmax>49</xmax>"
                 "<ymax>34</ymax></bndbox></object></annotation>");
-  const Outcome outcome = run_on_labels();
+  const DetectorOutcome outcome = run_on_labels();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(json()["label_format"], "voc");
   EXPECT_NEAR(json()["models"][0]["ap50"], 1, 1e-6);
@@ -115,7 +115,7 @@ TEST_F(EvalDetectorCommand, counts_and_says_what_is_wrong_and_goes_on) {
   write_image("c.png");
   folder_.write("images/d.png", "no image");
   folder_.write("labels/b.txt", "0 0.5\n7 0.5 0.5 0.1 0.1\n");
-  const Outcome outcome = run_on_labels();
+  const DetectorOutcome outcome = run_on_labels();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("3 images, 1 without label file"), HasSubstr("1 left out"),
                                  HasSubstr("d.png: is not an image"), HasSubstr("b.txt:1: 2 columns"),
@@ -133,7 +133,7 @@ TEST_F(EvalDetectorCommand, refuses_folders_with_nothing_to_evaluate) {
   EXPECT_THAT(run_on_labels({"--label-format", "yolo"}).err, HasSubstr("no object in it can be used"));
   std::filesystem::rename(folder_.path() / "labels/a.txt", folder_.path() / "labels/y.txt");
   std::filesystem::remove(folder_.path() / "labels/b.txt");
-  const Outcome outcome = run_on_labels({"--label-format", "yolo"});
+  const DetectorOutcome outcome = run_on_labels({"--label-format", "yolo"});
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("no file in it has the name of an image"));
   std::filesystem::remove_all(folder_.path() / "images");
@@ -152,8 +152,8 @@ TEST_F(EvalDetectorCommand, refuses_models_and_outputs_that_cannot_be_used) {
 TEST_F(EvalDetectorCommand, measures_recall_on_masks_by_roll_with_and_without_turning_upright) {
   write_mask("a.png");
   write_mask("b.png", {64, 50});
-  const Outcome outcome = run({"--masks", folder_.file("masks"), "--roll", "0:180:90", "--derotate", "--json",
-                               folder_.file("out.json"), "--out", folder_.file("pages")});
+  const DetectorOutcome outcome = run({"--masks", folder_.file("masks"), "--roll", "0:180:90", "--derotate", "--json",
+                                       folder_.file("out.json"), "--out", folder_.file("pages")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("1 images, 1 left out"), HasSubstr("b.png: is 64 x 50 px")));
   const auto model = json()["models"][0];

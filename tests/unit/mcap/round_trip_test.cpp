@@ -12,14 +12,14 @@ namespace {
 
 using ::testing::IsEmpty;
 
-struct Shape {
+struct WriterShape {
   Compression compression;
   bool use_chunks;
   std::uint64_t chunk_size;
   std::size_t message_size;
 };
 
-class RoundTrip : public ::testing::TestWithParam<Shape> {
+class RoundTrip : public ::testing::TestWithParam<WriterShape> {
  protected:
   static WriterOptions options() {
     WriterOptions options;
@@ -69,12 +69,13 @@ TEST_P(RoundTrip, reads_what_is_there_of_a_file_that_was_never_closed) {
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, RoundTrip,
-    ::testing::Values(Shape{Compression::kNone, true, 1000, 50}, Shape{Compression::kNone, true, 1, 50},
-                      Shape{Compression::kNone, true, 1 << 20, 50}, Shape{Compression::kNone, false, 1000, 50},
-                      Shape{Compression::kLz4, true, 1000, 50}, Shape{Compression::kZstd, true, 1000, 50},
-                      Shape{Compression::kNone, true, 1000, 0}, Shape{Compression::kLz4, true, 1 << 20, 100000},
-                      Shape{Compression::kZstd, true, 1 << 20, 100000},
-                      Shape{Compression::kNone, true, 65536 - 31, 65536}));
+    ::testing::Values(WriterShape{Compression::kNone, true, 1000, 50}, WriterShape{Compression::kNone, true, 1, 50},
+                      WriterShape{Compression::kNone, true, 1 << 20, 50},
+                      WriterShape{Compression::kNone, false, 1000, 50}, WriterShape{Compression::kLz4, true, 1000, 50},
+                      WriterShape{Compression::kZstd, true, 1000, 50}, WriterShape{Compression::kNone, true, 1000, 0},
+                      WriterShape{Compression::kLz4, true, 1 << 20, 100000},
+                      WriterShape{Compression::kZstd, true, 1 << 20, 100000},
+                      WriterShape{Compression::kNone, true, 65536 - 31, 65536}));
 
 TEST(IndexedReader, orders_messages_of_overlapping_chunks_by_time_and_then_by_place) {
   std::vector<StoredMessage> messages = sample_messages(200, 20);

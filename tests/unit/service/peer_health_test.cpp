@@ -11,22 +11,22 @@
 namespace rtd::service {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kNsPerMs = 1'000'000;
 
 TEST(PeerHealth, a_gone_process_is_dead_before_the_others_wait_half_a_second) {
-  EXPECT_EQ(judge({250 * kMs, ProcessState::kGone}), PeerHealth::kAlive) << "its last heartbeat is recent";
-  EXPECT_EQ(judge({350 * kMs, ProcessState::kGone}), PeerHealth::kDead);
+  EXPECT_EQ(judge({250 * kNsPerMs, ProcessState::kGone}), PeerHealth::kAlive) << "its last heartbeat is recent";
+  EXPECT_EQ(judge({350 * kNsPerMs, ProcessState::kGone}), PeerHealth::kDead);
 }
 
 TEST(PeerHealth, a_silent_process_that_is_there_is_hung_within_two_seconds) {
-  EXPECT_EQ(judge({900 * kMs, ProcessState::kRunning}), PeerHealth::kAlive) << "may wait for the processor";
-  EXPECT_EQ(judge({1500 * kMs, ProcessState::kRunning}), PeerHealth::kHung);
-  EXPECT_EQ(judge({1500 * kMs, ProcessState::kStopped}), PeerHealth::kHung);
+  EXPECT_EQ(judge({900 * kNsPerMs, ProcessState::kRunning}), PeerHealth::kAlive) << "may wait for the processor";
+  EXPECT_EQ(judge({1500 * kNsPerMs, ProcessState::kRunning}), PeerHealth::kHung);
+  EXPECT_EQ(judge({1500 * kNsPerMs, ProcessState::kStopped}), PeerHealth::kHung);
 }
 
 TEST(PeerHealth, silence_from_another_host_is_death) {
-  EXPECT_EQ(judge({900 * kMs, ProcessState::kUnknown}), PeerHealth::kAlive);
-  EXPECT_EQ(judge({1500 * kMs, ProcessState::kUnknown}), PeerHealth::kDead);
+  EXPECT_EQ(judge({900 * kNsPerMs, ProcessState::kUnknown}), PeerHealth::kAlive);
+  EXPECT_EQ(judge({1500 * kNsPerMs, ProcessState::kUnknown}), PeerHealth::kDead);
 }
 
 TEST(PeerHealth, the_state_of_a_process_is_read) {
@@ -49,13 +49,13 @@ TEST(PeerHealth, the_state_of_a_process_is_read) {
 TEST(ProgressWatch, only_a_worker_that_has_begun_and_does_not_wait_gets_stuck) {
   ProgressWatch watch;
   watch.tick(1);
-  EXPECT_EQ(watch.stuck_ns(9'000 * kMs), 0) << "no limit";
-  watch.set_limit(1500 * kMs);
-  watch.tick(1000 * kMs);
-  EXPECT_EQ(watch.stuck_ns(2000 * kMs), 0);
-  EXPECT_EQ(watch.stuck_ns(2600 * kMs), 1600 * kMs);
+  EXPECT_EQ(watch.stuck_ns(9'000 * kNsPerMs), 0) << "no limit";
+  watch.set_limit(1500 * kNsPerMs);
+  watch.tick(1000 * kNsPerMs);
+  EXPECT_EQ(watch.stuck_ns(2000 * kNsPerMs), 0);
+  EXPECT_EQ(watch.stuck_ns(2600 * kNsPerMs), 1600 * kNsPerMs);
   watch.idle();
-  EXPECT_EQ(watch.stuck_ns(9000 * kMs), 0);
+  EXPECT_EQ(watch.stuck_ns(9000 * kNsPerMs), 0);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ FramePtr make_test_frame(std::uint64_t seq, std::size_t features = 60) {
   return frame;
 }
 
-Eigen::Isometry3d shifted(double x_m) {
+Eigen::Isometry3d moved_right(double x_m) {
   return Eigen::Isometry3d(Eigen::Translation3d(x_m, 0, 0));
 }
 
@@ -39,7 +39,7 @@ Eigen::Isometry3d shifted(double x_m) {
 Map make_map() {
   Map map;
   for (std::uint32_t k = 0; k < 3; ++k)
-    map.add_keyframe(make_test_frame(10 * k), shifted(0.1 * k), k == 0 ? kNoKeyframe : k - 1);
+    map.add_keyframe(make_test_frame(10 * k), moved_right(0.1 * k), k == 0 ? kNoKeyframe : k - 1);
   for (std::uint32_t i = 0; i < 50; ++i) {
     const LandmarkId id = map.add_landmark({0.01 * i, 0, 2}, {i < 40 ? 0U : 2U, i});
     if (i < 40) map.add_observation(id, {1, i});
@@ -91,24 +91,24 @@ TEST(Map, removed_keyframe_stays_attached_to_its_parent) {
   map.remove_keyframe(1);
   EXPECT_EQ(map.check_invariants(), "");
   EXPECT_EQ(map.find_keyframe(2)->parent, 0U);
-  map.find_keyframe(0)->T_world_camera = shifted(5);
+  map.find_keyframe(0)->T_world_camera = moved_right(5);
   EXPECT_NEAR(map.T_world_keyframe(1).translation().x(), 5.1, 1e-12);
 }
 
 TEST(Map, chain_of_removed_keyframes_follows_the_survivor) {
   Map map = make_map();
-  map.add_keyframe(make_test_frame(30), shifted(0.3), 2);
+  map.add_keyframe(make_test_frame(30), moved_right(0.3), 2);
   map.remove_keyframe(2);
   map.remove_keyframe(1);
-  map.find_keyframe(0)->T_world_camera = shifted(-1);
+  map.find_keyframe(0)->T_world_camera = moved_right(-1);
   EXPECT_NEAR(map.T_world_keyframe(2).translation().x(), -0.8, 1e-12);
   EXPECT_EQ(map.find_keyframe(3)->parent, 0U);
 }
 
 TEST(Map, keyframe_without_parent_starts_a_component) {
   Map map = make_map();
-  const KeyframeId origin = map.add_keyframe(make_test_frame(30), shifted(9), kNoKeyframe);
-  const KeyframeId second = map.add_keyframe(make_test_frame(40), shifted(9.1), origin);
+  const KeyframeId origin = map.add_keyframe(make_test_frame(30), moved_right(9), kNoKeyframe);
+  const KeyframeId second = map.add_keyframe(make_test_frame(40), moved_right(9.1), origin);
   EXPECT_EQ(map.find_keyframe(2)->map, 0U);
   EXPECT_EQ(map.find_keyframe(second)->map, 1U);
   EXPECT_TRUE(map.find_keyframe(origin)->is_origin());
@@ -119,8 +119,8 @@ TEST(Map, keyframe_without_parent_starts_a_component) {
 
 TEST(Map, joined_component_hangs_on_the_other) {
   Map map = make_map();
-  const KeyframeId origin = map.add_keyframe(make_test_frame(30), shifted(9), kNoKeyframe);
-  map.add_keyframe(make_test_frame(40), shifted(9.1), origin);
+  const KeyframeId origin = map.add_keyframe(make_test_frame(30), moved_right(9), kNoKeyframe);
+  map.add_keyframe(make_test_frame(40), moved_right(9.1), origin);
   map.join_components(1, 2);
   EXPECT_EQ(map.find_keyframe(origin)->parent, 2U);
   EXPECT_THAT(map.find_keyframe(2)->children, ElementsAre(origin));
@@ -140,7 +140,7 @@ TEST(Map, landmark_carries_mean_probability_and_typical_descriptor) {
     feature.descriptor.fill(k == 1 ? 0xFF : 0x00);  // the second view is unlike the others
     feature.octave = 2;
     frame->features.push_back(feature);
-    map.add_keyframe(frame, shifted(0.1 * k), k == 0 ? kNoKeyframe : k - 1);
+    map.add_keyframe(frame, moved_right(0.1 * k), k == 0 ? kNoKeyframe : k - 1);
   }
   const LandmarkId id = map.add_landmark({0, 0, 2}, {1, 0});
   map.add_observation(id, {0, 0});
@@ -156,7 +156,7 @@ TEST(Map, landmark_carries_mean_probability_and_typical_descriptor) {
 TEST(Map, keeps_its_invariants_under_random_edits) {
   std::mt19937_64 random(11);
   Map map;
-  KeyframeId newest = map.add_keyframe(make_test_frame(0), shifted(0), kNoKeyframe);
+  KeyframeId newest = map.add_keyframe(make_test_frame(0), moved_right(0), kNoKeyframe);
   const auto any_landmark = [&]() -> LandmarkId {
     const auto ids = map.landmark_ids();
     return ids.empty() ? kNoLandmark : ids[random() % ids.size()];
@@ -170,7 +170,7 @@ TEST(Map, keeps_its_invariants_under_random_edits) {
     const auto feature = static_cast<std::uint32_t>(random() % 60);
     const LandmarkId landmark = any_landmark();
     const auto action = random() % 12;
-    if (action == 0) newest = map.add_keyframe(make_test_frame(newest + 1), shifted(0.01 * step), any_keyframe());
+    if (action == 0) newest = map.add_keyframe(make_test_frame(newest + 1), moved_right(0.01 * step), any_keyframe());
     if (action >= 1 && action < 4) {
       const KeyframeId keyframe = any_keyframe();
       if (map.find_keyframe(keyframe)->landmarks[feature] == kNoLandmark)

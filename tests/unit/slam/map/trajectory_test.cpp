@@ -9,7 +9,7 @@
 namespace rtd::slam {
 namespace {
 
-Eigen::Isometry3d shifted(double x_m) {
+Eigen::Isometry3d at_x(double x_m) {
   return Eigen::Isometry3d(Eigen::Translation3d(x_m, 0, 0));
 }
 
@@ -18,11 +18,11 @@ TEST(ComposeTrajectory, follows_corrected_and_removed_keyframes) {
   for (KeyframeId k = 0; k < 3; ++k) {
     auto frame = std::make_shared<Frame>();
     frame->stamp_ns = 100 * k;
-    map.add_keyframe(frame, shifted(k), k == 0 ? kNoKeyframe : k - 1);
+    map.add_keyframe(frame, at_x(k), k == 0 ? kNoKeyframe : k - 1);
   }
-  const std::vector<FrameRecord> frames{{5, 50, 0, shifted(0.5)}, {15, 150, 1, shifted(0.5)}};
+  const std::vector<FrameRecord> frames{{5, 50, 0, at_x(0.5)}, {15, 150, 1, at_x(0.5)}};
   map.remove_keyframe(1);
-  map.find_keyframe(0)->T_world_camera = shifted(10);
+  map.find_keyframe(0)->T_world_camera = at_x(10);
   const auto poses = compose_trajectory(map, frames);
   ASSERT_EQ(poses.size(), 2U);
   EXPECT_EQ(poses[1].stamp_ns, 150);

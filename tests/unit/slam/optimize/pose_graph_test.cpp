@@ -15,25 +15,25 @@ using geometry::Matrix6d;
 using geometry::Vector6d;
 
 constexpr int kNodes = 120;
-constexpr double kRadiusM = 10;
+constexpr double kCircleRadiusM = 10;
 
 /// A camera that walks a circle, looking ahead, and ends where it began.
-Eigen::Isometry3d true_pose(int i) {
+Eigen::Isometry3d pose_on_circle(int i) {
   const double angle_rad = 2 * std::numbers::pi * i / kNodes;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  T.translation() = kRadiusM * Eigen::Vector3d(1 - std::cos(angle_rad), 0.02 * i, std::sin(angle_rad));
+  T.translation() = kCircleRadiusM * Eigen::Vector3d(1 - std::cos(angle_rad), 0.02 * i, std::sin(angle_rad));
   return T;
 }
 
 Eigen::Isometry3d truth_between(int from, int to) {
-  return true_pose(from).inverse() * true_pose(to);
+  return pose_on_circle(from).inverse() * pose_on_circle(to);
 }
 
 /// The circle as odometry with a constant error of each step sees it.
 PoseGraph drifted_circle(const Vector6d& step_error) {
   PoseGraph graph;
-  graph.nodes.push_back({true_pose(0), true});
+  graph.nodes.push_back({pose_on_circle(0), true});
   for (int i = 1; i < kNodes; ++i) {
     const Eigen::Isometry3d T_step = truth_between(i - 1, i) * geometry::se3_exp(step_error);
     graph.nodes.push_back({graph.nodes.back().T_world_node * T_step, false});
@@ -50,12 +50,12 @@ double worst_error_m(const PoseGraph& graph) {
   double worst_m = 0;
   for (int i = 0; i < kNodes; ++i) {
     const auto& node = graph.nodes[static_cast<std::size_t>(i)];
-    worst_m = std::max(worst_m, (node.T_world_node.translation() - true_pose(i).translation()).norm());
+    worst_m = std::max(worst_m, (node.T_world_node.translation() - pose_on_circle(i).translation()).norm());
   }
   return worst_m;
 }
 
-Vector6d small_error() {
+Vector6d step_error() {
   Vector6d error;
   error << 0.002, -0.001, 0.003, 0.0005, -0.002, 0.0007;
   return error;
@@ -89,7 +89,7 @@ TEST(PoseGraph, analytic_derivatives_are_those_of_the_residual) {
 }
 
 TEST(PoseGraph, a_loop_takes_the_drift_out_of_a_circle) {
-  PoseGraph graph = drifted_circle(small_error());
+  PoseGraph graph = drifted_circle(step_error());
   const double before_m = worst_error_m(graph);
   close_with_truth(graph);
   const PoseGraphSummary summary = optimize_pose_graph(graph);
@@ -107,7 +107,7 @@ TEST(PoseGraph, a_graph_without_contradiction_stays_as_it_is) {
 }
 
 TEST(PoseGraph, strong_edges_bend_less_than_weak_ones) {
-  PoseGraph graph = drifted_circle(small_error());
+  PoseGraph graph = drifted_circle(step_error());
   for (PoseGraphEdge& edge : graph.edges) {
     if (edge.from >= kNodes / 2) edge.sigma_m *= 100, edge.sigma_rad *= 100;
   }
@@ -123,21 +123,21 @@ TEST(PoseGraph, strong_edges_bend_less_than_weak_ones) {
 }
 
 TEST(PoseGraph, fixed_nodes_hold_the_gauge) {
-  PoseGraph graph = drifted_circle(small_error());
+  PoseGraph graph = drifted_circle(step_error());
   const Eigen::Isometry3d T_shift = geometry::se3_exp(Vector6d::Constant(0.4));
   PoseGraph shifted = graph;
   for (PoseGraphNode& node : shifted.nodes) node.T_world_node = T_shift * node.T_world_node;
   close_with_truth(graph), close_with_truth(shifted);
   shifted.nodes.front().fixed = false;  // the first is held when nothing is
   ASSERT_TRUE(optimize_pose_graph(graph).usable && optimize_pose_graph(shifted).usable);
-  EXPECT_TRUE(graph.nodes.front().T_world_node.isApprox(true_pose(0), 0));
+  EXPECT_TRUE(graph.nodes.front().T_world_node.isApprox(pose_on_circle(0), 0));
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
     EXPECT_TRUE(shifted.nodes[i].T_world_node.isApprox(T_shift * graph.nodes[i].T_world_node, 1e-6)) << i;
   }
 }
 
 TEST(PoseGraph, the_same_graph_gives_the_same_bits) {
-  PoseGraph first = drifted_circle(small_error()), second = first;
+  PoseGraph first = drifted_circle(step_error()), second = first;
   close_with_truth(first), close_with_truth(second);
   optimize_pose_graph(first), optimize_pose_graph(second);
   for (std::size_t i = 0; i < first.nodes.size(); ++i) {
@@ -146,7 +146,7 @@ TEST(PoseGraph, the_same_graph_gives_the_same_bits) {
 }
 
 TEST(PoseGraph, interrupted_it_ends_early) {
-  PoseGraph graph = drifted_circle(small_error());
+  PoseGraph graph = drifted_circle(step_error());
   close_with_truth(graph);
   PoseGraphOptions options;
   options.interrupted = [] { return true; };
