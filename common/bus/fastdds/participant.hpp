@@ -35,6 +35,11 @@ class Participant {
   /// Throws BusError when it exists with another type.
   dds::Topic* topic(const std::string& name, const Codec& codec);
   TopicTypes& types() { return listener_.types(); }
+  /// What is discovered from now on goes to this listener, which outlives the participant or is silenced, instead of
+  /// to ours.
+  void observe(dds::DomainParticipantListener& listener) {
+    participant_->set_listener(&listener, dds::StatusMask::none());
+  }
   /// No listener is called any more.
   void silence() { participant_->set_listener(nullptr); }
   /// To be called when a writer has been created: secured, its shared memory is for our user only.

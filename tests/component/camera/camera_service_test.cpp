@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/service/config.hpp"
 
 namespace rtd::camera {
 namespace {

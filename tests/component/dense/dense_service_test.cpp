@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "common/geometry/ply.hpp"
+#include "common/service/config.hpp"
 #include "tests/support/service_fixture.hpp"
 #include "tests/unit/dense/wall_scene.hpp"
 
@@ -96,7 +97,7 @@ float depth_of_nearest(const msg::PointCloud2& cloud) {
 
 TEST_F(DenseServiceTest, publishes_the_wall_without_the_person_and_writes_it) {
   Inbox<msg::PointCloud2> clouds;
-  update(bus::topics::kDensePoints, clouds);
+  hear(bus::topics::kDensePoints, clouds);
   config_.publish_period_ms = 100;
   config_.out_dir = (folder_ / "run").string();
   config_.background = true;

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "tests/support/detector/tiny_network.hpp"
@@ -33,7 +34,7 @@ class DetectorServiceTest : public test_support::ServiceFixture<DetectorService>
     hear(bus::topics::kDetections, answer_box_);
     std::filesystem::create_directories(folder_);
     config_.model = (folder_ / "tiny.onnx").string();
-    config_.class_names = {"person", "box"};
+    config_.core.class_names = {"person", "box"};
     config_.derotate = "off";  // no slam here, but where a test plays it
     std::ofstream(config_.model, std::ios::binary) << test::tiny_network_onnx({});
   }

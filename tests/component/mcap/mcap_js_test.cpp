@@ -79,10 +79,10 @@ TEST_F(McapJs, writes_files_that_we_read_without_a_problem) {
   ASSERT_EQ(run("write").exit_code, 0);
   std::ifstream in(file_, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
-  const ReadBack streamed = stream(bytes_of(text));
+  const ReadBack streamed = stream(io::bytes_of(text));
   EXPECT_EQ(streamed.messages.size(), 50U);
   EXPECT_TRUE(streamed.problems.empty()) << texts(streamed.problems);
-  const ReadBack indexed = by_index(bytes_of(text));
+  const ReadBack indexed = by_index(io::bytes_of(text));
   EXPECT_EQ(indexed.messages, streamed.messages);
   EXPECT_TRUE(indexed.problems.empty()) << texts(indexed.problems);
 }

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "common/bus/raw_bus.hpp"
+#include "common/service/config.hpp"
 #include "tests/component/recorder/recorded_file.hpp"
 #include "tests/support/service_fixture.hpp"
 

@@ -6,6 +6,7 @@
 
 #include <future>
 
+#include "common/service/config.hpp"
 #include "tests/component/replay/raw_recording.hpp"
 
 namespace rtd::replay {

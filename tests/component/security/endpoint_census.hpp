@@ -15,7 +15,9 @@ namespace rtd::bus {
 /// Who opens which writers and readers in a domain, by participant name: "rtd-slam" writes "rtd/tracking".
 class EndpointCensus : private fastdds::dds::DomainParticipantListener {
  public:
-  explicit EndpointCensus(std::uint32_t domain) : participant_(options(domain), read_host_limits(), this) {}
+  explicit EndpointCensus(std::uint32_t domain) : participant_(options(domain), read_host_limits(), &writers_) {
+    participant_.observe(*this);
+  }
   ~EndpointCensus() override { participant_.silence(); }
 
   struct Topics {
@@ -36,6 +38,7 @@ class EndpointCensus : private fastdds::dds::DomainParticipantListener {
   mutable std::mutex mutex_;
   std::map<Guid, std::string> names_;
   std::map<Guid, Topics> topics_;
+  WriterRegistry writers_;            // with it, everything is discovered
   fastdds::Participant participant_;  // last: calls the others
 };
 

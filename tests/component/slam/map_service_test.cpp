@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "common/msg/transform_eigen.hpp"
+#include "common/service/config.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/slam_service.hpp"
 #include "tests/support/feature_world.hpp"

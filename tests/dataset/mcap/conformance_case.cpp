@@ -46,11 +46,11 @@ void write_record(Writer& writer, const std::string& type, const Json& fields) {
     const std::string data = data_of(fields);
     writer.write(Message{static_cast<ChannelId>(number(fields, "channel_id")),
                          static_cast<std::uint32_t>(number(fields, "sequence")), number(fields, "log_time"),
-                         number(fields, "publish_time"), bytes_of(data)});
+                         number(fields, "publish_time"), io::bytes_of(data)});
   } else if (type == "Attachment") {
     const std::string data = data_of(fields);
     writer.write(Attachment{number(fields, "log_time"), number(fields, "create_time"), text(fields, "name"),
-                            text(fields, "media_type"), bytes_of(data), 0});
+                            text(fields, "media_type"), io::bytes_of(data), 0});
   } else if (type == "Metadata") {
     writer.write(Metadata{text(fields, "name"), fields.at("metadata")});
   }
@@ -94,7 +94,7 @@ struct ToJson {
     return f("summary_start", r.summary_start), f.record("Footer");
   }
   Json operator()(const Schema& r) {
-    f("data", bytes_of(r.data)), f("encoding", r.encoding), f("id", r.id), f("name", r.name);
+    f("data", io::bytes_of(r.data)), f("encoding", r.encoding), f("id", r.id), f("name", r.name);
     return f.record("Schema");
   }
   Json operator()(const Channel& r) {

@@ -47,7 +47,7 @@ TEST_F(Conformance, writes_every_file_byte_by_byte) {
     const std::string theirs = read_text(test.mcap);
     const std::string sum = sha256_of_pointer(theirs);
     if (sum.empty()) {
-      EXPECT_TRUE(std::ranges::equal(ours, bytes_of(theirs))) << test.name;
+      EXPECT_TRUE(std::ranges::equal(ours, io::bytes_of(theirs))) << test.name;
       continue;
     }
     const std::filesystem::path file = folder / (test.name + ".mcap");

@@ -95,7 +95,7 @@ void PrintTo(const Vendors& vendors, std::ostream* out) {
   *out << vendors.first_host << "_with_" << vendors.detector;
 }
 
-class TwoHostsTest : public testing::TestWithParam<Vendors> {
+class TwoHostsTest : public ::testing::TestWithParam<Vendors> {
  protected:
   void SetUp() override {
     if (const std::string why = TwoHosts::unavailable(); !why.empty()) GTEST_SKIP() << why;
@@ -201,7 +201,7 @@ TEST_P(TwoHostsTest, boxes_cross_a_lossy_link_and_come_back_after_a_cut) {
 
   const auto report = nlohmann::json::parse(text_of(scratch_ / "out/report.json"));
   EXPECT_NEAR(report["clocks"]["detector"]["ahead_ms"].get<double>(), kClockShiftMs, 20) << report["clocks"];
-  EXPECT_THAT(run_.output(), testing::HasSubstr("ms ahead"));
+  EXPECT_THAT(run_.output(), ::testing::HasSubstr("ms ahead"));
 }
 
 TEST_P(TwoHostsTest, boxes_cross_a_lossy_link_encrypted) {
@@ -222,13 +222,13 @@ TEST_P(TwoHostsTest, boxes_cross_a_lossy_link_encrypted) {
   EXPECT_EQ(run_.wait(), 0) << run_.output();
   end(detector_);
   EXPECT_GT(answered(), 20) << detector_.output();
-  EXPECT_THAT(text_of(scratch_ / "out/logs/filter.log"), testing::HasSubstr("event=detector_found"));
+  EXPECT_THAT(text_of(scratch_ / "out/logs/filter.log"), ::testing::HasSubstr("event=detector_found"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Vendors, TwoHostsTest,
-                         testing::Values(Vendors{"fastdds", "fastdds"}, Vendors{"cyclonedds", "cyclonedds"},
-                                         Vendors{"fastdds", "cyclonedds"}, Vendors{"cyclonedds", "fastdds"}),
-                         testing::PrintToStringParamName());
+                         ::testing::Values(Vendors{"fastdds", "fastdds"}, Vendors{"cyclonedds", "cyclonedds"},
+                                           Vendors{"fastdds", "cyclonedds"}, Vendors{"cyclonedds", "fastdds"}),
+                         ::testing::PrintToStringParamName());
 
 }  // namespace
 }  // namespace rtd
