@@ -17,6 +17,7 @@
 namespace {
 
 using namespace rtd::mcap;
+namespace io = rtd::io;
 
 constexpr std::size_t kFrame = 1536000;
 constexpr Timestamp kPeriod = 33'333'333;

@@ -209,7 +209,7 @@ TEST(McapSource, finds_the_file_in_a_folder_of_rosbag2) {
   recording::export_mcap(*make_source(folder.uri()), bag / "bag_0.mcap", mcap::Compression::kNone, 0);
   EXPECT_THAT(play_all("mcap:" + bag.string()).frames, SizeIs(3));
   std::filesystem::copy_file(bag / "bag_0.mcap", bag / "bag_1.mcap");
-  EXPECT_THAT([&] { make_source("mcap:" + bag.string()); }, ThrowsMessage<SourceError>(HasSubstr("2 MCAP files")));
+  EXPECT_THAT([&] { make_source("mcap:" + bag.string()); }, ThrowsMessage<SourceError>(HasSubstr("2 .mcap files")));
 }
 
 TEST(PlainType, is_the_same_for_every_way_to_name_a_type) {
