@@ -4,8 +4,8 @@
 # One place for how our targets are compiled and how tests are declared.
 #   rtd_library(NAME SOURCES... [PUBLIC libs...] [PRIVATE libs...])  static library, includes from the repository root
 #   rtd_executable(NAME SOURCES... PRIVATE libs...)
-#   rtd_test(NAME LABEL unit|component|interop|dataset SOURCES... LIBS... [TIMEOUT seconds] [SERIAL])
-#     Tests labelled component and interop run alone; others may run beside each other (`ctest -j`), unless SERIAL.
+#   rtd_test(NAME LABEL unit|component|interop|dataset SOURCES... LIBS... [TIMEOUT seconds] [SERIAL | PARALLEL])
+#     Tests labelled component and interop run alone unless PARALLEL, others beside each other (`ctest -j`) unless SERIAL.
 #   rtd_bench(NAME SOURCES... LIBS...)
 
 set(CMAKE_CXX_STANDARD 20)
@@ -73,7 +73,7 @@ function(rtd_test name)
   if(NOT RTD_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "SERIAL" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL;PARALLEL" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} rtd_test_main)
   rtd_common_target(${name})
@@ -87,7 +87,7 @@ function(rtd_test name)
     set_tests_properties(${ARG_LABEL}.${name} PROPERTIES TIMEOUT 120)
   endif()
   # Several processes that keep time, or ports and domains of this host: not beside other tests.
-  if(ARG_SERIAL OR ARG_LABEL STREQUAL "component" OR ARG_LABEL STREQUAL "interop")
+  if(ARG_SERIAL OR (NOT ARG_PARALLEL AND ARG_LABEL MATCHES "^(component|interop)$"))
     set_tests_properties(${ARG_LABEL}.${name} PROPERTIES RUN_SERIAL ON)
   endif()
 endfunction()

@@ -119,7 +119,7 @@ class FetchModel(unittest.TestCase):
 
     def test_refuses_a_checkpoint_that_cannot_be_converted(self):
         self.server.body = b"not a checkpoint"
-        self.assert_refused(self.fetch(hashlib.sha256(self.server.body).hexdigest()), "no checkpoint of torch")
+        self.assert_refused(self.fetch(hashlib.sha256(self.server.body).hexdigest()), "not a checkpoint of torch")
 
     def test_says_when_the_cache_cannot_be_written(self):
         (self.folder / "cache").write_text("a file where the folder should be")

@@ -133,7 +133,7 @@ TEST_F(MapServiceTest, refuses_a_file_that_is_no_map) {
   std::ofstream(file_) << "something else";
   launch(service::Pace::kLockstep);
   EXPECT_THAT([&] { running_code(); },
-              ThrowsMessage<service::ConfigError>(AllOf(HasSubstr("room.rtdmap"), HasSubstr("no map file"))));
+              ThrowsMessage<service::ConfigError>(AllOf(HasSubstr("room.rtdmap"), HasSubstr("not a map file"))));
   make_map();
   std::filesystem::resize_file(file_, std::filesystem::file_size(file_) / 2);
   launch(service::Pace::kLockstep);

@@ -48,7 +48,8 @@ TEST_P(DepthFactors, what_is_exported_comes_back_pixel_by_pixel) {
   const auto file = folder.path() / "out.mcap";
   std::vector<std::uint64_t> counts;
   const auto source = make_source(folder.uri());
-  EXPECT_EQ(recording::export_mcap(*source, file, mcap::Compression::kZstd, 0, [&](auto n) { counts.push_back(n); }), 3U);
+  EXPECT_EQ(recording::export_mcap(*source, file, mcap::Compression::kZstd, 0, [&](auto n) { counts.push_back(n); }),
+            3U);
   EXPECT_THAT(counts, testing::ElementsAre(1U, 2U, 3U));
 
   const Played before = play_all(folder.uri()), after = play_all("mcap:" + file.string());

@@ -79,7 +79,7 @@ TEST_F(FetchTest, without_the_server_it_names_address_and_ways_out) {
 
 TEST_F(FetchTest, a_broken_archive_leaves_no_folder) {
   std::ofstream(root_ / "server/freiburg3/rgbd_dataset_freiburg3_tiny.tgz") << "no archive";
-  EXPECT_THAT(error_of("fr3_tiny"), HasSubstr("is no complete archive"));
+  EXPECT_THAT(error_of("fr3_tiny"), HasSubstr("is not a complete archive"));
   EXPECT_FALSE(fs::exists(root_ / "cache/rtd-slam/datasets/rgbd_dataset_freiburg3_tiny"));
 }
 

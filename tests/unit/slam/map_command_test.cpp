@@ -106,7 +106,7 @@ TEST_F(MapCommand, distinguishes_damage_from_other_files) {
   EXPECT_THAT(err_.str(), HasSubstr("No such file"));
   std::ofstream(folder_ / "text") << "a text";
   EXPECT_EQ(run({"info", path("text")}), 2);
-  EXPECT_THAT(err_.str(), HasSubstr("no map file"));
+  EXPECT_THAT(err_.str(), HasSubstr("not a map file"));
   std::filesystem::resize_file(file_, std::filesystem::file_size(file_) - 100);
   EXPECT_EQ(run({"info", file_}), 3);
   EXPECT_THAT(err_.str(), HasSubstr("damaged at byte"));

@@ -147,7 +147,7 @@ TEST(MapFile, of_another_version_is_refused_naming_both) {
 
 TEST(MapFile, of_another_kind_is_refused) {
   const std::string text = "ply\nformat ascii 1.0\n";
-  EXPECT_THAT(refusal(io::bytes_of(text)), HasSubstr("no map file"));
+  EXPECT_THAT(refusal(io::bytes_of(text)), HasSubstr("not a map file"));
 }
 
 /// A file whose checksums are right and whose contents are not.

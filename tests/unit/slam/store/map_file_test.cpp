@@ -108,7 +108,7 @@ TEST_F(MapFileOnDisk, names_what_is_wrong_with_the_place) {
               ThrowsMessage<io::IoError>(AllOf(HasSubstr("room.rtdmap"), HasSubstr("No such file"))));
   std::ofstream(path_) << "not a map";
   EXPECT_THAT([&] { load_map_file(path_); },
-              ThrowsMessage<MapFileError>(AllOf(HasSubstr("room.rtdmap"), HasSubstr("no map file"))));
+              ThrowsMessage<MapFileError>(AllOf(HasSubstr("room.rtdmap"), HasSubstr("not a map file"))));
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
