@@ -100,7 +100,7 @@ TEST_F(DoctorTest, ports_in_use_are_named) {
   for (int id = 0; id < bus::kPeerParticipants; ++id)
     others.push_back(std::make_unique<Port>(bus::participant_port(domain(), id)));
   EXPECT_EQ(doctor({"--profile", "wifi"}), 1);
-  EXPECT_THAT(rtd_.output(), HasSubstr("FAIL ports: 0 of 16 are free"));
+  EXPECT_THAT(rtd_.output(), HasSubstr("FAIL ports: 0 of 16 from UDP"));
 }
 
 TEST_F(DoctorTest, a_missing_keystore_is_named_with_the_command_that_makes_one) {

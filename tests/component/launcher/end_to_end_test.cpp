@@ -112,7 +112,7 @@ TEST_F(EndToEndTest, a_second_run_finds_its_place_in_the_map_of_the_first) {
   EXPECT_EQ(text_of(map), before);
   RtdCommand refused;
   EXPECT_EQ(refused.run(arguments(131, "synthetic:office?frames=30", {"--map", scratch_ / "none.rtdmap"})), 2);
-  EXPECT_THAT(refused.output(), HasSubstr("none.rtdmap: there is no such file"));
+  EXPECT_THAT(refused.output(), HasSubstr("none.rtdmap: no such file"));
 }
 
 TEST_F(EndToEndTest, a_filter_killed_during_the_run_is_restarted_and_the_run_completes) {
