@@ -56,7 +56,8 @@ bool signed_by(const X509& certificate, const X509& ca);
 
 /// S/MIME as DDS-Security asks it of governance and permissions: text/plain, detached signature.
 std::string sign_document(const std::string& text, const Identity& signer);
-/// The text within. Throws SecurityError naming `origin` when it is not a signed document or `signer` has not signed it.
+/// The text within. Throws SecurityError naming `origin` when it is not a signed document or `signer` has not signed
+/// it.
 std::string verified_text(const std::string& signed_text, const X509& signer, const std::string& origin);
 
 }  // namespace rtd::security

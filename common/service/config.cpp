@@ -132,8 +132,8 @@ void ConfigBinder::add(std::string_view key, T& value, std::string wanted, Allow
       return false;
     }
   };
-  settings_.push_back(
-      {prefix_ + std::string(key), std::string(help), std::move(wanted), read, [&value] { return print_value(value); }});
+  settings_.push_back({prefix_ + std::string(key), std::string(help), std::move(wanted), read,
+                       [&value] { return print_value(value); }});
 }
 
 void ConfigBinder::field(std::string_view key, bool& value, std::string_view help) {

@@ -50,8 +50,8 @@ class NoPeersWarning {
   static constexpr std::chrono::milliseconds kUsualPatience{10'000};
 
   /// `warn` is called by a thread of its own.
-  NoPeersWarning(const Heartbeat& heartbeat, const bus::BusOptions& options, std::function<void(const std::string&)> warn,
-            std::chrono::milliseconds patience = kUsualPatience);
+  NoPeersWarning(const Heartbeat& heartbeat, const bus::BusOptions& options,
+                 std::function<void(const std::string&)> warn, std::chrono::milliseconds patience = kUsualPatience);
   ~NoPeersWarning();
   NoPeersWarning(const NoPeersWarning&) = delete;
   NoPeersWarning& operator=(const NoPeersWarning&) = delete;

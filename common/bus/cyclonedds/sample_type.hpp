@@ -29,7 +29,7 @@ struct SampleOrigin {
 
 /// For dds_create_topic_sertype(), which takes it over.
 ddsi_sertype* create_sertype(const SampleType& type);
-/// For one that nobody took over.
+/// For one without an owner.
 void destroy_sertype(ddsi_sertype* type);
 
 }  // namespace rtd::bus::cyclonedds

@@ -46,7 +46,7 @@ double span_s(const std::vector<eval::FrameRecord>& frames) {
 }
 
 std::string restart_effect(const std::string& service) {
-  if (service == "slam") return ": trajectory.txt begins anew, the map with its last checkpoint";
+  if (service == "slam") return ": trajectory.txt starts again, the map from its last checkpoint";
   if (service == "record") return ": it goes on in a file beside";
   return service == "dense" ? ": static_map.ply starts again" : "";
 }
@@ -82,10 +82,9 @@ void RunSession::require_free_domain() {
     const std::string others = collector_.active_services(setup_.remote_detector);
     if (others.empty()) continue;
     const bool only_detector = collector_.active_services(true).empty();
-    throw service::ConfigError(
-        "DDS domain " + std::to_string(setup_.bus.domain) + " is taken by " + others +
-        (only_detector ? ": use its boxes with --detector remote, stop it" : ": stop them") +
-        ", or choose another domain with --domain");
+    throw service::ConfigError("DDS domain " + std::to_string(setup_.bus.domain) + " is taken by " + others +
+                               (only_detector ? ": use its boxes with --detector remote, stop it" : ": stop them") +
+                               ", or choose another domain with --domain");
   }
 }
 
