@@ -10,7 +10,7 @@ root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 . "$root/deploy/environment.sh"
 
 "$root/deploy/setup.sh" --product
-echo "demo: building into build/release (first time: a few minutes on two cores)"
+echo "demo: building into build/release (first time: about five minutes on two cores)"
 tests=OFF
 grep -qs '^RTD_BUILD_TESTS:BOOL=ON' "$root/build/release/CMakeCache.txt" && tests=ON
 build_release "$tests" --target rtd_demo
