@@ -92,7 +92,7 @@ TEST_F(EndToEndTest, a_slam_killed_during_the_run_goes_on_with_its_last_checkpoi
   ASSERT_TRUE(wait_for_log("slam", "event=map_saved")) << rtd_.output();
   ASSERT_EQ(::kill(pid_of("slam"), SIGKILL), 0);
   EXPECT_EQ(rtd_.wait(), 0) << rtd_.output();
-  EXPECT_THAT(rtd_.output(), HasSubstr("the map with its last checkpoint"));
+  EXPECT_THAT(rtd_.output(), HasSubstr("the map from its last checkpoint"));
   const std::string log = text_of(out_ + "/logs/slam.log");
   EXPECT_THAT(log, AllOf(HasSubstr("event=map_loaded"), HasSubstr("event=relocalized"), HasSubstr("occasion=end")));
   EXPECT_GT(report()["frames_tracked"], 60) << "before and after";
