@@ -21,7 +21,6 @@ using namespace std::chrono_literals;
 using Queue = concurrency::BoundedQueue<bus::RawSample>;
 
 constexpr std::size_t kQueue = 256;
-constexpr int kEchoDepth = 64;
 constexpr double kHintS = 3;  // then report a missing writer
 
 /// Prints samples of one topic.
@@ -107,7 +106,7 @@ int echo_topic(const TopicsRequest& request, TopicsSession& session, std::ostrea
   Queue queue(kQueue, concurrency::Overflow::kDropOldest);
   bus::RawHandlers handlers;
   handlers.on_sample = [&queue](bus::RawSample sample) { queue.push(std::move(sample)); };
-  bus::TopicListener listener(session.bus(), std::move(handlers), true, kEchoDepth);
+  bus::TopicListener listener(session.bus(), std::move(handlers), true, kReaderDepth);
   std::string refused;  // of the watcher's thread until watch(nullptr)
   session.bus().watch([&](const bus::TopicWriter& writer, bus::WriterChange change) {
     if (change != bus::WriterChange::kAppeared || writer.own || writer.topic != topic) return;

@@ -17,7 +17,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kRateDepth = 64;
 constexpr double kUsualDurationS = 5;
 
 /// Subscribes to topics as their writers appear and measures each.
@@ -87,7 +86,7 @@ class Meters {
         const std::lock_guard meter_lock(meter.mutex);
         meter.rate.add_lost(loss.count);
       };
-      meter.listener = std::make_unique<bus::TopicListener>(session_.bus(), std::move(handlers), true, kRateDepth);
+      meter.listener = std::make_unique<bus::TopicListener>(session_.bus(), std::move(handlers), true, kReaderDepth);
     }
     meter.listener->add(writer);
   } catch (const bus::BusError&) {

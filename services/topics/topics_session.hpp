@@ -14,6 +14,8 @@
 
 namespace rtd::topics {
 
+inline constexpr int kReaderDepth = 64;  ///< samples that a reader of these commands keeps
+
 /// Whether the topic has this ROS or DDS name.
 bool is_called(const bus::RawTopic& topic, const std::string& name);
 

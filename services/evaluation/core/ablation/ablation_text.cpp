@@ -8,6 +8,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "services/evaluation/core/trajectory/evaluation.hpp"
+
 namespace rtd::eval {
 namespace {
 
@@ -50,12 +52,8 @@ std::string markdown_line(const std::vector<std::string>& cells) {
   return text + "\n";
 }
 
-Json finite_or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json spread_json(const Spread& s) {
-  return {{"median", finite_or_null(s.median)}, {"min", finite_or_null(s.min)}, {"max", finite_or_null(s.max)}};
+  return {{"median", number_or_null(s.median)}, {"min", number_or_null(s.min)}, {"max", number_or_null(s.max)}};
 }
 
 Json row_json(const AblationRow& row) {
@@ -67,7 +65,7 @@ Json row_json(const AblationRow& row) {
           {"failed", row.failed},
           {"failure", row.failure.empty() ? Json(nullptr) : Json(row.failure)},
           {"ate_rmse_m", spread_json(row.ate_m)},
-          {"ate_ratio", finite_or_null(row.ratio)},
+          {"ate_ratio", number_or_null(row.ratio)},
           {"rpe_trans_rmse_m", spread_json(row.rpe_m)},
           {"rpe_rot_rmse_deg", spread_json(row.rpe_deg)},
           {"coverage", spread_json(row.coverage)},

@@ -131,4 +131,8 @@ Json to_json(const Evaluation& e) {
           {"coverage", coverage_json(e.coverage)}};
 }
 
+nlohmann::ordered_json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
 }  // namespace rtd::eval
