@@ -31,6 +31,7 @@ class FeatureWorld {
 
   /// The features seen from a pose; seq and a stamp of 30 Hz. Same arguments, same frame.
   std::unique_ptr<msg::FeatureFrame> view(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera) const;
+  std::unique_ptr<msg::FeatureFrame> view(std::uint64_t seq) const { return view(seq, T_world_camera(seq)); }
   /// The features of a camera on the hand-held path whose rows are read out one after the other; the stamp is that of
   /// the middle row.
   std::unique_ptr<msg::FeatureFrame> rolling_view(std::uint64_t seq, double readout_s) const;
@@ -58,6 +59,11 @@ class FeatureWorld {
   Options options_;
   std::vector<Point> points_;
 };
+
+/// For tests in which no time passes.
+inline std::int64_t frozen_clock() {
+  return 0;
+}
 
 /// A frame of FeatureWorld's camera without features yet.
 std::unique_ptr<msg::FeatureFrame> make_empty_view(std::uint64_t seq);

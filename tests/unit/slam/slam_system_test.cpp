@@ -17,19 +17,12 @@ namespace {
 
 using msg::TrackingState;
 using test_support::FeatureWorld;
+using test_support::frozen_clock;
 
 constexpr std::uint64_t kFrames = 90;
 
-std::int64_t frozen_clock() {
-  return 0;
-}
-
 SlamSystem make_slam(MappingMode mode = MappingMode::kSynchronous) {
   return {SlamConfig{}, mode, frozen_clock};
-}
-
-std::unique_ptr<msg::FeatureFrame> view(const FeatureWorld& world, std::uint64_t seq) {
-  return world.view(seq, FeatureWorld::T_world_camera(seq));
 }
 
 std::unique_ptr<msg::FeatureFrame> empty_view(std::uint64_t seq) {
@@ -46,7 +39,7 @@ TEST(SlamSystem, follows_the_camera_through_an_exact_world) {
   const FeatureWorld world({});
   SlamSystem slam = make_slam();
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
-    const SlamOutput output = slam.process(*view(world, seq));
+    const SlamOutput output = slam.process(*world.view(seq));
     ASSERT_EQ(output.result.state, TrackingState::kOk) << "frame " << seq << ": " << output.problem;
     EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 1e-3) << "frame " << seq;
   }
@@ -56,7 +49,7 @@ TEST(SlamSystem, stays_within_a_centimetre_with_noise) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam();
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
-    const SlamOutput output = slam.process(*view(world, seq));
+    const SlamOutput output = slam.process(*world.view(seq));
     ASSERT_EQ(output.result.state, TrackingState::kOk);
     EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 0.01) << "frame " << seq;
     if (seq == 0) continue;
@@ -76,7 +69,7 @@ TEST(SlamSystem, gives_the_same_bits_twice) {
   std::array<std::string, 2> texts;
   for (std::string& text : texts) {
     SlamSystem slam = make_slam();
-    for (std::uint64_t seq = 0; seq < kFrames; ++seq) slam.process(*view(world, seq));
+    for (std::uint64_t seq = 0; seq < kFrames; ++seq) slam.process(*world.view(seq));
     std::ostringstream out;
     geometry::write_tum_trajectory(out, slam.trajectory());
     write_ply(out, slam.map_points());
@@ -98,7 +91,7 @@ TEST(SlamSystem, maps_in_a_thread_as_well) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam(MappingMode::kThreaded);
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
-    ASSERT_EQ(slam.process(*view(world, seq)).result.state, TrackingState::kOk) << "frame " << seq;
+    ASSERT_EQ(slam.process(*world.view(seq)).result.state, TrackingState::kOk) << "frame " << seq;
   }
   slam.finish();
   const auto trajectory = slam.trajectory();
@@ -116,7 +109,7 @@ TEST(SlamSystem, is_lost_without_features_and_recovers) {
   config.techniques.prediction = false;
   SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);
   std::uint64_t seq = 0;
-  for (; seq < 20; ++seq) slam.process(*view(world, seq));
+  for (; seq < 20; ++seq) slam.process(*world.view(seq));
   const std::size_t tracked = slam.frames_tracked();
   for (; seq < 30; ++seq) {
     const SlamOutput output = slam.process(*empty_view(seq));
@@ -125,10 +118,10 @@ TEST(SlamSystem, is_lost_without_features_and_recovers) {
   }
   EXPECT_EQ(slam.frames_tracked(), tracked) << "a pose was invented";
   for (int i = 0; i < 2; ++i) {  // found, but not believed at once
-    EXPECT_EQ(slam.process(*view(world, seq++)).result.state, TrackingState::kRelocalizing);
+    EXPECT_EQ(slam.process(*world.view(seq++)).result.state, TrackingState::kRelocalizing);
     EXPECT_EQ(slam.frames_tracked(), tracked);
   }
-  const SlamOutput back = slam.process(*view(world, seq));
+  const SlamOutput back = slam.process(*world.view(seq));
   ASSERT_EQ(back.result.state, TrackingState::kOk) << back.problem;
   EXPECT_LT(position_error_m(back.result.T_world_camera, seq), 1e-3);
 }
@@ -136,7 +129,7 @@ TEST(SlamSystem, is_lost_without_features_and_recovers) {
 TEST(SlamSystem, finds_back_after_a_jump) {
   const FeatureWorld world({});
   SlamSystem slam = make_slam();
-  for (std::uint64_t seq = 0; seq < 10; ++seq) slam.process(*view(world, seq));
+  for (std::uint64_t seq = 0; seq < 10; ++seq) slam.process(*world.view(seq));
   constexpr std::uint64_t kFar = 30;  // half a metre and twenty degrees away, in the next frame
   auto jumped = world.view(10, FeatureWorld::T_world_camera(kFar));
   const SlamOutput output = slam.process(*jumped);
@@ -148,21 +141,21 @@ TEST(SlamSystem, stays_initializing_without_depth) {
   const FeatureWorld world({});
   SlamSystem slam = make_slam();
   for (std::uint64_t seq = 0; seq < 3; ++seq) {
-    auto frame = view(world, seq);
+    auto frame = world.view(seq);
     for (msg::Feature& feature : frame->features) feature.depth_m = 0;
     const SlamOutput output = slam.process(*frame);
     EXPECT_EQ(output.result.state, TrackingState::kInitializing);
     EXPECT_THAT(output.problem, ::testing::HasSubstr("depth"));
     EXPECT_TRUE(output.changes.empty());
   }
-  EXPECT_EQ(slam.process(*view(world, 3)).result.state, TrackingState::kOk);
+  EXPECT_EQ(slam.process(*world.view(3)).result.state, TrackingState::kOk);
 }
 
 TEST(SlamSystem, drops_features_with_impossible_values_and_counts_them) {
   const FeatureWorld world({});
   SlamSystem slam = make_slam();
-  slam.process(*view(world, 0));
-  auto frame = view(world, 1);
+  slam.process(*world.view(0));
+  auto frame = world.view(1);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   frame->features[0].u_px = nan;
   frame->features[1].depth_m = nan;
@@ -180,34 +173,34 @@ TEST(SlamSystem, drops_features_with_impossible_values_and_counts_them) {
 TEST(SlamSystem, refuses_frames_without_intrinsics_or_size) {
   const FeatureWorld world({});
   SlamSystem slam = make_slam();
-  auto frame = view(world, 0);
+  auto frame = world.view(0);
   frame->intrinsics = {0, 0, 0, 0};
   EXPECT_THAT(slam.process(*frame).problem, ::testing::HasSubstr("intrinsics"));
-  slam.process(*view(world, 1));
-  frame = view(world, 2);
+  slam.process(*world.view(1));
+  frame = world.view(2);
   frame->count = msg::kMaxFeatures + 1;
   const SlamOutput output = slam.process(*frame);
   EXPECT_NE(output.result.state, TrackingState::kOk);
   EXPECT_THAT(output.problem, ::testing::HasSubstr("out of range"));
-  EXPECT_EQ(slam.process(*view(world, 3)).result.state, TrackingState::kOk);
+  EXPECT_EQ(slam.process(*world.view(3)).result.state, TrackingState::kOk);
 }
 
 TEST(SlamSystem, keeps_its_map_when_the_source_starts_again) {
   const FeatureWorld world({});
   SlamSystem slam = make_slam();
-  for (std::uint64_t seq = 0; seq < 40; ++seq) slam.process(*view(world, seq));
-  const SlamOutput output = slam.process(*view(world, 0));
+  for (std::uint64_t seq = 0; seq < 40; ++seq) slam.process(*world.view(seq));
+  const SlamOutput output = slam.process(*world.view(0));
   EXPECT_EQ(slam.source_restarts(), 1U);
   ASSERT_EQ(output.result.state, TrackingState::kOk) << output.problem;
   EXPECT_LT(position_error_m(output.result.T_world_camera, 0), 1e-3);
-  EXPECT_EQ(slam.process(*view(world, 1)).result.state, TrackingState::kOk);
+  EXPECT_EQ(slam.process(*world.view(1)).result.state, TrackingState::kOk);
 }
 
 TEST(SlamSystem, never_uses_removed_features) {
   const FeatureWorld world({});
   SlamSystem slam = make_slam();
   for (std::uint64_t seq = 0; seq < 30; ++seq) {
-    auto frame = view(world, seq);
+    auto frame = world.view(seq);
     std::uint32_t removed = 0;
     for (std::uint32_t i = 0; i < frame->count; ++i) {
       msg::Feature& feature = frame->features[i];
@@ -230,7 +223,7 @@ TEST(SlamSystem, low_static_probability_takes_the_weight_from_moving_objects) {
   SlamSystem slam = make_slam();
   double worst_m = 0;
   for (std::uint64_t seq = 0; seq < 30; ++seq) {
-    auto frame = view(world, seq);
+    auto frame = world.view(seq);
     for (std::uint32_t i = 0; i < frame->count; ++i) {
       msg::Feature& feature = frame->features[i];
       if (feature.u_px >= 200) continue;
@@ -250,7 +243,7 @@ TEST(SlamSystem, changes_are_the_whole_history_of_the_keyframes) {
   std::uint64_t changes = 0;
   std::set<std::uint32_t> known;
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
-    const SlamOutput output = slam.process(*view(world, seq));
+    const SlamOutput output = slam.process(*world.view(seq));
     for (const KeyframeChange& change : output.changes) {
       switch (change.kind) {
         case KeyframeChange::Kind::kCreated:

@@ -94,7 +94,7 @@ FramePtr empty_frame(std::size_t features) {
 }
 
 /// Two maps of keyframes in a row: 0-1-2-3 and 4-5; neighbours share 20 landmarks.
-Map make_map() {
+Map map_of_places() {
   Map map;
   for (KeyframeId id = 0; id < 6; ++id) {
     const bool first = id == 0 || id == 4;
@@ -113,7 +113,7 @@ std::vector<KeyframeId> keyframes(const std::vector<PlaceCandidate>& places) {
 }
 
 TEST(Places, neighbours_that_agree_beat_a_lone_keyframe) {
-  const Map map = make_map();
+  const Map map = map_of_places();
   KeyframeDatabase database;
   database.add(0, bag_of({1, 2, 3, 50}));
   database.add(1, bag_of({1, 2, 3, 4}));
@@ -133,7 +133,7 @@ TEST(Places, neighbours_that_agree_beat_a_lone_keyframe) {
 }
 
 TEST(Places, respects_a_minimum_score_and_a_maximum_number) {
-  const Map map = make_map();
+  const Map map = map_of_places();
   KeyframeDatabase database;
   for (const KeyframeId id : {0U, 2U, 4U}) database.add(id, bag_of({1, 2, 3, 100 + id}));
   PlaceQuery query;

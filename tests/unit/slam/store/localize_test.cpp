@@ -13,11 +13,8 @@ namespace {
 
 using msg::TrackingState;
 using test_support::FeatureWorld;
+using test_support::frozen_clock;
 using ::testing::HasSubstr;
-
-std::int64_t frozen_clock() {
-  return 0;
-}
 
 FeatureWorld::Options noisy(std::uint64_t seed = 1) {
   FeatureWorld::Options options;
@@ -37,7 +34,7 @@ io::Bytes map_of(const SlamSystem& slam) {
 /// The map of a first session, as a file.
 io::Bytes make_map(const FeatureWorld& world, std::uint64_t frames) {
   SlamSystem slam(SlamConfig{}, MappingMode::kSynchronous, frozen_clock);
-  for (std::uint64_t seq = 0; seq < frames; ++seq) slam.process(*world.view(seq, FeatureWorld::T_world_camera(seq)));
+  for (std::uint64_t seq = 0; seq < frames; ++seq) slam.process(*world.view(seq));
   return map_of(slam);
 }
 

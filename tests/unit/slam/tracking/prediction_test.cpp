@@ -13,18 +13,11 @@ namespace {
 
 using msg::TrackingState;
 using test_support::FeatureWorld;
-
-std::int64_t frozen_clock() {
-  return 0;
-}
-
-std::unique_ptr<msg::FeatureFrame> view(const FeatureWorld& world, std::uint64_t seq) {
-  return world.view(seq, FeatureWorld::T_world_camera(seq));
-}
+using test_support::frozen_clock;
 
 /// The view of a frame in which a person leaves only the first `count` features.
 std::unique_ptr<msg::FeatureFrame> crowded_view(const FeatureWorld& world, std::uint64_t seq, std::uint32_t count) {
-  auto frame = view(world, seq);
+  auto frame = world.view(seq);
   for (std::uint32_t i = count; i < frame->count; ++i) frame->features[i].flags = msg::kFeatureRemoved;
   return frame;
 }
@@ -48,7 +41,7 @@ TEST(Prediction, bridges_half_a_second_and_marks_it) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam({}, MappingMode::kSynchronous, frozen_clock);
   std::uint64_t seq = 0;
-  for (; seq < 30; ++seq) ASSERT_EQ(slam.process(*view(world, seq)).result.state, TrackingState::kOk);
+  for (; seq < 30; ++seq) ASSERT_EQ(slam.process(*world.view(seq)).result.state, TrackingState::kOk);
   double sigma_before_m = 0;
   for (const std::uint64_t last = seq + kHoldFrames; seq < last; ++seq) {
     const SlamOutput output = slam.process(*crowded_view(world, seq, 0));
@@ -72,7 +65,7 @@ TEST(Prediction, error_stays_within_three_sigma) {
     const FeatureWorld world = FeatureWorld::noisy(seed);
     for (std::uint64_t start = 10; start < 90; start += 8) {
       SlamSystem slam({}, MappingMode::kSynchronous, frozen_clock);
-      for (std::uint64_t seq = start - 8; seq < start; ++seq) slam.process(*view(world, seq));
+      for (std::uint64_t seq = start - 8; seq < start; ++seq) slam.process(*world.view(seq));
       const Eigen::Isometry3d T_truth_world = FeatureWorld::T_world_camera(start - 8);
       for (std::uint64_t seq = start; seq < start + kHoldFrames; ++seq) {
         const SlamOutput output = slam.process(*crowded_view(world, seq, 0));
@@ -98,13 +91,13 @@ TEST(Prediction, tracking_continues_in_the_same_map) {
     const FeatureWorld world = FeatureWorld::noisy();
     SlamSystem slam({}, MappingMode::kSynchronous, frozen_clock);
     std::uint64_t seq = 0;
-    for (; seq < 30; ++seq) slam.process(*view(world, seq));
+    for (; seq < 30; ++seq) slam.process(*world.view(seq));
     const std::uint32_t landmarks = slam.process(*crowded_view(world, seq++, 0)).result.landmarks;
     for (const std::uint64_t last = seq + gap; seq < last; ++seq) slam.process(*crowded_view(world, seq, 0));
     std::uint64_t frames_until_ok = 0;
-    SlamOutput back = slam.process(*view(world, seq));
+    SlamOutput back = slam.process(*world.view(seq));
     while (back.result.state != TrackingState::kOk && frames_until_ok < 5) {
-      back = slam.process(*view(world, ++seq));
+      back = slam.process(*world.view(++seq));
       ++frames_until_ok;
     }
     ASSERT_EQ(back.result.state, TrackingState::kOk) << "gap " << gap;
@@ -118,7 +111,7 @@ TEST(Prediction, few_landmarks_are_better_than_none) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam({}, MappingMode::kSynchronous, frozen_clock);
   std::uint64_t seq = 0;
-  for (; seq < 30; ++seq) slam.process(*view(world, seq));
+  for (; seq < 30; ++seq) slam.process(*world.view(seq));
   int weak = 0;
   for (const std::uint64_t last = seq + kHoldFrames; seq < last; ++seq) {
     const SlamOutput output = slam.process(*crowded_view(world, seq, 28));
@@ -136,7 +129,7 @@ TEST(Prediction, can_be_switched_off) {
   SlamConfig config;
   config.techniques.prediction = false;
   SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);
-  for (std::uint64_t seq = 0; seq < 10; ++seq) slam.process(*view(world, seq));
+  for (std::uint64_t seq = 0; seq < 10; ++seq) slam.process(*world.view(seq));
   EXPECT_EQ(slam.process(*crowded_view(world, 10, 0)).result.state, TrackingState::kRecentlyLost);
 }
 
