@@ -65,14 +65,7 @@ Found check_place(const std::set<std::pair<std::uint64_t, std::uint64_t>>& seen,
 }  // namespace
 
 void IndexAudit::begin_chunk(std::uint64_t offset, std::uint64_t length, const Chunk& chunk) {
-  ChunkIndex& index = chunks_[offset];
-  index.chunk_start_offset = offset;
-  index.chunk_length = length;
-  index.message_start_time = chunk.message_start_time;
-  index.message_end_time = chunk.message_end_time;
-  index.compression = chunk.compression;
-  index.compressed_size = chunk.records.size();
-  index.uncompressed_size = chunk.uncompressed_size;
+  chunks_[offset] = index_of(chunk, offset, length);
   open_chunk_ = offset;
   forget_messages();
 }

@@ -35,14 +35,9 @@ ByteView compress_zstd(int level, ByteView data, Buffer& out) {
   return to.first(checked_zstd(ZSTD_compress(to.data(), to.size(), data.data(), data.size(), level)));
 }
 
-struct FreeLz4 {
-  void operator()(LZ4F_dctx* context) const { LZ4F_freeDecompressionContext(context); }
-};
-struct FreeZstd {
-  void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
-};
-using Lz4Context = std::unique_ptr<LZ4F_dctx, FreeLz4>;
-using ZstdContext = std::unique_ptr<ZSTD_DCtx, FreeZstd>;
+using Lz4Context =
+    std::unique_ptr<LZ4F_dctx, decltype([](LZ4F_dctx* context) { LZ4F_freeDecompressionContext(context); })>;
+using ZstdContext = std::unique_ptr<ZSTD_DCtx, decltype([](ZSTD_DCtx* context) { ZSTD_freeDCtx(context); })>;
 
 Lz4Context lz4_context() {
   LZ4F_dctx* context = nullptr;
@@ -72,15 +67,8 @@ std::size_t decompress_lz4(LZ4F_dctx* context, ByteView data, std::span<std::byt
 }  // namespace
 
 std::string name_of(Compression compression) {
-  switch (compression) {
-    case Compression::kLz4:
-      return "lz4";
-    case Compression::kZstd:
-      return "zstd";
-    case Compression::kNone:
-      break;
-  }
-  return "";
+  constexpr const char* kNames[] = {"", "lz4", "zstd"};
+  return kNames[static_cast<std::size_t>(compression)];
 }
 
 std::optional<Compression> compression_of(const std::string& name) {

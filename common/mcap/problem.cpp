@@ -3,41 +3,20 @@
 #include "common/mcap/problem.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace rtd::mcap {
 
 std::string name_of(ProblemKind kind) {
-  switch (kind) {
-    case ProblemKind::kNotMcap:
-      return "not_mcap";
-    case ProblemKind::kTruncated:
-      return "truncated";
-    case ProblemKind::kUnreadable:
-      return "unreadable";
-    case ProblemKind::kDamagedRecord:
-      return "damaged_record";
-    case ProblemKind::kCrcMismatch:
-      return "crc_mismatch";
-    case ProblemKind::kUnknownCompression:
-      return "unknown_compression";
-    case ProblemKind::kTooLarge:
-      return "too_large";
-    case ProblemKind::kMissingChannel:
-      return "missing_channel";
-    case ProblemKind::kMissingSchema:
-      return "missing_schema";
-    case ProblemKind::kConflictingDefinition:
-      return "conflicting_definition";
-    case ProblemKind::kMisplacedRecord:
-      return "misplaced_record";
-    case ProblemKind::kUnknownRecord:
-      return "unknown_record";
-    case ProblemKind::kIndexMismatch:
-      return "index_mismatch";
-    case ProblemKind::kNoSummary:
-      return "no_summary";
-  }
-  return "unknown";
+  constexpr const char* kNames[] = {"not_mcap",         "truncated",
+                                    "unreadable",       "damaged_record",
+                                    "crc_mismatch",     "unknown_compression",
+                                    "too_large",        "missing_channel",
+                                    "missing_schema",   "conflicting_definition",
+                                    "misplaced_record", "unknown_record",
+                                    "index_mismatch",   "no_summary"};
+  static_assert(std::size(kNames) == static_cast<std::size_t>(ProblemKind::kNoSummary) + 1);
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 std::string to_string(const Problem& problem) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -108,6 +109,19 @@ struct ChunkIndex {
   std::uint64_t compressed_size = 0, uncompressed_size = 0;
 };
 
+/// The index of a chunk that stands at `offset`, without its message indexes. `length`: with opcode and length prefix.
+inline ChunkIndex index_of(const Chunk& chunk, std::uint64_t offset, std::uint64_t length) {
+  ChunkIndex index;
+  index.message_start_time = chunk.message_start_time;
+  index.message_end_time = chunk.message_end_time;
+  index.chunk_start_offset = offset;
+  index.chunk_length = length;
+  index.compression = chunk.compression;
+  index.compressed_size = chunk.records.size();
+  index.uncompressed_size = chunk.uncompressed_size;
+  return index;
+}
+
 struct Attachment {
   static constexpr Opcode kOpcode = Opcode::kAttachment;
   Timestamp log_time = 0, create_time = 0;
@@ -131,6 +145,13 @@ struct Statistics {
   std::uint32_t channel_count = 0, attachment_count = 0, metadata_count = 0, chunk_count = 0;
   Timestamp message_start_time = 0, message_end_time = 0;  ///< both 0 when there are no messages
   std::map<ChannelId, std::uint64_t> channel_message_counts;
+
+  void count(const Message& message) {
+    message_start_time = message_count == 0 ? message.log_time : std::min(message_start_time, message.log_time);
+    message_end_time = std::max(message_end_time, message.log_time);
+    ++message_count;
+    ++channel_message_counts[message.channel_id];
+  }
 };
 
 struct Metadata {

@@ -128,43 +128,15 @@ StreamReader::Step StreamReader::read(const Frame& frame) {
                          std::to_string(options_.max_record_bytes));
   const std::optional<ByteView> bytes = file_.view(frame.offset, kFrameBytes + frame.length);
   if (!bytes) return leave_out(frame, ProblemKind::kUnreadable, "the file cannot be read here");
-  return dispatch(frame, bytes->subspan(kFrameBytes));
+  return dispatch(frame, bytes->subspan(kFrameBytes), record_);
 }
 
-StreamReader::Step StreamReader::dispatch(const Frame& frame, ByteView content) {
-  switch (frame.opcode) {
-    case Opcode::kHeader:
-      return read_as<Header>(frame, content);
-    case Opcode::kFooter:
-      return read_as<Footer>(frame, content);
-    case Opcode::kSchema:
-      return read_as<Schema>(frame, content);
-    case Opcode::kChannel:
-      return read_as<Channel>(frame, content);
-    case Opcode::kMessage:
-      return read_as<Message>(frame, content);
-    case Opcode::kChunk:
-      return read_as<Chunk>(frame, content);
-    case Opcode::kMessageIndex:
-      return read_as<MessageIndex>(frame, content);
-    case Opcode::kChunkIndex:
-      return read_as<ChunkIndex>(frame, content);
-    case Opcode::kAttachment:
-      return read_as<Attachment>(frame, content);
-    case Opcode::kAttachmentIndex:
-      return read_as<AttachmentIndex>(frame, content);
-    case Opcode::kStatistics:
-      return read_as<Statistics>(frame, content);
-    case Opcode::kMetadata:
-      return read_as<Metadata>(frame, content);
-    case Opcode::kMetadataIndex:
-      return read_as<MetadataIndex>(frame, content);
-    case Opcode::kSummaryOffset:
-      return read_as<SummaryOffset>(frame, content);
-    case Opcode::kDataEnd:
-      return read_as<DataEnd>(frame, content);
-  }
-  return skip_unknown(frame);
+/// As the type of the variant whose opcode it has.
+template <class... R>
+StreamReader::Step StreamReader::dispatch(const Frame& frame, ByteView content, const std::variant<R...>& /*types*/) {
+  Step step = Step::kNothing;
+  (void)((frame.opcode == R::kOpcode && (step = read_as<R>(frame, content), true)) || ...);
+  return step;
 }
 
 template <class R>

@@ -47,7 +47,8 @@ class StreamReader {
   bool begin();
   Step step();
   Step read(const Frame& frame);
-  Step dispatch(const Frame& frame, ByteView content);
+  template <class... R>
+  Step dispatch(const Frame& frame, ByteView content, const std::variant<R...>& types);
   template <class R>
   Step read_as(const Frame& frame, ByteView content);
   Step skip_unknown(const Frame& frame);

@@ -198,23 +198,12 @@ class Scan {
  private:
   void take(const Header& header, const Location&) { summary.header = header; }
   void take(const Chunk& chunk, const Location& location) {
-    ChunkIndex index;
-    index.message_start_time = chunk.message_start_time;
-    index.message_end_time = chunk.message_end_time;
-    index.chunk_start_offset = location.record.offset;
-    index.chunk_length = location.record.end() - location.record.offset;
-    index.compression = chunk.compression;
-    index.compressed_size = chunk.records.size();
-    index.uncompressed_size = chunk.uncompressed_size;
-    summary.chunk_indexes.push_back(std::move(index));
+    const Frame& record = location.record;
+    summary.chunk_indexes.push_back(index_of(chunk, record.offset, record.end() - record.offset));
     ++statistics.chunk_count;
   }
   void take(const Message& message, const Location& location) {
-    const bool first = statistics.message_count++ == 0;
-    statistics.message_start_time =
-        first ? message.log_time : std::min(statistics.message_start_time, message.log_time);
-    statistics.message_end_time = std::max(statistics.message_end_time, message.log_time);
-    ++statistics.channel_message_counts[message.channel_id];
+    statistics.count(message);
     if (location.in_chunk)
       take_in_chunk(message);
     else

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "common/io/bytes.hpp"
-#include "common/mcap/summary_section.hpp"
 
 namespace rtd::mcap {
 
@@ -52,6 +51,55 @@ bool is_new(const std::map<Id, R>& known, const R& record, const char* kind) {
                                        " is already defined otherwise; an id keeps its meaning through a file");
   return false;
 }
+
+/// Appends the end of a file, from the first summary record to the closing magic, to `out`, which holds the DataEnd.
+class SummarySection {
+ public:
+  /// `out_offset`: where out[0] stands in the file.
+  SummarySection(Bytes& out, std::uint64_t out_offset, ByteView padding)
+      : out_(out), out_offset_(out_offset), padding_(padding), start_(out.size()) {}
+
+  /// All records of one kind: a vector, or a map whose values they are.
+  template <class Records>
+  void group(const Records& records, bool wanted) {
+    if (!wanted || records.empty()) return;
+    const std::uint64_t group_start = offset();
+    for (const auto& entry : records) append_record(out_, record_of(entry), padding_);
+    const Opcode opcode = record_of(*records.begin()).kOpcode;
+    offsets_.push_back({opcode, group_start, offset() - group_start});
+  }
+
+  void finish(bool with_offsets) {
+    Footer footer;
+    if (out_.size() != start_) footer.summary_start = out_offset_ + start_;
+    if (with_offsets && !offsets_.empty()) {
+      footer.summary_offset_start = offset();
+      for (const SummaryOffset& group : offsets_) append_record(out_, group, padding_);
+    }
+    append_record(out_, footer);
+    // The CRC covers the footer up to itself.
+    const std::size_t crc_at = out_.size() - sizeof(footer.summary_crc);
+    io::store(out_.data() + crc_at, io::crc32(ByteView(out_).subspan(start_, crc_at - start_)));
+    Encoder(out_).rest(io::bytes_of(kMagic));
+  }
+
+ private:
+  std::uint64_t offset() const { return out_offset_ + out_.size(); }
+  template <class R>
+  static const R& record_of(const R& record) {
+    return record;
+  }
+  template <class Id, class R>
+  static const R& record_of(const std::pair<const Id, R>& entry) {
+    return entry.second;
+  }
+
+  Bytes& out_;
+  std::uint64_t out_offset_;
+  ByteView padding_;
+  std::size_t start_;
+  std::vector<SummaryOffset> offsets_;
+};
 
 }  // namespace
 
@@ -120,7 +168,7 @@ void Writer::write(const Message& message) {
     if (options_.self_contained_chunks) repeat_definitions(message.channel_id);
     chunk_.add(message);
   }
-  count(message);
+  statistics_.count(message);
 }
 
 void Writer::write(const Attachment& attachment) {
@@ -160,7 +208,7 @@ void Writer::end_chunk() {
   io::store(head.data() + 1, head.size() - kFrameBytes + body.size());
   io::store(head.data() + head.size() - sizeof(std::uint64_t), std::uint64_t{body.size()});
   chunk.records = body;
-  ChunkIndex index = index_of(chunk, head.size() + body.size());
+  ChunkIndex index = index_of(chunk, offset_, head.size() + body.size());
   Bytes tail;
   if (options_.use_message_index) {
     for (const auto& [channel, entries] : chunk_.indexes()) {
@@ -174,18 +222,6 @@ void Writer::end_chunk() {
   ++statistics_.chunk_count;
   chunk_.clear();
   defined_in_chunk_.clear();
-}
-
-ChunkIndex Writer::index_of(const Chunk& chunk, std::uint64_t chunk_length) const {
-  ChunkIndex index;
-  index.message_start_time = chunk.message_start_time;
-  index.message_end_time = chunk.message_end_time;
-  index.chunk_start_offset = offset_;
-  index.chunk_length = chunk_length;
-  index.compression = chunk.compression;
-  index.compressed_size = chunk.records.size();
-  index.uncompressed_size = chunk.uncompressed_size;
-  return index;
 }
 
 void Writer::close() {
@@ -242,14 +278,6 @@ void Writer::repeat_definitions(ChannelId id) {
   const Channel& channel = channels_.at(id);
   if (channel.schema_id != 0) chunk_.add(schemas_.at(channel.schema_id));
   chunk_.add(channel);
-}
-
-void Writer::count(const Message& message) {
-  statistics_.message_start_time =
-      statistics_.message_count == 0 ? message.log_time : std::min(statistics_.message_start_time, message.log_time);
-  statistics_.message_end_time = std::max(statistics_.message_end_time, message.log_time);
-  ++statistics_.message_count;
-  ++statistics_.channel_message_counts[message.channel_id];
 }
 
 ByteView Writer::padding() const {

@@ -105,9 +105,6 @@ class Writer {
   template <class R>
   void define(const R& record);
   void repeat_definitions(ChannelId id);
-  void count(const Message& message);
-  ChunkIndex index_of(const Chunk& chunk, std::uint64_t chunk_length) const;
-  Bytes end_of_file() const;
   ByteView padding() const;
   void append(ByteView record);
   void append(ByteView head, ByteView body, std::uint32_t body_crc, ByteView tail);

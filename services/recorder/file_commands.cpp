@@ -11,9 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/mcap/copy.hpp"
 #include "common/mcap/indexed_reader.hpp"
-#include "common/mcap/join.hpp"
-#include "common/mcap/recover.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/progress.hpp"

@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "common/bus/raw_bus.hpp"
-#include "common/mcap/recover.hpp"
+#include "common/mcap/copy.hpp"
 #include "tests/component/recorder/recorded_file.hpp"
 #include "tests/component/recorder/recorder_process.hpp"
 

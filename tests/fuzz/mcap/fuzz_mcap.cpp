@@ -3,7 +3,7 @@
 /// Feeds changed MCAP files to the readers: fuzz_mcap [inputs] [seed]. What must hold for every input: no crash, no
 /// sanitizer report, bounded memory, and what recover() makes of it reads back without a problem. Exit code 1 and the
 /// input in fuzz_mcap_failed.mcap otherwise. The preset asan-ubsan gives it its teeth.
-#include "common/mcap/recover.hpp"
+#include "common/mcap/copy.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"
 #include "tests/fuzz/mcap/mutation.hpp"
 #include "tests/unit/mcap/sample_file.hpp"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <random>
 
-#include "common/mcap/recover.hpp"
+#include "common/mcap/copy.hpp"
 #include "tests/unit/mcap/sample_file.hpp"
 
 namespace rtd::mcap {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mcap/join.hpp"
+#include "common/mcap/copy.hpp"
 
 #include <gtest/gtest.h>
 

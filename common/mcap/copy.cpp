@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/mcap/copy.hpp"
+
+#include <set>
+#include <utility>
+
+#include "common/mcap/stream_reader.hpp"
+#include "common/mcap/summary.hpp"
+
+namespace rtd::mcap {
+namespace {
+
+/// The new file, and what both functions put into it in the same way.
+class NewFile {
+ public:
+  NewFile(io::ByteSink& sink, const WriterOptions& options) : sink_(sink), options_(options) {}
+
+  void take(const StreamReader& /*part*/, const Header& header) {
+    if (writer_) return;
+    options_.profile = header.profile;
+    options_.library = header.library;
+  }
+  void take(const StreamReader& /*part*/, const Attachment& attachment) { writer().write(attachment); }
+  template <class R>
+  void take(const StreamReader& /*part*/, const R&) {}
+
+  Statistics finish() {
+    writer().close();
+    return writer().statistics();
+  }
+
+ protected:
+  /// Begun with the first record, so that a header can come before.
+  Writer& writer() {
+    if (!writer_) writer_.emplace(sink_, options_);
+    return *writer_;
+  }
+
+ private:
+  io::ByteSink& sink_;
+  WriterOptions options_;
+  std::optional<Writer> writer_;
+};
+
+/// The records of one source as they are.
+class Recovered : public NewFile {
+ public:
+  using NewFile::NewFile;
+  using NewFile::take;
+  void take(const StreamReader& /*source*/, const Schema& schema) { writer().write(schema); }
+  void take(const StreamReader& source, const Channel& channel) { define(source, channel); }
+  void take(const StreamReader& source, const Message& message) {
+    if (!defined_.contains(message.channel_id)) define(source, source.channels().at(message.channel_id));
+    writer().write(message);
+  }
+  void take(const StreamReader& /*source*/, const Metadata& metadata) { writer().write(metadata); }
+  void take(const StreamReader& /*source*/, const Statistics& statistics) { announced = statistics; }
+
+  std::optional<Statistics> announced;
+
+ private:
+  void define(const StreamReader& source, Channel channel) {
+    if (!defined_.insert(channel.id).second) return;
+    const auto schema = source.schemas().find(channel.schema_id);
+    if (schema != source.schemas().end())
+      writer().write(schema->second);
+    else
+      channel.schema_id = 0;  // a file must not name a schema that it does not have
+    writer().write(channel);
+  }
+
+  std::set<ChannelId> defined_;
+};
+
+/// Remembers which of its channels stands for which one of the parts.
+class Joint : public NewFile {
+ public:
+  using NewFile::NewFile;
+  using NewFile::take;
+  void begin_part() { channel_of_.clear(); }
+  void take(const StreamReader& part, const Message& message) {
+    Message renamed = message;
+    renamed.channel_id = channel(part, message.channel_id);
+    writer().write(renamed);
+  }
+  void take(const StreamReader& part, const Channel& channel) { this->channel(part, channel.id); }
+  void take(const StreamReader& /*part*/, const Metadata& metadata) {
+    if (metadata_.emplace(metadata.name, metadata.metadata).second) writer().write(metadata);
+  }
+
+ private:
+  ChannelId channel(const StreamReader& part, ChannelId id) {
+    if (const auto known = channel_of_.find(id); known != channel_of_.end()) return known->second;
+    Channel channel = part.channels().at(id);
+    const auto schema = part.schemas().find(channel.schema_id);
+    // A file must not name a schema that it does not have.
+    channel.schema_id = schema == part.schemas().end() ? SchemaId{0} : same_or_new(schemas_, schema->second);
+    return channel_of_[id] = same_or_new(channels_, channel);
+  }
+  /// The id in the new file of a record that is equal but for its id; written if it is new.
+  template <class R>
+  decltype(R::id) same_or_new(std::vector<R>& written, R record) {
+    for (const R& other : written) {
+      record.id = other.id;
+      if (record == other) return other.id;
+    }
+    record.id = writer().add(record);
+    written.push_back(record);
+    return record.id;
+  }
+
+  std::vector<Schema> schemas_;
+  std::vector<Channel> channels_;
+  std::set<std::pair<std::string, std::map<std::string, std::string>>> metadata_;  ///< name and content
+  std::map<ChannelId, ChannelId> channel_of_;                                      ///< of the part in work
+};
+
+/// Copies one source, behind others of `bytes_before`, and adds its problems to the report.
+template <class File>
+void copy(const io::ByteSource& source, File& file, const CopyOptions& options, std::uint64_t bytes_before,
+          CopyReport& report) {
+  StreamReader reader(source, options.reader);
+  Problems ignored(0);  // the streaming reader finds them, too
+  if (const std::optional<Summary> summary = read_summary(source, options.reader, ignored))
+    reader.assume(summary->schemas, summary->channels);
+  while (const Record* record = reader.next()) {
+    std::visit([&](const auto& typed) { file.take(reader, typed); }, *record);
+    if (options.progress) options.progress(bytes_before + reader.bytes_read());
+  }
+  const auto& listed = reader.problems().listed();
+  report.problems.insert(report.problems.end(), listed.begin(), listed.end());
+  report.problem_count += reader.problems().total();
+  report.data_lost = report.data_lost || reader.problems().data_lost();
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> RecoverReport::messages_lost() const {
+  if (!announced) return std::nullopt;
+  const std::uint64_t whole = announced->message_count;
+  return whole - std::min(whole, recovered.message_count);
+}
+
+RecoverReport recover(const io::ByteSource& source, io::ByteSink& sink, const RecoverOptions& options) {
+  RecoverReport report;
+  Recovered file(sink, options.writer);
+  copy(source, file, options, 0, report);
+  report.recovered = file.finish();
+  report.announced = file.announced;
+  return report;
+}
+
+JoinReport join(std::span<const io::ByteSource* const> parts, io::ByteSink& sink, const JoinOptions& options) {
+  JoinReport report;
+  Joint file(sink, options.writer);
+  std::uint64_t bytes_before = 0;
+  for (const io::ByteSource* const part : parts) {
+    file.begin_part();
+    copy(*part, file, options, bytes_before, report);
+    bytes_before += part->size();
+  }
+  report.joined = file.finish();
+  return report;
+}
+
+}  // namespace rtd::mcap
