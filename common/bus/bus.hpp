@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <type_traits>
 #include <utility>
 
 #include "common/bus/backend.hpp"
-#include "common/bus/message_types.hpp"
-#include "common/bus/qos.hpp"
-#include "common/bus/topic_counters.hpp"
 #include "common/bus/topics.hpp"
 
 namespace rtd::bus {
@@ -77,6 +77,33 @@ class Reader {
 
  private:
   std::unique_ptr<ReaderBackend> backend_;
+};
+
+/// What went wrong on one topic since the connection began.
+struct TopicTrouble {
+  std::uint64_t lost = 0;              ///< samples that never came, or were overwritten before they were taken
+  std::uint64_t rejected = 0;          ///< samples that did not fit into the history
+  std::uint64_t incompatible_qos = 0;  ///< peers refused for their QoS
+  std::uint64_t type_mismatch = 0;     ///< peers that use the name with another type
+  std::string policy;                  ///< of the last peer refused, e.g. "RELIABILITY"
+  std::string other_type;              ///< of the last mismatch
+  friend bool operator==(const TopicTrouble&, const TopicTrouble&) = default;
+};
+
+/// Counts for each topic of one connection what its endpoints report. Thread-safe.
+class TopicCounters {
+ public:
+  /// The callbacks of one endpoint, counted before they are called.
+  StatusCallbacks count(const std::string& topic, StatusCallbacks callbacks);
+  /// Topics with trouble, by name.
+  std::map<std::string, TopicTrouble> troubles() const;
+
+ private:
+  struct Book {
+    mutable std::mutex mutex;
+    std::map<std::string, TopicTrouble> troubles;
+  };
+  std::shared_ptr<Book> book_ = std::make_shared<Book>();  ///< endpoints may report until they end
 };
 
 /// One connection of a process to the topics of a domain. Writers and readers must not outlive it.

@@ -5,16 +5,10 @@
 #include <utility>
 
 #include "common/bus/host/port_check.hpp"
-#include "common/bus/inprocess/inprocess_bus.hpp"
 #include "common/bus/network.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/bus/security_guard.hpp"
-#ifdef RTD_HAVE_CYCLONEDDS
-#include "common/bus/cyclonedds/cyclonedds_bus.hpp"
-#endif
-#ifdef RTD_HAVE_FASTDDS
-#include "common/bus/fastdds/fastdds_bus.hpp"
-#endif
+#include "common/bus/vendors.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -31,15 +25,12 @@ struct Vendor {
 /// A new vendor is a folder beside this file and one entry here. The first one is the default.
 const Vendor kVendors[] = {
 #ifdef RTD_HAVE_FASTDDS
-    {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); },
-     [](const BusOptions& options) { return fastdds::create_raw_bus(options); }, true},
+    {"fastdds", fastdds::create_backend, fastdds::create_raw_bus, true},
 #endif
 #ifdef RTD_HAVE_CYCLONEDDS
-    {"cyclonedds", [](const BusOptions& options) { return cyclonedds::create_backend(options); },
-     [](const BusOptions& options) { return cyclonedds::create_raw_bus(options); }, true},
+    {"cyclonedds", cyclonedds::create_backend, cyclonedds::create_raw_bus, true},
 #endif
-    {"inprocess", [](const BusOptions& options) { return inprocess::create_backend(options.domain); },
-     [](const BusOptions& options) { return inprocess::create_raw_bus(options.domain); }, false},
+    {"inprocess", inprocess::create_backend, inprocess::create_raw_bus, false},
 };
 
 std::string join_names(const std::vector<std::string>& names) {

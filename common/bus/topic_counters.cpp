@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/topic_counters.hpp"
+#include "common/bus/bus.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -28,31 +28,30 @@ StatusCallbacks TopicCounters::count(const std::string& topic, StatusCallbacks c
     const std::lock_guard lock(book->mutex);
     change(book->troubles[topic]);
   };
+  const auto totals = [&note](std::uint64_t TopicTrouble::*count, std::function<void(int)> next) {
+    return [note, count, next = std::move(next), increase = Increase()](int total) mutable {
+      note([count, more = increase.of(total)](TopicTrouble& trouble) { trouble.*count += more; });
+      if (next) next(total);
+    };
+  };
+  using Text = const std::string&;
+  const auto events = [&note](std::uint64_t TopicTrouble::*count, std::string TopicTrouble::*last,
+                              std::function<void(Text)> next) {
+    return [note, count, last, next = std::move(next)](Text text) {
+      note([&](TopicTrouble& trouble) {
+        ++(trouble.*count);
+        trouble.*last = text;
+      });
+      if (next) next(text);
+    };
+  };
   StatusCallbacks counted = callbacks;
-  counted.on_samples_lost = [note, next = std::move(callbacks.on_samples_lost),
-                             increase = Increase()](int total) mutable {
-    note([more = increase.of(total)](TopicTrouble& trouble) { trouble.lost += more; });
-    if (next) next(total);
-  };
-  counted.on_samples_rejected = [note, next = std::move(callbacks.on_samples_rejected),
-                                 increase = Increase()](int total) mutable {
-    note([more = increase.of(total)](TopicTrouble& trouble) { trouble.rejected += more; });
-    if (next) next(total);
-  };
-  counted.on_incompatible_qos = [note, next = std::move(callbacks.on_incompatible_qos)](const std::string& policy) {
-    note([&](TopicTrouble& trouble) {
-      ++trouble.incompatible_qos;
-      trouble.policy = policy;
-    });
-    if (next) next(policy);
-  };
-  counted.on_type_mismatch = [note, next = std::move(callbacks.on_type_mismatch)](const std::string& type) {
-    note([&](TopicTrouble& trouble) {
-      ++trouble.type_mismatch;
-      trouble.other_type = type;
-    });
-    if (next) next(type);
-  };
+  counted.on_samples_lost = totals(&TopicTrouble::lost, callbacks.on_samples_lost);
+  counted.on_samples_rejected = totals(&TopicTrouble::rejected, callbacks.on_samples_rejected);
+  counted.on_incompatible_qos =
+      events(&TopicTrouble::incompatible_qos, &TopicTrouble::policy, callbacks.on_incompatible_qos);
+  counted.on_type_mismatch =
+      events(&TopicTrouble::type_mismatch, &TopicTrouble::other_type, callbacks.on_type_mismatch);
   return counted;
 }
 

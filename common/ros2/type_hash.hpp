@@ -8,10 +8,6 @@
 
 /// The hash by which ROS 2, from Iron on, checks that two programs mean the same type by one name: SHA-256 of
 /// its description as JSON (REP-2011, REP-2016). Writers and readers announce it in the USER_DATA of their discovery.
-///
-/// A backend sets the USER_DATA of each endpoint to user_data_of(type name):
-///   Fast DDS     qos.user_data().data_vec({text.begin(), text.end()})    (common/bus/fastdds/qos_mapping.cpp)
-///   Cyclone DDS  if (!text.empty()) dds_qset_userdata(qos, text.data(), text.size());
 namespace rtd::ros2 {
 
 /// "RIHS01_<64 hexadecimal digits>"; empty for a type that is unknown or our own. By DDS name:
@@ -22,7 +18,7 @@ std::string type_hash(const std::string& dds_type);
 /// is missing.
 std::string type_hash(const std::string& type, const MessageFields& types);
 
-/// "typehash=RIHS01_...;", or empty.
+/// The USER_DATA of an endpoint of that type: "typehash=RIHS01_...;", or empty.
 std::string user_data_of(const std::string& dds_type);
 
 /// The hash in the USER_DATA of an endpoint, or empty.

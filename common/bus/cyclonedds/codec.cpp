@@ -4,9 +4,9 @@
 
 #include <cstring>
 
-#include "common/bus/cyclonedds/sample_io.hpp"
+#include "common/bus/backend.hpp"
+#include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/message_cdr.hpp"
-#include "common/bus/message_visit.hpp"
 #include "common/msg/plausible.hpp"
 
 namespace rtd::bus::cyclonedds {

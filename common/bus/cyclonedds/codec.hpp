@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "common/bus/cyclonedds/sample_type.hpp"
+#include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/message_types.hpp"
 
 namespace rtd::bus::cyclonedds {

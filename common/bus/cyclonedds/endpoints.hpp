@@ -12,7 +12,7 @@
 #include <string>
 
 #include "common/bus/cyclonedds/participant.hpp"
-#include "common/bus/cyclonedds/sample_io.hpp"
+#include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/message_types.hpp"
 
 namespace rtd::bus::cyclonedds {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "common/bus/cyclonedds/domain.hpp"
-#include "common/bus/cyclonedds/sample_type.hpp"
+#include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/cyclonedds/unmatched_participants.hpp"
 #include "common/bus/discovery.hpp"
 

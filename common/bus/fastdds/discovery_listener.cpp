@@ -7,9 +7,9 @@
 #include <sstream>
 #include <string>
 
+#include "common/bus/fastdds/codec.hpp"
 #include "common/bus/fastdds/network_mapping.hpp"
 #include "common/bus/fastdds/qos_mapping.hpp"
-#include "common/bus/fastdds/raw_codec.hpp"
 #include "common/bus/network.hpp"
 
 namespace rtd::bus::fastdds {
@@ -90,32 +90,21 @@ void Reannouncer::loop(dds::DomainParticipant& participant) {
 
 void ServerWatch::start(const BusOptions& options) {
   if (options.network.discovery_server.empty() || !options.on_problem) return;
-  thread_ = std::thread([this, options] { wait_for_server(options); });
+  thread_ = std::thread([options, settled = settled_.get_token()] {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any().wait_for(lock, settled, kServerPatience, [] { return false; });
+    if (!settled.stop_requested()) options.on_problem(no_server_problem(options));
+  });
 }
 
 void ServerWatch::stop() {
-  {
-    const std::lock_guard lock(mutex_);
-    ended_ = true;
-  }
-  changed_.notify_all();
+  settled_.request_stop();
   if (thread_.joinable()) thread_.join();
 }
 
 void ServerWatch::appeared(const rtps::GuidPrefix_t& participant) {
-  if (participant != server_prefix()) return;
-  {
-    const std::lock_guard lock(mutex_);
-    found_ = true;
-  }
-  changed_.notify_all();
-}
-
-void ServerWatch::wait_for_server(const BusOptions& options) {
-  std::unique_lock lock(mutex_);
-  if (changed_.wait_for(lock, kServerPatience, [this] { return found_ || ended_; })) return;
-  lock.unlock();
-  options.on_problem(no_server_problem(options));
+  if (participant == server_prefix()) settled_.request_stop();
 }
 
 DiscoveryListener::DiscoveryListener(const BusOptions& options, WriterRegistry* writers)

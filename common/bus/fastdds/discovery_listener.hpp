@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -49,11 +50,7 @@ class ServerWatch {
   void appeared(const eprosima::fastrtps::rtps::GuidPrefix_t& participant);
 
  private:
-  void wait_for_server(const BusOptions& options);
-
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool found_ = false, ended_ = false;
+  std::stop_source settled_;  ///< found, or to be stopped
   std::thread thread_;
 };
 

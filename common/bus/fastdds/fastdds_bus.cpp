@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/fastdds/fastdds_bus.hpp"
+#include "common/bus/vendors.hpp"
 
 #include <utility>
 
+#include "common/bus/fastdds/codec.hpp"
 #include "common/bus/fastdds/endpoints.hpp"
-#include "common/bus/fastdds/raw_codec.hpp"
 #include "common/bus/host/host_checks.hpp"
 
 namespace rtd::bus::fastdds {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "common/bus/backend.hpp"
 #include "common/bus/message_cdr.hpp"
-#include "common/bus/message_visit.hpp"
 
 namespace rtd::bus::fastdds {
 

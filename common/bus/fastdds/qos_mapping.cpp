@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/qos_mapping.hpp"
 
-#include "common/bus/fastdds/raw_codec.hpp"
-#include "common/ros2/type_hash.hpp"
+#include "common/bus/fastdds/codec.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
@@ -56,13 +55,6 @@ Qos endpoint_qos(const QosSettings& settings, bool plain) {
   return qos;
 }
 
-template <class Qos>
-Qos hashed(Qos qos, const std::string& dds_type) {
-  const std::string text = ros2::user_data_of(dds_type);
-  qos.user_data().data_vec({text.begin(), text.end()});
-  return qos;
-}
-
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr int kUsualDepth = 10;  // of ROS 2
 
@@ -104,14 +96,6 @@ dds::DataReaderQos reader_qos(const QosSettings& settings, bool plain) {
   qos.type_consistency().representation.m_value = {dds::XCDR_DATA_REPRESENTATION};
   qos.reliable_reader_qos().times.heartbeatResponseDelay = milliseconds(kResponseDelayMs);
   return qos;
-}
-
-dds::DataWriterQos with_type_hash(dds::DataWriterQos qos, const std::string& dds_type) {
-  return hashed(std::move(qos), dds_type);
-}
-
-dds::DataReaderQos with_type_hash(dds::DataReaderQos qos, const std::string& dds_type) {
-  return hashed(std::move(qos), dds_type);
 }
 
 std::string name_of(dds::QosPolicyId_t id) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/bus/raw_bus.hpp"
+#include "common/ros2/type_hash.hpp"
 
 namespace rtd::bus::fastdds {
 
@@ -22,10 +23,12 @@ eprosima::fastdds::dds::DataReaderQos raw_reader_qos(const RawReaderOptions& opt
 eprosima::fastdds::dds::DataWriterQos raw_writer_qos(const RawWriterOptions& options);
 
 /// With the type's hash in the user data, for ROS 2 (common/ros2/type_hash.hpp).
-eprosima::fastdds::dds::DataWriterQos with_type_hash(eprosima::fastdds::dds::DataWriterQos qos,
-                                                     const std::string& dds_type);
-eprosima::fastdds::dds::DataReaderQos with_type_hash(eprosima::fastdds::dds::DataReaderQos qos,
-                                                     const std::string& dds_type);
+template <class Qos>
+Qos with_type_hash(Qos qos, const std::string& dds_type) {
+  const std::string text = ros2::user_data_of(dds_type);
+  qos.user_data().data_vec({text.begin(), text.end()});
+  return qos;
+}
 
 /// DDS name of a policy, e.g. "RELIABILITY".
 std::string name_of(eprosima::fastdds::dds::QosPolicyId_t id);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/fastdds/raw_codec.hpp"
+#include "common/bus/fastdds/codec.hpp"
 
 #include <fastdds/rtps/common/SerializedPayload.h>
 #include <fastdds/rtps/common/WriteParams.h>

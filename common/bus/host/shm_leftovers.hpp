@@ -34,9 +34,4 @@ struct CleanOptions {
 /// Processes that clean at the same time take turns. Never throws; 0.1 ms without such files, else find_shm_users.
 CleanReport remove_shm_leftovers(const CleanOptions& options = {});
 
-/// Whether a file bears a name that our vendors give.
-bool is_vendor_shm_name(const std::string& name);
-/// What belongs together: the lock and semaphore of a port or segment have its name with a prefix or suffix.
-std::string shm_group(const std::string& name);
-
 }  // namespace rtd::bus

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/inprocess/inprocess_bus.hpp"
+#include "common/bus/vendors.hpp"
 
 #include <chrono>
 #include <map>
 #include <type_traits>
 #include <utility>
 
+#include "common/bus/backend.hpp"
 #include "common/bus/inprocess/domain.hpp"
-#include "common/bus/message_visit.hpp"
 
 namespace rtd::bus::inprocess {
 namespace {
@@ -81,8 +81,8 @@ class InprocessReader : public ReaderBackend {
 
 class InprocessBackend : public BusBackend {
  public:
-  explicit InprocessBackend(std::uint32_t domain)
-      : BusBackend("inprocess"), domain_(Domain::join(domain, Domain::Content::kTyped)) {}
+  explicit InprocessBackend(const BusOptions& options)
+      : BusBackend("inprocess"), domain_(Domain::join(options.domain, Domain::Content::kTyped)) {}
 
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                StatusCallbacks callbacks) override {
@@ -136,8 +136,8 @@ class InprocessRawWriter : public RawWriter {
 
 class InprocessRawBus : public RegistryRawBus {
  public:
-  explicit InprocessRawBus(std::uint32_t domain)
-      : RegistryRawBus("inprocess"), domain_(Domain::join(domain, Domain::Content::kRaw)) {
+  explicit InprocessRawBus(const BusOptions& options)
+      : RegistryRawBus("inprocess"), domain_(Domain::join(options.domain, Domain::Content::kRaw)) {
     domain_->add(registry_);
   }
   ~InprocessRawBus() override { domain_->remove(registry_); }
@@ -158,12 +158,12 @@ class InprocessRawBus : public RegistryRawBus {
 
 }  // namespace
 
-std::shared_ptr<BusBackend> create_backend(std::uint32_t domain) {
-  return std::make_shared<InprocessBackend>(domain);
+std::shared_ptr<BusBackend> create_backend(const BusOptions& options) {
+  return std::make_shared<InprocessBackend>(options);
 }
 
-std::shared_ptr<RawBus> create_raw_bus(std::uint32_t domain) {
-  return std::make_shared<InprocessRawBus>(domain);
+std::shared_ptr<RawBus> create_raw_bus(const BusOptions& options) {
+  return std::make_shared<InprocessRawBus>(options);
 }
 
 }  // namespace rtd::bus::inprocess

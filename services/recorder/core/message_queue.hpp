@@ -10,7 +10,7 @@
 #include <mutex>
 #include <optional>
 
-#include "common/bus/byte_block.hpp"
+#include "common/bus/raw_bus.hpp"
 
 namespace rtd::recorder {
 

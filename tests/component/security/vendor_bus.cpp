@@ -2,13 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/component/security/vendor_bus.hpp"
 
-#include "common/bus/backend.hpp"
-#ifdef RTD_HAVE_CYCLONEDDS
-#include "common/bus/cyclonedds/cyclonedds_bus.hpp"
-#endif
-#ifdef RTD_HAVE_FASTDDS
-#include "common/bus/fastdds/fastdds_bus.hpp"
-#endif
+#include "common/bus/vendors.hpp"
 
 namespace rtd::bus {
 

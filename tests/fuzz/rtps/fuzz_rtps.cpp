@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "common/bus/backend.hpp"
-#include "common/bus/fastdds/screening/rtps_message.hpp"
+#include "common/bus/fastdds/screening/rtps_screen.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "tests/fuzz/mcap/mutation.hpp"
 #include "tests/fuzz/rtps/datagram_seeds.hpp"

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/message_visit.hpp"
+#include "common/bus/backend.hpp"
 #include "tests/unit/bus/random_message.hpp"
 
 /// The same messages in every run, and what tests/identity/wire_hashes.txt says of their bytes on the wire.

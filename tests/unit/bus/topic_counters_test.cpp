@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/topic_counters.hpp"
+#include "common/bus/bus.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/message_visit.hpp"
+#include "common/bus/backend.hpp"
 #include "common/bus/qos.hpp"
 
 namespace rtd::bus {

@@ -2,11 +2,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <map>
-
-#include "common/bus/fastdds/screening/rtps_message.hpp"
+#include <span>
+#include <vector>
 
 namespace rtd::bus {
+
+/// GUID of a writer: prefix of its participant and its entity id.
+using WriterGuid = std::array<std::byte, 16>;
+
+struct WriterNumber {
+  WriterGuid writer;
+  std::uint64_t number;
+};
+
+constexpr std::uint32_t kMaxFragmentedSample = 256U << 20U;
+
+/// What a datagram has in it, as far as Fast DDS relies on it without a check.
+struct RtpsMessage {
+  /// The frame of an RTPS message: header, known submessages one behind the other, each of a whole number of words, the
+  /// last one ending with the datagram.
+  bool well_formed = false;
+  /// Each DATA_FRAG carries the fragments that it announces, of a sample of at most kMaxFragmentedSample bytes.
+  bool whole_fragments = true;
+  /// The largest sequence number that DATA, DATA_FRAG, HEARTBEAT, HEARTBEAT_FRAG and GAP name, for each writer.
+  /// Submessages too short for their numbers are passed over.
+  std::vector<WriterNumber> numbers;
+};
+
+/// Reads up to the first submessage that breaks the frame.
+RtpsMessage read_rtps_message(std::span<const std::byte> datagram);
 
 /// Whether a writer may have come to a sequence number: none is far beyond all that it has named so far, unless it goes
 /// on naming such numbers and no others, as one does that has been writing for days before it is first matched.

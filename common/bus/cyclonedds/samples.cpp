@@ -1,9 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/cyclonedds/serdata.hpp"
+#include "common/bus/cyclonedds/samples.hpp"
 
+#include <dds/dds.h>
+
+// Cyclone's internal headers: only for this file, which gives it our samples. Never together with Fast DDS's headers.
 extern "C" {
 #include <dds/ddsi/ddsi_keyhash.h>
+#include <dds/ddsi/ddsi_serdata.h>
+#include <dds/ddsi/ddsi_sertype.h>
 #include <dds/ddsi/q_bswap.h>
 #include <dds/ddsi/q_misc.h>
 #include <dds/ddsi/q_protocol.h>
@@ -15,10 +20,33 @@ extern "C" {
 
 #include <algorithm>
 #include <cstring>
-#include <new>
+
+#include "common/bus/message_pool.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
+
+/// Cyclone's view of a SampleType.
+struct Sertype : ddsi_sertype {
+  SampleType description;
+  MessagePool<ByteBlock> pool;
+};
+
+/// Cyclone's view of one sample. Counted by Cyclone, freed by free_sample().
+struct Serdata : ddsi_serdata {
+  std::shared_ptr<ByteBlock> bytes;  ///< empty: no data (a dispose or the like), or still in `iox_chunk`
+  SampleOrigin origin;
+  std::int64_t received_ns = 0;
+};
+
+/// `kind` tells data from a dispose.
+Serdata* create_serdata(const ddsi_sertype* type, ddsi_serdata_kind kind, std::shared_ptr<ByteBlock> bytes) {
+  auto* const sample = new Serdata;
+  ddsi_serdata_init(sample, type, kind);
+  sample->hash = type->serdata_basehash;
+  sample->bytes = std::move(bytes);
+  return sample;
+}
 
 constexpr std::size_t kHeaderBytes = ByteBlock::kCdrHeaderBytes;
 
@@ -30,12 +58,6 @@ const Serdata& ours(const ddsi_serdata* sample) {
 }
 std::span<const std::byte> bytes_of(const ddsi_serdata* sample) {
   return ours(sample).bytes ? std::as_const(*ours(sample).bytes).view() : std::span<const std::byte>();
-}
-
-std::shared_ptr<ByteBlock> block_of(const ddsi_sertype* type, std::size_t size) {
-  std::shared_ptr<ByteBlock> block = static_cast<const Sertype*>(type)->pool.acquire();
-  block->resize(size);
-  return block;
 }
 
 /// Writer and number stand in the headers of the packet that brought the first fragment. Cyclone keeps the packet and
@@ -69,7 +91,7 @@ bool copy_fragments(const nn_rdata* fragment, std::span<std::byte> target) {
 ddsi_serdata* from_packets(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragments,
                            std::size_t size) {
   if (size < kHeaderBytes) return nullptr;
-  auto block = block_of(type, size);
+  auto block = acquire_block(type, size);
   if (!copy_fragments(fragments, block->bytes())) return nullptr;
   Serdata* const sample = create_serdata(type, kind, std::move(block));
   sample->origin = origin_of(*fragments);
@@ -80,7 +102,7 @@ ddsi_serdata* from_packets(const ddsi_sertype* type, ddsi_serdata_kind kind, con
 ddsi_serdata* from_pieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
                           const ddsrt_iovec_t* pieces, std::size_t size) {
   if (size < kHeaderBytes) return nullptr;
-  auto block = block_of(type, size);
+  auto block = acquire_block(type, size);
   std::size_t copied = 0;
   for (ddsrt_msg_iovlen_t i = 0; i < count && copied < size; ++i) {
     const std::size_t length = std::min<std::size_t>(pieces[i].iov_len, size - copied);
@@ -97,7 +119,7 @@ ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) {
 std::shared_ptr<ByteBlock> block_from_plain(const ddsi_sertype* type, const void* plain) {
   constexpr std::byte kLittleEndianCdr[kHeaderBytes] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
   const std::size_t size = static_cast<const Sertype*>(type)->description.plain_bytes;
-  auto block = block_of(type, kHeaderBytes + size);
+  auto block = acquire_block(type, kHeaderBytes + size);
   std::memcpy(block->bytes().data(), kLittleEndianCdr, kHeaderBytes);
   std::memcpy(block->bytes().data() + kHeaderBytes, plain, size);
   return block;
@@ -211,21 +233,7 @@ constexpr ddsi_serdata_ops sample_ops() {
   return ops;
 }
 
-}  // namespace
-
-const ddsi_serdata_ops& serdata_ops() {
-  static constexpr ddsi_serdata_ops kOps = sample_ops();
-  return kOps;
-}
-
-Serdata* create_serdata(const ddsi_sertype* type, ddsi_serdata_kind kind, std::shared_ptr<ByteBlock> bytes) {
-  auto* const sample = new Serdata;
-  ddsi_serdata_init(sample, type, kind);
-  sample->hash = type->serdata_basehash;
-  sample->bytes = std::move(bytes);
-  return sample;
-}
-
+/// What lies in iceoryx's memory, copied into ours; that memory is given back.
 void leave_shared_memory(Serdata& sample) {
 #ifdef DDS_HAS_SHM
   if (sample.iox_chunk == nullptr || sample.iox_subscriber == nullptr) return;
@@ -238,6 +246,96 @@ void leave_shared_memory(Serdata& sample) {
 #else
   (void)sample;
 #endif
+}
+
+const SampleType& description(const ddsi_sertype* type) {
+  return static_cast<const Sertype*>(type)->description;
+}
+
+void free_type(ddsi_sertype* type) {
+  ddsi_sertype_fini(type);
+  delete static_cast<Sertype*>(type);
+}
+
+bool equal(const ddsi_sertype* a, const ddsi_sertype* b) {
+  return description(a) == description(b);
+}
+
+std::uint32_t hash(const ddsi_sertype* type) {
+  const SampleType& own = description(type);
+  return own.plain_bytes * 4 + (own.keyed ? 1U : 0U) + (own.any_representation ? 2U : 0U);
+}
+
+// Samples as structures are never asked for: we take and give serialised ones. Loans through iceoryx need no more.
+void zero_samples(const ddsi_sertype*, void*, std::size_t) {}
+void realloc_samples(void** pointers, const ddsi_sertype*, void*, std::size_t, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) pointers[i] = nullptr;
+}
+void free_samples(const ddsi_sertype*, void**, std::size_t, dds_free_op_t) {}
+
+constexpr ddsi_sertype_ops type_ops() {
+  ddsi_sertype_ops ops{};
+  ops.version = ddsi_sertype_v0;
+  ops.free = free_type;
+  ops.zero_samples = zero_samples;
+  ops.realloc_samples = realloc_samples;
+  ops.free_samples = free_samples;
+  ops.equal = equal;
+  ops.hash = hash;
+  return ops;  // without serialize_into() only types of fixed size go through iceoryx
+}
+
+}  // namespace
+
+ddsi_sertype* create_sertype(const SampleType& description) {
+  static constexpr ddsi_serdata_ops kSampleOps = sample_ops();
+  static const ddsi_sertype_ops kOps = type_ops();
+  auto type = std::make_unique<Sertype>();
+  type->description = description;
+  std::uint32_t flags = description.keyed ? 0 : DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY;
+  if (description.plain_bytes > 0) flags |= DDSI_SERTYPE_FLAG_FIXED_SIZE;
+  ddsi_sertype_init_flags(type.get(), description.name.c_str(), &kOps, &kSampleOps, flags);
+  type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
+  if (description.any_representation) type->allowed_data_representation |= DDS_DATA_REPRESENTATION_FLAG_XCDR2;
+#ifdef DDS_HAS_SHM
+  type->iox_size = description.plain_bytes;
+#endif
+  return type.release();
+}
+
+void destroy_sertype(ddsi_sertype* type) {
+  ddsi_sertype_unref(type);
+}
+
+std::optional<TakenSample> take_sample(dds_entity_t reader) {
+  ddsi_serdata* taken = nullptr;
+  dds_sample_info_t info;
+  if (dds_takecdr(reader, &taken, 1, &info, DDS_ANY_STATE) < 1) return std::nullopt;
+  Serdata& sample = *static_cast<Serdata*>(taken);
+  TakenSample result;
+  if (info.valid_data) {
+    leave_shared_memory(sample);
+    result.bytes = sample.bytes;
+  }
+  result.origin = sample.origin;
+  result.received_ns = sample.received_ns != 0 ? sample.received_ns : dds_time();
+  result.source_ns = info.source_timestamp > 0 ? info.source_timestamp : result.received_ns;
+  ddsi_serdata_unref(taken);
+  return result;
+}
+
+bool write_sample(dds_entity_t writer, const ddsi_sertype* type, std::shared_ptr<ByteBlock> bytes,
+                  const SampleOrigin& origin, std::int64_t source_ns) {
+  Serdata* const sample = create_serdata(type, SDK_DATA, std::move(bytes));
+  sample->origin = origin;
+  sample->timestamp.v = source_ns != 0 ? source_ns : dds_time();
+  return dds_forwardcdr(writer, sample) == DDS_RETCODE_OK;
+}
+
+std::shared_ptr<ByteBlock> acquire_block(const ddsi_sertype* type, std::size_t size) {
+  std::shared_ptr<ByteBlock> block = static_cast<const Sertype*>(type)->pool.acquire();
+  block->resize(size);
+  return block;
 }
 
 }  // namespace rtd::bus::cyclonedds

@@ -3,16 +3,18 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 
-#include "common/bus/byte_block.hpp"
 #include "common/bus/raw_bus.hpp"
 
 struct ddsi_sertype;
 
+/// Serialised samples in and out of Cyclone, which never looks into them.
 namespace rtd::bus::cyclonedds {
 
-/// A type as Cyclone gets to know it: a name and bytes. It never looks into the samples.
+/// A type as Cyclone gets to know it: a name and bytes.
 struct SampleType {
   std::string name;  ///< "nav_msgs::msg::dds_::Odometry_"
   bool keyed = false;
@@ -31,5 +33,21 @@ struct SampleOrigin {
 ddsi_sertype* create_sertype(const SampleType& type);
 /// For one without an owner.
 void destroy_sertype(ddsi_sertype* type);
+
+struct TakenSample {
+  std::shared_ptr<const ByteBlock> bytes;  ///< header and fields; empty: a dispose or the like
+  SampleOrigin origin;
+  std::int64_t source_ns = 0, received_ns = 0;
+};
+
+/// The next sample that waits in a reader (a dds_entity_t); nothing when none does.
+std::optional<TakenSample> take_sample(std::int32_t reader);
+
+/// Hands bytes over, which must not change afterwards. `source_ns` 0: now.
+bool write_sample(std::int32_t writer, const ddsi_sertype* type, std::shared_ptr<ByteBlock> bytes,
+                  const SampleOrigin& origin, std::int64_t source_ns);
+
+/// Memory for a sample of so many bytes, header included.
+std::shared_ptr<ByteBlock> acquire_block(const ddsi_sertype* type, std::size_t size);
 
 }  // namespace rtd::bus::cyclonedds

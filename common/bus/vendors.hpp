@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/bus/raw_bus.hpp"
+
+/// The entry of each vendor, defined where the build has it. Throw BusError with cause and fix.
+namespace rtd::bus {
+
+/// Shared memory and UDP.
+namespace fastdds {
+std::shared_ptr<BusBackend> create_backend(const BusOptions& options);
+/// A participant of its own: Fast DDS allows one type support for each type name in a participant. Also matches
+/// writers and readers of Cyclone DDS, over UDP.
+std::shared_ptr<RawBus> create_raw_bus(const BusOptions& options);
+}  // namespace fastdds
+
+namespace cyclonedds {
+std::shared_ptr<BusBackend> create_backend(const BusOptions& options);
+std::shared_ptr<RawBus> create_raw_bus(const BusOptions& options);
+}  // namespace cyclonedds
+
+/// A bus inside this process: services in threads of one test see each other as over DDS, without sockets. Messages are
+/// passed as shared pointers; a loaned message is never copied. Each reader has one thread. Raw endpoints: discovery,
+/// reliability, durability and keep-last histories behave as over DDS.
+namespace inprocess {
+std::shared_ptr<BusBackend> create_backend(const BusOptions& options);
+std::shared_ptr<RawBus> create_raw_bus(const BusOptions& options);
+}  // namespace inprocess
+
+}  // namespace rtd::bus
