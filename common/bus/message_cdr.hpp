@@ -10,8 +10,7 @@
 #endif
 
 #include "common/bus/message_types.hpp"
-#include "common/ros_codec/wire_reader.hpp"
-#include "common/ros_codec/wire_writer.hpp"
+#include "common/ros_codec/wire.hpp"
 
 /// Messages as samples of DDS: XCDR1, little endian, behind a header of 4 bytes. The same for every vendor.
 namespace rtd::bus {

@@ -72,5 +72,8 @@ struct FeatureFrame {
 static_assert(std::is_trivially_copyable_v<FeatureFrame> && std::is_standard_layout_v<FeatureFrame>);
 RTD_FIELDS(rtd_msgs, FeatureFrame, seq, stamp_ns, published_ns, intrinsics, width, height, count, removed, objects,
            detection_use, stage_ms, features)
+inline bool is_plausible(const FeatureFrame& features) {
+  return features.count <= kMaxFeatures;
+}
 
 }  // namespace rtd::msg

@@ -74,5 +74,8 @@ static_assert(std::is_trivially_copyable_v<RgbdFrame> && std::is_standard_layout
 RTD_FIELDS(rtd_msgs, RgbdFrame, seq, stamp_ns, published_ns, intrinsics, distortion, depth_scale_m, width, height,
            source_id, color_bgr, depth)
 static_assert(alignof(RgbdFrame) == 4);
+inline bool is_plausible(const RgbdFrame& frame) {
+  return frame.width > 0 && frame.width <= kMaxFrameWidth && frame.height > 0 && frame.height <= kMaxFrameHeight;
+}
 
 }  // namespace rtd::msg

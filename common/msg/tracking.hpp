@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <type_traits>
 
 #include "common/msg/fields.hpp"
@@ -42,21 +43,9 @@ enum class TrackingState : std::uint32_t {
 
 /// For logs, diagnostics and the live line.
 constexpr const char* to_string(TrackingState state) {
-  switch (state) {
-    case TrackingState::kInitializing:
-      return "initializing";
-    case TrackingState::kOk:
-      return "ok";
-    case TrackingState::kRecentlyLost:
-      return "recently lost";
-    case TrackingState::kLost:
-      return "lost";
-    case TrackingState::kRelocalizing:
-      return "relocalizing";
-    case TrackingState::kPredicted:
-      return "predicted";
-  }
-  return "unknown";
+  constexpr const char* kNames[] = {"initializing", "ok", "recently lost", "lost", "relocalizing", "predicted"};
+  const auto place = static_cast<std::size_t>(state);
+  return place < std::size(kNames) ? kNames[place] : "unknown";
 }
 
 /// Whether a result of this state has a pose: measured (kOk) or predicted.

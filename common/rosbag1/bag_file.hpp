@@ -66,6 +66,11 @@ class BagError : public std::runtime_error {
 /// Larger chunks and index records are refused: rosbag writes 0.75 MiB by default.
 inline constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{256} << 20U;
 
+/// The content of a chunk. `compression`: none, bz2 or lz4 (LZ4 frame format). `size` is what the chunk claims; memory
+/// is taken as content appears, so that a false claim costs nothing. Throws ros::WireError: unknown compression (naming
+/// it and those known), damaged data, another size than claimed.
+std::vector<std::uint8_t> decompress(const std::string& compression, std::vector<std::uint8_t> data, std::size_t size);
+
 /// Where a record lies in the file.
 struct RecordPlace {
   std::vector<std::uint8_t> header;

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <set>
 
-#include "common/rosbag1/chunk_codec.hpp"
-
 namespace rtd::rosbag1 {
 namespace {
 

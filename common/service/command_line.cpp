@@ -2,11 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/service/command_line.hpp"
 
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <iostream>
+#include <utility>
 
 #include "common/service/exit_code.hpp"
 
 namespace rtd::service {
+namespace {
+
+constexpr std::chrono::milliseconds kRewriteEvery{200}, kRepeatEvery{10000};
+constexpr std::size_t kBarCells = 20;
+
+}  // namespace
 
 int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
   try {
@@ -15,6 +30,55 @@ int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>
     return app.exit(error) == 0 ? kOk : kUsageOrConfig;
   }
   return work();
+}
+
+std::string progress_line(const std::string& work, std::uint64_t done, std::uint64_t total, double elapsed_s) {
+  const double part = total == 0 ? 1 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
+  const auto cells = static_cast<std::size_t>(part * kBarCells);
+  const std::string left = part > 0 ? fmt::format(", {:.0f} s left", elapsed_s * (1 - part) / part) : "";
+  return fmt::format("{} [{}{}] {:3.0f} %{}", work, std::string(cells, '#'), std::string(kBarCells - cells, '.'),
+                     100 * part, left);
+}
+
+Progress::Progress(std::ostream& err, std::string work, std::uint64_t total)
+    : err_(err),
+      work_(std::move(work)),
+      total_(total),
+      interactive_(&err == &std::cerr && isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (interactive_ && shown_) err_ << "\r\033[K" << std::flush;
+}
+
+void Progress::reach(std::uint64_t done) {
+  done_ = done;
+  const Clock::time_point now = Clock::now();
+  if (now < next_) return;
+  next_ = now + (interactive_ ? kRewriteEvery : kRepeatEvery);
+  const std::string line = progress_line(work_, done_, total_, std::chrono::duration<double>(now - started_).count());
+  err_ << (interactive_ ? "\r\033[K" + line : line + '\n') << std::flush;
+  shown_ = true;
+}
+
+std::string bytes_text(std::uint64_t bytes) {
+  if (bytes < 1000) return fmt::format("{} B", bytes);
+  constexpr std::array kUnits = {"kB", "MB", "GB", "TB"};
+  double value = static_cast<double>(bytes) / 1000;
+  std::size_t unit = 0;
+  for (; value >= 999.5 && unit + 1 < kUnits.size(); ++unit) value /= 1000;
+  return fmt::format("{:.{}f} {}", value, value < 9.995 ? 2 : value < 99.95 ? 1 : 0, kUnits[unit]);
+}
+
+std::string seconds_text(std::uint64_t duration_ns) {
+  return fmt::format("{:.3f} s", static_cast<double>(duration_ns) * 1e-9);
+}
+
+std::string time_text(std::uint64_t time_ns) {
+  constexpr std::uint64_t kNsPerSecond = 1'000'000'000, kYear2000S = 946'684'800, kYear2100S = 4'102'444'800;
+  const std::uint64_t seconds = time_ns / kNsPerSecond;
+  if (seconds < kYear2000S || seconds >= kYear2100S) return seconds_text(time_ns);
+  const std::tm utc = fmt::gmtime(static_cast<std::time_t>(seconds));
+  return fmt::format("{:%Y-%m-%d %H:%M:%S}.{:03} UTC", utc, time_ns % kNsPerSecond / 1'000'000);
 }
 
 }  // namespace rtd::service

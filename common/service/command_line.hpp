@@ -2,16 +2,54 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <functional>
+#include <iosfwd>
+#include <string>
 
 namespace CLI {
 class App;
 }
 
+/// What command-line tools share.
 namespace rtd::service {
 
 /// The main function of a tool: parses the command line into what `app` is bound to, then runs `work`. Returns the exit
 /// code of `work`; 0 after --help, 2 for a wrong command line.
 int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work);
+
+/// Says how far long work is: one line with a bar that is rewritten on a terminal, a line every ten seconds elsewhere;
+/// nothing for work that ends within a second.
+class Progress {
+ public:
+  /// `total` in any unit: files, bytes, ...
+  Progress(std::ostream& err, std::string work, std::uint64_t total);
+  ~Progress();  ///< clears the line
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  /// One more is done.
+  void advance() { reach(done_ + 1); }
+  /// So many are done.
+  void reach(std::uint64_t done);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::ostream& err_;
+  std::string work_;
+  std::uint64_t total_, done_ = 0;
+  bool interactive_, shown_ = false;
+  Clock::time_point started_ = Clock::now(), next_ = started_ + std::chrono::seconds(1);
+};
+
+/// "reading  [######..............]  30 %, 12 s left"
+std::string progress_line(const std::string& work, std::uint64_t done, std::uint64_t total, double elapsed_s);
+
+/// "1.54 MB", "812 B": decimal units, three digits.
+std::string bytes_text(std::uint64_t bytes);
+/// "12.345 s" of a duration.
+std::string seconds_text(std::uint64_t duration_ns);
+/// "2026-11-21 14:03:12.512 UTC" for times of this century, else seconds.
+std::string time_text(std::uint64_t time_ns);
 
 }  // namespace rtd::service

@@ -3,9 +3,27 @@
 #include "common/service/pacer.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
+#include "common/service/config.hpp"
+
 namespace rtd::service {
+namespace {
+
+constexpr const char* kPaces[] = {"realtime", "asap", "lockstep"};  // by Pace
+
+}  // namespace
+
+Pace parse_pace(const std::string& text) {
+  const auto name = std::find(std::begin(kPaces), std::end(kPaces), text);
+  if (name == std::end(kPaces)) throw ConfigError("unknown pace '" + text + "': use realtime, asap or lockstep");
+  return static_cast<Pace>(name - std::begin(kPaces));
+}
+
+const char* to_string(Pace pace) {
+  return kPaces[static_cast<std::size_t>(pace)];
+}
 
 Pacer::Pacer(const PacerConfig& config, std::function<std::int64_t()> now_ns)
     : config_(config), now_ns_(std::move(now_ns)) {}

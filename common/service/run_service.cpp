@@ -4,7 +4,6 @@
 
 #include <pthread.h>
 #include <unistd.h>
-#include <CLI/CLI.hpp>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -81,22 +80,6 @@ void remove_leftovers() {
               static_cast<double>(report.removed_bytes()) / (1024 * 1024));
 }
 
-/// Cleans beside the work: joining the bus is what a restarted service must be quick at.
-class Cleaner {
- public:
-  explicit Cleaner(const bus::BusOptions& options) {
-    if (options.vendor != "inprocess") thread_ = std::thread(remove_leftovers);
-  }
-  ~Cleaner() {
-    if (thread_.joinable()) thread_.join();
-  }
-  Cleaner(const Cleaner&) = delete;
-  Cleaner& operator=(const Cleaner&) = delete;
-
- private:
-  std::thread thread_;
-};
-
 /// Leftovers may be all that is in the way.
 std::shared_ptr<bus::Bus> join_bus(const bus::BusOptions& options) {
   try {
@@ -137,7 +120,8 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   BoundedEnd end("rtd-" + definition.name, kEndOfBus);
   const std::shared_ptr<bus::Bus> bus = join_bus(options);
   options.on_problem = {};  // a further connection would say the same again
-  const Cleaner cleaner(options);
+  std::jthread cleaner;     // beside the work: joining the bus is what a restarted service must be quick at
+  if (options.vendor != "inprocess") cleaner = std::jthread(remove_leftovers);
   for (const std::string& warning : bus::host_warnings(options)) SPDLOG_INFO("event=host_limit cause=\"{}\"", warning);
   ExitCode code = kOk;
   std::string duplicate;
@@ -146,8 +130,8 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     problems.count_in(&heartbeat);
     const std::shared_ptr<void> at_end(nullptr, [&problems](void*) { problems.count_in(nullptr); });
     heartbeat.watch_progress(pace == Pace::kRealtime ? kStuckAfter : kStuckAfterOffline);
-    const NoPeersWarning warning(
-        heartbeat, options, [](const std::string& cause) { SPDLOG_WARN("event=no_peers cause=\"{}\"", cause); });
+    const NoPeersWarning warning(heartbeat, options,
+                                 [](const std::string& cause) { SPDLOG_WARN("event=no_peers cause=\"{}\"", cause); });
     Runtime runtime{*bus, heartbeat, stop, pace, options};
     SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), options.domain, to_string(pace),
                 getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");
@@ -192,20 +176,16 @@ int run_service(const ServiceDefinition& definition, int argc, char** argv) {
     }
     init_logging(definition.name, common.log_level);
     return run_on_bus(definition, bus_config, parse_pace(common.pace));
-  } catch (const ConfigError& error) {
-    std::cerr << "rtd-" << definition.name << ": " << error.what() << '\n';
-    return kUsageOrConfig;
-  } catch (const bus::BusError& error) {
-    std::cerr << "rtd-" << definition.name << ": " << error.what() << '\n';
-    return kUsageOrConfig;
   } catch (const std::exception& error) {
     std::cerr << "rtd-" << definition.name << ": " << error.what() << '\n';
-    return kRunFailed;
+    const bool wrong_setup =
+        dynamic_cast<const ConfigError*>(&error) != nullptr || dynamic_cast<const bus::BusError*>(&error) != nullptr;
+    return wrong_setup ? kUsageOrConfig : kRunFailed;
   }
 }
 
 NoPeersWarning::NoPeersWarning(const Heartbeat& heartbeat, const bus::BusOptions& options,
-                     std::function<void(const std::string&)> warn, std::chrono::milliseconds patience) {
+                               std::function<void(const std::string&)> warn, std::chrono::milliseconds patience) {
   thread_ = std::thread([this, &heartbeat, domain = options.domain, warn = std::move(warn), patience] {
     if (ended_.wait_for(patience) || !heartbeat.alone()) return;
     warn("no other service is in DDS domain " + std::to_string(domain) + bus::other_domains_hint(domain));
@@ -218,11 +198,7 @@ NoPeersWarning::~NoPeersWarning() {
 }
 
 BoundedEnd::~BoundedEnd() {
-  {
-    const std::lock_guard lock(mutex_);
-    ended_ = true;
-  }
-  changed_.notify_all();
+  ended_.request_stop();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -231,8 +207,7 @@ void BoundedEnd::begin(int exit_code) {
 }
 
 void BoundedEnd::watch(int exit_code) {
-  std::unique_lock lock(mutex_);
-  if (changed_.wait_for(lock, limit_, [this] { return ended_; })) return;
+  if (ended_.wait_for(limit_)) return;
   std::fprintf(stderr, "%s: the bus did not end within %lld ms and is left behind\n", program_.c_str(),
                static_cast<long long>(limit_.count()));
   std::fflush(nullptr);

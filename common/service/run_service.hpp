@@ -3,9 +3,7 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <thread>
 
@@ -78,9 +76,7 @@ class BoundedEnd {
 
   const std::string program_;
   const std::chrono::milliseconds limit_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool ended_ = false;
+  StopToken ended_;
   std::thread thread_;
 };
 

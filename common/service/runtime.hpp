@@ -15,7 +15,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/bus_factory.hpp"
-#include "common/service/pace.hpp"
+#include "common/service/pacer.hpp"
 #include "common/service/peer_clocks.hpp"
 #include "common/service/peer_health.hpp"
 #include "common/service/stop_token.hpp"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/msg/plausible.hpp"
+#include "common/msg/rgbd_frame.hpp"
 
 namespace rtd::vision {
 namespace {

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "common/service/pace.hpp"
 #include "common/service/pacer.hpp"
 #include "services/camera/core/frame_source.hpp"
 

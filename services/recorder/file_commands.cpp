@@ -15,7 +15,6 @@
 #include "common/mcap/indexed_reader.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
-#include "common/service/progress.hpp"
 
 namespace rtd::recorder {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/service/pace.hpp"
+#include "common/service/pacer.hpp"
 
 namespace rtd::replay {
 

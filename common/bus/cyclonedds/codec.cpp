@@ -7,7 +7,6 @@
 #include "common/bus/backend.hpp"
 #include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/message_cdr.hpp"
-#include "common/msg/plausible.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {

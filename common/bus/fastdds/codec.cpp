@@ -6,7 +6,6 @@
 
 #include "common/bus/fastdds/message_type.hpp"
 #include "common/bus/message_pool.hpp"
-#include "common/msg/plausible.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {

@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "common/service/progress.hpp"
+#include "common/service/command_line.hpp"
 #include "common/vision/motion_levels.hpp"
 #include "services/evaluation/detector/image_folder.hpp"
 

@@ -13,7 +13,7 @@
 
 #include "common/service/bus_config.hpp"
 #include "common/service/model_locator.hpp"
-#include "common/service/pace.hpp"
+#include "common/service/pacer.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/launcher/process/executable.hpp"

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
+#include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
-#include "common/service/progress.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/recorder/convert/mcap_export.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "common/service/units_text.hpp"
+#include "common/service/command_line.hpp"
 #include "services/recorder/inspect/recording_diff.hpp"
 
 namespace rtd::recording {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "common/service/units_text.hpp"
+#include "common/service/command_line.hpp"
 
 namespace rtd::recording {
 namespace {

@@ -10,8 +10,8 @@
 #include <fstream>
 #include <ostream>
 
+#include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
-#include "common/service/progress.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_tool/map_report.hpp"
 

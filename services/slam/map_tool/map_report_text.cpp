@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "common/service/units_text.hpp"
+#include "common/service/command_line.hpp"
 #include "services/slam/map_tool/map_report.hpp"
 
 namespace rtd::map_tool {

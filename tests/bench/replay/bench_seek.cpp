@@ -13,7 +13,7 @@
 #include <random>
 
 #include "common/mcap/writer.hpp"
-#include "common/service/progress.hpp"
+#include "common/service/command_line.hpp"
 #include "services/replay/core/message_feed.hpp"
 
 namespace {

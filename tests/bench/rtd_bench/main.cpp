@@ -6,7 +6,6 @@
 
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
-#include "common/service/progress.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "tests/bench/rtd_bench/features_bench.hpp"
 #include "tests/bench/rtd_bench/transport/transport_command.hpp"

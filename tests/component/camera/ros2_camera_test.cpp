@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "common/bus/raw_bus.hpp"
-#include "common/ros_codec/wire_writer.hpp"
+#include "common/ros_codec/wire.hpp"
 #include "services/camera/camera_service.hpp"
 #include "tests/support/inbox.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "common/bus/qos.hpp"
 #include "common/bus/topics.hpp"
-#include "common/ros_codec/wire_writer.hpp"
+#include "common/ros_codec/wire.hpp"
 #include "tests/unit/bus/random_message.hpp"
 
 /// Messages for every topic that two processes can both make: from the topic's name and a number.

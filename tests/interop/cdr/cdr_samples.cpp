@@ -18,8 +18,7 @@
 #include "common/ros2/message_fields.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/type_definition.hpp"
-#include "common/ros_codec/wire_reader.hpp"
-#include "common/ros_codec/wire_writer.hpp"
+#include "common/ros_codec/wire.hpp"
 #include "tests/unit/bus/random_message.hpp"
 
 namespace rtd::msg {

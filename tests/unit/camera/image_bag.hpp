@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "common/ros_codec/wire_writer.hpp"
+#include "common/ros_codec/wire.hpp"
 #include "tests/support/rosbag1/bag_writer.hpp"
 
 namespace rtd::camera::test {

@@ -10,7 +10,7 @@
 
 #include "common/mcap/writer.hpp"
 #include "common/msg/rgbd_frame.hpp"
-#include "common/ros_codec/wire_writer.hpp"
+#include "common/ros_codec/wire.hpp"
 #include "tests/support/rosbag1/bag_writer.hpp"
 
 namespace rtd::camera::test {

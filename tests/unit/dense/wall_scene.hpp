@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "common/geometry/depth_noise.hpp"
+#include "common/geometry/camera_model.hpp"
 #include "services/dense/core/dense_config.hpp"
 #include "services/dense/core/depth_view.hpp"
 

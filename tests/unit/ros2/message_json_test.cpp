@@ -11,7 +11,7 @@
 #include "common/msg/features.hpp"
 #include "common/msg/status.hpp"
 #include "common/msg/tracking.hpp"
-#include "common/ros_codec/wire_writer.hpp"
+#include "common/ros_codec/wire.hpp"
 
 namespace rtd::ros2 {
 namespace {

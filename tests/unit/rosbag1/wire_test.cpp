@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "common/ros_codec/wire_reader.hpp"
-#include "common/ros_codec/wire_writer.hpp"
+#include "common/ros_codec/wire.hpp"
 
 namespace rtd::ros {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "common/service/progress.hpp"
+#include "common/service/command_line.hpp"
 
 namespace rtd::service {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/io/text.hpp"
-#include "common/ros_codec/wire_reader.hpp"
+#include "common/ros_codec/wire.hpp"
 #include "services/camera/core/calibration.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/recording/ros_images.hpp"

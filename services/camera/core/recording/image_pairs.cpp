@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/text.hpp"
-#include "common/ros_codec/wire_reader.hpp"
+#include "common/ros_codec/wire.hpp"
 #include "services/camera/core/calibration.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/recording/frame_pairer.hpp"

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "common/ros_codec/byte_cursor.hpp"
-#include "common/ros_codec/wire_reader.hpp"
+#include "common/ros_codec/wire.hpp"
 #include "services/camera/core/frame_source.hpp"
 
 namespace rtd::camera {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/geometry/depth_noise.hpp"
+#include "common/geometry/camera_model.hpp"
 
 namespace rtd::filter {
 

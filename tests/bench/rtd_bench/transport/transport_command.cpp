@@ -9,8 +9,8 @@
 #include <fstream>
 #include <iostream>
 
+#include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
-#include "common/service/progress.hpp"
 #include "tests/bench/rtd_bench/transport/transport_bench.hpp"
 
 namespace rtd::bench {

@@ -10,7 +10,7 @@
 #include "common/msg/features.hpp"
 #include "common/msg/rgbd_frame.hpp"
 #include "common/msg/tracking.hpp"
-#include "common/ros_codec/wire_writer.hpp"
+#include "common/ros_codec/wire.hpp"
 
 namespace rtd::recording {
 namespace {
