@@ -39,7 +39,7 @@ std::string join_names(const std::vector<std::string>& names) {
   return joined;
 }
 
-/// Throws BusError: no such vendor, a domain out of range, a network that cannot be.
+/// Throws BusError: no such vendor, a domain out of range, a network that cannot be, no port free.
 const Vendor& vendor_of(const BusOptions& options) {
   if (options.domain > kMaxDomain) {
     throw BusError("domain " + std::to_string(options.domain) + " is out of range, allowed: 0.." +
@@ -55,16 +55,13 @@ const Vendor& vendor_of(const BusOptions& options) {
       throw BusError("bus.iceoryx is a way of Cyclone DDS: add --dds cyclonedds, or leave it out (" + options.vendor +
                      " needs no daemon for its shared memory)");
     }
+    if (options.vendor == "inprocess") return vendor;
+    if (options.network.multicast) require_discovery_port(options.domain);
+    if (takes_participant_port(options)) require_participant_port(options.domain);
     return vendor;
   }
   throw BusError("unknown bus '" + options.vendor + "', this build has: " + join_names(available_vendors()) +
                  " (--dds, RTD_DDS)");
-}
-
-void require_ports(const BusOptions& options) {
-  if (options.vendor == "inprocess") return;
-  if (options.network.multicast) require_discovery_port(options.domain);
-  if (takes_participant_port(options)) require_participant_port(options.domain);
 }
 
 }  // namespace
@@ -87,7 +84,6 @@ std::vector<std::string> dds_vendors() {
 
 std::shared_ptr<Bus> connect(const BusOptions& options) {
   const Vendor& vendor = vendor_of(options);
-  require_ports(options);
   if (!options.security.enabled()) return std::make_shared<Bus>(vendor.create(options));
   security::Enclave enclave = require_enclave(options);
   return std::make_shared<Bus>(guard(vendor.create(options), std::move(enclave)));
@@ -95,7 +91,6 @@ std::shared_ptr<Bus> connect(const BusOptions& options) {
 
 std::shared_ptr<RawBus> connect_raw(const BusOptions& options) {
   const Vendor& vendor = vendor_of(options);
-  require_ports(options);
   if (!options.security.enabled()) return vendor.create_raw(options);
   security::Enclave enclave = require_enclave(options);
   return guard(vendor.create_raw(options), std::move(enclave));

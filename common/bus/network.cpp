@@ -8,7 +8,6 @@
 #include <netdb.h>
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <optional>
 
 namespace rtd::geometry {
 

@@ -3,7 +3,6 @@
 #include "common/geometry/se3.hpp"
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 
 namespace rtd::geometry {

@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <limits>
-#include <queue>
 
 #include "common/mcap/audit.hpp"
 #include "common/mcap/chunk_content.hpp"

@@ -5,7 +5,6 @@
 #include <openssl/bio.h>
 #include <openssl/bn.h>
 #include <openssl/err.h>
-#include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/pkcs7.h>
 #include <openssl/x509v3.h>
@@ -15,13 +14,6 @@
 namespace rtd::security {
 namespace {
 
-template <auto Free>
-struct FreeWith {
-  template <class T>
-  void operator()(T* object) const {
-    Free(object);
-  }
-};
 using Bio = std::unique_ptr<BIO, FreeWith<BIO_free_all>>;
 using Pkcs7 = std::unique_ptr<PKCS7, FreeWith<PKCS7_free>>;
 
@@ -96,14 +88,6 @@ std::int64_t seconds(const ASN1_TIME* time) {
 }
 
 }  // namespace
-
-void FreeOpenssl::operator()(X509* certificate) const {
-  X509_free(certificate);
-}
-
-void FreeOpenssl::operator()(EVP_PKEY* key) const {
-  EVP_PKEY_free(key);
-}
 
 Identity create_ca(const std::string& common_name, const Validity& validity) {
   Identity ca{nullptr, generate_key()};

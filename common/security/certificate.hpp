@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openssl/types.h>
+#include <openssl/evp.h>
+#include <openssl/x509.h>
 
 #include <cstdint>
 #include <memory>
@@ -18,12 +19,15 @@ class SecurityError : public std::runtime_error {
 };
 
 /// Owners of OpenSSL's objects.
-struct FreeOpenssl {
-  void operator()(X509* certificate) const;
-  void operator()(EVP_PKEY* key) const;
+template <auto kFree>
+struct FreeWith {
+  template <class T>
+  void operator()(T* object) const {
+    kFree(object);
+  }
 };
-using Certificate = std::unique_ptr<X509, FreeOpenssl>;
-using Key = std::unique_ptr<EVP_PKEY, FreeOpenssl>;
+using Certificate = std::unique_ptr<X509, FreeWith<X509_free>>;
+using Key = std::unique_ptr<EVP_PKEY, FreeWith<EVP_PKEY_free>>;
 
 /// From when to when, in seconds since 1970 (UTC).
 struct Validity {

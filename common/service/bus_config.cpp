@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <ranges>
 
 #include "common/security/keystore_layout.hpp"
 
@@ -17,9 +18,7 @@ namespace rtd::service {
 namespace {
 
 std::string profile_names() {
-  std::string names;
-  for (const auto& [name, text] : built_in_profiles()) names += (names.empty() ? "" : ", ") + name;
-  return names;
+  return fmt::format("{}", fmt::join(std::views::keys(built_in_profiles()), ", "));
 }
 
 bool is_file_name(const std::string& profile) {

@@ -8,21 +8,14 @@
 namespace rtd::service {
 namespace {
 
-constexpr std::int64_t kHungAfterNs = 1'200'000'000, kFarDeadAfterNs = 1'200'000'000;
+constexpr std::int64_t kSilentAfterNs = 1'200'000'000;
 
 }  // namespace
 
 PeerHealth judge(const PeerEvidence& evidence) {
-  switch (evidence.process) {
-    case ProcessState::kGone:
-      return evidence.silent_ns >= kSuspectAfterNs ? PeerHealth::kDead : PeerHealth::kAlive;
-    case ProcessState::kUnknown:
-      return evidence.silent_ns >= kFarDeadAfterNs ? PeerHealth::kDead : PeerHealth::kAlive;
-    case ProcessState::kStopped:
-    case ProcessState::kRunning:
-      break;
-  }
-  return evidence.silent_ns >= kHungAfterNs ? PeerHealth::kHung : PeerHealth::kAlive;
+  const bool gone = evidence.process == ProcessState::kGone;
+  if (evidence.silent_ns < (gone ? kSuspectAfterNs : kSilentAfterNs)) return PeerHealth::kAlive;
+  return evidence.process == ProcessState::kRunning ? PeerHealth::kHung : PeerHealth::kDead;
 }
 
 /// "PID (name) STATE ...": the name may contain anything, so the last parenthesis counts.
@@ -31,28 +24,13 @@ ProcessState process_state(std::int64_t pid, const std::string& proc_dir) {
   const std::string text(std::istreambuf_iterator<char>(file), {});
   const std::size_t name_end = text.rfind(')');
   if (name_end == std::string::npos || name_end + 2 >= text.size()) return ProcessState::kGone;
-  switch (text[name_end + 2]) {
-    case 'Z':
-    case 'X':
-      return ProcessState::kGone;
-    case 'T':
-    case 't':
-      return ProcessState::kStopped;
-    default:
-      return ProcessState::kRunning;
-  }
+  const char state = text[name_end + 2];
+  return state == 'Z' || state == 'X' ? ProcessState::kGone : ProcessState::kRunning;
 }
 
 const char* to_string(PeerHealth health) {
-  switch (health) {
-    case PeerHealth::kAlive:
-      return "alive";
-    case PeerHealth::kDead:
-      return "dead";
-    case PeerHealth::kHung:
-      break;
-  }
-  return "hung";
+  constexpr const char* kNames[] = {"alive", "dead", "hung"};
+  return kNames[static_cast<std::size_t>(health)];
 }
 
 }  // namespace rtd::service

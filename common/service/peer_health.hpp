@@ -7,7 +7,11 @@
 
 namespace rtd::service {
 
-enum class ProcessState { kUnknown, kRunning, kStopped, kGone };
+enum class ProcessState {
+  kUnknown,
+  kRunning,  ///< or stopped by a signal
+  kGone
+};
 enum class PeerHealth {
   kAlive,
   kDead,  ///< its process is gone, or nothing is received from another host

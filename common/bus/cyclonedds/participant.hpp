@@ -8,12 +8,19 @@
 #include <mutex>
 #include <string>
 
-#include "common/bus/cyclonedds/domain.hpp"
+#include "common/bus/cyclonedds/entity.hpp"
 #include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/cyclonedds/unmatched_participants.hpp"
 #include "common/bus/discovery.hpp"
 
 namespace rtd::bus::cyclonedds {
+
+/// Cyclone has one domain of a number in a process, and one configuration of it: all connections share it, the last one
+/// ends it.
+struct Domain {
+  std::string config;
+  Entity entity;
+};
 
 struct VendorTopic {
   dds_entity_t handle = 0;

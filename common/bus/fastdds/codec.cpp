@@ -2,7 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/codec.hpp"
 
+#include <fastdds/rtps/common/SerializedPayload.h>
+#include <fastdds/rtps/common/WriteParams.h>
+
+#include <algorithm>
+#include <cstring>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/topic/TopicDataType.hpp>
 
 #include "common/bus/fastdds/message_type.hpp"
 #include "common/bus/message_pool.hpp"
@@ -11,6 +17,7 @@ namespace rtd::bus::fastdds {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastrtps::types::ReturnCode_t;
 
 template <class T>
@@ -56,11 +63,136 @@ TakenSample MessageCodec<T>::take(dds::DataReader& reader) {
   return {TakenSample::Kind::kMessage, std::move(message)};
 }
 
+/// What Fast DDS hands to the type support: one side of it is in use.
+struct RawData {
+  std::span<const std::byte> output;
+  ByteBlock* input = nullptr;
+};
+
+/// Passes the serialised sample on as it is, whatever its type.
+class RawType : public dds::TopicDataType {
+ public:
+  using Payload = rtps::SerializedPayload_t;
+
+  RawType(const RawTopic& topic, bool bounded, std::uint32_t fixed_bytes) : bounded_(bounded) {
+    constexpr std::uint32_t kFirstGuess = 1024;       // memory grows with the samples
+    constexpr std::uint32_t kMostInPlace = 64 << 20;  // the size is not announced; a larger sample would be refused
+    setName(topic.type.c_str());
+    m_typeSize = fixed_bytes > 0 ? fixed_bytes : (bounded ? kMostInPlace : kFirstGuess);
+    m_isGetKeyDefined = topic.keyed;
+    auto_fill_type_object(false);
+    auto_fill_type_information(false);
+  }
+
+  bool serialize(void* data, Payload* payload) override {
+    const std::span<const std::byte> cdr = static_cast<const RawData*>(data)->output;
+    if (payload->max_size < cdr.size()) return false;
+    payload->encapsulation = (std::to_integer<unsigned>(cdr[1]) & 1U) != 0 ? CDR_LE : CDR_BE;
+    std::memcpy(payload->data, cdr.data(), cdr.size());
+    payload->length = static_cast<std::uint32_t>(cdr.size());
+    return true;
+  }
+  bool deserialize(Payload* payload, void* data) override {
+    ByteBlock* const block = static_cast<RawData*>(data)->input;
+    if (block == nullptr) return false;
+    block->assign(std::as_bytes(std::span(payload->data, payload->length)));
+    return true;
+  }
+  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
+    return [size = static_cast<std::uint32_t>(static_cast<const RawData*>(data)->output.size())] { return size; };
+  }
+  void* createData() override { return new RawData; }
+  void deleteData(void* data) override { delete static_cast<RawData*>(data); }
+  /// One instance for all keys: which bytes are the key is not known.
+  bool getKey(void*, rtps::InstanceHandle_t* handle, bool) override {
+    const rtps::octet kOnlyInstance[16] = {1};
+    for (int i = 0; i < 16; ++i) handle->value[i] = kOnlyInstance[i];
+    return true;
+  }
+  bool is_bounded() const override { return bounded_; }
+  bool is_plain() const override { return bounded_; }
+
+ private:
+  const bool bounded_;  // what shared memory asks for
+};
+
+class RawCodec : public Codec {
+ public:
+  RawCodec(RawTopic topic, bool bounded, std::uint32_t fixed_bytes)
+      : topic_(std::move(topic)), bounded_(bounded), fixed_bytes_(fixed_bytes) {}
+
+  bool plain() const override { return bounded_; }
+  dds::TypeSupport create_type() const override {
+    return dds::TypeSupport(new RawType(topic_, bounded_, fixed_bytes_));
+  }
+  bool write(dds::DataWriter& writer, const void* message) const override;
+  TakenSample take(dds::DataReader& reader) override;
+  std::shared_ptr<void> allocate() const override { throw BusError("a raw writer lends no memory"); }
+
+ private:
+  const RawTopic topic_;
+  const bool bounded_;
+  const std::uint32_t fixed_bytes_;
+  MessagePool<ByteBlock> pool_;
+};
+
+bool RawCodec::write(dds::DataWriter& writer, const void* message) const {
+  const RawOutput& output = *static_cast<const RawOutput*>(message);
+  const bool right_size = fixed_bytes_ == 0 || output.cdr.size() == fixed_bytes_;
+  if (output.cdr.size() < ByteBlock::kCdrHeaderBytes || !right_size) return false;
+  RawData data{output.cdr, nullptr};
+  if (output.source_ns == 0) return writer.write(&data);
+  rtps::WriteParams params;
+  params.source_timestamp().from_ns(output.source_ns);
+  return writer.write(&data, params);
+}
+
+std::int64_t known_or(const rtps::Time_t& time, std::int64_t fallback_ns) {
+  const bool known = time.seconds() > 0 && time != rtps::c_RTPSTimeInfinite && time != rtps::c_RTPSTimeInvalid;
+  return known ? time.to_ns() : fallback_ns;
+}
+
+std::int64_t now_ns() {
+  rtps::Time_t now;
+  rtps::Time_t::now(now);
+  return now.to_ns();
+}
+
+TakenSample RawCodec::take(dds::DataReader& reader) {
+  auto block = pool_.acquire();
+  RawData data{{}, block.get()};
+  dds::SampleInfo info;
+  if (reader.take_next_sample(&data, &info) != ReturnCode_t::RETCODE_OK) return {};
+  auto sample = std::make_shared<RawSample>();
+  sample->writer = to_writer_id(info.sample_identity.writer_guid());
+  sample->sequence = static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long());
+  sample->received_ns = known_or(info.reception_timestamp, now_ns());
+  sample->source_ns = known_or(info.source_timestamp, sample->received_ns);
+  // A dispose or the like has a number too: without it the next sample would seem to be missing.
+  if (info.valid_data) sample->bytes = std::move(block);
+  return {TakenSample::Kind::kMessage, std::move(sample)};
+}
+
 }  // namespace
 
 std::unique_ptr<Codec> create_codec(MessageId id) {
   return visit_message_type(id,
                             []<class T>() -> std::unique_ptr<Codec> { return std::make_unique<MessageCodec<T>>(); });
+}
+
+std::unique_ptr<Codec> create_raw_codec(const RawTopic& topic, const RawReaderOptions& options) {
+  return std::make_unique<RawCodec>(topic, options.in_place, 0);
+}
+
+std::unique_ptr<Codec> create_raw_codec(const RawTopic& topic, const RawWriterOptions& options) {
+  return std::make_unique<RawCodec>(topic, options.fixed_bytes > 0, options.fixed_bytes);
+}
+
+WriterId to_writer_id(const rtps::GUID_t& guid) {
+  WriterId id{};
+  std::copy_n(guid.guidPrefix.value, rtps::GuidPrefix_t::size, id.begin());
+  std::copy_n(guid.entityId.value, rtps::EntityId_t::size, id.begin() + rtps::GuidPrefix_t::size);
+  return id;
 }
 
 }  // namespace rtd::bus::fastdds

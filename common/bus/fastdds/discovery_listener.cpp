@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/discovery_listener.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <sstream>
 #include <string>
