@@ -67,7 +67,7 @@ Found check_place(const std::set<std::pair<std::uint64_t, std::uint64_t>>& seen,
 void IndexAudit::begin_chunk(std::uint64_t offset, std::uint64_t length, const Chunk& chunk) {
   chunks_[offset] = index_of(chunk, offset, length);
   open_chunk_ = offset;
-  forget_messages();
+  lose_content();
 }
 
 void IndexAudit::message_in_chunk(const Message& message, std::uint64_t offset_in_chunk) {
@@ -76,7 +76,7 @@ void IndexAudit::message_in_chunk(const Message& message, std::uint64_t offset_i
   messages_.push_back({offset_in_chunk, message.log_time, message.channel_id});
 }
 
-void IndexAudit::forget_messages() {
+void IndexAudit::lose_content() {
   messages_.clear();
   counts_.clear();
 }

@@ -37,7 +37,7 @@ class Definitions {
 class IndexAudit {
  public:
   void begin_chunk(std::uint64_t offset, std::uint64_t length, const Chunk& chunk);
-  void lose_content() { forget_messages(); }  ///< of the last chunk: its message indexes are then not checked
+  void lose_content();                        ///< of the last chunk: its message indexes are then not checked
   void lose_chunk() { open_chunk_.reset(); }  ///< what follows belongs to a chunk that was not seen
   void message() { ++message_count_; }
   void message_in_chunk(const Message& message, std::uint64_t offset_in_chunk);
@@ -56,7 +56,6 @@ class IndexAudit {
   std::uint64_t message_count() const { return message_count_; }
 
  private:
-  void forget_messages();
   struct SeenMessage {
     std::uint64_t offset = 0;
     Timestamp log_time = 0;

@@ -157,7 +157,8 @@ ChannelId Writer::add(Channel channel) {
 
 void Writer::write(const Message& message) {
   require_open();
-  require_known(message);
+  require(channels_.contains(message.channel_id),
+          "a message names channel " + std::to_string(message.channel_id) + ", which was not written before");
   if (!options_.use_chunks) {
     Bytes record;
     append_record(record, message);
@@ -249,11 +250,6 @@ void Writer::split(io::ByteSink& next) {
 
 void Writer::require_open() const {
   require(!closed_, "the file is closed; nothing can be written to it any more");
-}
-
-void Writer::require_known(const Message& message) const {
-  require(channels_.contains(message.channel_id),
-          "a message names channel " + std::to_string(message.channel_id) + ", which was not written before");
 }
 
 template <class R>

@@ -101,7 +101,6 @@ class Writer {
  private:
   void begin();
   void require_open() const;
-  void require_known(const Message& message) const;
   template <class R>
   void define(const R& record);
   void repeat_definitions(ChannelId id);

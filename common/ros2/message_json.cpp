@@ -9,8 +9,8 @@
 #include <cmath>
 #include <map>
 
-#include "common/ros2/message_fields.hpp"
 #include "common/ros2/names.hpp"
+#include "common/ros2/type_description.hpp"
 
 namespace rtd::ros2 {
 namespace {

@@ -149,23 +149,7 @@ Message decode(Wire wire, Bytes bytes) {
   return message;
 }
 
-/// Where written bytes go.
-class ByteVector {
- public:
-  void append(const void* source, std::size_t size) {
-    const auto* first = static_cast<const std::uint8_t*>(source);
-    bytes_.insert(bytes_.end(), first, first + size);
-  }
-  void pad(std::size_t size) { bytes_.resize(bytes_.size() + size); }
-  std::size_t size() const { return bytes_.size(); }
-  void reserve(std::size_t size) { bytes_.reserve(size); }
-  std::vector<std::uint8_t> take() { return std::move(bytes_); }
-
- private:
-  std::vector<std::uint8_t> bytes_;
-};
-
-/// Writes into memory that is there already.
+/// Where written bytes go: memory that is there already.
 class ByteSpan {
  public:
   explicit ByteSpan(std::span<std::uint8_t> memory) : memory_(memory) {}
@@ -198,8 +182,8 @@ class ByteCount {
   std::size_t size_ = 0;
 };
 
-/// Writes messages by their lists of fields.
-template <Wire kFormat, class Output = ByteVector>
+/// Writes messages by their lists of fields into a ByteSpan or ByteCount.
+template <Wire kFormat, class Output>
 class WireWriter {
  public:
   explicit WireWriter(Output output = {}) : output_(std::move(output)) {
@@ -283,11 +267,10 @@ std::size_t encoded_size(const Message& message) {
 
 template <Wire kFormat, class Message>
 std::vector<std::uint8_t> encode(const Message& message) {
-  ByteVector bytes;
-  bytes.reserve(encoded_size<kFormat>(message));
-  WireWriter<kFormat> writer(std::move(bytes));
+  std::vector<std::uint8_t> bytes(encoded_size<kFormat>(message));
+  WireWriter<kFormat, ByteSpan> writer{ByteSpan(bytes)};
   writer(message);
-  return writer.output().take();
+  return bytes;
 }
 
 }  // namespace rtd::ros

@@ -4,11 +4,13 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <ctime>
 #include <iostream>
 #include <utility>
@@ -30,6 +32,29 @@ int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>
     return app.exit(error) == 0 ? kOk : kUsageOrConfig;
   }
   return work();
+}
+
+InterruptSignals::InterruptSignals() {
+  // A shell starts background jobs with SIGINT ignored, and an ignored signal never reaches the descriptor.
+  for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_DFL);
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, number);
+  pthread_sigmask(SIG_BLOCK, &signals, &previous_);
+  fd_ = signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+}
+
+InterruptSignals::~InterruptSignals() {
+  take();
+  close(fd_);
+  pthread_sigmask(SIG_SETMASK, &previous_, nullptr);
+}
+
+int InterruptSignals::take() {
+  int count = 0;
+  signalfd_siginfo info{};
+  while (read(fd_, &info, sizeof(info)) == static_cast<ssize_t>(sizeof(info))) ++count;
+  return count;
 }
 
 std::string progress_line(const std::string& work, std::uint64_t done, std::uint64_t total, double elapsed_s) {

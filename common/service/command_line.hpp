@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <signal.h>
+
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -18,6 +20,24 @@ namespace rtd::service {
 /// The main function of a tool: parses the command line into what `app` is bound to, then runs `work`. Returns the exit
 /// code of `work`; 0 after --help, 2 for a wrong command line.
 int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work);
+
+/// SIGINT, SIGTERM and SIGHUP as a readable descriptor. Make one before any thread is started: the threads inherit the
+/// blocked mask. Child processes of PosixProcessHost start with an empty mask.
+class InterruptSignals {
+ public:
+  InterruptSignals();
+  ~InterruptSignals();
+  InterruptSignals(const InterruptSignals&) = delete;
+  InterruptSignals& operator=(const InterruptSignals&) = delete;
+
+  int fd() const { return fd_; }
+  /// Signals that came since the last call.
+  int take();
+
+ private:
+  sigset_t previous_{};
+  int fd_ = -1;
+};
 
 /// Says how far long work is: one line with a bar that is rewritten on a terminal, a line every ten seconds elsewhere;
 /// nothing for work that ends within a second.

@@ -42,11 +42,6 @@ struct Range {
 ///     }
 ///   };
 ///
-///   ServiceConfig config;
-///   ConfigBinder binder;
-///   binder.section("dense", config);  // run_service() does this for Service::Config
-///   binder.load_file("config.yaml", config_sections());
-///
 /// Bound settings must outlive the binder. Not thread-safe.
 class ConfigBinder {
  public:

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "common/bus/topic_listener.hpp"
+#include "common/bus/raw_bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "services/camera/core/live/live_source.hpp"
 

@@ -4,7 +4,6 @@
 #include <iostream>
 
 #include "common/service/command_line.hpp"
-#include "common/service/interrupt_signals.hpp"
 #include "services/evaluation/commands/ablate_command.hpp"
 #include "services/evaluation/commands/eval_command.hpp"
 #include "services/evaluation/commands/report_command.hpp"

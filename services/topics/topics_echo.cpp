@@ -6,7 +6,7 @@
 #include <optional>
 #include <ostream>
 
-#include "common/bus/topic_listener.hpp"
+#include "common/bus/raw_bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"

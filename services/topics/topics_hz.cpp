@@ -7,7 +7,7 @@
 #include <mutex>
 #include <ostream>
 
-#include "common/bus/topic_listener.hpp"
+#include "common/bus/raw_bus.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/topics/core/topic_report.hpp"
 #include "services/topics/topics_session.hpp"

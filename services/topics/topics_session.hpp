@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/bus/raw_bus.hpp"
-#include "common/service/interrupt_signals.hpp"
+#include "common/service/command_line.hpp"
 #include "services/topics/topics_command.hpp"
 
 namespace rtd::topics {

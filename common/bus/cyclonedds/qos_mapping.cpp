@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/cyclonedds/qos_mapping.hpp"
 
-#include "common/ros2/type_hash.hpp"
+#include "common/ros2/type_description.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {

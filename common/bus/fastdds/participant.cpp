@@ -111,7 +111,6 @@ dds::Subscriber& Participant::subscriber(const std::string& topic) {
 }
 
 Participant::~Participant() {
-  if (participant_ == nullptr) return;
   listener_.stop();
   silence();
   participant_->delete_contained_entities();

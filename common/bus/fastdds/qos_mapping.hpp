@@ -9,7 +9,7 @@
 #include <string>
 
 #include "common/bus/raw_bus.hpp"
-#include "common/ros2/type_hash.hpp"
+#include "common/ros2/type_description.hpp"
 
 namespace rtd::bus::fastdds {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/service/interrupt_signals.hpp"
+#include "common/service/command_line.hpp"
 #include "services/launcher/core/run/log_tail.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
 

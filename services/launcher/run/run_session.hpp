@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
+#include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
-#include "common/service/interrupt_signals.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
 #include "services/launcher/core/run/terminal.hpp"
 #include "services/launcher/core/run/usage_book.hpp"

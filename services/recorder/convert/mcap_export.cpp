@@ -9,7 +9,7 @@
 
 #include "common/mcap/writer.hpp"
 #include "common/ros2/names.hpp"
-#include "common/ros2/type_definition.hpp"
+#include "common/ros2/type_description.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "services/camera/core/recording/recording_source.hpp"
 #include "services/camera/core/recording/ros_images.hpp"

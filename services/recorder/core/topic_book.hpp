@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/bus/raw_bus.hpp"
-#include "common/ros2/type_definition.hpp"
+#include "common/ros2/type_description.hpp"
 
 namespace rtd::recorder {
 

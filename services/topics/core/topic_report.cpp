@@ -9,7 +9,7 @@
 
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"
-#include "common/ros2/type_hash.hpp"
+#include "common/ros2/type_description.hpp"
 #include "common/service/command_line.hpp"
 
 namespace rtd::topics {

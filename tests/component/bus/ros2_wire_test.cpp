@@ -10,7 +10,7 @@
 
 #include "common/bus/raw_bus.hpp"
 #include "common/ros2/names.hpp"
-#include "common/ros2/type_hash.hpp"
+#include "common/ros2/type_description.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/peer_process.hpp"
 

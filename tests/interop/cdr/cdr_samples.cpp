@@ -15,9 +15,8 @@
 #include <vector>
 
 #include "common/bus/message_types.hpp"
-#include "common/ros2/message_fields.hpp"
 #include "common/ros2/names.hpp"
-#include "common/ros2/type_definition.hpp"
+#include "common/ros2/type_description.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "tests/unit/bus/random_message.hpp"
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The lists of fields against the IDL files, and the texts that recordings carry.
-#include "common/ros2/type_definition.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -14,9 +13,8 @@
 #include <set>
 #include <sstream>
 
-#include "common/ros2/message_fields.hpp"
 #include "common/ros2/names.hpp"
-#include "common/ros2/type_hash.hpp"
+#include "common/ros2/type_description.hpp"
 
 namespace rtd::ros2 {
 namespace {

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/ros2/type_hash.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 #include <stdexcept>
 
-#include "common/ros2/message_fields.hpp"
+#include "common/ros2/type_description.hpp"
 
 namespace rtd::ros2 {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "common/vision/hamming.hpp"
+#include "common/vision/features.hpp"
 #include "common/vision/reprojection.hpp"
 
 namespace rtd::filter {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/geometry/camera_model.hpp"
-#include "common/vision/feature_grid.hpp"
+#include "common/vision/features.hpp"
 #include "services/filter/core/filter_config.hpp"
 #include "services/filter/core/motion/view_store.hpp"
 

@@ -12,7 +12,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/msg/features.hpp"
-#include "common/vision/feature_grid.hpp"
+#include "common/vision/features.hpp"
 #include "common/vision/reprojection.hpp"
 #include "services/slam/core/slam_config.hpp"
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/vision/hamming.hpp"
+#include "common/vision/features.hpp"
 #include "services/slam/core/map/frame.hpp"
 #include "services/slam/core/map/landmark.hpp"
 

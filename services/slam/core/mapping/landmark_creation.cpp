@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "common/geometry/se3.hpp"
-#include "common/vision/hamming.hpp"
+#include "common/vision/features.hpp"
 #include "services/slam/core/map/frame.hpp"
 
 namespace rtd::slam {

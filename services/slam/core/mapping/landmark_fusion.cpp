@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "common/vision/hamming.hpp"
+#include "common/vision/features.hpp"
 #include "services/slam/core/map/frame.hpp"
 #include "services/slam/core/tracking/matcher.hpp"
 

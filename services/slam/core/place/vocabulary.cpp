@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "common/vision/hamming.hpp"
+#include "common/vision/features.hpp"
 
 namespace rtd::slam {
 namespace {

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/vision/hamming.hpp"
+#include "common/vision/features.hpp"
 
 namespace rtd::slam {
 namespace {

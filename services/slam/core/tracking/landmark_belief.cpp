@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "common/vision/hamming.hpp"
+#include "common/vision/features.hpp"
 #include "services/slam/core/map/frame.hpp"
 #include "services/slam/core/tracking/matcher.hpp"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <numbers>
 
-#include "common/vision/hamming.hpp"
+#include "common/vision/features.hpp"
 #include "services/slam/core/map/frame.hpp"
 
 namespace rtd::slam {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-#include "common/vision/hamming.hpp"
+#include "common/vision/features.hpp"
 #include "services/filter/core/orb/corners.hpp"
 #include "tests/unit/filter/orb/test_images.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <cstring>
 
-#include "common/vision/hamming.hpp"
+#include "common/vision/features.hpp"
 #include "tests/unit/filter/orb/test_images.hpp"
 
 namespace rtd::filter {

@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "common/vision/hamming.hpp"
+#include "common/vision/features.hpp"
 #include "services/slam/core/place/vocabulary_training.hpp"
 
 namespace rtd::slam {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -72,5 +74,17 @@ class FeatureGrid {
   std::vector<std::uint16_t> starts_;   ///< first entry of each cell in indices_, one more at the end
   std::vector<std::uint16_t> indices_;  ///< features ordered by cell
 };
+
+/// Number of differing bits of two 256-bit descriptors.
+inline int hamming_distance(const msg::Descriptor& a, const msg::Descriptor& b) {
+  int distance = 0;
+  for (std::size_t i = 0; i < a.size(); i += sizeof(std::uint64_t)) {
+    std::uint64_t x = 0, y = 0;
+    std::memcpy(&x, a.data() + i, sizeof(x));
+    std::memcpy(&y, b.data() + i, sizeof(y));
+    distance += std::popcount(x ^ y);
+  }
+  return distance;
+}
 
 }  // namespace rtd::vision

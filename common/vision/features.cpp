@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/vision/feature_grid.hpp"
+#include "common/vision/features.hpp"
 
 #include <limits>
 #include <numeric>

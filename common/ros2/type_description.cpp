@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/ros2/type_description.hpp"
+
+#include <fmt/format.h>
+#include <openssl/sha.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <sstream>
+
+#include "common/bus/message_types.hpp"
+#include "common/ros2/names.hpp"
+#include "common/ros_codec/wire.hpp"
+
+namespace rtd::ros2 {
+namespace {
+
+template <class Number>
+std::string word_of() {
+  if constexpr (std::is_same_v<Number, bool>) return "bool";
+  const std::string kind = std::is_floating_point_v<Number> ? "float" : std::is_signed_v<Number> ? "int" : "uint";
+  return kind + std::to_string(8 * sizeof(Number));
+}
+
+/// Collects types from the lists of fields of their structs.
+class Collector {
+ public:
+  template <class T>
+  void add() {
+    const std::string type = msg::type_name(msg::TypeOf<T>());
+    if (types_.contains(type)) return;
+    std::vector<MessageField> fields;
+    msg::for_each_field_type<T>([&]<class Field>(const char* name) {
+      MessageField& field = fields.emplace_back();
+      field.name = name;
+      describe(field, msg::TypeOf<Field>());
+    });
+    if (type == "diagnostic_msgs/DiagnosticStatus") fields.front().type = "byte";  // on the wire a uint8
+    types_[type] = std::move(fields);
+  }
+  MessageFields take() { return std::move(types_); }
+
+ private:
+  template <class T>
+  void describe(MessageField& field, msg::TypeOf<T>) {
+    if constexpr (msg::Message<T>) {
+      field.type = msg::type_name(msg::TypeOf<T>());
+      add<T>();
+    } else if constexpr (std::is_enum_v<T>) {
+      field.type = word_of<std::underlying_type_t<T>>();
+    } else if constexpr (ros::UnalignedNumber<T>) {
+      field.type = word_of<typename T::Number>();
+    } else {
+      field.type = word_of<T>();
+    }
+  }
+  void describe(MessageField& field, msg::TypeOf<std::string>) { field.type = "string"; }
+  template <class T>
+  void describe(MessageField& field, msg::TypeOf<std::vector<T>>) {
+    describe(field, msg::TypeOf<T>());
+    field.kind = MessageField::Kind::kSequence;
+  }
+  template <class T, std::size_t kSize>
+  void describe(MessageField& field, msg::TypeOf<std::array<T, kSize>>) {
+    describe(field, msg::TypeOf<T>());
+    field.kind = MessageField::Kind::kArray;
+    field.capacity = kSize;
+  }
+
+  MessageFields types_;
+};
+
+template <class... T>
+MessageFields fields_of_all(bus::TypeList<T...>) {
+  Collector collector;
+  (collector.add<T>(), ...);
+  return collector.take();
+}
+
+const std::string kSeparator(80, '=');  // between the types of one text, as rosbag2 has it
+
+/// What the .msg files of ROS 2 hold besides fields.
+std::string constants_of(const std::string& type) {
+  if (type == "diagnostic_msgs/DiagnosticStatus") return "byte OK=0\nbyte WARN=1\nbyte ERROR=2\nbyte STALE=3\n";
+  if (type != "sensor_msgs/PointField") return {};
+  return "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\n"
+         "uint8 FLOAT32=7\nuint8 FLOAT64=8\n";
+}
+
+std::string default_of(const std::string& type, const MessageField& field) {
+  if (type != "geometry_msgs/Quaternion") return {};
+  return field.name == "w" ? " 1" : " 0";
+}
+
+/// Types of the same package go without it, but for those that an older package has too.
+std::string type_text(const MessageField& field, const std::string& package) {
+  const bool ambiguous = field.type == "vision_msgs/Pose2D" || field.type == "vision_msgs/Point2D";
+  const bool local = field.type.starts_with(package + '/') && !ambiguous;
+  const std::string type = local ? field.type.substr(package.size() + 1) : field.type;
+  if (field.kind == MessageField::Kind::kSequence) return type + "[]";
+  return field.kind == MessageField::Kind::kOne ? type : type + '[' + std::to_string(field.capacity) + ']';
+}
+
+/// The .msg file of a type.
+std::string msg_text(const std::string& type) {
+  const std::string package = type.substr(0, type.find('/'));
+  std::string text = constants_of(type);
+  for (const MessageField& field : *fields_of(type)) {
+    text += type_text(field, package) + ' ' + field.name + default_of(type, field) + '\n';
+  }
+  return text;
+}
+
+/// The types that one is made of, each once, the type itself first.
+std::vector<std::string> closure(const std::string& type) {
+  std::vector<std::string> all{type};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (const MessageField& field : *fields_of(all[i])) {
+      const bool known = std::find(all.begin(), all.end(), field.type) != all.end();
+      if (field.is_message() && !known) all.push_back(field.type);
+    }
+  }
+  return all;
+}
+
+std::string ros2msg_text(const std::string& type) {
+  std::string text;
+  for (const std::string& part : closure(type)) {
+    if (!text.empty()) text += kSeparator + "\nMSG: " + part + '\n';
+    text += msg_text(part);
+  }
+  return text;
+}
+
+/// Without preprocessor lines, which readers of schemas do not know.
+std::string idl_text() {
+  std::string text;
+  std::istringstream lines(own_idl());
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with('#')) text += line + '\n';
+  }
+  return text;
+}
+
+const std::string kPrefix = "RIHS01_", kKey = "typehash=";
+
+/// The numbers of type_description_interfaces/msg/FieldType.
+int type_id(const MessageField& field) {
+  static const std::map<std::string, int> kPrimitive = {
+      {"int8", 2},   {"uint8", 3},    {"int16", 4},    {"uint16", 5}, {"int32", 6}, {"uint32", 7}, {"int64", 8},
+      {"uint64", 9}, {"float32", 10}, {"float64", 11}, {"bool", 15},  {"byte", 16}, {"string", 17}};
+  constexpr int kMessage = 1;
+  constexpr int kOffset[] = {0, 48, 144};  // by MessageField::Kind
+  return (field.is_message() ? kMessage : kPrimitive.at(field.type)) + kOffset[static_cast<int>(field.kind)];
+}
+
+/// "package/Type" as descriptions name it.
+std::string full_name(const std::string& type) {
+  const std::size_t slash = type.find('/');
+  return type.substr(0, slash) + "/msg" + type.substr(slash);
+}
+
+std::string describe(const MessageField& field) {
+  return fmt::format(
+      R"({{"name": "{}", "type": {{"type_id": {}, "capacity": {}, "string_capacity": 0, "nested_type_name": "{}"}}}})",
+      field.name, type_id(field), field.capacity, field.is_message() ? full_name(field.type) : "");
+}
+
+std::string describe(const std::string& type, const MessageFields& types) {
+  std::string fields;
+  for (const MessageField& field : types.at(type)) {
+    fields += (fields.empty() ? "" : ", ") + describe(field);
+  }
+  return fmt::format(R"({{"type_name": "{}", "fields": [{}]}})", full_name(type), fields);
+}
+
+/// The messages that one is made of, in the order of their names.
+void add_parts(const std::string& type, const MessageFields& types, std::set<std::string>& parts) {
+  for (const MessageField& field : types.at(type)) {
+    if (field.is_message() && parts.insert(field.type).second) add_parts(field.type, types, parts);
+  }
+}
+
+std::string description(const std::string& type, const MessageFields& types) {
+  std::set<std::string> parts;
+  add_parts(type, types, parts);
+  std::string referenced;
+  for (const std::string& part : parts) referenced += (referenced.empty() ? "" : ", ") + describe(part, types);
+  return fmt::format(R"({{"type_description": {}, "referenced_type_descriptions": [{}]}})", describe(type, types),
+                     referenced);
+}
+
+}  // namespace
+
+const MessageFields& message_fields() {
+  static const MessageFields kTypes = fields_of_all(bus::MessageTypes());
+  return kTypes;
+}
+
+const std::vector<MessageField>* fields_of(const std::string& type) {
+  const auto found = message_fields().find(type);
+  return found == message_fields().end() ? nullptr : &found->second;
+}
+
+TypeDefinition definition_of(const std::string& dds_type) {
+  const std::string type = short_type(dds_type);
+  if (fields_of(type) == nullptr) return {ros_type(dds_type), {}, {}};
+  if (type.starts_with("rtd_msgs/")) return {ros2::dds_type(ros_type(dds_type)), "omgidl", idl_text()};
+  return {ros_type(dds_type), "ros2msg", ros2msg_text(type)};
+}
+
+std::string type_hash(const std::string& type, const MessageFields& types) {
+  const std::string text = description(type, types);
+  unsigned char digest[SHA256_DIGEST_LENGTH];
+  SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(), digest);
+  std::string hash = kPrefix;
+  for (const unsigned char byte : digest) hash += fmt::format("{:02x}", byte);
+  return hash;
+}
+
+std::string type_hash(const std::string& dds_type) {
+  const std::string type = short_type(dds_type);
+  const bool known = fields_of(type) != nullptr && !type.starts_with("rtd_msgs/");
+  return known ? type_hash(type, message_fields()) : std::string();
+}
+
+std::string user_data_of(const std::string& dds_type) {
+  const std::string hash = type_hash(dds_type);
+  return hash.empty() ? std::string() : kKey + hash + ';';
+}
+
+std::string hash_in(const std::string& user_data) {
+  const std::size_t begin = user_data.find(kKey);
+  const bool is_key = begin == 0 || (begin != std::string::npos && user_data[begin - 1] == ';');
+  if (!is_key) return {};
+  const std::size_t value = begin + kKey.size();
+  return user_data.substr(value, user_data.find(';', value) - value);
+}
+
+}  // namespace rtd::ros2

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+/// Message types in the words of ROS 2: fields, definitions, hashes. By DDS name ("nav_msgs::msg::dds_::Odometry_")
+/// unless said otherwise.
+namespace rtd::ros2 {
+
+/// A field of a message type, in the words of .msg files.
+struct MessageField {
+  enum class Kind { kOne, kArray, kSequence };
+  std::string type;  ///< "float64", "string", or a message: "geometry_msgs/Pose"
+  std::string name;
+  Kind kind = Kind::kOne;
+  std::uint32_t capacity = 0;  ///< of an array
+  bool is_message() const { return type.find('/') != std::string::npos; }
+};
+
+/// The fields of message types by "package/Type".
+using MessageFields = std::map<std::string, std::vector<MessageField>>;
+
+/// Every type that the bus carries, and all that they are made of: the lists of common/msg.
+const MessageFields& message_fields();
+
+/// The fields of "package/Type"; null when the type is unknown.
+const std::vector<MessageField>* fields_of(const std::string& type);
+
+/// A type as the schema of a recording has it.
+struct TypeDefinition {
+  std::string name;  ///< "nav_msgs/msg/Odometry"; a type of our own: "rtd_msgs::msg::dds_::RgbdFrame_", as in its text
+  std::string encoding;  ///< "ros2msg", "omgidl", or empty for an unknown type
+  std::string text;      ///< complete, with all types that it is made of
+  bool known() const { return !encoding.empty(); }
+};
+
+TypeDefinition definition_of(const std::string& dds_type);
+
+/// The text of idl/rtd_msgs.idl.
+const std::string& own_idl();
+
+/// The hash by which ROS 2, from Iron on, checks that two programs mean the same type by one name: SHA-256 of
+/// its description as JSON (REP-2011, REP-2016). Writers and readers announce it in the USER_DATA of their discovery.
+/// "RIHS01_<64 hexadecimal digits>"; empty for a type that is unknown or our own.
+std::string type_hash(const std::string& dds_type);
+
+/// The same for "package/Type" from its fields and those of all that it is made of. Throws std::out_of_range when one
+/// is missing.
+std::string type_hash(const std::string& type, const MessageFields& types);
+
+/// The USER_DATA of an endpoint of that type: "typehash=RIHS01_...;", or empty.
+std::string user_data_of(const std::string& dds_type);
+
+/// The hash in the USER_DATA of an endpoint, or empty.
+std::string hash_in(const std::string& user_data);
+
+}  // namespace rtd::ros2
