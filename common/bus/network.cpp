@@ -62,10 +62,6 @@ std::uint16_t parse_port(const std::string& digits, const std::string& text, con
   throw BusError(option + " " + text + ": '" + digits + "' is not a port, write HOST or HOST:PORT with 1..65535");
 }
 
-bool is_loopback(const std::string& address) {
-  return address.starts_with("127.");
-}
-
 }  // namespace
 
 HostAddress resolve_host(const std::string& text, const std::string& option) {
@@ -125,7 +121,7 @@ std::string host_partition() {
 void require_network(const BusOptions& options) {
   const NetworkOptions& network = options.network;
   for (const std::string& peer : network.peers) {
-    if (network.loopback_only && !is_loopback(resolve_host(peer, "--peers").address))
+    if (network.loopback_only && !resolve_host(peer, "--peers").address.starts_with("127."))
       throw BusError("--peers " + peer + " is another host, but only loopback is used: add --profile lan or wifi");
   }
   if (network.discovery_server.empty()) return;

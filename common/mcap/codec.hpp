@@ -80,10 +80,7 @@ class Encoder {
  public:
   explicit Encoder(Bytes& out) : out_(out) {}
 
-  template <class... Fields>
-  void operator()(const Fields&... fields) {
-    (put(fields), ...);
-  }
+  void operator()(const auto&... fields) { (put(fields), ...); }
   void bytes64(ByteView data) {
     put(std::uint64_t{data.size()});
     rest(data);
@@ -139,10 +136,7 @@ class Decoder {
   bool ok() const { return ok_; }
   std::size_t left() const { return in_.size(); }
 
-  template <class... Fields>
-  void operator()(Fields&... fields) {
-    (get(fields), ...);
-  }
+  void operator()(auto&... fields) { (get(fields), ...); }
   void bytes64(ByteView& data) {
     std::uint64_t length = 0;
     get(length);

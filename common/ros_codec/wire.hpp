@@ -47,10 +47,7 @@ class WireReader {
  public:
   explicit WireReader(Bytes bytes) : cursor_(kFormat == Wire::kCdr ? body(bytes) : bytes) {}
 
-  template <class Message>
-  void operator()(Message& message) {
-    read(message);
-  }
+  void operator()(auto& message) { read(message); }
 
  private:
   static Bytes body(Bytes bytes) {
@@ -191,10 +188,7 @@ class WireWriter {
     if constexpr (kFormat == Wire::kCdr) output_.append(kLittleEndianCdr, kHeaderBytes);
   }
 
-  template <class Message>
-  void operator()(const Message& message) {
-    write(message);
-  }
+  void operator()(const auto& message) { write(message); }
   Output& output() { return output_; }
 
  private:
