@@ -21,7 +21,7 @@ Qos raw_reader_qos(const RawReaderOptions& options);
 /// What discovery finds of a writer; without identity and topic.
 RawQos from_vendor(const dds_qos_t& qos);
 
-/// Announces the type's hash, for ROS 2 (common/ros2/type_hash.hpp).
+/// Announces the type's hash, for ROS 2 (common/ros2/type_description.hpp).
 void set_type_hash(dds_qos_t& qos, const std::string& dds_type);
 /// What an endpoint announces beside its policies.
 std::string user_data(const dds_qos_t& qos);

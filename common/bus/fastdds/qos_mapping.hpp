@@ -22,7 +22,7 @@ eprosima::fastdds::dds::DataReaderQos reader_qos(const QosSettings& settings, bo
 eprosima::fastdds::dds::DataReaderQos raw_reader_qos(const RawReaderOptions& options);
 eprosima::fastdds::dds::DataWriterQos raw_writer_qos(const RawWriterOptions& options);
 
-/// With the type's hash in the user data, for ROS 2 (common/ros2/type_hash.hpp).
+/// With the type's hash in the user data, for ROS 2 (common/ros2/type_description.hpp).
 template <class Qos>
 Qos with_type_hash(Qos qos, const std::string& dds_type) {
   const std::string text = ros2::user_data_of(dds_type);
