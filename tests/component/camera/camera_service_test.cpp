@@ -3,6 +3,7 @@
 #include "services/camera/camera_service.hpp"
 
 #include <gmock/gmock.h>
+#include <atomic>
 #include <unistd.h>
 
 #include <condition_variable>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <fstream>
