@@ -3,9 +3,9 @@
 #include "services/camera/camera_service.hpp"
 
 #include <gmock/gmock.h>
-#include <atomic>
 #include <unistd.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <filesystem>
 #include <fstream>
