@@ -2,20 +2,107 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <string>
 #include <vector>
 
+#include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
-#include "services/launcher/cli/external_command.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
+#include "services/launcher/process/executable.hpp"
 #include "services/launcher/run/run_command.hpp"
 
 namespace rtd::launcher {
 namespace {
 
 const std::vector<std::string> kBuiltIn = {"run", "demo", "doctor", "version", "help"};
+
+struct ExternalCommand {
+  const char* name;        ///< "info" of `rtd info`
+  const char* executable;  ///< "rtd-recording"; also the CMake target that builds it
+  const char* help;
+  const char* group = "Services";
+  const char* subcommand = nullptr;  ///< what the executable calls it, if not `name`
+
+  /// An executable with several commands gets the command as its first argument.
+  std::vector<std::string> first_argument() const {
+    if (subcommand != nullptr) return {subcommand};
+    return std::string("rtd-") + name == executable ? std::vector<std::string>{} : std::vector<std::string>{name};
+  }
+};
+
+constexpr const char* kTools = "Tools";
+constexpr std::array kCommands = {
+    ExternalCommand{"eval", "rtd-eval", "Compare a trajectory with its ground truth (both in TUM format)", kTools,
+                    "trajectory"},
+    ExternalCommand{"eval-detector", "rtd-eval", "Measure precision, recall and time of detector models", kTools,
+                    "detector"},
+    ExternalCommand{"ablate", "rtd-eval", "Compare all filter modes, and mode rtd without each technique", kTools},
+    ExternalCommand{"report", "rtd-eval", "Write the report of a run again, from its run.json", kTools},
+    ExternalCommand{"info", "rtd-recording", "Show what a recording (MCAP) contains: topics, rates, losses, damage",
+                    kTools},
+    ExternalCommand{"diff", "rtd-recording", "Compare two recordings (MCAP) or two trajectories (TUM format)", kTools},
+    ExternalCommand{"convert", "rtd-recording", "Convert a bag, an MCAP file or a TUM folder to TUM or MCAP", kTools},
+    ExternalCommand{"map", "rtd-map", "Show what a map file contains; export its landmarks or keyframe poses", kTools},
+    ExternalCommand{"topics", "rtd-topics", "List the topics of a DDS domain, measure rates, print messages", kTools},
+    ExternalCommand{"keystore", "rtd-keystore", "Create and renew the keys for --secure", kTools},
+    ExternalCommand{"bench", "rtd-bench", "Measure feature extraction and transport beside a reference", kTools},
+    ExternalCommand{"camera", "rtd-camera", "Publish the frames of a source"},
+    ExternalCommand{"detector", "rtd-detector", "Detect people and objects in images"},
+    ExternalCommand{"filter", "rtd-filter", "Extract features and find those on moving objects"},
+    ExternalCommand{"slam", "rtd-slam", "Track the camera and build the map"},
+    ExternalCommand{"dense", "rtd-dense", "Fuse a dense static map"},
+    ExternalCommand{"record", "rtd-record", "Record topics to MCAP files; recover and join recordings"},
+    ExternalCommand{"replay", "rtd-replay", "Replay a recording"},
+};
+
+/// The names of installed executables rtd-NAME that the table does not have.
+std::vector<std::string> other_commands() {
+  std::vector<std::string> names = installed_commands();
+  std::erase_if(names, [](const std::string& name) {
+    const std::string executable = "rtd-" + name;
+    return std::ranges::count(kCommands, executable, &ExternalCommand::executable) > 0;
+  });
+  return names;
+}
+
+std::string unknown_command(const std::string& name) {
+  std::vector<std::string> known = kBuiltIn;
+  for (const ExternalCommand& command : kCommands) known.emplace_back(command.name);
+  for (const std::string& other : other_commands()) known.push_back(other);
+  const std::string near = service::nearest_name(name, known);
+  return "'" + name + "' is not an rtd command" +
+         (near.empty() ? "; 'rtd --help' lists all commands" : ", did you mean '" + near + "'?");
+}
+
+/// Adds the commands that are executables of their own to the help of `app`, and those that are installed but not ours.
+void list_external_commands(CLI::App& app) {
+  for (const ExternalCommand& command : kCommands) app.add_subcommand(command.name, command.help)->group(command.group);
+  app.footer([] {
+    std::string text = "'rtd COMMAND --help' shows the options of a command.";
+    for (const std::string& name : other_commands()) text += "\n  also installed: rtd " + name;
+    return text;
+  });
+}
+
+/// Becomes the executable of `rtd NAME`: a known one, else rtd-NAME. Returns only when that fails, with the exit code:
+/// the message says which CMake target builds it or, for an unknown name, which command is nearest to it.
+int run_external_command(const std::string& name, std::vector<std::string> arguments) {
+  const auto command = std::ranges::find(kCommands, name, &ExternalCommand::name);
+  const bool known = command != kCommands.end();
+  const std::string target = known ? command->executable : "rtd-" + name;
+  const std::string executable = find_executable(target);
+  if (executable.empty()) {
+    std::cerr << "rtd: " << (known ? missing_executable(target) : unknown_command(name)) << '\n';
+    return service::kUsageOrConfig;
+  }
+  const std::vector<std::string> first = known ? command->first_argument() : std::vector<std::string>{};
+  arguments.insert(arguments.begin(), first.begin(), first.end());
+  std::cerr << "rtd: " << replace_process(executable, arguments) << '\n';
+  return service::kRunFailed;
+}
 
 struct Requests {
   RunOptions run;
@@ -101,7 +188,7 @@ int front(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool named = !arguments.empty() && !arguments[0].empty() && arguments[0][0] != '-';
   if (named && std::ranges::count(kBuiltIn, arguments[0]) == 0)
-    return run_external_command(arguments[0], {arguments.begin() + 1, arguments.end()}, kBuiltIn);
+    return run_external_command(arguments[0], {arguments.begin() + 1, arguments.end()});
 
   Requests requests;
   CLI::App app{"RTD-SLAM: RGB-D SLAM that stays accurate when people walk through the view", "rtd"};

@@ -5,11 +5,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <regex>
+#include <stdexcept>
 #include <vector>
 
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
-#include "services/launcher/demo/tum_dataset.hpp"
 #include "services/launcher/process/executable.hpp"
 #include "services/launcher/run/run_command.hpp"
 
@@ -18,22 +19,45 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr char kSyntheticSource[] = "synthetic:office?frames=300";
+constexpr char kSequence[] = "walk_xyz";
+constexpr char kPublicUrl[] = "https://cvg.cit.tum.de/rgbd/dataset";
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+fs::path cache_folder() {
+  const std::string cache = environment("XDG_CACHE_HOME"), home = environment("HOME");
+  if (!cache.empty()) return fs::path(cache) / "rtd-slam" / "datasets";
+  if (!home.empty()) return fs::path(home) / ".cache" / "rtd-slam" / "datasets";
+  throw std::runtime_error("no folder for the data set: set HOME or XDG_CACHE_HOME");
+}
+
+void run_tool(const std::string& tool, const std::vector<std::string>& arguments, const std::string& failure) {
+  const std::string executable = find_executable(tool);
+  if (executable.empty()) throw std::runtime_error(tool + " is not installed: apt-get install " + tool);
+  if (run_in_foreground(executable, arguments) != 0) throw std::runtime_error(failure);
+}
+
+void unpack(const fs::path& archive, const fs::path& folder, const std::string& name) {
+  const fs::path unpacking = folder / ".unpacking";
+  fs::remove_all(unpacking);
+  fs::create_directories(unpacking);
+  run_tool("tar", {"-xzf", archive.string(), "-C", unpacking.string()},
+           archive.string() + " is not a complete archive: try again");
+  if (!fs::is_directory(unpacking / name)) {
+    throw std::runtime_error(archive.string() + " has no folder " + name + ": is RTD_TUM_URL right?");
+  }
+  fs::rename(unpacking / name, folder / name);
+  fs::remove_all(unpacking);
+  fs::remove(archive);
+}
 
 std::string choose_source(const DemoOptions& options) {
   if (!options.dataset.empty()) return "tum:" + fetch_tum_dataset(options.dataset);
-  const char* data = std::getenv("RTD_DATA_DIR");
-  std::error_code error;
-  if (data != nullptr && fs::is_directory(fs::path(data) / "walk_xyz", error)) {
-    return "tum:" + (fs::path(data) / "walk_xyz").string();
-  }
-  return kSyntheticSource;
-}
-
-/// The report of a demo is its result: without rtd-eval there is nothing to show.
-std::string require_rtd_eval() {
-  std::string executable = find_executable("rtd-eval");
-  if (executable.empty()) throw service::ConfigError(missing_executable("rtd-eval"));
-  return executable;
+  const std::string data = demo_data_folder();
+  return data.empty() ? kSyntheticSource : "tum:" + (fs::path(data) / kSequence).string();
 }
 
 /// Lockstep: the figures do not depend on the load of this host, and a second demo gives the same ones.
@@ -51,7 +75,7 @@ RunResult run_mode(const DemoOptions& options, const std::string& source, const 
 /// Shows both runs on one page and prints their errors. Returns the exit code of rtd-eval.
 int compare(const std::string& out_dir, const std::string& page) {
   const fs::path folder = out_dir;
-  return run_in_foreground(require_rtd_eval(),
+  return run_in_foreground(require_executable("rtd-eval"),
                            {"compare", (folder / "off").string(), (folder / "rtd").string(), "--label",
                             "every point (--filter off)", "--label", "static points (--filter rtd)", "--page", page});
 }
@@ -67,7 +91,7 @@ void print_next_steps(const std::string& page) {
 }
 
 int run_both(const DemoOptions& options, const std::string& source) {
-  require_rtd_eval();
+  require_executable("rtd-eval");  // a demo without its report has nothing to show
   std::cerr << "rtd demo, 1 of 2: every point is used (--filter off)\n";
   const RunResult off = run_mode(options, source, "off");
   if (off.report != ReportState::kWritten || off.code == service::kInterrupted) return off.code;
@@ -93,6 +117,39 @@ int demo(const DemoOptions& options) {
     std::cerr << "rtd demo: " << error.what() << '\n';
     return service::kRunFailed;
   }
+}
+
+std::string demo_data_folder() {
+  const std::string folder = environment("RTD_DATA_DIR");
+  std::error_code error;
+  return !folder.empty() && fs::is_directory(fs::path(folder) / kSequence, error) ? folder : "";
+}
+
+TumDataset tum_dataset(const std::string& name, const std::string& base_url) {
+  static const std::regex kName("(?:rgbd_dataset_)?fr(?:eiburg)?([123])_([a-z0-9_]+)");
+  std::smatch parts;
+  if (!std::regex_match(name, parts, kName)) {
+    throw service::ConfigError("--dataset " + name + ": not a TUM RGB-D sequence, use a name such as fr3_walking_xyz");
+  }
+  const std::string family = "freiburg" + parts[1].str();
+  const std::string folder = "rgbd_dataset_" + family + "_" + parts[2].str();
+  return {base_url + "/" + family + "/" + folder + ".tgz", folder};
+}
+
+std::string fetch_tum_dataset(const std::string& name) {
+  const std::string mirror = environment("RTD_TUM_URL");
+  const TumDataset dataset = tum_dataset(name, mirror.empty() ? kPublicUrl : mirror);
+  const fs::path cache = cache_folder(), folder = cache / dataset.folder, archive = folder.string() + ".tgz.part";
+  if (fs::is_directory(folder)) return folder.string();
+
+  fs::create_directories(cache);
+  std::cerr << "rtd: downloading " << dataset.url << " (several hundred MB) into " << cache.string() << '\n';
+  run_tool(
+      "curl", {"--fail", "--location", "--show-error", "--progress-bar", "--output", archive.string(), dataset.url},
+      "cannot download " + dataset.url + ": without a network use 'rtd demo' (no download), or unpack the sequence " +
+          "yourself and 'rtd run --source tum:FOLDER'; set RTD_TUM_URL to use a mirror");
+  unpack(archive, cache, dataset.folder);
+  return folder.string();
 }
 
 }  // namespace rtd::launcher

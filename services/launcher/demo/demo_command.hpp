@@ -20,4 +20,20 @@ struct DemoOptions {
 /// Runs the same source with filter mode off and rtd, compares both with the ground truth. Returns the exit code.
 int demo(const DemoOptions& options);
 
+/// RTD_DATA_DIR when it has the sequence that the demo plays, walk_xyz; else empty.
+std::string demo_data_folder();
+
+/// A sequence of the TUM RGB-D benchmark, on the network and on this host.
+struct TumDataset {
+  std::string url;     ///< of the archive
+  std::string folder;  ///< name of the folder in the archive, e.g. rgbd_dataset_freiburg3_walking_xyz
+};
+
+/// "fr3_walking_xyz" -> archive and folder below `base_url`. Throws service::ConfigError for other names.
+TumDataset tum_dataset(const std::string& name, const std::string& base_url);
+
+/// The folder of the sequence; downloaded (curl) and unpacked (tar) into the user's cache when it is not there yet.
+/// RTD_TUM_URL replaces the public address. Throws std::runtime_error with cause and fix.
+std::string fetch_tum_dataset(const std::string& name);
+
 }  // namespace rtd::launcher

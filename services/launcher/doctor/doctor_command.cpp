@@ -3,11 +3,10 @@
 #include "services/launcher/doctor/doctor_command.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <condition_variable>
-#include <cstdlib>
 #include <ctime>
-#include <filesystem>
 #include <mutex>
 #include <ostream>
 #include <string>
@@ -19,36 +18,24 @@
 #include "common/service/bus_config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/model_locator.hpp"
-#include "services/launcher/doctor/checks.hpp"
+#include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/process/executable.hpp"
 
 namespace rtd::launcher {
-namespace fs = std::filesystem;
 namespace {
 
-const char* to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kOk:
-      return "ok   ";
-    case Verdict::kWarn:
-      return "warn ";
-    case Verdict::kFail:
-      break;
-  }
-  return "FAIL ";
-}
+constexpr std::array kVerdicts = {"ok   ", "warn ", "FAIL "};  // by Verdict
 
 void check_services(Findings& findings) {
   std::string missing;
   for (const char* service : {"camera", "detector", "filter", "slam", "dense", "record"}) {
     if (find_executable(std::string("rtd-") + service).empty()) missing += std::string(" rtd-") + service;
   }
-  if (missing.empty()) {
-    findings.push_back({Verdict::kOk, "services: camera, detector, filter, slam, dense and record found"});
-  } else {
-    findings.push_back({Verdict::kFail, "services: missing" + missing +
-                                            "; build them with 'cmake --build <build folder> --target rtd_services'"});
-  }
+  findings.push_back(
+      missing.empty()
+          ? Finding{Verdict::kOk, "services: camera, detector, filter, slam, dense and record found"}
+          : Finding{Verdict::kFail, "services: missing" + missing +
+                                        "; build them with 'cmake --build <build folder> --target rtd_services'"});
 }
 
 /// The problems that the bus reports after joining.
@@ -56,7 +43,7 @@ class Problems {
  public:
   void add(const std::string& problem) {
     const std::lock_guard lock(mutex_);
-    if (std::find(all_.begin(), all_.end(), problem) == all_.end()) all_.push_back(problem);
+    if (std::ranges::count(all_, problem) == 0) all_.push_back(problem);
     changed_.notify_all();
   }
   /// Waits for the first.
@@ -146,15 +133,11 @@ void check_weights(Findings& findings) {
 }
 
 void check_data(Findings& findings) {
-  const char* folder = std::getenv("RTD_DATA_DIR");
-  std::error_code error;
-  if (folder != nullptr && fs::is_directory(fs::path(folder) / "walk_xyz", error)) {
-    findings.push_back({Verdict::kOk, std::string("data: ") + folder});
-  } else {
-    findings.push_back({Verdict::kOk,
-                        "data: RTD_DATA_DIR has no folder walk_xyz, so 'rtd demo' uses the synthetic room; "
-                        "'rtd demo --dataset fr3_walking_xyz' downloads a real sequence"});
-  }
+  const std::string folder = demo_data_folder();
+  findings.push_back({Verdict::kOk, !folder.empty()
+                                        ? "data: " + folder
+                                        : "data: RTD_DATA_DIR has no folder walk_xyz, so 'rtd demo' uses the synthetic "
+                                          "room; 'rtd demo --dataset fr3_walking_xyz' downloads a real sequence"});
 }
 
 int clean(std::ostream& out) {
@@ -179,7 +162,7 @@ int doctor(const DoctorOptions& options, std::ostream& out, std::ostream& err) t
   check_data(findings);
   bool failed = false;
   for (const Finding& finding : findings) {
-    out << to_string(finding.verdict) << finding.text << '\n';
+    out << kVerdicts.at(static_cast<std::size_t>(finding.verdict)) << finding.text << '\n';
     failed = failed || finding.verdict == Verdict::kFail;
   }
   return failed ? service::kRunFailed : service::kOk;

@@ -2,11 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <iosfwd>
+#include <string>
+#include <vector>
 
+#include "common/bus/bus_factory.hpp"
 #include "common/service/bus_config.hpp"
 
 namespace rtd::launcher {
+
+enum class Verdict { kOk, kWarn, kFail };
+
+/// One line of the doctor; a problem names its fix.
+struct Finding {
+  Verdict verdict;
+  std::string text;
+};
+using Findings = std::vector<Finding>;
 
 struct DoctorOptions {
   bool clean = false;  ///< only remove what killed processes left in /dev/shm, and list what was removed and what stays
@@ -17,5 +30,13 @@ struct DoctorOptions {
 /// `rtd doctor`: one line per check (ok, warn, FAIL), each problem with the command that fixes it. Returns 0 when a
 /// run can start with these options, 1 when a check failed, 2 when arguments or configuration are wrong (see `err`).
 int doctor(const DoctorOptions& options, std::ostream& out, std::ostream& err);
+
+/// With --secure: does the keystore exist, and can every enclave in it join the domain at `now_s`? A host need not have
+/// all enclaves. Returns a usable enclave for a test of the bus, preferably the one of the options; empty: none.
+std::string check_keystore(const bus::BusOptions& options, std::int64_t now_s, Findings& findings);
+
+/// Checks what the network settings need on this host: interfaces that are up, peers that resolve and are reachable,
+/// free UDP ports.
+void check_network(const bus::BusOptions& options, Findings& findings);
 
 }  // namespace rtd::launcher

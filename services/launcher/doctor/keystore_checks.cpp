@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/doctor/checks.hpp"
+#include "services/launcher/doctor/doctor_command.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,7 +34,7 @@ std::vector<security::Enclave> usable(const bus::BusOptions& options, const std:
 void report_missing(const std::vector<std::string>& there, Findings& findings) {
   std::vector<std::string> missing;
   for (const std::string& service : kServices)
-    if (std::find(there.begin(), there.end(), service) == there.end()) missing.push_back(service);
+    if (std::ranges::count(there, service) == 0) missing.push_back(service);
   if (missing.empty()) return;
   findings.push_back(
       {Verdict::kWarn, fmt::format("keystore: no enclave {}, so it cannot run on this host; if it should, "
@@ -64,16 +64,13 @@ std::string check_keystore(const bus::BusOptions& options, std::int64_t now_s, F
                                                     folder, options.domain, folder)});
     return {};
   }
-  const auto first = std::min_element(
-      good.begin(), good.end(), [](const auto& a, const auto& b) { return a.valid_until_s() < b.valid_until_s(); });
+  const auto first = std::ranges::min_element(good, {}, &security::Enclave::valid_until_s);
   const std::int64_t days = (first->valid_until_s() - now_s) / kDayS;
   findings.push_back(
       {days < kWarnDays ? Verdict::kWarn : Verdict::kOk,
        fmt::format("keystore: {}, {} enclaves; {} is the first to expire, in {} days{}", folder, good.size(),
                    first->name, days, days < kWarnDays ? fmt::format(": 'rtd keystore renew {}'", folder) : "")});
-  const auto requested = std::find_if(good.begin(), good.end(), [&](const security::Enclave& enclave) {
-    return enclave.name == options.security.enclave;
-  });
+  const auto requested = std::ranges::find(good, options.security.enclave, &security::Enclave::name);
   return requested != good.end() ? requested->name : good.front().name;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/doctor/checks.hpp"
+#include "services/launcher/doctor/doctor_command.hpp"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>

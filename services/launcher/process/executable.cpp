@@ -12,6 +12,8 @@
 #include <set>
 #include <sstream>
 
+#include "common/service/config.hpp"
+
 namespace rtd::launcher {
 namespace fs = std::filesystem;
 namespace {
@@ -60,13 +62,19 @@ std::string missing_executable(const std::string& name) {
          ") nor in PATH: build it with 'cmake --build <build folder> --target " + name + "'";
 }
 
+std::string require_executable(const std::string& name) {
+  std::string path = find_executable(name);
+  if (path.empty()) throw service::ConfigError(missing_executable(name));
+  return path;
+}
+
 std::vector<std::string> installed_commands() {
   std::set<std::string> names;
   for (const fs::path& directory : search_directories()) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(directory, error)) {
       const std::string name = entry.path().filename().string();
-      if (name.rfind(kPrefix, 0) == 0 && name.find('.') == std::string::npos && is_executable(entry.path())) {
+      if (name.starts_with(kPrefix) && name.find('.') == std::string::npos && is_executable(entry.path())) {
         names.insert(name.substr(sizeof(kPrefix) - 1));
       }
     }

@@ -16,6 +16,9 @@ std::string find_executable(const std::string& name);
 /// Why `name` cannot be run: where it was searched, and how to build it.
 std::string missing_executable(const std::string& name);
 
+/// find_executable(), but throws service::ConfigError with that reason.
+std::string require_executable(const std::string& name);
+
 /// NAME of each executable rtd-NAME beside this program and in PATH, sorted.
 std::vector<std::string> installed_commands();
 

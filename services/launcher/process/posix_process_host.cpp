@@ -9,10 +9,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <sstream>
 #include <utility>
 
 // linux/close_range.h is missing on older kernels' headers; the value is part of the kernel's interface.
@@ -22,6 +24,8 @@
 
 namespace rtd::launcher {
 namespace {
+
+constexpr std::size_t kMaxLineBytes = 4096;
 
 struct Pipe {
   int read_end = -1, write_end = -1;
@@ -71,11 +75,29 @@ int exec_error(int fd) {
   return got == static_cast<ssize_t>(sizeof(reason)) ? reason : 0;
 }
 
-double seconds(const timeval& t) {
-  return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
+double cpu_s(const rusage& usage) {
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 }  // namespace
+
+void LineSplitter::feed(std::string_view bytes, const std::function<void(const std::string&)>& on_line) {
+  for (const char c : bytes) {
+    if (c == '\n' || rest_.size() >= kMaxLineBytes) {
+      on_line(rest_);
+      rest_.clear();
+    }
+    if (c != '\n' && c != '\r') rest_.push_back(c);
+  }
+}
+
+void LineSplitter::finish(const std::function<void(const std::string&)>& on_line) {
+  if (!rest_.empty()) on_line(rest_);
+  rest_.clear();
+}
 
 PosixProcessHost::PosixProcessHost(OnLine on_line) : on_line_(std::move(on_line)) {}
 
@@ -126,7 +148,7 @@ std::optional<ProcessExit> PosixProcessHost::poll_exit(ProcessId process) {
   ProcessExit exit;
   if (WIFSIGNALED(status)) exit.signal = WTERMSIG(status);
   if (WIFEXITED(status)) exit.code = WEXITSTATUS(status);
-  exit.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  exit.cpu_s = cpu_s(usage);
   exit.peak_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;
   return exit;
 }
@@ -178,6 +200,40 @@ ProcessExit run_to_end(const ProcessSpec& spec, service::InterruptSignals& signa
     if (signals.take() > 0) host.terminate(process);
   }
   return *exit;
+}
+
+void UsageBook::add_sample(const std::string& service, double peak_rss_mb) {
+  if (peak_rss_mb < 0) return;
+  Entry& entry = entries_[service];
+  entry.usage.peak_rss_mb = entry.sampled ? std::max(entry.usage.peak_rss_mb, peak_rss_mb) : peak_rss_mb;
+  entry.sampled = true;
+}
+
+void UsageBook::add_exit(const std::string& service, const ProcessExit& exit) {
+  Entry& entry = entries_[service];
+  entry.usage.cpu_s += exit.cpu_s;
+  if (!entry.sampled) entry.usage.peak_rss_mb = std::max(entry.usage.peak_rss_mb, exit.peak_rss_mb);
+}
+
+std::map<std::string, eval::ProcessUsage> UsageBook::usage() const {
+  std::map<std::string, eval::ProcessUsage> result;
+  for (const auto& [name, entry] : entries_) result[name] = entry.usage;
+  return result;
+}
+
+double peak_rss_mb(const std::string& proc_status) {
+  const std::string key = "VmHWM:";
+  const std::size_t at = proc_status.find(key);
+  if (at == std::string::npos) return -1;
+  std::istringstream value(proc_status.substr(at + key.size()));
+  double kib = 0;
+  return value >> kib ? kib / 1024.0 : -1;
+}
+
+eval::ProcessUsage own_usage() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return {cpu_s(usage), static_cast<double>(usage.ru_maxrss) / 1024.0, 0};
 }
 
 }  // namespace rtd::launcher

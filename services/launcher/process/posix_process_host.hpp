@@ -6,13 +6,26 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/service/command_line.hpp"
-#include "services/launcher/core/run/log_tail.hpp"
+#include "services/evaluation/record/run_record.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
 
 namespace rtd::launcher {
+
+/// Splits a byte stream into lines. A line longer than 4096 bytes comes in pieces.
+class LineSplitter {
+ public:
+  /// Calls `on_line` for every line that `bytes` completes (without its newline).
+  void feed(std::string_view bytes, const std::function<void(const std::string&)>& on_line);
+  /// Passes on the rest that has no newline.
+  void finish(const std::function<void(const std::string&)>& on_line);
+
+ private:
+  std::string rest_;
+};
 
 /// Child processes of this process. Each is the leader of its own process group, so that Ctrl-C of the terminal reaches
 /// only the launcher; the kernel sends it SIGTERM when the launcher dies. stdin is /dev/null; stdout and stderr come
@@ -51,5 +64,30 @@ class PosixProcessHost : public ProcessHost {
 /// Runs a command to its end. Each signal that arrives meanwhile is passed on as SIGTERM.
 ProcessExit run_to_end(const ProcessSpec& spec, service::InterruptSignals& signals,
                        const PosixProcessHost::OnLine& on_line);
+
+/// Adds up what each service used, over all its lives.
+///
+/// CPU time comes from the kernel's final account. Peak memory comes from samples of VmHWM: the final account
+/// (ru_maxrss) also contains the launcher's own memory at the time of the fork, so it only counts for a process too
+/// short-lived to be sampled.
+class UsageBook {
+ public:
+  void add_sample(const std::string& service, double peak_rss_mb);
+  void add_exit(const std::string& service, const ProcessExit& exit);
+  void add_restart(const std::string& service) { ++entries_[service].usage.restarts; }
+  std::map<std::string, eval::ProcessUsage> usage() const;
+
+ private:
+  struct Entry {
+    eval::ProcessUsage usage;
+    bool sampled = false;
+  };
+  std::map<std::string, Entry> entries_;
+};
+
+/// Peak resident memory in MB (VmHWM), from the text of /proc/PID/status; -1 when absent (the process is ending).
+double peak_rss_mb(const std::string& proc_status);
+/// Of this process so far.
+eval::ProcessUsage own_usage();
 
 }  // namespace rtd::launcher

@@ -12,7 +12,6 @@
 #include "common/bus/bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
-#include "services/launcher/core/run/sample_keeper.hpp"
 
 namespace rtd::launcher {
 

@@ -2,13 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/run/run_session.hpp"
 
-#include <sys/resource.h>
-
-#include <fstream>
-#include <sstream>
-
+#include "common/io/text.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/launcher/core/run/usage_book.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -21,22 +16,6 @@ constexpr std::size_t kShownTailLines = 6;
 
 milliseconds now() {
   return milliseconds(service::monotonic_ns() / 1'000'000);
-}
-
-std::string read_file(const std::string& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-eval::ProcessUsage own_usage() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
-  };
-  return {seconds(usage.ru_utime) + seconds(usage.ru_stime), static_cast<double>(usage.ru_maxrss) / 1024.0, 0};
 }
 
 /// From the first frame handed to the bus to the last pose.
@@ -175,7 +154,8 @@ void RunSession::sample_memory(milliseconds time) {
   if (time < next_sample_) return;
   next_sample_ = time + kMemoryPeriod;
   for (const auto& [service, process] : supervisor_.running()) {
-    usage_.add_sample(service, peak_rss_mb(read_file("/proc/" + std::to_string(process) + "/status")));
+    const auto status = io::read_text("/proc/" + std::to_string(process) + "/status");
+    usage_.add_sample(service, peak_rss_mb(status.value_or("")));
   }
 }
 

@@ -11,11 +11,10 @@
 #include "common/service/exit_code.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
 #include "services/launcher/core/run/terminal.hpp"
-#include "services/launcher/core/run/usage_book.hpp"
 #include "services/launcher/process/posix_process_host.hpp"
+#include "services/launcher/process/service_logs.hpp"
 #include "services/launcher/run/collector.hpp"
 #include "services/launcher/run/run_setup.hpp"
-#include "services/launcher/run/service_logs.hpp"
 
 namespace rtd::launcher {
 

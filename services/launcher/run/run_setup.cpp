@@ -30,7 +30,7 @@ void check_sections(const std::vector<std::string>& overrides) {
   const std::vector<std::string>& sections = service::config_sections();
   for (const std::string& assignment : overrides) {
     const std::string section = assignment.substr(0, assignment.find_first_of(".="));
-    if (std::find(sections.begin(), sections.end(), section) != sections.end()) continue;
+    if (std::ranges::count(sections, section) > 0) continue;
     const std::string near = service::nearest_name(section, sections);
     throw ConfigError(fmt::format("--set {}: unknown section '{}'{}", assignment, section,
                                   near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
@@ -57,16 +57,14 @@ void choose_vendors(const RunOptions& options, RunSetup& setup) {
     const std::size_t equals = pair.find('=');
     const std::string name = pair.substr(0, equals);
     const std::string vendor = equals == std::string::npos ? "" : pair.substr(equals + 1);
-    if (std::find(services.begin(), services.end(), name) == services.end() ||
-        std::find(vendors.begin(), vendors.end(), vendor) == vendors.end()) {
+    if (std::ranges::count(services, name) == 0 || std::ranges::count(vendors, vendor) == 0) {
       throw ConfigError(fmt::format("--dds-of {}: write SERVICE=VENDOR with a service of {} and a vendor of {}", pair,
                                     fmt::join(services, ", "), fmt::join(vendors, ", ")));
     }
     if (setup.bus.security.enabled() && vendor != setup.bus.vendor) {
       throw ConfigError(
           fmt::format("--secure with --dds-of {}: {} and {} cannot agree on keys, a secured domain needs one vendor; "
-                      "leave out one of "
-                      "the two options",
+                      "leave out one of the two options",
                       pair, setup.bus.vendor, vendor));
     }
     setup.vendors_of[name] = vendor;
@@ -77,7 +75,7 @@ void choose_vendors(const RunOptions& options, RunSetup& setup) {
 std::string peek(const RunOptions& options, const std::string& section, const std::string& key) {
   const std::string prefix = section + "." + key + "=";
   for (auto assignment = options.overrides.rbegin(); assignment != options.overrides.rend(); ++assignment) {
-    if (assignment->rfind(prefix, 0) == 0) return assignment->substr(prefix.size());
+    if (assignment->starts_with(prefix)) return assignment->substr(prefix.size());
   }
   if (options.config_file.empty()) return {};
   try {
@@ -91,9 +89,8 @@ std::string peek(const RunOptions& options, const std::string& section, const st
 std::string choose_filter_mode(const RunOptions& options) {
   std::string mode = options.filter_mode.empty() ? peek(options, "filter", "mode") : options.filter_mode;
   if (mode.empty()) mode = "rtd";
-  if (std::find(kFilterModes.begin(), kFilterModes.end(), mode) == kFilterModes.end()) {
-    throw ConfigError("--filter: unknown mode '" + mode + "', use one of " +
-                      fmt::format("{}", fmt::join(kFilterModes, ", ")));
+  if (std::ranges::count(kFilterModes, mode) == 0) {
+    throw ConfigError(fmt::format("--filter: unknown mode '{}', use one of {}", mode, fmt::join(kFilterModes, ", ")));
   }
   return mode;
 }
@@ -144,12 +141,6 @@ void create_out_dir(const std::string& out_dir) {
   if (error) throw ConfigError("--out " + out_dir + ": cannot be created: " + error.message());
 }
 
-std::string require_executable(const std::string& service) {
-  std::string path = find_executable("rtd-" + service);
-  if (path.empty()) throw ConfigError(missing_executable("rtd-" + service));
-  return path;
-}
-
 std::vector<std::string> common_arguments(const RunSetup& setup, const std::string& service) {
   std::vector<std::string> arguments = {"--pace", setup.pace};
   service::BusArguments bus = setup.bus_arguments;
@@ -163,7 +154,7 @@ std::vector<std::string> common_arguments(const RunSetup& setup, const std::stri
 
 ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole role,
                  const std::vector<std::string>& own_arguments) {
-  ServicePlan plan{name, {require_executable(name)}, role};
+  ServicePlan plan{name, {require_executable("rtd-" + name)}, role};
   const std::vector<std::string> common = common_arguments(setup, name);
   plan.command.insert(plan.command.end(), common.begin(), common.end());
   plan.command.insert(plan.command.end(), own_arguments.begin(), own_arguments.end());

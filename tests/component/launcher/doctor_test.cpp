@@ -12,7 +12,7 @@
 
 #include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
-#include "services/launcher/doctor/checks.hpp"
+#include "services/launcher/doctor/doctor_command.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
 
 namespace rtd::launcher {

@@ -6,8 +6,6 @@
 
 #include <memory>
 
-#include "services/launcher/core/run/sample_keeper.hpp"
-
 namespace rtd::launcher {
 namespace {
 
@@ -184,7 +182,8 @@ TEST(record_builder, names_the_services_that_are_heard_and_have_not_finished) {
   EXPECT_EQ(builder.active_services(), "filter (pid 7), slam (pid 8)") << "a recorder disturbs nobody";
   builder.add(status_of("detector", 11, {}));
   EXPECT_EQ(builder.active_services(), "detector (pid 11), filter (pid 7), slam (pid 8)");
-  EXPECT_EQ(builder.active_services(true), "filter (pid 7), slam (pid 8)") << "the detector of another host is expected";
+  EXPECT_EQ(builder.active_services(true), "filter (pid 7), slam (pid 8)")
+      << "the detector of another host is expected";
 }
 
 TEST(record_builder, knows_the_clocks_of_other_hosts_from_slam) {

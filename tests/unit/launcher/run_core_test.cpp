@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "services/launcher/core/run/log_tail.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
-#include "services/launcher/core/run/usage_book.hpp"
+#include "services/launcher/process/posix_process_host.hpp"
+#include "services/launcher/process/service_logs.hpp"
 
 namespace rtd::launcher {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/terminal.hpp"
-#include "services/launcher/core/run/usage_book.hpp"
+#include "services/launcher/process/posix_process_host.hpp"
 
 namespace rtd::launcher {
 namespace {

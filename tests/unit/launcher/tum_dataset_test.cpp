@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/demo/tum_dataset.hpp"
+#include "services/launcher/demo/demo_command.hpp"
 
 #include <gmock/gmock.h>
 

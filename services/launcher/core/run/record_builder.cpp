@@ -7,24 +7,25 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 namespace rtd::launcher {
 namespace {
 
 constexpr std::size_t kRecentFrames = 30;
+constexpr std::uint64_t kStrideOfUnknownLength = 4;
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
 constexpr std::array<const char*, 5> kLossNames = {"dropped", "late", "skipped", "lost", "refused"};
 
 bool counts_losses(const std::string& metric) {
-  return std::any_of(kLossNames.begin(), kLossNames.end(),
-                     [&](const char* name) { return metric.find(name) != std::string::npos; });
+  return std::ranges::any_of(kLossNames, [&](const char* name) { return metric.find(name) != std::string::npos; });
 }
 
 /// "frames_late" of camera -> "camera.late".
 std::string place_of(const std::string& service, const std::string& metric) {
   const std::string prefix = "frames_";
-  return service + "." + (metric.rfind(prefix, 0) == 0 ? metric.substr(prefix.size()) : metric);
+  return service + "." + (metric.starts_with(prefix) ? metric.substr(prefix.size()) : metric);
 }
 
 double median_latency_ms(const std::deque<msg::TrackingResult>& results) {
@@ -104,16 +105,12 @@ std::uint64_t RecordBuilder::frames_in() const {
   return std::max(static_cast<std::uint64_t>(camera_counter("frames_in")), end_of_seen_);
 }
 
-bool RecordBuilder::tracked_any() const {
-  return tracked_any_;
-}
-
 LiveStatus RecordBuilder::live() const {
   LiveStatus status;
   status.frames = end_of_seen_;
   status.total = static_cast<std::uint64_t>(camera_counter("frames_total"));
   for (const auto& [place, count] : drops()) {
-    const bool before_the_pose = place.rfind("detector.", 0) != 0 &&
+    const bool before_the_pose = !place.starts_with("detector.") &&
                                  place.find(".topic.") == std::string::npos;  // it only needs the newest frame
     if (before_the_pose) status.dropped += static_cast<std::uint64_t>(count);
   }
@@ -190,6 +187,46 @@ double RecordBuilder::camera_counter(const std::string& name) const {
   if (camera == services_.end()) return 0;
   const auto counter = camera->second.counters.find(name);
   return counter == camera->second.counters.end() ? 0 : counter->second.current;
+}
+
+SampleKeeper::SampleKeeper(std::uint64_t wanted, std::uint64_t total)
+    : wanted_(std::max<std::uint64_t>(wanted, 1)),
+      stride_(total > 0 ? (total + wanted_ - 1) / wanted_ : kStrideOfUnknownLength) {}
+
+void SampleKeeper::add_image(std::uint64_t seq, std::vector<std::uint8_t> jpeg) {
+  if (!wants(seq)) return;
+  eval::SampleFrame& sample = kept_[seq];
+  sample.seq = seq;
+  sample.jpeg = std::move(jpeg);
+  thin_out();
+}
+
+void SampleKeeper::add_features(const msg::FeatureFrame& features) {
+  if (!wants(features.seq)) return;
+  eval::SampleFrame& sample = kept_[features.seq];
+  sample.seq = features.seq;
+  sample.features = eval::judged({features.features.data(), std::min<std::size_t>(features.count, msg::kMaxFeatures)});
+  thin_out();
+}
+
+void SampleKeeper::thin_out() {
+  while (kept_.size() >= 2 * wanted_) {
+    stride_ *= 2;
+    for (auto sample = kept_.begin(); sample != kept_.end();) {
+      sample = wants(sample->first) ? std::next(sample) : kept_.erase(sample);
+    }
+  }
+}
+
+std::vector<eval::SampleFrame> SampleKeeper::samples() const {
+  std::vector<eval::SampleFrame> complete;
+  for (const auto& [seq, sample] : kept_) {
+    if (!sample.jpeg.empty() && !sample.features.empty()) complete.push_back(sample);
+  }
+  if (complete.size() <= wanted_) return complete;
+  std::vector<eval::SampleFrame> result;
+  for (std::uint64_t i = 0; i < wanted_; ++i) result.push_back(std::move(complete[i * complete.size() / wanted_]));
+  return result;
 }
 
 std::string format_live_status(const LiveStatus& status) {

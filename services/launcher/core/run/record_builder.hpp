@@ -46,7 +46,7 @@ class RecordBuilder {
 
   /// Frames that the source delivered: the camera's own count, else the frames seen.
   std::uint64_t frames_in() const;
-  bool tracked_any() const;  ///< at least one frame got a pose
+  bool tracked_any() const { return tracked_any_; }  ///< at least one frame got a pose
   LiveStatus live() const;
   /// The newest message of a degraded service; returned once each time it changes.
   std::optional<std::string> take_notice();
@@ -86,6 +86,29 @@ class RecordBuilder {
   std::deque<msg::TrackingResult> recent_;
   std::uint64_t end_of_seen_ = 0;  ///< highest seq seen + 1
   bool tracked_any_ = false;
+};
+
+/// Keeps about `wanted` frames, evenly spread over a source whose length need not be known: every stride-th frame is
+/// kept, and whenever twice the wanted number is reached, the stride doubles and every second kept frame is dropped. So
+/// few images are encoded, and memory stays bounded in an endless run. Not thread-safe.
+class SampleKeeper {
+ public:
+  /// total: length of the source in frames, 0 = unknown.
+  explicit SampleKeeper(std::uint64_t wanted = 12, std::uint64_t total = 0);
+
+  /// True when frame `seq` is one to keep.
+  bool wants(std::uint64_t seq) const { return seq % stride_ == 0; }
+  void add_image(std::uint64_t seq, std::vector<std::uint8_t> jpeg);
+  void add_features(const msg::FeatureFrame& features);
+
+  /// The kept frames that have both image and features, by seq, at most `wanted`.
+  std::vector<eval::SampleFrame> samples() const;
+
+ private:
+  void thin_out();
+
+  std::uint64_t wanted_, stride_;
+  std::map<std::uint64_t, eval::SampleFrame> kept_;
 };
 
 /// The poses as they were published, one line per tracked frame in TUM's format: "stamp_s tx ty tz qx qy qz qw".

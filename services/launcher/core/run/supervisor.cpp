@@ -74,19 +74,11 @@ void Supervisor::ask_to_end(Child& child, Clock kill_at) {
 }
 
 bool Supervisor::others_ended() const {
-  return std::all_of(children_.begin(), children_.end(),
-                     [](const Child& child) { return child.plan.ends_last || child.state == State::kEnded; });
+  return std::ranges::all_of(children_, [](const Child& c) { return c.plan.ends_last || c.state == State::kEnded; });
 }
 
 bool Supervisor::all_ended() const {
-  return std::all_of(children_.begin(), children_.end(), [](const Child& c) { return c.state == State::kEnded; });
-}
-
-int Supervisor::restarts(const std::string& service) const {
-  for (const Child& child : children_) {
-    if (child.plan.name == service) return child.restarts;
-  }
-  return 0;
+  return std::ranges::all_of(children_, [](const Child& c) { return c.state == State::kEnded; });
 }
 
 std::vector<std::pair<std::string, ProcessId>> Supervisor::running() const {

@@ -114,7 +114,6 @@ class Supervisor {
   bool stopping() const { return stopping_; }
   /// No process is left.
   bool all_ended() const;
-  int restarts(const std::string& service) const;
   /// Name and id of every process that runs now.
   std::vector<std::pair<std::string, ProcessId>> running() const;
 

@@ -2,15 +2,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <deque>
 #include <fstream>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "services/launcher/core/run/log_tail.hpp"
 #include "services/launcher/core/run/terminal.hpp"
 
 namespace rtd::launcher {
+
+/// The last lines of a log.
+class LogTail {
+ public:
+  explicit LogTail(std::size_t max_lines = 12) : max_lines_(max_lines) {}
+  void add(const std::string& line);
+  std::vector<std::string> lines() const { return {lines_.begin(), lines_.end()}; }
+
+ private:
+  std::size_t max_lines_;
+  std::deque<std::string> lines_;
+};
+
+enum class LogLevel { kInfo, kWarning, kError };
+
+/// The level of a service's log line: "12:34:56.789 warning slam event=..." or "rtd-slam: why it cannot run".
+LogLevel level_of(std::string_view line);
+
+/// Why a service refused to start: its last error line, else its last lines.
+std::vector<std::string> reason_lines(const std::vector<std::string>& tail);
 
 /// Writes the output of the services to FOLDER/<service>.log, shows warnings and errors, remembers the last lines.
 class ServiceLogs {

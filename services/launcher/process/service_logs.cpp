@@ -1,13 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/run/service_logs.hpp"
+#include "services/launcher/process/service_logs.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace rtd::launcher {
 namespace {
 
 constexpr int kMaxShownPerService = 10;
+
+std::string_view second_token(std::string_view line) {
+  const std::size_t space = line.find(' ');
+  if (space == std::string_view::npos) return {};
+  const std::string_view rest = line.substr(space + 1);
+  return rest.substr(0, rest.find(' '));
+}
+
+/// The text without ANSI colour sequences around it.
+std::string_view strip_color(std::string_view text) {
+  while (!text.empty() && text.front() == '\033') text.remove_prefix(std::min(text.find('m'), text.size() - 1) + 1);
+  return text.substr(0, text.find('\033'));
+}
 
 /// "warning slam event=..." of "12:34:56.789 warning slam event=..."; empty for a line that is not a log event: the
 /// reason of a death is reported together with the death.
@@ -18,6 +32,26 @@ std::string event_of(const std::string& line) {
 }
 
 }  // namespace
+
+void LogTail::add(const std::string& line) {
+  lines_.push_back(line);
+  if (lines_.size() > max_lines_) lines_.pop_front();
+}
+
+LogLevel level_of(std::string_view line) {
+  if (line.rfind("rtd-", 0) == 0 || line.rfind("terminate called", 0) == 0) return LogLevel::kError;
+  const std::string_view text = strip_color(second_token(line));
+  if (text == "warning") return LogLevel::kWarning;
+  if (text == "error" || text == "critical") return LogLevel::kError;
+  return LogLevel::kInfo;
+}
+
+std::vector<std::string> reason_lines(const std::vector<std::string>& tail) {
+  for (auto line = tail.rbegin(); line != tail.rend(); ++line) {
+    if (level_of(*line) == LogLevel::kError) return {*line};
+  }
+  return tail;
+}
 
 void ServiceLogs::add(const std::string& service, const std::string& line) {
   Log& log = logs_[service];
