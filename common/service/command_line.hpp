@@ -6,9 +6,12 @@
 
 #include <chrono>
 #include <cstdint>
+#include <exception>
 #include <functional>
-#include <iosfwd>
+#include <ostream>
 #include <string>
+
+#include "common/service/exit_code.hpp"
 
 namespace CLI {
 class App;
@@ -20,6 +23,18 @@ namespace rtd::service {
 /// The main function of a tool: parses the command line into what `app` is bound to, then runs `work`. Returns the exit
 /// code of `work`; 0 after --help, 2 for a wrong command line.
 int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work);
+
+/// Returns the exit code of `work`. What it throws becomes a line on `err` and exit code 2 for an error of one of the
+/// types `Usage`, else 1.
+template <class... Usage>
+int report_errors(const std::string& program, std::ostream& err, const std::function<int()>& work) {
+  try {
+    return work();
+  } catch (const std::exception& error) {
+    err << program << ": " << error.what() << '\n';
+    return (... || (dynamic_cast<const Usage*>(&error) != nullptr)) ? kUsageOrConfig : kRunFailed;
+  }
+}
 
 /// SIGINT, SIGTERM and SIGHUP as a readable descriptor. Make one before any thread is started: the threads inherit the
 /// blocked mask. Child processes of PosixProcessHost start with an empty mask.
