@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/launcher/process/executable.hpp"
@@ -108,15 +109,8 @@ int run_both(const DemoOptions& options, const std::string& source) {
 }  // namespace
 
 int demo(const DemoOptions& options) {
-  try {
-    return run_both(options, choose_source(options));
-  } catch (const service::ConfigError& error) {
-    std::cerr << "rtd demo: " << error.what() << '\n';
-    return service::kUsageOrConfig;
-  } catch (const std::exception& error) {
-    std::cerr << "rtd demo: " << error.what() << '\n';
-    return service::kRunFailed;
-  }
+  return service::report_errors<service::ConfigError>("rtd demo", std::cerr,
+                                                      [&] { return run_both(options, choose_source(options)); });
 }
 
 std::string demo_data_folder() {

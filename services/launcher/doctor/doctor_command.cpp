@@ -16,7 +16,7 @@
 #include "common/bus/host/shm_leftovers.hpp"
 #include "common/bus/network.hpp"
 #include "common/service/bus_config.hpp"
-#include "common/service/exit_code.hpp"
+#include "common/service/command_line.hpp"
 #include "common/service/model_locator.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/process/executable.hpp"
@@ -149,9 +149,7 @@ int clean(std::ostream& out) {
   return service::kOk;
 }
 
-}  // namespace
-
-int doctor(const DoctorOptions& options, std::ostream& out, std::ostream& err) try {
+int check_all(const DoctorOptions& options, std::ostream& out) {
   if (options.clean) return clean(out);
   const bus::BusOptions bus = service::load_bus_options(options.bus, options.config, "rtd-doctor");
   Findings findings;
@@ -166,9 +164,12 @@ int doctor(const DoctorOptions& options, std::ostream& out, std::ostream& err) t
     failed = failed || finding.verdict == Verdict::kFail;
   }
   return failed ? service::kRunFailed : service::kOk;
-} catch (const service::ConfigError& error) {
-  err << "rtd doctor: " << error.what() << '\n';
-  return service::kUsageOrConfig;
+}
+
+}  // namespace
+
+int doctor(const DoctorOptions& options, std::ostream& out, std::ostream& err) {
+  return service::report_errors<service::ConfigError>("rtd doctor", err, [&] { return check_all(options, out); });
 }
 
 }  // namespace rtd::launcher

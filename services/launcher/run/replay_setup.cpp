@@ -70,19 +70,19 @@ std::vector<std::string> ReplaySetup::arguments(const std::vector<std::string>& 
   return arguments;
 }
 
-ReplaySetup choose_replay(const RunOptions& options, const std::string& source) {
+ReplaySetup choose_replay(const RunOptions& options) {
   ReplaySetup replay;
   if (options.replay_topics.empty()) return replay;
   const auto asked = [&](const char* what) { return std::ranges::count(options.replay_topics, what) > 0; };
   replay.features = asked("features");
   replay.detections = asked("detections") && !replay.features;
-  if (!source.starts_with(kScheme))
-    throw ConfigError("--replay-topics needs a recording: --source mcap:FILE, not " + source);
+  if (!options.source.starts_with(kScheme))
+    throw ConfigError("--replay-topics needs a recording: --source mcap:FILE, not " + options.source);
   if (options.frames > 0)
     throw ConfigError("--frames cannot be combined with --replay-topics: a replay always plays to the end");
   if (options.dense && replay.features)
     throw ConfigError("--dense cannot be combined with --replay-topics features: its masks come from a running filter");
-  replay.file = source.substr(kScheme.size());
+  replay.file = options.source.substr(kScheme.size());
   choose_topics(replay, counts_of(replay.file));
   return replay;
 }

@@ -10,6 +10,7 @@
 #include <iostream>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/service/command_line.hpp"
 #include "common/service/run_service.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/evaluation/record/run_record.hpp"
@@ -38,22 +39,13 @@ void print_setup(const RunSetup& setup, Terminal& terminal) {
                              setup.total_frames > 0 ? fmt::format(" ({} frames)", setup.total_frames) : "", setup.pace,
                              setup.filter_mode,
                              setup.model_path.empty() && !setup.remote_detector ? "off" : setup.detector_note,
-                             setup.bus.vendor, setup.bus.domain));
+                             setup.bus_options.vendor, setup.bus_options.domain));
 }
 
 service::ExitCode exit_code(RunOutcome outcome, bool tracked_any) {
-  switch (outcome) {
-    case RunOutcome::kInterrupted:
-      return service::kInterrupted;
-    case RunOutcome::kConfigError:
-      return service::kUsageOrConfig;
-    case RunOutcome::kComplete:
-      return tracked_any ? service::kOk : service::kRunFailed;
-    case RunOutcome::kFailed:
-    case RunOutcome::kRunning:
-      break;
-  }
-  return service::kRunFailed;
+  if (outcome == RunOutcome::kInterrupted) return service::kInterrupted;
+  if (outcome == RunOutcome::kConfigError) return service::kUsageOrConfig;
+  return outcome == RunOutcome::kComplete && tracked_any ? service::kOk : service::kRunFailed;
 }
 
 /// What the launcher leaves in the folder of the run beside what the services wrote.
@@ -81,11 +73,11 @@ ReportState make_report(const std::string& out_dir, bool quiet, service::Interru
   return ReportState::kFailed;
 }
 
-RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& plans, bool quiet) {
+RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& plans) {
   service::InterruptSignals signals;
-  Terminal terminal = open_terminal(quiet);
+  Terminal terminal = open_terminal(setup.quiet);
   service::BoundedEnd end("rtd run", kEndOfBus);
-  const std::shared_ptr<bus::Bus> bus = bus::connect(setup.bus);
+  const std::shared_ptr<bus::Bus> bus = bus::connect(setup.bus_options);
   print_setup(setup, terminal);
   RunSession session(setup, *bus, signals, terminal);
 
@@ -94,7 +86,7 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   result.code = exit_code(outcome, session.tracked_any());
   if (outcome == RunOutcome::kConfigError) return result;
   write_record(session.record(), setup.out_dir);
-  result.report = make_report(setup.out_dir, quiet, signals, terminal);
+  result.report = make_report(setup.out_dir, setup.quiet, signals, terminal);
   if (result.report == ReportState::kFailed) result.code = service::kRunFailed;
   if (outcome == RunOutcome::kComplete && !session.tracked_any()) terminal.warn("rtd: no frame got a pose");
   if (outcome != RunOutcome::kInterrupted) return result;
@@ -103,26 +95,18 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   return result;
 }
 
-RunResult refuse(service::ExitCode code, const std::exception& error) {
-  std::cerr << "rtd run: " << error.what() << '\n';
-  return {code};
-}
-
 }  // namespace
 
 RunResult run(const RunOptions& options) {
-  try {
-    const RunSetup setup = prepare_run(options);
-    return run_prepared(setup, plan_services(setup), options.quiet);
-  } catch (const service::ConfigError& error) {
-    return refuse(service::kUsageOrConfig, error);
-  } catch (const camera::SourceError& error) {
-    return refuse(service::kUsageOrConfig, error);
-  } catch (const bus::BusError& error) {
-    return refuse(service::kUsageOrConfig, error);
-  } catch (const std::exception& error) {
-    return refuse(service::kRunFailed, error);
-  }
+  RunResult result;
+  const int code = service::report_errors<service::ConfigError, camera::SourceError, bus::BusError>(
+      "rtd run", std::cerr, [&]() -> int {
+        const RunSetup setup = prepare_run(options);
+        result = run_prepared(setup, plan_services(setup));
+        return result.code;
+      });
+  result.code = static_cast<service::ExitCode>(code);
+  return result;
 }
 
 }  // namespace rtd::launcher

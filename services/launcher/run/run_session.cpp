@@ -61,7 +61,7 @@ void RunSession::require_free_domain() {
     const std::string others = collector_.active_services(setup_.remote_detector);
     if (others.empty()) continue;
     const bool only_detector = collector_.active_services(true).empty();
-    throw service::ConfigError("DDS domain " + std::to_string(setup_.bus.domain) + " is taken by " + others +
+    throw service::ConfigError("DDS domain " + std::to_string(setup_.bus_options.domain) + " is taken by " + others +
                                (only_detector ? ": use its boxes with --detector remote, stop it" : ": stop them") +
                                ", or choose another domain with --domain");
   }
@@ -83,7 +83,7 @@ void RunSession::supervise(const ServicePlan& camera) {
       camera_started = true;
     }
     sample_memory(time);
-    record_notices();
+    while (const auto notice = collector_.take_notice()) events_.push_back(*notice);  // the terminal shows the warning
     if (!supervisor_.stopping()) terminal_.status(format_live_status(collector_.live()), time);
   }
 }
@@ -140,11 +140,6 @@ void RunSession::explain(const std::string& service, const std::vector<std::stri
   terminal_.warn("  log: " + logs_.path(service));
 }
 
-/// For the report; the terminal shows the service's own warning.
-void RunSession::record_notices() {
-  while (const auto notice = collector_.take_notice()) events_.push_back(*notice);
-}
-
 void RunSession::note(const std::string& text) {
   events_.push_back(text);
   terminal_.warn("rtd: " + text);
@@ -165,7 +160,7 @@ eval::RunRecord RunSession::record() const {
   record.source = setup_.source;
   record.pace = setup_.pace;
   record.filter_mode = setup_.filter_mode;
-  record.dds = setup_.bus.vendor;
+  record.dds = setup_.bus_options.vendor;
   record.detector = setup_.detector_note;
   record.interrupted = supervisor_.outcome() == RunOutcome::kInterrupted;
   collector_.fill(record);

@@ -38,7 +38,6 @@ class RunSession {
   bool camera_may_start(Milliseconds now) const;
   void on_event(const SupervisorEvent& event);
   void explain(const std::string& service, const std::vector<std::string>& lines);
-  void record_notices();
   std::chrono::milliseconds interrupt_grace() const;
   void stop_when_decided(Milliseconds now);
   void sample_memory(Milliseconds now);

@@ -38,22 +38,21 @@ void check_sections(const std::vector<std::string>& overrides) {
 }
 
 /// The launcher reads its own sections; the services check theirs when they start.
-void load_config(const RunOptions& options, RunSetup& setup) {
+void load_config(RunSetup& setup) {
   service::BusConfig bus;
   service::ConfigBinder binder;
   binder.section("bus", bus);
   binder.section("launcher", setup.launcher);
-  check_sections(options.overrides);
-  service::load_config(binder, options.bus, {options.config_file, options.overrides});
-  setup.bus_arguments = options.bus;
-  setup.bus = service::to_bus_options(bus, "rtd");
+  check_sections(setup.overrides);
+  service::load_config(binder, setup.bus, {setup.config_file, setup.overrides});
+  setup.bus_options = service::to_bus_options(bus, "rtd");
 }
 
 /// A service that is not named uses the vendor of --dds.
-void choose_vendors(const RunOptions& options, RunSetup& setup) {
+void choose_vendors(RunSetup& setup) {
   const std::vector<std::string> services = {"camera", "detector", "filter", "slam", "dense", "record", "replay"};
   const std::vector<std::string> vendors = bus::dds_vendors();
-  for (const std::string& pair : options.dds_of) {
+  for (const std::string& pair : setup.dds_of) {
     const std::size_t equals = pair.find('=');
     const std::string name = pair.substr(0, equals);
     const std::string vendor = equals == std::string::npos ? "" : pair.substr(equals + 1);
@@ -61,11 +60,11 @@ void choose_vendors(const RunOptions& options, RunSetup& setup) {
       throw ConfigError(fmt::format("--dds-of {}: write SERVICE=VENDOR with a service of {} and a vendor of {}", pair,
                                     fmt::join(services, ", "), fmt::join(vendors, ", ")));
     }
-    if (setup.bus.security.enabled() && vendor != setup.bus.vendor) {
+    if (setup.bus_options.security.enabled() && vendor != setup.bus_options.vendor) {
       throw ConfigError(
           fmt::format("--secure with --dds-of {}: {} and {} cannot agree on keys, a secured domain needs one vendor; "
                       "leave out one of the two options",
-                      pair, setup.bus.vendor, vendor));
+                      pair, setup.bus_options.vendor, vendor));
     }
     setup.vendors_of[name] = vendor;
   }
@@ -105,7 +104,7 @@ std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
   return frames == 0 ? limit : std::min(frames, limit);
 }
 
-void choose_detector(const RunOptions& options, RunSetup& setup) {
+void choose_detector(RunSetup& setup) {
   if (setup.replay) {
     setup.detector_note = setup.replay.features ? "off (recorded features)" : "recorded boxes";
     return;
@@ -114,20 +113,20 @@ void choose_detector(const RunOptions& options, RunSetup& setup) {
     setup.detector_note = "off (filter mode " + setup.filter_mode + ")";
     return;
   }
-  if (options.detector == "off") {
+  if (setup.detector == "off") {
     setup.detector_note = "off (as requested)";
     return;
   }
-  if (options.detector == "remote") {
-    if (setup.bus.network.loopback_only)
+  if (setup.detector == "remote") {
+    if (setup.bus_options.network.loopback_only)
       throw ConfigError(
           "--detector remote: the bus is limited to this host, add --profile lan or wifi (docs/two-hosts.md)");
     setup.remote_detector = true;
     setup.detector_note = "on another host";
     return;
   }
-  std::string configured = options.model.empty() ? peek(options, "detector", "model") : options.model;
-  if (!options.model.empty() && fs::is_regular_file(options.model)) configured = fs::absolute(options.model).string();
+  std::string configured = setup.model.empty() ? peek(setup, "detector", "model") : setup.model;
+  if (!setup.model.empty() && fs::is_regular_file(setup.model)) configured = fs::absolute(setup.model).string();
   const service::ModelSearch model = service::find_model(configured, service::process_environment());
   if (!model && !configured.empty()) throw ConfigError(model.message);
   setup.model_path = model.path;
@@ -141,39 +140,31 @@ void create_out_dir(const std::string& out_dir) {
   if (error) throw ConfigError("--out " + out_dir + ": cannot be created: " + error.message());
 }
 
-std::vector<std::string> common_arguments(const RunSetup& setup, const std::string& service) {
-  std::vector<std::string> arguments = {"--pace", setup.pace};
-  service::BusArguments bus = setup.bus_arguments;
-  if (const auto own = setup.vendors_of.find(service); own != setup.vendors_of.end()) bus.vendor = own->second;
-  const std::vector<std::string> bus_words = service::to_command_line(bus);
-  arguments.insert(arguments.end(), bus_words.begin(), bus_words.end());
-  if (!setup.config_file.empty()) arguments.insert(arguments.end(), {"--config", setup.config_file});
-  for (const std::string& assignment : setup.overrides) arguments.insert(arguments.end(), {"--set", assignment});
-  return arguments;
-}
-
 ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole role,
                  const std::vector<std::string>& own_arguments) {
-  ServicePlan plan{name, {require_executable("rtd-" + name)}, role};
-  const std::vector<std::string> common = common_arguments(setup, name);
-  plan.command.insert(plan.command.end(), common.begin(), common.end());
-  plan.command.insert(plan.command.end(), own_arguments.begin(), own_arguments.end());
+  ServicePlan plan{name, {require_executable("rtd-" + name), "--pace", setup.pace}, role};
+  const auto add = [&plan](const std::vector<std::string>& words) {
+    plan.command.insert(plan.command.end(), words.begin(), words.end());
+  };
+  service::BusArguments bus = setup.bus;
+  if (const auto own = setup.vendors_of.find(name); own != setup.vendors_of.end()) bus.vendor = own->second;
+  add(service::to_command_line(bus));
+  if (!setup.config_file.empty()) add({"--config", setup.config_file});
+  for (const std::string& assignment : setup.overrides) add({"--set", assignment});
+  add(own_arguments);
   return plan;
 }
 
-void choose_map(const RunOptions& options, RunSetup& setup) {
-  if (!options.map.empty() && !fs::is_regular_file(options.map))
-    throw ConfigError("--map " + options.map + ": no such file");
-  if (options.localize_only && options.map.empty())
+void choose_map(RunSetup& setup) {
+  if (!setup.map.empty() && !fs::is_regular_file(setup.map)) throw ConfigError("--map " + setup.map + ": no such file");
+  if (setup.localize_only && setup.map.empty())
     throw ConfigError("--localize-only needs a map: give its file with --map");
-  if (options.localize_only && !options.save_map.empty())
-    throw ConfigError("--save-map " + options.save_map + ": with --localize-only the map does not change");
-  setup.map = options.map;
-  setup.localize_only = options.localize_only;
-  setup.save_map = options.save_map.empty() ? peek(options, "slam", "map.save") : options.save_map;
+  if (setup.localize_only && !setup.save_map.empty())
+    throw ConfigError("--save-map " + setup.save_map + ": with --localize-only the map does not change");
+  if (setup.save_map.empty()) setup.save_map = peek(setup, "slam", "map.save");
   setup.save_map_asked = !setup.save_map.empty();
-  const bool map_stays = options.localize_only || peek(options, "slam", "map.localize_only") == "true";
-  if (setup.save_map.empty() && !map_stays) setup.save_map = options.out_dir + "/map.rtdmap";
+  const bool map_stays = setup.localize_only || peek(setup, "slam", "map.localize_only") == "true";
+  if (setup.save_map.empty() && !map_stays) setup.save_map = setup.out_dir + "/map.rtdmap";
 }
 
 /// A restarted slam continues with the map of its last checkpoint. A file of an earlier run does not count.
@@ -210,29 +201,23 @@ std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vect
   std::vector<std::string> arguments = {"--source",          setup.source,
                                         "--wait-for",        fmt::format("{}", fmt::join(wait_for, ",")),
                                         "--groundtruth-out", setup.groundtruth_path()};
-  if (setup.frame_limit > 0) arguments.insert(arguments.end(), {"--frames", std::to_string(setup.frame_limit)});
+  if (setup.frames > 0) arguments.insert(arguments.end(), {"--frames", std::to_string(setup.frames)});
   return arguments;
 }
 
 }  // namespace
 
 RunSetup prepare_run(const RunOptions& options) {
-  RunSetup setup;
-  load_config(options, setup);
-  choose_vendors(options, setup);
-  setup.pace = service::to_string(service::parse_pace(options.pace));
-  setup.filter_mode = choose_filter_mode(options);
-  setup.config_file = options.config_file;
-  setup.overrides = options.overrides;
-  setup.source = camera::complete_uri(options.source);
-  setup.frame_limit = options.frames;
-  setup.dense = options.dense;
-  setup.record = options.record;
-  setup.replay = choose_replay(options, setup.source);
-  setup.total_frames = setup.replay ? setup.replay.frames : count_frames(setup.source, options.frames);
-  choose_detector(options, setup);
-  setup.out_dir = options.out_dir;
-  choose_map(options, setup);
+  RunSetup setup(options);
+  load_config(setup);
+  choose_vendors(setup);
+  setup.pace = service::to_string(service::parse_pace(setup.pace));
+  setup.filter_mode = choose_filter_mode(setup);
+  setup.source = camera::complete_uri(setup.source);
+  setup.replay = choose_replay(setup);
+  setup.total_frames = setup.replay ? setup.replay.frames : count_frames(setup.source, setup.frames);
+  choose_detector(setup);
+  choose_map(setup);
   create_out_dir(setup.out_dir);
   if (fs::exists(setup.record)) throw ConfigError("--record " + setup.record + " exists already: choose another name");
   return setup;

@@ -89,30 +89,23 @@ struct ReplaySetup {
 
 /// From --replay-topics. Throws service::ConfigError: not an MCAP source, a recording without the topic (the
 /// message lists its topics), options that need a camera.
-ReplaySetup choose_replay(const RunOptions& options, const std::string& source);
+ReplaySetup choose_replay(const RunOptions& options);
 
-/// A checked run: what is started, and with which arguments.
-struct RunSetup {
+/// A checked run: its options, completed (the source as a URI, the filter mode, the map file that slam writes or none),
+/// and what follows from them.
+struct RunSetup : RunOptions {
+  explicit RunSetup(const RunOptions& options) : RunOptions(options) {}
+
   LauncherConfig launcher;
-  bus::BusOptions bus;
-  service::BusArguments bus_arguments;            ///< the same, for the services' command lines
+  bus::BusOptions bus_options;                    ///< what `bus` and the configuration give
   std::map<std::string, std::string> vendors_of;  ///< services that use another DDS
-  std::string source;                             ///< URI
   std::uint64_t total_frames = 0;                 ///< 0 = unknown or endless
-  std::string pace, filter_mode, out_dir;
-  std::string model_path;        ///< empty: no detector in this run
-  std::string detector_note;     ///< model file name, or "off (why)"
-  bool remote_detector = false;  ///< it runs on another host; the launcher does not start it
-  std::string weights_advice;    ///< where to get weights, when the filter mode needs a detector and there are none
-  std::string map, save_map;     ///< map files that slam reads and writes; empty: none
-  bool save_map_asked = false;   ///< the user named the file
-  bool localize_only = false;
-  bool dense = false;  ///< rtd-dense runs too
-  std::string record;  ///< what rtd-record writes; empty: it does not run
+  std::string model_path;                         ///< empty: no detector in this run
+  std::string detector_note;                      ///< model file name, or "off (why)"
+  bool remote_detector = false;                   ///< it runs on another host; the launcher does not start it
+  std::string weights_advice;   ///< where to get weights, when the filter mode needs a detector and there are none
+  bool save_map_asked = false;  ///< the user named the file
   ReplaySetup replay;
-  std::uint64_t frame_limit = 0;
-  std::string config_file;
-  std::vector<std::string> overrides;
 
   std::string groundtruth_path() const { return out_dir + "/groundtruth.txt"; }
 };
