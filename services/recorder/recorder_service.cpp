@@ -5,12 +5,13 @@
 #include <fmt/chrono.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
-#include <CLI/CLI.hpp>
 
+#include <CLI/CLI.hpp>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "common/bus/raw_bus.hpp"
 #include "common/concurrency/thread_priority.hpp"
@@ -70,6 +71,71 @@ void prepare(const OutputFiles& files, bool force) {
   for (const fs::path& file : earlier) {
     if (file != files.file(0)) fs::remove(file, error);
   }
+}
+
+/// The result of a recording.
+struct RecordingReport {
+  std::vector<std::string> names;  ///< of the files, in the folder
+  std::string folder;
+  std::vector<FileSummary> files;
+  std::vector<RecordedTopic> topics;
+  TopicCounts totals;  ///< of the topics
+  std::uint64_t acknowledged_bytes = 0;
+  double duration_s = 0;
+  std::string failure;  ///< why it ended early; empty: it was stopped
+  bool partial() const { return !failure.empty() || totals.lost() > 0; }
+};
+
+nlohmann::json to_json(const RecordedTopic& topic) {
+  return {{"name", topic.name},
+          {"type", topic.type.name},
+          {"definition", topic.type.encoding},
+          {"messages", topic.counts.written},
+          {"bytes", topic.counts.written_bytes},
+          {"acknowledged", topic.counts.acknowledged},
+          {"lost_in_transit", topic.counts.lost_in_transit},
+          {"lost_in_queue", topic.counts.lost_in_queue}};
+}
+
+std::string report_json(const RecordingReport& report) {
+  auto files = nlohmann::json::array(), topics = nlohmann::json::array();
+  std::uint64_t bytes = 0;
+  for (std::size_t i = 0; i < report.files.size(); ++i) {
+    const FileSummary& file = report.files[i];
+    files.push_back({{"name", report.names[i]}, {"bytes", file.bytes}, {"messages", file.messages}});
+    bytes += file.bytes;
+  }
+  for (const RecordedTopic& topic : report.topics) topics.push_back(to_json(topic));
+  return nlohmann::json{{"folder", report.folder},
+                        {"duration_s", report.duration_s},
+                        {"acknowledged_bytes", report.acknowledged_bytes},
+                        {"partial", report.partial()},
+                        {"failure", report.failure},
+                        {"messages", report.totals.written},
+                        {"lost", report.totals.lost()},
+                        {"bytes", bytes},
+                        {"files", files},
+                        {"topics", topics}}
+      .dump(2);
+}
+
+/// The losses, as metadata of the file.
+mcap::Metadata loss_metadata(const std::vector<RecordedTopic>& topics) {
+  mcap::Metadata record{"rtd:losses", {}};
+  std::uint64_t total = 0;
+  for (const RecordedTopic& topic : topics) {
+    total += topic.counts.lost();
+    if (topic.counts.lost() == 0) continue;
+    record.metadata[topic.name] =
+        fmt::format("in_transit={} in_queue={}", topic.counts.lost_in_transit, topic.counts.lost_in_queue);
+  }
+  record.metadata["total"] = std::to_string(total);
+  return record;
+}
+
+std::string size_text(std::uint64_t bytes) {
+  const double megabytes = static_cast<double>(bytes) * 1e-6;
+  return megabytes < 10'000 ? fmt::format("{:.1f} MB", megabytes) : fmt::format("{:.1f} GB", megabytes * 1e-3);
 }
 
 }  // namespace
@@ -205,19 +271,19 @@ void RecorderService::set_state(const TopicCounts& totals) {
 }
 
 void RecorderService::show_progress(std::int64_t now_ns, const TopicCounts& totals) {
-  ProgressFacts facts;
-  facts.elapsed_s = static_cast<double>(now_ns - started_ns_) * 1e-9;
-  facts.file_bytes = recording_->bytes();
-  facts.bytes_per_s =
-      static_cast<double>(facts.file_bytes - progress_bytes_) / (static_cast<double>(now_ns - progress_ns_) * 1e-9);
-  facts.totals = totals;
-  facts.free_bytes = free_bytes_;
+  const std::uint64_t bytes = recording_->bytes();
+  const double bytes_per_s =
+      static_cast<double>(bytes - progress_bytes_) / (static_cast<double>(now_ns - progress_ns_) * 1e-9);
+  const std::string text = fmt::format("recording {:.0f} s  {} messages  {}/s  {}  lost {}  free {}",
+                                       static_cast<double>(now_ns - started_ns_) * 1e-9, totals.written,
+                                       size_text(static_cast<std::uint64_t>(bytes_per_s)), size_text(bytes),
+                                       totals.lost(), size_text(free_bytes_));
   progress_ns_ = now_ns;
-  progress_bytes_ = facts.file_bytes;
+  progress_bytes_ = bytes;
   if (interactive_) {
-    std::cerr << "\r\x1b[K" << progress_text(facts) << '\r' << std::flush;  // a log line overwrites it
+    std::cerr << "\r\x1b[K" << text << '\r' << std::flush;  // a log line overwrites it
   } else {
-    SPDLOG_INFO("event=progress {}", progress_text(facts));
+    SPDLOG_INFO("event=progress {}", text);
   }
 }
 
@@ -241,6 +307,7 @@ service::ExitCode RecorderService::conclude() {
   report.folder = files_.folder();
   report.files = recording_->files();
   report.topics = book_.topics();
+  report.totals = book_.totals();
   report.acknowledged_bytes = acknowledged.bytes;
   report.duration_s = static_cast<double>(service::monotonic_ns() - started_ns_) * 1e-9;
   report.failure = failure_;
@@ -259,9 +326,8 @@ service::ExitCode RecorderService::conclude() {
                 topic.counts.written, topic.counts.lost_in_transit, topic.counts.lost_in_queue);
   }
   if (!failure_.empty()) SPDLOG_ERROR("event=ended_early cause=\"{}\"", failure_);
-  const TopicCounts totals = book_.totals();
   SPDLOG_INFO("event=summary files={} messages={} acknowledged={} bytes={} lost={}", report.files.size(),
-              totals.written, totals.acknowledged, recording_->bytes(), totals.lost());
+              report.totals.written, report.totals.acknowledged, recording_->bytes(), report.totals.lost());
   if (config_.json) std::cout << report_json(report) << '\n';
   return report.partial() ? service::kPartialLoss : service::kOk;
 }

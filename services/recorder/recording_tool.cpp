@@ -2,10 +2,123 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "common/service/command_line.hpp"
-#include "services/recorder/convert/convert_command.hpp"
+#include "common/service/progress.hpp"
+#include "services/camera/core/source_factory.hpp"
 #include "services/recorder/inspect/inspect_commands.hpp"
+#include "services/recorder/mcap_export.hpp"
+
+namespace rtd::recording {
+namespace {
+
+using camera::SkipReason;
+using camera::SourceError;
+
+/// The command line of `rtd convert`.
+struct ConvertOptions {
+  std::string source, destination;
+  std::string compression = "zstd";  ///< of an MCAP file: none, lz4 or zstd
+  std::uint64_t frames = 0;          ///< at most so many, 0 = all
+  bool json = false;
+};
+
+enum class Format { kTum, kMcap };
+
+struct Destination {
+  Format format{};
+  std::string path;
+};
+
+Destination parse_destination(const std::string& text) {
+  for (const auto& [scheme, format] : {std::pair{"tum:", Format::kTum}, std::pair{"mcap:", Format::kMcap}}) {
+    if (text.starts_with(scheme)) return {format, text.substr(std::string_view(scheme).size())};
+  }
+  if (text.ends_with(".mcap")) return {Format::kMcap, text};
+  if (text.starts_with("bag:") || text.ends_with(".bag")) {
+    throw SourceError("destination '" + text + "': bags are read, not written; write FILE.mcap or tum:DIR");
+  }
+  return {Format::kTum, text};
+}
+
+/// Counts what the source once had and the result lacks.
+std::uint64_t lost(const camera::SourceCounters& counters) {
+  return counters.of(SkipReason::kColorUnreadable) + counters.of(SkipReason::kDepthUnreadable) +
+         counters.of(SkipReason::kDepthNot16Bit) + counters.of(SkipReason::kSizeMismatch) +
+         counters.of(SkipReason::kDamagedRecord) + counters.of(SkipReason::kMalformedLine);
+}
+
+std::uint64_t write(camera::FrameSource& source, const ConvertOptions& options, std::ostream& err) {
+  const Destination destination = parse_destination(options.destination);
+  const std::uint64_t expected = source.info().frames;
+  const std::uint64_t total = options.frames == 0 ? expected : std::min(options.frames, expected);
+  service::Progress progress(err, "frames", total);
+  const camera::OnFrame on_frame = [&progress](std::uint64_t frames) { progress.reach(frames); };
+  if (destination.format == Format::kTum) {
+    return camera::export_tum(source, destination.path, options.frames, on_frame);
+  }
+  const auto compression = mcap::compression_of(options.compression == "none" ? "" : options.compression);
+  return export_mcap(source, destination.path, compression.value(), options.frames, on_frame);
+}
+
+nlohmann::json to_json(const ConvertOptions& options, std::uint64_t frames, const camera::SourceCounters& counters) {
+  nlohmann::json left_out = nlohmann::json::object();
+  for (std::size_t i = 0; i < camera::kSkipReasons; ++i) {
+    if (counters.skipped[i] > 0) left_out[to_string(static_cast<SkipReason>(i))] = counters.skipped[i];
+  }
+  return {{"source", options.source},
+          {"destination", options.destination},
+          {"frames", frames},
+          {"left_out", left_out},
+          {"lost", lost(counters)}};
+}
+
+void print(const ConvertOptions& options, std::uint64_t frames, camera::FrameSource& source, std::ostream& out,
+           std::ostream& err) {
+  constexpr std::size_t kMostLines = 10;
+  const std::vector<camera::SkippedInput> skipped = source.take_skipped();
+  for (std::size_t i = 0; i < std::min(kMostLines, skipped.size()); ++i) {
+    err << "rtd convert: left out (" << to_string(skipped[i].reason) << "): " << skipped[i].detail << '\n';
+  }
+  if (skipped.size() > kMostLines) err << "rtd convert: ... and " << skipped.size() - kMostLines << " more\n";
+  if (options.json) {
+    out << to_json(options, frames, source.counters()).dump(2) << '\n';
+  } else {
+    out << frames << " frames written to " << options.destination << ", " << source.counters().skipped_total()
+        << " pieces of the source left out\n";
+  }
+}
+
+void add_convert_command(CLI::App& app, ConvertOptions& options) {
+  CLI::App* command =
+      app.add_subcommand("convert", "Convert a bag, an MCAP file, a TUM folder or any other source to TUM or MCAP");
+  command->add_option("source", options.source, "bag:FILE, mcap:FILE, tum:FOLDER or any other source; FILE.bag")
+      ->required();
+  command->add_option("destination", options.destination, "New tum:FOLDER or FILE.mcap; nothing is overwritten")
+      ->required();
+  command->add_option("--frames", options.frames, "At most this many frames, 0 = all");
+  command->add_option("--compress", options.compression, "Compression of MCAP chunks: none, lz4, zstd")
+      ->check(CLI::IsMember({"none", "lz4", "zstd"}))
+      ->capture_default_str();
+  command->add_flag("--json", options.json, "Print the summary as JSON");
+  command->footer(
+      "Exit codes: 0 done, 1 failed while converting, 2 nothing was written, 3 done but part of the source was "
+      "damaged");
+}
+
+/// Writes a source as a TUM folder or an MCAP file. Returns the exit code: 3 when part of the source was damaged.
+int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& err) {
+  return service::report_errors<SourceError>("rtd convert", err, [&] {
+    const auto source = camera::make_source(camera::complete_uri(options.source));
+    const std::uint64_t frames = write(*source, options, err);
+    print(options, frames, *source, out, err);
+    return lost(source->counters()) > 0 ? service::kPartialLoss : service::kOk;
+  });
+}
+
+}  // namespace
+}  // namespace rtd::recording
 
 /// rtd-recording: `rtd info`, `rtd diff` and `rtd convert`.
 int main(int argc, char** argv) {

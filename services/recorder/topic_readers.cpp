@@ -38,7 +38,7 @@ bool TopicReaders::any() const {
 bool TopicReaders::settled() const {
   const std::vector<bus::TopicWriter> writers = bus_.writers();
   const std::lock_guard lock(mutex_);
-  return std::all_of(writers.begin(), writers.end(), [this](const bus::TopicWriter& writer) {
+  return std::ranges::all_of(writers, [this](const bus::TopicWriter& writer) {
     if (writer.own || !filter_.wants(writer.topic.name) || refused_.contains(key_of(writer.topic))) return true;
     const auto reader = readers_.find({book_.find_or_add(writer.topic.name, writer.topic.type), offer_of(writer.qos)});
     return reader != readers_.end() && reader->second->matched() > 0;
@@ -80,7 +80,10 @@ bus::RawHandlers TopicReaders::handlers(const std::shared_ptr<Subscription>& sub
   handlers.on_sample = [this, subscription](const bus::RawSample& sample) { receive(*subscription, sample); };
   handlers.on_lost = [this, subscription](const bus::RawLoss& loss) { lose(*subscription, loss); };
   handlers.status.on_samples_lost = [this, subscription](int total) {
-    book_.at_least_lost_in_transit(subscription->topic, static_cast<std::uint64_t>(total));
+    // All that the transport has lost: a later message may never reveal some of it.
+    book_.count(subscription->topic, [total](TopicCounts& counts) {
+      counts.lost_in_transit = std::max(counts.lost_in_transit, static_cast<std::uint64_t>(total));
+    });
   };
   return handlers;
 }
@@ -102,7 +105,7 @@ void TopicReaders::receive(Subscription& subscription, const bus::RawSample& sam
                         static_cast<std::uint64_t>(sample.received_ns), static_cast<std::uint64_t>(sample.source_ns),
                         sample.bytes};
   if (queue_.push(std::move(message))) return;
-  book_.count_lost_in_queue(subscription.topic);
+  book_.count(subscription.topic, [](TopicCounts& counts) { ++counts.lost_in_queue; });
   const std::lock_guard lock(log_mutex_);
   if (!queue_log_.pass()) return;
   SPDLOG_WARN(
@@ -113,7 +116,7 @@ void TopicReaders::receive(Subscription& subscription, const bus::RawSample& sam
 
 void TopicReaders::lose(Subscription& subscription, const bus::RawLoss& loss) {
   if (!is_mine(subscription, loss.writer)) return;
-  book_.count_lost_in_transit(subscription.topic, loss.count);
+  book_.count(subscription.topic, [&](TopicCounts& counts) { counts.lost_in_transit += loss.count; });
   const std::lock_guard lock(log_mutex_);
   if (!loss_log_.pass()) return;
   SPDLOG_WARN("event=samples_lost topic={} writer={} first={} count={}", book_.topic(subscription.topic).name,

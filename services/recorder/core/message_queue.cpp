@@ -36,10 +36,8 @@ std::optional<QueuedMessage> MessageQueue::pop() {
 }
 
 void MessageQueue::close() {
-  {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-  }
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
   ready_.notify_all();
 }
 

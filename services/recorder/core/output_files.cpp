@@ -12,8 +12,17 @@
 #include <regex>
 
 namespace rtd::recorder {
-
 namespace fs = std::filesystem;
+namespace {
+
+constexpr std::uint64_t kSecond = 1'000'000'000;
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+}  // namespace
 
 OutputFiles::OutputFiles(const std::string& output, bool split) {
   const fs::path path = output.ends_with('/') ? fs::path(output).parent_path() : fs::path(output);
@@ -43,8 +52,7 @@ bool OutputFiles::is_ours(const std::string& file_name) const {
   if (file_name.size() <= head.size() + tail.size() || !file_name.starts_with(head) || !file_name.ends_with(tail)) {
     return false;
   }
-  const std::string number = file_name.substr(head.size(), file_name.size() - head.size() - tail.size());
-  return std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  return file_name.find_first_not_of("0123456789", head.size()) == file_name.size() - tail.size();
 }
 
 std::vector<fs::path> OutputFiles::existing() const {
@@ -67,17 +75,6 @@ bool OutputFiles::owns_metadata() const {
   return true;
 }
 
-namespace {
-
-constexpr std::uint64_t kSecond = 1'000'000'000;
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
-}  // namespace
-
 bool SplitPolicy::has_room(std::uint64_t file_bytes, std::uint64_t message_bytes, std::uint64_t first_ns,
                            std::uint64_t now_ns) const {
   const bool too_large = bytes > 0 && file_bytes + message_bytes > bytes;
@@ -86,22 +83,19 @@ bool SplitPolicy::has_room(std::uint64_t file_bytes, std::uint64_t message_bytes
 }
 
 std::optional<SplitPolicy> parse_split(const std::string& text) {
-  static const std::map<std::string, std::uint64_t> kSizes = {{"kb", 1000},         {"mb", 1000'000},
-                                                              {"gb", 1000'000'000}, {"kib", 1ULL << 10},
-                                                              {"mib", 1ULL << 20},  {"gib", 1ULL << 30}};
-  static const std::map<std::string, std::uint64_t> kTimes = {
-      {"s", kSecond}, {"min", 60 * kSecond}, {"h", 3600 * kSecond}};
+  static const std::map<std::string, SplitPolicy> kUnits = {
+      {"kb", {1000, 0}},        {"mb", {1000'000, 0}},      {"gb", {1000'000'000, 0}},
+      {"kib", {1ULL << 10, 0}}, {"mib", {1ULL << 20, 0}},   {"gib", {1ULL << 30, 0}},
+      {"s", {0, kSecond}},      {"min", {0, 60 * kSecond}}, {"h", {0, 3600 * kSecond}}};
   double number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || !(number > 0) || number > 1e6) return std::nullopt;
-  const std::string unit = lower(std::string(end, text.data() + text.size()));
-  if (const auto size = kSizes.find(unit); size != kSizes.end()) {
-    return SplitPolicy{static_cast<std::uint64_t>(number * static_cast<double>(size->second)), 0};
-  }
-  if (const auto time = kTimes.find(unit); time != kTimes.end()) {
-    return SplitPolicy{0, static_cast<std::uint64_t>(number * static_cast<double>(time->second))};
-  }
-  return std::nullopt;
+  const auto unit = kUnits.find(lower(std::string(end, text.data() + text.size())));
+  if (unit == kUnits.end()) return std::nullopt;
+  const auto times = [number](std::uint64_t of_one) {
+    return static_cast<std::uint64_t>(number * static_cast<double>(of_one));
+  };
+  return SplitPolicy{times(unit->second.bytes), times(unit->second.duration_ns)};
 }
 
 }  // namespace rtd::recorder

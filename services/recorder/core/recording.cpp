@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/recorder/core/recording.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "common/ros2/offered_qos.hpp"
 
@@ -20,7 +23,105 @@ mcap::WriterOptions writer_options(const RecordingOptions& options) {
   return writer;
 }
 
+/// A double-quoted YAML scalar.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '\n') {
+      out += "\\n";
+    } else {
+      if (c == '"' || c == '\\') out += '\\';
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+std::string span_text(const char* indent, const FileSummary& span) {
+  return fmt::format(
+      "{0}duration:\n{0}  nanoseconds: {1}\n{0}starting_time:\n{0}  nanoseconds_since_epoch: {2}\n"
+      "{0}message_count: {3}\n",
+      indent, span.last_ns - span.first_ns, span.first_ns, span.messages);
+}
+
+FileSummary sum(const std::vector<FileSummary>& files) {
+  FileSummary all;
+  for (const FileSummary& file : files) {
+    if (file.messages == 0) continue;
+    all.first_ns = all.messages == 0 ? file.first_ns : std::min(all.first_ns, file.first_ns);
+    all.last_ns = std::max(all.last_ns, file.last_ns);
+    all.messages += file.messages;
+    all.bytes += file.bytes;
+  }
+  return all;
+}
+
+std::string topic_text(const RecordedTopic& topic) {
+  return fmt::format(
+      "    - topic_metadata:\n        name: {}\n        type: {}\n        serialization_format: cdr\n"
+      "        offered_qos_profiles: {}\n      message_count: {}\n",
+      quoted(topic.name), quoted(topic.type.name), quoted(ros2::offered_qos_text(topic.offered)), topic.counts.written);
+}
+
 }  // namespace
+
+SyncThread::SyncThread(std::chrono::milliseconds pause) : pause_(pause), thread_([this] { loop(); }) {}
+
+void SyncThread::put(std::shared_ptr<io::ByteSink> sink, Acknowledged written) {
+  {
+    const std::lock_guard lock(mutex_);
+    // Of one sink only the newest mark counts.
+    if (!marks_.empty() && marks_.back().sink == sink) marks_.pop_back();
+    marks_.push_back({std::move(sink), std::move(written)});
+  }
+  changed_.notify_one();
+}
+
+Acknowledged SyncThread::acknowledged() const {
+  const std::lock_guard lock(mutex_);
+  return acknowledged_;
+}
+
+std::string SyncThread::failure() const {
+  const std::lock_guard lock(mutex_);
+  return failure_;
+}
+
+void SyncThread::finish() {
+  std::unique_lock lock(mutex_);
+  ended_ = true;
+  lock.unlock();
+  changed_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+void SyncThread::loop() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return ended_ || !marks_.empty(); });
+    if (marks_.empty()) return;
+    const std::deque<Mark> marks = std::exchange(marks_, {});
+    lock.unlock();
+    sync(marks);
+    lock.lock();
+    changed_.wait_for(lock, pause_, [this] { return ended_; });
+  }
+}
+
+/// In order: a mark counts when all before it are durable too.
+void SyncThread::sync(const std::deque<Mark>& marks) {
+  for (const Mark& mark : marks) {
+    std::string failure;
+    try {
+      mark.sink->sync();
+    } catch (const io::IoError& error) {
+      failure = error.what();
+    }
+    const std::lock_guard lock(mutex_);
+    if (failure_.empty()) failure_ = failure;
+    if (failure_.empty()) acknowledged_ = mark.written;
+  }
+}
 
 Recording::Recording(RecordingOptions options, OpenSink open_sink, TopicBook& book, SyncThread& sync)
     : options_(options),
@@ -29,7 +130,7 @@ Recording::Recording(RecordingOptions options, OpenSink open_sink, TopicBook& bo
       sync_(sync),
       sink_(open_sink_(0)),
       writer_(*sink_, writer_options(options)) {
-  update_file();
+  file_.bytes = sink_->position();
 }
 
 void Recording::write(const QueuedMessage& message, std::int64_t now_ns) {
@@ -44,7 +145,10 @@ void Recording::write(const QueuedMessage& message, std::int64_t now_ns) {
   writer_.write(mcap::Message{channel(message.topic), message.sequence, message.received_ns, message.source_ns, data});
   if (messages_.size() <= message.topic) messages_.resize(message.topic + 1);
   ++messages_[message.topic];
-  book_.count_written(message.topic, data.size());
+  book_.count(message.topic, [&](TopicCounts& counts) {
+    ++counts.written;
+    counts.written_bytes += data.size();
+  });
   if (file_.messages++ == 0) file_.first_ns = message.received_ns;
   file_.last_ns = std::max(file_.last_ns, message.received_ns);
   if (!chunk_begun_ns_) chunk_begun_ns_ = now_ns;
@@ -61,7 +165,7 @@ void Recording::finish(const std::vector<mcap::Metadata>& metadata) {
   end_chunk();
   for (const mcap::Metadata& record : metadata) writer_.write(record);
   writer_.close();
-  update_file();
+  file_.bytes = sink_->position();
   sync_.put(sink_, {bytes(), messages_});
 }
 
@@ -89,7 +193,7 @@ mcap::ChannelId Recording::channel(std::size_t topic) {
 void Recording::end_chunk() {
   writer_.end_chunk();
   chunk_begun_ns_.reset();
-  update_file();
+  file_.bytes = sink_->position();
   sync_.put(sink_, {bytes(), messages_});
 }
 
@@ -103,11 +207,22 @@ void Recording::begin_next_file() {
   ended_files_.push_back(file_);
   file_ = {};
   sink_ = std::move(next);
-  update_file();
+  file_.bytes = sink_->position();
 }
 
-void Recording::update_file() {
-  file_.bytes = sink_->position();
+std::string bag_metadata_text(const std::vector<std::string>& names, const std::vector<FileSummary>& files,
+                              const std::vector<RecordedTopic>& topics) {
+  std::string text = "rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: mcap\n";
+  text += span_text("  ", sum(files));
+  text += topics.empty() ? "  topics_with_message_count: []\n" : "  topics_with_message_count:\n";
+  for (const RecordedTopic& topic : topics) text += topic_text(topic);
+  text += "  compression_format: \"\"\n  compression_mode: \"\"\n  relative_file_paths:\n";
+  for (const std::string& name : names) text += "    - " + name + '\n';
+  text += "  files:\n";
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    text += "    - path: " + names[i] + '\n' + span_text("      ", files[i]);
+  }
+  return text;
 }
 
 }  // namespace rtd::recorder

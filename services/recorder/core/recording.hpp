@@ -2,20 +2,67 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "common/io/byte_sink.hpp"
 #include "common/mcap/writer.hpp"
 #include "services/recorder/core/message_queue.hpp"
 #include "services/recorder/core/output_files.hpp"
-#include "services/recorder/core/sync_thread.hpp"
 #include "services/recorder/core/topic_book.hpp"
 
 namespace rtd::recorder {
+
+/// What is certain to be on disk.
+struct Acknowledged {
+  std::uint64_t bytes = 0;              ///< of all files of the recording
+  std::vector<std::uint64_t> messages;  ///< by topic
+};
+
+/// Makes written data survive a power cut. It has a thread of its own because fdatasync(2) may take long: the durable
+/// watermark follows the writing. Thread-safe.
+class SyncThread {
+ public:
+  /// At least `pause` passes between two syncs, so that the disk is not kept busy with its journal.
+  explicit SyncThread(std::chrono::milliseconds pause);
+  ~SyncThread() { finish(); }
+  SyncThread(const SyncThread&) = delete;
+  SyncThread& operator=(const SyncThread&) = delete;
+
+  /// The sink now contains `written` in complete records. It is kept alive until that is durable.
+  void put(std::shared_ptr<io::ByteSink> sink, Acknowledged written);
+  Acknowledged acknowledged() const;
+  /// Why a sync failed; empty: none did. After a failure nothing more is acknowledged.
+  std::string failure() const;
+  /// Syncs the rest and ends.
+  void finish();
+
+ private:
+  struct Mark {
+    std::shared_ptr<io::ByteSink> sink;
+    Acknowledged written;
+  };
+  void loop();
+  void sync(const std::deque<Mark>& marks);
+
+  const std::chrono::milliseconds pause_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Mark> marks_;
+  Acknowledged acknowledged_;
+  std::string failure_;
+  bool ended_ = false;
+  std::thread thread_;
+};
 
 struct RecordingOptions {
   mcap::Compression compression = mcap::Compression::kNone;
@@ -51,7 +98,6 @@ class Recording {
   mcap::ChannelId channel(std::size_t topic);
   void end_chunk();
   void begin_next_file();
-  void update_file();
 
   const RecordingOptions options_;
   const OpenSink open_sink_;

@@ -12,16 +12,15 @@ namespace rtd::recorder {
 
 bool TopicFilter::wants(const std::string& dds_topic) const {
   const std::string ros_topic = ros2::ros_topic(dds_topic);
-  return std::any_of(patterns_.begin(), patterns_.end(), [&](const std::string& pattern) {
+  return std::ranges::any_of(patterns_, [&](const std::string& pattern) {
     return fnmatch(pattern.c_str(), dds_topic.c_str(), 0) == 0 || fnmatch(pattern.c_str(), ros_topic.c_str(), 0) == 0;
   });
 }
 
 std::size_t TopicBook::find_or_add(const std::string& dds_name, const std::string& dds_type) {
   const std::lock_guard lock(mutex_);
-  const auto known = std::find_if(topics_.begin(), topics_.end(), [&](const RecordedTopic& topic) {
-    return topic.dds_name == dds_name && topic.dds_type == dds_type;
-  });
+  const auto known = std::ranges::find_if(
+      topics_, [&](const RecordedTopic& topic) { return topic.dds_name == dds_name && topic.dds_type == dds_type; });
   if (known != topics_.end()) return static_cast<std::size_t>(known - topics_.begin());
   topics_.push_back({dds_name, dds_type, ros2::ros_topic(dds_name), ros2::definition_of(dds_type), {}, {}});
   return topics_.size() - 1;
@@ -30,34 +29,12 @@ std::size_t TopicBook::find_or_add(const std::string& dds_name, const std::strin
 void TopicBook::add_offer(std::size_t topic, const bus::RawQos& qos) {
   const std::lock_guard lock(mutex_);
   auto& offered = topics_[topic].offered;
-  if (std::find(offered.begin(), offered.end(), qos) == offered.end()) offered.push_back(qos);
-}
-
-void TopicBook::count_written(std::size_t topic, std::uint64_t bytes) {
-  const std::lock_guard lock(mutex_);
-  ++topics_[topic].counts.written;
-  topics_[topic].counts.written_bytes += bytes;
+  if (std::ranges::count(offered, qos) == 0) offered.push_back(qos);
 }
 
 void TopicBook::count_acknowledged(const std::vector<std::uint64_t>& per_topic) {
   const std::lock_guard lock(mutex_);
   for (std::size_t i = 0; i < per_topic.size(); ++i) topics_[i].counts.acknowledged = per_topic[i];
-}
-
-void TopicBook::count_lost_in_transit(std::size_t topic, std::uint64_t messages) {
-  const std::lock_guard lock(mutex_);
-  topics_[topic].counts.lost_in_transit += messages;
-}
-
-void TopicBook::at_least_lost_in_transit(std::size_t topic, std::uint64_t messages) {
-  const std::lock_guard lock(mutex_);
-  std::uint64_t& lost = topics_[topic].counts.lost_in_transit;
-  lost = std::max(lost, messages);
-}
-
-void TopicBook::count_lost_in_queue(std::size_t topic) {
-  const std::lock_guard lock(mutex_);
-  ++topics_[topic].counts.lost_in_queue;
 }
 
 RecordedTopic TopicBook::topic(std::size_t index) const {

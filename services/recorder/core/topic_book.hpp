@@ -45,12 +45,12 @@ class TopicBook {
   std::size_t find_or_add(const std::string& dds_name, const std::string& dds_type);
   void add_offer(std::size_t topic, const bus::RawQos& qos);
 
-  void count_written(std::size_t topic, std::uint64_t bytes);
+  /// Calls `change` with the counts of a topic.
+  void count(std::size_t topic, auto change) {
+    const std::lock_guard lock(mutex_);
+    change(topics_[topic].counts);
+  }
   void count_acknowledged(const std::vector<std::uint64_t>& per_topic);
-  void count_lost_in_transit(std::size_t topic, std::uint64_t messages);
-  /// The total that the transport reports: a later message may never reveal some of it.
-  void at_least_lost_in_transit(std::size_t topic, std::uint64_t messages);
-  void count_lost_in_queue(std::size_t topic);
 
   RecordedTopic topic(std::size_t index) const;
   std::vector<RecordedTopic> topics() const;

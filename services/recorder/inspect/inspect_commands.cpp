@@ -9,8 +9,9 @@
 #include "common/mcap/recording_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/progress.hpp"
 #include "services/recorder/inspect/recording_diff.hpp"
-#include "services/recorder/inspect/report_text.hpp"
+#include "services/recorder/inspect/recording_report.hpp"
 
 namespace rtd::recording {
 namespace {
@@ -29,11 +30,7 @@ void warn(const Contents& contents, const std::string& path, std::ostream& err) 
 
 template <class Diff>
 void print(const Diff& diff, bool json, std::ostream& out) {
-  if (json) {
-    out << to_json(diff).dump(2) << "\n";
-  } else {
-    out << to_text(diff);
-  }
+  out << (json ? to_json(diff).dump(2) + '\n' : to_text(diff));
 }
 
 int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream& err) {
@@ -91,18 +88,13 @@ CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
 }
 
 int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
-  try {
+  return service::report_errors<mcap::RecordingFileError, eval::TrajectoryError>("rtd diff", err, [&] {
     const bool a = mcap::looks_like_recording(request.a), b = mcap::looks_like_recording(request.b);
     if (a != b)
       throw mcap::RecordingFileError((a ? request.a : request.b) + " is a recording, " + (a ? request.b : request.a) +
                                      " is not: compare two files of the same kind");
     return a ? diff_recordings(request, out, err) : diff_trajectories(request, out);
-  } catch (const mcap::RecordingFileError& error) {
-    err << "rtd diff: " << error.what() << "\n";
-  } catch (const eval::TrajectoryError& error) {
-    err << "rtd diff: " << error.what() << "\n";
-  }
-  return service::kUsageOrConfig;
+  });
 }
 
 CLI::App* add_info_command(CLI::App& parent, InfoOptions& options) {
@@ -116,7 +108,7 @@ CLI::App* add_info_command(CLI::App& parent, InfoOptions& options) {
 }
 
 int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
-  try {
+  return service::report_errors<mcap::RecordingFileError>("rtd info", err, [&] {
     const io::FileSource source = mcap::open_recording(options.file);
     service::Progress progress(err, "reading", source.size());
     ReportOptions how;
@@ -124,16 +116,9 @@ int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
     how.on_progress = [&](std::uint64_t bytes) { progress.reach(bytes); };
     RecordingReport report = report_on(source, how);
     report.being_written = source.being_written();
-    if (options.json) {
-      out << to_json(report, options.file).dump(2) << "\n";
-    } else {
-      out << to_text(report, options.file);
-    }
+    out << (options.json ? to_json(report, options.file).dump(2) + '\n' : to_text(report, options.file));
     return report.damaged() ? service::kPartialLoss : service::kOk;
-  } catch (const mcap::RecordingFileError& error) {
-    err << "rtd info: " << error.what() << "\n";
-    return service::kUsageOrConfig;
-  }
+  });
 }
 
 }  // namespace rtd::recording

@@ -15,14 +15,12 @@ using mcap::ChannelId;
 using mcap::Timestamp;
 
 /// What is read before it becomes a report.
-struct Collected {
-  struct PerChannel {
-    std::vector<Timestamp> times_ns;
-    std::uint64_t payload_bytes = 0;
-    SequenceCount sequences;
-  };
-  std::map<ChannelId, PerChannel> channels;
+struct PerChannel {
+  std::vector<Timestamp> times_ns;
+  std::uint64_t payload_bytes = 0;
+  SequenceCount sequences;
 };
+using Collected = std::map<ChannelId, PerChannel>;
 
 void take(RecordingReport& report, const mcap::Problems& problems) {
   report.problems = problems.listed();
@@ -40,7 +38,7 @@ void add_channels(RecordingReport& report, Collected& collected, const std::map<
       entry.schema_encoding = schema->second.encoding;
       entry.schema_text = !schema->second.data.empty();
     }
-    Collected::PerChannel& read = collected.channels[id];
+    PerChannel& read = collected[id];
     if (report.read_all) {
       entry.payload_bytes = read.payload_bytes;
       entry.sequences = read.sequences;
@@ -76,7 +74,7 @@ bool read_index(const io::ByteSource& source, const mcap::ChunkIndex& chunk, Col
   while (const std::optional<mcap::InnerRecord> record = records.next()) {
     const auto index = mcap::decode<mcap::MessageIndex>(record->content);
     if (record->opcode != mcap::Opcode::kMessageIndex || !index) return false;
-    std::vector<Timestamp>& times_ns = collected.channels[index->channel_id].times_ns;
+    std::vector<Timestamp>& times_ns = collected[index->channel_id].times_ns;
     for (const auto& [log_time, position] : index->records) times_ns.push_back(log_time);
   }
   return !records.cut();
@@ -106,7 +104,7 @@ bool report_from_summary(const io::ByteSource& source, RecordingReport& report) 
 /// One record of a file that is read from the start.
 void add_record(RecordingReport& report, Collected& collected, const mcap::Record& record, std::uint64_t offset) {
   if (const auto* message = std::get_if<mcap::Message>(&record)) {
-    Collected::PerChannel& channel = collected.channels[message->channel_id];
+    PerChannel& channel = collected[message->channel_id];
     channel.times_ns.push_back(message->log_time);
     channel.payload_bytes += message->data.size();
     channel.sequences.add(message->sequence);
@@ -140,15 +138,9 @@ void report_from_everything(const io::ByteSource& source, const ReportOptions& o
 }
 
 bool is_damage(const mcap::Problem& problem, bool being_written) {
-  switch (problem.kind) {
-    case mcap::ProblemKind::kUnknownRecord:
-    case mcap::ProblemKind::kNoSummary:
-      return problem.data_lost;
-    case mcap::ProblemKind::kTruncated:
-      return !being_written;
-    default:
-      return true;
-  }
+  using Kind = mcap::ProblemKind;
+  if (problem.kind == Kind::kUnknownRecord || problem.kind == Kind::kNoSummary) return problem.data_lost;
+  return problem.kind != Kind::kTruncated || !being_written;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -94,5 +95,15 @@ struct ReportOptions {
 /// Reads the summary and the message indexes, or the whole file if it is small, if these are missing or if asked to.
 /// The content of the file never makes it throw.
 RecordingReport report_on(const io::ByteSource& source, const ReportOptions& options = {});
+
+/// What `rtd info` prints.
+std::string to_text(const RecordingReport& report, const std::string& name);
+nlohmann::ordered_json to_json(const RecordingReport& report, const std::string& name);
+
+/// The state of the checksums in a few words.
+std::string checksum_text(const RecordingReport& report);
+
+/// The problems, one per line, at most `most` of them.
+std::string problems_text(const std::vector<mcap::Problem>& problems, std::uint64_t count, std::size_t most);
 
 }  // namespace rtd::recording

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recorder/inspect/report_text.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "common/service/command_line.hpp"
+#include "common/service/units_text.hpp"
+#include "services/recorder/inspect/recording_report.hpp"
 
 namespace rtd::recording {
 namespace {
@@ -151,6 +151,11 @@ Json chunks_json(const RecordingReport& report) {
   return chunks;
 }
 
+Json to_json(const mcap::Problem& problem) {
+  return {{"kind", mcap::name_of(problem.kind)}, {"offset", problem.offset},       {"what", problem.what},
+          {"consequence", problem.consequence},  {"data_lost", problem.data_lost}, {"count", problem.count}};
+}
+
 }  // namespace
 
 std::string checksum_text(const RecordingReport& report) {
@@ -184,11 +189,6 @@ std::string to_text(const RecordingReport& report, const std::string& name) {
   text += chunk_rows(report) + summary_row(report) + head_row("checksums", checksum_text(report));
   return text + loss_rows(report) + metadata_rows(report) + channel_table(report) +
          problems_text(report.problems, report.problem_count, kShownProblems);
-}
-
-Json to_json(const mcap::Problem& problem) {
-  return {{"kind", mcap::name_of(problem.kind)}, {"offset", problem.offset},       {"what", problem.what},
-          {"consequence", problem.consequence},  {"data_lost", problem.data_lost}, {"count", problem.count}};
 }
 
 Json to_json(const RecordingReport& report, const std::string& name) {

@@ -5,7 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "services/camera/core/recording/recording.hpp"
-#include "services/recorder/convert/mcap_export.hpp"
+#include "services/recorder/mcap_export.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/mcap_file.hpp"
 #include "tests/unit/camera/played_frames.hpp"

@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include "services/recorder/inspect/report_text.hpp"
 #include "tests/unit/recorder/inspect/sample_recording.hpp"
 
 namespace rtd::recording {

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recorder/convert/mcap_export.hpp"
+#include "services/recorder/mcap_export.hpp"
+
+#include <fmt/format.h>
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "common/mcap/writer.hpp"
@@ -21,12 +22,6 @@ namespace fs = std::filesystem;
 
 bool in_millimetres(double depth_scale_m) {
   return std::abs(depth_scale_m - camera::kMillimetre) < 1e-12;
-}
-
-std::string depth_factor_text(double depth_scale_m) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.9g", 1.0 / depth_scale_m);
-  return text.data();
 }
 
 msg::Image to_message(const cv::Mat& pixels, const std::string& encoding, std::int64_t stamp_ns) {
@@ -74,7 +69,7 @@ class Recorder {
     const mcap::SchemaId image = schema("sensor_msgs/msg/Image");
     color_ = channel("/camera/color/image_raw", image);
     depth_ = channel("/camera/aligned_depth_to_color/image_raw", image,
-                     {{camera::kDepthFactor, depth_factor_text(depth_scale_m)}});
+                     {{camera::kDepthFactor, fmt::format("{:.9g}", 1.0 / depth_scale_m)}});
     info_ = channel("/camera/color/camera_info", schema("sensor_msgs/msg/CameraInfo"));
     truth_ = channel("/tf", schema("tf2_msgs/msg/TFMessage"));
   }
