@@ -22,10 +22,8 @@ bool in_foreground() {
 }  // namespace
 
 void Inbox::post(Event event) {
-  {
-    const std::lock_guard lock(mutex_);
-    events_.push_back(event);
-  }
+  const std::lock_guard lock(mutex_);
+  events_.push_back(event);
   posted_.notify_one();
 }
 
@@ -47,12 +45,11 @@ Keyboard::Keyboard(std::function<void(Command)> on_command) : on_command_(std::m
   raw.c_cc[VTIME] = 0;
   wake_fd_ = eventfd(0, EFD_CLOEXEC);
   if (wake_fd_ < 0 || tcsetattr(STDIN_FILENO, TCSANOW, &raw) != 0) return;
-  listens_ = true;
   thread_ = std::thread([this] { listen(); });
 }
 
 Keyboard::~Keyboard() {
-  if (listens_) {
+  if (thread_.joinable()) {
     const std::uint64_t wake = 1;
     (void)!write(wake_fd_, &wake, sizeof(wake));
     thread_.join();

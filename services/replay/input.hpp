@@ -38,7 +38,6 @@ class Keyboard {
   ~Keyboard();
   Keyboard(const Keyboard&) = delete;
   Keyboard& operator=(const Keyboard&) = delete;
-  bool listens() const { return listens_; }
 
  private:
   void listen();
@@ -46,7 +45,6 @@ class Keyboard {
   std::function<void(Command)> on_command_;
   termios before_{};
   int wake_fd_ = -1;
-  bool listens_ = false;
   std::thread thread_;
 };
 

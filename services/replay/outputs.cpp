@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "common/msg/rgbd_frame.hpp"
+#include "common/msg/ros.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/offered_qos.hpp"
+#include "common/ros_codec/wire_writer.hpp"
+#include "common/service/config.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/replay/core/topic_choice.hpp"
 
 namespace rtd::replay {
 namespace {
@@ -38,8 +40,8 @@ bus::RawQos qos_of(const mcap::Channel& channel) {
 std::string type_of(const mcap::Channel& channel, const mcap::Summary& summary) {
   const auto schema = summary.schemas.find(channel.schema_id);
   if (schema == summary.schemas.end() || schema->second.name.empty())
-    throw ReplayError("topic " + channel.topic + " has no type in the recording: leave it out with --exclude " +
-                      channel.topic);
+    throw service::ConfigError("topic " + channel.topic +
+                               " has no type in the recording: leave it out with --exclude " + channel.topic);
   return ros2::dds_type(schema->second.name);
 }
 
@@ -52,8 +54,8 @@ Outputs::Outputs(bus::RawBus& bus, const std::vector<const mcap::Channel*>& chan
     Output output = make_output(*channel, summary);
     const auto [known, is_new] = outputs_.try_emplace(output.topic.name, std::move(output));
     if (!is_new && known->second.topic.type != ros2::dds_type(type_of(*channel, summary)))
-      throw ReplayError("topic " + known->first + " has two types in the recording or by --remap: " +
-                        known->second.topic.type + " and " + type_of(*channel, summary) + "; leave one out");
+      throw service::ConfigError("topic " + known->first + " has two types in the recording or by --remap: " +
+                                 known->second.topic.type + " and " + type_of(*channel, summary) + "; leave one out");
     by_channel_[channel->id] = &known->second;
   }
   for (auto& [topic, output] : outputs_) output.writer = bus_.writer(output.topic, output.options);
@@ -121,19 +123,8 @@ void Outputs::write(Output& output, const PlayedMessage& message) const {
 
 void Outputs::send_clock(std::int64_t recorded_ns) {
   if (!clock_) clock_ = bus_.writer({"rt/clock", "rosgraph_msgs::msg::dds_::Clock_"}, {});
-  constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-  const auto sec = static_cast<std::int32_t>(recorded_ns / kNsPerSecond);
-  const auto nanosec = static_cast<std::uint32_t>(recorded_ns % kNsPerSecond);
-  std::array<std::byte, 12> cdr{std::byte{0}, std::byte{1}};
-  std::memcpy(cdr.data() + 4, &sec, sizeof(sec));
-  std::memcpy(cdr.data() + 8, &nanosec, sizeof(nanosec));
-  clock_->write(cdr);
-}
-
-std::vector<const Output*> Outputs::all() const {
-  std::vector<const Output*> all;
-  for (const auto& [topic, output] : outputs_) all.push_back(&output);
-  return all;
+  const std::vector<std::uint8_t> cdr = ros::encode<ros::Wire::kCdr>(msg::to_time(recorded_ns));
+  clock_->write(std::as_bytes(std::span(cdr)));
 }
 
 std::vector<std::string> Outputs::unread() const {

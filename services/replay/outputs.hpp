@@ -37,7 +37,7 @@ struct Output {
 /// The writers of a replay, with types and QoS as recorded.
 class Outputs {
  public:
-  /// A writer for each topic among `channels`. Throws BusError; ReplayError: two types on one topic.
+  /// A writer for each topic among `channels`. Throws BusError; ConfigError: two types on one topic.
   Outputs(bus::RawBus& bus, const std::vector<const mcap::Channel*>& channels, const mcap::Summary& summary,
           OutputOptions options);
   ~Outputs();
@@ -48,7 +48,7 @@ class Outputs {
   void send(const PlayedMessage& message);
   void send_clock(std::int64_t recorded_ns);
   const Output& of(mcap::ChannelId channel) const { return *by_channel_.at(channel); }
-  std::vector<const Output*> all() const;
+  const std::map<std::string, Output>& all() const { return outputs_; }  ///< by topic
   /// Reliable topics without a reader.
   std::vector<std::string> unread() const;
   /// Writes the waiting frames. Afterwards nothing can be sent and the counts are final.

@@ -6,73 +6,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <iostream>
 
 namespace rtd::replay {
 namespace {
 
-const char* name_of(PlayOutcome outcome) {
-  switch (outcome) {
-    case PlayOutcome::kEnded:
-      return "ended";
-    case PlayOutcome::kStopped:
-      return "stopped";
-    case PlayOutcome::kUnanswered:
-      return "unanswered";
-  }
-  return "unknown";
-}
+using Json = nlohmann::ordered_json;
 
+constexpr std::array kOutcomes = {"ended", "stopped", "unanswered"};  // by PlayOutcome
 constexpr std::int64_t kRewriteEveryNs = 100'000'000;
 constexpr std::size_t kCells = 20;
-
-}  // namespace
-
-Report report_of(const Player& player, const Outputs& outputs, const std::string& file, PlayOutcome outcome,
-                 const mcap::Problems& problems) {
-  Report report;
-  report.file = file;
-  report.outcome = name_of(outcome);
-  for (const Output* output : outputs.all()) {
-    report.topics.push_back({output->topic.name, output->topic.type, output->sent, output->refused});
-    report.sent += output->sent;
-    report.refused += output->refused;
-  }
-  report.resends = player.resends();
-  report.timed = player.timing().count();
-  report.timing_error_p50_ms = player.timing().percentile_ms(50);
-  report.timing_error_p99_ms = player.timing().percentile_ms(99);
-  report.timing_error_max_ms = player.timing().max_ms();
-  for (const mcap::Problem& problem : problems.listed()) report.problems.push_back(mcap::to_string(problem));
-  return report;
-}
-
-std::string log_text(const Report& report) {
-  return fmt::format(
-      "outcome={} sent={} refused={} resends={} timing_error_p50_ms={:.3f} timing_error_p99_ms={:.3f} "
-      "timing_error_max_ms={:.3f}",
-      report.outcome, report.sent, report.refused, report.resends, report.timing_error_p50_ms,
-      report.timing_error_p99_ms, report.timing_error_max_ms);
-}
-
-nlohmann::ordered_json to_json(const Report& report) {
-  nlohmann::ordered_json json = {{"file", report.file},
-                                 {"outcome", report.outcome},
-                                 {"sent", report.sent},
-                                 {"refused", report.refused},
-                                 {"resends", report.resends},
-                                 {"timing_error_ms",
-                                  {{"messages", report.timed},
-                                   {"p50", report.timing_error_p50_ms},
-                                   {"p99", report.timing_error_p99_ms},
-                                   {"max", report.timing_error_max_ms}}},
-                                 {"problems", report.problems}};
-  json["topics"] = nlohmann::ordered_json::array();
-  for (const Report::Topic& topic : report.topics)
-    json["topics"].push_back(
-        {{"topic", topic.name}, {"type", topic.type}, {"sent", topic.sent}, {"refused", topic.refused}});
-  return json;
-}
 
 std::string status_text(const PlayState& state, std::int64_t start_ns, std::int64_t end_ns) {
   const double done_s = static_cast<double>(state.recorded_ns - start_ns) * 1e-9;
@@ -83,6 +27,44 @@ std::string status_text(const PlayState& state, std::int64_t start_ns, std::int6
                      std::string(kCells - cells, '.'),
                      state.rate > 0 ? fmt::format("{:.2f}x", state.rate) : "as fast as possible", state.sent,
                      state.paused ? ", paused" : "");
+}
+
+}  // namespace
+
+Json report_of(const Player& player, const Outputs& outputs, const std::string& file, PlayOutcome outcome,
+               const mcap::Problems& problems) {
+  std::uint64_t sent = 0, refused = 0;
+  Json topics = Json::array(), listed = Json::array();
+  for (const auto& [name, output] : outputs.all()) {
+    topics.push_back(
+        {{"topic", name}, {"type", output.topic.type}, {"sent", output.sent}, {"refused", output.refused}});
+    sent += output.sent;
+    refused += output.refused;
+  }
+  for (const mcap::Problem& problem : problems.listed()) listed.push_back(mcap::to_string(problem));
+  const TimingError& timing = player.timing();
+  return {{"file", file},
+          {"outcome", kOutcomes.at(static_cast<std::size_t>(outcome))},
+          {"sent", sent},
+          {"refused", refused},
+          {"resends", player.resends()},
+          {"timing_error_ms",
+           {{"messages", timing.count()},
+            {"p50", timing.percentile_ms(50)},
+            {"p99", timing.percentile_ms(99)},
+            {"max", timing.max_ms()}}},
+          {"problems", listed},
+          {"topics", topics}};
+}
+
+std::string log_text(const Json& report) {
+  const auto count = [&](const char* key) { return report.at(key).get<std::uint64_t>(); };
+  const auto timing = [&](const char* key) { return report.at("timing_error_ms").at(key).get<double>(); };
+  return fmt::format(
+      "outcome={} sent={} refused={} resends={} timing_error_p50_ms={:.3f} timing_error_p99_ms={:.3f} "
+      "timing_error_max_ms={:.3f}",
+      report.at("outcome").get<std::string>(), count("sent"), count("refused"), count("resends"), timing("p50"),
+      timing("p99"), timing("max"));
 }
 
 StatusLine::StatusLine(std::int64_t start_ns, std::int64_t end_ns)

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <limits>
 #include <set>
@@ -19,12 +20,15 @@
 #include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/pace.hpp"
 #include "services/replay/core/topic_choice.hpp"
 #include "services/replay/input.hpp"
 #include "services/replay/replay_report.hpp"
 
 namespace rtd::replay {
 namespace {
+
+using service::ConfigError;
 
 constexpr std::int64_t kNsPerSecond = 1'000'000'000, kMetricsEveryNs = kNsPerSecond;
 constexpr std::chrono::milliseconds kLook{20};
@@ -40,6 +44,28 @@ std::int64_t to_ns(double seconds) {
 /// A time beyond the year 2262 is an error in the file.
 std::int64_t signed_time(mcap::Timestamp time) {
   return static_cast<std::int64_t>(std::min<mcap::Timestamp>(time, std::numeric_limits<std::int64_t>::max()));
+}
+
+void require(const char* name, double value, double max) {
+  if (std::isfinite(value) && value >= 0 && value <= max) return;
+  throw ConfigError(fmt::format("{} {}: give a number from 0 to {:g}", name, value, max));
+}
+
+/// Throws ConfigError naming the option, the value and what is allowed.
+void validate(const ServiceConfig& config) {
+  if (config.file.empty()) throw ConfigError("name a recording: rtd replay FILE (replay.file)");
+  require("--rate", config.rate, ServiceConfig::kHighestRate);
+  require("--start-offset", config.start_offset_s, ServiceConfig::kLongestS);
+  require("--duration", config.duration_s, ServiceConfig::kLongestS);
+  require("--clock", config.clock_hz, ServiceConfig::kFastestClockHz);
+  require("--wait-readers", config.wait_readers_s, 3600);
+  require("--read-ahead", config.read_ahead_mb, ServiceConfig::kMostReadAheadMb);
+}
+
+/// How many paced messages may be without an answer; 0: messages go by time.
+int window_of(const ServiceConfig& config, service::Pace pace) {
+  if (pace == service::Pace::kAsap) return config.asap_window;
+  return pace == service::Pace::kLockstep || !config.lockstep.empty() ? 1 : 0;
 }
 
 std::uint64_t seq_in(std::span<const std::byte> cdr) {
@@ -87,10 +113,8 @@ ReplayService::ReplayService(const Config& config, service::Runtime& runtime)
   if (window_ > 0 && config_.lockstep.empty()) config_.lockstep = kTrackingTopic;
   try {
     open();
-  } catch (const ReplayError& error) {
-    throw service::ConfigError(error.what());
   } catch (const io::IoError& error) {
-    throw service::ConfigError(error.what());
+    throw ConfigError(error.what());
   }
   runtime_.stop.on_stop([inbox = inbox_] { inbox->post(Command::kStop); });
 }
@@ -100,7 +124,7 @@ void ReplayService::open() {
   reader_ = std::make_unique<mcap::IndexedReader>(*source_);
   for (const mcap::Problem& problem : reader_->problems().listed())
     if (problem.kind == mcap::ProblemKind::kNotMcap && problem.data_lost)
-      throw ReplayError(config_.file + ": this is not an MCAP file; 'rtd info' says more");
+      throw ConfigError(config_.file + ": this is not an MCAP file; 'rtd info' says more");
   choose_topics();
   choose_span();
   bus::BusOptions options = runtime_.bus_options;
@@ -126,19 +150,19 @@ void ReplayService::choose_topics() {
   }
   const std::string listed = known.empty() ? "no topics" : fmt::format("{}", fmt::join(known, ", "));
   if (const std::vector<std::string> unmet = choice.unmet(known); !unmet.empty())
-    throw ReplayError(fmt::format("--topics {}: not in {}; it has {}", fmt::join(unmet, ", "), config_.file, listed));
-  if (channels_.empty()) throw ReplayError(fmt::format("{}: nothing to play; it has {}", config_.file, listed));
+    throw ConfigError(fmt::format("--topics {}: not in {}; it has {}", fmt::join(unmet, ", "), config_.file, listed));
+  if (channels_.empty()) throw ConfigError(fmt::format("{}: nothing to play; it has {}", config_.file, listed));
 }
 
 void ReplayService::choose_span() {
   const mcap::Summary& summary = reader_->summary();
   if (!summary.statistics || summary.statistics->message_count == 0)
-    throw ReplayError(config_.file + ": the recording has no messages");
+    throw ConfigError(config_.file + ": the recording has no messages");
   first_ns_ = signed_time(summary.statistics->message_start_time);
   const std::int64_t last_ns = signed_time(summary.statistics->message_end_time);
   start_ns_ = first_ns_ + to_ns(config_.start_offset_s);
   if (start_ns_ > last_ns)
-    throw ReplayError(fmt::format("--start-offset {}: the recording is {:.3f} s long", config_.start_offset_s,
+    throw ConfigError(fmt::format("--start-offset {}: the recording is {:.3f} s long", config_.start_offset_s,
                                   static_cast<double>(last_ns - first_ns_) * 1e-9));
   end_ns_ = config_.duration_s > 0 ? std::min(last_ns, start_ns_ + to_ns(config_.duration_s)) : last_ns;
 }
@@ -148,10 +172,10 @@ void ReplayService::choose_paced_topic() {
                                                   ? std::vector<std::string>{"rtd/frame", "rtd/features"}
                                                   : std::vector<std::string>{ros2::dds_topic(config_.paced_topic)};
   for (const std::string& candidate : candidates)
-    for (const Output* output : outputs_->all())
-      if (paced_ == nullptr && output->topic.name == candidate) paced_ = output;
+    if (const auto found = outputs_->all().find(candidate); paced_ == nullptr && found != outputs_->all().end())
+      paced_ = &found->second;
   if (paced_ == nullptr)
-    throw ReplayError(
+    throw ConfigError(
         fmt::format("--lockstep {}: {} is not among the topics that are played; name one with --paced-topic",
                     config_.lockstep, fmt::join(candidates, " or ")));
 }
@@ -248,21 +272,17 @@ service::ExitCode ReplayService::play() {
 service::ExitCode ReplayService::finish(const Player& player, PlayOutcome outcome) {
   outputs_->finish();
   if (outcome == PlayOutcome::kEnded) outputs_->wait_acknowledged(kLastAcknowledgementMs);
-  const Report report = report_of(player, *outputs_, config_.file, outcome, reader_->problems());
+  const nlohmann::ordered_json report = report_of(player, *outputs_, config_.file, outcome, reader_->problems());
   SPDLOG_INFO("event=summary {}", log_text(report));
-  if (config_.json) std::cout << to_json(report).dump(2) << std::endl;
-  log_problems();
+  if (config_.json) std::cout << report.dump(2) << std::endl;
+  for (const mcap::Problem& problem : reader_->problems().listed())
+    SPDLOG_WARN("event=recording_damaged kind={} cause=\"{}\"", mcap::name_of(problem.kind), mcap::to_string(problem));
   if (outcome == PlayOutcome::kUnanswered)
     return fail(fmt::format("no message of {} for number {} of {} within {:g} s: are its publishers alive?",
                             config_.lockstep, player.unanswered_seq(), paced_->topic.name, config_.result_timeout_s));
   runtime_.heartbeat.set_state(msg::ServiceState::kFinished);
   if (outcome == PlayOutcome::kEnded) runtime_.stop.wait_for(kFarewell);
   return reader_->problems().data_lost() ? service::kPartialLoss : service::kOk;
-}
-
-void ReplayService::log_problems() const {
-  for (const mcap::Problem& problem : reader_->problems().listed())
-    SPDLOG_WARN("event=recording_damaged kind={} cause=\"{}\"", mcap::name_of(problem.kind), mcap::to_string(problem));
 }
 
 service::ExitCode ReplayService::fail(const std::string& message) {

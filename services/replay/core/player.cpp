@@ -3,6 +3,8 @@
 #include "services/replay/core/player.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 
 namespace rtd::replay {
 namespace {
@@ -12,6 +14,57 @@ constexpr std::int64_t kSeekStepNs = 10'000'000'000;
 constexpr double kRateStep = 1.1, kLowestRate = 0.01, kHighestRate = 1000;
 
 }  // namespace
+
+void Schedule::jump(std::int64_t recorded_ns, std::int64_t now_ns) {
+  anchor_recorded_ns_ = recorded_ns;
+  anchor_ns_ = now_ns;
+}
+
+void Schedule::pause(std::int64_t now_ns) {
+  jump(recorded_ns(now_ns), now_ns);
+  paused_ = true;
+}
+
+void Schedule::resume(std::int64_t now_ns) {
+  anchor_ns_ = now_ns;
+  paused_ = false;
+}
+
+void Schedule::set_rate(double rate, std::int64_t now_ns) {
+  jump(recorded_ns(now_ns), now_ns);
+  rate_ = rate;
+}
+
+std::int64_t Schedule::due_ns(std::int64_t recorded_ns) const {
+  return anchor_ns_ + std::llround(static_cast<double>(recorded_ns - anchor_recorded_ns_) / rate_);
+}
+
+std::int64_t Schedule::recorded_ns(std::int64_t now_ns) const {
+  if (paused_) return anchor_recorded_ns_;
+  return anchor_recorded_ns_ + std::llround(static_cast<double>(now_ns - anchor_ns_) * rate_);
+}
+
+void TimingError::add(std::int64_t due_ns, std::int64_t sent_ns) {
+  if (any_) {
+    const std::int64_t error_ns = std::abs((sent_ns - last_sent_ns_) - (due_ns - last_due_ns_));
+    ++bins_[std::min(static_cast<std::size_t>(error_ns / kBinNs), kBins - 1)];
+    ++count_;
+    max_ns_ = std::max(max_ns_, error_ns);
+  }
+  last_due_ns_ = due_ns;
+  last_sent_ns_ = sent_ns;
+  any_ = true;
+}
+
+double TimingError::percentile_ms(double percent) const {
+  const auto rank = static_cast<std::uint64_t>(percent / 100 * static_cast<double>(count_));
+  std::uint64_t seen = 0;
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    seen += bins_[bin];
+    if (seen > rank || (seen == count_ && count_ > 0)) return static_cast<double>((bin + 1) * kBinNs) * 1e-6;
+  }
+  return 0;
+}
 
 Player::Player(MessageFeed& feed, PlayerHost& host, const PlayerOptions& options)
     : feed_(feed),
@@ -69,7 +122,8 @@ bool Player::follow(const service::PaceDecision& decision) {
       wait_until(host_.now_ns() + std::min(decision.wait_ns, kShowEveryNs));
       return false;
     case service::PaceAction::kResend:
-      resend();
+      for (const PlayedMessage& message : unanswered_) host_.send(message);
+      pacer_.resent();
       return false;
     case service::PaceAction::kGiveUp:
       outcome_ = PlayOutcome::kUnanswered;
@@ -113,7 +167,8 @@ void Player::handle_events(std::int64_t deadline_ns) {
   std::optional<Event> event = host_.wait_until(deadline_ns);
   while (event) {
     if (const auto* answer = std::get_if<Answer>(&*event)) {
-      answered(answer->seq.value_or(oldest_in_flight()));
+      const std::deque<std::uint64_t>& in_flight = pacer_.in_flight();
+      answered(answer->seq.value_or(in_flight.empty() ? 0 : in_flight.front()));  // 0: nothing is answered
     } else {
       handle(std::get<Command>(*event));
     }
@@ -168,11 +223,6 @@ void Player::seek(std::int64_t recorded_ns) {
   timing_.interrupt();
 }
 
-/// 0 when nothing is in flight: then nothing is answered.
-std::uint64_t Player::oldest_in_flight() const {
-  return pacer_.in_flight().empty() ? 0 : pacer_.in_flight().front();
-}
-
 void Player::answered(std::uint64_t seq) {
   pacer_.answered(seq);
   const auto is_waited_for = [this](const PlayedMessage& message) {
@@ -180,11 +230,6 @@ void Player::answered(std::uint64_t seq) {
     return paced && std::ranges::count(pacer_.in_flight(), *paced) > 0;
   };
   while (!unanswered_.empty() && !is_waited_for(unanswered_.front())) unanswered_.pop_front();
-}
-
-void Player::resend() {
-  for (const PlayedMessage& message : unanswered_) host_.send(message);
-  pacer_.resent();
 }
 
 void Player::tick_clock(std::int64_t now_ns) {

@@ -5,9 +5,9 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "common/ros2/names.hpp"
+#include "common/service/config.hpp"
 
 namespace rtd::replay {
 namespace {
@@ -26,15 +26,12 @@ bool matches_any(const std::vector<std::string>& patterns, const std::string& to
 
 std::string topic_name(const std::string& name, const std::string& whole) {
   if (name.empty() || name.find_first_of(" \t\n*?") != std::string::npos)
-    throw ReplayError("--remap " + whole + ": '" + name +
-                      "' is not a topic name; write old:=new, e.g. /slam/pose:=/old/pose");
+    throw service::ConfigError("--remap " + whole + ": '" + name +
+                               "' is not a topic name; write old:=new, e.g. /slam/pose:=/old/pose");
   return ros2::dds_topic(name);
 }
 
 }  // namespace
-
-TopicChoice::TopicChoice(std::vector<std::string> wanted, std::vector<std::string> excluded)
-    : wanted_(std::move(wanted)), excluded_(std::move(excluded)) {}
 
 bool TopicChoice::wants(const std::string& topic) const {
   if (matches_any(excluded_, topic)) return false;
@@ -54,9 +51,10 @@ std::map<std::string, std::string> parse_remaps(const std::vector<std::string>& 
   for (const std::string& text : texts) {
     const std::size_t sign = text.find(":=");
     if (sign == std::string::npos)
-      throw ReplayError("--remap " + text + ": write old:=new, e.g. /slam/pose:=/old/pose");
+      throw service::ConfigError("--remap " + text + ": write old:=new, e.g. /slam/pose:=/old/pose");
     const std::string from = topic_name(text.substr(0, sign), text), to = topic_name(text.substr(sign + 2), text);
-    if (!remaps.emplace(from, to).second) throw ReplayError("--remap " + text + ": " + from + " is renamed twice");
+    if (!remaps.emplace(from, to).second)
+      throw service::ConfigError("--remap " + text + ": " + from + " is renamed twice");
   }
   return remaps;
 }

@@ -3,17 +3,11 @@
 #pragma once
 
 #include <map>
-#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rtd::replay {
-
-/// The recording or an option cannot be used; what() names the value, the cause and the fix.
-class ReplayError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Which topics of a recording are played. Patterns are those of a shell ("/slam/*") and meet the name in the recording
 /// as well as the DDS name ("/slam/pose", "rt/slam/pose").
@@ -21,7 +15,8 @@ class TopicChoice {
  public:
   /// No pattern in `wanted`: all but those of `excluded` and rtd/status, whose replay would make running services exit
   /// as duplicates of the recorded ones.
-  TopicChoice(std::vector<std::string> wanted, std::vector<std::string> excluded);
+  TopicChoice(std::vector<std::string> wanted, std::vector<std::string> excluded)
+      : wanted_(std::move(wanted)), excluded_(std::move(excluded)) {}
 
   bool wants(const std::string& topic) const;
   /// The patterns that meet none of these topics.
@@ -31,8 +26,8 @@ class TopicChoice {
   std::vector<std::string> wanted_, excluded_;
 };
 
-/// New names by old ones, both as DDS has them, from "old:=new" in either spelling. Throws ReplayError: no ":=", an
-/// empty name, white space in one, two new names for one topic.
+/// New names by old ones, both as DDS has them, from "old:=new" in either spelling. Throws service::ConfigError: no
+/// ":=", an empty name, white space in one, two new names for one topic.
 std::map<std::string, std::string> parse_remaps(const std::vector<std::string>& texts);
 
 }  // namespace rtd::replay

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/replay/core/schedule.hpp"
+#include "services/replay/core/player.hpp"
 
 #include <gtest/gtest.h>
-
 
 namespace rtd::replay {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "common/service/config.hpp"
 
 namespace rtd::replay {
 namespace {
@@ -37,8 +38,8 @@ TEST(Remap, takes_both_spellings) {
 
 TEST(Remap, refuses_what_is_no_renaming) {
   for (const char* wrong : {"/a", "/a:/b", ":=/b", "/a:=", "/a b:=/c", "/a*:=/b"})
-    EXPECT_THROW(parse_remaps({wrong}), ReplayError) << wrong;
-  EXPECT_THROW(parse_remaps({"/a:=/b", "rt/a:=/c"}), ReplayError);
+    EXPECT_THROW(parse_remaps({wrong}), service::ConfigError) << wrong;
+  EXPECT_THROW(parse_remaps({"/a:=/b", "rt/a:=/c"}), service::ConfigError);
 }
 
 }  // namespace
