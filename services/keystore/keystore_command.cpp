@@ -15,7 +15,7 @@
 #include "common/security/enclave.hpp"
 #include "common/security/keystore.hpp"
 #include "common/security/keystore_layout.hpp"
-#include "common/service/exit_code.hpp"
+#include "common/service/command_line.hpp"
 
 namespace rtd::keystore {
 namespace {
@@ -175,17 +175,13 @@ void add_keystore_commands(CLI::App& app, KeystoreRequest& request) {
 
 int run_keystore(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out, std::ostream& err) {
   using Action = KeystoreRequest::Action;
-  try {
-    if (request.action == Action::kInfo)
-      return print_info(folder_of(request), now_s, out) ? service::kOk : service::kRunFailed;
+  return service::report_errors<security::SecurityError>("rtd keystore", err, [&] {
     if (request.action == Action::kCreate) create(request, now_s, out);
     if (request.action == Action::kAdd) add(request, now_s, out);
     if (request.action == Action::kRenew) renew(request, now_s, out);
-    return service::kOk;
-  } catch (const security::SecurityError& error) {
-    err << "rtd keystore: " << error.what() << '\n';
-    return service::kUsageOrConfig;
-  }
+    const bool good = request.action != Action::kInfo || print_info(folder_of(request), now_s, out);
+    return good ? service::kOk : service::kRunFailed;
+  });
 }
 
 }  // namespace rtd::keystore

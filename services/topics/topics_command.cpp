@@ -3,16 +3,14 @@
 #include "services/topics/topics_command.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <chrono>
 #include <ostream>
 #include <set>
 
+#include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
-#include "common/service/exit_code.hpp"
 #include "services/topics/core/topic_report.hpp"
 #include "services/topics/topics_session.hpp"
 
@@ -70,28 +68,19 @@ void discover(double longest_s, TopicsSession& session) {
 int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err) {
   discover(request.wait_s, session);
   const std::vector<TopicRow> rows = rows_of(session.writers());
-  if (request.json) {
-    out << list_json(rows).dump(2) << '\n';
-  } else if (!rows.empty()) {
-    out << list_text(rows);
-  }
+  if (request.json || !rows.empty()) out << (request.json ? list_json(rows).dump(2) + '\n' : list_text(rows));
   if (!rows.empty()) return service::kOk;
   err << fmt::format("rtd topics: no topic within {:.1f} s in {}\n", session.seconds(), session.empty_place());
   return service::kRunFailed;
 }
 
 int run_topics(const TopicsRequest& request, std::ostream& out, std::ostream& err) {
-  try {
+  return service::report_errors<service::ConfigError, bus::BusError>("rtd topics", err, [&] {
     TopicsSession session(request.bus);
     if (request.action == "list") return list_topics(request, session, out, err);
     if (request.action == "hz") return measure_topics(request, session, out, err);
     return echo_topic(request, session, out, err);
-  } catch (const service::ConfigError& error) {
-    err << "rtd topics: " << error.what() << '\n';
-  } catch (const bus::BusError& error) {
-    err << "rtd topics: " << error.what() << '\n';
-  }
-  return service::kUsageOrConfig;
+  });
 }
 
 }  // namespace rtd::topics

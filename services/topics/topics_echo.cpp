@@ -11,7 +11,7 @@
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/exit_code.hpp"
-#include "services/topics/core/message_text.hpp"
+#include "services/topics/core/topic_report.hpp"
 #include "services/topics/topics_session.hpp"
 
 namespace rtd::topics {

@@ -37,10 +37,10 @@ class Meters {
   /// Every topic that was found, and each topic named by the user, has had `count` messages.
   bool all_reached(std::uint64_t count) {
     const std::lock_guard lock(mutex_);
-    const bool complete = std::all_of(wanted_.begin(), wanted_.end(), [this](const std::string& name) {
-      return std::any_of(meters_.begin(), meters_.end(), [&](const auto& one) { return is_called(one.first, name); });
+    const bool complete = std::ranges::all_of(wanted_, [this](const std::string& name) {
+      return std::ranges::any_of(meters_, [&](const auto& one) { return is_called(one.first, name); });
     });
-    return complete && !meters_.empty() && std::all_of(meters_.begin(), meters_.end(), [count](auto& one) {
+    return complete && !meters_.empty() && std::ranges::all_of(meters_, [count](auto& one) {
              const std::lock_guard meter_lock(one.second.mutex);
              return one.second.rate.messages() >= count;
            });
@@ -71,7 +71,7 @@ class Meters {
 
   bool wants(const bus::RawTopic& topic) const {
     return wanted_.empty() ||
-           std::any_of(wanted_.begin(), wanted_.end(), [&](const std::string& name) { return is_called(topic, name); });
+           std::ranges::any_of(wanted_, [&](const std::string& name) { return is_called(topic, name); });
   }
   void subscribe(const bus::TopicWriter& writer) try {
     const std::lock_guard lock(mutex_);
@@ -111,17 +111,14 @@ int measure_topics(const TopicsRequest& request, TopicsSession& session, std::os
   const double seconds = session.seconds();
   std::vector<TopicRow> rows = meters.rows();
   meters.stop();
-  if (request.json) {
-    out << rate_json(rows, seconds).dump(2) << '\n';
-  } else if (!rows.empty()) {
-    out << rate_text(rows, seconds);
-  }
+  if (request.json || !rows.empty())
+    out << (request.json ? rate_json(rows, seconds).dump(2) + '\n' : rate_text(rows, seconds));
   int code = rows.empty() ? service::kRunFailed : service::kOk;
   if (rows.empty() && request.topics.empty()) {
     err << fmt::format("rtd topics: no topic within {:.1f} s in {}\n", seconds, session.empty_place());
   }
   for (const std::string& name : request.topics) {
-    if (std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return is_called(row.topic, name); })) continue;
+    if (std::ranges::any_of(rows, [&](const auto& row) { return is_called(row.topic, name); })) continue;
     err << "rtd topics: " << session.no_publisher_of(name) << '\n';
     code = service::kRunFailed;
   }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/topics/core/message_text.hpp"
+#include "services/topics/core/topic_report.hpp"
 
 #include <fmt/format.h>
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "common/ros2/message_json.hpp"
@@ -29,9 +30,7 @@ std::string qos_text(const TopicRow& row) {
     return std::string(writer.qos.reliable ? "reliable" : "best effort") + (latched(writer) ? ", latched" : "");
   };
   const std::string first = text(row.writers.front());
-  const bool same =
-      std::all_of(row.writers.begin(), row.writers.end(), [&](const auto& w) { return text(w) == first; });
-  return same ? first : "mixed";
+  return std::ranges::all_of(row.writers, [&](const auto& w) { return text(w) == first; }) ? first : "mixed";
 }
 
 struct Widths {
@@ -72,6 +71,32 @@ Json writer_json(const bus::TopicWriter& writer) {
 }
 
 }  // namespace
+
+void RateMeter::add(std::int64_t received_ns, std::size_t bytes) {
+  bytes_ += bytes;
+  if (messages_++ > 0) {
+    const std::int64_t period_ns = std::max<std::int64_t>(0, received_ns - last_ns_);  // two writers may overtake
+    const auto periods = static_cast<double>(messages_ - 1);
+    const double from_mean = static_cast<double>(period_ns) - mean_ns_;
+    mean_ns_ += from_mean / periods;
+    squares_ns2_ += from_mean * (static_cast<double>(period_ns) - mean_ns_);
+    shortest_ns_ = messages_ == 2 ? period_ns : std::min(shortest_ns_, period_ns);
+    longest_ns_ = std::max(longest_ns_, period_ns);
+  }
+  last_ns_ = received_ns;
+}
+
+Rate RateMeter::rate() const {
+  Rate rate{messages_, bytes_, lost_};
+  if (messages_ < 2) return rate;
+  const auto periods = static_cast<double>(messages_ - 1);
+  rate.hz = mean_ns_ > 0 ? 1e9 / mean_ns_ : 0;
+  rate.mean_ms = mean_ns_ * 1e-6;
+  rate.deviation_ms = std::sqrt(squares_ns2_ / periods) * 1e-6;
+  rate.shortest_ms = static_cast<double>(shortest_ns_) * 1e-6;
+  rate.longest_ms = static_cast<double>(longest_ns_) * 1e-6;
+  return rate;
+}
 
 std::vector<TopicRow> rows_of(const std::vector<bus::TopicWriter>& writers) {
   std::map<std::pair<std::string, std::string>, TopicRow> rows;
