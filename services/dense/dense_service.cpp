@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/dense/dense_service.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
@@ -17,6 +19,15 @@ namespace {
 
 constexpr std::chrono::milliseconds kStatePeriod{50};
 constexpr std::int64_t kMaskPatienceNs = 3'000'000'000;  // for a filter that sends no masks
+
+bool report_file(const std::string& path, bool written, const std::string& content) {
+  if (written) {
+    SPDLOG_INFO("event=file_written path={} {}", path, content);
+  } else {
+    SPDLOG_ERROR("event=file_not_written path={} fix=\"check the folder and the free space\"", path);
+  }
+  return written;
+}
 
 }  // namespace
 
@@ -38,8 +49,9 @@ DenseService::DenseService(const Config& config, service::Runtime& runtime)
                                                             [this](const auto& event) { joiner_->put(*event); });
   tracking_reader_ = runtime.bus.reader<msg::TrackingResult>(bus::topics::kTracking,
                                                              [this](const auto& result) { joiner_->put(*result); });
-  mask_reader_ =
-      runtime.bus.reader<msg::Image>(bus::topics::kDynamicMask, [this](const auto& message) { take_mask(*message); });
+  mask_reader_ = runtime.bus.reader<msg::Image>(bus::topics::kDynamicMask, [this](const auto& message) {
+    if (auto mask = from_message(*message)) joiner_->put(msg::to_ns(message->header.stamp), std::move(*mask));
+  });
   frame_reader_ = runtime.bus.reader<msg::RgbdFrame>(
       bus::topics::kFrame, [this](std::shared_ptr<const msg::RgbdFrame> frame) { joiner_->put(std::move(frame)); });
 }
@@ -53,10 +65,6 @@ service::ExitCode DenseService::run() {
   }
   finish();
   return write_files();
-}
-
-void DenseService::take_mask(const msg::Image& message) {
-  if (auto mask = from_message(message)) joiner_->put(msg::to_ns(message.header.stamp), std::move(*mask));
 }
 
 void DenseService::integrate(const JoinedFrame& joined) {
@@ -186,12 +194,7 @@ bool DenseService::write_cloud(const std::string& path) {
   std::ofstream file(path, std::ios::binary);
   write_ply(file, points);
   file.close();
-  if (file) {
-    SPDLOG_INFO("event=file_written path={} points={}", path, points.size());
-  } else {
-    SPDLOG_ERROR("event=file_not_written path={} fix=\"check the folder and the free space\"", path);
-  }
-  return static_cast<bool>(file);
+  return report_file(path, static_cast<bool>(file), fmt::format("points={}", points.size()));
 }
 
 /// Nothing is written when no frame was fused.
@@ -203,12 +206,7 @@ bool DenseService::write_background(const std::string& path) {
     written = cv::imwrite(path, picture);
   } catch (const cv::Exception&) {  // reported below
   }
-  if (written) {
-    SPDLOG_INFO("event=file_written path={} views={}", path, background_.views());
-  } else {
-    SPDLOG_ERROR("event=file_not_written path={} fix=\"check the folder and the free space\"", path);
-  }
-  return written;
+  return report_file(path, written, fmt::format("views={}", background_.views()));
 }
 
 }  // namespace rtd::dense

@@ -30,47 +30,39 @@ auto with_stamp(Queue& queue, std::int64_t stamp_ns) {
 }  // namespace
 
 void FrameJoiner::put(std::shared_ptr<const msg::RgbdFrame> frame) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (with_stamp(frames_, frame->stamp_ns) != frames_.end()) return;  // sent again
-    frames_.push_back(std::move(frame));
-    keep_newest(frames_, kFrames);
-  }
+  const std::lock_guard lock(mutex_);
+  if (with_stamp(frames_, frame->stamp_ns) != frames_.end()) return;  // sent again
+  frames_.push_back(std::move(frame));
+  keep_newest(frames_, kFrames);
   arrived_.notify_one();
 }
 
 void FrameJoiner::put(std::int64_t stamp_ns, DynamicMask mask) {
-  {
-    const std::lock_guard lock(mutex_);
-    masks_.push_back({stamp_ns, std::move(mask)});
-    keep_newest(masks_, kMasks);
-  }
+  const std::lock_guard lock(mutex_);
+  masks_.push_back({stamp_ns, std::move(mask)});
+  keep_newest(masks_, kMasks);
   arrived_.notify_one();
 }
 
 void FrameJoiner::put(const msg::TrackingResult& result) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (with_stamp(results_, result.stamp_ns) != results_.end() || last_stamp_ns_ == result.stamp_ns) return;
-    results_.push_back(result);
-    if (results_.size() > kResults) ++counters_.without_image;
-    keep_newest(results_, kResults);
-  }
+  const std::lock_guard lock(mutex_);
+  if (with_stamp(results_, result.stamp_ns) != results_.end() || last_stamp_ns_ == result.stamp_ns) return;
+  results_.push_back(result);
+  if (results_.size() > kResults) ++counters_.without_image;
+  keep_newest(results_, kResults);
   arrived_.notify_one();
 }
 
 /// One writer, reliable and in order: an index that goes back comes from a restarted slam process.
 void FrameJoiner::put(const msg::KeyframeEvent& event) {
-  {
-    const std::lock_guard lock(mutex_);
-    const bool new_map = event.event_index < next_event_;
-    if (new_map) updates_.clear();
-    next_event_ = event.event_index + 1;
-    updates_.push_back({event, new_map});
-    keep_newest(updates_, kWords);
-    if (event.kind == msg::KeyframeEventKind::kCreated) keyframe_seqs_.push_back(event.frame_seq);
-    keep_newest(keyframe_seqs_, kKeyframes);
-  }
+  const std::lock_guard lock(mutex_);
+  const bool new_map = event.event_index < next_event_;
+  if (new_map) updates_.clear();
+  next_event_ = event.event_index + 1;
+  updates_.push_back({event, new_map});
+  keep_newest(updates_, kWords);
+  if (event.kind == msg::KeyframeEventKind::kCreated) keyframe_seqs_.push_back(event.frame_seq);
+  keep_newest(keyframe_seqs_, kKeyframes);
   arrived_.notify_one();
 }
 
@@ -123,7 +115,6 @@ bool FrameJoiner::wanted(const msg::TrackingResult& result) const {
 }
 
 JoinedFrame FrameJoiner::join(const msg::TrackingResult& result) {
-  ++counters_.joined;
   JoinedFrame joined;
   joined.frame = *with_stamp(frames_, result.stamp_ns);
   joined.result = result;
@@ -141,10 +132,8 @@ void FrameJoiner::forget(std::int64_t stamp_ns) {
 }
 
 void FrameJoiner::close() {
-  {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-  }
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
   arrived_.notify_all();
 }
 

@@ -33,7 +33,6 @@ struct JoinedFrame {
 
 /// What became of the frames that slam answered.
 struct JoinCounters {
-  std::uint64_t joined = 0;
   std::uint64_t passed_over = 0;    ///< neither every n-th nor a keyframe
   std::uint64_t not_tracked = 0;    ///< or in another map
   std::uint64_t without_image = 0;  ///< it was dropped before its turn, or never came

@@ -28,8 +28,7 @@ DetectionBatch to_detection_batch(const msg::Detection2DArray& message) {
   for (const msg::Detection2D& detection : message.detections) {
     if (detection.results.empty()) continue;
     const auto best =
-        std::max_element(detection.results.begin(), detection.results.end(),
-                         [](const auto& a, const auto& b) { return a.hypothesis.score < b.hypothesis.score; });
+        std::ranges::max_element(detection.results, {}, [](const auto& result) { return result.hypothesis.score; });
     const msg::BoundingBox2D& box = detection.bbox;
     const vision::Detection converted{best->hypothesis.class_id,
                                       static_cast<float>(best->hypothesis.score),
@@ -40,8 +39,7 @@ DetectionBatch to_detection_batch(const msg::Detection2DArray& message) {
     if (usable(converted)) batch.detections.push_back(converted);
   }
   if (batch.detections.size() > kMaxBoxes) {
-    std::stable_sort(batch.detections.begin(), batch.detections.end(),
-                     [](const auto& a, const auto& b) { return a.score > b.score; });
+    std::ranges::stable_sort(batch.detections, std::greater{}, &vision::Detection::score);
     batch.detections.resize(kMaxBoxes);
   }
   return batch;

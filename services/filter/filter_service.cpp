@@ -92,14 +92,10 @@ void FilterService::process(const msg::RgbdFrame& frame) {
   result.stage_ms[msg::kStageWaitDetections] = static_cast<float>(static_cast<double>(waited_ns) * 1e-6);
   fill_message(frame, result, use_of(detector, result, frame.stamp_ns), *message_);
   writer_.write(*message_);
-  publish_mask(frame, result);
+  // After the features: slam's pose waits for them, not for the mask. Costs nothing without a subscriber.
+  if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result));
   ++published_;
   count(result);
-}
-
-/// After the features: slam's pose waits for them, not for the mask. Costs nothing without a subscriber.
-void FilterService::publish_mask(const msg::RgbdFrame& frame, const FilterResult& result) {
-  if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result));
 }
 
 /// False for a frame that is not to be processed: from a second camera, defective, or sent again (its features are
@@ -200,9 +196,7 @@ void FilterService::wait_for_detections(const msg::RgbdFrame& frame) {
 msg::DetectionUse FilterService::use_of(const DetectorUpdate& detector, const FilterResult& result,
                                         std::int64_t stamp_ns) const {
   if (!detector.batches.empty() && detector.batches.back().stamp_ns == stamp_ns) return msg::DetectionUse::kExact;
-  const bool carried = std::any_of(result.objects.begin(), result.objects.end(),
-                                   [](const SceneObject& object) { return object.carried; });
-  if (carried) return msg::DetectionUse::kCarried;
+  if (std::ranges::any_of(result.objects, &SceneObject::carried)) return msg::DetectionUse::kCarried;
   return detector_gone_ ? msg::DetectionUse::kDetectorGone : msg::DetectionUse::kNone;
 }
 

@@ -43,7 +43,6 @@ class FilterService {
   bool accept(const msg::RgbdFrame& frame);
   void publish_no_features(const msg::RgbdFrame& frame, const std::string& cause);
   void forget_views(const msg::RgbdFrame& frame, const char* cause);
-  void publish_mask(const msg::RgbdFrame& frame, const FilterResult& result);
   bool detector_alive() const;
   bool from_other_camera(const msg::RgbdFrame& frame);
   void apply_slam_feedback();

@@ -21,15 +21,13 @@ void keep_newest(Map& map) {
 }  // namespace
 
 void DetectionInbox::put(DetectionBatch batch) {
-  {
-    const std::lock_guard lock(mutex_);
-    arrivals_.push_back(batch.stamp_ns);
-    by_stamp_[batch.stamp_ns] = std::move(batch.detections);
-    while (arrivals_.size() > kMaxStamps) {
-      const std::int64_t first = arrivals_.front();
-      arrivals_.pop_front();
-      if (std::find(arrivals_.begin(), arrivals_.end(), first) == arrivals_.end()) by_stamp_.erase(first);
-    }
+  const std::lock_guard lock(mutex_);
+  arrivals_.push_back(batch.stamp_ns);
+  by_stamp_[batch.stamp_ns] = std::move(batch.detections);
+  while (arrivals_.size() > kMaxStamps) {
+    const std::int64_t first = arrivals_.front();
+    arrivals_.pop_front();
+    if (std::find(arrivals_.begin(), arrivals_.end(), first) == arrivals_.end()) by_stamp_.erase(first);
   }
   arrived_.notify_all();
 }
@@ -63,31 +61,24 @@ void DetectionInbox::clear() {
 }
 
 void DetectionInbox::close() {
-  {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-  }
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
   arrived_.notify_all();
 }
 
 void SlamFeedback::put(const msg::TrackingResult& result) {
-  {
-    const std::lock_guard lock(mutex_);
-    results_[result.seq] = result;
-    newest_ = result;
-    keep_newest(results_);
-  }
+  const std::lock_guard lock(mutex_);
+  results_[result.seq] = result;
+  newest_ = result;
+  keep_newest(results_);
   arrived_.notify_all();
 }
 
 void SlamFeedback::put(const msg::KeyframeEvent& event) {
-  {
-    const std::lock_guard lock(mutex_);
-    events_[event.event_index] = event;
-    events_received_ =
-        event.event_index + 1;  // one writer, reliable and in order; a restarted slam counts from 0 again
-    keep_newest(events_);
-  }
+  const std::lock_guard lock(mutex_);
+  events_[event.event_index] = event;
+  events_received_ = event.event_index + 1;  // one writer, reliable and in order; a restarted slam counts from 0 again
+  keep_newest(events_);
   arrived_.notify_all();
 }
 
@@ -117,10 +108,8 @@ SlamUpdate SlamFeedback::take_after(std::uint64_t seq, std::chrono::milliseconds
 }
 
 void SlamFeedback::close() {
-  {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-  }
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
   arrived_.notify_all();
 }
 
