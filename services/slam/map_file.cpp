@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/slam/core/store/map_writer.hpp"
-
 namespace rtd::slam {
 namespace {
 
@@ -65,8 +63,7 @@ MapCameras cameras_of(const MapContents& contents) {
 
 std::string difference_to(const MapCameras& cameras, const msg::FeatureFrame& frame) {
   if (cameras.empty()) return {};
-  if (std::any_of(cameras.begin(), cameras.end(), [&](const MapCamera& camera) { return is_near(camera, frame); }))
-    return {};
+  if (std::ranges::any_of(cameras, [&](const MapCamera& camera) { return is_near(camera, frame); })) return {};
   const auto& [fx, fy, cx, cy] = frame.intrinsics;
   const MapCamera& camera = cameras.front();
   const vision::RgbdProjection& p = camera.projection;

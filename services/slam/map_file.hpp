@@ -8,8 +8,7 @@
 
 #include "common/io/byte_sink.hpp"
 #include "services/slam/core/map/map.hpp"
-#include "services/slam/core/store/map_reader.hpp"
-#include "services/slam/core/store/map_writer.hpp"
+#include "services/slam/core/store/map_store.hpp"
 
 namespace rtd::slam {
 

@@ -3,8 +3,8 @@
 #include "services/slam/slam_service.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
 
@@ -83,9 +83,7 @@ void SlamService::load_map() {
     SPDLOG_INFO("event=map_loaded file={} keyframes={} landmarks={} maps={}", file, contents.keyframes.size(),
                 contents.landmarks.size(), std::ranges::count_if(contents.keyframes, &Keyframe::is_origin));
     slam_.restore(std::move(contents));
-  } catch (const std::system_error& error) {
-    throw service::ConfigError(std::string("slam.map.load: ") + error.what());
-  } catch (const MapFileError& error) {
+  } catch (const std::runtime_error& error) {  // it cannot be read, or is no map
     throw service::ConfigError(std::string("slam.map.load: ") + error.what());
   }
   SPDLOG_INFO("event=map_ready file={} ms={:.0f}", file,
@@ -117,7 +115,7 @@ service::ExitCode SlamService::run() {
 
 /// Every frame gets one result; a frame sent again because its result was lost gets the same result again.
 void SlamService::answer(const msg::FeatureFrame& frame) {
-  if (answered_before(frame)) {
+  if (counters_.frames > 0 && frame.seq == last_result_.seq && frame.stamp_ns == last_result_.stamp_ns) {
     ++counters_.duplicates;
     publisher_.repeat(last_result_);
     return;
@@ -131,10 +129,6 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
   last_problem_ = output.problem;
   count(output);
   log(output, previous);
-}
-
-bool SlamService::answered_before(const msg::FeatureFrame& frame) const {
-  return counters_.frames > 0 && frame.seq == last_result_.seq && frame.stamp_ns == last_result_.stamp_ns;
 }
 
 void SlamService::count(const SlamOutput& output) {

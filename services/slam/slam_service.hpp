@@ -46,7 +46,6 @@ class SlamService {
   /// False when the camera is not that of the loaded map.
   bool check_camera(const msg::FeatureFrame& frame);
   void answer(const msg::FeatureFrame& frame);
-  bool answered_before(const msg::FeatureFrame& frame) const;
   void count(const SlamOutput& output);
   void log(const SlamOutput& output, msg::TrackingState previous);
   void watch_input(bool arrived);

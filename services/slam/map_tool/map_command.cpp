@@ -12,6 +12,7 @@
 
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/progress.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_tool/map_report.hpp"
 
@@ -38,28 +39,22 @@ slam::MapContents read(const std::string& file, std::ostream& err) {
 void print_info(const MapRequest& request, std::ostream& out, std::ostream& err) {
   const slam::MapContents contents = read(request.file, err);
   const MapReport report = report_on(contents, fs::file_size(request.file));
-  if (request.json) {
-    out << to_json(report, request.file).dump(2) << "\n";
-  } else {
-    out << to_text(report, request.file);
-  }
+  out << (request.json ? to_json(report, request.file).dump(2) + '\n' : to_text(report, request.file));
 }
 
 /// The requested map.
 const MapPart& choose(const MapReport& report, long long id, std::ostream& err) {
   const auto& maps = report.maps;
   if (id < 0) {
-    const auto largest = std::max_element(maps.begin(), maps.end(),
-                                          [](const auto& a, const auto& b) { return a.keyframes < b.keyframes; });
+    const auto largest = std::ranges::max_element(maps, {}, &MapPart::keyframes);
     if (maps.size() > 1)
       err << fmt::format(
           "rtd map export: the file has {} maps, each in a frame of its own; exporting map {}, which has most "
-          "keyframes "
-          "(--map-id chooses another)\n",
+          "keyframes (--map-id chooses another)\n",
           maps.size(), largest->id);
     return *largest;
   }
-  const auto found = std::find_if(maps.begin(), maps.end(), [&](const auto& part) { return part.id == id; });
+  const auto found = std::ranges::find_if(maps, [&](const auto& part) { return part.id == id; });
   if (found == maps.end()) throw UsageError(fmt::format("--map-id {}: no such map, 'rtd map info' lists all", id));
   return *found;
 }
@@ -118,20 +113,17 @@ void add_map_commands(CLI::App& app, MapRequest& request) {
 }
 
 int run_map(const MapRequest& request, std::ostream& out, std::ostream& err) {
-  const std::string name = request.info ? "rtd map info: " : "rtd map export: ";
-  try {
-    if (request.to_export) return write_export(request, out, err);
-    print_info(request, out, err);
-    return service::kOk;
-  } catch (const slam::MapFileError& error) {
-    err << name << error.what() << "\n";
-    return error.defect() == slam::MapFileDefect::kDamaged ? service::kPartialLoss : service::kUsageOrConfig;
-  } catch (const std::system_error& error) {
-    err << name << error.what() << "\n";
-  } catch (const UsageError& error) {
-    err << name << error.what() << "\n";
-  }
-  return service::kUsageOrConfig;
+  const std::string name = request.info ? "rtd map info" : "rtd map export";
+  return service::report_errors<std::system_error, UsageError>(name, err, [&]() -> int {
+    try {
+      if (request.to_export) return write_export(request, out, err);
+      print_info(request, out, err);
+      return service::kOk;
+    } catch (const slam::MapFileError& error) {
+      err << name << ": " << error.what() << "\n";
+      return error.defect() == slam::MapFileDefect::kDamaged ? service::kPartialLoss : service::kUsageOrConfig;
+    }
+  });
 }
 
 }  // namespace rtd::map_tool

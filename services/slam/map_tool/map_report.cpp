@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/map_tool/map_report.hpp"
 
+#include <fmt/format.h>
 #include <fmt/ostream.h>
 
 #include <algorithm>
 #include <map>
 #include <ostream>
-#include <unordered_map>
 
+#include "common/service/units_text.hpp"
 #include "services/slam/core/store/map_format.hpp"
 
 namespace rtd::map_tool {
@@ -17,14 +18,12 @@ namespace {
 using Parts = std::map<slam::MapId, MapPart>;
 using KeyframesByTime = std::map<slam::MapId, std::vector<const slam::Keyframe*>>;
 
-bool same_camera(const slam::Frame& a, const slam::Frame& b) {
-  const vision::RgbdProjection &p = a.camera, &q = b.camera;
-  return p.fx == q.fx && p.fy == q.fy && p.cx == q.cx && p.cy == q.cy && a.width_px == b.width_px &&
-         a.height_px == b.height_px;
-}
-
 void add_camera(std::vector<slam::FramePtr>& cameras, const slam::FramePtr& frame) {
-  const auto known = [&](const slam::FramePtr& camera) { return same_camera(*camera, *frame); };
+  const auto known = [&](const slam::FramePtr& camera) {
+    const vision::RgbdProjection &p = camera->camera, &q = frame->camera;
+    return p.fx == q.fx && p.fy == q.fy && p.cx == q.cx && p.cy == q.cy && camera->width_px == frame->width_px &&
+           camera->height_px == frame->height_px;
+  };
   if (std::none_of(cameras.rbegin(), cameras.rend(), known)) cameras.push_back(frame);
 }
 
@@ -32,8 +31,7 @@ KeyframesByTime by_time(const std::vector<slam::Keyframe>& keyframes) {
   KeyframesByTime sorted;
   for (const slam::Keyframe& keyframe : keyframes) sorted[keyframe.map].push_back(&keyframe);
   for (auto& [map, list] : sorted) {
-    std::stable_sort(list.begin(), list.end(),
-                     [](const auto* a, const auto* b) { return a->frame->stamp_ns < b->frame->stamp_ns; });
+    std::ranges::stable_sort(list, {}, [](const slam::Keyframe* keyframe) { return keyframe->frame->stamp_ns; });
   }
   return sorted;
 }
@@ -50,15 +48,58 @@ MapPart describe(slam::MapId id, const std::vector<const slam::Keyframe*>& keyfr
 }
 
 /// A landmark belongs to the map of the keyframe that its scale is measured from.
+slam::MapId map_of(const slam::MapContents& contents, const slam::Landmark& landmark) {
+  return std::ranges::lower_bound(contents.keyframes, landmark.reference, {}, &slam::Keyframe::id)->map;
+}
+
 void add_landmarks(const slam::MapContents& contents, Parts& parts) {
   for (const slam::Landmark& landmark : contents.landmarks) {
-    const auto reference =
-        std::lower_bound(contents.keyframes.begin(), contents.keyframes.end(), landmark.reference,
-                         [](const slam::Keyframe& keyframe, slam::KeyframeId id) { return keyframe.id < id; });
-    MapPart& part = parts[reference->map];
+    MapPart& part = parts[map_of(contents, landmark)];
     ++part.landmarks;
     part.extent_m.extend(landmark.position);
   }
+}
+
+constexpr const char* kChecksums = "all right";  // a file with a wrong checksum gets no report
+
+std::uint64_t unsigned_ns(std::int64_t time_ns) {
+  return time_ns < 0 ? 0 : static_cast<std::uint64_t>(time_ns);
+}
+
+std::string row(const char* name, const std::string& text) {
+  return fmt::format("{:<12} {}\n", name, text);
+}
+
+std::string camera_text(const slam::Frame& frame) {
+  return fmt::format("{}x{}, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}", frame.width_px, frame.height_px, frame.camera.fx,
+                     frame.camera.fy, frame.camera.cx, frame.camera.cy);
+}
+
+std::string part_rows(const MapPart& part) {
+  std::string text = row(fmt::format("map {}", part.id).c_str(),
+                         fmt::format("{} keyframes, {} landmarks", part.keyframes, part.landmarks));
+  text += row("  time", fmt::format("{} for {}", service::time_text(unsigned_ns(part.first_stamp_ns)),
+                                    service::seconds_text(unsigned_ns(part.last_stamp_ns - part.first_stamp_ns))));
+  text += row("  path", fmt::format("{:.2f} m", part.path_m));
+  if (part.extent_m.isEmpty()) return text;
+  const Eigen::Vector3d size = part.extent_m.sizes();
+  return text + row("  extent", fmt::format("{:.2f} x {:.2f} x {:.2f} m", size.x(), size.y(), size.z()));
+}
+
+nlohmann::ordered_json vector_json(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+nlohmann::ordered_json part_json(const MapPart& part) {
+  nlohmann::ordered_json json = {{"id", part.id},
+                                 {"keyframes", part.keyframes},
+                                 {"landmarks", part.landmarks},
+                                 {"first_stamp_ns", part.first_stamp_ns},
+                                 {"last_stamp_ns", part.last_stamp_ns},
+                                 {"path_m", part.path_m}};
+  if (!part.extent_m.isEmpty())
+    json["extent_m"] = {{"min", vector_json(part.extent_m.min())}, {"max", vector_json(part.extent_m.max())}};
+  return json;
 }
 
 }  // namespace
@@ -66,7 +107,6 @@ void add_landmarks(const slam::MapContents& contents, Parts& parts) {
 MapReport report_on(const slam::MapContents& contents, std::uint64_t file_bytes) {
   MapReport report;
   report.bytes = file_bytes;
-  report.version = slam::map_format::kVersion;
   report.keyframes = contents.keyframes.size();
   report.landmarks = contents.landmarks.size();
   report.removed_keyframes = contents.removed.size();
@@ -83,11 +123,9 @@ MapReport report_on(const slam::MapContents& contents, std::uint64_t file_bytes)
 }
 
 std::vector<slam::MapPoint> points_of(const slam::MapContents& contents, slam::MapId map) {
-  std::unordered_map<slam::KeyframeId, slam::MapId> map_of;
-  for (const slam::Keyframe& keyframe : contents.keyframes) map_of.emplace(keyframe.id, keyframe.map);
   std::vector<slam::MapPoint> points;
   for (const slam::Landmark& landmark : contents.landmarks) {
-    if (map_of.at(landmark.reference) != map) continue;
+    if (map_of(contents, landmark) != map) continue;
     points.push_back({landmark.position.cast<float>(), static_cast<float>(landmark.static_probability)});
   }
   return points;
@@ -98,8 +136,44 @@ std::vector<slam::StampedPose> poses_of(const slam::MapContents& contents, slam:
   for (const slam::Keyframe& keyframe : contents.keyframes) {
     if (keyframe.map == map) poses.push_back({keyframe.frame->stamp_ns, keyframe.T_world_camera});
   }
-  std::stable_sort(poses.begin(), poses.end(), [](const auto& a, const auto& b) { return a.stamp_ns < b.stamp_ns; });
+  std::ranges::stable_sort(poses, {}, &slam::StampedPose::stamp_ns);
   return poses;
+}
+
+std::string to_text(const MapReport& report, const std::string& name) {
+  std::string text = row("file", fmt::format("{}, {}", name, service::bytes_text(report.bytes)));
+  text += row("version", fmt::format("{}, checksums {}", slam::map_format::kVersion, kChecksums));
+  text += row("keyframes", fmt::format("{} with {} features; {} removed", report.keyframes, report.features,
+                                       report.removed_keyframes));
+  text += row("landmarks", fmt::format("{} seen {} times", report.landmarks, report.observations));
+  for (const slam::FramePtr& camera : report.cameras) text += row("camera", camera_text(*camera));
+  for (const MapPart& part : report.maps) text += part_rows(part);
+  return text;
+}
+
+nlohmann::ordered_json to_json(const MapReport& report, const std::string& name) {
+  nlohmann::ordered_json json = {{"file", name},
+                                 {"bytes", report.bytes},
+                                 {"version", slam::map_format::kVersion},
+                                 {"checksums", kChecksums},
+                                 {"keyframes", report.keyframes},
+                                 {"features", report.features},
+                                 {"removed_keyframes", report.removed_keyframes},
+                                 {"landmarks", report.landmarks},
+                                 {"observations", report.observations},
+                                 {"cameras", nlohmann::ordered_json::array()},
+                                 {"maps", nlohmann::ordered_json::array()}};
+  for (const slam::FramePtr& camera : report.cameras) {
+    const vision::RgbdProjection& p = camera->camera;
+    json["cameras"].push_back({{"width", camera->width_px},
+                               {"height", camera->height_px},
+                               {"fx", p.fx},
+                               {"fy", p.fy},
+                               {"cx", p.cx},
+                               {"cy", p.cy}});
+  }
+  for (const MapPart& part : report.maps) json["maps"].push_back(part_json(part));
+  return json;
 }
 
 void write_pcd(std::ostream& out, const std::vector<slam::MapPoint>& points) {

@@ -6,8 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "services/slam/core/store/map_reader.hpp"
-#include "services/slam/core/store/map_writer.hpp"
+#include "services/slam/core/store/map_store.hpp"
 #include "tests/support/clip_uri.hpp"
 #include "tests/support/offline_pipeline.hpp"
 

@@ -4,8 +4,7 @@
 /// sanitizer report, bounded memory; it is refused, or what is read is a sound map that is written as it was read. Exit
 /// code 1 and the input in fuzz_map_failed.rtdmap otherwise. The preset asan-ubsan gives it its teeth.
 #include "common/io/bytes.hpp"
-#include "services/slam/core/store/map_reader.hpp"
-#include "services/slam/core/store/map_writer.hpp"
+#include "services/slam/core/store/map_store.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"
 #include "tests/fuzz/mcap/mutation.hpp"
 #include "tests/support/sample_map.hpp"

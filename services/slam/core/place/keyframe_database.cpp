@@ -18,8 +18,7 @@ bool ranks_before(const ScoredKeyframe& a, const ScoredKeyframe& b) {
 
 template <typename Postings>
 auto find_posting(Postings& postings, KeyframeId keyframe) {
-  return std::lower_bound(postings.begin(), postings.end(), keyframe,
-                          [](const auto& posting, KeyframeId id) { return posting.keyframe < id; });
+  return std::ranges::lower_bound(postings, keyframe, {}, [](const auto& posting) { return posting.keyframe; });
 }
 
 }  // namespace
@@ -101,8 +100,7 @@ std::vector<PlaceCandidate> find_places(const KeyframeDatabase& database, const 
   for (auto& [keyframe, place] : places) {
     if (place.group_score >= query.min_group_ratio * best_group) candidates.push_back(std::move(place));
   }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const auto& a, const auto& b) { return a.group_score > b.group_score; });
+  std::ranges::stable_sort(candidates, std::greater{}, &PlaceCandidate::group_score);
   if (candidates.size() > query.max_candidates) candidates.resize(query.max_candidates);
   return candidates;
 }

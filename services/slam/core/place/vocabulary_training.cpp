@@ -124,11 +124,6 @@ std::vector<VocabularyNode> grow_tree(Members all, const VocabularyTrainingOptio
   return nodes;
 }
 
-std::size_t count_leaves(const std::vector<VocabularyNode>& nodes) {
-  return static_cast<std::size_t>(
-      std::count_if(nodes.begin(), nodes.end(), [](const auto& n) { return n.children == 0; }));
-}
-
 }  // namespace
 
 Vocabulary train_vocabulary(const std::vector<std::vector<msg::Descriptor>>& images,
@@ -139,7 +134,7 @@ Vocabulary train_vocabulary(const std::vector<std::vector<msg::Descriptor>>& ima
   }
   if (all.size() < 2) throw std::invalid_argument("train_vocabulary: fewer than two descriptors");
   std::vector<VocabularyNode> nodes = grow_tree(std::move(all), options);
-  const std::size_t words = count_leaves(nodes);
+  const auto words = static_cast<std::size_t>(std::ranges::count(nodes, 0, &VocabularyNode::children));
   const Vocabulary unweighted(nodes, std::vector<float>(words, 1.0F));
   std::vector<std::uint32_t> images_with(words, 0);
   for (const auto& image : images) {

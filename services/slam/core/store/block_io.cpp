@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/core/store/block_io.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "common/io/bytes.hpp"
 
 namespace rtd::slam::map_format {
@@ -9,25 +12,18 @@ namespace {
 
 constexpr std::size_t kCrcBytes = 4;
 
+/// Empty for an unknown one.
 std::string name_of(BlockTag tag) {
-  switch (tag) {
-    case BlockTag::kHead:
-    case BlockTag::kLandmarks:
-    case BlockTag::kKeyframes:
-    case BlockTag::kRemoved:
-    case BlockTag::kEnd: {
-      io::Bytes letters;
-      FieldWriter{letters}(static_cast<std::uint32_t>(tag));
-      return {reinterpret_cast<const char*>(letters.data()), letters.size()};
-    }
-  }
-  return {};
+  constexpr std::array kKnown = {BlockTag::kHead, BlockTag::kLandmarks, BlockTag::kKeyframes, BlockTag::kRemoved,
+                                 BlockTag::kEnd};
+  if (std::ranges::count(kKnown, tag) == 0) return {};
+  io::Bytes letters;
+  FieldWriter{letters}(static_cast<std::uint32_t>(tag));
+  return {reinterpret_cast<const char*>(letters.data()), letters.size()};
 }
 
 /// The preamble, which is the same in every version, names the version that wrote the rest.
 void check_preamble(io::ByteView preamble) {
-  if (!std::ranges::equal(preamble.first(kMagic.size()), io::bytes_of(kMagic)))
-    throw MapFileError(MapFileDefect::kNotAMap, "this is not a map file: it does not begin with RTDMAP");
   const io::ByteView described = preamble.first(kPreambleBytes - kCrcBytes);
   if (io::load<std::uint32_t>(preamble.data() + described.size()) != io::crc32(described))
     fail_damaged(0, "the checksum of the file's beginning does not fit");

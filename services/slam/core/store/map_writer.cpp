@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/store/map_writer.hpp"
+#include "services/slam/core/store/map_store.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -77,11 +77,6 @@ void write_records(BlockWriter& blocks, BlockTag tag, io::ByteView records, std:
     blocks.write(tag, records.first(std::min(block_bytes, records.size())));
 }
 
-void encode_features(FieldWriter& write, const std::vector<msg::Feature>& features) {
-  for (const msg::Feature& f : features)
-    write(f.u_px, f.v_px, f.depth_m, f.angle_rad, f.static_probability, f.octave, f.flags, f.descriptor);
-}
-
 class KeyframeEncoder {
  public:
   explicit KeyframeEncoder(const MapSnapshot& snapshot) : snapshot_(snapshot) {}
@@ -94,7 +89,8 @@ class KeyframeEncoder {
           static_cast<std::uint16_t>(keyframe.frame->features.size()), static_cast<std::uint16_t>(observations.size()),
           keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera);
     for (const auto& [feature, landmark] : observations) write(feature, landmark);
-    encode_features(write, keyframe.frame->features);
+    for (const msg::Feature& f : keyframe.frame->features)
+      write(f.u_px, f.v_px, f.depth_m, f.angle_rad, f.static_probability, f.octave, f.flags, f.descriptor);
   }
 
  private:

@@ -4,8 +4,7 @@
 
 #include "common/io/byte_sink.hpp"
 #include "common/io/byte_source.hpp"
-#include "services/slam/core/store/map_reader.hpp"
-#include "services/slam/core/store/map_writer.hpp"
+#include "services/slam/core/store/map_store.hpp"
 
 namespace rtd::slam {
 
