@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/geometry/trajectory.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <tuple>
 
 #include "common/io/text.hpp"
 
@@ -81,11 +84,25 @@ std::string rounded_stamp(std::int64_t stamp_ns) {
 
 }  // namespace
 
-std::vector<std::int64_t> stamps_of(const Trajectory& trajectory) {
-  std::vector<std::int64_t> stamps_ns;
-  stamps_ns.reserve(trajectory.size());
-  for (const StampedPose& pose : trajectory) stamps_ns.push_back(pose.stamp_ns);
-  return stamps_ns;
+std::vector<StampPair> associate(const std::vector<std::int64_t>& first_ns, const std::vector<std::int64_t>& second_ns,
+                                 std::int64_t max_difference_ns) {
+  std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;  // |difference|, first, second
+  for (std::size_t i = 0; i < second_ns.size(); ++i) {
+    auto it = std::ranges::upper_bound(first_ns, second_ns[i] - max_difference_ns);
+    for (; it != first_ns.end() && *it < second_ns[i] + max_difference_ns; ++it) {
+      candidates.emplace_back(std::abs(*it - second_ns[i]), static_cast<std::size_t>(it - first_ns.begin()), i);
+    }
+  }
+  std::ranges::sort(candidates);
+  std::vector<bool> first_used(first_ns.size()), second_used(second_ns.size());
+  std::vector<StampPair> pairs;
+  for (const auto& [difference_ns, first, second] : candidates) {
+    if (first_used[first] || second_used[second]) continue;
+    first_used[first] = second_used[second] = true;
+    pairs.push_back({first, second});
+  }
+  std::ranges::sort(pairs, {}, &StampPair::first);
+  return pairs;
 }
 
 Trajectory read_tum_trajectory(std::istream& input, const std::string& name, TumRows rows) {

@@ -21,8 +21,24 @@ struct StampedPose {
 /// Poses in increasing order of stamps, unless said otherwise.
 using Trajectory = std::vector<StampedPose>;
 
-/// The stamps of a trajectory, in order.
-std::vector<std::int64_t> stamps_of(const Trajectory& trajectory);
+/// The stamps of a trajectory, or of other things with a stamp_ns, in order.
+std::vector<std::int64_t> stamps_of(const auto& stamped) {
+  std::vector<std::int64_t> stamps_ns;
+  stamps_ns.reserve(stamped.size());
+  for (const auto& one : stamped) stamps_ns.push_back(one.stamp_ns);
+  return stamps_ns;
+}
+
+/// Indices of two stamps that belong to the same moment.
+struct StampPair {
+  std::size_t first = 0, second = 0;
+};
+
+/// Pairs stamps as TUM's associate.py does: all candidates closer than max_difference_ns, taken greedily by smallest
+/// difference (ties: earlier first, then earlier second), each stamp used once. Both inputs in increasing order. The
+/// result is in order of the first stamps.
+std::vector<StampPair> associate(const std::vector<std::int64_t>& first_ns, const std::vector<std::int64_t>& second_ns,
+                                 std::int64_t max_difference_ns);
 
 /// A trajectory or frame list cannot be used; what() names file, line, cause and fix.
 class TrajectoryError : public std::runtime_error {

@@ -12,8 +12,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/evaluation/core/trajectory/ate.hpp"
-#include "services/evaluation/core/trajectory/rpe.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::test_support {
 namespace {

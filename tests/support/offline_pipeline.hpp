@@ -14,7 +14,7 @@
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/evaluation/core/removal/removal.hpp"
-#include "services/evaluation/core/trajectory/trajectory.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/simulated_detector.hpp"

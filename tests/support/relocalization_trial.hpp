@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/msg/features.hpp"
-#include "services/evaluation/core/trajectory/ate.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "services/slam/core/slam_system.hpp"
 
 namespace rtd::test_support {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "services/evaluation/core/trajectory/trajectory.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::recording {
 

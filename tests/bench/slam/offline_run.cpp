@@ -8,7 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "services/evaluation/core/trajectory/ate.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/evaluation/core/trajectory/trajectory.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "services/filter/core/orb/orb_extractor.hpp"
 #include "services/slam/core/place/keyframe_database.hpp"
 #include "services/slam/core/place/vocabulary.hpp"

@@ -13,8 +13,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "services/evaluation/core/trajectory/ate.hpp"
-#include "services/evaluation/core/trajectory/rpe.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::eval {
 namespace {

@@ -9,11 +9,13 @@
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/evaluation/core/trajectory/ate.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "services/slam/slam_messages.hpp"
 
 namespace rtd::test_support {
 namespace {
+
+constexpr std::int64_t kSameMomentNs = 20'000'000;
 
 /// CPU time of this thread: what the map costs, whatever else the machine does.
 double cpu_ms() {
@@ -41,12 +43,11 @@ dense::DynamicMask mask_of(const camera::SourceFrame& frame, const FrontEndOutpu
 eval::Trajectory true_poses(const slam::SlamSystem& slam, const camera::FrameSource& source) {
   eval::Trajectory truth = source.groundtruth();
   const eval::Trajectory estimate = slam.trajectory();
-  const auto pairs = eval::associate(eval::stamps_of(truth), eval::stamps_of(estimate));
+  const auto pairs = geometry::associate(eval::stamps_of(truth), eval::stamps_of(estimate), kSameMomentNs);
   Eigen::Matrix3d rotations = Eigen::Matrix3d::Zero();
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();
-  for (const eval::MatchedPair& pair : pairs) {
-    const Eigen::Isometry3d &T_truth = truth[pair.groundtruth].T_world_body,
-                            &T_slam = estimate[pair.estimate].T_world_body;
+  for (const geometry::StampPair& pair : pairs) {
+    const Eigen::Isometry3d &T_truth = truth[pair.first].T_world_body, &T_slam = estimate[pair.second].T_world_body;
     rotations += T_slam.linear() * T_truth.linear().transpose();
     from += T_truth.translation() / static_cast<double>(pairs.size());
     to += T_slam.translation() / static_cast<double>(pairs.size());
@@ -65,9 +66,9 @@ GhostReport judge(const DenseOptions& options, const std::vector<dense::CloudPoi
   const auto source = camera::make_source(options.source);
   while (const auto frame = source->next()) {
     if (frame->image.seq % static_cast<std::uint64_t>(options.judge_every) != 0) continue;
-    const auto pair = eval::associate(eval::stamps_of(truth), {frame->image.stamp_ns});
+    const auto pair = geometry::associate(eval::stamps_of(truth), {frame->image.stamp_ns}, kSameMomentNs);
     if (pair.empty()) continue;
-    measure.judge(frame->image, frame->dynamic_mask, truth[pair[0].groundtruth].T_world_body);
+    measure.judge(frame->image, frame->dynamic_mask, truth[pair[0].first].T_world_body);
   }
   return measure.report();
 }

@@ -32,7 +32,8 @@ std::vector<StampedFile> shaky_stamps(std::mt19937& random, double period_ms) {
 TEST(FramePairer, pairs_a_stream_as_the_lists_of_a_folder_are_paired) {
   std::mt19937 random(5);
   const std::vector<StampedFile> colors = shaky_stamps(random, 33.3), depths = shaky_stamps(random, 33.4);
-  const std::vector<int> expected = associate(colors, depths);
+  const std::vector<geometry::StampPair> expected =
+      geometry::associate(geometry::stamps_of(colors), geometry::stamps_of(depths), kPairingToleranceNs);
 
   struct Event {
     std::int64_t recorded_ns;
@@ -58,10 +59,8 @@ TEST(FramePairer, pairs_a_stream_as_the_lists_of_a_folder_are_paired) {
   pairer.finish();
   take_decided();
 
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    if (expected[i] < 0) continue;
-    expected_pairs.emplace_back(colors[i].stamp_ns, depths[static_cast<std::size_t>(expected[i])].stamp_ns);
-  }
+  for (const auto& [color, depth] : expected)
+    expected_pairs.emplace_back(colors[color].stamp_ns, depths[depth].stamp_ns);
   EXPECT_EQ(pairs, expected_pairs);
   EXPECT_EQ(skips.counters().of(SkipReason::kNoDepthPartner), colors.size() - expected_pairs.size());
 }

@@ -10,16 +10,9 @@ namespace rtd::camera {
 namespace {
 
 using test::SequenceFolder;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
-
-std::vector<StampedFile> at_ms(std::initializer_list<int> stamps_ms) {
-  std::vector<StampedFile> files;
-  for (const int ms : stamps_ms) files.push_back({std::int64_t{ms} * 1'000'000, "x"});
-  return files;
-}
 
 TEST(ReadPairs, refuses_stamps_that_are_not_finite) {
   for (const char* text : {"nan", "inf", "-inf", "1e300"}) {
@@ -28,19 +21,6 @@ TEST(ReadPairs, refuses_stamps_that_are_not_finite) {
     folder.write("depth.txt", "1 depth/a.png\n");
     EXPECT_THAT([&] { read_pairs(folder.path()); }, ThrowsMessage<SourceError>(HasSubstr("rgb.txt:2")));
   }
-}
-
-TEST(Associate, takes_the_closest_pair_first) {
-  // 20 could go to 12 (8 ms) or 29 (9 ms); 30 is nearer to 29, so 20 gets 12.
-  EXPECT_THAT(associate(at_ms({20, 30}), at_ms({12, 29})), ElementsAre(0, 1));
-}
-
-TEST(Associate, uses_each_depth_image_once) {
-  EXPECT_THAT(associate(at_ms({0, 10}), at_ms({4})), ElementsAre(0, -1));
-}
-
-TEST(Associate, leaves_out_what_is_too_far_apart) {
-  EXPECT_THAT(associate(at_ms({0, 100}), at_ms({20, 119})), ElementsAre(-1, 1));
 }
 
 TEST(ReadPairs, refuses_missing_and_empty_folders) {

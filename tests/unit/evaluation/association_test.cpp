@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-#include "services/evaluation/core/trajectory/ate.hpp"
-#include "services/evaluation/core/trajectory/statistics.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -22,10 +21,10 @@ std::vector<std::int64_t> ms(std::initializer_list<std::int64_t> values) {
 }
 
 std::vector<std::pair<std::size_t, std::size_t>> pairs(const std::vector<std::int64_t>& groundtruth,
-                                                       const std::vector<std::int64_t>& estimate,
-                                                       const AssociationOptions& options = {}) {
+                                                       const std::vector<std::int64_t>& estimate) {
   std::vector<std::pair<std::size_t, std::size_t>> result;
-  for (const MatchedPair& p : associate(groundtruth, estimate, options)) result.emplace_back(p.groundtruth, p.estimate);
+  for (const auto& [first, second] : geometry::associate(groundtruth, estimate, 20 * kMs))
+    result.emplace_back(first, second);
   return result;
 }
 using P = std::pair<std::size_t, std::size_t>;
@@ -54,9 +53,10 @@ TEST(Associate, tie_goes_to_the_earlier_ground_truth) {
 }
 
 TEST(Associate, offset_is_added_to_the_estimate) {
-  EXPECT_THAT(pairs(ms({1000}), ms({500})), IsEmpty());
-  EXPECT_THAT(pairs(ms({1000}), ms({500}), {0.02, 0.5}), ElementsAre(P{0, 0}));
-  EXPECT_THAT(pairs(ms({1000}), ms({500}), {0.02, -0.5}), IsEmpty());
+  const Trajectory groundtruth = {{.stamp_ns = 1000 * kMs}}, estimate = {{.stamp_ns = 500 * kMs}};
+  EXPECT_EQ(ate(estimate, groundtruth).error_m.count, 0U);
+  EXPECT_EQ(ate(estimate, groundtruth, {.association = {0.02, 0.5}}).error_m.count, 1U);
+  EXPECT_EQ(ate(estimate, groundtruth, {.association = {0.02, -0.5}}).error_m.count, 0U);
 }
 
 TEST(Associate, empty_inputs_give_no_pairs) {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "services/evaluation/core/trajectory/trajectory.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::eval::testing_support {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/trajectory/rpe.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -85,9 +85,9 @@ TEST(Rpe, is_measured_on_the_step_backwards_as_tums_tool_does) {
     if (i > 0) estimate.back().T_world_body.rotate(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
   }
   const RpeResult result = rpe(estimate, groundtruth, {1.0, RpeUnit::kFrames});
-  ASSERT_EQ(result.samples.size(), 1U);
-  EXPECT_NEAR(result.samples[0].translation_m, std::sqrt(2.0), 1e-12);  // forwards it would be 0
-  EXPECT_NEAR(result.samples[0].rotation_rad, M_PI / 2, 1e-12);
+  ASSERT_EQ(result.translation_m.count, 1U);
+  EXPECT_NEAR(result.translation_m.max, std::sqrt(2.0), 1e-12);  // forwards it would be 0
+  EXPECT_NEAR(result.rotation_rad.max, M_PI / 2, 1e-12);
 }
 
 TEST(Rpe, steps_without_ground_truth_are_left_out) {

@@ -10,12 +10,6 @@
 namespace rtd::camera {
 namespace {
 
-std::vector<StampedFile> stamps_of(const std::deque<StampedMessage>& messages) {
-  std::vector<StampedFile> stamps;
-  for (const StampedMessage& message : messages) stamps.push_back({message.stamp_ns, {}});
-  return stamps;
-}
-
 std::string place_of(const StampedMessage& color) {
   return color.message.topic + " at " + std::to_string(color.stamp_ns) + " ns";
 }
@@ -57,8 +51,10 @@ bool FramePairer::decided() const {
 }
 
 std::optional<std::size_t> FramePairer::partner_of_front() const {
-  const int partner = associate(stamps_of(colors_), stamps_of(depths_), options_.tolerance_ns).front();
-  return partner < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(partner));
+  const std::vector<geometry::StampPair> pairs =
+      geometry::associate(geometry::stamps_of(colors_), geometry::stamps_of(depths_), options_.tolerance_ns);
+  if (pairs.empty() || pairs.front().first != 0) return std::nullopt;
+  return pairs.front().second;
 }
 
 /// No colour image to come is as old.

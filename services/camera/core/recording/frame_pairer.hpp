@@ -17,10 +17,10 @@ struct StampedMessage {
   RecordedMessage message;
 };
 
-/// Pairs colour with depth images of a stream as the lists of a TUM folder are paired (associate()): closest first,
-/// within 0.02 s, each depth image once. It decides on a colour image when everything recorded within kLookaheadNs
-/// after it has been seen, and so holds a few frames only; of a running camera, whose images come in order, already
-/// when a depth image as new as the colour image has come.
+/// Pairs colour with depth images of a stream as the lists of a TUM folder are paired (geometry::associate()): closest
+/// first, within 0.02 s, each depth image once. It decides on a colour image when everything recorded within
+/// kLookaheadNs after it has been seen, and so holds a few frames only; of a running camera, whose images come in
+/// order, already when a depth image as new as the colour image has come.
 class FramePairer {
  public:
   static constexpr std::int64_t kLookaheadNs = 300'000'000;

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/tum/tum_lists.hpp"
-#include "common/io/text.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <tuple>
+
+#include "common/io/text.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -118,28 +117,6 @@ void sort_unique(std::vector<StampedFile>& entries) {
 
 }  // namespace
 
-std::vector<int> associate(const std::vector<StampedFile>& color, const std::vector<StampedFile>& depth,
-                           std::int64_t tolerance_ns) {
-  std::vector<std::tuple<std::int64_t, int, int>> candidates;  // |difference|, colour, depth
-  std::size_t first = 0;
-  for (std::size_t c = 0; c < color.size(); ++c) {
-    while (first < depth.size() && depth[first].stamp_ns <= color[c].stamp_ns - tolerance_ns) ++first;
-    for (std::size_t d = first; d < depth.size() && depth[d].stamp_ns < color[c].stamp_ns + tolerance_ns; ++d) {
-      const std::int64_t difference_ns = std::abs(depth[d].stamp_ns - color[c].stamp_ns);
-      candidates.emplace_back(difference_ns, static_cast<int>(c), static_cast<int>(d));
-    }
-  }
-  std::sort(candidates.begin(), candidates.end());
-  std::vector<int> depth_of_color(color.size(), -1);
-  std::vector<bool> depth_used(depth.size(), false);
-  for (const auto& [difference_ns, c, d] : candidates) {
-    if (depth_of_color[static_cast<std::size_t>(c)] >= 0 || depth_used[static_cast<std::size_t>(d)]) continue;
-    depth_of_color[static_cast<std::size_t>(c)] = d;
-    depth_used[static_cast<std::size_t>(d)] = true;
-  }
-  return depth_of_color;
-}
-
 PairList read_pairs(const fs::path& folder) {
   check_folder(folder);
   PairList list;
@@ -150,10 +127,12 @@ PairList read_pairs(const fs::path& folder) {
   const std::vector<StampedFile> color = increasing(read_list(folder / "rgb.txt", list.skipped), list.skipped);
   std::vector<StampedFile> depth = read_list(folder / "depth.txt", list.skipped);
   sort_unique(depth);
-  const std::vector<int> depth_of_color = associate(color, depth);
+  const std::vector<geometry::StampPair> found =
+      geometry::associate(geometry::stamps_of(color), geometry::stamps_of(depth), kPairingToleranceNs);
+  auto pair = found.begin();
   for (std::size_t i = 0; i < color.size(); ++i) {
-    if (depth_of_color[i] >= 0) {
-      list.pairs.push_back({color[i], depth[static_cast<std::size_t>(depth_of_color[i])]});
+    if (pair != found.end() && pair->first == i) {
+      list.pairs.push_back({color[i], depth[(pair++)->second]});
     } else {
       list.skipped.push_back({SkipReason::kNoDepthPartner, color[i].file + " has no depth image within 0.02 s"});
     }

@@ -31,11 +31,6 @@ struct PairList {
   std::vector<SkippedInput> skipped;
 };
 
-/// For every colour image the index of its depth image or -1: each depth image at most once, closest pairs first, as
-/// TUM's associate.py does it.
-std::vector<int> associate(const std::vector<StampedFile>& color, const std::vector<StampedFile>& depth,
-                           std::int64_t tolerance_ns = kPairingToleranceNs);
-
 /// The pairs of a TUM folder: associations.txt unchanged when there is one (a depth image may occur twice there),
 /// else rgb.txt and depth.txt associated. Throws SourceError for a missing folder or list and for stamps that are not
 /// finite.

@@ -12,8 +12,8 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "common/io/text.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/evaluation/core/trajectory/trajectory.hpp"
 
 namespace rtd::eval {
 namespace fs = std::filesystem;
@@ -37,7 +37,7 @@ MaskOf masks_of_folder(const fs::path& folder) {
   std::map<std::int64_t, std::string> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     try {
-      files[parse_stamp_ns(entry.path().stem().string())] = entry.path().string();
+      files[io::parse_stamp_ns(entry.path().stem().string())] = entry.path().string();
     } catch (const std::invalid_argument&) {
       continue;  // not named by a stamp: not a mask
     }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "services/evaluation/core/plot/chart.hpp"
-#include "services/evaluation/core/trajectory/ate.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::eval {
 

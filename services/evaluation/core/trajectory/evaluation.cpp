@@ -9,16 +9,14 @@
 namespace rtd::eval {
 namespace {
 
-constexpr double kSameFrameS = 0.001;
+constexpr std::int64_t kSameFrameNs = 1'000'000;
 
 Coverage measure_coverage(const Trajectory& estimate, const Trajectory& groundtruth, const EvaluationOptions& options,
                           const std::optional<std::vector<std::int64_t>>& frames_ns) {
-  std::vector<std::int64_t> poses_ns = stamps_of(estimate);
-  if (frames_ns) return coverage_of_frames(*frames_ns, poses_ns);
+  if (frames_ns) return coverage_of_frames(*frames_ns, stamps_of(estimate));
   if (groundtruth.empty()) return {};
-  const std::int64_t offset_ns = std::llround(options.association.offset_s * 1e9);
-  for (std::int64_t& stamp_ns : poses_ns) stamp_ns += offset_ns;
-  return coverage_of_span(groundtruth.front().stamp_ns, groundtruth.back().stamp_ns, poses_ns, options.max_gap_s);
+  return coverage_of_span(groundtruth.front().stamp_ns, groundtruth.back().stamp_ns,
+                          shifted_stamps(estimate, options.association.offset_s), options.max_gap_s);
 }
 
 using Json = nlohmann::ordered_json;
@@ -56,7 +54,7 @@ Coverage coverage_of_frames(const std::vector<std::int64_t>& frames_ns, const st
   Coverage coverage;
   coverage.frames = frames_ns.size();
   std::vector<bool> tracked(frames_ns.size());
-  for (const MatchedPair& pair : associate(frames_ns, poses_ns, {kSameFrameS, 0.0})) tracked[pair.groundtruth] = true;
+  for (const auto& [frame, pose] : geometry::associate(frames_ns, poses_ns, kSameFrameNs)) tracked[frame] = true;
   for (std::size_t i = 0; i < frames_ns.size(); ++i) {
     if (tracked[i]) {
       ++coverage.tracked;

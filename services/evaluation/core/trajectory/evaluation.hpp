@@ -7,8 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "services/evaluation/core/trajectory/ate.hpp"
-#include "services/evaluation/core/trajectory/rpe.hpp"
+#include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::eval {
 
