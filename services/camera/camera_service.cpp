@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <CLI/CLI.hpp>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -28,18 +27,34 @@ constexpr std::int64_t kLastResultTimeoutNs = 2'000'000'000;  // pace realtime
 constexpr std::chrono::milliseconds kFarewell{300};           // the last heartbeats reach their readers
 constexpr int kReportEvery = 10;                              // frames
 
+std::int64_t seconds_to_ns(double seconds) {
+  return static_cast<std::int64_t>(seconds * 1e9);
+}
+
 std::shared_ptr<FrameSource> open_source(const ServiceConfig& config, const bus::BusOptions& bus,
                                          std::function<void(const std::string&)> on_wait) {
   try {
     if (!is_live(config.source)) return make_source(config.source);
     LiveOptions options = parse_live_options(config.source);
-    options.open_timeout_ns = static_cast<std::int64_t>(config.start_timeout_s * 1e9);
+    options.open_timeout_ns = seconds_to_ns(config.start_timeout_s);
     options.on_wait = std::move(on_wait);
     auto feed = std::make_unique<Ros2Feed>(bus, options.topics);
     return std::make_shared<LiveSource>(config.source, std::move(feed), std::move(options));
   } catch (const SourceError& error) {
     throw service::ConfigError(error.what());
   }
+}
+
+service::PacerConfig to_pacer_config(const ServiceConfig& config, service::Pace pace, const SourceInfo& source) {
+  const bool asap = pace == service::Pace::kAsap, realtime = pace == service::Pace::kRealtime;
+  service::PacerConfig pacer;
+  pacer.window = realtime ? 0 : asap ? config.asap_window : 1;
+  pacer.at_once = source.live;
+  pacer.period_ns = seconds_to_ns(1.0 / source.fps);
+  pacer.max_gap_ns = seconds_to_ns(config.max_gap_s);
+  pacer.resend_after_ns = std::int64_t{config.resend_after_ms} * 1'000'000;
+  pacer.result_timeout_ns = seconds_to_ns(config.result_timeout_s);
+  return pacer;
 }
 
 /// Readers of frames and JPEGs that a service has. A recorder of a run takes both, and misses none.
@@ -78,7 +93,7 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
       tracking_(runtime.bus.reader<msg::TrackingResult>(
           bus::topics::kTracking, [results = results_](const auto& result) { results->push(result->seq); })) {
   cv::setNumThreads(1);
-  config_.wait_for.erase(std::remove(config_.wait_for.begin(), config_.wait_for.end(), "none"), config_.wait_for.end());
+  std::erase(config_.wait_for, "none");
   runtime.heartbeat.on_status([changes = changes_](const auto&) { changes->push(true); });
   runtime.stop.on_stop([source = source_, results = results_, changes = changes_] {
     source->stop();
@@ -128,7 +143,7 @@ void CameraService::report_wait(const std::string& what) {
 }
 
 CameraService::Outcome CameraService::wait_for_others() {
-  const std::int64_t deadline_ns = service::monotonic_ns() + static_cast<std::int64_t>(config_.start_timeout_s * 1e9);
+  const std::int64_t deadline_ns = service::monotonic_ns() + seconds_to_ns(config_.start_timeout_s);
   std::vector<std::string> absent = missing();
   while (!absent.empty()) {
     if (runtime_.stop.stop_requested()) return Outcome::kStopped;
@@ -148,11 +163,11 @@ CameraService::Outcome CameraService::wait_for_others() {
 
 std::vector<std::string> CameraService::missing() const {
   std::vector<std::string> absent;
+  int expected = 0;
   for (const std::string& name : config_.wait_for) {
     if (!runtime_.heartbeat.ready(name)) absent.push_back(name);
+    expected += readers_of(name);
   }
-  int expected = 0;
-  for (const std::string& name : config_.wait_for) expected += readers_of(name);
   const int readers = publisher_.frame_readers() + publisher_.jpeg_readers();
   if (readers < expected) absent.push_back(fmt::format("{} of {} frame readers", expected - readers, expected));
   return absent;
@@ -208,12 +223,7 @@ CameraService::Outcome CameraService::follow(const service::PaceDecision& decisi
 }
 
 CameraService::Outcome CameraService::drain() {
-  if (!realtime_) return drain_in_window();
-  drain_by_time();
-  return Outcome::kDone;
-}
-
-CameraService::Outcome CameraService::drain_in_window() {
+  if (realtime_) return drain_by_time(), Outcome::kDone;
   while (!runtime_.stop.stop_requested()) {
     take_results();
     const service::PaceDecision decision = pacer_.drain();
@@ -253,13 +263,11 @@ void CameraService::note(std::uint64_t seq) {
   while (!in_flight_.empty() && in_flight_.front().seq <= seq) in_flight_.pop_front();
 }
 
-bool CameraService::send(const vision::RgbdImage& image) {
-  const bool taken = publisher_.publish(image);
+void CameraService::send(const vision::RgbdImage& image) {
   ++published_;
-  if (taken) return true;
+  if (publisher_.publish(image)) return;
   ++refused_;
   if (refused_log_.pass()) SPDLOG_WARN("event=frame_refused frame={} total={}", image.seq, refused_);
-  return false;
 }
 
 void CameraService::resend() {

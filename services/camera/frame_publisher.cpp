@@ -27,6 +27,27 @@ void yield_to_poses() {
   concurrency::lower_thread_priority(kNicer);
 }
 
+std::uint64_t random_id() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 32U) | device();
+}
+
+/// Copies the rows packed and clears what a smaller image leaves of the fixed array.
+template <class Array>
+void copy_packed(const cv::Mat& image, Array& target) {
+  auto* bytes = reinterpret_cast<std::uint8_t*>(target.data());
+  const std::size_t row_bytes = static_cast<std::size_t>(image.cols) * image.elemSize();
+  for (int row = 0; row < image.rows; ++row, bytes += row_bytes) std::memcpy(bytes, image.ptr(row), row_bytes);
+  const std::size_t used = row_bytes * static_cast<std::size_t>(image.rows);
+  std::memset(bytes, 0, sizeof(target) - used);
+}
+
+bus::StatusCallbacks on_match(const std::function<void()>& notify) {
+  bus::StatusCallbacks callbacks;
+  callbacks.on_matched = [notify](int) { notify(); };
+  return callbacks;
+}
+
 }  // namespace
 
 JpegPublisher::JpegPublisher(bus::Writer<msg::CompressedImage> writer, int quality, concurrency::Overflow overflow)
@@ -52,31 +73,6 @@ void JpegPublisher::publish(const Waiting& image) {
   ++encoded_;
   writer_.write(message);
 }
-
-namespace {
-
-std::uint64_t random_id() {
-  std::random_device device;
-  return (static_cast<std::uint64_t>(device()) << 32U) | device();
-}
-
-/// Copies the rows packed and clears what a smaller image leaves of the fixed array.
-template <class Array>
-void copy_packed(const cv::Mat& image, Array& target) {
-  auto* bytes = reinterpret_cast<std::uint8_t*>(target.data());
-  const std::size_t row_bytes = static_cast<std::size_t>(image.cols) * image.elemSize();
-  for (int row = 0; row < image.rows; ++row, bytes += row_bytes) std::memcpy(bytes, image.ptr(row), row_bytes);
-  const std::size_t used = row_bytes * static_cast<std::size_t>(image.rows);
-  std::memset(bytes, 0, sizeof(target) - used);
-}
-
-bus::StatusCallbacks on_match(const std::function<void()>& notify) {
-  bus::StatusCallbacks callbacks;
-  callbacks.on_matched = [notify](int) { notify(); };
-  return callbacks;
-}
-
-}  // namespace
 
 void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::int64_t published_ns,
                 msg::RgbdFrame& frame) {

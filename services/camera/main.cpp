@@ -5,6 +5,7 @@
 #include <iostream>
 #include <string>
 
+#include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/run_service.hpp"
 #include "services/camera/camera_service.hpp"
@@ -17,7 +18,7 @@ namespace {
 /// Whether the command line asks for `rtd-camera --export FOLDER` instead of a service.
 bool wants_export(int argc, char** argv) {
   return std::any_of(argv + 1, argv + argc, [](const std::string& argument) {
-    return argument == "--export" || argument.rfind("--export=", 0) == 0;
+    return argument == "--export" || argument.starts_with("--export=");
   });
 }
 
@@ -29,25 +30,19 @@ int run_export(int argc, char** argv) {
   app.add_option("--export", folder, "New folder")->required();
   app.add_option("--source", uri, "tum:FOLDER, bag:FILE, mcap:FILE or synthetic:SCENE[?key=value&...]")->required();
   app.add_option("--frames", frames, "At most this many frames, 0 = all");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp& help) {
-    return app.exit(help);
-  } catch (const CLI::ParseError& error) {
-    app.exit(error);
-    return service::kUsageOrConfig;
-  }
-  try {
-    const std::unique_ptr<FrameSource> source = make_source(uri);
-    std::cout << export_tum(*source, folder, frames) << " frames written to " << folder << '\n';
-    return service::kOk;
-  } catch (const SourceError& error) {
-    std::cerr << "rtd-camera: " << error.what() << '\n';
-    return service::kUsageOrConfig;
-  } catch (const std::exception& error) {
-    std::cerr << "rtd-camera: " << error.what() << '\n';
-    return service::kRunFailed;
-  }
+  return service::run_command(app, argc, argv, [&]() -> int {
+    try {
+      const std::unique_ptr<FrameSource> source = make_source(uri);
+      std::cout << export_tum(*source, folder, frames) << " frames written to " << folder << '\n';
+      return service::kOk;
+    } catch (const SourceError& error) {
+      std::cerr << "rtd-camera: " << error.what() << '\n';
+      return service::kUsageOrConfig;
+    } catch (const std::exception& error) {
+      std::cerr << "rtd-camera: " << error.what() << '\n';
+      return service::kRunFailed;
+    }
+  });
 }
 
 }  // namespace

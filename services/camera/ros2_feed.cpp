@@ -52,11 +52,6 @@ void Ros2Feed::clear() {
   }
 }
 
-std::int64_t Ros2Feed::now_ns() const {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
-}
-
 void Ros2Feed::take_note(const bus::TopicWriter& writer, bus::WriterChange change) {
   if (change == bus::WriterChange::kGone) return;
   const std::string topic = ros2::ros_topic(writer.topic.name);
@@ -82,13 +77,8 @@ void Ros2Feed::subscribe(Line& line, const bus::TopicWriter& writer) {
 bus::RawHandlers Ros2Feed::handlers(const Line& line, const bus::TopicWriter& writer) {
   bus::RawHandlers handlers;
   handlers.on_sample = [this, topic = line.topic, type = plain_dds_type(writer)](const bus::RawSample& sample) {
-    LiveMessage message;
-    message.type = type;
-    message.message.topic = topic;
-    message.message.recorded_ns = now_ns();
-    message.message.wire = ros::Wire::kCdr;
     const auto* const bytes = reinterpret_cast<const std::uint8_t*>(sample.cdr().data());
-    message.message.bytes.assign(bytes, bytes + sample.cdr().size());
+    RecordedMessage message{topic, now_ns(), ros::Wire::kCdr, {bytes, bytes + sample.cdr().size()}, type};
     queue_.push(std::move(message));
   };
   return handlers;
@@ -97,7 +87,7 @@ bus::RawHandlers Ros2Feed::handlers(const Line& line, const bus::TopicWriter& wr
 std::string Ros2Feed::state_of(const std::string& topic) const {
   int writers = 0;
   std::string other_type;
-  const auto line = std::find_if(lines_.begin(), lines_.end(), [&](const Line& one) { return one.topic == topic; });
+  const auto line = std::ranges::find_if(lines_, [&](const Line& one) { return one.topic == topic; });
   for (const bus::TopicWriter& writer : bus_->writers()) {
     if (ros2::ros_topic(writer.topic.name) != topic) continue;
     if (line != lines_.end() && line->types.contains(plain_dds_type(writer))) {

@@ -9,6 +9,7 @@
 
 #include "common/bus/raw_bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
+#include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/live/live_source.hpp"
 
 namespace rtd::camera {
@@ -21,12 +22,12 @@ class Ros2Feed final : public LiveFeed {
   Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics);
   ~Ros2Feed() override;
 
-  std::optional<LiveMessage> next(std::chrono::milliseconds timeout) override { return queue_.pop_for(timeout); }
+  std::optional<RecordedMessage> next(std::chrono::milliseconds timeout) override { return queue_.pop_for(timeout); }
   void clear() override;
   void close() override { queue_.close(); }
   bool closed() const override { return queue_.closed(); }
   std::uint64_t dropped() const override { return queue_.dropped(); }
-  std::int64_t now_ns() const override;
+  std::int64_t now_ns() const override { return service::monotonic_ns(); }
   std::string state_of(const std::string& topic) const override;
 
  private:
@@ -43,7 +44,7 @@ class Ros2Feed final : public LiveFeed {
 
   const std::uint32_t domain_;
   const bool loopback_only_;
-  concurrency::BoundedQueue<LiveMessage> queue_;
+  concurrency::BoundedQueue<RecordedMessage> queue_;
   std::shared_ptr<bus::RawBus> bus_;
   std::array<Line, 3> lines_;  ///< only the thread of the bus's watcher changes listeners
 };

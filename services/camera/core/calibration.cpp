@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/calibration.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <map>
-#include <sstream>
 #include <vector>
 
 #include "common/io/text.hpp"
@@ -47,10 +45,8 @@ std::pair<std::string, double> parse_entry(const io::TextLine& line, const std::
   if (rule == key_rules().end()) throw SourceError(where + ": unknown key '" + key + "'; allowed: " + kAllowedKeys);
   const std::optional<double> value = io::parse_number(value_text);
   if (!value || !std::isfinite(*value) || *value < rule->second.min || *value > rule->second.max) {
-    std::ostringstream message;
-    message << where << ": " << key << " is '" << value_text << "', allowed is a number in [" << rule->second.min
-            << ", " << rule->second.max << "]";
-    throw SourceError(message.str());
+    throw SourceError(fmt::format("{}: {} is '{}', allowed is a number in [{:g}, {:g}]", where, key, value_text,
+                                  rule->second.min, rule->second.max));
   }
   return {key, *value};
 }
@@ -92,10 +88,10 @@ std::optional<int> family_in(const std::string& name) {
 
 void check_frame_size(double width, double height, const std::string& origin) {
   if (width <= msg::kMaxFrameWidth && height <= msg::kMaxFrameHeight) return;
-  std::ostringstream message;
-  message << origin << ": " << width << " x " << height << " px, but a frame carries at most " << msg::kMaxFrameWidth
-          << " x " << msg::kMaxFrameHeight << " px; scale the images down and fx fy cx cy with them";
-  throw SourceError(message.str());
+  throw SourceError(
+      fmt::format("{}: {:g} x {:g} px, but a frame carries at most {} x {} px; scale the images down and fx fy cx cy "
+                  "with them",
+                  origin, width, height, msg::kMaxFrameWidth, msg::kMaxFrameHeight));
 }
 
 Calibration parse_calibration(const std::string& text, const std::string& origin) {
@@ -110,16 +106,16 @@ Calibration parse_calibration(const std::string& text, const std::string& origin
 }
 
 Calibration read_calibration(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) throw SourceError("calibration " + file + " cannot be read");
-  return parse_calibration({std::istreambuf_iterator<char>(stream), {}}, file);
+  const std::optional<std::string> text = io::read_text(file);
+  if (!text) throw SourceError("calibration " + file + " cannot be read");
+  return parse_calibration(*text, file);
 }
 
 std::optional<int> tum_family(const std::filesystem::path& folder) {
   const std::vector<std::filesystem::path> parts(folder.begin(), folder.end());
   for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
     std::string name = part->string();
-    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
     if (const std::optional<int> family = family_in(name)) return family;
   }
   return std::nullopt;
@@ -127,9 +123,7 @@ std::optional<int> tum_family(const std::filesystem::path& folder) {
 
 Calibration load_calibration(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "calibration.yaml";
-  if (std::ifstream stream(file); stream) {
-    return parse_calibration(std::string(std::istreambuf_iterator<char>(stream), {}), file.string());
-  }
+  if (const auto text = io::read_text(file)) return parse_calibration(*text, file.string());
   if (const std::optional<int> family = tum_family(std::filesystem::absolute(folder))) {
     return parse_calibration(tum_camera_yaml(*family), "config/cameras/tum_fr" + std::to_string(*family) + ".yaml");
   }
@@ -141,13 +135,11 @@ Calibration load_calibration(const std::filesystem::path& folder) {
 std::string to_yaml(const Calibration& calibration) {
   const auto& p = calibration.camera.parameters();
   const auto& d = p.distortion;
-  std::array<char, 640> text{};
-  std::snprintf(text.data(), text.size(),
-                "width: %d\nheight: %d\nfx: %.9g\nfy: %.9g\ncx: %.9g\ncy: %.9g\n"
-                "k1: %.9g\nk2: %.9g\np1: %.9g\np2: %.9g\nk3: %.9g\ndepth_factor: %.9g\nfps: %.9g\n",
-                p.width, p.height, p.fx, p.fy, p.cx, p.cy, d[0], d[1], d[2], d[3], d[4],
-                1.0 / calibration.depth_scale_m, calibration.fps);
-  return text.data();
+  return fmt::format(
+      "width: {}\nheight: {}\nfx: {:.9g}\nfy: {:.9g}\ncx: {:.9g}\ncy: {:.9g}\n"
+      "k1: {:.9g}\nk2: {:.9g}\np1: {:.9g}\np2: {:.9g}\nk3: {:.9g}\ndepth_factor: {:.9g}\nfps: {:.9g}\n",
+      p.width, p.height, p.fx, p.fy, p.cx, p.cy, d[0], d[1], d[2], d[3], d[4], 1.0 / calibration.depth_scale_m,
+      calibration.fps);
 }
 
 }  // namespace rtd::camera

@@ -8,29 +8,10 @@
 namespace rtd::camera {
 
 const char* to_string(SkipReason reason) {
-  switch (reason) {
-    case SkipReason::kMalformedLine:
-      return "malformed_line";
-    case SkipReason::kNoDepthPartner:
-      return "no_depth_partner";
-    case SkipReason::kStampBackwards:
-      return "stamp_backwards";
-    case SkipReason::kStampDoubled:
-      return "stamp_doubled";
-    case SkipReason::kColorUnreadable:
-      return "color_unreadable";
-    case SkipReason::kDepthUnreadable:
-      return "depth_unreadable";
-    case SkipReason::kDepthNot16Bit:
-      return "depth_not_16_bit";
-    case SkipReason::kSizeMismatch:
-      return "size_mismatch";
-    case SkipReason::kDamagedRecord:
-      return "damaged_record";
-    case SkipReason::kOverrun:
-      return "overrun";
-  }
-  return "unknown";
+  static constexpr std::array<const char*, kSkipReasons> kNames = {
+      "malformed_line",   "no_depth_partner", "stamp_backwards", "stamp_doubled",  "color_unreadable",
+      "depth_unreadable", "depth_not_16_bit", "size_mismatch",   "damaged_record", "overrun"};
+  return kNames.at(static_cast<std::size_t>(reason));
 }
 
 std::uint64_t SourceCounters::skipped_total() const {
@@ -57,6 +38,41 @@ std::string SkipLog::summary() const {
   return text + " first: " + skipped_.front().detail;
 }
 
+std::optional<SourceFrame> PlayedSource::next() {
+  std::optional<SourceFrame> frame = first_ ? std::exchange(first_, std::nullopt) : read_next();
+  if (frame) skips_.number(*frame);
+  return frame;
+}
+
+std::uint64_t PlayedSource::pass_over(std::int64_t stamp_ns) {
+  std::uint64_t passed = 0;
+  if (first_ && first_->image.stamp_ns < stamp_ns) {
+    first_.reset();
+    ++passed;
+  }
+  while (!first_) {
+    if (!gone_to_) gone_to_ = advance();
+    if (!gone_to_ || *gone_to_ >= stamp_ns) break;
+    gone_to_.reset();
+    ++passed;
+  }
+  skips_.counters().frames += passed;
+  return passed;
+}
+
+std::optional<SourceFrame> PlayedSource::read_next() {
+  while (gone_to_ || (gone_to_ = advance())) {
+    gone_to_.reset();
+    if (std::optional<SourceFrame> frame = decode()) return frame;
+  }
+  return std::nullopt;
+}
+
+void PlayedSource::read_first(const std::string& file) {
+  first_ = read_next();
+  if (!first_) throw SourceError("no usable frame in " + file + skips_.summary());
+}
+
 std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat& color, const cv::Mat& depth,
                                           const geometry::CameraModel& camera) {
   const cv::Size calibrated(camera.parameters().width, camera.parameters().height);
@@ -67,14 +83,9 @@ std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat
 }
 
 SourceFrame to_frame(std::int64_t stamp_ns, cv::Mat color_bgr, cv::Mat depth, const SourceInfo& info) {
-  SourceFrame frame;
-  frame.has_depth = cv::countNonZero(depth) > 0;
-  frame.image.stamp_ns = stamp_ns;
-  frame.image.color_bgr = std::move(color_bgr);
-  frame.image.depth = std::move(depth);
-  frame.image.depth_scale_m = info.depth_scale_m;
-  frame.image.camera = info.camera;
-  return frame;
+  const bool has_depth = cv::countNonZero(depth) > 0;
+  return {.image = {0, stamp_ns, std::move(color_bgr), std::move(depth), info.depth_scale_m, info.camera},
+          .has_depth = has_depth};
 }
 
 geometry::Trajectory poses_of_span(geometry::Trajectory poses, std::int64_t from_ns, std::int64_t to_ns) {

@@ -124,6 +124,36 @@ class SkipLog {
   std::vector<SkippedInput> skipped_;
 };
 
+/// A source that plays a file: what its frames are made of is left to the derived class.
+class PlayedSource : public FrameSource {
+ public:
+  std::optional<SourceFrame> next() final;
+  std::uint64_t pass_over(std::int64_t stamp_ns) final;
+  const SourceInfo& info() const final { return info_; }
+  const SourceCounters& counters() const final { return skips_.counters(); }
+  std::vector<SkippedInput> take_skipped() final { return skips_.take(); }
+
+ protected:
+  /// Goes to the next frame and gives its stamp; empty at the end.
+  virtual std::optional<std::int64_t> advance() = 0;
+  /// Decodes the frame gone to; empty when it cannot be used.
+  virtual std::optional<SourceFrame> decode() = 0;
+  /// Ends opening. Throws SourceError naming the file when it has no good frame.
+  void read_first(const std::string& file);
+
+  SourceInfo info_;
+  SkipLog skips_;
+
+ private:
+  std::optional<SourceFrame> read_next();
+
+  std::optional<std::int64_t> gone_to_;  ///< stamp of the current frame, not decoded yet
+  std::optional<SourceFrame> first_;     ///< read while opening
+};
+
+/// TUM's tolerance for pairing colour and depth stamps.
+inline constexpr std::int64_t kPairingToleranceNs = 20'000'000;
+
 /// Ground truth is given this far beyond the first and last frame, so that an evaluator can interpolate.
 inline constexpr std::int64_t kGroundtruthMarginNs = 500'000'000;
 

@@ -82,7 +82,7 @@ RecordingOptions recording_options(const SourceUri& uri) {
 std::unique_ptr<FrameSource> make_recording_source(const SourceUri& uri) {
   const RecordingOptions options = recording_options(uri);
   auto recording = uri.scheme == "bag" ? open_bag(uri.path) : open_mcap(uri.path);
-  return std::make_unique<RecordingSource>(uri.text, std::move(recording), options);
+  return open_recording(uri.text, std::move(recording), options);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <random>
 
-#include "services/camera/core/tum/tum_lists.hpp"
+#include "services/camera/core/tum/tum_source.hpp"
 
 namespace rtd::camera {
 namespace {

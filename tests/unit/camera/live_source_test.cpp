@@ -25,22 +25,22 @@ constexpr const char* kUri = "ros2:/c,/d,/i";
 class PlayedFeed : public LiveFeed {
  public:
   struct Script {
-    std::deque<LiveMessage> messages;
+    std::deque<RecordedMessage> messages;
     std::uint64_t dropped = 0;
     bool clears = false;  ///< as the real one; a test of one stream leaves it off
   };
   explicit PlayedFeed(Script& script) : script_(script) {}
 
-  std::optional<LiveMessage> next(std::chrono::milliseconds timeout) override {
+  std::optional<RecordedMessage> next(std::chrono::milliseconds timeout) override {
     if (script_.messages.empty()) {
       now_ns_ += std::chrono::nanoseconds(timeout).count();
       closed_ = closed_ || now_ns_ > 60'000'000'000;
       return std::nullopt;
     }
-    LiveMessage message = std::move(script_.messages.front());
+    RecordedMessage message = std::move(script_.messages.front());
     script_.messages.pop_front();
     now_ns_ += 1'000'000;
-    message.message.recorded_ns = now_ns_;
+    message.recorded_ns = now_ns_;
     return message;
   }
   void clear() override {
@@ -62,11 +62,11 @@ class LiveSourceTest : public ::testing::Test {
  protected:
   template <class Message>
   void add(const std::string& topic, const std::string& type, const Message& message) {
-    LiveMessage live;
+    RecordedMessage live;
     live.type = type;
-    live.message.topic = topic;
-    live.message.wire = ros::Wire::kCdr;
-    live.message.bytes = ros::encode<ros::Wire::kCdr>(message);
+    live.topic = topic;
+    live.wire = ros::Wire::kCdr;
+    live.bytes = ros::encode<ros::Wire::kCdr>(message);
     script_.messages.push_back(std::move(live));
   }
   void info(const msg::CameraInfo& info = ImageBag::camera_info()) { add("/i", "sensor_msgs/CameraInfo", info); }

@@ -47,6 +47,11 @@ std::int64_t parse_tolerance_ns(const std::string& text, const std::string& valu
   return static_cast<std::int64_t>(*ms * 1e6);
 }
 
+constexpr std::chrono::milliseconds kLook{100};          // between two looks at what is missing
+constexpr std::int64_t kQuietNs = 1'000'000'000;         // without a frame: worth a report
+constexpr std::int64_t kReportPeriodNs = 1'000'000'000;  // while it lasts
+constexpr std::uint64_t kSteppedImages = 30;             // in a row with a stamp before that of the last frame
+
 }  // namespace
 
 bool is_live(const std::string& uri) {
@@ -75,15 +80,6 @@ LiveOptions parse_live_options(const std::string& text) {
   return options;
 }
 
-namespace {
-
-constexpr std::chrono::milliseconds kLook{100};          // between two looks at what is missing
-constexpr std::int64_t kQuietNs = 1'000'000'000;         // without a frame: worth a report
-constexpr std::int64_t kReportPeriodNs = 1'000'000'000;  // while it lasts
-constexpr std::uint64_t kSteppedImages = 30;             // in a row with a stamp before that of the last frame
-
-}  // namespace
-
 LiveSource::LiveSource(std::string uri, std::unique_ptr<LiveFeed> feed, LiveOptions options)
     : options_(std::move(options)),
       feed_(std::move(feed)),
@@ -101,7 +97,7 @@ bool LiveSource::open() {
   const std::int64_t begin_ns = feed_->now_ns();
   last_pair_ns_ = begin_ns;
   while (!feed_->closed()) {
-    std::optional<LiveMessage> message = feed_->next(kLook);
+    std::optional<RecordedMessage> message = feed_->next(kLook);
     if (message && try_to_open(std::move(*message))) {
       report_frames();
       feed_->clear();
@@ -118,8 +114,8 @@ bool LiveSource::open() {
 }
 
 /// True when a whole frame could be made of what has come.
-bool LiveSource::try_to_open(LiveMessage message) {
-  if (message.message.topic == options_.topics.info) {
+bool LiveSource::try_to_open(RecordedMessage message) {
+  if (message.topic == options_.topics.info) {
     take_calibration(message);
   } else {
     take(std::move(message));
@@ -130,25 +126,25 @@ bool LiveSource::try_to_open(LiveMessage message) {
   return decode(*pair).has_value();
 }
 
-void LiveSource::take_calibration(const LiveMessage& message) {
+void LiveSource::take_calibration(const RecordedMessage& message) {
   if (calibrated_) return;
   try {
-    const auto info = ros::decode<msg::CameraInfo>(message.message.wire, message.message.bytes);
+    const auto info = ros::decode<msg::CameraInfo>(message.wire, message.bytes);
     info_.camera = to_camera_model(info, options_.topics.color, "topic " + options_.topics.info);
     check_frame_size(info.width, info.height, "topic " + options_.topics.info);
     calibrated_ = true;
   } catch (const ros::WireError& error) {
-    skips_.add({SkipReason::kDamagedRecord, name_of(message.message) + ": " + error.what()});
+    skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
   }
 }
 
 /// What would make every frame unusable is an error, not a skipped frame.
 void LiveSource::check_first(const FramePairer::Pair& pair) try {
   const RecordedMessage& depth = pair.depth.message;
-  const double unit_m = depth_unit_m(depth, depth_.type, kFloatDepthUnitM);
+  const double unit_m = depth_unit_m(depth, kFloatDepthUnitM);
   if (options_.calibration_file.empty()) info_.depth_scale_m = unit_m;
-  const ImageRead color_image = decode_color(pair.color.message, color_.type);
-  const ImageRead depth_image = decode_depth(depth, depth_.type, kFloatDepthUnitM);
+  const ImageRead color_image = decode_color(pair.color.message);
+  const ImageRead depth_image = decode_depth(depth, kFloatDepthUnitM);
   if (color_image.problem || depth_image.problem) return;
   const auto mismatch = size_mismatch(options_.topics.color, color_image.image, depth_image.image, info_.camera);
   if (!mismatch) return;
@@ -173,7 +169,7 @@ std::optional<SourceFrame> LiveSource::next() {
 std::optional<FramePairer::Pair> LiveSource::next_pair() {
   while (!feed_->closed()) {
     if (std::optional<FramePairer::Pair> pair = pairer_.next(skips_)) return pair;
-    std::optional<LiveMessage> message = feed_->next(kLook);
+    std::optional<RecordedMessage> message = feed_->next(kLook);
     if (message) take(std::move(*message));
     refuse_stepped_clock();
     count_dropped();
@@ -182,24 +178,24 @@ std::optional<FramePairer::Pair> LiveSource::next_pair() {
   return std::nullopt;
 }
 
-void LiveSource::take(LiveMessage message) {
-  const bool is_color = message.message.topic == options_.topics.color;
-  if (!is_color && message.message.topic != options_.topics.depth) return;
+void LiveSource::take(RecordedMessage message) {
+  const bool is_color = message.topic == options_.topics.color;
+  if (!is_color && message.topic != options_.topics.depth) return;
   try {
-    const msg::Header header = ros::decode<msg::Header>(message.message.wire, message.message.bytes);
-    StampedMessage stamped{msg::to_ns(header.stamp), std::move(message.message)};
+    const msg::Header header = ros::decode<msg::Header>(message.wire, message.bytes);
+    StampedMessage stamped{msg::to_ns(header.stamp), std::move(message)};
     Images& images = is_color ? color_ : depth_;
-    images.type = std::move(message.type);
+    images.any = true;
     images.stamp_ns = stamped.stamp_ns;
     images.arrived_ns = feed_->now_ns();
     is_color ? pairer_.add_color(std::move(stamped), skips_) : pairer_.add_depth(std::move(stamped));
   } catch (const ros::WireError& error) {
-    skips_.add({SkipReason::kDamagedRecord, name_of(message.message) + ": " + error.what()});
+    skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
   }
 }
 
 std::optional<SourceFrame> LiveSource::decode(const FramePairer::Pair& pair) {
-  return decode_pair(pair, {color_.type, depth_.type, kFloatDepthUnitM}, info_, skips_);
+  return decode_pair(pair, kFloatDepthUnitM, info_, skips_);
 }
 
 /// A restarted driver or simulation gives stamps of the past, and no frame would ever follow.
@@ -246,7 +242,7 @@ std::string LiveSource::missing() const {
 }
 
 bool LiveSource::silent(const Images& images) const {
-  return images.type.empty() || feed_->now_ns() - images.arrived_ns >= kQuietNs;
+  return !images.any || feed_->now_ns() - images.arrived_ns >= kQuietNs;
 }
 
 }  // namespace rtd::camera

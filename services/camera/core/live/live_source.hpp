@@ -12,7 +12,6 @@
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/recording/frame_pairer.hpp"
 #include "services/camera/core/recording/recording.hpp"
-#include "services/camera/core/tum/tum_lists.hpp"
 
 namespace rtd::camera {
 
@@ -21,18 +20,13 @@ struct LiveTopics {
   std::string color, depth, info;
 };
 
-/// A message of one of them, not yet decoded; message.topic is the ROS name, message.recorded_ns when it came.
-struct LiveMessage {
-  RecordedMessage message;
-  std::string type;  ///< plain_type()
-};
-
-/// Where the messages of a running camera come from. next() belongs to one thread, the rest is thread-safe.
+/// Where the messages of a running camera come from: topic is the ROS name, recorded_ns when it came. next() belongs to
+/// one thread, the rest is thread-safe.
 class LiveFeed {
  public:
   virtual ~LiveFeed() = default;
   /// The oldest that waits; empty when none came within the time or the feed is closed.
-  virtual std::optional<LiveMessage> next(std::chrono::milliseconds timeout) = 0;
+  virtual std::optional<RecordedMessage> next(std::chrono::milliseconds timeout) = 0;
   /// Drops the waiting messages: they are old by now.
   virtual void clear() = 0;
   /// Ends it and wakes next().
@@ -80,15 +74,14 @@ class LiveSource final : public FrameSource {
  private:
   /// What has come of one of the two images.
   struct Images {
-    std::string type;           ///< empty: nothing
-    std::int64_t stamp_ns = 0;  ///< newest
-    std::int64_t arrived_ns = 0;
+    bool any = false;
+    std::int64_t stamp_ns = 0, arrived_ns = 0;  ///< of the newest
   };
 
-  bool try_to_open(LiveMessage message);
-  void take_calibration(const LiveMessage& message);
+  bool try_to_open(RecordedMessage message);
+  void take_calibration(const RecordedMessage& message);
   void check_first(const FramePairer::Pair& pair);
-  void take(LiveMessage message);
+  void take(RecordedMessage message);
   std::optional<FramePairer::Pair> next_pair();
   std::optional<SourceFrame> decode(const FramePairer::Pair& pair);
   void refuse_stepped_clock();

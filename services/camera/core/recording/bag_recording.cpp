@@ -12,13 +12,10 @@ namespace {
 
 class BagRecording final : public Recording {
  public:
-  explicit BagRecording(const std::filesystem::path& file) : name_(file.string()), reader_(file) {
+  explicit BagRecording(const std::filesystem::path& file) : Recording(file.string()), reader_(file) {
     for (const rosbag1::Topic& topic : reader_.topics()) topics_.push_back({topic.name, topic.type, topic.messages});
     damages_ = reader_.damages();
   }
-
-  const std::string& name() const override { return name_; }
-  const std::vector<RecordedTopic>& topics() const override { return topics_; }
 
   std::optional<RecordedMessage> first(const std::string& topic) override {
     for (const rosbag1::MessagePlace& place : reader_.messages({topic})) {
@@ -52,16 +49,14 @@ class BagRecording final : public Recording {
  private:
   std::optional<RecordedMessage> read(const rosbag1::MessagePlace& place) try {
     const ros::Bytes bytes = reader_.read(place);
-    const std::string& topic = reader_.connections().at(place.connection).topic;
-    return RecordedMessage{topic, place.time_ns, ros::Wire::kRos1, {bytes.begin(), bytes.end()}};
+    const rosbag1::Connection& from = reader_.connections().at(place.connection);
+    return RecordedMessage{from.topic, place.time_ns, ros::Wire::kRos1, {bytes.begin(), bytes.end()}, from.type};
   } catch (const rosbag1::BagError& error) {
     damages_.emplace_back(error.what());
     return std::nullopt;
   }
 
-  std::string name_;
   rosbag1::BagReader reader_;
-  std::vector<RecordedTopic> topics_;
   std::vector<rosbag1::MessagePlace> playing_;
   std::size_t next_ = 0;
   std::vector<std::string> damages_;

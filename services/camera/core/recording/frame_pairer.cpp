@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/recording/frame_pairer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <sstream>
 
 #include "services/camera/core/recording/ros_images.hpp"
 
@@ -12,12 +13,6 @@ namespace {
 
 std::string place_of(const StampedMessage& color) {
   return color.message.topic + " at " + std::to_string(color.stamp_ns) + " ns";
-}
-
-std::string seconds_text(std::int64_t ns) {
-  std::ostringstream text;
-  text << static_cast<double>(ns) * 1e-9;
-  return text.str();
 }
 
 }  // namespace
@@ -68,8 +63,8 @@ std::optional<FramePairer::Pair> FramePairer::next(SkipLog& skips) {
     StampedMessage color = std::move(colors_.front());
     colors_.pop_front();
     if (!partner) {
-      skips.add({SkipReason::kNoDepthPartner,
-                 place_of(color) + " has no depth image within " + seconds_text(options_.tolerance_ns) + " s"});
+      skips.add({SkipReason::kNoDepthPartner, fmt::format("{} has no depth image within {:g} s", place_of(color),
+                                                          static_cast<double>(options_.tolerance_ns) * 1e-9)});
       continue;
     }
     const auto place = depths_.begin() + static_cast<std::ptrdiff_t>(*partner);
@@ -81,11 +76,11 @@ std::optional<FramePairer::Pair> FramePairer::next(SkipLog& skips) {
   return std::nullopt;
 }
 
-std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, const ImageTypes& types, const SourceInfo& info,
+std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, double float_unit_m, const SourceInfo& info,
                                        SkipLog& skips) {
-  ImageRead color = decode_color(pair.color.message, types.color);
+  ImageRead color = decode_color(pair.color.message);
   if (color.problem) return skips.add(*color.problem), std::nullopt;
-  ImageRead depth = decode_depth(pair.depth.message, types.depth, types.float_unit_m);
+  ImageRead depth = decode_depth(pair.depth.message, float_unit_m);
   if (depth.problem) return skips.add(*depth.problem), std::nullopt;
   const auto mismatch = size_mismatch(name_of(pair.color.message), color.image, depth.image, info.camera);
   if (mismatch) return skips.add(*mismatch), std::nullopt;

@@ -7,7 +7,6 @@
 
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/recording/recording.hpp"
-#include "services/camera/core/tum/tum_lists.hpp"
 
 namespace rtd::camera {
 
@@ -57,14 +56,9 @@ class FramePairer {
   bool finished_ = false;
 };
 
-/// What the images of two topics are.
-struct ImageTypes {
-  std::string color, depth;  ///< plain_type()
-  double float_unit_m = 0;   ///< metres of a unit that depth in floats is rounded to
-};
-
-/// The frame that a pair makes; empty, and counted, when it cannot be decoded or its sizes differ.
-std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, const ImageTypes& types, const SourceInfo& info,
+/// The frame that a pair makes, depth in floats rounded to float_unit_m; empty, and counted, when it cannot be decoded
+/// or its sizes differ.
+std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, double float_unit_m, const SourceInfo& info,
                                        SkipLog& skips);
 
 }  // namespace rtd::camera

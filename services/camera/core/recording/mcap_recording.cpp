@@ -25,7 +25,7 @@ std::optional<ros::Wire> wire_of(const mcap::Channel& channel) {
 
 class McapRecording final : public Recording {
  public:
-  explicit McapRecording(const fs::path& file) : name_(file.string()), source_(file), reader_(source_) {
+  explicit McapRecording(const fs::path& file) : Recording(file.string()), source_(file), reader_(source_) {
     const mcap::Summary& summary = reader_.summary();
     if (summary.channels.empty()) throw SourceError(name_ + " has no messages" + first_problem());
     const auto counts = message_counts();
@@ -36,9 +36,6 @@ class McapRecording final : public Recording {
                  channel.metadata});
     }
   }
-
-  const std::string& name() const override { return name_; }
-  const std::vector<RecordedTopic>& topics() const override { return topics_; }
 
   std::optional<RecordedMessage> first(const std::string& topic) override {
     mcap::MessageCursor cursor = messages({topic});
@@ -75,18 +72,19 @@ class McapRecording final : public Recording {
   }
 
  private:
-  static RecordedMessage to_message(const mcap::MessageCursor& cursor, const mcap::Message& message) {
+  RecordedMessage to_message(const mcap::MessageCursor& cursor, const mcap::Message& message) const {
     RecordedMessage recorded{
         cursor.channel().topic, static_cast<std::int64_t>(message.log_time), *wire_of(cursor.channel()), {}};
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(message.data.data());
     recorded.bytes.assign(bytes, bytes + message.data.size());
+    if (const RecordedTopic* topic = topic_named(*this, recorded.topic)) recorded.type = topic->type;
     return recorded;
   }
 
   mcap::MessageCursor messages(const std::vector<std::string>& topics) {
     mcap::MessageQuery query;
     query.wanted = [topics](const mcap::Channel& channel) {
-      return wire_of(channel) && std::find(topics.begin(), topics.end(), channel.topic) != topics.end();
+      return wire_of(channel) && std::ranges::find(topics, channel.topic) != topics.end();
     };
     return reader_.messages(std::move(query));
   }
@@ -100,8 +98,8 @@ class McapRecording final : public Recording {
   }
 
   void add_topic(RecordedTopic topic) {
-    const auto same = std::find_if(topics_.begin(), topics_.end(),
-                                   [&](const RecordedTopic& other) { return other.name == topic.name; });
+    const auto same =
+        std::ranges::find_if(topics_, [&](const RecordedTopic& other) { return other.name == topic.name; });
     if (same == topics_.end()) {
       topics_.push_back(std::move(topic));
     } else {
@@ -114,10 +112,8 @@ class McapRecording final : public Recording {
     return problems.empty() ? std::string() : ": " + mcap::to_string(problems.front());
   }
 
-  std::string name_;
   io::FileSource source_;
   mcap::IndexedReader reader_;
-  std::vector<RecordedTopic> topics_;
   std::optional<mcap::MessageCursor> playing_;
   std::size_t reported_ = 0;
 };

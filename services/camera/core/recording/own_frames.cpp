@@ -25,29 +25,27 @@ std::unique_ptr<msg::RgbdFrame> to_frame_message(const RecordedMessage& message)
 
 /// Frames that our own recorder took from the topic rtd/frame: colour, depth and calibration in one message, the same
 /// bytes as in memory.
-class OwnFrames final : public FrameAssembly {
+class OwnFrames final : public RecordingSource {
  public:
-  explicit OwnFrames(Recording& recording);
+  OwnFrames(std::string uri, std::unique_ptr<Recording> recording);
 
-  const SourceInfo& info() const override { return info_; }
-  std::optional<std::int64_t> advance(SkipLog& skips) override;
-  std::optional<SourceFrame> decode(SkipLog& skips) override;
   /// None: slam's estimate of the path is not ground truth.
   geometry::Trajectory groundtruth() const override { return {}; }
 
  private:
-  bool take(const RecordedMessage& message, SkipLog& skips);
+  std::optional<std::int64_t> advance() override;
+  std::optional<SourceFrame> decode() override;
+  bool take(const RecordedMessage& message);
 
-  Recording& recording_;
-  SourceInfo info_;
   std::unique_ptr<msg::RgbdFrame> frame_;  ///< gone to
   std::uint64_t source_id_ = 0;
   std::optional<std::int64_t> last_ns_;
 };
 
-OwnFrames::OwnFrames(Recording& recording) : recording_(recording) {
-  const std::string topic = own_frames_topic(recording);
-  const RecordedMessage first = first_of(recording, topic);
+OwnFrames::OwnFrames(std::string uri, std::unique_ptr<Recording> recording)
+    : RecordingSource(std::move(uri), std::move(recording)) {
+  const std::string topic = own_frames_topic(*recording_);
+  const RecordedMessage first = first_of(*recording_, topic);
   try {
     const auto frame = to_frame_message(first);
     const vision::RgbdImage image = vision::view_image(*frame);
@@ -55,23 +53,25 @@ OwnFrames::OwnFrames(Recording& recording) : recording_(recording) {
     info_.depth_scale_m = image.depth_scale_m;
     source_id_ = frame->source_id;
   } catch (const ros::WireError& error) {
-    throw SourceError(recording.name() + ": the first frame of " + topic + " is damaged: " + error.what());
+    throw SourceError(recording_->name() + ": the first frame of " + topic + " is damaged: " + error.what());
   }
-  describe_rate(recording, topic, info_);
-  recording.play({topic});
+  describe_rate(topic);
+  recording_->play({topic});
+  read_first(recording_->name());
 }
 
-std::optional<std::int64_t> OwnFrames::advance(SkipLog& skips) {
-  while (const std::optional<RecordedMessage> message = recording_.next()) {
-    if (take(*message, skips)) return last_ns_ = frame_->stamp_ns;
+std::optional<std::int64_t> OwnFrames::advance() {
+  while (const std::optional<RecordedMessage> message = recording_->next()) {
+    if (take(*message)) return last_ns_ = frame_->stamp_ns;
   }
+  take_damages();
   return std::nullopt;
 }
 
-bool OwnFrames::take(const RecordedMessage& message, SkipLog& skips) try {
+bool OwnFrames::take(const RecordedMessage& message) try {
   frame_ = to_frame_message(message);
   const auto leave_out = [&](SkipReason reason, const char* cause) {
-    skips.add({reason, name_of(message) + " " + cause});
+    skips_.add({reason, name_of(message) + " " + cause});
     return false;
   };
   if (frame_->source_id != source_id_) return leave_out(SkipReason::kDamagedRecord, "comes from another camera");
@@ -79,14 +79,15 @@ bool OwnFrames::take(const RecordedMessage& message, SkipLog& skips) try {
   if (last_ns_ && frame_->stamp_ns < *last_ns_) return leave_out(SkipReason::kStampBackwards, "is older than the last");
   return true;
 } catch (const ros::WireError& error) {
-  skips.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
+  skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
   return false;
 }
 
-std::optional<SourceFrame> OwnFrames::decode(SkipLog& skips) {
+std::optional<SourceFrame> OwnFrames::decode() {
+  take_damages();
   const vision::RgbdImage image = vision::view_image(*frame_);
   if (const auto mismatch = size_mismatch("frame", image.color_bgr, image.depth, info_.camera)) {
-    return skips.add(*mismatch), std::nullopt;
+    return skips_.add(*mismatch), std::nullopt;
   }
   return to_frame(image.stamp_ns, image.color_bgr.clone(), image.depth.clone(), info_);
 }
@@ -100,8 +101,8 @@ std::string own_frames_topic(const Recording& recording) {
   return {};
 }
 
-std::unique_ptr<FrameAssembly> make_own_frames(Recording& recording) {
-  return std::make_unique<OwnFrames>(recording);
+std::unique_ptr<FrameSource> make_own_frames(std::string uri, std::unique_ptr<Recording> recording) {
+  return std::make_unique<OwnFrames>(std::move(uri), std::move(recording));
 }
 
 }  // namespace rtd::camera

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/ros_codec/wire.hpp"
@@ -30,6 +31,7 @@ struct RecordedMessage {
   std::int64_t recorded_ns = 0;
   ros::Wire wire = ros::Wire::kRos1;
   std::vector<std::uint8_t> bytes;
+  std::string type = {};  ///< plain_type()
 };
 
 /// A file with messages of many topics, whatever its format. Throws SourceError when the file cannot be used; damaged
@@ -37,8 +39,8 @@ struct RecordedMessage {
 class Recording {
  public:
   virtual ~Recording() = default;
-  virtual const std::string& name() const = 0;
-  virtual const std::vector<RecordedTopic>& topics() const = 0;
+  const std::string& name() const { return name_; }
+  const std::vector<RecordedTopic>& topics() const { return topics_; }
   /// Empty when the topic has no message that can be read.
   virtual std::optional<RecordedMessage> first(const std::string& topic) = 0;
   /// When its first messages were recorded, at most so many.
@@ -48,6 +50,12 @@ class Recording {
   virtual std::optional<RecordedMessage> next() = 0;
   /// What was found damaged since the last call, one line each.
   virtual std::vector<std::string> take_damages() = 0;
+
+ protected:
+  explicit Recording(std::string name) : name_(std::move(name)) {}
+
+  const std::string name_;
+  std::vector<RecordedTopic> topics_;
 };
 
 /// Opens a ROS 1 bag. Throws SourceError.
@@ -59,5 +67,28 @@ std::unique_ptr<Recording> open_mcap(const std::filesystem::path& file);
 
 /// The first message of a topic. Throws SourceError when there is none that can be read.
 RecordedMessage first_of(Recording& recording, const std::string& topic);
+
+/// The topics that make RGB-D frames. As options: what the user named, else empty.
+struct ImageTopics {
+  std::string color, depth, info;
+};
+
+/// Completes what the user named: by the names that TUM, the OpenNI and RealSense drivers and we ourselves give, else
+/// the only topic of a fitting type; the calibration is the one beside the colour image. `info` stays empty when there
+/// is none. Throws SourceError for a topic that is absent, of another type or ambiguous, listing the
+/// topics there are.
+ImageTopics choose_topics(const Recording& recording, const ImageTopics& named);
+
+/// Whether the name is one that drivers give to depth registered to colour only.
+bool named_as_registered(const std::string& depth_topic);
+
+/// Null when there is none of this name.
+const RecordedTopic* topic_named(const Recording& recording, const std::string& name);
+
+/// The topics of type tf.
+std::vector<std::string> transform_topics(const Recording& recording);
+
+/// "  /camera/rgb/image_color (sensor_msgs/Image, 798 messages)", a line each: for messages.
+std::string list_topics(const Recording& recording);
 
 }  // namespace rtd::camera

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include "common/ros_codec/byte_cursor.hpp"
 #include "common/ros_codec/wire.hpp"
@@ -28,8 +29,7 @@ cv::Mat from_inverse(const cv::Mat& pixels, float a, float b) {
   return depth_m;
 }
 
-}  // namespace
-
+/// CV_32FC1 metres -> CV_16UC1 in units of unit_m; NaN, infinity, negative and what does not fit become 0.
 cv::Mat quantize_depth(const cv::Mat& depth_m, double unit_m) {
   cv::Mat depth(depth_m.size(), CV_16UC1);
   for (int row = 0; row < depth.rows; ++row) {
@@ -43,10 +43,8 @@ cv::Mat quantize_depth(const cv::Mat& depth_m, double unit_m) {
   return depth;
 }
 
-bool is_compressed_depth(const msg::CompressedImage& image) {
-  return image.format.find("compressedDepth") != std::string::npos;
-}
-
+/// From ROS's compressed_depth_image_transport: 12 bytes (a format, quantisation parameters a and b), then a 16-bit
+/// PNG; of floats the PNG holds a / depth + b (inverse depth). Throws SourceError for its other compression, RVL.
 ImageRead decode_compressed_depth(const msg::CompressedImage& image, const std::string& name, double float_unit_m) {
   if (image.format.find("rvl") != std::string::npos || image.format.find("RVL") != std::string::npos) {
     throw SourceError(name + " is encoded as '" + image.format + "', readable: compressedDepth with PNG");
@@ -55,13 +53,11 @@ ImageRead decode_compressed_depth(const msg::CompressedImage& image, const std::
   cursor.read<std::int32_t>();  // the driver's own code of the format; the text says more
   const auto a = cursor.read<float>(), b = cursor.read<float>();
   ImageRead result = decode_depth(cursor.take(cursor.remaining()), name);
-  if (!result.problem && image.format.rfind("32FC1", 0) == 0) {
+  if (!result.problem && image.format.starts_with("32FC1")) {
     result.image = quantize_depth(from_inverse(result.image, a, b), float_unit_m);
   }
   return result;
 }
-
-namespace {
 
 /// How an encoding arranges its bytes.
 struct PixelLayout {
@@ -130,8 +126,22 @@ ImageRead raw_depth(const RecordedMessage& message, double float_unit_m) {
 
 ImageRead compressed_depth(const RecordedMessage& message, double float_unit_m) {
   const auto image = ros::decode<msg::CompressedImage>(message.wire, message.bytes);
-  if (!is_compressed_depth(image)) return decode_depth(image.data, name_of(message));
+  if (image.format.find("compressedDepth") == std::string::npos) return decode_depth(image.data, name_of(message));
   return decode_compressed_depth(image, name_of(message), float_unit_m);
+}
+
+constexpr const char* kFix = "; give a calibration of your own: ?calibration=FILE";
+
+void take_distortion(const msg::CameraInfo& info, const std::string& origin, std::array<double, 5>& distortion) {
+  const auto is_zero = [](double value) { return value == 0; };
+  if (std::ranges::all_of(info.d, is_zero)) return;
+  const std::size_t known = std::min<std::size_t>(5, info.d.size());
+  const bool tail_zero = std::ranges::all_of(std::span(info.d).subspan(known), is_zero);
+  if (info.distortion_model == "equidistant" || info.distortion_model == "fisheye" || !tail_zero) {
+    throw SourceError(origin + ": distortion model '" + info.distortion_model + "' with " +
+                      std::to_string(info.d.size()) + " values; known: plumb_bob with k1 k2 p1 p2 k3" + kFix);
+  }
+  std::copy_n(info.d.begin(), known, distortion.begin());
 }
 
 }  // namespace
@@ -140,48 +150,26 @@ std::string name_of(const RecordedMessage& message) {
   return message.topic + " recorded at " + std::to_string(message.recorded_ns) + " ns";
 }
 
-ImageRead decode_color(const RecordedMessage& message, const std::string& type) try {
-  if (type != kCompressed) return raw_color(message);
+ImageRead decode_color(const RecordedMessage& message) try {
+  if (message.type != kCompressed) return raw_color(message);
   const auto image = ros::decode<msg::CompressedImage>(message.wire, message.bytes);
   return decode_color(image.data, name_of(message));
 } catch (const ros::WireError& error) {
   return refuse(SkipReason::kColorUnreadable, message, error.what());
 }
 
-ImageRead decode_depth(const RecordedMessage& message, const std::string& type, double float_unit_m) try {
-  return type == kCompressed ? compressed_depth(message, float_unit_m) : raw_depth(message, float_unit_m);
+ImageRead decode_depth(const RecordedMessage& message, double float_unit_m) try {
+  return message.type == kCompressed ? compressed_depth(message, float_unit_m) : raw_depth(message, float_unit_m);
 } catch (const ros::WireError& error) {
   return refuse(SkipReason::kDepthUnreadable, message, error.what());
 }
 
-double depth_unit_m(const RecordedMessage& message, const std::string& type, double float_unit_m) {
-  bool floats = false;
-  if (type == kCompressed) {
-    floats = ros::decode<msg::CompressedImage>(message.wire, message.bytes).format.starts_with("32FC1");
-  } else {
-    floats = depth_type(message, ros::decode<msg::Image>(message.wire, message.bytes)) == CV_32FC1;
-  }
+double depth_unit_m(const RecordedMessage& message, double float_unit_m) {
+  const bool floats = message.type == kCompressed
+                          ? ros::decode<msg::CompressedImage>(message.wire, message.bytes).format.starts_with("32FC1")
+                          : depth_type(message, ros::decode<msg::Image>(message.wire, message.bytes)) == CV_32FC1;
   return floats ? float_unit_m : kMillimetre;
 }
-
-namespace {
-
-constexpr const char* kFix = "; give a calibration of your own: ?calibration=FILE";
-
-void take_distortion(const msg::CameraInfo& info, const std::string& origin, std::array<double, 5>& distortion) {
-  const bool none = std::all_of(info.d.begin(), info.d.end(), [](double value) { return value == 0; });
-  if (none) return;
-  const bool tail_zero =
-      std::all_of(info.d.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, info.d.size())), info.d.end(),
-                  [](double value) { return value == 0; });
-  if (info.distortion_model == "equidistant" || info.distortion_model == "fisheye" || !tail_zero) {
-    throw SourceError(origin + ": distortion model '" + info.distortion_model + "' with " +
-                      std::to_string(info.d.size()) + " values; known: plumb_bob with k1 k2 p1 p2 k3" + kFix);
-  }
-  std::copy_n(info.d.begin(), std::min<std::size_t>(5, info.d.size()), distortion.begin());
-}
-
-}  // namespace
 
 msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns) {
   const auto& p = camera.parameters();

@@ -18,30 +18,20 @@ inline constexpr double kFloatDepthUnitM = 1.0 / 5000.0;
 /// Metadata of the depth topic's channel in an MCAP file that we wrote: the units of a metre in the source's images.
 inline constexpr const char* kDepthFactor = "depth_factor";
 
-/// CV_32FC1 metres -> CV_16UC1 in units of unit_m; NaN, infinity, negative and what does not fit become 0.
-cv::Mat quantize_depth(const cv::Mat& depth_m, double unit_m);
-
-/// Whether a compressed image comes from ROS's compressed_depth_image_transport.
-bool is_compressed_depth(const msg::CompressedImage& image);
-
-/// Its content: 12 bytes (a format, quantisation parameters a and b), then a 16-bit PNG; of floats the PNG holds
-/// a / depth + b (inverse depth). Throws SourceError for its other compression, RVL.
-ImageRead decode_compressed_depth(const msg::CompressedImage& image, const std::string& name, double float_unit_m);
-
 /// "/camera/rgb/image_color recorded at 1305031102175304000 ns": for messages.
 std::string name_of(const RecordedMessage& message);
 
 /// sensor_msgs/Image (rgb8, bgr8, rgba8, bgra8, mono8) or CompressedImage (JPEG, PNG) as CV_8UC3 BGR. Throws
 /// SourceError for an encoding that cannot be read, naming it and those that can: it is the topic's, not the frame's.
-ImageRead decode_color(const RecordedMessage& message, const std::string& type);
+ImageRead decode_color(const RecordedMessage& message);
 
 /// sensor_msgs/Image (16UC1, mono16, 32FC1) or CompressedImage (16-bit PNG, compressedDepth) as CV_16UC1, 0 = no
 /// measurement: NaN, infinity, saturation, nothing in front of the camera. Floats become units of float_unit_m; what
 /// does not fit is no measurement. Throws SourceError as above.
-ImageRead decode_depth(const RecordedMessage& message, const std::string& type, double float_unit_m);
+ImageRead decode_depth(const RecordedMessage& message, double float_unit_m);
 
 /// Metres of a unit of what decode_depth() makes of such a message. Throws SourceError and ros::WireError.
-double depth_unit_m(const RecordedMessage& message, const std::string& type, double float_unit_m);
+double depth_unit_m(const RecordedMessage& message, double float_unit_m);
 
 inline constexpr const char* kCameraFrame = "camera_color_optical_frame";  ///< docs/frames.md
 

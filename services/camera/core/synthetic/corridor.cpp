@@ -69,8 +69,7 @@ class SideBuilder {
     const TextureStyle style = dull_style(random_, patches_per_m2);
     const std::uint64_t seed = random_.next();
     if (next_painted_ == painted_.size()) {
-      textures_.push_back(paint_texture(width_m, height_m, texels_per_m, style, seed));
-      painted_.push_back(static_cast<int>(textures_.size()) - 1);
+      painted_.push_back(add_texture(textures_, width_m, height_m, texels_per_m, style, seed));
     }
     return painted_[next_painted_++];
   }

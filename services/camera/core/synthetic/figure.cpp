@@ -11,7 +11,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kFigureTexelsPerM = 256;
 constexpr float kLegSwingRad = 0.42F, kArmSwingRad = 0.5F;
 constexpr float kHipHeightM = 0.86F, kKneeHeightM = 0.43F, kThighM = 0.43F;
 constexpr float kSeatedThighRad = 1.45F;  ///< thighs of one who sits, from the vertical
@@ -51,12 +50,6 @@ struct Figure::Placing {
   }
 };
 
-int add_mover_texture(std::vector<Texture>& textures, float width_m, float height_m, const TextureStyle& style,
-                      std::uint64_t seed) {
-  textures.push_back(paint_texture(width_m, height_m, kFigureTexelsPerM, style, seed));
-  return static_cast<int>(textures.size()) - 1;
-}
-
 ColorBgr vivid_color(SeededRandom& random) {
   return {random.between(30, 200), random.between(30, 200), random.between(30, 200)};
 }
@@ -68,15 +61,14 @@ Figure::Figure(std::uint64_t seed, std::vector<Texture>& textures, float breadth
   const TextureStyle skin{{120, 150, 205}, 5, 25, 0.02F, 0.05F, 0.15F};
   const TextureStyle shirt{vivid_color(random), 9, 45, 0.04F, 0.25F, 0.75F};
   const TextureStyle trousers{vivid_color(random), 9, 30, 0.03F, 0.12F, 0.35F};
-  skin_texture_ = add_mover_texture(textures, 0.25F, 0.3F, skin, random.next());
-  shirt_texture_ = add_mover_texture(textures, 0.6F * breadth, 0.75F, shirt, random.next());
-  trousers_texture_ = add_mover_texture(textures, 0.25F * breadth, 0.9F, trousers, random.next());
+  skin_texture_ = add_texture(textures, 0.25F, 0.3F, kFigureTexelsPerM, skin, random.next());
+  shirt_texture_ = add_texture(textures, 0.6F * breadth, 0.75F, kFigureTexelsPerM, shirt, random.next());
+  trousers_texture_ = add_texture(textures, 0.25F * breadth, 0.9F, kFigureTexelsPerM, trousers, random.next());
 }
 
 void Figure::append_to(Geometry& geometry, const Posture& posture) const {
-  Eigen::Isometry3f T_world_person = Eigen::Isometry3f::Identity();
-  T_world_person.translation() = Vector3f(posture.position_m.x(), posture.position_m.y(), posture.raised_m);
-  T_world_person.linear() = Eigen::AngleAxisf(posture.heading_rad, Vector3f::UnitZ()).toRotationMatrix();
+  const Eigen::Isometry3f T_world_person =
+      upright({posture.position_m.x(), posture.position_m.y(), posture.raised_m}, posture.heading_rad);
   const float thigh_rad = kSeatedThighRad * posture.seated;
   const Vector3f hip_shift_m(-kThighM * std::sin(thigh_rad), 0, kThighM * (std::cos(thigh_rad) - 1));
   Placing placing{geometry,           T_world_person,    height_scale_,

@@ -10,6 +10,7 @@
 namespace rtd::camera::synthetic {
 
 inline constexpr float kSeatHeightM = 0.45F;
+inline constexpr float kFigureTexelsPerM = 256;  ///< of all movers
 
 /// How a figure stands or sits at one moment.
 struct Posture {
@@ -42,9 +43,6 @@ class Figure {
   int skin_texture_, shirt_texture_, trousers_texture_;
 };
 
-/// A texture of `style` for a mover; its index.
-int add_mover_texture(std::vector<Texture>& textures, float width_m, float height_m, const TextureStyle& style,
-                      std::uint64_t seed);
 /// A colour that is neither black nor white.
 ColorBgr vivid_color(SeededRandom& random);
 

@@ -9,6 +9,13 @@ int Geometry::add_object(std::string class_name) {
   return static_cast<int>(object_classes.size()) - 1;
 }
 
+Eigen::Isometry3f upright(const Eigen::Vector3f& position_m, float turned_rad) {
+  Eigen::Isometry3f T_world_body = Eigen::Isometry3f::Identity();
+  T_world_body.translation() = position_m;
+  T_world_body.linear() = Eigen::AngleAxisf(turned_rad, Eigen::Vector3f::UnitZ()).toRotationMatrix();
+  return T_world_body;
+}
+
 std::array<Face, 6> outer_faces(const Cuboid& cuboid) {
   using Eigen::Vector3f;
   const Vector3f center(0, 0, cuboid.size_m.z() / 2);

@@ -50,6 +50,9 @@ struct Cuboid {
   int object = kRoomItself;
 };
 
+/// T_world_body of something that stands at `position_m`, turned about the vertical.
+Eigen::Isometry3f upright(const Eigen::Vector3f& position_m, float turned_rad);
+
 /// The six outer sides of a cuboid.
 std::array<Face, 6> outer_faces(const Cuboid& cuboid);
 

@@ -13,74 +13,6 @@ using Eigen::Vector3f;
 constexpr float kWalkingSpeedMS = 1.2F, kCarryingSpeedMS = 0.9F;
 constexpr float kSmallestPaintM = 0.56F;
 
-}  // namespace
-
-FloorPath::FloorPath(std::uint64_t seed, const WalkArea& area, float speed_m_s) : area_(area) {
-  SeededRandom random(seed);
-  rate_x_ = speed_m_s / area.reach_x_m * random.between(0.8F, 1.1F);
-  rate_y_ = rate_x_ * random.between(1.2F, 1.5F);
-  phase_x_ = kTwoPiF * random.unit();
-  phase_y_ = kTwoPiF * random.unit();
-}
-
-Eigen::Vector2f FloorPath::position_m(double t_s) const {
-  const auto t = static_cast<double>(t_s);
-  return {area_.reach_x_m * static_cast<float>(std::sin(rate_x_ * t + phase_x_)),
-          area_.center_y_m + area_.reach_y_m * static_cast<float>(std::sin(rate_y_ * t + phase_y_))};
-}
-
-float FloorPath::heading_rad(double t_s) const {
-  return static_cast<float>(std::atan2(area_.reach_y_m * rate_y_ * std::cos(rate_y_ * t_s + phase_y_),
-                                       area_.reach_x_m * rate_x_ * std::cos(rate_x_ * t_s + phase_x_)));
-}
-
-Walker::Walker(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures)
-    : path_(seed, area, kWalkingSpeedMS), figure_(seed, textures) {}
-
-void Walker::append_to(Geometry& geometry, double t_s) const {
-  Posture posture;
-  posture.position_m = path_.position_m(t_s);
-  posture.heading_rad = path_.heading_rad(t_s);
-  posture.swing = static_cast<float>(std::sin(figure_.step_rate_rad_s() * t_s));
-  figure_.append_to(geometry, posture);
-}
-
-int paint_box(SeededRandom& random, const Vector3f& size_m, std::vector<Texture>& textures) {
-  const TextureStyle style{vivid_color(random), 10, 50, 0.05F, 0.3F, 0.9F};
-  const float side_m = std::max(kSmallestPaintM, size_m.maxCoeff());
-  return add_mover_texture(textures, side_m, side_m, style, random.next());
-}
-
-void MovingBox::append_to(Geometry& geometry, const Vector3f& position_m, float turned_rad) const {
-  Cuboid cuboid;
-  cuboid.T_world_cuboid.translation() = position_m;
-  cuboid.T_world_cuboid.linear() = Eigen::AngleAxisf(turned_rad, Vector3f::UnitZ()).toRotationMatrix();
-  cuboid.size_m = size_m;
-  cuboid.texture = texture;
-  cuboid.moving = true;
-  cuboid.object = geometry.add_object("box");
-  for (const Face& face : outer_faces(cuboid)) geometry.faces.push_back(face);
-}
-
-CarriedBox::CarriedBox(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures)
-    : path_(seed, area, kCarryingSpeedMS) {
-  SeededRandom random(seed ^ 0xB0BULL);
-  box_.size_m = Vector3f(random.between(0.3F, 0.55F), random.between(0.3F, 0.55F), random.between(0.3F, 0.5F));
-  height_m_ = random.between(0.75F, 1.15F);
-  turn_rate_rad_s_ = random.between(-0.7F, 0.7F);
-  phase_rad_ = kTwoPiF * random.unit();
-  box_.texture = paint_box(random, box_.size_m, textures);
-}
-
-void CarriedBox::append_to(Geometry& geometry, double t_s) const {
-  const Eigen::Vector2f position_m = path_.position_m(t_s);
-  const float bob_m = 0.12F * static_cast<float>(std::sin(2.1 * t_s + phase_rad_));
-  box_.append_to(geometry, {position_m.x(), position_m.y(), height_m_ + bob_m},
-                 static_cast<float>(turn_rate_rad_s_ * t_s) + phase_rad_);
-}
-
-namespace {
-
 using Eigen::Vector2f;
 
 constexpr double kFidgetRateRadS = 2.4;
@@ -116,6 +48,63 @@ float mean_gaze_x_m(const CameraPath& camera, float y_m, double clip_s) {
 
 }  // namespace
 
+FloorPath::FloorPath(std::uint64_t seed, const WalkArea& area, float speed_m_s) : area_(area) {
+  SeededRandom random(seed);
+  rate_x_ = speed_m_s / area.reach_x_m * random.between(0.8F, 1.1F);
+  rate_y_ = rate_x_ * random.between(1.2F, 1.5F);
+  phase_x_ = kTwoPiF * random.unit();
+  phase_y_ = kTwoPiF * random.unit();
+}
+
+Eigen::Vector2f FloorPath::position_m(double t_s) const {
+  return {area_.reach_x_m * static_cast<float>(std::sin(rate_x_ * t_s + phase_x_)),
+          area_.center_y_m + area_.reach_y_m * static_cast<float>(std::sin(rate_y_ * t_s + phase_y_))};
+}
+
+float FloorPath::heading_rad(double t_s) const {
+  return static_cast<float>(std::atan2(area_.reach_y_m * rate_y_ * std::cos(rate_y_ * t_s + phase_y_),
+                                       area_.reach_x_m * rate_x_ * std::cos(rate_x_ * t_s + phase_x_)));
+}
+
+Walker::Walker(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures)
+    : path_(seed, area, kWalkingSpeedMS), figure_(seed, textures) {}
+
+void Walker::append_to(Geometry& geometry, double t_s) const {
+  Posture posture;
+  posture.position_m = path_.position_m(t_s);
+  posture.heading_rad = path_.heading_rad(t_s);
+  posture.swing = static_cast<float>(std::sin(figure_.step_rate_rad_s() * t_s));
+  figure_.append_to(geometry, posture);
+}
+
+int paint_box(SeededRandom& random, const Vector3f& size_m, std::vector<Texture>& textures) {
+  const TextureStyle style{vivid_color(random), 10, 50, 0.05F, 0.3F, 0.9F};
+  const float side_m = std::max(kSmallestPaintM, size_m.maxCoeff());
+  return add_texture(textures, side_m, side_m, kFigureTexelsPerM, style, random.next());
+}
+
+void MovingBox::append_to(Geometry& geometry, const Vector3f& position_m, float turned_rad) const {
+  const Cuboid cuboid{upright(position_m, turned_rad), size_m, texture, true, geometry.add_object("box")};
+  for (const Face& face : outer_faces(cuboid)) geometry.faces.push_back(face);
+}
+
+CarriedBox::CarriedBox(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures)
+    : path_(seed, area, kCarryingSpeedMS) {
+  SeededRandom random(seed ^ 0xB0BULL);
+  box_.size_m = Vector3f(random.between(0.3F, 0.55F), random.between(0.3F, 0.55F), random.between(0.3F, 0.5F));
+  height_m_ = random.between(0.75F, 1.15F);
+  turn_rate_rad_s_ = random.between(-0.7F, 0.7F);
+  phase_rad_ = kTwoPiF * random.unit();
+  box_.texture = paint_box(random, box_.size_m, textures);
+}
+
+void CarriedBox::append_to(Geometry& geometry, double t_s) const {
+  const Eigen::Vector2f position_m = path_.position_m(t_s);
+  const float bob_m = 0.12F * static_cast<float>(std::sin(2.1 * t_s + phase_rad_));
+  box_.append_to(geometry, {position_m.x(), position_m.y(), height_m_ + bob_m},
+                 static_cast<float>(turn_rate_rad_s_ * t_s) + phase_rad_);
+}
+
 Sitter::Sitter(std::uint64_t seed, const CameraPath& camera, const Habits& habits, std::vector<Texture>& textures)
     : figure_(seed, textures), habits_(habits) {
   SeededRandom random(seed ^ 0x517ULL);
@@ -127,7 +116,7 @@ Sitter::Sitter(std::uint64_t seed, const CameraPath& camera, const Habits& habit
   reach_x_m_ = random.between(0.5F, 0.8F) * (random.unit() < 0.5F ? -1.0F : 1.0F);
   reach_y_m_ = random.between(0.1F, 0.2F);
   const TextureStyle wood{vivid_color(random), 9, 30, 0.04F, 0.2F, 0.6F};
-  chair_texture_ = add_mover_texture(textures, 0.6F, 0.6F, wood, random.next());
+  chair_texture_ = add_texture(textures, 0.6F, 0.6F, kFigureTexelsPerM, wood, random.next());
 }
 
 /// The walk follows an ellipse that begins and ends at rest.
@@ -154,13 +143,8 @@ void Sitter::append_chair(Geometry& geometry) const {
   const Vector2f back = -Vector2f(std::cos(heading_rad_), std::sin(heading_rad_));
   const int object = geometry.add_object("chair");
   const auto add = [&](float behind_feet_m, float height_m, const Vector3f& size_m) {
-    Cuboid part;
     const Vector2f at = feet_m_ + behind_feet_m * back;
-    part.T_world_cuboid.translation() = Vector3f(at.x(), at.y(), height_m);
-    part.T_world_cuboid.linear() = Eigen::AngleAxisf(heading_rad_, Vector3f::UnitZ()).toRotationMatrix();
-    part.size_m = size_m;
-    part.texture = chair_texture_;
-    part.object = object;
+    const Cuboid part{upright({at.x(), at.y(), height_m}, heading_rad_), size_m, chair_texture_, false, object};
     for (const Face& face : outer_faces(part)) geometry.faces.push_back(face);
   };
   add(0.42F, kSeatHeightM - 0.15F, {0.46F, 0.48F, 0.06F});  // seat, below hips of 0.17 m

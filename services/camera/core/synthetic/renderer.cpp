@@ -56,8 +56,7 @@ Rendering Renderer::render(const Geometry& geometry, const std::vector<Texture>&
   objects_.assign(geometry.object_classes.size(), {});
   shade();
   std::vector<ObjectView> seen;
-  std::copy_if(objects_.begin(), objects_.end(), std::back_inserter(seen),
-               [](const ObjectView& o) { return o.visible_px > 0; });
+  std::ranges::copy_if(objects_, std::back_inserter(seen), [](const ObjectView& o) { return o.visible_px > 0; });
   return {color_bgr_, inverse_depth_, moving_mask_, std::move(seen)};
 }
 
@@ -116,7 +115,6 @@ void Renderer::collect_ellipsoid(const Ellipsoid& ellipsoid, const std::vector<T
   visible.ray0 = to_sphere * ray0_, visible.ray_u = to_sphere * ray_u_, visible.ray_v = to_sphere * ray_v_;
   visible.normal_to_world = to_sphere.transpose();
   visible.bounds = bounds;
-  visible.radius_m = ellipsoid.semi_axes_m.maxCoeff();
   visible.texture = &textures[static_cast<std::size_t>(ellipsoid.texture)];
   visible.moving = ellipsoid.moving;
   visible.object = ellipsoid.object;

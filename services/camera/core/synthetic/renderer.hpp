@@ -58,7 +58,6 @@ class Renderer {
     Eigen::Vector3f center, ray0, ray_u, ray_v;
     Eigen::Matrix3f normal_to_world;
     cv::Rect bounds;  ///< px
-    float radius_m = 0;
     const Texture* texture = nullptr;
     bool moving = false;
     int object = kRoomItself;

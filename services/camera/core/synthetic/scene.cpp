@@ -55,12 +55,6 @@ TextureStyle random_style(SeededRandom& random, float patches_per_m2) {
   return {{b, g, channel()}, random.between(5, 9), patches_per_m2, 0.04F, 0.45F, random.between(0.5F, 0.95F)};
 }
 
-int add_texture(std::vector<Texture>& textures, float width_m, float height_m, float texels_per_m,
-                const TextureStyle& style, std::uint64_t seed) {
-  textures.push_back(paint_texture(width_m, height_m, texels_per_m, style, seed));
-  return static_cast<int>(textures.size()) - 1;
-}
-
 /// Walls, floor and ceiling, seen from inside.
 std::vector<Face> shell(SeededRandom& random, std::vector<Texture>& textures) {
   constexpr float kX = kRoomWidthM / 2, kY = kRoomDepthM / 2;
@@ -80,16 +74,13 @@ std::vector<Face> shell(SeededRandom& random, std::vector<Texture>& textures) {
   return faces;
 }
 
-}  // namespace
-
+/// The furnished room: walls, floor, ceiling, shelves and cabinets along the walls, a low table with objects on it
+/// behind the movers, boxes. CameraRoom stays empty. Adds its textures to `textures`.
 std::vector<Face> build_room(std::uint64_t seed, std::vector<Texture>& textures) {
   SeededRandom random(seed ^ 0x5CE4EULL);
   std::vector<Face> faces = shell(random, textures);
   for (const Furniture& piece : furniture()) {
-    Cuboid cuboid;
-    cuboid.T_world_cuboid.translation() = piece.position_m;
-    cuboid.T_world_cuboid.linear() = Eigen::AngleAxisf(piece.turned_rad, Vector3f::UnitZ()).toRotationMatrix();
-    cuboid.size_m = piece.size_m;
+    Cuboid cuboid{.T_world_cuboid = upright(piece.position_m, piece.turned_rad), .size_m = piece.size_m};
     const float width_m = std::max(piece.size_m.x(), piece.size_m.y());
     cuboid.texture = add_texture(textures, width_m, std::max(piece.size_m.z(), width_m), kFurnitureTexelsPerM,
                                  random_style(random, 12.0F), random.next());
@@ -97,8 +88,6 @@ std::vector<Face> build_room(std::uint64_t seed, std::vector<Texture>& textures)
   }
   return faces;
 }
-
-namespace {
 
 constexpr int kSlowBoxes = 3;
 
@@ -130,18 +119,19 @@ const std::vector<SceneSpec>& scene_catalog() {
   return scenes;
 }
 
+template <class M>
+void Scene::add(SeededRandom& random, const auto&... of_mover) {
+  movers_.push_back(std::make_unique<M>(random.next(), of_mover..., textures_));
+}
+
 Scene::Scene(const SceneSpec& spec, std::uint64_t seed)
     : room_(spec.corridor ? build_corridor(*spec.corridor, seed, textures_) : build_room(seed, textures_)),
       camera_path_(spec.motion, seed),
       lighting_(spec.flicker, seed) {
   if (spec.corridor) walk_.emplace(*spec.corridor, seed);
   SeededRandom random(seed);
-  for (int i = 0; i < spec.people; ++i) {
-    movers_.push_back(std::make_unique<Walker>(random.next(), spec.area, textures_));
-  }
-  for (int i = 0; i < spec.boxes; ++i) {
-    movers_.push_back(std::make_unique<CarriedBox>(random.next(), spec.area, textures_));
-  }
+  for (int i = 0; i < spec.people; ++i) add<Walker>(random, spec.area);
+  for (int i = 0; i < spec.boxes; ++i) add<CarriedBox>(random, spec.area);
   add_plot(spec, random);
 }
 
@@ -150,19 +140,13 @@ void Scene::add_plot(const SceneSpec& spec, SeededRandom& random) {
     case Plot::kNone:
       return;
     case Plot::kSitter:
-      movers_.push_back(std::make_unique<Sitter>(random.next(), camera_path_,
-                                                 Sitter::Habits{spec.sit_s, spec.fidget_rad}, textures_));
-      return;
+      return add<Sitter>(random, camera_path_, Sitter::Habits{spec.sit_s, spec.fidget_rad});
     case Plot::kBlocker:
-      movers_.push_back(std::make_unique<Blocker>(random.next(), camera_path_, textures_));
-      return;
+      return add<Blocker>(random, camera_path_);
     case Plot::kAxialBox:
-      movers_.push_back(std::make_unique<AxialBox>(random.next(), camera_path_, textures_));
-      return;
+      return add<AxialBox>(random, camera_path_);
     case Plot::kSlowBoxes:
-      for (int i = 0; i < kSlowBoxes; ++i) {
-        movers_.push_back(std::make_unique<SlowBox>(random.next(), spec.area, textures_));
-      }
+      for (int i = 0; i < kSlowBoxes; ++i) add<SlowBox>(random, spec.area);
       return;
   }
 }

@@ -19,11 +19,7 @@ namespace rtd::camera::synthetic {
 /// Inner size of the room, m; the world frame's origin is on the floor in its middle, y towards the front wall.
 inline constexpr float kRoomWidthM = 7.0F, kRoomDepthM = 6.4F, kRoomHeightM = 2.8F;
 
-/// The furnished room: walls, floor, ceiling, shelves and cabinets along the walls, a low table with objects on it
-/// behind the movers, boxes. CameraRoom stays empty. Adds its textures to `textures`.
-std::vector<Face> build_room(std::uint64_t seed, std::vector<Texture>& textures);
-
-/// Movers with a plot; staged_movers.hpp.
+/// Movers with a plot.
 enum class Plot { kNone, kSitter, kBlocker, kAxialBox, kSlowBoxes };
 
 /// What a scene contains in addition to the room, or which corridor replaces the room.
@@ -60,6 +56,8 @@ class Scene {
   const std::vector<Texture>& textures() const { return textures_; }
 
  private:
+  template <class M>
+  void add(SeededRandom& random, const auto&... of_mover);
   void add_plot(const SceneSpec& spec, SeededRandom& random);
 
   std::vector<Texture> textures_;

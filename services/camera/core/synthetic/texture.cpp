@@ -174,4 +174,10 @@ Texture paint_texture(float width_m, float height_m, float texels_per_m, const T
   return texture;
 }
 
+int add_texture(std::vector<Texture>& textures, float width_m, float height_m, float texels_per_m,
+                const TextureStyle& style, std::uint64_t seed) {
+  textures.push_back(paint_texture(width_m, height_m, texels_per_m, style, seed));
+  return static_cast<int>(textures.size()) - 1;
+}
+
 }  // namespace rtd::camera::synthetic

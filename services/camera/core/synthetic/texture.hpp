@@ -68,6 +68,10 @@ struct TextureStyle {
 /// rectangles over it, so that there are corners of all sizes everywhere. The same arguments give the same texels.
 Texture paint_texture(float width_m, float height_m, float texels_per_m, const TextureStyle& style, std::uint64_t seed);
 
+/// Paints one more texture; its index.
+int add_texture(std::vector<Texture>& textures, float width_m, float height_m, float texels_per_m,
+                const TextureStyle& style, std::uint64_t seed);
+
 /// Bilinear sample; `s` and `t` in texels of this level, clamped to the border.
 inline std::uint32_t sample(const MipLevel& level, float s, float t) {
   constexpr std::uint64_t kLanes = 0x00FF00FF00FF00FFULL;
