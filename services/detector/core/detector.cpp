@@ -8,8 +8,6 @@
 #include <utility>
 
 #include "services/detector/core/network_input.hpp"
-#include "services/detector/core/yolo_decoder.hpp"
-#include "services/detector/core/yolo_network.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -33,8 +31,7 @@ cv::Mat to_bgr(const cv::Mat& image) {
 }
 
 /// Input pixels to frame pixels, clipped to the frame.
-vision::Detection to_detection(const Candidate& candidate, const Letterbox& letterbox, cv::Size frame,
-                               const std::vector<std::string>& class_names) {
+cv::Rect2f box_in_frame(const Candidate& candidate, const Letterbox& letterbox, cv::Size frame) {
   const auto to_x_px = [&](float x_px) {
     return static_cast<float>(std::clamp((x_px - letterbox.pad_left_px) / letterbox.scale_x, 0.0, double(frame.width)));
   };
@@ -42,12 +39,7 @@ vision::Detection to_detection(const Candidate& candidate, const Letterbox& lett
     return static_cast<float>(std::clamp((y_px - letterbox.pad_top_px) / letterbox.scale_y, 0.0, double(frame.height)));
   };
   const float left_px = to_x_px(candidate.left_px), top_px = to_y_px(candidate.top_px);
-  return {class_names[static_cast<std::size_t>(candidate.class_index)],
-          candidate.score,
-          left_px,
-          top_px,
-          to_x_px(candidate.right_px) - left_px,
-          to_y_px(candidate.bottom_px) - top_px};
+  return {left_px, top_px, to_x_px(candidate.right_px) - left_px, to_y_px(candidate.bottom_px) - top_px};
 }
 
 }  // namespace
@@ -56,22 +48,13 @@ Detector::Detector(DetectorConfig config) {
   cv::setNumThreads(config.threads);
   network_ = std::make_unique<YoloNetwork>(std::move(config));
 }
-Detector::~Detector() = default;
-Detector::Detector(Detector&&) noexcept = default;
-Detector& Detector::operator=(Detector&&) noexcept = default;
 
 std::vector<vision::Detection> Detector::detect(const cv::Mat& color_bgr) {
   if (color_bgr.empty()) return {};
   const cv::Mat image = to_bgr(color_bgr);
   const Letterbox letterbox = fit_letterbox(image.size(), network_->input());
   fill_blob(image, letterbox, network_->input(), blob_);
-  std::vector<vision::Detection> detections;
-  for (const Candidate& candidate : find_in_blob()) {
-    const vision::Detection detection =
-        to_detection(candidate, letterbox, image.size(), network_->config().class_names);
-    if (detection.width_px > 0 && detection.height_px > 0) detections.push_back(detection);
-  }
-  return detections;
+  return find_in_blob([&](const Candidate& candidate) { return box_in_frame(candidate, letterbox, image.size()); });
 }
 
 std::vector<vision::Detection> Detector::detect_upright(const cv::Mat& color_bgr, double roll_rad) {
@@ -79,27 +62,21 @@ std::vector<vision::Detection> Detector::detect_upright(const cv::Mat& color_bgr
   const cv::Mat image = to_bgr(color_bgr);
   const UprightView view = fit_upright(image.size(), network_->input(), roll_rad);
   fill_upright_blob(image, view, blob_);
+  return find_in_blob([&](const Candidate& candidate) { return box_in_frame(candidate, view); });
+}
+
+std::vector<vision::Detection> Detector::find_in_blob(const BoxInFrame& box_of) {
+  const DetectorConfig& config = network_->config();
+  const int class_count = static_cast<int>(config.class_names.size());
   std::vector<vision::Detection> detections;
-  for (const Candidate& candidate : find_in_blob()) {
-    const cv::Rect2f box = box_in_frame(candidate, view);
+  for (const Candidate& candidate :
+       suppress_non_maxima(decode_heads(network_->infer(blob_), class_count, config.decode), config.decode)) {
+    const cv::Rect2f box = box_of(candidate);
     if (box.empty()) continue;
-    const std::string& name = network_->config().class_names[static_cast<std::size_t>(candidate.class_index)];
+    const std::string& name = config.class_names[static_cast<std::size_t>(candidate.class_index)];
     detections.push_back({name, candidate.score, box.x, box.y, box.width, box.height});
   }
   return detections;
-}
-
-std::vector<Candidate> Detector::find_in_blob() {
-  const DetectorConfig& config = network_->config();
-  const int class_count = static_cast<int>(config.class_names.size());
-  return suppress_non_maxima(decode_heads(network_->infer(blob_), class_count, config.decode), config.decode);
-}
-
-InputSize Detector::input_size() const {
-  return network_->input();
-}
-const DetectorConfig& Detector::config() const {
-  return network_->config();
 }
 
 }  // namespace rtd::detector

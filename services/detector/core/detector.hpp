@@ -2,18 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "common/vision/detection.hpp"
-#include "services/detector/core/detector_config.hpp"
-#include "services/detector/core/onnx_file.hpp"
-#include "services/detector/core/yolo_decoder.hpp"
+#include "services/detector/core/yolo_network.hpp"
 
 namespace rtd::detector {
-
-class YoloNetwork;
 
 /// YOLOv5 / YOLOv5-Lite on the CPU through OpenCV's DNN module. Not thread-safe; one instance per thread.
 class Detector {
@@ -21,9 +18,6 @@ class Detector {
   /// Loads the network and runs it once, so that the first detect() is as fast as the others.
   /// Throws ModelError when the file is missing, broken, or no network of the configured shape.
   explicit Detector(DetectorConfig config);
-  ~Detector();
-  Detector(Detector&&) noexcept;
-  Detector& operator=(Detector&&) noexcept;
 
   /// Objects of one image, best score first; boxes in pixels of the image, clipped to it. 8-bit BGR, BGRA or grey of
   /// any size; an empty image has no objects. Throws std::invalid_argument for another pixel type.
@@ -32,12 +26,13 @@ class Detector {
   /// was given (UprightView). A roll of 0 is detect().
   std::vector<vision::Detection> detect_upright(const cv::Mat& color_bgr, double roll_rad);
 
-  InputSize input_size() const;
+  InputSize input_size() const { return network_->input(); }
   /// The configuration in force, with class names and heads filled in.
-  const DetectorConfig& config() const;
+  const DetectorConfig& config() const { return network_->config(); }
 
  private:
-  std::vector<Candidate> find_in_blob();
+  using BoxInFrame = std::function<cv::Rect2f(const Candidate&)>;
+  std::vector<vision::Detection> find_in_blob(const BoxInFrame& box_of);
 
   std::unique_ptr<YoloNetwork> network_;
   cv::Mat blob_;

@@ -35,9 +35,6 @@ struct DecodeConfig {
   }
 };
 
-/// Strides and anchors of YOLOv5 and YOLOv5-Lite as published.
-std::vector<HeadLayout> default_heads();
-
 /// Everything the detector needs.
 struct DetectorConfig {
   std::string model_path;  ///< ONNX file with one raw output per head (services/detector/README.md)
@@ -45,7 +42,7 @@ struct DetectorConfig {
   DecodeConfig decode;
   int threads = 1;
   std::vector<std::string> class_names;
-  std::vector<HeadLayout> heads;  ///< empty: those in the file, else default_heads()
+  std::vector<HeadLayout> heads;  ///< empty: those in the file, else those of YOLOv5 as published
 
   void bind(auto& binder) {
     binder.field("input_width_px", input_width_px, {32, 4096}, "network input, when the file does not fix it");

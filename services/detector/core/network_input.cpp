@@ -33,6 +33,14 @@ void split_to_rgb(const cv::Mat& color_bgr, const Letterbox& letterbox, InputSiz
   }
 }
 
+/// Maps pixel indices of the frame to those of the input; pixel i covers i .. i + 1.
+cv::Matx23d to_input(const UprightView& view) {
+  const double c = view.scale * view.cos, s = view.scale * view.sin;
+  const double from_x = 0.5 - 0.5 * view.frame.width, from_y = 0.5 - 0.5 * view.frame.height;
+  const double to_x = 0.5 * view.input.width_px - 0.5, to_y = 0.5 * view.input.height_px - 0.5;
+  return {c, -s, c * from_x - s * from_y + to_x, s, c, s * from_x + c * from_y + to_y};
+}
+
 }  // namespace
 
 Letterbox fit_letterbox(cv::Size frame, InputSize input) {
@@ -57,18 +65,6 @@ void fill_blob(const cv::Mat& color_bgr, const Letterbox& letterbox, InputSize i
   if (color_bgr.size() != scaled_size) cv::resize(color_bgr, scaled, scaled_size, 0, 0, cv::INTER_LINEAR);
   split_to_rgb(scaled, letterbox, input, blob.ptr<float>());
 }
-
-namespace {
-
-/// Maps pixel indices of the frame to those of the input; pixel i covers i .. i + 1.
-cv::Matx23d to_input(const UprightView& view) {
-  const double c = view.scale * view.cos, s = view.scale * view.sin;
-  const double from_x = 0.5 - 0.5 * view.frame.width, from_y = 0.5 - 0.5 * view.frame.height;
-  const double to_x = 0.5 * view.input.width_px - 0.5, to_y = 0.5 * view.input.height_px - 0.5;
-  return {c, -s, c * from_x - s * from_y + to_x, s, c, s * from_x + c * from_y + to_y};
-}
-
-}  // namespace
 
 UprightView fit_upright(cv::Size frame, InputSize input, double roll_rad) {
   UprightView view{std::cos(roll_rad), std::sin(roll_rad), 1, frame, input};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/detector/core/onnx_file.hpp"
 
+#include <span>
 #include <sstream>
 
 namespace rtd::detector {
@@ -13,11 +14,7 @@ constexpr int kGraphOfModel = 7, kMetadataOfModel = 14, kKeyOfEntry = 1, kValueO
 constexpr std::uint64_t kFloat = 1;
 enum WireType : int { kVarint = 0, kFixed64 = 1, kLengthDelimited = 2, kFixed32 = 5 };
 
-struct Span {
-  const std::uint8_t* begin = nullptr;
-  const std::uint8_t* end = nullptr;
-  std::size_t size() const { return static_cast<std::size_t>(end - begin); }
-};
+using Span = std::span<const std::uint8_t>;
 
 struct Field {
   int number = 0;
@@ -25,50 +22,39 @@ struct Field {
   Span bytes;                ///< wire type kLengthDelimited
 };
 
+std::optional<Span> take_bytes(Span& span, std::uint64_t count) {
+  if (count > span.size()) return std::nullopt;
+  const Span taken = span.first(count);
+  span = span.subspan(count);
+  return taken;
+}
+
 std::optional<std::uint64_t> take_varint(Span& span) {
   std::uint64_t value = 0;
-  for (int shift = 0; shift < 64 && span.begin != span.end; shift += 7) {
-    const std::uint8_t byte = *span.begin++;
+  for (int shift = 0; shift < 64 && !span.empty(); shift += 7) {
+    const std::uint8_t byte = take_bytes(span, 1)->front();
     value |= std::uint64_t{byte & 0x7FU} << shift;
     if ((byte & 0x80U) == 0) return value;
   }
   return std::nullopt;
 }
 
-std::optional<Span> take_bytes(Span& span, std::uint64_t count) {
-  if (count > span.size()) return std::nullopt;
-  const Span taken{span.begin, span.begin + count};
-  span.begin = taken.end;
-  return taken;
-}
-
-/// The next field of a message; empty at its end or where it is malformed (then span.begin != span.end or it was cut).
+/// The next field of a message; empty at its end or where it is malformed.
 std::optional<Field> take_field(Span& span) {
   const std::optional<std::uint64_t> key = take_varint(span);
   if (!key) return std::nullopt;
   Field field{static_cast<int>(*key >> 3U & 0x1FFFFFFFU), 0, {}};
-  std::optional<Span> body;
-  switch (static_cast<int>(*key & 7U)) {
-    case kVarint: {
-      const std::optional<std::uint64_t> value = take_varint(span);
-      if (!value) return std::nullopt;
-      field.varint = *value;
-      return field;
-    }
-    case kFixed64:
-      body = take_bytes(span, 8);
-      break;
-    case kFixed32:
-      body = take_bytes(span, 4);
-      break;
-    case kLengthDelimited: {
-      const std::optional<std::uint64_t> length = take_varint(span);
-      if (length) body = take_bytes(span, *length);
-      break;
-    }
-    default:
-      return std::nullopt;
+  const int wire_type = static_cast<int>(*key & 7U);
+  std::optional<std::uint64_t> number;  // the value of a varint, the length of other fields
+  if (wire_type == kVarint || wire_type == kLengthDelimited) number = take_varint(span);
+  if (wire_type == kFixed64) number = 8;
+  if (wire_type == kFixed32) number = 4;
+  if (!number) return std::nullopt;
+  if (wire_type == kVarint) {
+    field.varint = *number;
+    return field;
   }
+  const std::optional<Span> body = take_bytes(span, *number);
   if (!body) return std::nullopt;
   field.bytes = *body;
   return field;
@@ -76,7 +62,7 @@ std::optional<Field> take_field(Span& span) {
 
 std::optional<Span> find_message(Span span, int number) {
   while (const std::optional<Field> field = take_field(span)) {
-    if (field->number == number && field->bytes.begin != nullptr) return field->bytes;
+    if (field->number == number && field->bytes.data() != nullptr) return field->bytes;
   }
   return std::nullopt;
 }
@@ -104,7 +90,7 @@ std::vector<std::uint64_t> read_dimensions(Span value_info) {
 std::optional<InputSize> read_input_size(Span graph) {
   constexpr std::uint64_t kMaxSide = 8192;
   while (const std::optional<Field> field = take_field(graph)) {
-    if (field->number != kInputOfGraph || field->bytes.begin == nullptr) continue;
+    if (field->number != kInputOfGraph || field->bytes.data() == nullptr) continue;
     const std::vector<std::uint64_t> dimensions = read_dimensions(field->bytes);
     if (dimensions.size() != 4 || dimensions[1] != 3) continue;
     const std::uint64_t height = dimensions[2], width = dimensions[3];
@@ -120,9 +106,9 @@ std::uint64_t count_floats(Span tensor) {
   while (const std::optional<Field> field = take_field(tensor)) {
     if (field->number == kDataTypeOfTensor) type = field->varint;
     if (field->number != kDimsOfTensor) continue;
-    if (field->bytes.begin == nullptr) elements *= field->varint;
+    if (field->bytes.data() == nullptr) elements *= field->varint;
     Span packed = field->bytes;
-    while (packed.size() > 0) {
+    while (!packed.empty()) {
       const std::optional<std::uint64_t> dimension = take_varint(packed);
       if (!dimension) return 0;
       elements *= *dimension;
@@ -134,22 +120,23 @@ std::uint64_t count_floats(Span tensor) {
 std::uint64_t count_parameters(Span graph) {
   std::uint64_t parameters = 0;
   while (const std::optional<Field> field = take_field(graph)) {
-    if (field->number == kInitializerOfGraph && field->bytes.begin != nullptr) parameters += count_floats(field->bytes);
+    if (field->number == kInitializerOfGraph && field->bytes.data() != nullptr)
+      parameters += count_floats(field->bytes);
   }
   return parameters;
 }
 
 std::string text_of(const std::optional<Span>& span) {
-  return span ? std::string(span->begin, span->end) : std::string();
+  return span ? std::string(span->begin(), span->end()) : std::string();
 }
 
 }  // namespace
 
 OnnxFile read_onnx_file(const std::uint8_t* bytes, std::size_t size) {
   OnnxFile file;
-  Span model{bytes, bytes + size};
+  Span model{bytes, size};
   while (const std::optional<Field> field = take_field(model)) {
-    if (field->bytes.begin == nullptr) continue;
+    if (field->bytes.data() == nullptr) continue;
     if (field->number == kGraphOfModel) {
       file.has_graph = true;
       file.input = read_input_size(field->bytes);

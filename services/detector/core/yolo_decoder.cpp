@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace rtd::detector {
@@ -101,12 +102,11 @@ float intersection_over_union(const Candidate& a, const Candidate& b) {
 }
 
 std::vector<Candidate> suppress_non_maxima(std::vector<Candidate> candidates, const DecodeConfig& config) {
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate::score);
   std::vector<Candidate> kept;
   for (const Candidate& candidate : candidates) {
     if (kept.size() >= static_cast<std::size_t>(config.max_detections)) break;
-    const bool suppressed = std::any_of(kept.begin(), kept.end(), [&](const Candidate& better) {
+    const bool suppressed = std::ranges::any_of(kept, [&](const Candidate& better) {
       return better.class_index == candidate.class_index && intersection_over_union(better, candidate) > config.nms_iou;
     });
     if (!suppressed) kept.push_back(candidate);

@@ -18,7 +18,78 @@ namespace {
 
 constexpr std::size_t kObjectnessPlane = 4;
 
+/// Strides and anchors of YOLOv5 and YOLOv5-Lite as published.
+std::vector<HeadLayout> default_heads() {
+  return {{8, {{{10, 13}, {16, 30}, {33, 23}}}},
+          {16, {{{30, 61}, {62, 45}, {59, 119}}}},
+          {32, {{{116, 90}, {156, 198}, {373, 326}}}}};
+}
+
+constexpr const char* kFix = "run `deploy/setup.sh --models`, or name another file with detector.model";
+
+[[noreturn]] void fail(const std::string& path, const std::string& cause) {
+  throw ModelError("detector model '" + path + "': " + cause + "; " + kFix);
+}
+
+std::vector<std::uint8_t> read_bytes(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) fail(path, "there is no such file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail(path, "cannot be opened");
+  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (bytes.empty()) fail(path, "is empty");
+  return bytes;
+}
+
+/// OpenCV logs what it throws; here the exception is enough.
+class QuietOpenCv {
+ public:
+  QuietOpenCv() : saved_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
+  ~QuietOpenCv() { cv::utils::logging::setLogLevel(saved_); }
+  QuietOpenCv(const QuietOpenCv&) = delete;
+  QuietOpenCv& operator=(const QuietOpenCv&) = delete;
+
+ private:
+  cv::utils::logging::LogLevel saved_;
+};
+
+/// A 1x1 convolution of step 1 over all channels, with float weights.
+bool is_pointwise(const cv::dnn::ConvolutionLayer& convolution) {
+  const auto all_one = [](const std::vector<std::size_t>& sizes) {
+    return std::ranges::all_of(sizes, [](std::size_t size) { return size == 1; });
+  };
+  const cv::Mat& weights = convolution.blobs[0];
+  const bool floats = weights.type() == CV_32F && convolution.blobs[1].type() == CV_32F && weights.isContinuous();
+  return all_one(convolution.kernel_size) && all_one(convolution.strides) && weights.dims == 4 && floats;
+}
+
+std::string join_shape(std::initializer_list<int> sizes) {
+  std::string text;
+  for (const int size : sizes) {
+    if (!text.empty()) text += 'x';
+    text += std::to_string(size);
+  }
+  return text;
+}
+
 }  // namespace
+
+const std::vector<std::string>& coco_class_names() {
+  static const std::vector<std::string> names = {
+      "person",         "bicycle",    "car",           "motorcycle",    "airplane",     "bus",           "train",
+      "truck",          "boat",       "traffic light", "fire hydrant",  "stop sign",    "parking meter", "bench",
+      "bird",           "cat",        "dog",           "horse",         "sheep",        "cow",           "elephant",
+      "bear",           "zebra",      "giraffe",       "backpack",      "umbrella",     "handbag",       "tie",
+      "suitcase",       "frisbee",    "skis",          "snowboard",     "sports ball",  "kite",          "baseball bat",
+      "baseball glove", "skateboard", "surfboard",     "tennis racket", "bottle",       "wine glass",    "cup",
+      "fork",           "knife",      "spoon",         "bowl",          "banana",       "apple",         "sandwich",
+      "orange",         "broccoli",   "carrot",        "hot dog",       "pizza",        "donut",         "cake",
+      "chair",          "couch",      "potted plant",  "bed",           "dining table", "toilet",        "tv",
+      "laptop",         "mouse",      "remote",        "keyboard",      "cell phone",   "microwave",     "oven",
+      "toaster",        "sink",       "refrigerator",  "book",          "clock",        "vase",          "scissors",
+      "teddy bear",     "hair drier", "toothbrush"};
+  return names;
+}
 
 PointwiseHead::PointwiseHead(const float* weights, std::vector<float> bias, std::size_t channels,
                              std::size_t planes_per_anchor)
@@ -73,57 +144,6 @@ void PointwiseHead::evaluate_cell(const float* features, std::size_t cells, std:
     if (plane != kObjectnessPlane) cell_logits[plane * cells] = sums[plane];
   }
 }
-
-namespace {
-
-constexpr const char* kFix = "run `deploy/setup.sh --models`, or name another file with detector.model";
-
-[[noreturn]] void fail(const std::string& path, const std::string& cause) {
-  throw ModelError("detector model '" + path + "': " + cause + "; " + kFix);
-}
-
-std::vector<std::uint8_t> read_bytes(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) fail(path, "there is no such file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail(path, "cannot be opened");
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (bytes.empty()) fail(path, "is empty");
-  return bytes;
-}
-
-/// OpenCV logs what it throws; here the exception is enough.
-class QuietOpenCv {
- public:
-  QuietOpenCv() : saved_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
-  ~QuietOpenCv() { cv::utils::logging::setLogLevel(saved_); }
-  QuietOpenCv(const QuietOpenCv&) = delete;
-  QuietOpenCv& operator=(const QuietOpenCv&) = delete;
-
- private:
-  cv::utils::logging::LogLevel saved_;
-};
-
-/// A 1x1 convolution of step 1 over all channels, with float weights.
-bool is_pointwise(const cv::dnn::ConvolutionLayer& convolution) {
-  const auto all_one = [](const std::vector<std::size_t>& sizes) {
-    return std::all_of(sizes.begin(), sizes.end(), [](std::size_t size) { return size == 1; });
-  };
-  const cv::Mat& weights = convolution.blobs[0];
-  const bool floats = weights.type() == CV_32F && convolution.blobs[1].type() == CV_32F && weights.isContinuous();
-  return all_one(convolution.kernel_size) && all_one(convolution.strides) && weights.dims == 4 && floats;
-}
-
-std::string join_shape(std::initializer_list<int> sizes) {
-  std::string text;
-  for (const int size : sizes) {
-    if (!text.empty()) text += 'x';
-    text += std::to_string(size);
-  }
-  return text;
-}
-
-}  // namespace
 
 struct YoloNetwork::Graph {
   cv::dnn::Net net;

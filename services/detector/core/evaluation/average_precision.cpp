@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <set>
 
@@ -12,111 +13,32 @@ namespace {
 
 constexpr int kRecallSteps = 100;  // precision is read at recall 0, 0.01 .. 1
 
-/// Precision and recall after each detection, those that count, best first.
-struct RunningScore {
-  std::vector<double> scores, precision, recall;
+enum class Outcome : unsigned char { kWrong, kCorrect, kIgnored };
+
+/// A detection and whether it was right, by overlap threshold.
+struct JudgedDetection {
+  float score = 0;
+  std::array<Outcome, kIouThresholds.size()> outcome{};
 };
-
-RunningScore running_score(const std::vector<JudgedDetection>& judged, std::size_t threshold, std::size_t truths) {
-  RunningScore running;
-  double correct = 0, wrong = 0;
-  for (const JudgedDetection& detection : judged) {
-    const Outcome outcome = detection.outcome[threshold];
-    if (outcome == Outcome::kIgnored) continue;
-    (outcome == Outcome::kCorrect ? correct : wrong) += 1;
-    running.scores.push_back(detection.score);
-    running.precision.push_back(correct / (correct + wrong));
-    running.recall.push_back(correct / static_cast<double>(truths));
-  }
-  return running;
-}
-
-double average_precision(RunningScore running) {
-  for (std::size_t i = running.precision.size(); i-- > 1;) {
-    running.precision[i - 1] = std::max(running.precision[i - 1], running.precision[i]);
-  }
-  double sum = 0;
-  for (int step = 0; step <= kRecallSteps; ++step) {
-    const auto reached = std::lower_bound(running.recall.begin(), running.recall.end(), step / double(kRecallSteps));
-    if (reached == running.recall.end()) break;
-    sum += running.precision[static_cast<std::size_t>(reached - running.recall.begin())];
-  }
-  return sum / (kRecallSteps + 1);
-}
-
-std::vector<OperatingPoint> curve_of(const RunningScore& running) {
-  std::vector<OperatingPoint> curve;
-  for (std::size_t i = 0; i < running.scores.size(); ++i) {
-    if (i + 1 < running.scores.size() && running.scores[i + 1] == running.scores[i]) continue;
-    const double p = running.precision[i], r = running.recall[i];
-    curve.push_back({running.scores[i], p, r, p + r > 0 ? 2 * p * r / (p + r) : 0});
-  }
-  return curve;
-}
-
-}  // namespace
-
-double BoxAccuracy::ap50_95() const {
-  return std::accumulate(ap.begin(), ap.end(), 0.0) / static_cast<double>(ap.size());
-}
-
-BoxAccuracy evaluate_boxes(const std::vector<EvaluatedImage>& images, const ClassFilter& belongs) {
-  BoxAccuracy accuracy;
-  std::vector<JudgedDetection> judged;
-  for (const EvaluatedImage& image : images) {
-    std::vector<LabelledBox> truths;
-    std::vector<vision::Detection> detections;
-    const auto looked_at = [&belongs](const auto& box) { return belongs(box.class_name); };
-    std::copy_if(image.truths.begin(), image.truths.end(), std::back_inserter(truths), looked_at);
-    std::copy_if(image.detections.begin(), image.detections.end(), std::back_inserter(detections), looked_at);
-    accuracy.truths += static_cast<std::size_t>(
-        std::count_if(truths.begin(), truths.end(), [](const LabelledBox& box) { return !box.difficult; }));
-    const std::vector<JudgedDetection> here = judge(detections, truths);
-    judged.insert(judged.end(), here.begin(), here.end());
-  }
-  std::stable_sort(judged.begin(), judged.end(),
-                   [](const JudgedDetection& a, const JudgedDetection& b) { return a.score > b.score; });
-  for (std::size_t t = 0; t < kIouThresholds.size() && accuracy.truths > 0; ++t) {
-    const RunningScore running = running_score(judged, t, accuracy.truths);
-    accuracy.ap[t] = average_precision(running);
-    if (t > 0) continue;
-    accuracy.detections = running.scores.size();
-    accuracy.curve = curve_of(running);
-  }
-  return accuracy;
-}
-
-std::optional<OperatingPoint> best_f1(const std::vector<OperatingPoint>& curve) {
-  const auto best = std::max_element(curve.begin(), curve.end(),
-                                     [](const OperatingPoint& a, const OperatingPoint& b) { return a.f1 < b.f1; });
-  return best == curve.end() ? std::nullopt : std::optional(*best);
-}
-
-std::optional<OperatingPoint> highest_threshold_with_recall(const std::vector<OperatingPoint>& curve, double recall) {
-  const auto reached = std::find_if(curve.begin(), curve.end(),
-                                    [recall](const OperatingPoint& point) { return point.recall >= recall; });
-  return reached == curve.end() ? std::nullopt : std::optional(*reached);
-}
-
-OperatingPoint at_threshold(const std::vector<OperatingPoint>& curve, double threshold) {
-  OperatingPoint point{threshold, 1, 0, 0};
-  for (const OperatingPoint& next : curve) {
-    if (next.threshold < threshold) break;
-    point = {threshold, next.precision, next.recall, next.f1};
-  }
-  return point;
-}
-
-namespace {
 
 constexpr std::size_t kMaxDetections = 100;  // of an image, as COCO takes
 
 std::vector<vision::Detection> best_first(std::vector<vision::Detection> detections) {
   std::erase_if(detections, [](const vision::Detection& detection) { return !std::isfinite(detection.score); });
-  std::stable_sort(detections.begin(), detections.end(),
-                   [](const vision::Detection& a, const vision::Detection& b) { return a.score > b.score; });
+  std::ranges::stable_sort(detections, std::ranges::greater{}, &vision::Detection::score);
   if (detections.size() > kMaxDetections) detections.resize(kMaxDetections);
   return detections;
+}
+
+/// Intersection over union, [0, 1]; 0 for boxes without area.
+double overlap(const vision::Detection& detection, const LabelledBox& truth) {
+  const double width_px = std::min<double>(detection.x_px + detection.width_px, truth.x_px + truth.width_px) -
+                          std::max<double>(detection.x_px, truth.x_px);
+  const double height_px = std::min<double>(detection.y_px + detection.height_px, truth.y_px + truth.height_px) -
+                           std::max<double>(detection.y_px, truth.y_px);
+  if (!(width_px > 0 && height_px > 0)) return 0;
+  const double both = width_px * height_px;
+  return both / (double(detection.width_px) * detection.height_px + truth.width_px * truth.height_px - both);
 }
 
 /// The objects of an image at one threshold, some already found.
@@ -154,18 +76,7 @@ class Board {
   double min_iou_;
 };
 
-}  // namespace
-
-double overlap(const vision::Detection& detection, const LabelledBox& truth) {
-  const double width_px = std::min<double>(detection.x_px + detection.width_px, truth.x_px + truth.width_px) -
-                          std::max<double>(detection.x_px, truth.x_px);
-  const double height_px = std::min<double>(detection.y_px + detection.height_px, truth.y_px + truth.height_px) -
-                           std::max<double>(detection.y_px, truth.y_px);
-  if (!(width_px > 0 && height_px > 0)) return 0;
-  const double both = width_px * height_px;
-  return both / (double(detection.width_px) * detection.height_px + truth.width_px * truth.height_px - both);
-}
-
+/// Judges the 100 best detections of one image against its objects, best first.
 std::vector<JudgedDetection> judge(const std::vector<vision::Detection>& detections,
                                    const std::vector<LabelledBox>& truths) {
   const std::vector<vision::Detection> sorted = best_first(detections);
@@ -178,6 +89,99 @@ std::vector<JudgedDetection> judge(const std::vector<vision::Detection>& detecti
     }
   }
   return judged;
+}
+
+/// Precision and recall after each detection, those that count, best first.
+struct RunningScore {
+  std::vector<double> scores, precision, recall;
+};
+
+RunningScore running_score(const std::vector<JudgedDetection>& judged, std::size_t threshold, std::size_t truths) {
+  RunningScore running;
+  double correct = 0, wrong = 0;
+  for (const JudgedDetection& detection : judged) {
+    const Outcome outcome = detection.outcome[threshold];
+    if (outcome == Outcome::kIgnored) continue;
+    (outcome == Outcome::kCorrect ? correct : wrong) += 1;
+    running.scores.push_back(detection.score);
+    running.precision.push_back(correct / (correct + wrong));
+    running.recall.push_back(correct / static_cast<double>(truths));
+  }
+  return running;
+}
+
+double average_precision(RunningScore running) {
+  for (std::size_t i = running.precision.size(); i-- > 1;) {
+    running.precision[i - 1] = std::max(running.precision[i - 1], running.precision[i]);
+  }
+  double sum = 0;
+  for (int step = 0; step <= kRecallSteps; ++step) {
+    const auto reached = std::ranges::lower_bound(running.recall, step / double(kRecallSteps));
+    if (reached == running.recall.end()) break;
+    sum += running.precision[static_cast<std::size_t>(reached - running.recall.begin())];
+  }
+  return sum / (kRecallSteps + 1);
+}
+
+std::vector<OperatingPoint> curve_of(const RunningScore& running) {
+  std::vector<OperatingPoint> curve;
+  for (std::size_t i = 0; i < running.scores.size(); ++i) {
+    if (i + 1 < running.scores.size() && running.scores[i + 1] == running.scores[i]) continue;
+    const double p = running.precision[i], r = running.recall[i];
+    curve.push_back({running.scores[i], p, r, p + r > 0 ? 2 * p * r / (p + r) : 0});
+  }
+  return curve;
+}
+
+}  // namespace
+
+double BoxAccuracy::ap50_95() const {
+  return std::accumulate(ap.begin(), ap.end(), 0.0) / static_cast<double>(ap.size());
+}
+
+BoxAccuracy evaluate_boxes(const std::vector<EvaluatedImage>& images, const ClassFilter& belongs) {
+  BoxAccuracy accuracy;
+  std::vector<JudgedDetection> judged;
+  for (const EvaluatedImage& image : images) {
+    std::vector<LabelledBox> truths;
+    std::vector<vision::Detection> detections;
+    const auto looked_at = [&belongs](const auto& box) { return belongs(box.class_name); };
+    std::ranges::copy_if(image.truths, std::back_inserter(truths), looked_at);
+    std::ranges::copy_if(image.detections, std::back_inserter(detections), looked_at);
+    accuracy.truths +=
+        static_cast<std::size_t>(std::ranges::count_if(truths, [](const LabelledBox& box) { return !box.difficult; }));
+    const std::vector<JudgedDetection> here = judge(detections, truths);
+    judged.insert(judged.end(), here.begin(), here.end());
+  }
+  std::ranges::stable_sort(judged, std::ranges::greater{}, &JudgedDetection::score);
+  for (std::size_t t = 0; t < kIouThresholds.size() && accuracy.truths > 0; ++t) {
+    const RunningScore running = running_score(judged, t, accuracy.truths);
+    accuracy.ap[t] = average_precision(running);
+    if (t > 0) continue;
+    accuracy.detections = running.scores.size();
+    accuracy.curve = curve_of(running);
+  }
+  return accuracy;
+}
+
+std::optional<OperatingPoint> best_f1(const std::vector<OperatingPoint>& curve) {
+  const auto best = std::ranges::max_element(curve, {}, &OperatingPoint::f1);
+  return best == curve.end() ? std::nullopt : std::optional(*best);
+}
+
+std::optional<OperatingPoint> highest_threshold_with_recall(const std::vector<OperatingPoint>& curve, double recall) {
+  const auto reached =
+      std::ranges::find_if(curve, [recall](const OperatingPoint& point) { return point.recall >= recall; });
+  return reached == curve.end() ? std::nullopt : std::optional(*reached);
+}
+
+OperatingPoint at_threshold(const std::vector<OperatingPoint>& curve, double threshold) {
+  OperatingPoint point{threshold, 1, 0, 0};
+  for (const OperatingPoint& next : curve) {
+    if (next.threshold < threshold) break;
+    point = {threshold, next.precision, next.recall, next.f1};
+  }
+  return point;
 }
 
 AccuracyReport evaluate_detector(const std::vector<EvaluatedImage>& images, const GroupOf& group_of) {

@@ -57,21 +57,6 @@ std::optional<OperatingPoint> highest_threshold_with_recall(const std::vector<Op
 /// nothing.
 OperatingPoint at_threshold(const std::vector<OperatingPoint>& curve, double threshold);
 
-enum class Outcome : unsigned char { kWrong, kCorrect, kIgnored };
-
-/// A detection and whether it was right, by overlap threshold.
-struct JudgedDetection {
-  float score = 0;
-  std::array<Outcome, kIouThresholds.size()> outcome{};
-};
-
-/// Judges the 100 best detections of one image against its objects, best first.
-std::vector<JudgedDetection> judge(const std::vector<vision::Detection>& detections,
-                                   const std::vector<LabelledBox>& truths);
-
-/// Intersection over union, [0, 1]; 0 for boxes without area.
-double overlap(const vision::Detection& detection, const LabelledBox& truth);
-
 /// The group (motion level) of a class; empty: of none.
 using GroupOf = std::function<std::string(const std::string& class_name)>;
 

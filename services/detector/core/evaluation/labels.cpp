@@ -36,8 +36,8 @@ LabelledBox clip(const LabelledBox& box, ImageSize image) {
   return clipped;
 }
 
-}  // namespace
-
+/// Clips `box` to the image and keeps it; a box without area, outside the image or marked twice becomes a problem at
+/// `where` ("file:line").
 void add_label(const LabelledBox& box, ImageSize image, const std::string& where, ImageLabels& labels) {
   const auto reject = [&](const std::string& cause) {
     labels.problems.push_back(fmt::format("{}: {}: {}", where, describe(box), cause));
@@ -50,13 +50,11 @@ void add_label(const LabelledBox& box, ImageSize image, const std::string& where
   if (clipped.width_px <= 0 || clipped.height_px <= 0) {
     return reject(fmt::format("lies outside the image of {} x {} px", image.width_px, image.height_px));
   }
-  const bool repeated = std::any_of(labels.boxes.begin(), labels.boxes.end(),
-                                    [&](const LabelledBox& earlier) { return same(earlier, clipped); });
+  const bool repeated =
+      std::ranges::any_of(labels.boxes, [&](const LabelledBox& earlier) { return same(earlier, clipped); });
   if (repeated) return reject("occurs twice, counted once");
   labels.boxes.push_back(clipped);
 }
-
-namespace {
 
 constexpr std::size_t kColumns = 5;  // class cx cy w h
 
@@ -89,24 +87,6 @@ Row parse_row(const std::vector<std::string>& columns, ImageSize image, const st
                       width_px, height_px},
           {}};
 }
-
-}  // namespace
-
-ImageLabels parse_yolo_labels(const LabelFile& file, ImageSize image, const std::vector<std::string>& class_names) {
-  ImageLabels labels;
-  for (const io::TextLine& line : io::split_lines(file.text)) {
-    const std::string where = fmt::format("{}:{}", file.name, line.number);
-    const Row row = parse_row(line.fields, image, class_names);
-    if (row.box) {
-      add_label(*row.box, image, where, labels);
-    } else {
-      labels.problems.push_back(where + ": " + row.problem);
-    }
-  }
-  return labels;
-}
-
-namespace {
 
 /// Text of the child `name`, empty when there is none.
 std::string text_of(const tinyxml2::XMLElement& parent, const char* name) {
@@ -161,6 +141,20 @@ void add_object(const tinyxml2::XMLElement& object, const LabelFile& file, Image
 }
 
 }  // namespace
+
+ImageLabels parse_yolo_labels(const LabelFile& file, ImageSize image, const std::vector<std::string>& class_names) {
+  ImageLabels labels;
+  for (const io::TextLine& line : io::split_lines(file.text)) {
+    const std::string where = fmt::format("{}:{}", file.name, line.number);
+    const Row row = parse_row(line.fields, image, class_names);
+    if (row.box) {
+      add_label(*row.box, image, where, labels);
+    } else {
+      labels.problems.push_back(where + ": " + row.problem);
+    }
+  }
+  return labels;
+}
 
 ImageLabels parse_voc_labels(const LabelFile& file, ImageSize image) {
   ImageLabels labels;

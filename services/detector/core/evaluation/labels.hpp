@@ -38,8 +38,4 @@ ImageLabels parse_yolo_labels(const LabelFile& file, ImageSize image, const std:
 /// scaled when `<size>` names another size than the image has.
 ImageLabels parse_voc_labels(const LabelFile& file, ImageSize image);
 
-/// Clips `box` to the image and keeps it; a box without area, outside the image or marked twice becomes a problem at
-/// `where` ("file:line").
-void add_label(const LabelledBox& box, ImageSize image, const std::string& where, ImageLabels& labels);
-
 }  // namespace rtd::detector
