@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/service/bus_config.hpp"
-#include "services/evaluation/core/ablation/ablation_result.hpp"
+#include "services/evaluation/core/ablation/ablation.hpp"
 
 namespace CLI {
 class App;
@@ -37,24 +37,5 @@ void add_ablate_command(CLI::App& app, AblateOptions& options);
 /// ablation.json, .md and .html after every run. Returns the exit code: 0; 1 when a run failed; 2 when nothing could be
 /// started; 130 when interrupted.
 int run_ablate(const AblateOptions& options);
-
-/// What `rtd-<service> --print-config` prints. Throws service::ConfigError when it cannot be run.
-std::string printed_config(const std::string& service);
-
-/// One run of the experiment.
-struct VariantTask {
-  std::string source, source_name;
-  Variant variant;
-  int run = 1;
-};
-struct VariantRun {
-  Measurement measurement;
-  bool interrupted = false;
-  bool reused = false;  ///< measured by an earlier ablation
-};
-
-/// Runs it in OUT/<source>/<variant>/<run>. With --resume, an earlier result of the same settings is taken instead. A
-/// run that fails is a measurement with a reason. Throws service::ConfigError when nothing could be started.
-VariantRun run_variant(const AblateOptions& options, const VariantTask& task);
 
 }  // namespace rtd::eval

@@ -3,6 +3,7 @@
 #include "services/evaluation/commands/eval_command.hpp"
 
 #include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -11,9 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
-#include <stdexcept>
 
-#include "common/service/exit_code.hpp"
+#include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 #include "services/evaluation/core/trajectory/evaluation.hpp"
 
@@ -81,16 +81,10 @@ EvaluationOptions evaluation_options(const EvalOptions& options) {
   return result;
 }
 
-/// The plot cannot be written; what() names the file and the fix.
-class PlotError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 void write_plot(const Evaluation& evaluation, const Inputs& inputs, const EvalOptions& options) {
   const std::filesystem::path path = options.plot;
   if (path.extension() != ".svg") {
-    throw PlotError("--plot " + options.plot + ": only SVG is written; give the file the ending .svg");
+    throw service::ConfigError("--plot " + options.plot + ": only SVG is written; give the file the ending .svg");
   }
   Trajectory groundtruth = inputs.groundtruth;  // on the estimate's clock, which is the plot's
   const std::int64_t offset_ns = std::llround(options.offset_s * 1e9);
@@ -98,7 +92,8 @@ void write_plot(const Evaluation& evaluation, const Inputs& inputs, const EvalOp
   std::ofstream output(path);
   output << evaluation_svg(evaluation.ate, groundtruth, std::filesystem::path(options.estimate).filename().string());
   output.flush();
-  if (!output) throw PlotError("--plot " + options.plot + ": cannot be written; check that its folder exists");
+  if (!output)
+    throw service::ConfigError("--plot " + options.plot + ": cannot be written; check that its folder exists");
 }
 
 std::string evaluation_table(const Evaluation& e, const EvalOptions& options) {
@@ -146,7 +141,7 @@ CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options) {
 }
 
 int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
-  try {
+  return guarded("rtd eval", err, [&] {
     const Inputs inputs = read_inputs(options);
     const Evaluation evaluation =
         evaluate(inputs.estimate, inputs.groundtruth, evaluation_options(options), inputs.frames_ns);
@@ -155,19 +150,9 @@ int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
       return service::kRunFailed;
     }
     if (!options.plot.empty()) write_plot(evaluation, inputs, options);
-    if (options.json) {
-      out << to_json(evaluation).dump(2) << "\n";
-    } else {
-      out << evaluation_table(evaluation, options);
-    }
+    out << (options.json ? to_json(evaluation).dump(2) + "\n" : evaluation_table(evaluation, options));
     return service::kOk;
-  } catch (const TrajectoryError& error) {
-    err << "rtd eval: " << error.what() << "\n";
-    return service::kUsageOrConfig;
-  } catch (const PlotError& error) {
-    err << "rtd eval: " << error.what() << "\n";
-    return service::kUsageOrConfig;
-  }
+  });
 }
 
 }  // namespace rtd::eval

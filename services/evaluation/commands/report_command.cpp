@@ -5,28 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <ostream>
 
-#include "common/service/exit_code.hpp"
+#include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/report/report.hpp"
 
 namespace rtd::eval {
-namespace {
-
-/// Runs `work` and turns what it throws into a message and an exit code.
-int guarded(const char* command, std::ostream& err, const std::function<void()>& work) {
-  try {
-    work();
-    return service::kOk;
-  } catch (const RunFileError& error) {
-    err << command << ": " << error.what() << '\n';
-    return service::kUsageOrConfig;
-  } catch (const std::exception& error) {
-    err << command << ": " << error.what() << '\n';
-    return service::kRunFailed;
-  }
-}
-
-}  // namespace
-
 void add_report_command(CLI::App& parent, ReportOptions& options) {
   CLI::App* command = parent.add_subcommand("report", "Write report.json and report.html of a run from its run.json");
   command->add_option("folder", options.folder, "Folder that 'rtd run --out' wrote")->required();
@@ -40,6 +22,7 @@ int run_report(const ReportOptions& options, const std::function<bool()>& go_on,
     choose_trajectory(run, options.folder);
     const RunSummary summary = write_report(run, options.folder);
     if (!options.quiet) out << summary_text(run, summary, options.folder) << std::flush;
+    return service::kOk;
   });
 }
 
@@ -61,6 +44,7 @@ int run_compare(const CompareOptions& options, std::ostream& out, std::ostream& 
     }
     write_file(options.page, comparison_html(runs));
     out << comparison_text(runs) << std::flush;
+    return service::kOk;
   });
 }
 

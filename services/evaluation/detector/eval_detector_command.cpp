@@ -8,7 +8,7 @@
 #include <fstream>
 #include <ostream>
 
-#include "common/service/exit_code.hpp"
+#include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/detector/detector_report.hpp"
 #include "services/evaluation/detector/evaluate.hpp"
 
@@ -34,39 +34,23 @@ void write_file(const std::filesystem::path& path, const std::string& content, c
   file << content;
   file.flush();
   if (!file)
-    throw EvalDetectorError(option + " " + path.string() + ": cannot be written; check that its folder exists");
-}
-
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw EvalDetectorError("--out " + folder + ": cannot be created: " + error.message());
+    throw service::ConfigError(option + " " + path.string() + ": cannot be written; check that its folder exists");
 }
 
 /// Runs before the long work, so that a wrong path does not waste it.
 void check_outputs(const EvalDetectorOptions& options) {
-  if (!options.out_dir.empty()) make_folder(options.out_dir);
+  if (!options.out_dir.empty()) make_out_folder(options.out_dir);
   if (!options.json.empty()) write_file(options.json, "", "--json");
 }
 
-void run_on_labels(const EvalDetectorOptions& options, std::ostream& out, std::ostream& err) {
-  const LabelledResults results = evaluate_labels(options, err);
-  err << input_lines(results.input, "without label file (no objects)");
-  out << labelled_table(results);
+void write_results(const EvalDetectorOptions& options, const auto& results, const std::string& plot_name,
+                   std::ostream& out, std::ostream& err) {
+  err << input_lines(results);
+  out << to_table(results);
   if (!options.json.empty()) write_file(options.json, to_json(results).dump(2) + "\n", "--json");
   if (options.out_dir.empty()) return;
-  write_file(options.out_dir + "/thresholds.svg", threshold_plot(results).document(), "--out");
-  write_file(options.out_dir + "/detector.html", labelled_html(results), "--out");
-}
-
-void run_on_masks(const EvalDetectorOptions& options, std::ostream& out, std::ostream& err) {
-  const MaskResults results = evaluate_masks(options, err);
-  err << input_lines(results.input, "without mask (left out)");
-  out << mask_table(results);
-  if (!options.json.empty()) write_file(options.json, to_json(results).dump(2) + "\n", "--json");
-  if (options.out_dir.empty()) return;
-  write_file(options.out_dir + "/recall_over_roll.svg", roll_plot(results).document(), "--out");
-  write_file(options.out_dir + "/detector.html", mask_html(results), "--out");
+  write_file(options.out_dir + "/" + plot_name, to_plot(results).document(), "--out");
+  write_file(options.out_dir + "/detector.html", to_html(results), "--out");
 }
 
 void add_mask_options(CLI::App& command, EvalDetectorOptions& options) {
@@ -107,17 +91,18 @@ CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& optio
 }
 
 int run_eval_detector(const EvalDetectorOptions& options, std::ostream& out, std::ostream& err) {
-  try {
+  return guarded("rtd eval-detector", err, [&] {
     if (options.labels.empty() && options.masks.empty()) {
-      throw EvalDetectorError("add --labels DIR (average precision) or --masks DIR (recall)");
+      throw service::ConfigError("add --labels DIR (average precision) or --masks DIR (recall)");
     }
     check_outputs(options);
-    options.labels.empty() ? run_on_masks(options, out, err) : run_on_labels(options, out, err);
+    if (options.labels.empty()) {
+      write_results(options, evaluate_masks(options, err), "recall_over_roll.svg", out, err);
+    } else {
+      write_results(options, evaluate_labels(options, err), "thresholds.svg", out, err);
+    }
     return service::kOk;
-  } catch (const EvalDetectorError& error) {
-    err << "rtd eval-detector: " << error.what() << '\n';
-    return service::kUsageOrConfig;
-  }
+  });
 }
 
 }  // namespace rtd::eval

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <iosfwd>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -36,12 +35,6 @@ struct EvalDetectorOptions {
   std::vector<double> thresholds = {detector::DecodeConfig{}.confidence_threshold};  ///< for the masks
   RollRange roll;
   bool derotate = false;  ///< masks: also with the image turned upright by the true roll
-};
-
-/// The input cannot be evaluated at all; what() names option, value and fix.
-class EvalDetectorError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
 };
 
 /// Adds the subcommand `detector` to `parent`; parsing fills `options`, which must outlive `parent`.

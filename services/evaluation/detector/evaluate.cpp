@@ -3,20 +3,117 @@
 #include "services/evaluation/detector/evaluate.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "common/io/text.hpp"
 #include "common/service/command_line.hpp"
+#include "common/service/config.hpp"
+#include "common/service/progress.hpp"
 #include "common/vision/motion_levels.hpp"
-#include "services/evaluation/detector/image_folder.hpp"
+#include "services/detector/core/evaluation/labels.hpp"
 
 namespace rtd::eval {
+namespace fs = std::filesystem;
 namespace {
 
 constexpr double kLeastScore = 0.001;  // the whole curve counts
 constexpr std::size_t kTimedImages = 40;
+
+bool is_image(const fs::path& path) {
+  static const std::vector<std::string> kEndings = {".jpg", ".jpeg", ".png", ".bmp"};
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::ranges::find(kEndings, ending) != kEndings.end();
+}
+
+void require_folder(const std::string& folder, const std::string& option) {
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) {
+    throw service::ConfigError(option + " " + folder + ": there is no such folder");
+  }
+}
+
+/// Every `step`-th image of a folder, by name.
+std::vector<fs::path> images_in(const std::string& folder, int step) {
+  require_folder(folder, "--images");
+  std::vector<fs::path> all, taken;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (is_image(entry.path())) all.push_back(entry.path());
+  if (all.empty()) throw service::ConfigError("--images " + folder + ": has no images (jpg, jpeg, png, bmp)");
+  std::ranges::sort(all);
+  for (std::size_t i = 0; i < all.size(); i += static_cast<std::size_t>(step)) taken.push_back(all[i]);
+  return taken;
+}
+
+/// The file in `folder` that has the same name as `image` and one of the `endings`; empty when there is none.
+fs::path partner_of(const fs::path& image, const std::string& folder, const std::vector<std::string>& endings) {
+  for (const std::string& ending : endings) {
+    const fs::path candidate = fs::path(folder) / image.stem().concat(ending);
+    std::error_code ignored;
+    if (fs::is_regular_file(candidate, ignored)) return candidate;
+  }
+  return {};
+}
+
+std::string detect_format(const std::string& folder) {
+  std::size_t yolo = 0, voc = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path name = entry.path().filename();
+    if (name.extension() == ".txt" && name != "classes.txt") ++yolo;
+    if (name.extension() == ".xml") ++voc;
+  }
+  if (yolo > 0 && voc > 0) {
+    throw service::ConfigError("--labels " + folder + ": has " + std::to_string(yolo) + " .txt and " +
+                               std::to_string(voc) + " .xml files; add --label-format yolo or voc");
+  }
+  if (yolo + voc == 0)
+    throw service::ConfigError("--labels " + folder + ": has neither .txt (YOLO) nor .xml (VOC) files");
+  return yolo > 0 ? "yolo" : "voc";
+}
+
+/// A folder of label files named like the images.
+class LabelFolder {
+ public:
+  /// `format`: yolo (.txt), voc (.xml) or auto (the format in the folder). Throws service::ConfigError when the folder
+  /// is missing, or when auto finds both formats or none.
+  LabelFolder(const std::string& folder, const std::string& format);
+
+  const std::string& format() const { return format_; }
+  /// Whether the image has a label file; without one it has no objects.
+  bool has(const fs::path& image) const;
+  detector::ImageLabels read(const fs::path& image, detector::ImageSize size,
+                             const std::vector<std::string>& class_names) const;
+
+ private:
+  fs::path file_of(const fs::path& image) const;
+  std::string folder_, format_;
+};
+
+LabelFolder::LabelFolder(const std::string& folder, const std::string& format) : folder_(folder), format_(format) {
+  require_folder(folder, "--labels");
+  if (format == "auto") format_ = detect_format(folder);
+}
+
+bool LabelFolder::has(const fs::path& image) const {
+  return !file_of(image).empty();
+}
+
+detector::ImageLabels LabelFolder::read(const fs::path& image, detector::ImageSize size,
+                                        const std::vector<std::string>& class_names) const {
+  const fs::path path = file_of(image);
+  if (path.empty()) return {};
+  const detector::LabelFile text{path.filename().string(), io::read_text(path).value_or("")};
+  return format_ == "yolo" ? parse_yolo_labels(text, size, class_names) : parse_voc_labels(text, size);
+}
+
+fs::path LabelFolder::file_of(const fs::path& image) const {
+  return partner_of(image, folder_, {format_ == "yolo" ? ".txt" : ".xml"});
+}
 
 std::string level_of(const std::string& class_name) {
   static const vision::MotionLevels levels;
@@ -26,7 +123,7 @@ std::string level_of(const std::string& class_name) {
 }
 
 /// Runs every model on one image.
-void evaluate_image(const cv::Mat& image, const std::filesystem::path& path, const LabelFolder& labels,
+void evaluate_image(const cv::Mat& image, const fs::path& path, const LabelFolder& labels,
                     std::vector<ModelUnderTest>& models, std::vector<std::vector<detector::EvaluatedImage>>& evaluated,
                     InputReport& input) {
   if (!labels.has(path)) ++input.without_partner;
@@ -42,13 +139,13 @@ void evaluate_image(const cv::Mat& image, const std::filesystem::path& path, con
 void require_objects(const EvalDetectorOptions& options, const InputReport& input,
                      const std::vector<detector::EvaluatedImage>& evaluated) {
   if (input.without_partner == input.images && input.images > 0) {
-    throw EvalDetectorError("--labels " + options.labels + ": no file in it has the name of an image of --images " +
-                            options.images + " (photo.jpg needs photo.txt or photo.xml)");
+    throw service::ConfigError("--labels " + options.labels + ": no file in it has the name of an image of --images " +
+                               options.images + " (photo.jpg needs photo.txt or photo.xml)");
   }
   for (const detector::EvaluatedImage& image : evaluated)
     if (!image.truths.empty()) return;
-  throw EvalDetectorError("--labels " + options.labels + ": no object in it can be used" +
-                          (input.problems.empty() ? "" : ", for example " + input.problems.front()));
+  throw service::ConfigError("--labels " + options.labels + ": no object in it can be used" +
+                             (input.problems.empty() ? "" : ", for example " + input.problems.front()));
 }
 
 constexpr int kGrey = 114;
@@ -82,16 +179,15 @@ void add_recall(const MaskedImage& image, const std::vector<vision::Detection>& 
                 const EvalDetectorOptions& options, std::map<double, detector::MaskRecall>& by_threshold) {
   for (const double threshold : options.thresholds) {
     std::vector<vision::Detection> boxes;
-    std::copy_if(found.begin(), found.end(), std::back_inserter(boxes), [&](const vision::Detection& box) {
+    std::ranges::copy_if(found, std::back_inserter(boxes), [&](const vision::Detection& box) {
       return box.class_name == options.class_name && box.score >= threshold;
     });
     by_threshold[threshold] += detector::measure_mask_recall(image.mask, boxes);
   }
 }
 
-std::optional<MaskedImage> read_pair(const std::filesystem::path& path, const EvalDetectorOptions& options,
-                                     InputReport& input) {
-  const std::filesystem::path mask_path = partner_of(path, options.masks, {".png", ".jpg", ".bmp"});
+std::optional<MaskedImage> read_pair(const fs::path& path, const EvalDetectorOptions& options, InputReport& input) {
+  const fs::path mask_path = partner_of(path, options.masks, {".png", ".jpg", ".bmp"});
   if (mask_path.empty()) {
     ++input.without_partner;
     return std::nullopt;
@@ -116,13 +212,13 @@ std::optional<MaskedImage> read_pair(const std::filesystem::path& path, const Ev
 }  // namespace
 
 LabelledResults evaluate_labels(const EvalDetectorOptions& options, std::ostream& err) {
-  const std::vector<std::filesystem::path> images = images_in(options.images, "--images", options.step);
+  const std::vector<fs::path> images = images_in(options.images, options.step);
   const LabelFolder labels(options.labels, options.label_format);
   std::vector<ModelUnderTest> models = load_models(options, kLeastScore);
   std::vector<std::vector<detector::EvaluatedImage>> evaluated(models.size());
   LabelledResults results{{}, labels.format(), options.wanted_recall, {}};
   service::Progress progress(err, "images", images.size());
-  for (const std::filesystem::path& path : images) {
+  for (const fs::path& path : images) {
     const cv::Mat image = cv::imread(path.string());
     if (image.empty()) {
       ++results.input.not_decoded;
@@ -140,15 +236,14 @@ LabelledResults evaluate_labels(const EvalDetectorOptions& options, std::ostream
 }
 
 MaskResults evaluate_masks(const EvalDetectorOptions& options, std::ostream& err) {
-  const std::vector<std::filesystem::path> images = images_in(options.images, "--images", options.step);
+  const std::vector<fs::path> images = images_in(options.images, options.step);
   require_folder(options.masks, "--masks");
-  std::vector<ModelUnderTest> models =
-      load_models(options, *std::min_element(options.thresholds.begin(), options.thresholds.end()));
+  std::vector<ModelUnderTest> models = load_models(options, *std::ranges::min_element(options.thresholds));
   const std::vector<double> angles_deg = angles_of(options.roll);
   MaskResults results;
   results.models.resize(models.size());
   service::Progress progress(err, "images", images.size());
-  for (const std::filesystem::path& path : images) {
+  for (const fs::path& path : images) {
     const std::optional<MaskedImage> pair = read_pair(path, options, results.input);
     progress.advance();
     if (!pair) continue;
@@ -164,8 +259,8 @@ MaskResults evaluate_masks(const EvalDetectorOptions& options, std::ostream& err
     }
   }
   if (results.input.images == 0) {
-    throw EvalDetectorError("--masks " + options.masks + ": no mask in it belongs to an image of --images " +
-                            options.images + " (same name, same size)");
+    throw service::ConfigError("--masks " + options.masks + ": no mask in it belongs to an image of --images " +
+                               options.images + " (same name, same size)");
   }
   for (std::size_t m = 0; m < models.size(); ++m) results.models[m].model = models[m].facts();
   return results;

@@ -46,10 +46,10 @@ struct MaskResults {
   std::vector<MaskResult> models;
 };
 
-/// Runs all models on all images. Throws EvalDetectorError when the input cannot be used at all.
+/// Runs all models on all images. Throws service::ConfigError when the input cannot be used at all.
 LabelledResults evaluate_labels(const EvalDetectorOptions& options, std::ostream& err);
 
-/// Recall on masks, on images turned by each roll. Throws EvalDetectorError when the input cannot be used at all.
+/// Recall on masks, on images turned by each roll. Throws service::ConfigError when the input cannot be used at all.
 MaskResults evaluate_masks(const EvalDetectorOptions& options, std::ostream& err);
 
 }  // namespace rtd::eval

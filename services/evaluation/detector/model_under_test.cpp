@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
+#include "common/io/text.hpp"
+#include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
 
 namespace rtd::eval {
@@ -21,17 +21,12 @@ double thread_cpu_ms() {
   return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
 }
 
-std::string read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 std::string locate(const std::string& name) {
   const fs::path given(name);
   std::error_code ignored;
   if (fs::is_regular_file(given, ignored)) return name;
   const service::ModelSearch model = service::find_model(name, service::process_environment());
-  if (!model) throw EvalDetectorError(model.message);
+  if (!model) throw service::ConfigError(model.message);
   return model.path;
 }
 
@@ -53,7 +48,7 @@ ModelUnderTest::ModelUnderTest(const std::string& path, double least_score, cons
     : facts_{.name = fs::path(path).filename().string()},
       detector_(keep_from(config_of(path, class_names), least_score)),
       timed_(config_of(path, class_names)) {
-  const std::string bytes = read_file(path);
+  const std::string bytes = io::read_text(path).value_or("");
   const detector::OnnxFile file =
       detector::read_onnx_file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   facts_.size_mb = static_cast<double>(bytes.size()) * 1e-6;
@@ -85,15 +80,15 @@ ModelFacts ModelUnderTest::facts() const {
 std::vector<ModelUnderTest> load_models(const EvalDetectorOptions& options, double least_score) {
   std::vector<std::string> class_names;
   if (!options.names_file.empty()) {
-    class_names = detector::split_lines(read_file(options.names_file));
-    if (class_names.empty()) throw EvalDetectorError("--names " + options.names_file + ": is missing or empty");
+    class_names = detector::split_lines(io::read_text(options.names_file).value_or(""));
+    if (class_names.empty()) throw service::ConfigError("--names " + options.names_file + ": is missing or empty");
   }
   std::vector<ModelUnderTest> models;
   for (const std::string& name : options.models.empty() ? std::vector<std::string>{""} : options.models) {
     try {
       models.emplace_back(locate(name), least_score, class_names);
     } catch (const detector::ModelError& error) {
-      throw EvalDetectorError(error.what());
+      throw service::ConfigError(error.what());
     }
   }
   return models;

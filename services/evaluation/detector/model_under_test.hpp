@@ -41,7 +41,7 @@ class ModelUnderTest {
   std::vector<double> ms_;
 };
 
-/// All models of the options, or the default one. Throws EvalDetectorError when one is missing or broken.
+/// All models of the options, or the default one. Throws service::ConfigError when one is missing or broken.
 std::vector<ModelUnderTest> load_models(const EvalDetectorOptions& options, double least_score);
 
 }  // namespace rtd::eval

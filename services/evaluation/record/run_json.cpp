@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
-#include "services/evaluation/record/base64.hpp"
 #include "services/evaluation/record/run_record.hpp"
 
 namespace rtd::eval {

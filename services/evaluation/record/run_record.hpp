@@ -9,6 +9,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/msg/features.hpp"
@@ -79,6 +80,12 @@ bool has_true_masks(const std::string& source_uri);
 /// The mask folder of a source "tum:FOLDER"; empty for other sources.
 std::filesystem::path mask_folder(const std::string& source_uri);
 bool is_synthetic(const std::string& source_uri);
+
+/// RFC 4648 base64.
+std::string to_base64(const std::vector<std::uint8_t>& bytes);
+
+/// The bytes of a base64 text with padding. Throws std::invalid_argument when it is not one.
+std::vector<std::uint8_t> from_base64(std::string_view text);
 
 /// run.json cannot be written or read; what() names the file and the cause.
 class RunFileError : public std::runtime_error {

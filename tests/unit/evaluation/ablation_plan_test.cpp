@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/ablation/ablation_plan.hpp"
+#include "services/evaluation/core/ablation/ablation.hpp"
 
 #include <gmock/gmock.h>
 
@@ -42,7 +42,7 @@ TEST(AblationPlan, leaves_out_what_is_nothing_without_a_detector_and_says_so) {
   const AblationPlan plan = plan_ablation({{}, {"none"}, false}, kModes, kTechniques);
   EXPECT_THAT(names(plan), ElementsAre("off", "geometry", "rtd"));
   EXPECT_THAT(plan.notes, ElementsAre(HasSubstr("semantic"), HasSubstr("epipolar"), HasSubstr("rtd-paper")));
-  EXPECT_THROW(plan_ablation({{"semantic"}, {"none"}, false}, kModes, {}), AblationError) << "nothing is left";
+  EXPECT_THROW(plan_ablation({{"semantic"}, {"none"}, false}, kModes, {}), service::ConfigError) << "nothing is left";
 }
 
 TEST(AblationPlan, names_the_nearest_word_for_an_unknown_one) {
@@ -50,17 +50,17 @@ TEST(AblationPlan, names_the_nearest_word_for_an_unknown_one) {
       [] {
         plan_ablation({{}, {"depth_chek"}, true}, kModes, kTechniques);
       },
-      testing::ThrowsMessage<AblationError>(AllOf(HasSubstr("depth_chek"), HasSubstr("'depth_check'"))));
+      testing::ThrowsMessage<service::ConfigError>(AllOf(HasSubstr("depth_chek"), HasSubstr("'depth_check'"))));
   EXPECT_THAT(
       [] {
         plan_ablation({{"geometri"}, {}, true}, kModes, kTechniques);
       },
-      testing::ThrowsMessage<AblationError>(HasSubstr("did you mean 'geometry'")));
+      testing::ThrowsMessage<service::ConfigError>(HasSubstr("did you mean 'geometry'")));
   EXPECT_THAT(
       [] {
         plan_ablation({{}, {"zzzzzzzzzz"}, true}, kModes, kTechniques);
       },
-      testing::ThrowsMessage<AblationError>(HasSubstr("adaptive_kernel")))
+      testing::ThrowsMessage<service::ConfigError>(HasSubstr("adaptive_kernel")))
       << "none is near: all are listed";
 }
 

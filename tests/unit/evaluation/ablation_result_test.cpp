@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/ablation/ablation_result.hpp"
+#include "services/evaluation/core/ablation/ablation.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -8,8 +8,6 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-
-#include "services/evaluation/core/ablation/ablation_text.hpp"
 
 namespace rtd::eval {
 namespace {

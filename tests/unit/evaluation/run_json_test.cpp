@@ -9,7 +9,7 @@
 
 #include "services/evaluation/commands/report_command.hpp"
 #include "services/evaluation/core/report/report.hpp"
-#include "services/evaluation/record/base64.hpp"
+#include "services/evaluation/record/run_record.hpp"
 #include "tests/unit/evaluation/fabricated_run.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 

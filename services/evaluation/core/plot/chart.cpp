@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace rtd::plot {
@@ -126,7 +127,7 @@ void Chart::curve(const std::vector<double>& x, const std::vector<double>& y, co
 }
 
 void Chart::levels(std::vector<Level> levels) {
-  std::sort(levels.begin(), levels.end(), [](const Level& a, const Level& b) { return a.y > b.y; });
+  std::ranges::sort(levels, std::ranges::greater{}, &Level::y);
   double label_px = area_.y - kLabelDistance;
   for (const Level& level : levels) {
     if (!std::isfinite(level.y) || level.y < y_.min || level.y > y_.max) continue;

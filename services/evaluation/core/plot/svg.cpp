@@ -7,8 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
-#include "services/evaluation/record/base64.hpp"
+#include "services/evaluation/record/run_record.hpp"
 
 namespace rtd::plot {
 namespace {
@@ -45,17 +46,7 @@ std::string attributes(const Stroke& stroke) {
   return text;
 }
 
-const char* anchor_name(Anchor anchor) {
-  switch (anchor) {
-    case Anchor::kStart:
-      return "start";
-    case Anchor::kMiddle:
-      return "middle";
-    case Anchor::kEnd:
-      return "end";
-  }
-  return "start";
-}
+constexpr std::array<const char*, 3> kAnchorNames{"start", "middle", "end"};  // by Anchor
 
 }  // namespace
 
@@ -71,26 +62,14 @@ std::string error_colour(double fraction) {
 }
 
 std::string escape_markup(const std::string& text) {
+  constexpr std::string_view kSpecial = "&<>\"'";
+  constexpr std::array<const char*, kSpecial.size()> kEscaped{"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
   std::string safe;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      case '\'':
-        safe += "&#39;";
-        break;
-      default:
-        safe += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    if (const std::size_t special = kSpecial.find(c); special != std::string_view::npos) {
+      safe += kEscaped[special];
+    } else {
+      safe += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
     }
   }
   return safe;
@@ -142,7 +121,7 @@ void Svg::dots(const std::vector<Point>& centres, double diameter, const std::st
 void Svg::text(Point at, const std::string& content, const TextStyle& style) {
   if (!is_finite(at)) return;
   body_ += fmt::format("<text x=\"{}\" y=\"{}\" fill=\"{}\" font-size=\"{:g}\" text-anchor=\"{}\"", number(at.x),
-                       number(at.y), style.colour, style.size, anchor_name(style.anchor));
+                       number(at.y), style.colour, style.size, kAnchorNames.at(static_cast<std::size_t>(style.anchor)));
   if (style.bold) body_ += " font-weight=\"600\"";
   if (style.rotation_deg != 0) {
     body_ += fmt::format(" transform=\"rotate({:g} {} {})\"", style.rotation_deg, number(at.x), number(at.y));

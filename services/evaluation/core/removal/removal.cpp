@@ -66,10 +66,6 @@ MaskOf masks_of_scene(const std::string& uri) {
 
 }  // namespace
 
-void RemovalQuality::count(std::span<const msg::Feature> features, const cv::Mat& moving) {
-  count(judged(features), moving);
-}
-
 void RemovalQuality::count(std::span<const JudgedFeature> features, const cv::Mat& moving) {
   constexpr int kSide = 2 * kGrowPx + 1;
   cv::Mat grown;

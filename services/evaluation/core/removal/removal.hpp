@@ -25,7 +25,6 @@ struct RemovalQuality {
 
   /// Adds one frame. `moving`: CV_8UC1, not 0 = moving pixel; empty = nothing moves.
   void count(std::span<const JudgedFeature> features, const cv::Mat& moving);
-  void count(std::span<const msg::Feature> features, const cv::Mat& moving);
   /// Removed rightly of all removed; NaN when nothing was removed.
   double precision() const { return ratio(removed_rightly, removed_wrongly); }
   /// Removed rightly of all features on moving pixels; NaN when there are none.

@@ -84,9 +84,7 @@ PathCurve truth_path(const std::vector<Entry>& entries) {
   PathCurve curve;
   for (const Entry& entry : entries) {
     if (entry.summary.groundtruth.empty()) continue;
-    const RunTime time = run_time(*entry.run, entry.summary);
-    curve =
-        path_of(within(entry.summary.groundtruth, time.start_ns, time.start_ns + std::llround(time.duration_s * 1e9)));
+    curve = path_of(truth_during(entry.summary, run_time(*entry.run, entry.summary)));
     break;
   }
   curve.label = "ground truth";
@@ -150,8 +148,8 @@ std::string samples_section(const std::vector<Entry>& entries) {
   const auto removed = [](const Entry& e) {
     return std::isfinite(e.summary.removed_mean) ? e.summary.removed_mean : -1.0;
   };
-  const auto best = std::max_element(entries.begin(), entries.end(),
-                                     [&](const Entry& a, const Entry& b) { return removed(a) < removed(b); });
+  const auto best =
+      std::ranges::max_element(entries, [&](const Entry& a, const Entry& b) { return removed(a) < removed(b); });
   if (best == entries.end()) return "";
   const std::vector<html::Figure> figures = sample_figures(*best->run, kShownSamples);
   if (figures.empty()) return "";

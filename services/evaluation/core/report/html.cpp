@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/core/report/html.hpp"
 
+#include <array>
+
 #include "services/evaluation/core/plot/svg.hpp"
 
 namespace rtd::eval::html {
@@ -43,19 +45,7 @@ footer{color:#64727f;font-size:13px;margin-top:8px}
 @media print{body{background:#fff}section,.card,figure{break-inside:avoid}}
 )css";
 
-const char* tone_class(Tone tone) {
-  switch (tone) {
-    case Tone::kGood:
-      return "card good";
-    case Tone::kWarn:
-      return "card warn";
-    case Tone::kBad:
-      return "card bad";
-    case Tone::kNeutral:
-      return "card";
-  }
-  return "card";
-}
+constexpr std::array<const char*, 4> kToneClasses{"card", "card good", "card warn", "card bad"};  // by Tone
 
 std::string row(const std::vector<std::string>& cells, const std::string& tag) {
   std::string text = "<tr>";
@@ -82,9 +72,9 @@ std::string cards(const std::vector<Card>& cards) {
   std::string text = "<div class=\"cards\">\n";
   for (const Card& card : cards) {
     const std::string accent = card.accent.empty() ? "" : " style=\"border-top-color:" + card.accent + "\"";
-    text += "<div class=\"" + std::string(tone_class(card.tone)) + "\"" + accent + "><b>" + escape_markup(card.value) +
-            "</b><span>" + escape_markup(card.label) + "</span><small>" + escape_markup(card.detail) +
-            "</small></div>\n";
+    text += "<div class=\"" + kToneClasses.at(static_cast<std::size_t>(card.tone)) + "\"" + accent + "><b>" +
+            escape_markup(card.value) + "</b><span>" + escape_markup(card.label) + "</span><small>" +
+            escape_markup(card.detail) + "</small></div>\n";
   }
   return text + "</div>\n";
 }
@@ -96,11 +86,11 @@ std::string table(const Table& table) {
 }
 
 std::string badges(const std::vector<std::pair<std::string, std::string>>& badges) {
-  std::string text = "<div class=\"badges\">\n";
+  std::string text = "<div style=\"margin:-8px 0 18px\"><div class=\"badges\">\n";
   for (const auto& [name, value] : badges) {
     if (!value.empty()) text += "<span><i>" + escape_markup(name) + "</i>" + escape_markup(value) + "</span>\n";
   }
-  return text + "</div>\n";
+  return text + "</div>\n</div>\n";
 }
 
 std::string list(const std::vector<std::string>& lines) {

@@ -69,9 +69,28 @@ std::string summary_cards(const Run& run, const RunSummary& summary) {
       {accuracy_card(summary), coverage, drift_card(summary), latency_card(summary), speed, removed_card(summary)});
 }
 
-Trajectory truth_during(const RunSummary& summary, const RunTime& time) {
-  const auto end_ns = time.start_ns + std::llround(time.duration_s * 1e9);
-  return within(summary.groundtruth, time.start_ns, end_ns);
+std::vector<std::string> length_row(const std::string& name, const Statistics& s) {
+  if (s.count == 0) return {name, "-", "-", "-", "-"};
+  const LengthUnit unit = length_unit(s.rmse);
+  const auto text = [&](double value_m) { return fmt::format("{:.2f}", value_m * unit.per_metre); };
+  return {name + " [" + unit.name + "]", text(s.rmse), text(s.median), text(s.max), fmt::format("{}", s.count)};
+}
+
+std::vector<std::string> angle_row(const std::string& name, const Statistics& s) {
+  if (s.count == 0) return {name, "-", "-", "-", "-"};
+  const auto text = [&](double value_rad) { return fmt::format("{:.2f}", value_rad * kRadToDeg); };
+  return {name + " [deg]", text(s.rmse), text(s.median), text(s.max), fmt::format("{}", s.count)};
+}
+
+/// ATE and RPE of an evaluation with their statistics.
+html::Table accuracy_table(const Evaluation& e) {
+  return {{"error", "RMSE", "median", "max", "pairs"},
+          {length_row("ATE", e.ate.error_m), length_row("RPE per second", e.rpe_per_second.translation_m),
+           angle_row("RPE per second", e.rpe_per_second.rotation_rad),
+           length_row("RPE per frame", e.rpe_per_frame.translation_m),
+           angle_row("RPE per frame", e.rpe_per_frame.rotation_rad),
+           length_row("RPE per metre", e.rpe_per_metre.translation_m),
+           angle_row("RPE per metre", e.rpe_per_metre.rotation_rad)}};
 }
 
 std::string trajectory_section(const RunSummary& summary, const RunTime& time) {
@@ -189,21 +208,16 @@ std::string events_section(const Run& run, const RunSummary& summary) {
   return html::section("Events", "", html::list(lines));
 }
 
-std::string static_map_note(const Run& run) {
-  return run.static_map_path.empty() ? std::string() : fmt::format("{} points", run.static_map_points);
-}
-
 std::string header_badges(const Run& run, const RunSummary& summary) {
-  return "<div style=\"margin:-8px 0 18px\">" +
-         html::badges({{"filter", run.filter_mode},
-                       {"detector", run.detector},
-                       {"pace", run.pace},
-                       {"dds", run.dds},
-                       {"keyframes", fmt::format("{}", summary.keyframes)},
-                       {"landmarks", fmt::format("{}", summary.landmarks)},
-                       {"static map", static_map_note(run)},
-                       {"version", run.version}}) +
-         "</div>\n";
+  return html::badges(
+      {{"filter", run.filter_mode},
+       {"detector", run.detector},
+       {"pace", run.pace},
+       {"dds", run.dds},
+       {"keyframes", fmt::format("{}", summary.keyframes)},
+       {"landmarks", fmt::format("{}", summary.landmarks)},
+       {"static map", run.static_map_path.empty() ? "" : fmt::format("{} points", run.static_map_points)},
+       {"version", run.version}});
 }
 
 }  // namespace

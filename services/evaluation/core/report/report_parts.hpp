@@ -17,6 +17,8 @@ struct RunTime {
   double duration_s = 0;      ///< to the last frame, source time
 };
 RunTime run_time(const Run& run, const RunSummary& summary);
+/// The ground truth of that time.
+Trajectory truth_during(const RunSummary& summary, const RunTime& time);
 
 /// Features kept and removed per frame as stacked areas, inliers of tracking as a line, frames without pose as red
 /// bands.
@@ -31,15 +33,10 @@ std::string stage_chart(const RunSummary& summary);
 /// A kept frame with its features drawn on it: green kept, red removed. Empty when the JPEG cannot be read.
 std::string sample_picture(const SampleFrame& sample);
 
-/// Parts that the page of one run and the page of a comparison share.
-
 /// "12.34 ms" style text of a number, "unknown" when not finite.
 std::string number_text(double value, int decimals, const std::string& unit);
 /// Share as percentage: "99.52 %".
 std::string percent_text(double fraction);
-
-/// ATE and RPE of an evaluation with their statistics.
-html::Table accuracy_table(const Evaluation& evaluation);
 
 /// At most `wanted` sample frames, evenly spread, as figures with captions.
 std::vector<html::Figure> sample_figures(const Run& run, std::size_t wanted);

@@ -109,7 +109,7 @@ void draw_marginal(plot::Svg& svg, const Chart& chart, const LatencySeries& seri
     const double position = ms / chart.y().max * kBins;
     if (position >= 0 && position < kBins) ++bins[static_cast<std::size_t>(position)];
   }
-  const double highest = std::max(1.0, *std::max_element(bins.begin(), bins.end()));
+  const double highest = std::max(1.0, *std::ranges::max_element(bins));
   const double left = chart.area().x + chart.area().width + 6, height = chart.area().height / kBins;
   for (std::size_t i = 0; i < kBins; ++i) {
     const double y = chart.area().y + chart.area().height - static_cast<double>(i + 1) * height;
@@ -131,7 +131,7 @@ bool is_total(const StageSummary& stage) {
 
 void draw_stage_row(plot::Svg& svg, const StageSummary& stage, double y, double ms_to_px) {
   constexpr double kLeft = 190;
-  const char* colour = stage.name.rfind("filter", 0) == 0 ? palette::kBlue : palette::kPurple;
+  const char* colour = stage.name.starts_with("filter") ? palette::kBlue : palette::kPurple;
   const double p50 = kLeft + stage.ms.p50 * ms_to_px, p99 = kLeft + stage.ms.p99 * ms_to_px;
   svg.text({kLeft - 12, y + 4}, stage.name, {palette::kInk, 12.5, Anchor::kEnd, is_total(stage)});
   svg.rect({kLeft, y - 7, p50 - kLeft, 14}, colour, is_total(stage) ? 0.95 : 0.6, 2);
@@ -139,6 +139,13 @@ void draw_stage_row(plot::Svg& svg, const StageSummary& stage, double y, double 
   svg.line({p99, y - 5}, {p99, y + 5}, {colour, 1.6});
   svg.text({p99 + 9, y + 4}, fmt::format("{:.2f} / {:.2f} ms", stage.ms.p50, stage.ms.p99), {palette::kMuted, 12});
   svg.text({kChartWidth - 10, y + 4}, fmt::format("{} frames", stage.ms.count), {palette::kMuted, 12, Anchor::kEnd});
+}
+
+std::string caption(const SampleFrame& sample) {
+  const auto removed =
+      std::ranges::count_if(sample.features, [](const JudgedFeature& feature) { return feature.removed; });
+  return fmt::format("frame {}: {} kept, {} removed", sample.seq,
+                     sample.features.size() - static_cast<std::size_t>(removed), removed);
 }
 
 }  // namespace
@@ -151,6 +158,11 @@ RunTime run_time(const Run& run, const RunSummary& summary) {
   if (summary.estimate.empty()) return {};
   const std::int64_t start_ns = summary.estimate.front().stamp_ns;
   return {start_ns, static_cast<double>(summary.estimate.back().stamp_ns - start_ns) * 1e-9};
+}
+
+Trajectory truth_during(const RunSummary& summary, const RunTime& time) {
+  const auto end_ns = time.start_ns + std::llround(time.duration_s * 1e9);
+  return within(summary.groundtruth, time.start_ns, end_ns);
 }
 
 std::string points_chart(const Run& run, const RunSummary& summary) {
@@ -187,7 +199,7 @@ std::string latency_chart(const Run& run, const RunSummary& summary) {
   const double apart = std::isfinite(labels_px) ? std::max(0.0, (15 - labels_px) / 2) : 0.0;
   draw_percentile(svg, chart, latency.p50, "p50", palette::kGreen, apart);
   draw_percentile(svg, chart, latency.p99, "p99", palette::kAmber, -apart);
-  const auto beyond = std::count_if(series.ms.begin(), series.ms.end(), [&](double ms) { return ms > chart.y().max; });
+  const auto beyond = std::ranges::count_if(series.ms, [&](double ms) { return ms > chart.y().max; });
   std::vector<plot::LegendEntry> legend{{"one frame", palette::kBlue, true}};
   if (beyond > 0)
     legend.push_back({fmt::format("{} above the axis, up to {:.0f} ms", beyond, latency.max), palette::kRed, true});
@@ -198,8 +210,7 @@ std::string latency_chart(const Run& run, const RunSummary& summary) {
 std::string stage_chart(const RunSummary& summary) {
   constexpr double kRow = 26;
   std::vector<StageSummary> ran;
-  std::copy_if(summary.stages.begin(), summary.stages.end(), std::back_inserter(ran),
-               [](const StageSummary& s) { return s.ms.count > 0; });
+  std::ranges::copy_if(summary.stages, std::back_inserter(ran), [](const StageSummary& s) { return s.ms.count > 0; });
   double longest_ms = 1e-6;
   for (const StageSummary& stage : ran) longest_ms = std::max(longest_ms, stage.ms.p99);
   plot::Svg svg(kChartWidth, 34 + kRow * static_cast<double>(ran.size()),
@@ -226,6 +237,29 @@ std::string sample_picture(const SampleFrame& sample) {
   svg.dots(removed, 7, "#ffffff", 0.6);
   svg.dots(removed, 5.4, "#f5222d");
   return svg.str();
+}
+
+std::string number_text(double value, int decimals, const std::string& unit) {
+  if (!std::isfinite(value)) return "unknown";
+  return fmt::format("{:.{}f}{}{}", value, decimals, unit.empty() ? "" : " ", unit);
+}
+
+std::string percent_text(double fraction) {
+  if (!std::isfinite(fraction)) return "unknown";
+  // Never round up to 100 %: one lost frame must show.
+  const double percent = fraction < 1 ? std::floor(fraction * 1e4 + 1e-6) / 100 : fraction * 100;
+  return fmt::format("{:.{}f} %", percent, fraction == 1 ? 0 : 2);
+}
+
+std::vector<html::Figure> sample_figures(const Run& run, std::size_t wanted) {
+  std::vector<html::Figure> figures;
+  const std::size_t count = std::min(wanted, run.samples.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const SampleFrame& sample = run.samples[(2 * i + 1) * run.samples.size() / (2 * count)];
+    std::string picture = sample_picture(sample);
+    if (!picture.empty()) figures.push_back({std::move(picture), caption(sample)});
+  }
+  return figures;
 }
 
 }  // namespace rtd::eval

@@ -22,16 +22,20 @@ bool is_tracked(const FrameRecord& frame) {
   return frame.tracking.state == msg::TrackingState::kOk;
 }
 
-double mean_of(const std::vector<double>& values) {
-  return summarize(values).mean;
-}
-
 std::vector<double> latencies_ms(const Run& run) {
   std::vector<double> latencies;
   for (const FrameRecord& frame : run.frames) {
     if (const auto latency = latency_ms(frame)) latencies.push_back(*latency);
   }
   return latencies;
+}
+
+/// Summary of the finite values.
+TimeSummary summarize_times(const std::vector<double>& times_ms) {
+  std::vector<double> finite;
+  std::ranges::copy_if(times_ms, std::back_inserter(finite), [](double t) { return std::isfinite(t); });
+  const Statistics s = summarize(finite);
+  return {finite.size(), s.mean, percentile(finite, 0.5), percentile(finite, 0.99), s.max};
 }
 
 template <std::size_t N, typename TimesOf>
@@ -69,14 +73,10 @@ std::vector<LostFrames> lost_frames(const Run& run) {
   return lost;
 }
 
-void count_features(const Run& run, RunSummary& summary) {
-  std::vector<double> kept, removed;
-  for (const FrameRecord& frame : run.frames) {
-    kept.push_back(frame.tracking.features_static);
-    removed.push_back(frame.tracking.features_removed);
-  }
-  summary.kept_mean = mean_of(kept);
-  summary.removed_mean = mean_of(removed);
+double mean_of(const Run& run, const auto& count_of) {
+  std::vector<double> counts;
+  for (const FrameRecord& frame : run.frames) counts.push_back(count_of(frame));
+  return summarize(counts).mean;
 }
 
 Trajectory read_or_note(const std::string& what, const std::string& path, std::vector<std::string>& notes) {
@@ -115,13 +115,6 @@ std::optional<double> latency_ms(const FrameRecord& frame) {
   return static_cast<double>(tracking.finished_ns - tracking.published_ns) * 1e-6;
 }
 
-TimeSummary summarize_times(const std::vector<double>& times_ms) {
-  std::vector<double> finite;
-  std::copy_if(times_ms.begin(), times_ms.end(), std::back_inserter(finite), [](double t) { return std::isfinite(t); });
-  const Statistics s = summarize(finite);
-  return {finite.size(), s.mean, percentile(finite, 0.5), percentile(finite, 0.99), s.max};
-}
-
 Trajectory online_trajectory(const Run& run) {
   Trajectory trajectory;
   for (const FrameRecord& frame : run.frames) {
@@ -137,7 +130,7 @@ Trajectory online_trajectory(const Run& run) {
 
 RunSummary summarize_run(const Run& run) {
   RunSummary summary;
-  summary.frames_tracked = static_cast<std::uint64_t>(std::count_if(run.frames.begin(), run.frames.end(), is_tracked));
+  summary.frames_tracked = static_cast<std::uint64_t>(std::ranges::count_if(run.frames, is_tracked));
   if (run.frames_in > 0) {
     summary.coverage = static_cast<double>(summary.frames_tracked) / static_cast<double>(run.frames_in);
     if (run.duration_s > 0) summary.fps = static_cast<double>(run.frames_in) / run.duration_s;
@@ -148,7 +141,8 @@ RunSummary summarize_run(const Run& run) {
   append_stages(
       run, kSlamStageNames, [](const FrameRecord& f) -> auto& { return f.tracking.stage_ms; }, summary.stages);
   summary.lost = lost_frames(run);
-  count_features(run, summary);
+  summary.kept_mean = mean_of(run, [](const FrameRecord& f) { return f.tracking.features_static; });
+  summary.removed_mean = mean_of(run, [](const FrameRecord& f) { return f.tracking.features_removed; });
   if (!run.frames.empty()) {
     summary.keyframes = run.frames.back().tracking.keyframes;
     summary.landmarks = run.frames.back().tracking.landmarks;

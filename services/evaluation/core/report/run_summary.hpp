@@ -72,7 +72,4 @@ Trajectory online_trajectory(const Run& run);
 /// Camera to pose, ms; nothing when the frame has no pose or was not timed.
 std::optional<double> latency_ms(const FrameRecord& frame);
 
-/// Summary of the finite values.
-TimeSummary summarize_times(const std::vector<double>& times_ms);
-
 }  // namespace rtd::eval

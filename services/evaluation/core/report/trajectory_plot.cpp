@@ -25,10 +25,25 @@ double seconds(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-9;
 }
 
-std::vector<double> coordinate(const std::vector<Eigen::Vector3d>& points_m, int axis) {
+/// What `value_of` gives for each.
+std::vector<double> each(const auto& items, const auto& value_of) {
   std::vector<double> values;
-  for (const Eigen::Vector3d& p : points_m) values.push_back(p[axis]);
+  for (const auto& item : items) values.push_back(value_of(item));
   return values;
+}
+
+plot::Range range_along(const std::vector<Eigen::Vector3d>& points_m, int axis) {
+  return plot::range_of(each(points_m, [axis](const Eigen::Vector3d& p) { return p[axis]; }));
+}
+
+std::vector<Eigen::Vector3d> all_points(const std::vector<PathCurve>& curves) {
+  std::vector<Eigen::Vector3d> all_m;
+  for (const PathCurve& curve : curves) all_m.insert(all_m.end(), curve.points_m.begin(), curve.points_m.end());
+  return all_m;
+}
+
+PlaneView plane_of(const std::vector<PathCurve>& curves) {
+  return curves.empty() ? PlaneView{} : widest_plane(curves.front().points_m);
 }
 
 plot::Range padded(const plot::Range& range) {
@@ -37,8 +52,8 @@ plot::Range padded(const plot::Range& range) {
 }
 
 Chart path_chart(plot::Svg& svg, const Area& area, const std::vector<Eigen::Vector3d>& all_m, PlaneView plane) {
-  Chart chart = Chart::equal_aspect(svg, area, padded(plot::range_of(coordinate(all_m, plane.horizontal))),
-                                    padded(plot::range_of(coordinate(all_m, plane.vertical))));
+  Chart chart = Chart::equal_aspect(svg, area, padded(range_along(all_m, plane.horizontal)),
+                                    padded(range_along(all_m, plane.vertical)));
   chart.draw_axes(
       {kAxisNames[static_cast<std::size_t>(plane.horizontal)], kAxisNames[static_cast<std::size_t>(plane.vertical)]});
   return chart;
@@ -96,23 +111,9 @@ void mark_ends(plot::Svg& svg, Point start, Point end) {
 
 /// A few extreme errors must not paint everything else blue: the scale then ends above the 95th percentile.
 double colour_scale_end_m(const AteResult& ate) {
-  std::vector<double> errors_m;
-  for (const AtePoint& point : ate.points) errors_m.push_back(point.error_m);
-  const double p95_m = percentile(errors_m, 0.95);
+  const double p95_m = percentile(each(ate.points, [](const AtePoint& p) { return p.error_m; }), 0.95);
   const double end_m = ate.error_m.max > 2.5 * p95_m ? 1.5 * p95_m : ate.error_m.max;
   return std::isfinite(end_m) ? std::max(end_m, 1e-6) : 1e-6;
-}
-
-std::vector<double> errors_in(const AteResult& ate, const LengthUnit& unit) {
-  std::vector<double> errors;
-  for (const AtePoint& point : ate.points) errors.push_back(point.error_m * unit.per_metre);
-  return errors;
-}
-
-std::vector<double> times_since(const AteResult& ate, std::int64_t start_ns) {
-  std::vector<double> times;
-  for (const AtePoint& point : ate.points) times.push_back(seconds(point.stamp_ns - start_ns));
-  return times;
 }
 
 }  // namespace
@@ -131,9 +132,8 @@ std::string length_text(double length_m) {
 
 PlaneView widest_plane(const std::vector<Eigen::Vector3d>& points_m) {
   std::array<int, 3> axes{0, 1, 2};
-  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) {
-    return plot::range_of(coordinate(points_m, a)).span() > plot::range_of(coordinate(points_m, b)).span();
-  });
+  std::ranges::stable_sort(
+      axes, [&](int a, int b) { return range_along(points_m, a).span() > range_along(points_m, b).span(); });
   return {axes[0], axes[1]};
 }
 
@@ -146,18 +146,17 @@ PathCurve path_of(const Trajectory& trajectory) {
 
 Trajectory within(const Trajectory& trajectory, std::int64_t first_ns, std::int64_t last_ns) {
   Trajectory part;
-  std::copy_if(trajectory.begin(), trajectory.end(), std::back_inserter(part),
-               [&](const StampedPose& p) { return p.stamp_ns >= first_ns && p.stamp_ns <= last_ns; });
+  std::ranges::copy_if(trajectory, std::back_inserter(part),
+                       [&](const StampedPose& p) { return p.stamp_ns >= first_ns && p.stamp_ns <= last_ns; });
   return part;
 }
 
 double fitting_height(const std::vector<PathCurve>& curves, double width) {
   constexpr double kMarginX = 150, kMarginY = 76, kLowest = 400, kHighest = 640;
-  std::vector<Eigen::Vector3d> all_m;
-  for (const PathCurve& curve : curves) all_m.insert(all_m.end(), curve.points_m.begin(), curve.points_m.end());
-  const PlaneView plane = curves.empty() ? PlaneView{} : widest_plane(curves.front().points_m);
-  const double across = plot::range_of(coordinate(all_m, plane.horizontal)).span();
-  const double up = plot::range_of(coordinate(all_m, plane.vertical)).span();
+  const std::vector<Eigen::Vector3d> all_m = all_points(curves);
+  const PlaneView plane = plane_of(curves);
+  const double across = range_along(all_m, plane.horizontal).span();
+  const double up = range_along(all_m, plane.vertical).span();
   return std::clamp(kMarginY + (width - kMarginX) * 1.1 * up / across, kLowest, kHighest);
 }
 
@@ -186,15 +185,13 @@ void draw_error_path(plot::Svg& svg, const Area& area, const AteResult& ate, con
 }
 
 void draw_paths(plot::Svg& svg, const Area& area, const std::vector<PathCurve>& curves) {
-  std::vector<Eigen::Vector3d> all_m;
   std::vector<plot::LegendEntry> legend;
   for (const PathCurve& curve : curves) {
-    all_m.insert(all_m.end(), curve.points_m.begin(), curve.points_m.end());
     if (!curve.points_m.empty()) legend.push_back({curve.label, curve.colour});
   }
-  const PlaneView plane = curves.empty() ? PlaneView{} : widest_plane(curves.front().points_m);
+  const PlaneView plane = plane_of(curves);
   const Area frame{area.x + 58, area.y + 30, area.width - 58 - 14, area.height - 30 - 46};
-  const Chart chart = path_chart(svg, frame, all_m, plane);
+  const Chart chart = path_chart(svg, frame, all_points(curves), plane);
   for (PathCurve curve : curves) {
     curve.stroke.colour = curve.colour;
     draw_path(svg, chart, curve, plane);
@@ -215,7 +212,9 @@ void draw_errors_over_time(plot::Svg& svg, const Area& area, const std::vector<E
   Chart chart(svg, frame, {0, std::max(duration_s, 1e-3)}, {0, std::max(max_m, 1e-6) * unit.per_metre * 1.06});
   chart.draw_axes({"time since the first frame [s]", std::string("position error [") + unit.name + "]"});
   for (const ErrorCurve& curve : curves) {
-    chart.curve(times_since(*curve.ate, start_ns), errors_in(*curve.ate, unit), {curve.colour, 1.6}, kMaxGapS);
+    chart.curve(each(curve.ate->points, [&](const AtePoint& p) { return seconds(p.stamp_ns - start_ns); }),
+                each(curve.ate->points, [&](const AtePoint& p) { return p.error_m * unit.per_metre; }),
+                {curve.colour, 1.6}, kMaxGapS);
   }
   std::vector<plot::Level> levels;
   for (const ErrorCurve& curve : curves) {

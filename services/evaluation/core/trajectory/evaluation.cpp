@@ -100,7 +100,7 @@ Evaluation evaluate(const Trajectory& estimate, const Trajectory& groundtruth, c
   Evaluation evaluation;
   evaluation.estimate_poses = estimate.size();
   evaluation.groundtruth_poses = groundtruth.size();
-  evaluation.ate = ate(estimate, groundtruth, {options.association, options.alignment});
+  evaluation.ate = ate(estimate, groundtruth, options);
   const auto rpe_per = [&](RpeUnit unit) {
     return rpe(estimate, groundtruth, {1.0, unit, options.association.offset_s, evaluation.ate.alignment.scale});
   };

@@ -36,9 +36,7 @@ Coverage coverage_of_frames(const std::vector<std::int64_t>& frames_ns, const st
 Coverage coverage_of_span(std::int64_t first_ns, std::int64_t last_ns, const std::vector<std::int64_t>& poses_ns,
                           double max_gap_s);
 
-struct EvaluationOptions {
-  AssociationOptions association;
-  AlignmentKind alignment = AlignmentKind::kRigid;
+struct EvaluationOptions : AteOptions {
   double max_gap_s = 0.5;  ///< longer gaps between poses count as lost when there is no frame list
 };
 

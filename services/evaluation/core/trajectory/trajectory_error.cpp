@@ -24,7 +24,7 @@ Statistics summarize(const std::vector<double>& values) {
   s.rmse = std::sqrt(sum_squares / n);
   s.std_dev = std::sqrt(sum_deviations / n);
   s.median = percentile(values, 0.5);
-  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+  const auto [lowest, highest] = std::ranges::minmax_element(values);
   s.min = *lowest;
   s.max = *highest;
   return s;
@@ -32,7 +32,7 @@ Statistics summarize(const std::vector<double>& values) {
 
 double percentile(std::vector<double> values, double fraction) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const double position = std::clamp(fraction, 0.0, 1.0) * static_cast<double>(values.size() - 1);
   const auto below = static_cast<std::size_t>(position);
   const std::size_t above = std::min(below + 1, values.size() - 1);
@@ -49,67 +49,10 @@ Eigen::Vector3d reflection_guard(const Eigen::JacobiSVD<Eigen::Matrix3d>& svd) {
   return {1, 1, sign};
 }
 
-}  // namespace
-
-Alignment align(const Eigen::Matrix3Xd& estimate_m, const Eigen::Matrix3Xd& groundtruth_m, AlignmentKind kind) {
-  Alignment result;
-  result.unique = false;
-  if (estimate_m.cols() == 0) return result;
-  const Eigen::Vector3d estimate_mean = estimate_m.rowwise().mean(), groundtruth_mean = groundtruth_m.rowwise().mean();
-  const Eigen::Matrix3Xd estimate_centred = estimate_m.colwise() - estimate_mean;
-  const Eigen::Matrix3Xd groundtruth_centred = groundtruth_m.colwise() - groundtruth_mean;
-
-  const Eigen::Matrix3d cross_covariance = groundtruth_centred * estimate_centred.transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross_covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d singular = svd.singularValues(), guard = reflection_guard(svd);
-  const Eigen::Matrix3d R = svd.matrixU() * guard.asDiagonal() * svd.matrixV().transpose();
-
-  const double variance = estimate_centred.squaredNorm();
-  if (kind == AlignmentKind::kSimilarity && variance > 0 && singular[0] > 0)
-    result.scale = singular.dot(guard) / variance;
-  result.T_groundtruth_estimate.linear() = R;
-  result.T_groundtruth_estimate.translation() = groundtruth_mean - result.scale * (R * estimate_mean);
-  result.unique = singular[1] > kRankTolerance * singular[0];
-  return result;
-}
-
-std::vector<std::int64_t> shifted_stamps(const Trajectory& estimate, double offset_s) {
-  std::vector<std::int64_t> stamps_ns = stamps_of(estimate);
-  for (std::int64_t& stamp_ns : stamps_ns) stamp_ns += std::llround(offset_s * 1e9);
-  return stamps_ns;
-}
-
-AteResult ate(const Trajectory& estimate, const Trajectory& groundtruth, const AteOptions& options) {
-  const std::vector<geometry::StampPair> pairs =
-      geometry::associate(stamps_of(groundtruth), shifted_stamps(estimate, options.association.offset_s),
-                          std::llround(options.association.max_difference_s * 1e9));
-  Eigen::Matrix3Xd estimate_m(3, pairs.size()), groundtruth_m(3, pairs.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    estimate_m.col(column) = estimate[pairs[i].second].T_world_body.translation();
-    groundtruth_m.col(column) = groundtruth[pairs[i].first].T_world_body.translation();
-  }
-
-  AteResult result;
-  result.alignment = align(estimate_m, groundtruth_m, options.alignment);
-  std::vector<double> errors_m;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    const Eigen::Vector3d aligned_m = result.alignment * estimate_m.col(column);
-    errors_m.push_back((aligned_m - groundtruth_m.col(column)).norm());
-    result.points.push_back(
-        {estimate[pairs[i].second].stamp_ns, groundtruth_m.col(column), aligned_m, errors_m.back()});
-  }
-  result.error_m = summarize(errors_m);
-  return result;
-}
-
-namespace {
-
 /// Index of the entry nearest to `value` in an ordered, non-empty list; the earlier one when two are equally near.
 template <typename T>
 std::size_t nearest_index(const std::vector<T>& ordered, T value) {
-  const auto above = std::lower_bound(ordered.begin(), ordered.end(), value);
+  const auto above = std::ranges::lower_bound(ordered, value);
   if (above == ordered.begin()) return 0;
   const auto index = static_cast<std::size_t>(above - ordered.begin());
   if (above == ordered.end()) return index - 1;
@@ -178,6 +121,59 @@ double angle_rad(const Eigen::Matrix3d& R) {
 }
 
 }  // namespace
+
+Alignment align(const Eigen::Matrix3Xd& estimate_m, const Eigen::Matrix3Xd& groundtruth_m, AlignmentKind kind) {
+  Alignment result;
+  result.unique = false;
+  if (estimate_m.cols() == 0) return result;
+  const Eigen::Vector3d estimate_mean = estimate_m.rowwise().mean(), groundtruth_mean = groundtruth_m.rowwise().mean();
+  const Eigen::Matrix3Xd estimate_centred = estimate_m.colwise() - estimate_mean;
+  const Eigen::Matrix3Xd groundtruth_centred = groundtruth_m.colwise() - groundtruth_mean;
+
+  const Eigen::Matrix3d cross_covariance = groundtruth_centred * estimate_centred.transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross_covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Vector3d singular = svd.singularValues(), guard = reflection_guard(svd);
+  const Eigen::Matrix3d R = svd.matrixU() * guard.asDiagonal() * svd.matrixV().transpose();
+
+  const double variance = estimate_centred.squaredNorm();
+  if (kind == AlignmentKind::kSimilarity && variance > 0 && singular[0] > 0)
+    result.scale = singular.dot(guard) / variance;
+  result.T_groundtruth_estimate.linear() = R;
+  result.T_groundtruth_estimate.translation() = groundtruth_mean - result.scale * (R * estimate_mean);
+  result.unique = singular[1] > kRankTolerance * singular[0];
+  return result;
+}
+
+std::vector<std::int64_t> shifted_stamps(const Trajectory& estimate, double offset_s) {
+  std::vector<std::int64_t> stamps_ns = stamps_of(estimate);
+  for (std::int64_t& stamp_ns : stamps_ns) stamp_ns += std::llround(offset_s * 1e9);
+  return stamps_ns;
+}
+
+AteResult ate(const Trajectory& estimate, const Trajectory& groundtruth, const AteOptions& options) {
+  const std::vector<geometry::StampPair> pairs =
+      geometry::associate(stamps_of(groundtruth), shifted_stamps(estimate, options.association.offset_s),
+                          std::llround(options.association.max_difference_s * 1e9));
+  Eigen::Matrix3Xd estimate_m(3, pairs.size()), groundtruth_m(3, pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    estimate_m.col(column) = estimate[pairs[i].second].T_world_body.translation();
+    groundtruth_m.col(column) = groundtruth[pairs[i].first].T_world_body.translation();
+  }
+
+  AteResult result;
+  result.alignment = align(estimate_m, groundtruth_m, options.alignment);
+  std::vector<double> errors_m;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    const Eigen::Vector3d aligned_m = result.alignment * estimate_m.col(column);
+    errors_m.push_back((aligned_m - groundtruth_m.col(column)).norm());
+    result.points.push_back(
+        {estimate[pairs[i].second].stamp_ns, groundtruth_m.col(column), aligned_m, errors_m.back()});
+  }
+  result.error_m = summarize(errors_m);
+  return result;
+}
 
 RpeResult rpe(const Trajectory& estimate, const Trajectory& groundtruth, const RpeOptions& options) {
   RpeResult result;

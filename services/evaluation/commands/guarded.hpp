@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <exception>
+#include <filesystem>
+#include <ostream>
+#include <string>
+
+#include "common/geometry/trajectory.hpp"
+#include "common/service/config.hpp"
+#include "common/service/exit_code.hpp"
+#include "services/camera/core/frame_source.hpp"
+#include "services/evaluation/record/run_record.hpp"
+
+namespace rtd::eval {
+
+/// Throws service::ConfigError.
+inline void make_out_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw service::ConfigError("--out " + folder + ": cannot be created: " + error.message());
+}
+
+/// Runs `work`, which returns an exit code. What it throws becomes a line "<command>: <reason>" and an exit code: 2 for
+/// what the user named wrong, else 1.
+int guarded(const char* command, std::ostream& err, const auto& work) {
+  const auto refuse = [&](const std::exception& error, service::ExitCode code) {
+    err << command << ": " << error.what() << '\n';
+    return code;
+  };
+  try {
+    return work();
+  } catch (const service::ConfigError& error) {
+    return refuse(error, service::kUsageOrConfig);
+  } catch (const camera::SourceError& error) {
+    return refuse(error, service::kUsageOrConfig);
+  } catch (const geometry::TrajectoryError& error) {
+    return refuse(error, service::kUsageOrConfig);
+  } catch (const RunFileError& error) {
+    return refuse(error, service::kUsageOrConfig);
+  } catch (const std::exception& error) {
+    return refuse(error, service::kRunFailed);
+  }
+}
+
+}  // namespace rtd::eval

@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/evaluation/detector/detector_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "services/evaluation/core/plot/chart.hpp"
+#include "services/evaluation/core/report/html.hpp"
+
+namespace rtd::eval {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kCurveSteps = 100;  // thresholds 0.01 .. 0.99
+
+json input_json(const InputReport& input) {
+  return {{"images", input.images},
+          {"without_partner", input.without_partner},
+          {"not_decoded", input.not_decoded},
+          {"problems", input.problems}};
+}
+
+json model_json(const ModelFacts& model) {
+  return {{"name", model.name},
+          {"size_mb", model.size_mb},
+          {"parameters_m", model.parameters_m},
+          {"input_width_px", model.input_width_px},
+          {"input_height_px", model.input_height_px},
+          {"median_ms", model.median_ms > 0 ? json(model.median_ms) : json()}};
+}
+
+json point_json(const std::optional<detector::OperatingPoint>& point) {
+  if (!point) return {};
+  return {
+      {"threshold", point->threshold}, {"precision", point->precision}, {"recall", point->recall}, {"f1", point->f1}};
+}
+
+json boxes_json(const detector::BoxAccuracy& accuracy) {
+  return {{"objects", accuracy.truths},
+          {"detections", accuracy.detections},
+          {"ap50", accuracy.ap50()},
+          {"ap50_95", accuracy.ap50_95()},
+          {"ap_by_iou", accuracy.ap}};
+}
+
+json group_json(const detector::BoxAccuracy& accuracy, double wanted_recall) {
+  json group = boxes_json(accuracy);
+  group["best_f1"] = point_json(best_f1(accuracy.curve));
+  group["wanted_recall"] = point_json(highest_threshold_with_recall(accuracy.curve, wanted_recall));
+  group["curve"] = json::array();
+  for (int i = 1; i < kCurveSteps; ++i)
+    group["curve"].push_back(point_json(at_threshold(accuracy.curve, i / double(kCurveSteps))));
+  return group;
+}
+
+json recall_json(const RecallByRoll& by_roll) {
+  json rows = json::array();
+  for (const auto& [roll_deg, by_threshold] : by_roll)
+    for (const auto& [threshold, recall] : by_threshold) {
+      rows.push_back({{"roll_deg", roll_deg},
+                      {"threshold", threshold},
+                      {"pixel_recall", recall.pixel_recall()},
+                      {"images_complete", recall.image_share()},
+                      {"people", recall.people},
+                      {"people_found", recall.people_found},
+                      {"boxes", recall.boxes},
+                      {"boxes_beside", recall.boxes_beside}});
+    }
+  return rows;
+}
+
+constexpr std::size_t kShownProblems = 10;
+
+std::string model_rows(const LabelledResults& results) {
+  std::string text =
+      fmt::format("{:<28} {:>9} {:>7} {:>9} {:>7} {:>7} {:>9} {:>12} {:>9} {:>9} {:>9}\n", "model", "input", "MB",
+                  "params M", "ms", "AP50", "AP50:95", "person AP50", "high", "medium", "low");
+  for (const LabelledResult& result : results.models) {
+    const ModelFacts& model = result.model;
+    text += fmt::format("{:<28} {:>9} {:>7.2f} {:>9.3f} {:>7.1f} {:>7.3f} {:>9.3f} {:>12.3f}", model.name,
+                        fmt::format("{}x{}", model.input_width_px, model.input_height_px), model.size_mb,
+                        model.parameters_m, model.median_ms, result.accuracy.ap50, result.accuracy.ap50_95,
+                        result.accuracy.person.ap50());
+    for (const char* level : {"high", "medium", "low"}) {
+      const auto found = result.accuracy.groups.find(level);
+      text += found == result.accuracy.groups.end() ? fmt::format(" {:>9}", "-")
+                                                    : fmt::format(" {:>9.3f}", found->second.ap50());
+    }
+    text += '\n';
+  }
+  return text +
+         "ms: median CPU time of one image on one thread; high, medium, low: AP50 of all classes of a motion level "
+         "taken as one\n";
+}
+
+std::string point_text(const std::optional<detector::OperatingPoint>& point) {
+  if (!point) return "-";
+  return fmt::format("{:.3f} (P {:.2f} R {:.2f} F1 {:.2f})", point->threshold, point->precision, point->recall,
+                     point->f1);
+}
+
+std::string threshold_rows(const LabelledResults& results) {
+  const std::string wanted = fmt::format("recall {:.2f}", results.wanted_recall);
+  std::string text = fmt::format("\nconfidence threshold, high level\n{:<28} {:<36} {:<36} {}\n", "model", "best F1",
+                                 wanted, "default");
+  const double usual = detector::DecodeConfig{}.confidence_threshold;
+  for (const LabelledResult& result : results.models) {
+    const auto high = result.accuracy.groups.find("high");
+    if (high == result.accuracy.groups.end()) continue;
+    const auto& curve = high->second.curve;
+    text += fmt::format("{:<28} {:<36} {:<36} {}\n", result.model.name, point_text(best_f1(curve)),
+                        point_text(highest_threshold_with_recall(curve, results.wanted_recall)),
+                        point_text(at_threshold(curve, usual)));
+  }
+  return text;
+}
+
+std::string recall_row(const std::string& name, double roll_deg, double threshold, const detector::MaskRecall& recall) {
+  return fmt::format("{:<36} {:>6.0f} {:>10.2f} {:>12.3f} {:>14.3f} {:>9.3f} {:>8} {:>8}\n", name, roll_deg, threshold,
+                     recall.pixel_recall(), recall.image_share(),
+                     recall.people == 0 ? 1 : double(recall.people_found) / double(recall.people), recall.boxes,
+                     recall.boxes_beside);
+}
+
+std::string recall_rows(const std::string& name, const RecallByRoll& by_roll) {
+  std::string text;
+  for (const auto& [roll_deg, by_threshold] : by_roll)
+    for (const auto& [threshold, recall] : by_threshold) text += recall_row(name, roll_deg, threshold, recall);
+  return text;
+}
+
+std::string lines_of(const InputReport& input, const std::string& partner) {
+  std::string text = fmt::format("{} images", input.images);
+  if (input.without_partner > 0) text += fmt::format(", {} {}", input.without_partner, partner);
+  if (input.not_decoded > 0) text += fmt::format(", {} left out", input.not_decoded);
+  text += '\n';
+  for (std::size_t i = 0; i < std::min(input.problems.size(), kShownProblems); ++i)
+    text += "  " + input.problems[i] + '\n';
+  if (input.problems.size() > kShownProblems) {
+    text += fmt::format("  and {} more (--json lists all)\n", input.problems.size() - kShownProblems);
+  }
+  return text;
+}
+
+using plot::Chart;
+using plot::Svg;
+
+constexpr double kWidth = 900, kHeight = 420, kNoGap = std::numeric_limits<double>::infinity();
+constexpr plot::Area kArea{70, 50, 800, 300};
+
+std::string colour_of(std::size_t model) {
+  static constexpr std::array<const char*, 5> kColours = {
+      plot::palette::kBlue, plot::palette::kRed, plot::palette::kGreen, plot::palette::kAmber, plot::palette::kPurple};
+  return kColours[model % kColours.size()];
+}
+
+template <class Results>
+void draw_model_legend(Svg& svg, const Results& results) {
+  std::vector<plot::LegendEntry> entries;
+  for (std::size_t i = 0; i < results.models.size(); ++i)
+    entries.push_back({results.models[i].model.name, colour_of(i)});
+  plot::draw_legend(svg, {kArea.x, 28}, entries);
+}
+
+/// Pixel recall at the lowest threshold by roll.
+void draw_roll_curve(Chart& chart, const RecallByRoll& by_roll, const plot::Stroke& stroke) {
+  std::vector<double> rolls_deg, recalls;
+  for (const auto& [roll_deg, by_threshold] : by_roll) {
+    rolls_deg.push_back(roll_deg);
+    recalls.push_back(by_threshold.begin()->second.pixel_recall());
+  }
+  chart.curve(rolls_deg, recalls, stroke, kNoGap);
+}
+
+std::string preformatted(const std::string& text) {
+  return "<pre style=\"overflow-x:auto\">" + plot::escape_markup(text) + "</pre>";
+}
+
+}  // namespace
+
+json to_json(const LabelledResults& results) {
+  json document = {{"input", input_json(results.input)},
+                   {"label_format", results.format},
+                   {"wanted_recall", results.wanted_recall},
+                   {"models", json::array()}};
+  for (const LabelledResult& result : results.models) {
+    json entry = model_json(result.model);
+    entry["ap50"] = result.accuracy.ap50;
+    entry["ap50_95"] = result.accuracy.ap50_95;
+    for (const auto& [name, accuracy] : result.accuracy.classes) entry["classes"][name] = boxes_json(accuracy);
+    for (const auto& [name, accuracy] : result.accuracy.groups) {
+      entry["levels"][name] = group_json(accuracy, results.wanted_recall);
+    }
+    document["models"].push_back(entry);
+  }
+  return document;
+}
+
+json to_json(const MaskResults& results) {
+  json document = {{"input", input_json(results.input)}, {"models", json::array()}};
+  for (const MaskResult& result : results.models) {
+    json entry = model_json(result.model);
+    entry["as_seen"] = recall_json(result.as_seen);
+    entry["upright"] = recall_json(result.upright);
+    document["models"].push_back(entry);
+  }
+  return document;
+}
+
+std::string to_table(const LabelledResults& results) {
+  return model_rows(results) + threshold_rows(results);
+}
+
+std::string to_table(const MaskResults& results) {
+  std::string text = fmt::format("{:<36} {:>6} {:>10} {:>12} {:>14} {:>9} {:>8} {:>8}\n", "model", "roll", "confidence",
+                                 "pixel recall", "images complete", "people", "boxes", "beside");
+  for (const MaskResult& result : results.models) {
+    text += recall_rows(result.model.name, result.as_seen);
+    text += recall_rows(result.model.name + " upright", result.upright);
+  }
+  return text +
+         "images complete: every marked area (400 px or more) has half of its pixels in boxes; beside: boxes on "
+         "nothing marked\n";
+}
+
+std::string input_lines(const LabelledResults& results) {
+  return lines_of(results.input, "without label file (no objects)");
+}
+
+std::string input_lines(const MaskResults& results) {
+  return lines_of(results.input, "without mask (left out)");
+}
+
+Svg to_plot(const LabelledResults& results) {
+  Svg svg(kWidth, kHeight, "precision and recall over the confidence threshold");
+  Chart chart(svg, kArea, {0, 1}, {0, 1});
+  chart.draw_axes({"confidence threshold (high motion level; solid: recall, dashed: precision)", "share"});
+  draw_model_legend(svg, results);
+  for (std::size_t i = 0; i < results.models.size(); ++i) {
+    const auto high = results.models[i].accuracy.groups.find("high");
+    if (high == results.models[i].accuracy.groups.end()) continue;
+    std::vector<double> thresholds, precision, recall;
+    for (int step = 1; step < kCurveSteps; ++step) {
+      const detector::OperatingPoint point = at_threshold(high->second.curve, step / double(kCurveSteps));
+      if (point.recall <= 0) break;  // nothing is found any more: precision says nothing
+      thresholds.push_back(point.threshold);
+      precision.push_back(point.precision);
+      recall.push_back(point.recall);
+    }
+    chart.curve(thresholds, recall, {colour_of(i), 2}, kNoGap);
+    chart.curve(thresholds, precision, {colour_of(i), 1.5, "5 4"}, kNoGap);
+  }
+  return svg;
+}
+
+Svg to_plot(const MaskResults& results) {
+  Svg svg(kWidth, kHeight, "recall over roll");
+  std::vector<double> rolls_deg;
+  for (const auto& [roll_deg, recall] : results.models.front().as_seen) rolls_deg.push_back(roll_deg);
+  Chart chart(svg, kArea, plot::range_of(rolls_deg), {0, 1});
+  chart.draw_axes({"roll [deg] (dashed: as the camera sees it, solid: turned upright)", "pixel recall"});
+  draw_model_legend(svg, results);
+  for (std::size_t i = 0; i < results.models.size(); ++i) {
+    draw_roll_curve(chart, results.models[i].as_seen, {colour_of(i), 2, "5 4"});
+    draw_roll_curve(chart, results.models[i].upright, {colour_of(i), 2});
+  }
+  return svg;
+}
+
+std::string to_html(const LabelledResults& results) {
+  return html::page("Detector accuracy", input_lines(results),
+                    html::section("Models", "", preformatted(to_table(results))) +
+                        html::section("Thresholds", "", to_plot(results).str()));
+}
+
+std::string to_html(const MaskResults& results) {
+  return html::page("Detector recall on masks", input_lines(results),
+                    html::section("Recall over roll", "", to_plot(results).str()) +
+                        html::section("Figures", "", preformatted(to_table(results))));
+}
+
+}  // namespace rtd::eval
