@@ -208,18 +208,18 @@ std::string latency_chart(const Run& run, const RunSummary& summary) {
 }
 
 std::string stage_chart(const RunSummary& summary) {
-  constexpr double kRow = 26;
+  constexpr double kRowHeight = 26;
   std::vector<StageSummary> ran;
   std::ranges::copy_if(summary.stages, std::back_inserter(ran), [](const StageSummary& s) { return s.ms.count > 0; });
   double longest_ms = 1e-6;
   for (const StageSummary& stage : ran) longest_ms = std::max(longest_ms, stage.ms.p99);
-  plot::Svg svg(kChartWidth, 34 + kRow * static_cast<double>(ran.size()),
+  plot::Svg svg(kChartWidth, 34 + kRowHeight * static_cast<double>(ran.size()),
                 "Time of each stage: median and 99th percentile");
   plot::draw_legend(svg, {190, 15}, {{"filter", palette::kBlue}, {"slam", palette::kPurple}});
   svg.text({kChartWidth - 10, 15}, "bar: p50, whisker: p99, over the frames in which the stage ran",
            {palette::kMuted, 12, Anchor::kEnd});
   for (std::size_t i = 0; i < ran.size(); ++i) {
-    draw_stage_row(svg, ran[i], 44 + kRow * static_cast<double>(i), (kChartWidth - 190 - 240) / longest_ms);
+    draw_stage_row(svg, ran[i], 44 + kRowHeight * static_cast<double>(i), (kChartWidth - 190 - 240) / longest_ms);
   }
   return svg.str();
 }
