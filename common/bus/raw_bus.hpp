@@ -87,7 +87,8 @@ struct TopicWriter {
   RawQos qos;
   bool own = false;            ///< belongs to this connection
   bool shared_memory = false;  ///< its samples, of a fixed size, can be read in its shared memory
-  std::string user_data;       ///< what it announces beside; ROS 2: "typehash=RIHS01_...;" (common/ros2/type_description.hpp)
+  std::string
+      user_data;  ///< what it announces beside; ROS 2: "typehash=RIHS01_...;" (common/ros2/type_description.hpp)
 };
 
 enum class WriterChange { kAppeared, kChanged, kGone };

@@ -9,11 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/mcap/copy.hpp"
 #include "common/mcap/indexed_reader.hpp"
-#include "common/mcap/join.hpp"
-#include "common/mcap/recover.hpp"
 #include "common/service/command_line.hpp"
-#include "common/service/progress.hpp"
 #include "common/service/run_service.hpp"
 #include "services/recorder/recorder_service.hpp"
 

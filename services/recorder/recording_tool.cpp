@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "common/service/command_line.hpp"
-#include "common/service/progress.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/recorder/inspect/inspect_commands.hpp"
 #include "services/recorder/mcap_export.hpp"

@@ -10,7 +10,7 @@
 #include "common/msg/ros.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/offered_qos.hpp"
-#include "common/ros_codec/wire_writer.hpp"
+#include "common/ros_codec/wire.hpp"
 #include "common/service/config.hpp"
 #include "common/service/monotonic_clock.hpp"
 

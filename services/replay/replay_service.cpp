@@ -20,7 +20,7 @@
 #include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "common/service/pace.hpp"
+#include "common/service/pacer.hpp"
 #include "services/replay/core/topic_choice.hpp"
 #include "services/replay/input.hpp"
 #include "services/replay/replay_report.hpp"

@@ -13,9 +13,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
-#include "common/service/interrupt_signals.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/source_factory.hpp"

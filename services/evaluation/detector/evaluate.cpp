@@ -13,7 +13,6 @@
 #include "common/io/text.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
-#include "common/service/progress.hpp"
 #include "common/vision/motion_levels.hpp"
 #include "services/detector/core/evaluation/labels.hpp"
 

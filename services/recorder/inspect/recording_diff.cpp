@@ -11,7 +11,7 @@
 
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/stream_reader.hpp"
-#include "common/service/units_text.hpp"
+#include "common/service/command_line.hpp"
 #include "services/recorder/inspect/payload_diff.hpp"
 
 namespace rtd::recording {

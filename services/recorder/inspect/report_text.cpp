@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "common/service/command_line.hpp"
-#include "common/service/units_text.hpp"
 #include "services/recorder/inspect/recording_report.hpp"
 
 namespace rtd::recording {

@@ -12,7 +12,6 @@
 
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
-#include "common/service/progress.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_tool/map_report.hpp"
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <ostream>
 
-#include "common/service/units_text.hpp"
+#include "common/service/command_line.hpp"
 #include "services/slam/core/store/map_format.hpp"
 
 namespace rtd::map_tool {
