@@ -221,7 +221,7 @@ TEST_F(LiveSourceTest, a_clock_that_steps_back_is_an_error_not_silence) {
 TEST_F(LiveSourceTest, broken_messages_and_drops_are_counted) {
   info(), color(1.0), depth(1.0);
   color(1.1), depth(1.1);
-  script_.messages.back().message.bytes.resize(30);
+  script_.messages.back().bytes.resize(30);
   color(1.2), depth(1.2);
   LiveSource played = source();
   ASSERT_TRUE(played.open());
