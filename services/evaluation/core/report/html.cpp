@@ -72,8 +72,8 @@ std::string cards(const std::vector<Card>& cards) {
   std::string text = "<div class=\"cards\">\n";
   for (const Card& card : cards) {
     const std::string accent = card.accent.empty() ? "" : " style=\"border-top-color:" + card.accent + "\"";
-    text += "<div class=\"" + kToneClasses.at(static_cast<std::size_t>(card.tone)) + "\"" + accent + "><b>" +
-            escape_markup(card.value) + "</b><span>" + escape_markup(card.label) + "</span><small>" +
+    text += "<div class=\"" + std::string(kToneClasses.at(static_cast<std::size_t>(card.tone))) + "\"" + accent +
+            "><b>" + escape_markup(card.value) + "</b><span>" + escape_markup(card.label) + "</span><small>" +
             escape_markup(card.detail) + "</small></div>\n";
   }
   return text + "</div>\n";
