@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include "common/service/config.hpp"
+
 namespace rtd::eval {
 namespace {
 
