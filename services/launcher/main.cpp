@@ -100,7 +100,8 @@ int run_external_command(const std::string& name, std::vector<std::string> argum
   }
   const std::vector<std::string> first = known ? command->first_argument() : std::vector<std::string>{};
   arguments.insert(arguments.begin(), first.begin(), first.end());
-  std::cerr << "rtd: " << replace_process(executable, arguments) << '\n';
+  const std::string problem = replace_process(executable, arguments);  // returns only when it fails
+  std::cerr << "rtd: " << problem << '\n';
   return service::kRunFailed;
 }
 
