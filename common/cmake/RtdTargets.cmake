@@ -41,9 +41,8 @@ endif()
 
 if(RTD_SANITIZE)
   target_compile_options(rtd_compile_options INTERFACE -fsanitize=${RTD_SANITIZE} -fno-omit-frame-pointer)
-  # GCC warns of its own regular expressions and vectors once sanitizers are in (GCC bug 105562 and its like).
-  target_compile_options(rtd_compile_options INTERFACE
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-stringop-overflow;-Wno-array-bounds>)
+  # GCC warns of its own regular expressions once sanitizers are in (GCC bug 105562).
+  target_compile_options(rtd_compile_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(rtd_compile_options INTERFACE -fsanitize=${RTD_SANITIZE})
 endif()
 

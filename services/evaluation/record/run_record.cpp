@@ -73,7 +73,7 @@ std::vector<std::uint8_t> from_base64(std::string_view text) {
     }
     for (const unsigned shift : {16U, 8U, 0U}) bytes.push_back(static_cast<std::uint8_t>(group >> shift));
   }
-  bytes.resize(bytes.size() - padding);
+  for (; padding > 0; --padding) bytes.pop_back();
   return bytes;
 }
 
