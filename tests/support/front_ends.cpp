@@ -25,7 +25,7 @@ double ms_since(std::int64_t start_ns) {
 /// ORB features; with the source's mask those on moving pixels are removed.
 class MaskedOrb final : public FrontEnd {
  public:
-  explicit MaskedOrb(bool use_mask) : use_mask_(use_mask) {}
+  MaskedOrb(const filter::OrbConfig& orb, bool use_mask) : extractor_(orb), use_mask_(use_mask) {}
 
   FrontEndOutput process(const camera::SourceFrame& frame) override {
     const std::int64_t start_ns = service::monotonic_ns();
@@ -48,7 +48,7 @@ class MaskedOrb final : public FrontEnd {
     }
   }
 
-  filter::OrbExtractor extractor_{filter::OrbConfig{}};
+  filter::OrbExtractor extractor_;
   bool use_mask_;
 };
 
@@ -100,11 +100,15 @@ class Filtered final : public FrontEnd {
   double detector_ms_ = 0;  ///< spent for the present frame
 };
 
+bool is_filter_mode(const std::string& mode) {
+  return mode != "off" && mode != "true-mask";
+}
+
 filter::FilterConfig filter_config(const FrontEndOptions& options) {
   filter::ServiceConfig config;
   service::ConfigBinder binder;
   binder.section("filter", config);
-  binder.set("filter.mode=" + options.mode);
+  if (is_filter_mode(options.mode)) binder.set("filter.mode=" + options.mode);
   for (const std::string& setting : options.filter_settings) binder.set(setting);
   return config.core_config();
 }
@@ -112,10 +116,8 @@ filter::FilterConfig filter_config(const FrontEndOptions& options) {
 }  // namespace
 
 std::unique_ptr<FrontEnd> make_front_end(const FrontEndOptions& options) {
-  if (options.mode == "off" || options.mode == "true-mask") {
-    return std::make_unique<MaskedOrb>(options.mode == "true-mask");
-  }
   const filter::FilterConfig config = filter_config(options);
+  if (!is_filter_mode(options.mode)) return std::make_unique<MaskedOrb>(config.orb, options.mode == "true-mask");
   const bool looks = options.mode != "geometry" && options.detector.kind != "off";
   DetectorOptions paced = options.detector;
   if (paced.derotate) paced.roll = std::make_shared<detector::CameraRoll>(*paced.derotate);

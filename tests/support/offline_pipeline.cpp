@@ -76,6 +76,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
   slam::SlamSystem slam(options.slam, options.mapping, options.now_ns);
   if (options.on_start) options.on_start(slam);
   OfflineReport report;
+  for (std::size_t i = 0; i < options.first_frame; ++i) source->next();
   std::optional<std::int64_t> first_ns;
   auto next_frame = std::chrono::steady_clock::now();
   while (options.max_frames == 0 || report.frames < options.max_frames) {

@@ -51,7 +51,8 @@ std::unique_ptr<FrontEnd> make_front_end(const FrontEndOptions& options);
 struct OfflineOptions {
   std::string source;  ///< URI, e.g. "tum:/data/walk_xyz?masks=1"
   FrontEndOptions front_end;
-  std::size_t max_frames = 0;  ///< 0 = all
+  std::size_t first_frame = 0;  ///< so many frames of the source are passed over
+  std::size_t max_frames = 0;   ///< 0 = all
   slam::SlamConfig slam;
   slam::MappingMode mapping = slam::MappingMode::kSynchronous;
   double min_period_s = 0;  ///< a frame at most so often, as from a live camera; 0: as fast as it goes

@@ -12,6 +12,12 @@ const char* failure_name(msg::TrackingState state) {
   return says_more ? msg::to_string(state) : "lost";
 }
 
+std::string why_without_pose(int inliers, int needed) {
+  const std::string found = std::to_string(inliers);
+  if (inliers < needed) return found + " of " + std::to_string(needed) + " landmarks that a pose needs";
+  return found + " landmarks agree with a pose that is not believed, because too few of the expected ones were found";
+}
+
 }  // namespace
 
 SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns,
@@ -105,8 +111,8 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
     return outcome;
   }
   if (outcome.state != msg::TrackingState::kOk) {
-    output.problem = std::string(failure_name(outcome.state)) + ": " + std::to_string(outcome.inliers) + " of " +
-                     std::to_string(config_.tracker.min_inliers) + " landmarks that a pose needs";
+    output.problem = std::string(failure_name(outcome.state)) + ": " +
+                     why_without_pose(outcome.inliers, config_.tracker.min_inliers);
     return outcome;
   }
   record(outcome.tracked);

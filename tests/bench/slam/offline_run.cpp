@@ -7,8 +7,11 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
+#include "common/service/config.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
+#include "services/slam/config.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
 namespace {
@@ -113,6 +116,18 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
       "gone from BEGIN:END, seconds after the first frame");
 }
 
+/// The settings of the filter, and the configuration of slam with those of slam.
+std::pair<std::vector<std::string>, rtd::slam::SlamConfig> split_settings(const std::vector<std::string>& settings,
+                                                                          rtd::slam::ServiceConfig& slam) {
+  std::vector<std::string> filter_settings;
+  rtd::service::ConfigBinder binder;
+  binder.section("slam", slam);
+  for (const std::string& setting : settings) {
+    setting.starts_with("slam.") ? binder.set(setting) : filter_settings.push_back(setting);
+  }
+  return {filter_settings, rtd::slam::with_vocabulary(slam)};
+}
+
 void print_errors(const rtd::test_support::OfflineReport& report) {
   for (const auto& point : rtd::eval::ate(report.trajectory, report.groundtruth).points) {
     std::printf("%.6f %.4f\n", static_cast<double>(point.stamp_ns) * 1e-9, point.error_m);
@@ -132,11 +147,14 @@ int main(int argc, char** argv) {
   rtd::test_support::OfflineOptions options;
   std::string trajectory_file, truth_file;
   bool verbose = false, threaded = false, errors = false, json = false;
-  auto& slam = options.slam;
+  rtd::slam::ServiceConfig slam_settings;
+  auto& slam = slam_settings.core;
+  std::vector<std::string> settings;
   app.add_option("--source", options.source, "source URI or TUM folder")->required();
   app.add_option("--mode", options.front_end.mode, "off, true-mask, semantic, geometry, epipolar, rtd-paper, rtd");
-  app.add_option("--set", options.front_end.filter_settings, "filter.KEY=VALUE, e.g. filter.techniques.belief=false");
+  app.add_option("--set", settings, "filter.KEY=VALUE or slam.KEY=VALUE, e.g. filter.techniques.belief=false");
   add_detector_options(app, options.front_end.detector);
+  app.add_option("--first-frame", options.first_frame, "pass over so many frames of the source");
   app.add_option("--frames", options.max_frames, "stop after so many frames, 0 = all");
   app.add_option("--out", trajectory_file, "write the trajectory here, TUM format");
   app.add_option("--disparity", slam.sensor.disparity_px_m);
@@ -175,6 +193,7 @@ int main(int argc, char** argv) {
     };
   }
   try {
+    std::tie(options.front_end.filter_settings, options.slam) = split_settings(settings, slam_settings);
     const auto report = rtd::test_support::run_offline(options);
     json ? print_json(report) : print(report);
     if (errors) print_errors(report);
