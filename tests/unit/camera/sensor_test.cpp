@@ -84,5 +84,16 @@ TEST(Sensor, colour_noise_has_the_stated_deviation) {
   EXPECT_NEAR(deviation[1], 2.0, 0.15);
 }
 
+TEST(Sensor, has_noise_for_rows_wider_than_640_px) {
+  const Sensor sensor({}, 1);
+  const cv::Mat grey(600, Sensor::kWidestRowPx, CV_8UC3, cv::Scalar::all(128));
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(sensor.measure_color(grey, 3).colRange(3000, Sensor::kWidestRowPx), mean, deviation);
+  EXPECT_NEAR(mean[0], 128, 0.1);
+  EXPECT_NEAR(deviation[1], 2.0, 0.15);
+  const cv::Mat too_wide(1, Sensor::kWidestRowPx + 1, CV_8UC3, cv::Scalar::all(128));
+  EXPECT_THROW(sensor.measure_color(too_wide, 0), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace rtd::camera::synthetic

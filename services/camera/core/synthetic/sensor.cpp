@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "services/camera/core/synthetic/texture.hpp"
 
@@ -52,13 +54,20 @@ void Lighting::apply(cv::Mat& color_bgr, double t_s) const {
 
 namespace {
 
-constexpr std::size_t kNoiseTable = 1U << 16U;
-constexpr std::size_t kLongestRow = 2048;  ///< values that one row reads in sequence: 640 px x 3
+constexpr std::size_t kNoiseStarts = (1U << 16U) - 2048;  ///< where a row may start to read
+constexpr std::size_t kLongestRow = std::size_t{3} * Sensor::kWidestRowPx;
+constexpr std::size_t kNoiseTable = kNoiseStarts + kLongestRow;
 
 /// Where a row starts to read the noise table: different in every row and frame.
 std::size_t noise_offset(std::uint64_t seed, std::uint64_t frame_index, int row) {
   SeededRandom random(seed ^ (frame_index * 0x9E3779B97F4A7C15ULL) ^ (static_cast<std::uint64_t>(row) << 48U));
-  return random.next() % (kNoiseTable - kLongestRow);
+  return random.next() % kNoiseStarts;
+}
+
+void check_width(const cv::Mat& image) {
+  if (image.cols <= Sensor::kWidestRowPx) return;
+  throw std::invalid_argument("synthetic sensor: image width is " + std::to_string(image.cols) +
+                              " px, allowed are at most " + std::to_string(Sensor::kWidestRowPx));
 }
 
 }  // namespace
@@ -84,6 +93,7 @@ std::uint16_t Sensor::to_units(float depth_m) const {
 }
 
 cv::Mat Sensor::measure_depth(const cv::Mat& inverse_depth, std::uint64_t frame_index) const {
+  check_width(inverse_depth);
   cv::Mat depth(inverse_depth.size(), CV_16UC1);
   for (int row = 0; row < depth.rows; ++row) {
     auto* units = depth.ptr<std::uint16_t>(row);
@@ -126,6 +136,7 @@ void Sensor::measure_depth_row(const cv::Mat& inverse_depth, int row, std::uint6
 }
 
 cv::Mat Sensor::measure_color(const cv::Mat& ideal_bgr, std::uint64_t frame_index) const {
+  check_width(ideal_bgr);
   cv::Mat color(ideal_bgr.size(), CV_8UC3);
   const int bytes = 3 * ideal_bgr.cols;
   for (int row = 0; row < color.rows; ++row) {

@@ -42,6 +42,8 @@ struct SensorModel {
 /// Turns ideal images into measured ones. The same seed and frame index give the same noise. Not thread-safe.
 class Sensor {
  public:
+  static constexpr int kWidestRowPx = 4096;  ///< wider images throw std::invalid_argument
+
   Sensor(const SensorModel& model, std::uint64_t seed);
 
   /// 16-bit depth, 0 = no measurement: out of range, grazing, beside a depth edge, or hidden from the projector.
