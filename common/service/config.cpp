@@ -10,7 +10,9 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
-#include <numeric>
+#include <limits>
+
+#include "common/io/text.hpp"
 
 namespace rtd::service {
 
@@ -64,21 +66,6 @@ std::string section_of(const std::string& key) {
   return key.substr(0, key.find('.'));
 }
 
-int edit_distance(const std::string& a, const std::string& b) {
-  std::vector<int> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    int diagonal = row[0];
-    row[0] = static_cast<int>(i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const int substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
-    }
-  }
-  return row[b.size()];
-}
-
 /// Calls visit(key, yaml) for every node that is a known key or a leaf, with sections joined by dots.
 void flatten(const YAML::Node& node, const std::string& prefix, const std::vector<std::string>& known,
              const std::function<void(const std::string&, const std::string&)>& visit) {
@@ -105,16 +92,7 @@ std::vector<std::string> split_at_dots(const std::string& key) {
 }  // namespace
 
 std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates) {
-  std::string best;
-  int best_distance = static_cast<int>(std::max<std::size_t>(2, name.size() / 3)) + 1;
-  for (const std::string& candidate : candidates) {
-    const int distance = edit_distance(name, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
-  }
-  return best;
+  return io::nearest_name(name, candidates);
 }
 
 ConfigBinder::ConfigBinder() = default;

@@ -35,5 +35,10 @@ TEST(SplitLines, leaves_out_comments_and_blank_lines) {
   EXPECT_THAT(lines[1].fields, ElementsAre("c"));
 }
 
+TEST(NearestName, finds_a_typo_and_nothing_far_away) {
+  EXPECT_EQ(nearest_name("hole", {"seed", "holes"}), "holes");
+  EXPECT_EQ(nearest_name("zebra", {"seed", "holes"}), "");
+}
+
 }  // namespace
 }  // namespace rtd::io
