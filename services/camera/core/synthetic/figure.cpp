@@ -21,6 +21,7 @@ struct BodyPart {
   Vector3f center_m, semi_axes_m;
   float turned_rad = 0;      ///< about the joint's left-right axis
   float joint_height_m = 0;  ///< z of the joint
+  Material material = Material::kPlain;
 };
 
 }  // namespace
@@ -41,7 +42,8 @@ struct Figure::Placing {
     Eigen::Isometry3f T_person_body = Eigen::Isometry3f::Identity();
     T_person_body.linear() = Eigen::AngleAxisf(part.turned_rad, Vector3f::UnitY()).toRotationMatrix();
     T_person_body.translation() = scale * (joint + T_person_body.linear() * (center_m - joint));
-    geometry.ellipsoids.push_back({T_world_person * T_person_body, scale * semi_axes_m, texture, moving, object});
+    geometry.ellipsoids.push_back(
+        {T_world_person * T_person_body, scale * semi_axes_m, texture, moving, object, part.material});
   }
   void add_above_hips(BodyPart part, int texture, bool moving) {
     part.center_m += hip_shift_m;
@@ -85,10 +87,12 @@ void Figure::append_to(Geometry& geometry, const Posture& posture) const {
 void Figure::append_upper_body(Placing& placing, const Posture& posture) const {
   const bool body = placing.body_moves, limbs = placing.limbs_move;
   const float nod_rad = 0.5F * posture.fidget_rad;
-  placing.add_above_hips({{0.02F, 0, 1.62F}, {0.105F, 0.085F, 0.135F}, nod_rad, 1.5F}, skin_texture_, limbs);  // head
-  placing.add_above_hips({{0, 0, 1.46F}, {0.055F, 0.055F, 0.10F}}, skin_texture_, body);                       // neck
-  placing.add_above_hips({{0, 0, 1.17F}, {0.14F, 0.225F, 0.33F}}, shirt_texture_, body);                       // torso
-  placing.add_above_hips({{0, 0, 0.90F}, {0.145F, 0.19F, 0.17F}}, trousers_texture_, body);                    // hips
+  placing.add_above_hips({{0.02F, 0, 1.62F}, {0.105F, 0.085F, 0.135F}, nod_rad, 1.5F, Material::kHead}, skin_texture_,
+                         limbs);
+  placing.add_above_hips({{0, 0, 1.46F}, {0.055F, 0.055F, 0.10F}}, skin_texture_, body);  // neck
+  placing.add_above_hips({{0, 0, 1.17F}, {0.14F, 0.225F, 0.33F}}, shirt_texture_, body);  // torso
+  placing.add_above_hips({{0, 0, 0.90F}, {0.145F, 0.19F, 0.17F}, 0, 0, Material::kDark}, trousers_texture_,
+                         body);  // hips
   for (const float side : {-1.0F, 1.0F}) {
     const float arm_rad =
         -side * posture.swing * kArmSwingRad + posture.seated * kSeatedArmRad + side * posture.fidget_rad;
@@ -98,8 +102,9 @@ void Figure::append_upper_body(Placing& placing, const Posture& posture) const {
 
 void Figure::append_standing_legs(Placing& placing, float swing) const {
   for (const float side : {-1.0F, 1.0F}) {
-    placing.add({{0, side * 0.10F, 0.44F}, {0.085F, 0.08F, 0.45F}, side * swing * kLegSwingRad, kHipHeightM},
-                trousers_texture_, placing.body_moves);
+    placing.add(
+        {{0, side * 0.10F, 0.44F}, {0.085F, 0.08F, 0.45F}, side * swing * kLegSwingRad, kHipHeightM, Material::kDark},
+        trousers_texture_, placing.body_moves);
   }
 }
 
@@ -107,9 +112,11 @@ void Figure::append_standing_legs(Placing& placing, float swing) const {
 void Figure::append_bent_legs(Placing& placing, float thigh_rad) const {
   for (const float side : {-1.0F, 1.0F}) {
     const Vector3f knee_m(0, side * 0.10F, kKneeHeightM);
-    placing.add({{0, knee_m.y(), 0.22F}, {0.065F, 0.065F, 0.235F}}, trousers_texture_, placing.body_moves);
-    placing.add({knee_m + Vector3f(0, 0, kThighM / 2), {0.08F, 0.08F, 0.26F}, -thigh_rad, kKneeHeightM},
-                trousers_texture_, placing.body_moves);
+    placing.add({{0, knee_m.y(), 0.22F}, {0.065F, 0.065F, 0.235F}, 0, 0, Material::kDark}, trousers_texture_,
+                placing.body_moves);
+    placing.add(
+        {knee_m + Vector3f(0, 0, kThighM / 2), {0.08F, 0.08F, 0.26F}, -thigh_rad, kKneeHeightM, Material::kDark},
+        trousers_texture_, placing.body_moves);
   }
 }
 

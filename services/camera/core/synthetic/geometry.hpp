@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,14 @@ namespace rtd::camera::synthetic {
 
 inline constexpr int kRoomItself = -1;  ///< no object: walls and furniture
 
+/// How a surface returns infrared light, whatever its colour.
+enum class Material : std::uint8_t {
+  kPlain,
+  kHead,     ///< skin with hair on it
+  kDark,     ///< hair, dark cloth
+  kMonitor,  ///< a screen
+};
+
 /// A textured rectangle, seen from the side its normal axis_s x axis_t points to. World frame: z up.
 struct Face {
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< corner with texture coordinate (0, 0)
@@ -21,6 +30,7 @@ struct Face {
   int texture = 0;                                                                       ///< index
   bool moving = false;
   int object = kRoomItself;  ///< index
+  Material material = Material::kPlain;
 };
 
 /// A textured ellipsoid. Body frame: centre and main axes.
@@ -30,6 +40,7 @@ struct Ellipsoid {
   int texture = 0;  ///< index
   bool moving = false;
   int object = kRoomItself;  ///< index
+  Material material = Material::kPlain;
 };
 
 /// Everything there is to see at one moment.
@@ -48,6 +59,7 @@ struct Cuboid {
   int texture = 0;
   bool moving = false;
   int object = kRoomItself;
+  Material material = Material::kPlain;
 };
 
 /// T_world_body of something that stands at `position_m`, turned about the vertical.

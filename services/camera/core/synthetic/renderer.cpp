@@ -35,6 +35,11 @@ float unit_sphere_depth(const Eigen::Vector3f& center, const Eigen::Vector3f& ra
   return std::max(0.0F, (-b - std::sqrt(discriminant)) / a);
 }
 
+/// Whether hair grows at a point of a head, a unit sphere here: its back (x forward) and its top (z up).
+bool is_hair(const Eigen::Vector3f& on_sphere) {
+  return on_sphere.z() > 0.45F || (on_sphere.x() < 0.1F && on_sphere.z() > -0.5F);
+}
+
 }  // namespace
 
 Renderer::Renderer(const geometry::CameraModel& camera)
@@ -42,22 +47,30 @@ Renderer::Renderer(const geometry::CameraModel& camera)
       color_bgr_(camera_.height, camera_.width, CV_8UC3),
       inverse_depth_(camera_.height, camera_.width, CV_32FC1),
       moving_mask_(camera_.height, camera_.width, CV_8UC1),
+      material_(camera_.height, camera_.width, CV_8UC1),
+      object_(camera_.height, camera_.width, CV_16SC1),
       ids_(camera_.height, camera_.width, CV_32SC1) {}
 
 Rendering Renderer::render(const Geometry& geometry, const std::vector<Texture>& textures,
                            const Eigen::Isometry3d& T_world_camera) {
+  return render_rows(geometry, textures, T_world_camera, {0, camera_.height});
+}
+
+Rendering Renderer::render_rows(const Geometry& geometry, const std::vector<Texture>& textures,
+                                const Eigen::Isometry3d& T_world_camera, cv::Range rows) {
+  rows_ = rows;
   set_pose(T_world_camera);
   collect(geometry, textures);
-  inverse_depth_.setTo(0);
-  ids_.setTo(kNothing);
+  inverse_depth_.rowRange(rows).setTo(0);
+  ids_.rowRange(rows).setTo(kNothing);
   std::int32_t id = 0;
   for (const VisibleFace& face : faces_) cover_with_face(face, id++);
   for (const VisibleEllipsoid& ellipsoid : ellipsoids_) cover_with_ellipsoid(ellipsoid, id++);
-  objects_.assign(geometry.object_classes.size(), {});
+  if (rows.start == 0) objects_.assign(geometry.object_classes.size(), {});
   shade();
   std::vector<ObjectView> seen;
   std::ranges::copy_if(objects_, std::back_inserter(seen), [](const ObjectView& o) { return o.visible_px > 0; });
-  return {color_bgr_, inverse_depth_, moving_mask_, std::move(seen)};
+  return {color_bgr_, inverse_depth_, moving_mask_, material_, object_, std::move(seen)};
 }
 
 void Renderer::set_pose(const Eigen::Isometry3d& T_world_camera) {
@@ -86,6 +99,7 @@ void Renderer::collect(const Geometry& geometry, const std::vector<Texture>& tex
     visible.texture = &textures[static_cast<std::size_t>(face.texture)];
     visible.moving = face.moving;
     visible.object = face.object;
+    visible.material = face.material;
     visible.plane_distance_m = distance_m;
     const float scale = visible.texture->texels_per_m;
     const LinearForm toward = along(normal * (-1.0F / distance_m));  // 1/z = -(n . ray) / distance
@@ -118,11 +132,12 @@ void Renderer::collect_ellipsoid(const Ellipsoid& ellipsoid, const std::vector<T
   visible.texture = &textures[static_cast<std::size_t>(ellipsoid.texture)];
   visible.moving = ellipsoid.moving;
   visible.object = ellipsoid.object;
+  visible.material = ellipsoid.material;
   ellipsoids_.push_back(visible);
 }
 
 cv::Rect Renderer::bounds_px(const Ellipsoid& ellipsoid) const {
-  const cv::Rect image(0, 0, camera_.width, camera_.height);
+  const cv::Rect image(0, rows_.start, camera_.width, rows_.size());
   float u_min = 1e9F, u_max = -1e9F, v_min = 1e9F, v_max = -1e9F;
   int in_front = 0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -168,7 +183,7 @@ Renderer::Span Renderer::row_span(const VisibleFace& face, float v) const {
 }
 
 void Renderer::cover_with_face(const VisibleFace& face, std::int32_t id) {
-  for (int row = 0; row < camera_.height; ++row) {
+  for (int row = rows_.start; row < rows_.end; ++row) {
     const auto v = static_cast<float>(row);
     const Span span = row_span(face, v);
     float* nearest = inverse_depth_.ptr<float>(row);
@@ -199,40 +214,48 @@ void Renderer::cover_with_ellipsoid(const VisibleEllipsoid& ellipsoid, std::int3
 }
 
 void Renderer::shade() {
-  const auto face_count = static_cast<std::int32_t>(faces_.size());
-  for (int row = 0; row < camera_.height; ++row) {
+  for (int row = rows_.start; row < rows_.end; ++row) {
     const std::int32_t* ids = ids_.ptr<std::int32_t>(row);
     for (int begin = 0; begin < camera_.width;) {
       const std::int32_t id = ids[begin];
       int end = begin + 1;
       while (end < camera_.width && end < begin + kRunBlock && ids[end] == id) ++end;
-      bool moving = false;
-      int object = kRoomItself;
-      if (id == kNothing) {
-        std::fill_n(color_bgr_.ptr<std::uint8_t>(row) + 3 * begin, 3 * (end - begin), std::uint8_t{0});
-      } else if (id < face_count) {
-        const VisibleFace& face = faces_[static_cast<std::size_t>(id)];
-        shade_face_run(face, row, {begin, end});
-        moving = face.moving, object = face.object;
-      } else {
-        const VisibleEllipsoid& ellipsoid = ellipsoids_[static_cast<std::size_t>(id - face_count)];
-        shade_ellipsoid_run(ellipsoid, row, {begin, end});
-        moving = ellipsoid.moving, object = ellipsoid.object;
-      }
-      if (object != kRoomItself) note_object(object, moving, row, {begin, end});
-      std::fill(moving_mask_.ptr<std::uint8_t>(row) + begin, moving_mask_.ptr<std::uint8_t>(row) + end,
-                static_cast<std::uint8_t>(moving ? 255 : 0));
+      label_run(shade_run(id, row, {begin, end}), row, {begin, end});
       begin = end;
     }
   }
 }
 
-void Renderer::note_object(int object, bool moving, int row, Span span) {
-  ObjectView& view = objects_[static_cast<std::size_t>(object)];
-  view.object = object;
-  view.bounds_px |= cv::Rect(span.begin, row, span.end - span.begin, 1);  // union; an empty one counts for nothing
-  view.visible_px += span.end - span.begin;
-  view.moving = view.moving || moving;
+Renderer::Run Renderer::shade_run(std::int32_t id, int row, Span span) {
+  const auto face_count = static_cast<std::int32_t>(faces_.size());
+  if (id == kNothing) {
+    std::fill_n(color_bgr_.ptr<std::uint8_t>(row) + 3 * span.begin, 3 * (span.end - span.begin), std::uint8_t{0});
+    return {};
+  }
+  if (id < face_count) {
+    const VisibleFace& face = faces_[static_cast<std::size_t>(id)];
+    shade_face_run(face, row, span);
+    return {face.moving, face.object, face.material};
+  }
+  const VisibleEllipsoid& ellipsoid = ellipsoids_[static_cast<std::size_t>(id - face_count)];
+  shade_ellipsoid_run(ellipsoid, row, span);
+  return {ellipsoid.moving, ellipsoid.object, ellipsoid.material};
+}
+
+void Renderer::label_run(const Run& run, int row, Span span) {
+  const int pixels = span.end - span.begin;
+  std::fill_n(moving_mask_.ptr<std::uint8_t>(row) + span.begin, pixels,
+              static_cast<std::uint8_t>(run.moving ? 255 : 0));
+  std::fill_n(object_.ptr<std::int16_t>(row) + span.begin, pixels, static_cast<std::int16_t>(run.object));
+  if (run.material != Material::kHead) {  // shade_ellipsoid_run has told hair from skin
+    std::fill_n(material_.ptr<std::uint8_t>(row) + span.begin, pixels, static_cast<std::uint8_t>(run.material));
+  }
+  if (run.object == kRoomItself) return;
+  ObjectView& view = objects_[static_cast<std::size_t>(run.object)];
+  view.object = run.object;
+  view.bounds_px |= cv::Rect(span.begin, row, pixels, 1);  // union; an empty one counts for nothing
+  view.visible_px += pixels;
+  view.moving = view.moving || run.moving;
 }
 
 /// Texels of level 0 under one pixel of a surface seen head-on.
@@ -277,6 +300,10 @@ void Renderer::shade_ellipsoid_run(const VisibleEllipsoid& ellipsoid, int row, S
     pixel[0] = static_cast<std::uint8_t>(((texel & 255U) * light) >> 8);
     pixel[1] = static_cast<std::uint8_t>((((texel >> 8) & 255U) * light) >> 8);
     pixel[2] = static_cast<std::uint8_t>((((texel >> 16) & 255U) * light) >> 8);
+    if (ellipsoid.material == Material::kHead) {
+      material_.at<std::uint8_t>(row, column) =
+          static_cast<std::uint8_t>(is_hair(on_sphere) ? Material::kDark : Material::kPlain);
+    }
   }
 }
 

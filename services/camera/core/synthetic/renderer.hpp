@@ -24,6 +24,8 @@ struct Rendering {
   cv::Mat color_bgr;                ///< CV_8UC3
   cv::Mat inverse_depth;            ///< CV_32FC1, 1 / z in 1/m; 0 = nothing there
   cv::Mat moving_mask;              ///< CV_8UC1, 255 = moving object
+  cv::Mat material;                 ///< CV_8UC1, Material; a head is skin (kPlain) and hair (kDark)
+  cv::Mat object;                   ///< CV_16SC1, index of the object or kRoomItself
   std::vector<ObjectView> objects;  ///< those that are seen, by index
 };
 
@@ -36,6 +38,11 @@ class Renderer {
 
   Rendering render(const Geometry& geometry, const std::vector<Texture>& textures,
                    const Eigen::Isometry3d& T_world_camera);
+  /// Draws some rows as they are seen at one moment; the others stay as they were drawn for another. Bands are drawn
+  /// from the top: the first row forgets the objects that were seen.
+  Rendering render_rows(const Geometry& geometry, const std::vector<Texture>& textures,
+                        const Eigen::Isometry3d& T_world_camera, cv::Range rows);
+  int height_px() const { return camera_.height; }
 
  private:
   /// value(u, v) = at_origin + per_u * u + per_v * v
@@ -51,6 +58,7 @@ class Renderer {
     const Texture* texture = nullptr;
     bool moving = false;
     int object = kRoomItself;
+    Material material = Material::kPlain;
   };
   /// An ellipsoid in the frame where it is the unit sphere; the ray to a pixel is center + z * (ray0 + u * ray_u + v *
   /// ray_v).
@@ -61,6 +69,7 @@ class Renderer {
     const Texture* texture = nullptr;
     bool moving = false;
     int object = kRoomItself;
+    Material material = Material::kPlain;
   };
   struct Span {
     int begin, end;
@@ -75,20 +84,28 @@ class Renderer {
   Span row_span(const VisibleFace& face, float v) const;
   void cover_with_ellipsoid(const VisibleEllipsoid& ellipsoid, std::int32_t id);
   void shade();
-  void note_object(int object, bool moving, int row, Span span);
+  /// What a run of pixels shows, apart from its colour.
+  struct Run {
+    bool moving = false;
+    int object = kRoomItself;
+    Material material = Material::kPlain;
+  };
+  Run shade_run(std::int32_t id, int row, Span span);
+  void label_run(const Run& run, int row, Span span);
   void shade_face_run(const VisibleFace& face, int row, Span span);
   void shade_ellipsoid_run(const VisibleEllipsoid& ellipsoid, int row, Span span);
   float footprint_texels(float texels_per_m, float inverse_depth) const;
 
   geometry::CameraModel::Parameters camera_;
+  cv::Range rows_;                        ///< that are drawn now
   Eigen::Vector3f ray0_, ray_u_, ray_v_;  ///< ray to pixel (u, v) with z = 1, world frame: ray0 + u * ray_u + v * ray_v
   Eigen::Vector3f position_;              ///< camera centre, world frame
   Eigen::Matrix3f R_camera_world_;
   std::vector<VisibleFace> faces_;
   std::vector<VisibleEllipsoid> ellipsoids_;
   std::vector<ObjectView> objects_;  ///< index: object; visible_px 0 = not seen
-  cv::Mat color_bgr_, inverse_depth_, moving_mask_,
-      ids_;  ///< ids: CV_32SC1, index of a face, then of an ellipsoid, -1 nothing
+  cv::Mat color_bgr_, inverse_depth_, moving_mask_, material_, object_;
+  cv::Mat ids_;  ///< CV_32SC1, index of a face, then of an ellipsoid, -1 nothing
 };
 
 }  // namespace rtd::camera::synthetic

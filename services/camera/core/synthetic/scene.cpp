@@ -18,6 +18,7 @@ constexpr float kRoomWallTexelsPerM = 192, kRoomFloorTexelsPerM = 112, kFurnitur
 struct Furniture {
   Vector3f position_m, size_m;
   float turned_rad;
+  Material material = Material::kPlain;
 };
 constexpr float kTableTopM = 0.62F;
 
@@ -26,13 +27,13 @@ const std::vector<Furniture>& furniture() {
       {{-2.4F, 2.85F, 0}, {1.3F, 0.45F, 1.9F}, 0},        // shelf, front wall
       {{-0.9F, 2.75F, 0}, {1.2F, 0.6F, 0.8F}, 0},         // sideboard
       {{-1.2F, 2.75F, 0.8F}, {0.35F, 0.3F, 0.4F}, 0.3F},  // things on it
-      {{-0.6F, 2.7F, 0.8F}, {0.25F, 0.2F, 0.28F}, -0.4F},
+      {{-0.6F, 2.7F, 0.8F}, {0.25F, 0.2F, 0.28F}, -0.4F, Material::kMonitor},
       {{0.9F, 2.8F, 0}, {0.9F, 0.5F, 1.3F}, 0},  // cabinet
-      {{0.8F, 2.75F, 1.3F}, {0.4F, 0.3F, 0.35F}, 0.2F},
+      {{0.8F, 2.75F, 1.3F}, {0.4F, 0.3F, 0.35F}, 0.2F, Material::kMonitor},
       {{2.5F, 2.7F, 0}, {1.0F, 0.7F, 1.0F}, 0.1F},  // chest
-      {{2.6F, 2.7F, 1.0F}, {0.5F, 0.4F, 0.45F}, -0.3F},
+      {{2.6F, 2.7F, 1.0F}, {0.5F, 0.4F, 0.45F}, -0.3F, Material::kMonitor},
       {{-3.2F, 0.6F, 0}, {0.5F, 1.5F, 1.1F}, 0},  // left wall
-      {{-3.2F, 0.2F, 1.1F}, {0.3F, 0.4F, 0.5F}, 0.5F},
+      {{-3.2F, 0.2F, 1.1F}, {0.3F, 0.4F, 0.5F}, 0.5F, Material::kMonitor},
       {{-3.2F, 1.0F, 1.1F}, {0.3F, 0.3F, 0.3F}, -0.2F},
       {{3.2F, 0.7F, 0}, {0.5F, 1.3F, 1.6F}, 0},  // right wall
       {{3.1F, -1.2F, 0}, {0.6F, 1.2F, 0.75F}, 0},
@@ -81,6 +82,7 @@ std::vector<Face> build_room(std::uint64_t seed, std::vector<Texture>& textures)
   std::vector<Face> faces = shell(random, textures);
   for (const Furniture& piece : furniture()) {
     Cuboid cuboid{.T_world_cuboid = upright(piece.position_m, piece.turned_rad), .size_m = piece.size_m};
+    cuboid.material = piece.material;
     const float width_m = std::max(piece.size_m.x(), piece.size_m.y());
     cuboid.texture = add_texture(textures, width_m, std::max(piece.size_m.z(), width_m), kFurnitureTexelsPerM,
                                  random_style(random, 12.0F), random.next());
