@@ -92,13 +92,15 @@ std::uint16_t Sensor::to_units(float depth_m) const {
   return static_cast<std::uint16_t>(std::lround(depth_m * model_.depth_units_per_m));
 }
 
-cv::Mat Sensor::measure_depth(const cv::Mat& inverse_depth, std::uint64_t frame_index) const {
+cv::Mat Sensor::measure_depth(const cv::Mat& inverse_depth, std::uint64_t frame_index, const cv::Mat& noise) const {
   check_width(inverse_depth);
-  cv::Mat depth(inverse_depth.size(), CV_16UC1);
+  cv::Mat depth(inverse_depth.size(), CV_16UC1), noise_steps;
+  noise.convertTo(noise_steps, CV_32F, static_cast<double>(model_.disparity_noise_steps));
   for (int row = 0; row < depth.rows; ++row) {
     auto* units = depth.ptr<std::uint16_t>(row);
     if (model_.noise) {
-      measure_depth_row(inverse_depth, row, frame_index, units);
+      const float* white = depth_noise_.data() + noise_offset(seed_, frame_index, row);
+      measure_depth_row(inverse_depth, row, noise.empty() ? white : noise_steps.ptr<float>(row), units);
     } else {
       const auto* w = inverse_depth.ptr<float>(row);
       for (int column = 0; column < depth.cols; ++column) {
@@ -109,12 +111,10 @@ cv::Mat Sensor::measure_depth(const cv::Mat& inverse_depth, std::uint64_t frame_
   return depth;
 }
 
-void Sensor::measure_depth_row(const cv::Mat& inverse_depth, int row, std::uint64_t frame_index,
-                               std::uint16_t* depth) const {
+void Sensor::measure_depth_row(const cv::Mat& inverse_depth, int row, const float* noise, std::uint16_t* depth) const {
   const auto* w = inverse_depth.ptr<float>(row);
   const auto* above = inverse_depth.ptr<float>(std::max(row - 1, 0));
   const auto* below = inverse_depth.ptr<float>(std::min(row + 1, inverse_depth.rows - 1));
-  const float* noise = depth_noise_.data() + noise_offset(seed_, frame_index, row);
   const float steps_m = model_.baseline_px_m / model_.disparity_step_px;
   const int last_steps = static_cast<int>(units_of_disparity_.size()) - 1;
   const int last_column = inverse_depth.cols - 1;
@@ -123,7 +123,7 @@ void Sensor::measure_depth_row(const cv::Mat& inverse_depth, int row, std::uint6
   float hidden_from = static_cast<float>(2 * inverse_depth.cols);
   for (int column = last_column; column >= 0; --column) {
     const float here = w[column];
-    const float projector_column = static_cast<float>(column) - model_.baseline_px_m * here;
+    const float projector_column = static_cast<float>(column) - model_.shadow_px_m * here;
     const bool hidden = projector_column > hidden_from;
     hidden_from = std::min(hidden_from, projector_column);
     const float slope_u = std::abs(w[std::min(column + 1, last_column)] - w[std::max(column - 1, 0)]);

@@ -33,6 +33,7 @@ struct SensorModel {
   float depth_units_per_m = 5000;
   float min_depth_m = 0.45F, max_depth_m = 6.0F;
   float baseline_px_m = 43.5F;  ///< projector baseline 7.5 cm x focal length 580 px: disparity = this / z
+  float shadow_px_m = 43.5F;    ///< width of the projector's shadow = this x difference of 1/z
   float disparity_step_px = 0.125F;
   float disparity_noise_steps = 0.4F;  ///< standard deviation; with the rounding sigma_z is about 0.0014 z^2 m
   float max_relative_slope = 0.025F;   ///< of 1/z over two pixels: steeper is grazing incidence or a depth edge
@@ -47,12 +48,13 @@ class Sensor {
   Sensor(const SensorModel& model, std::uint64_t seed);
 
   /// 16-bit depth, 0 = no measurement: out of range, grazing, beside a depth edge, or hidden from the projector.
-  cv::Mat measure_depth(const cv::Mat& inverse_depth, std::uint64_t frame_index) const;
+  /// `noise`: CV_32FC1, variance 1, instead of the sensor's own white noise when not empty.
+  cv::Mat measure_depth(const cv::Mat& inverse_depth, std::uint64_t frame_index, const cv::Mat& noise = {}) const;
   /// The image with noise, in a buffer of its own.
   cv::Mat measure_color(const cv::Mat& ideal_bgr, std::uint64_t frame_index) const;
 
  private:
-  void measure_depth_row(const cv::Mat& inverse_depth, int row, std::uint64_t frame_index, std::uint16_t* depth) const;
+  void measure_depth_row(const cv::Mat& inverse_depth, int row, const float* noise, std::uint16_t* depth) const;
   std::uint16_t to_units(float depth_m) const;
 
   SensorModel model_;
