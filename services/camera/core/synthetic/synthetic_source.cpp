@@ -16,6 +16,7 @@ namespace {
 constexpr std::int64_t kFirstStampNs = 1'000'000'000'000;  // 1000 s: no stamp is near zero
 constexpr double kFocalShare = 525.0 / 640.0;              // focal length of a Kinect over the image width
 constexpr float kDepthUnitsPerM = 5000;
+constexpr double kShadowDifference = 1.0 / 2 - 1.0 / 4;  // 1/m, of SensorFaults::shadow_px
 
 synthetic::SceneSpec find_scene(const SourceUri& uri) {
   std::string names;
@@ -35,38 +36,50 @@ double number_in(const SourceUri& uri, const std::string& key, const std::string
   throw SourceError(message.str());
 }
 
-geometry::CameraModel make_camera(const SyntheticOptions& options, double focal_error) {
+geometry::CameraModel make_camera(const SyntheticOptions& options) {
   geometry::CameraModel::Parameters parameters;
   parameters.width = options.width, parameters.height = options.height;
-  parameters.fx = parameters.fy = kFocalShare * options.width * (1 + focal_error);
+  parameters.fx = parameters.fy = kFocalShare * options.width;
   parameters.cx = (options.width - 1) / 2.0, parameters.cy = (options.height - 1) / 2.0;
+  parameters.distortion = synthetic::lens_distortion(options.faults.distortion);
   return geometry::CameraModel(parameters);
 }
 
+/// What is known of the camera.
+geometry::CameraModel make_calibration(const SyntheticOptions& options) {
+  geometry::CameraModel::Parameters parameters = make_camera(options).parameters();
+  parameters.fx *= 1 + options.scene.focal_error, parameters.fy *= 1 + options.scene.focal_error;
+  return synthetic::miscalibrated(geometry::CameraModel(parameters), options.faults.calibration_error, options.seed);
+}
+
 synthetic::SensorModel make_sensor(const SyntheticOptions& options) {
+  const synthetic::SensorFaults& faults = options.faults;
   synthetic::SensorModel model;
   model.noise = options.noise;
   model.depth_units_per_m = kDepthUnitsPerM;
   model.max_depth_m = static_cast<float>(options.scene.range_m);
+  model.disparity_step_px = static_cast<float>(faults.disparity_step_px);
+  model.disparity_noise_steps = static_cast<float>(faults.disparity_noise_px / faults.disparity_step_px);
   model.disparity_noise_steps *= static_cast<float>(options.scene.depth_noise);
+  model.shadow_px_m = static_cast<float>(faults.shadow_px / kShadowDifference);
   model.color_noise_levels = static_cast<float>(options.scene.grain);
   model.max_relative_slope *= 640.0F / static_cast<float>(options.width);
   return model;
 }
 
-}  // namespace
+std::uint64_t arriving_frames(const SyntheticOptions& options, const synthetic::FrameDrops& drops) {
+  if (options.frames == 0) return 0;
+  return std::max<std::uint64_t>(1, drops.arrived_before(options.frames));  // 0 would be endless
+}
 
-SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
-  SyntheticOptions options;
-  options.scene = find_scene(uri);
-  options.frames = options.scene.frames;
-  options.fps = options.scene.fps;
-  struct Parameter {
-    const char* key;
-    double min, max;
-    std::function<void(double)> assign;
-  };
-  const std::vector<Parameter> parameters = {
+struct Parameter {
+  std::string key;
+  double min, max;
+  std::function<void(double)> assign;
+};
+
+std::vector<Parameter> parameters_of(SyntheticOptions& options) {
+  std::vector<Parameter> parameters = {
       {"seed", 0, 1e9, [&](double v) { options.seed = static_cast<std::uint64_t>(v); }},
       {"frames", 0, 1e9, [&](double v) { options.frames = static_cast<std::uint64_t>(v); }},
       {"fps", 1, 240, [&](double v) { options.fps = v; }},
@@ -82,14 +95,48 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
       {"fidget", 0, 0.5, [&](double v) { options.scene.fidget_rad = v; }},
       {"width", 64, msg::kMaxFrameWidth, [&](double v) { options.width = static_cast<int>(v); }},
       {"height", 48, msg::kMaxFrameHeight, [&](double v) { options.height = static_cast<int>(v); }}};
+  for (const synthetic::FaultParameter& fault : synthetic::fault_parameters()) {
+    parameters.push_back({fault.key, fault.min, fault.max, [&, fault](double v) { options.faults.*fault.value = v; }});
+  }
+  return parameters;
+}
+
+synthetic::SensorFaults find_preset(const SourceUri& uri, const std::string& name) {
+  std::string names;
+  for (const synthetic::SensorPreset& preset : synthetic::sensor_presets()) {
+    if (preset.name == name) return preset.faults;
+    names += (names.empty() ? "" : ", ") + preset.name;
+  }
+  throw SourceError("source '" + uri.text + "': sensor is '" + name + "', allowed are " + names);
+}
+
+[[noreturn]] void refuse_parameter(const SourceUri& uri, const std::string& key,
+                                   const std::vector<Parameter>& parameters) {
+  std::vector<std::string> keys = {"sensor"};
+  for (const Parameter& parameter : parameters) keys.push_back(parameter.key);
+  const std::string near = io::nearest_name(key, keys);
+  std::string known;
+  for (const std::string& each : keys) known += (known.empty() ? "" : ", ") + each;
+  throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'" +
+                    (near.empty() ? "" : ", did you mean '" + near + "'?") + "; known: " + known);
+}
+
+}  // namespace
+
+SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
+  SyntheticOptions options;
+  options.scene = find_scene(uri);
+  options.frames = options.scene.frames;
+  options.fps = options.scene.fps;
+  if (const auto preset = uri.parameters.find("sensor"); preset != uri.parameters.end()) {
+    options.faults = find_preset(uri, preset->second);
+  }
+  const std::vector<Parameter> parameters = parameters_of(options);
   for (const auto& [key, value] : uri.parameters) {
+    if (key == "sensor") continue;
     const auto known =
         std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& p) { return key == p.key; });
-    if (known == parameters.end()) {
-      throw SourceError("source '" + uri.text + "': unknown parameter '" + key +
-                        "'; known: seed, frames (0 = endless), fps, noise, people, boxes, flicker, sit, fidget, range, "
-                        "depth_noise, focal_error, grain, width, height");
-    }
+    if (known == parameters.end()) refuse_parameter(uri, key, parameters);
     known->assign(number_in(uri, key, value, known->min, known->max));
   }
   return options;
@@ -97,59 +144,60 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
 
 SyntheticSource::SyntheticSource(std::string uri, const SyntheticOptions& options)
     : options_(options),
-      info_{std::move(uri), make_camera(options, options.scene.focal_error), 1.0 / kDepthUnitsPerM, options.fps,
-            options.frames},
+      drops_(options.faults.drops, options.seed),
+      info_{std::move(uri), make_calibration(options), 1.0 / kDepthUnitsPerM, options.fps,
+            arriving_frames(options, drops_)},
       scene_(options.scene, options.seed),
-      renderer_(make_camera(options, 0)),
-      sensor_(make_sensor(options), options.seed) {}
+      camera_(scene_, {make_camera(options), make_sensor(options), options.faults, options.fps, options.seed}) {}
 
-std::int64_t SyntheticSource::stamp_ns(std::uint64_t frame) const {
-  return kFirstStampNs + static_cast<std::int64_t>(time_s(frame) * 1e6) * 1000;  // whole µs, as TUM files carry
+std::int64_t SyntheticSource::stamp_ns(std::uint64_t exposure) const {
+  return kFirstStampNs + static_cast<std::int64_t>(time_s(exposure) * 1e6) * 1000;  // whole µs, as TUM files carry
 }
 
-double SyntheticSource::time_s(std::uint64_t frame) const {
-  return static_cast<double>(frame) / options_.fps;
+double SyntheticSource::time_s(std::uint64_t exposure) const {
+  return static_cast<double>(exposure) / options_.fps;
 }
 
 std::optional<SourceFrame> SyntheticSource::next() {
   if (at_end()) return std::nullopt;
-  const std::uint64_t index = counters_.frames++;
-  const Eigen::Isometry3d T_world_camera = scene_.T_world_camera(time_s(index));
-  const synthetic::Geometry geometry = scene_.geometry_at(time_s(index));
-  synthetic::Rendering rendering = renderer_.render(geometry, scene_.textures(), T_world_camera);
-  scene_.lighting().apply(rendering.color_bgr, time_s(index));
-  SourceFrame frame;
-  frame.image = {index,
-                 stamp_ns(index),
-                 sensor_.measure_color(rendering.color_bgr, index),
-                 sensor_.measure_depth(rendering.inverse_depth, index),
-                 info_.depth_scale_m,
-                 info_.camera};
-  frame.dynamic_mask = rendering.moving_mask.clone();
-  frame.T_world_camera = T_world_camera;
-  for (const synthetic::ObjectView& seen : rendering.objects) {
-    const std::string& class_name = geometry.object_classes[static_cast<std::size_t>(seen.object)];
+  const std::uint64_t seq = counters_.frames++;
+  const std::uint64_t exposure = drops_.exposure_of(seq);
+  const double t_s = time_s(exposure);
+  synthetic::Shot shot = camera_.shoot(exposure, t_s);
+  SourceFrame frame = to_frame(stamp_ns(exposure), std::move(shot.color_bgr), std::move(shot.depth), info_);
+  frame.image.seq = seq;
+  frame.dynamic_mask = std::move(shot.moving_mask);
+  frame.T_world_camera = scene_.T_world_camera(t_s);
+  const std::vector<std::string> classes = scene_.geometry_at(t_s).object_classes;
+  for (const synthetic::ObjectView& seen : shot.objects) {
+    const std::string& class_name = classes[static_cast<std::size_t>(seen.object)];
     frame.objects.push_back({seen.object, class_name, seen.bounds_px, seen.visible_px, seen.moving});
   }
+  if (!frame.has_depth) ++counters_.frames_without_depth;
   return frame;
 }
 
 std::uint64_t SyntheticSource::pass_over(std::int64_t stamp_ns) {
   const std::uint64_t before = counters_.frames;
+  std::uint64_t exposure = drops_.exposure_of(before);
   // A stamp may be centuries ahead: go near it in one step, but stay where the next stamp fits into 64 bits.
   constexpr std::int64_t kLastNs = std::numeric_limits<std::int64_t>::max() - 3'600'000'000'000;
   stamp_ns = std::min(stamp_ns, kLastNs);
   const double near = (static_cast<double>(stamp_ns) - static_cast<double>(kFirstStampNs)) * 1e-9 * options_.fps - 2;
-  if (near > static_cast<double>(before)) counters_.frames = static_cast<std::uint64_t>(near);
-  if (options_.frames != 0) counters_.frames = std::min(counters_.frames, std::max(before, options_.frames));
-  while (!at_end() && this->stamp_ns(counters_.frames) < stamp_ns) ++counters_.frames;
+  if (near > static_cast<double>(exposure)) exposure = static_cast<std::uint64_t>(near);
+  while (this->stamp_ns(exposure) < stamp_ns) ++exposure;
+  counters_.frames = std::max(before, drops_.arrived_before(exposure));
+  if (info_.frames != 0) counters_.frames = std::min(counters_.frames, std::max(before, info_.frames));
   return counters_.frames - before;
 }
 
 geometry::Trajectory SyntheticSource::groundtruth() const {
   geometry::Trajectory poses;
-  const std::uint64_t frames = options_.frames != 0 ? options_.frames : counters_.frames;
-  for (std::uint64_t i = 0; i < frames; ++i) poses.push_back({stamp_ns(i), scene_.T_world_camera(time_s(i))});
+  const std::uint64_t frames = info_.frames != 0 ? info_.frames : counters_.frames;
+  for (std::uint64_t i = 0; i < frames; ++i) {
+    const std::uint64_t exposure = drops_.exposure_of(i);
+    poses.push_back({stamp_ns(exposure), scene_.T_world_camera(time_s(exposure))});
+  }
   return poses;
 }
 

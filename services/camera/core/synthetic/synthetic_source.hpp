@@ -6,9 +6,10 @@
 
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/camera/core/synthetic/renderer.hpp"
+#include "services/camera/core/synthetic/faults.hpp"
+#include "services/camera/core/synthetic/frame_drops.hpp"
 #include "services/camera/core/synthetic/scene.hpp"
-#include "services/camera/core/synthetic/sensor.hpp"
+#include "services/camera/core/synthetic/scene_camera.hpp"
 
 namespace rtd::camera {
 
@@ -20,12 +21,14 @@ struct SyntheticOptions {
   double fps = 30;
   bool noise = true;
   int width = 640, height = 480;
+  synthetic::SensorFaults faults;
 };
 
 /// Reads scene and parameters; throws SourceError naming the parameter, its value, the range or the names known.
 SyntheticOptions parse_synthetic_options(const SourceUri& uri);
 
 /// Renders a scene: exact ground truth and masks of what moves. The same options give the same bits.
+/// An exposure is made at every tick of the frame rate; those that FrameDrops leaves are the frames.
 class SyntheticSource final : public FrameSource {
  public:
   SyntheticSource(std::string uri, const SyntheticOptions& options);
@@ -38,16 +41,16 @@ class SyntheticSource final : public FrameSource {
   std::vector<SkippedInput> take_skipped() override { return {}; }
 
  private:
-  std::int64_t stamp_ns(std::uint64_t frame) const;
-  double time_s(std::uint64_t frame) const;
-  bool at_end() const { return options_.frames != 0 && counters_.frames >= options_.frames; }
+  std::int64_t stamp_ns(std::uint64_t exposure) const;
+  double time_s(std::uint64_t exposure) const;
+  bool at_end() const { return info_.frames != 0 && counters_.frames >= info_.frames; }
 
   SyntheticOptions options_;
+  synthetic::FrameDrops drops_;
   SourceInfo info_;
   SourceCounters counters_;
   synthetic::Scene scene_;
-  synthetic::Renderer renderer_;
-  synthetic::Sensor sensor_;
+  synthetic::SceneCamera camera_;
 };
 
 }  // namespace rtd::camera
