@@ -3,8 +3,10 @@
 #include "tests/support/simulated_detector.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <stdexcept>
+#include <string>
 
 #include "common/service/model_locator.hpp"
 #include "services/camera/core/synthetic/texture.hpp"
@@ -44,6 +46,40 @@ vision::Detection jittered(const camera::SourceObject& object, float share, cons
   return {object.class_name, score, left, top, std::max(right - left, 1.0F), std::max(low - top, 1.0F)};
 }
 
+/// A generator for one object in one frame or span of time, apart from the frame's own.
+SeededRandom random_of(const DetectorOptions& options, int object, std::uint64_t index) {
+  SeededRandom seeds((options.seed + 0xB0) * 0x9E3779B97F4A7C15ULL + static_cast<std::uint64_t>(object) * 0x1D2B +
+                     index);
+  return SeededRandom(seeds.next());
+}
+
+/// Whether the object is in a burst of misses. Time is cut into cells with one burst each, at a random place; their
+/// length gives the recall.
+bool in_burst(const DetectorOptions& options, int object, std::int64_t stamp_ns) {
+  const double bursts_share = 1 - options.recall / (1 - options.missed_share);
+  if (bursts_share <= 0) return false;
+  const double cell_s = (kShortestBurst_s + kLongestBurst_s) / 2 / bursts_share;
+  const double cells = static_cast<double>(stamp_ns) * 1e-9 / cell_s;
+  SeededRandom random = random_of(options, object, static_cast<std::uint64_t>(cells));
+  const double burst_s = kShortestBurst_s + (kLongestBurst_s - kShortestBurst_s) * static_cast<double>(random.unit());
+  const double begin_s = (cell_s - burst_s) * static_cast<double>(random.unit());
+  const double now_s = (cells - std::floor(cells)) * cell_s;
+  return now_s >= begin_s && now_s < begin_s + burst_s;
+}
+
+/// Takes a fifth to a half away at one side, at the feet as often as at the three others together.
+void cut(vision::Detection& box, SeededRandom& random) {
+  const float lost = random.between(0.2F, 0.5F);
+  const int side = random.index(6);
+  if (side == 0) box.x_px += lost * box.width_px;
+  if (side <= 1) {
+    box.width_px *= 1 - lost;
+    return;
+  }
+  if (side == 2) box.y_px += lost * box.height_px;
+  box.height_px *= 1 - lost;
+}
+
 Boxes see_truth(const camera::SourceFrame& frame, const DetectorOptions& options) {
   if (!frame.T_world_camera) throw std::invalid_argument("detector truth: only synthetic sources know their objects");
   SeededRandom random = random_of(options, frame);
@@ -52,7 +88,10 @@ Boxes see_truth(const camera::SourceFrame& frame, const DetectorOptions& options
     const bool missed = static_cast<double>(random.unit()) < options.missed_share;
     vision::Detection box =
         jittered(object, static_cast<float>(options.jitter_share), frame.image.color_bgr.size(), random);
-    if (!missed && detectable(object, options)) boxes.push_back(std::move(box));
+    if (missed || !detectable(object, options) || in_burst(options, object.id, frame.image.stamp_ns)) continue;
+    SeededRandom cuts = random_of(options, object.id, frame.image.seq);
+    if (static_cast<double>(cuts.unit()) < options.cut_share) cut(box, cuts);
+    boxes.push_back(std::move(box));
   }
   return boxes;
 }
@@ -90,6 +129,10 @@ Look real_look(const DetectorOptions& options) {
 }  // namespace
 
 Look make_look(const DetectorOptions& options) {
+  if (options.recall < kLeastRecall || options.recall > 1) {
+    throw std::invalid_argument("detector: recall is " + std::to_string(options.recall) + ", allowed is [" +
+                                std::to_string(kLeastRecall) + ", 1]");
+  }
   if (options.kind == "real")
     return options.remembered_in.empty() ? real_look(options)
                                          : remembered_look(real_look(options), options.remembered_in);

@@ -21,6 +21,9 @@ struct Outage {
   double begin_s = 0, end_s = 0;
 };
 
+/// How long an object is not found when misses come in bursts, and the recall at which they would fill the time.
+inline constexpr double kShortestBurst_s = 0.3, kLongestBurst_s = 2, kLeastRecall = 0.45;
+
 /// Which detector a run has, and how fast it is.
 struct DetectorOptions {
   /// off; real: the network in RTD_MODEL_DIR; truth: the boxes that the source knows, a little wrong, now and then
@@ -32,6 +35,8 @@ struct DetectorOptions {
   std::uint64_t seed = 1;      ///< of truth and lying
   double jitter_share = 0.03;  ///< truth: standard deviation of each edge, of the box's size
   double missed_share = 0.04;  ///< truth: boxes that are not found
+  double recall = 1;           ///< truth: share of the boxes found, >= kLeastRecall; misses come in bursts
+  double cut_share = 0;        ///< truth: boxes that lack a fifth to a half at one side
   int min_visible_px = 900;    ///< truth: less of an object is not found
   int max_lies = 8;            ///< lying: boxes of one image
   /// real: least score

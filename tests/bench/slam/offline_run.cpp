@@ -98,6 +98,11 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
   app.add_option("--detector-delay-ms", detector.delay_ms, "its boxes come so late");
   app.add_option("--detector-seed", detector.seed, "of truth and lying");
   app.add_option("--detector-missed", detector.missed_share, "truth: share of the boxes not found");
+  app.add_option("--detector-recall", detector.recall,
+                 "truth: share of the boxes found; misses come in bursts of 0.3 to 2 s")
+      ->check(CLI::Range(rtd::test_support::kLeastRecall, 1.0));
+  app.add_option("--detector-cut", detector.cut_share, "truth: share of the boxes that lack a part at one side")
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option("--detector-confidence", detector.confidence, "real: least score");
   CLI::Option* derotate = app.add_option_function<double>(
       "--derotate",

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/detector_pace.hpp"
@@ -100,6 +101,52 @@ TEST(SimulatedDetector, does_not_find_what_is_hardly_seen) {
   EXPECT_THAT(make_look(options)(hidden), IsEmpty());
 }
 
+/// For each of 2000 frames at 10 Hz, whether the person is found.
+std::vector<bool> found_with_recall(double recall) {
+  DetectorOptions options;
+  options.kind = "truth";
+  options.missed_share = 0, options.recall = recall;
+  const Look look = make_look(options);
+  std::vector<bool> found;
+  for (std::uint64_t i = 0; i < 2000; ++i) found.push_back(!look(frame(i)).empty());
+  return found;
+}
+
+TEST(SimulatedDetector, misses_in_bursts_of_the_stated_recall) {
+  const std::vector<bool> found = found_with_recall(0.78);
+  EXPECT_NEAR(static_cast<double>(std::count(found.begin(), found.end(), true)) / 2000, 0.78, 0.03);
+  std::vector<int> bursts;
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    if (found[i]) continue;
+    if (found[i - 1]) bursts.push_back(0);
+    if (!bursts.empty()) ++bursts.back();
+  }
+  ASSERT_GT(bursts.size(), 20U);
+  std::sort(bursts.begin(), bursts.end());
+  EXPECT_GE(bursts.front(), 2) << "0.3 s are 3 frames, or 2 between two";
+  EXPECT_LE(bursts[bursts.size() * 9 / 10], 21) << "2 s; two bursts may touch";
+  EXPECT_GT(bursts.back(), 14);
+  const std::vector<bool> all = found_with_recall(1);
+  EXPECT_EQ(std::count(all.begin(), all.end(), false), 0);
+}
+
+TEST(SimulatedDetector, cuts_boxes_at_one_side) {
+  DetectorOptions options;
+  options.kind = "truth";
+  options.missed_share = 0, options.jitter_share = 0, options.cut_share = 0.5;
+  const Look look = make_look(options);
+  int cut = 0;
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    const vision::Detection box = look(frame(i)).at(0);
+    const double left = static_cast<double>(box.width_px * box.height_px) / (100.0 * 300.0);
+    EXPECT_TRUE(left == 1 || (left >= 0.499 && left <= 0.801)) << left;
+    EXPECT_GE(box.x_px, 100);
+    EXPECT_LE(box.x_px + box.width_px, 200.01);
+    if (left < 1) ++cut;
+  }
+  EXPECT_NEAR(cut, 200, 40);
+}
+
 TEST(SimulatedDetector, says_the_same_to_the_same_frame_and_seed) {
   for (const char* kind : {"truth", "lying"}) {
     DetectorOptions options;
@@ -122,6 +169,9 @@ TEST(SimulatedDetector, refuses_what_it_cannot_do) {
   options.kind = "guess";
   EXPECT_THROW(make_look(options), std::invalid_argument);
   options.kind = "truth";
+  options.recall = 0.2;
+  EXPECT_THROW(make_look(options), std::invalid_argument);
+  options.recall = 1;
   camera::SourceFrame recorded = frame(0);
   recorded.T_world_camera.reset();
   EXPECT_THROW(make_look(options)(recorded), std::invalid_argument);
