@@ -17,6 +17,7 @@
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/patterns.hpp"
 #include "tests/component/bus/peer_process.hpp"
+#include "tests/support/sanitizers.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -64,8 +65,8 @@ TEST_P(DdsProcesses, no_torn_frame_is_ever_delivered) {
 
   const auto end = std::chrono::steady_clock::now() + 10s + wanted * 10ms;
   while (delivered < wanted && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(1ms);
-  EXPECT_GE(delivered, wanted / 10);
   EXPECT_EQ(torn, 0);
+  EXPECT_GE(delivered, test_support::kSanitized ? 0 : wanted / 10) << "a slow reader is overtaken";
   std::printf("%s: %d frames used, %d torn, %llu overwritten before they were taken\n", GetParam().c_str(),
               delivered.load(), torn.load(), static_cast<unsigned long long>(skipped.load()));
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <thread>
@@ -27,14 +28,16 @@ class SmallDisk final : public io::ByteSink {
     for (const auto part : parts) more += part.size();
     if (memory_.position() + more > size_) throw io::IoError(ENOSPC, "no room");
     memory_.append(parts);
+    written_ = memory_.position();
   }
-  std::uint64_t position() const override { return memory_.position(); }
+  std::uint64_t position() const override { return written_; }
   std::uint64_t sync() override { return position(); }
   const io::Bytes& bytes() const { return memory_.bytes(); }
 
  private:
   std::uint64_t size_;
   io::MemorySink memory_;
+  std::atomic<std::uint64_t> written_ = 0;  ///< sync() is called in another thread
 };
 
 class RecordingTest : public ::testing::Test {

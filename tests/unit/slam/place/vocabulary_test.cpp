@@ -154,7 +154,7 @@ TEST(Vocabulary, is_there_at_once) {
   const auto bytes = built_in_vocabulary()->serialize();
   const auto start = std::chrono::steady_clock::now();
   const Vocabulary vocabulary = Vocabulary::parse(bytes);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(200));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
   EXPECT_GT(vocabulary.words(), 10'000U);
 }
 
