@@ -41,7 +41,8 @@ void BoxTracks::begin_frame(const TrackedFrame& frame) {
 }
 
 std::optional<std::size_t> BoxTracks::frame_of(std::int64_t stamp_ns) const {
-  if (frames_.empty() || stamp_ns > frames_.back().stamp_ns) return std::nullopt;
+  const bool around = !frames_.empty() && stamp_ns >= frames_.front().stamp_ns - kSameFrameNs;  // any number may come
+  if (!around || stamp_ns > frames_.back().stamp_ns) return std::nullopt;
   const auto nearest = std::min_element(frames_.begin(), frames_.end(), [&](const auto& a, const auto& b) {
     return std::abs(a.stamp_ns - stamp_ns) < std::abs(b.stamp_ns - stamp_ns);
   });
