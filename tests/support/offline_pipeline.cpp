@@ -102,6 +102,8 @@ OfflineReport run_offline(const OfflineOptions& options) {
     if (output.result.state == msg::TrackingState::kOk) ++report.tracked;
     if (options.on_frame) options.on_frame(output);
   }
+  report.disparity_px_m = slam.disparity_px_m();
+  report.readout_s = slam.readout_s();
   slam.finish();
   if (options.on_end) options.on_end(slam);
   std::ostringstream text;

@@ -78,6 +78,7 @@ struct OfflineReport {
   double ate_rmse_m = 0;                              ///< NaN without ground truth
   double rpe_trans_rmse_m = 0, rpe_rot_rmse_deg = 0;  ///< per second
   double coverage = 0;                                ///< tracked / frames
+  double disparity_px_m = 0, readout_s = 0;           ///< of the sensor, as slam knows it at the end
   std::vector<ClosedLoop> loops;
   eval::RemovalQuality removal;                         ///< after the first second; of sources with masks
   std::map<std::string, std::vector<double>> stage_ms;  ///< per frame, by name

@@ -27,7 +27,7 @@ enum class FilterMode {
 /// those that belong to it; one that is off here is off in every mode. docs/theory/dynamic_points.md names each.
 struct Techniques {
   // What may move
-  bool motion_levels = true, depth_masks = true, flat_objects = true;
+  bool motion_levels = true, depth_masks = true, flat_objects = true, object_holes = true;
   // What moves
   bool depth_check = true, feature_votes = true, look_back = true, arrivals = true, object_drift = true;
   bool noise_aware_tau = true, mover_memory = true, mover_tracks = true, surface_poses = true;
@@ -51,6 +51,7 @@ inline constexpr NamedTechnique kTechniques[] = {
     {"motion_levels", &Techniques::motion_levels, "every class of the table counts as high"},
     {"depth_masks", &Techniques::depth_masks, "the whole box is the object"},
     {"flat_objects", &Techniques::flat_objects, "a poster of a person is a person"},
+    {"object_holes", &Techniques::object_holes, "cells without depth in a box are background"},
     {"depth_check", &Techniques::depth_check, "no multi-view check of range images"},
     {"feature_votes", &Techniques::feature_votes, "displaced features do not vote for their surface"},
     {"look_back", &Techniques::look_back, "no look back over a second for very slow movers"},
@@ -109,6 +110,7 @@ struct ClusterConfig {
 /// How a box becomes a mask.
 struct MaskConfig {
   bool whole_boxes = false;  ///< the box is the object, whatever its depth
+  bool holes = true;         ///< cells without depth beside an object belong to it
   double min_share = 0.15;
   double max_object_depth_m = 0.5;
   double min_contained = 0.5;

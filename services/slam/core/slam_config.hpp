@@ -36,15 +36,15 @@ struct Techniques {
 
 /// The camera and its features, as SLAM weighs them.
 struct SensorConfig {
-  double disparity_px_m = 40.0;  ///< vision::RgbdProjection::disparity_px_m
+  double disparity_px_m = 0;  ///< vision::RgbdProjection::disparity_px_m
   double close_depth_m = 4.0;
   double shared_error = 3.0;
   double readout_s = 0;
   double max_depth_m = 8.0;
 
   void bind(auto& binder) {
-    binder.field("disparity_px_m", disparity_px_m, {1.0, 10000.0},
-                 "weight of depth: a disparity of this / depth counts like a pixel");
+    binder.field("disparity_px_m", disparity_px_m, {0.0, 10000.0},
+                 "weight of depth: a disparity of this / depth counts like a pixel; 0: estimated while tracking");
     binder.field("close_depth_m", close_depth_m, {0.5, 20.0},
                  "nearer depths make landmarks at once, farther ones wait for a second view");
     binder.field("shared_error", shared_error, {0.1, 100.0},
@@ -149,7 +149,7 @@ struct MapperConfig {
   int ba_keyframes = 12;
   int ba_fixed_keyframes = 20;
   int ba_iterations_robust = 5;
-  int ba_iterations = 0;
+  int ba_iterations = 2;
   double correction_m = 0.002;
   double correction_rad = 0.001;
 

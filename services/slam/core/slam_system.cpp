@@ -30,6 +30,9 @@ SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns,
       odometry_(config.loop) {}
 
 void SlamSystem::restore(MapContents contents) {
+  if (!contents.keyframes.empty()) {
+    depth_weight_ = DepthWeightEstimator(contents.keyframes.back().frame->camera.disparity_px_m);
+  }
   mapping_.restore(std::move(contents));
   tracker_.await_relocalization();
 }
@@ -39,8 +42,10 @@ SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
   SlamOutput output;
   watch_source(message);
   shutter_ = shutter_motion();
+  SensorConfig sensor = config_.sensor;
+  sensor.disparity_px_m = disparity_px_m();
   const FrameInput input =
-      make_frame(message, config_.sensor,
+      make_frame(message, sensor,
                  config_.techniques.landmark_belief ? RemovedFeatures::kKeep : RemovedFeatures::kDrop, shutter_);
   output.invalid_features = input.invalid;
   const TrackOutcome outcome = mapping_.snapshot() == nullptr ? initialize(input, output) : track(input, output);
@@ -117,7 +122,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   }
   record(outcome.tracked);
   if (!had_pose_ && outcome.map->map != map_) odometry_.correct(before, tracker_.T_world_camera());
-  observe_shutter(*outcome.map, outcome);
+  observe_sensor(*outcome.map, outcome);
   maybe_insert_keyframe(outcome);
   // This very frame may have closed a loop: its pose is then that in the corrected map.
   if (const LocalMapPtr corrected = mapping_.snapshot(); follow_map(*corrected)) {
@@ -138,16 +143,23 @@ ShutterMotion SlamSystem::shutter_motion() const {
   return {tracker_.motion()->velocity_per_s, known_s != 0 ? known_s : readout_.readout_s()};
 }
 
-void SlamSystem::observe_shutter(const LocalMap& map, const TrackOutcome& outcome) {
-  const bool wanted = config_.techniques.rolling_shutter && config_.sensor.readout_s == 0;
-  if (!wanted || shutter_.velocity_per_s.isZero(0)) return;
+double SlamSystem::disparity_px_m() const {
+  return config_.sensor.disparity_px_m > 0 ? config_.sensor.disparity_px_m : depth_weight_.disparity_px_m();
+}
+
+void SlamSystem::observe_sensor(const LocalMap& map, const TrackOutcome& outcome) {
+  const bool readout_unknown = config_.techniques.rolling_shutter && config_.sensor.readout_s == 0;
   std::vector<Association> points;
   for (std::uint32_t i = 0; i < outcome.tracked.landmarks.size(); ++i) {
     const LandmarkId id = outcome.tracked.landmarks[i];
     const LocalLandmark* landmark = id == kNoLandmark ? nullptr : map.find_landmark(id);
     if (landmark != nullptr) points.push_back({i, id, landmark->position});
   }
-  readout_.add(*outcome.tracked.frame, outcome.tracked.T_world_camera, points, shutter_);
+  const TrackedFrame& tracked = outcome.tracked;
+  depth_weight_.add(*tracked.frame, tracked.T_world_camera, points);
+  if (readout_unknown && !shutter_.velocity_per_s.isZero(0)) {
+    readout_.add(*tracked.frame, tracked.T_world_camera, points, shutter_);
+  }
 }
 
 /// Lost for long, with unknown views: the camera continues in a new map.

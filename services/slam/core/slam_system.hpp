@@ -11,6 +11,7 @@
 #include "services/slam/core/corrections.hpp"
 #include "services/slam/core/map/trajectory.hpp"
 #include "services/slam/core/mapping/mapping_worker.hpp"
+#include "services/slam/core/tracking/depth_weight.hpp"
 #include "services/slam/core/tracking/readout_estimator.hpp"
 #include "services/slam/core/tracking/tracker.hpp"
 
@@ -70,6 +71,8 @@ class SlamSystem {
   std::uint64_t source_restarts() const { return source_restarts_; }
   /// Of the camera, as it is undone now; 0: rows are taken to be exposed at once.
   double readout_s() const { return shutter_.readout_s; }
+  /// The weight of depth of the next frame, px*m: slam.sensor.disparity_px_m, or the estimate.
+  double disparity_px_m() const;
 
  private:
   void watch_source(const msg::FeatureFrame& message);
@@ -79,7 +82,7 @@ class SlamSystem {
   TrackOutcome track(const FrameInput& input, SlamOutput& output);
   void record(const TrackedFrame& tracked);
   ShutterMotion shutter_motion() const;
-  void observe_shutter(const LocalMap& map, const TrackOutcome& outcome);
+  void observe_sensor(const LocalMap& map, const TrackOutcome& outcome);
   void maybe_insert_keyframe(TrackOutcome& outcome);
   void follow_reference(const TrackOutcome& outcome);
   bool follow_map(const LocalMap& map);
@@ -92,6 +95,7 @@ class SlamSystem {
   Tracker tracker_;
   UnknownViewClock unknown_view_;
   ReadoutEstimator readout_;
+  DepthWeightEstimator depth_weight_;
   ShutterMotion shutter_;  ///< what the features of the frame in work were corrected with
   OdometryFrame odometry_;
   bool had_pose_ = false;  ///< the last frame

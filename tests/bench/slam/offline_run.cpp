@@ -76,6 +76,8 @@ void print_json(const rtd::test_support::OfflineReport& report) {
                                {"rpe_deg", report.rpe_rot_rmse_deg},
                                {"keyframes", report.keyframes},
                                {"landmarks", report.landmarks},
+                               {"disparity_px_m", report.disparity_px_m},
+                               {"readout_s", report.readout_s},
                                {"precision", masks && removes ? nlohmann::json(removal.precision()) : nlohmann::json()},
                                {"recall", masks ? nlohmann::json(removal.recall()) : nlohmann::json()},
                                {"filter_ms", ms("filter.total")},

@@ -72,6 +72,14 @@ TEST(Techniques, flat_objects_off_takes_a_poster_for_a_person) {
   EXPECT_FALSE(objects_in(test::wall_image(2.0), config_of(FilterMode::kRtd, {&Techniques::flat_objects})).at(0).flat);
 }
 
+TEST(Techniques, object_holes_off_leaves_dark_clothes_to_the_background) {
+  vision::RgbdImage image = test::wall_image(3.0);
+  test::put_block(image, {240, 120, 120, 280}, 1.5);
+  test::put_block(image, {240, 200, 120, 80}, 0);
+  EXPECT_GE(objects_in(image, config_of(FilterMode::kRtd, {})).at(0).holes.size(), 100U);
+  EXPECT_TRUE(objects_in(image, config_of(FilterMode::kRtd, {&Techniques::object_holes})).at(0).holes.empty());
+}
+
 TEST(Techniques, depth_check_and_feature_votes_each_find_a_mover_alone) {
   EXPECT_GE(removed_of_mover({&Techniques::feature_votes}), 0.9) << "by depth";
   EXPECT_GE(removed_of_mover({&Techniques::depth_check}), 0.9) << "by displaced features";

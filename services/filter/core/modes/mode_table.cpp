@@ -41,7 +41,8 @@ const std::vector<ModeEntry>& table() {
   static const std::vector<ModeEntry> entries{
       {FilterMode::kOff, "off", only({}), make<RtdJudge>},
       {FilterMode::kSemantic, "semantic",
-       only({&T::motion_levels, &T::depth_masks, &T::box_tracks, &T::mask_flow, &T::roll_distrust, &T::more_features}),
+       only({&T::motion_levels, &T::depth_masks, &T::object_holes, &T::box_tracks, &T::mask_flow, &T::roll_distrust,
+             &T::more_features}),
        make<RtdJudge>},
       {FilterMode::kGeometry, "geometry",
        only({&T::depth_check, &T::feature_votes, &T::look_back, &T::arrivals, &T::noise_aware_tau, &T::mover_memory,
@@ -67,6 +68,7 @@ Techniques in_common(const Techniques& a, const Techniques& b) {
 FilterConfig with_techniques_applied(FilterConfig config) {
   const Techniques& on = config.techniques;
   if (!on.depth_masks) config.masks.whole_boxes = true;
+  config.masks.holes = on.object_holes;
   if (!on.flat_objects) config.masks.min_outline_share = 0;  // no outline is flat enough
   if (!on.depth_check) config.geometry.max_views = 0;        // no view to compare with
   if (!on.feature_votes) {

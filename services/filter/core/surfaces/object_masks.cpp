@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "services/filter/core/samples.hpp"
 
@@ -128,6 +129,33 @@ std::vector<int> collect_cells(const ClusterInBox& object, const CellBox& box, c
   return cells;
 }
 
+/// Cells without depth inside the box that touch the object. Hair and dark clothes reflect little infrared light: what
+/// is not measured there is the object rather than what lies behind it.
+std::vector<int> holes_beside(const std::vector<int>& object, const CellBox& box, const DepthGrid& grid) {
+  constexpr int kReachCells = 2;  // farther ones are as often a wall out of range
+  const GridShape& shape = grid.shape;
+  std::vector<char> reached(static_cast<std::size_t>(shape.size()), 0);
+  std::vector<int> holes, front = object;
+  for (const int cell : object) reached[static_cast<std::size_t>(cell)] = 1;
+  for (int step = 0; step < kReachCells && !front.empty(); ++step) {
+    std::vector<int> next;
+    for (const int from : front) {
+      const int column = from % shape.columns, row = from / shape.columns;
+      for (const auto& [x, y] : {std::pair{column + 1, row}, {column - 1, row}, {column, row + 1}, {column, row - 1}}) {
+        if (!box.contains(x, y)) continue;
+        const int cell = shape.index(x, y);
+        const auto at = static_cast<std::size_t>(cell);
+        if (grid.depth_m[at] > 0 || std::exchange(reached[at], 1) != 0) continue;
+        next.push_back(cell);
+      }
+    }
+    holes.insert(holes.end(), next.begin(), next.end());
+    front = std::move(next);
+  }
+  std::sort(holes.begin(), holes.end());
+  return holes;
+}
+
 /// Everything in the box: all that can be said where nothing was measured.
 std::vector<int> all_cells(const CellBox& box, const GridShape& shape) {
   std::vector<int> cells;
@@ -231,8 +259,8 @@ std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const
     const std::optional<MotionLevel> level = levels.find(detection.class_name);
     const std::optional<CellBox> box = level ? to_cells(detection, camera, grid.shape) : std::nullopt;
     if (!box) continue;
-    SceneObject object{detection.class_name, detection.score,  *level,      {}, false,
-                       from.track_id,        from.track_age_s, from.carried};
+    SceneObject object{detection.class_name, detection.score,  *level,       {}, false,
+                       from.track_id,        from.track_age_s, from.carried, {}};
     const auto inside = config.whole_boxes ? std::vector<ClusterInBox>{} : clusters_in(*box, grid, clusters);
     const bool depth_known = from.carried && from.depth_m > 0;
     const ClusterInBox* cluster = depth_known ? cluster_at_depth(inside, from.depth_m, config.max_object_depth_m)
@@ -241,6 +269,7 @@ std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const
       object.cells =
           collect_cells(*cluster, *box, shares_of(*cluster, inside, clusters, config), grid, clusters, config);
       object.flat = outline_step_share(object.cells, grid, config.min_outline_step_m) < config.min_outline_share;
+      if (!object.flat && config.holes) object.holes = holes_beside(object.cells, *box, grid);
     } else if (from.carried && !config.whole_boxes) {
       continue;
     } else {

@@ -29,6 +29,7 @@ struct SceneObject {
   int track_id = -1;       ///< the same object has the same number in every frame; -1 = not tracked
   double track_age_s = 0;  ///< since it was seen first
   bool carried = false;    ///< not detected in this frame, but carried by its track
+  std::vector<int> holes;  ///< ascending; cells of its box that touch it and have no depth: hair, dark clothes
 };
 
 /// A box to cut an object from.

@@ -47,8 +47,9 @@ FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& conf
   auto frame = std::make_shared<Frame>();
   frame->seq = message.seq;
   frame->stamp_ns = message.stamp_ns;
-  frame->camera = {message.intrinsics[0], message.intrinsics[1], message.intrinsics[2], message.intrinsics[3],
-                   config.disparity_px_m};
+  const auto& [fx, fy, cx, cy] = message.intrinsics;
+  frame->camera = {fx, fy, cx, cy};
+  if (config.disparity_px_m > 0) frame->camera.disparity_px_m = config.disparity_px_m;
   frame->width_px = static_cast<int>(message.width);
   frame->height_px = static_cast<int>(message.height);
   frame->features.reserve(count_usable(message));  // exactly: keyframes keep their features

@@ -193,8 +193,16 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
 /// well have been carried away to a place that looks alike.
 bool Tracker::believable(const Frame& frame, const PoseGuess& start, const LocalMapTracking& tracking) const {
   if (!config_.techniques.place_recognition) return true;
+  if (continues_motion(frame, tracking.guess.T_world_camera)) return true;
   if (!start.guided) return is_convincing(frame, tracking, config_.place);
   return start.inliers >= config_.tracker.min_inliers || agrees_widely(frame, tracking, config_.place);
+}
+
+/// Whether the camera got there as it moved before: no other place looks alike from just where it is expected.
+bool Tracker::continues_motion(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const {
+  const double gap_s = last_.frame == nullptr ? 0 : seconds_between(*last_.frame, frame);
+  const bool known = motion_ && msg::has_pose(state_) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
+  return known && is_steady(*motion_, last_.T_world_camera.inverse() * T_world_camera, gap_s);
 }
 
 /// No pose yet: the next frames have to agree.

@@ -85,6 +85,7 @@ class Tracker {
   PoseGuess recover(const Frame& frame, const LocalMap& map);
   bool acceptable(const PoseGuess& guess) const;
   bool believable(const Frame& frame, const PoseGuess& start, const LocalMapTracking& tracking) const;
+  bool continues_motion(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const;
   void enter_place(TrackOutcome& outcome, FramePtr frame, Relocalizer::Found found);
   void follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking);
   void accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking);

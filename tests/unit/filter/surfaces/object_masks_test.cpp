@@ -43,6 +43,22 @@ TEST(ObjectMasks, take_the_near_cluster_and_leave_the_background_seen_through_th
   EXPECT_EQ(objects[0].cells.size(), static_cast<std::size_t>(cells_in({240, 120, 120, 280})));
 }
 
+TEST(ObjectMasks, holes_near_the_object_are_its_own_within_the_box) {
+  vision::RgbdImage image = wall_image(3.0);
+  put_block(image, {240, 120, 120, 280}, 1.5);
+  put_block(image, {240, 200, 120, 16}, 0);  // a dark belt
+  put_block(image, {360, 300, 120, 20}, 0);  // a hole of the wall that begins at the object
+  put_block(image, {204, 104, 20, 20}, 0);   // a hole that touches nothing
+  const auto objects = find(image, {{"person", 0.9F, 200, 100, 200, 320}});
+  ASSERT_EQ(objects.size(), 1U);
+  SceneObject holes;
+  holes.cells = objects[0].holes;
+  EXPECT_EQ(count_in(kShape, mask_of(holes), {240, 200, 120, 16}), cells_in({240, 200, 120, 16}));
+  EXPECT_EQ(count_in(kShape, mask_of(holes), {360, 300, 8, 20}), cells_in({360, 300, 8, 20}));
+  EXPECT_EQ(count_in(kShape, mask_of(holes), {368, 300, 112, 20}), 0);
+  EXPECT_EQ(count_in(kShape, mask_of(holes), {204, 104, 20, 20}), 0);
+}
+
 TEST(ObjectMasks, include_what_the_box_cut_off) {
   vision::RgbdImage image = wall_image(3.0);
   put_block(image, {240, 100, 120, 380}, 1.5);
