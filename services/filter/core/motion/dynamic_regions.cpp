@@ -47,6 +47,14 @@ int vote_count(const std::vector<int>& per_cluster, std::size_t cluster) {
   return cluster < per_cluster.size() ? per_cluster[cluster] : 0;
 }
 
+/// Slow votes count where they are more than a few of the surface's features: one wrong match in a repeated texture
+/// brings its neighbours along.
+bool creeps(const MotionVotes& votes, std::size_t cluster, const GeometryConfig& config) {
+  constexpr int kLeastOfQuick = 10;  // one slow vote for so many quick ones
+  const int quick = vote_count(votes.quick.moving, cluster) + vote_count(votes.quick.resting, cluster);
+  return votes.slow.cluster_creeps(cluster, config) && kLeastOfQuick * vote_count(votes.slow.moving, cluster) >= quick;
+}
+
 /// Depth and features both show that it rests: it was taken for dynamic wrongly, or it has stopped.
 bool rests(const ClusterEvidence& cluster, const MotionVotes& votes, std::size_t index, const GeometryConfig& config) {
   const auto at_place = [&](const FeatureVotes& cast) {
@@ -64,7 +72,7 @@ std::vector<std::uint8_t> judge_clusters(const DepthClusters& clusters, const De
   const std::vector<ClusterEvidence> gathered = gather(clusters, evidence, remembered);
   std::vector<std::uint8_t> frames_left(gathered.size(), 0);
   for (std::size_t i = 0; i < gathered.size(); ++i) {
-    if (violates(gathered[i], config) || votes.quick.cluster_moves(i, config) || votes.slow.cluster_creeps(i, config)) {
+    if (violates(gathered[i], config) || votes.quick.cluster_moves(i, config) || creeps(votes, i, config)) {
       frames_left[i] = static_cast<std::uint8_t>(config.memory_frames);
     } else if (gathered[i].remembered >= kMinRememberedShare * clusters.cells[i]) {
       const int fewer = rests(gathered[i], votes, i, config) ? kForgetFaster : 1;
