@@ -82,6 +82,16 @@ TEST_F(DynamicRegionsTest, takes_the_cluster_that_is_displaced_over_a_second_onl
   EXPECT_EQ(judge().clusters, 0);
 }
 
+TEST_F(DynamicRegionsTest, a_few_slow_votes_move_no_cluster_with_many_features_at_rest) {
+  slow_votes_ = votes_;
+  const auto block = static_cast<std::size_t>(clusters_.label[static_cast<std::size_t>(kShape.cell_at(300, 200))]);
+  slow_votes_.moving[block] = config_.min_creeping_features;
+  for (int i = 0; i < 10 * config_.min_creeping_features; ++i) vote({250 + i, 170 + i}, false);
+  EXPECT_EQ(judge().clusters, 1);
+  vote({250, 170}, false);
+  EXPECT_EQ(judge().clusters, 0);
+}
+
 TEST_F(DynamicRegionsTest, leaves_a_cluster_with_a_few_displaced_features_alone) {
   for (int i = 0; i < config_.min_moving_features; ++i) vote({250 + 8 * i, 200}, true);
   for (int i = 0; i < 20; ++i) vote({250, 170 + 5 * i}, false);
