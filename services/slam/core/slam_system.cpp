@@ -147,7 +147,10 @@ double SlamSystem::disparity_px_m() const {
 }
 
 void SlamSystem::observe_sensor(const LocalMap& map, const TrackOutcome& outcome) {
-  const bool readout_unknown = config_.techniques.rolling_shutter && config_.sensor.readout_s == 0;
+  const bool wants_weight = config_.sensor.disparity_px_m == 0;
+  const bool wants_readout =
+      config_.techniques.rolling_shutter && config_.sensor.readout_s == 0 && !shutter_.velocity_per_s.isZero(0);
+  if (!wants_weight && !wants_readout) return;
   std::vector<Association> points;
   for (std::uint32_t i = 0; i < outcome.tracked.landmarks.size(); ++i) {
     const LandmarkId id = outcome.tracked.landmarks[i];
@@ -155,10 +158,8 @@ void SlamSystem::observe_sensor(const LocalMap& map, const TrackOutcome& outcome
     if (landmark != nullptr) points.push_back({i, id, landmark->position});
   }
   const TrackedFrame& tracked = outcome.tracked;
-  depth_weight_.add(*tracked.frame, tracked.T_world_camera, points);
-  if (readout_unknown && !shutter_.velocity_per_s.isZero(0)) {
-    readout_.add(*tracked.frame, tracked.T_world_camera, points, shutter_);
-  }
+  if (wants_weight) depth_weight_.add(*tracked.frame, tracked.T_world_camera, points);
+  if (wants_readout) readout_.add(*tracked.frame, tracked.T_world_camera, points, shutter_);
 }
 
 /// Lost for long, with unknown views: the camera continues in a new map.

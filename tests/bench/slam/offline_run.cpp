@@ -123,6 +123,20 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
       "gone from BEGIN:END, seconds after the first frame");
 }
 
+void add_slam_options(CLI::App& app, rtd::slam::SlamConfig& slam) {
+  app.add_option("--disparity", slam.sensor.disparity_px_m);
+  app.add_option("--close-depth", slam.sensor.close_depth_m);
+  app.add_option("--max-depth", slam.sensor.max_depth_m);
+  app.add_option("--reference-ratio", slam.keyframe.reference_ratio);
+  app.add_option("--min-gap", slam.keyframe.min_gap_frames);
+  app.add_option("--ba-keyframes", slam.mapper.ba_keyframes);
+  app.add_option("--ba-fixed", slam.mapper.ba_fixed_keyframes);
+  app.add_option("--ba-robust", slam.mapper.ba_iterations_robust);
+  app.add_option("--ba-iterations", slam.mapper.ba_iterations);
+  app.add_option("--loop-closing", slam.techniques.loop_closing, "true, false");
+  app.add_option("--global-iterations", slam.loop.global_iterations);
+}
+
 /// The settings of the filter, and the configuration of slam with those of slam.
 std::pair<std::vector<std::string>, rtd::slam::SlamConfig> split_settings(const std::vector<std::string>& settings,
                                                                           rtd::slam::ServiceConfig& slam) {
@@ -155,27 +169,16 @@ int main(int argc, char** argv) {
   std::string trajectory_file, truth_file;
   bool verbose = false, threaded = false, errors = false, json = false;
   rtd::slam::ServiceConfig slam_settings;
-  auto& slam = slam_settings.core;
   std::vector<std::string> settings;
   app.add_option("--source", options.source, "source URI or TUM folder")->required();
   app.add_option("--mode", options.front_end.mode, "off, true-mask, semantic, geometry, epipolar, rtd-paper, rtd");
   app.add_option("--set", settings, "filter.KEY=VALUE or slam.KEY=VALUE, e.g. filter.techniques.belief=false");
   add_detector_options(app, options.front_end.detector);
+  add_slam_options(app, slam_settings.core);
   app.add_option("--first-frame", options.first_frame, "pass over so many frames of the source");
   app.add_option("--frames", options.max_frames, "stop after so many frames, 0 = all");
   app.add_option("--out", trajectory_file, "write the trajectory here, TUM format");
-  app.add_option("--disparity", slam.sensor.disparity_px_m);
   app.add_option("--truth", truth_file, "write the source's own trajectory here, TUM format");
-  app.add_option("--close-depth", slam.sensor.close_depth_m);
-  app.add_option("--max-depth", slam.sensor.max_depth_m);
-  app.add_option("--reference-ratio", slam.keyframe.reference_ratio);
-  app.add_option("--min-gap", slam.keyframe.min_gap_frames);
-  app.add_option("--ba-keyframes", slam.mapper.ba_keyframes);
-  app.add_option("--ba-fixed", slam.mapper.ba_fixed_keyframes);
-  app.add_option("--ba-robust", slam.mapper.ba_iterations_robust);
-  app.add_option("--ba-iterations", slam.mapper.ba_iterations);
-  app.add_option("--loop-closing", slam.techniques.loop_closing, "true, false");
-  app.add_option("--global-iterations", slam.loop.global_iterations);
   app.add_option("--min-period", options.min_period_s, "seconds between two frames at least, as from a live camera");
   app.add_flag("--threaded", threaded, "mapping in a thread of its own");
   app.add_flag_callback(

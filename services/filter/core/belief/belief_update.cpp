@@ -75,9 +75,7 @@ std::vector<std::int16_t> objects_on_cells(const GridShape& shape, const std::ve
   for (const MotionLevel level : {MotionLevel::kLow, MotionLevel::kMedium, MotionLevel::kHigh}) {
     for (std::size_t k = 0; k < objects.size(); ++k) {
       if (objects[k].level != level || objects[k].flat) continue;
-      for (const auto* cells : {&objects[k].holes, &objects[k].cells}) {
-        for (const int cell : *cells) on[static_cast<std::size_t>(cell)] = static_cast<std::int16_t>(k);
-      }
+      for_each_covered_cell(objects[k], [&](std::size_t cell) { on[cell] = static_cast<std::int16_t>(k); });
     }
   }
   return on;

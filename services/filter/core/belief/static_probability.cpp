@@ -32,9 +32,8 @@ std::vector<std::int16_t> paint_objects(const FrameKnowledge& known, int dilate_
   for (const MotionLevel level : {MotionLevel::kLow, MotionLevel::kMedium, MotionLevel::kHigh}) {
     for (std::size_t k = 0; k < known.objects.size(); ++k) {
       if (known.objects[k].level != level) continue;
-      for (const auto* cells : {&known.objects[k].holes, &known.objects[k].cells}) {
-        for (const int cell : *cells) rank[static_cast<std::size_t>(cell)] = static_cast<std::int16_t>(order.size());
-      }
+      for_each_covered_cell(known.objects[k],
+                            [&](std::size_t cell) { rank[cell] = static_cast<std::int16_t>(order.size()); });
       order.push_back(static_cast<std::int16_t>(k));
     }
   }

@@ -55,9 +55,7 @@ RtdJudge::Foreground RtdJudge::separate_foreground(const Scene& scene) const {
   CellMask on_high(static_cast<std::size_t>(scene.shape().size()), 0);
   for (const SceneObject& object : scene.objects) {
     if (object.level != MotionLevel::kHigh || object.flat) continue;
-    for (const auto* cells : {&object.cells, &object.holes}) {
-      for (const int cell : *cells) on_high[static_cast<std::size_t>(cell)] = 1;
-    }
+    for_each_covered_cell(object, [&](std::size_t cell) { on_high[cell] = 1; });
   }
   return {separate_objects(scene.surfaces.clusters, scene.objects), dilate(scene.shape(), on_high, grow_cells),
           dilate(scene.shape(), without_known_surfaces(scene, on_high), grow_cells)};

@@ -32,6 +32,13 @@ struct SceneObject {
   std::vector<int> holes;  ///< ascending; cells of its box that touch it and have no depth: hair, dark clothes
 };
 
+/// Every cell that an object covers, measured or not.
+inline void for_each_covered_cell(const SceneObject& object, const auto& visit) {
+  for (const auto* cells : {&object.cells, &object.holes}) {
+    for (const int cell : *cells) visit(static_cast<std::size_t>(cell));
+  }
+}
+
 /// A box to cut an object from.
 struct ObjectBox {
   vision::Detection detection;

@@ -12,7 +12,7 @@ namespace rtd::slam {
 /// docs/theory/camera.md, Eq. (8). Deterministic. Not thread-safe.
 class DepthWeightEstimator {
  public:
-  /// Starts from the weight that a map was made with, or from ORB-SLAM2's.
+  /// Starts from the weight that a map was made with, or from the largest, which suited most sensors.
   explicit DepthWeightEstimator(double disparity_px_m = 80.0);
 
   /// One tracked frame with its pose and the landmarks that agree with it.
