@@ -16,19 +16,28 @@ namespace {
 constexpr double kMaxRatio = 0.8;
 constexpr double kMaxChi2Line = 3.84;  // 95 %, 1 degree of freedom
 
+/// Whether the sensor measured depth in this frame, apart from holes: at least at a quarter of the features.
+bool measures_depth(const Frame& frame) {
+  const auto with_depth = std::count_if(frame.features.begin(), frame.features.end(),
+                                        [](const msg::Feature& feature) { return feature.depth_m > 0; });
+  return 4 * static_cast<std::size_t>(with_depth) >= frame.features.size();
+}
+
 /// A keyframe with what the search needs at hand.
 struct View {
   KeyframeId id;
   const Frame& frame;
   Eigen::Isometry3d T_world_camera, T_camera_world;
   const std::vector<LandmarkId>& landmarks;
+  bool has_depth;  ///< of most things that are near
 
   explicit View(const Keyframe& keyframe)
       : id(keyframe.id),
         frame(*keyframe.frame),
         T_world_camera(keyframe.T_world_camera),
         T_camera_world(keyframe.T_world_camera.inverse()),
-        landmarks(keyframe.landmarks) {}
+        landmarks(keyframe.landmarks),
+        has_depth(measures_depth(*keyframe.frame)) {}
 
   Eigen::Vector2d normalized(std::uint32_t feature) const {
     const msg::Feature& f = frame.features[feature];
@@ -131,7 +140,15 @@ bool scale_agrees(const View& view1, std::uint32_t feature1, const View& view2, 
   return ratio * kSlack >= octave_ratio && ratio <= octave_ratio * kSlack;
 }
 
-void create_with_neighbour(Map& map, KeyframeId keyframe, KeyframeId neighbour, std::vector<LandmarkId>& created) {
+/// Whether this view should have measured the depth of a point, and did not: two features that only look alike meet
+/// anywhere along their rays, mostly nearer than what a depth sensor leaves out.
+bool misses_depth(const View& view, std::uint32_t feature, const Eigen::Vector3d& p_world, double close_depth_m) {
+  return view.has_depth && !view.frame.measurement(feature).has_depth() &&
+         (view.T_camera_world * p_world).z() < close_depth_m;
+}
+
+void create_with_neighbour(Map& map, KeyframeId keyframe, KeyframeId neighbour, double close_depth_m,
+                           std::vector<LandmarkId>& created) {
   const View view1(*map.find_keyframe(keyframe)), view2(*map.find_keyframe(neighbour));
   const double min_baseline_m = view1.frame.camera.disparity_px_m / view1.frame.camera.fx;
   if ((view1.T_world_camera.translation() - view2.T_world_camera.translation()).norm() < min_baseline_m) return;
@@ -143,6 +160,10 @@ void create_with_neighbour(Map& map, KeyframeId keyframe, KeyframeId neighbour, 
     const auto p_world = locate(view1, feature1, view2, *feature2);
     if (!p_world || !fits(view1, feature1, *p_world) || !fits(view2, *feature2, *p_world)) continue;
     if (!scale_agrees(view1, feature1, view2, *feature2, *p_world)) continue;
+    if (misses_depth(view1, feature1, *p_world, close_depth_m) &&
+        misses_depth(view2, *feature2, *p_world, close_depth_m)) {
+      continue;
+    }
     const LandmarkId landmark = map.add_landmark(*p_world, {keyframe, feature1});
     map.add_observation(landmark, {neighbour, *feature2});
     map.refresh_landmark(landmark);
@@ -182,10 +203,10 @@ std::vector<LandmarkId> create_from_depth(Map& map, KeyframeId id, double close_
   return created;
 }
 
-std::vector<LandmarkId> create_by_triangulation(Map& map, KeyframeId keyframe, int neighbours) {
+std::vector<LandmarkId> create_by_triangulation(Map& map, KeyframeId keyframe, int neighbours, double close_depth_m) {
   std::vector<LandmarkId> created;
   for (const KeyframeId neighbour : map.best_covisible(keyframe, static_cast<std::size_t>(neighbours))) {
-    create_with_neighbour(map, keyframe, neighbour, created);
+    create_with_neighbour(map, keyframe, neighbour, close_depth_m, created);
   }
   return created;
 }

@@ -91,7 +91,7 @@ void Mapper::create_landmarks(KeyframeId keyframe) {
   // The first keyframe of a map has nothing but its depth: all of it is used.
   const bool first = map_.find_keyframe(keyframe)->is_origin();
   recent_.add(create_from_depth(map_, keyframe, first ? config_.sensor.max_depth_m : config_.sensor.close_depth_m));
-  recent_.add(create_by_triangulation(map_, keyframe, config_.mapper.neighbours));
+  recent_.add(create_by_triangulation(map_, keyframe, config_.mapper.neighbours, config_.sensor.close_depth_m));
 }
 
 void Mapper::cull_keyframes(KeyframeId newest) {

@@ -21,8 +21,9 @@ std::vector<LandmarkId> create_from_depth(Map& map, KeyframeId keyframe, double 
 
 /// Makes landmarks that two views agree on, from features of the keyframe and of its best covisible ones that have no
 /// landmark yet: epipolar search, triangulation (or depth, where it is the better of the two), checks of
-/// depth, reprojection and scale. docs/theory/mapping.md Eq. (4)-(6). Returns the new ones.
-std::vector<LandmarkId> create_by_triangulation(Map& map, KeyframeId keyframe, int neighbours);
+/// depth, reprojection and scale. docs/theory/mapping.md Eq. (4)-(6). Nothing is made nearer than `close_depth_m`
+/// without a depth, unless the sensor measures hardly any. Returns the new ones.
+std::vector<LandmarkId> create_by_triangulation(Map& map, KeyframeId keyframe, int neighbours, double close_depth_m);
 
 /// The point nearest to two rays in the linear least squares sense, p_world; empty when they are parallel. Normalised
 /// image coordinates.

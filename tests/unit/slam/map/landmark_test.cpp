@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "common/geometry/se3.hpp"
 #include "services/slam/core/mapping/mapping_steps.hpp"
 #include "services/slam/core/tracking/pose_ransac.hpp"
@@ -16,10 +19,12 @@ Eigen::Isometry3d shifted(double x_m) {
   return Eigen::Isometry3d(Eigen::Translation3d(x_m, 0, 0));
 }
 
-FramePtr view(const FeatureWorld& world, std::uint64_t seq, const Eigen::Isometry3d& T_world_camera, bool with_depth) {
+/// A share of the points has depth, the same ones in all views.
+FramePtr view(const FeatureWorld& world, std::uint64_t seq, const Eigen::Isometry3d& T_world_camera,
+              double depth_share) {
   auto message = world.view(seq, T_world_camera);
-  if (!with_depth) {
-    for (msg::Feature& feature : message->features) feature.depth_m = 0;
+  for (msg::Feature& feature : message->features) {
+    if (static_cast<double>(feature.descriptor[0] % 100) >= 100 * depth_share) feature.depth_m = 0;
   }
   return make_frame(*message, {}).frame;
 }
@@ -44,7 +49,7 @@ TEST(Triangulate, gives_no_point_for_parallel_rays) {
 }
 
 TEST(LandmarkCreation, takes_close_depth_and_at_least_the_nearest_hundred) {
-  const FramePtr frame = view(make_world(), 0, shifted(0), true);
+  const FramePtr frame = view(make_world(), 0, shifted(0), 1.0);
   const std::vector<LandmarkId> none(frame->features.size(), kNoLandmark);
   EXPECT_EQ(select_close_features(*frame, none, 100.0).size(), frame->features.size());
   const auto nearest = select_close_features(*frame, none, 0.1);
@@ -57,7 +62,7 @@ TEST(LandmarkCreation, puts_points_where_they_are) {
   Map map;
   const FeatureWorld world = make_world();
   const Eigen::Isometry3d T_world_camera = shifted(0.2);
-  map.add_keyframe(view(world, 0, T_world_camera, true), T_world_camera, kNoKeyframe);
+  map.add_keyframe(view(world, 0, T_world_camera, 1.0), T_world_camera, kNoKeyframe);
   const auto created = create_from_depth(map, 0, 10.0);
   EXPECT_EQ(created.size(), map.find_keyframe(0)->frame->features.size());
   EXPECT_EQ(map.check_invariants(), "");
@@ -67,18 +72,19 @@ TEST(LandmarkCreation, puts_points_where_they_are) {
   EXPECT_LT(vision::rgbd_residual(map.find_keyframe(0)->frame->camera, p_camera, measured).norm(), 1e-6);
 }
 
-/// Two keyframes 0.3 m apart that share 40 landmarks from depth; the other features have none.
-Map two_views(bool with_depth_in_second) {
+/// Two keyframes 0.3 m apart that share 40 landmarks where these are; the other features have none.
+Map two_views(double depth_share_of_first, double depth_share_of_second) {
   Map map;
   const FeatureWorld world = make_world();
-  map.add_keyframe(view(world, 0, shifted(0), true), shifted(0), kNoKeyframe);
-  map.add_keyframe(view(world, 1, shifted(0.3), with_depth_in_second), shifted(0.3), 0);
+  const FramePtr true_depths = view(world, 0, shifted(0), 1.0);
+  map.add_keyframe(view(world, 0, shifted(0), depth_share_of_first), shifted(0), kNoKeyframe);
+  map.add_keyframe(view(world, 1, shifted(0.3), depth_share_of_second), shifted(0.3), 0);
   const Frame &first = *map.find_keyframe(0)->frame, &second = *map.find_keyframe(1)->frame;
   int shared = 0;
   for (std::uint32_t i = 0; i < first.features.size() && shared < 40; ++i) {
     for (std::uint32_t j = 0; j < second.features.size(); ++j) {
       if (first.features[i].descriptor != second.features[j].descriptor) continue;
-      const LandmarkId id = map.add_landmark(first.unproject(i), {0, i});
+      const LandmarkId id = map.add_landmark(true_depths->unproject(i), {0, i});
       map.add_observation(id, {1, j});
       map.refresh_landmark(id);
       ++shared;
@@ -88,8 +94,8 @@ Map two_views(bool with_depth_in_second) {
 }
 
 TEST(LandmarkCreation, triangulates_what_two_views_agree_on) {
-  Map map = two_views(false);
-  const auto created = create_by_triangulation(map, 1, 10);
+  Map map = two_views(1.0, 0.0);
+  const auto created = create_by_triangulation(map, 1, 10, 4.0);
   EXPECT_GT(created.size(), 60U);
   EXPECT_EQ(map.check_invariants(), "");
   for (const LandmarkId id : created) {
@@ -103,13 +109,41 @@ TEST(LandmarkCreation, triangulates_what_two_views_agree_on) {
 }
 
 TEST(LandmarkCreation, makes_nothing_of_views_from_the_same_place) {
-  Map map = two_views(false);
+  Map map = two_views(1.0, 0.0);
   map.find_keyframe(1)->T_world_camera = shifted(0.01);
-  EXPECT_TRUE(create_by_triangulation(map, 1, 10).empty());
+  EXPECT_TRUE(create_by_triangulation(map, 1, 10, 4.0).empty());
+}
+
+/// Landmarks that no view measured the depth of, with their depth in the first camera, which is the world.
+std::vector<double> depths_without_measurement(const Map& map, const std::vector<LandmarkId>& landmarks) {
+  std::vector<double> depths_m;
+  for (const LandmarkId id : landmarks) {
+    const Landmark& landmark = *map.find_landmark(id);
+    const bool measured = std::ranges::any_of(landmark.observations, [&](const Observation& seen) {
+      return map.find_keyframe(seen.keyframe)->frame->features[seen.feature].depth_m > 0;
+    });
+    if (!measured) depths_m.push_back(landmark.position.z());
+  }
+  return depths_m;
+}
+
+TEST(LandmarkCreation, puts_nothing_into_the_close_range_where_a_depth_sensor_saw_nothing) {
+  constexpr double kCloseDepth_m = 3.0;
+  Map map = two_views(0.5, 0.5);
+  const auto depths_m = depths_without_measurement(map, create_by_triangulation(map, 1, 10, kCloseDepth_m));
+  EXPECT_GT(depths_m.size(), 20U) << "what is far needs no depth";
+  EXPECT_THAT(depths_m, ::testing::Each(::testing::Ge(kCloseDepth_m)));
+}
+
+TEST(LandmarkCreation, needs_no_depth_when_the_sensor_measures_none) {
+  constexpr double kCloseDepth_m = 3.0;
+  Map map = two_views(0.0, 0.0);
+  const auto depths_m = depths_without_measurement(map, create_by_triangulation(map, 1, 10, kCloseDepth_m));
+  EXPECT_THAT(depths_m, ::testing::Contains(::testing::Lt(kCloseDepth_m)));
 }
 
 TEST(LandmarkFusion, joins_two_landmarks_of_one_point) {
-  Map map = two_views(true);
+  Map map = two_views(1.0, 1.0);
   create_from_depth(map, 0, 10.0);
   create_from_depth(map, 1, 10.0);  // the same points once more
   const std::size_t before = map.landmark_count();
@@ -126,7 +160,7 @@ TEST(LandmarkFusion, joins_two_landmarks_of_one_point) {
 }
 
 TEST(Culling, removes_landmarks_that_are_rarely_found) {
-  Map map = two_views(true);
+  Map map = two_views(1.0, 1.0);
   RecentLandmarks recent;
   recent.add(map.landmark_ids());
   map.find_landmark(0)->visible = 100;
@@ -139,7 +173,7 @@ TEST(Culling, removes_landmarks_that_are_rarely_found) {
 }
 
 TEST(Culling, removes_unconfirmed_landmarks_and_ends_probation) {
-  Map map = two_views(true);
+  Map map = two_views(1.0, 1.0);
   const auto single = create_from_depth(map, 1, 10.0);
   RecentLandmarks recent;
   recent.add(map.landmark_ids());
@@ -152,7 +186,7 @@ TEST(Culling, finds_keyframes_that_three_others_make_superfluous) {
   Map map;
   const FeatureWorld world = make_world();
   for (std::uint32_t k = 0; k < 5; ++k) {
-    map.add_keyframe(view(world, k, shifted(0), true), shifted(0), k == 0 ? kNoKeyframe : k - 1);
+    map.add_keyframe(view(world, k, shifted(0), 1.0), shifted(0), k == 0 ? kNoKeyframe : k - 1);
   }
   const std::size_t features = map.find_keyframe(0)->frame->features.size();
   for (std::uint32_t i = 0; i < features; ++i) {
@@ -182,7 +216,7 @@ std::vector<vision::PoseObservation> observe_with_outliers(const Frame& frame) {
 }
 
 TEST(PoseRansac, finds_the_pose_among_outliers) {
-  const FramePtr frame = view(make_world(), 0, kFarPose, true);
+  const FramePtr frame = view(make_world(), 0, kFarPose, 1.0);
   const auto observations = observe_with_outliers(*frame);
   const auto result = estimate_pose_ransac(frame->camera, observations, {});
   ASSERT_TRUE(result.success);
@@ -191,7 +225,7 @@ TEST(PoseRansac, finds_the_pose_among_outliers) {
 }
 
 TEST(PoseRansac, needs_no_depth_at_all) {
-  const FramePtr frame = view(make_world(), 0, kFarPose, true);
+  const FramePtr frame = view(make_world(), 0, kFarPose, 1.0);
   auto observations = observe_with_outliers(*frame);
   for (vision::PoseObservation& observation : observations) observation.measured.depth_m = 0;
   const auto result = estimate_pose_ransac(frame->camera, observations, {});
@@ -200,7 +234,7 @@ TEST(PoseRansac, needs_no_depth_at_all) {
 }
 
 TEST(PoseRansac, fails_with_two_points_or_without_agreement) {
-  const FramePtr frame = view(make_world(), 0, shifted(0), true);
+  const FramePtr frame = view(make_world(), 0, shifted(0), 1.0);
   std::vector<vision::PoseObservation> observations;
   for (std::size_t i = 0; i < frame->features.size(); ++i) {
     const auto x = static_cast<double>(i);
