@@ -20,7 +20,7 @@ import sys
 
 import stress
 
-COLUMNS = ["clip", "mode", "runs", "ATE median, m", "best", "worst", "coverage, least", "precision", "recall"]
+COLUMNS = ["clip", "mode", "runs", "ATE median, m", "best", "worst", "as published", "NEES", "coverage, least", "precision", "recall"]
 
 
 def perturbation(run: int) -> list:
@@ -38,19 +38,20 @@ def command(clip: str, mode: str, run: int, settings: list, folder: pathlib.Path
     return task
 
 
-def median_of(results: list, key: str) -> str:
+def median_of(results: list, key: str, digits: int = 3) -> str:
     values = [result[key] for result in results if result.get(key) is not None]
-    return f"{statistics.median(values):.3f}" if values else "-"
+    return f"{statistics.median(values):.{digits}f}" if values else "-"
 
 
 def row(clip: str, mode: str, results: list) -> list:
     """Of the runs that ended and were tracked."""
     good = [result for result in results if result.get("ate_m") is not None]
     if not good:
-        return [clip, mode, "0 of " + str(len(results)), *["-"] * 6]
+        return [clip, mode, "0 of " + str(len(results)), *["-"] * (len(COLUMNS) - 3)]
     errors = sorted(result["ate_m"] for result in good)
     return [clip, mode, str(len(good)), f"{statistics.median(errors):.4f}", f"{errors[0]:.4f}", f"{errors[-1]:.4f}",
-            f"{min(result['coverage'] for result in good):.2f}", median_of(good, "precision"), median_of(good, "recall")]
+            median_of(good, "online_ate_m", 4), median_of(good, "nees", 0), f"{min(result['coverage'] for result in good):.2f}",
+            median_of(good, "precision"), median_of(good, "recall")]
 
 
 def as_line(cells: list) -> str:

@@ -13,6 +13,7 @@
 #include "common/geometry/se3.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
+#include "tests/support/pose_error.hpp"
 
 namespace rtd::test_support {
 namespace {
@@ -29,19 +30,41 @@ void add_stage_times(const slam::FrameResult& result, OfflineReport& report) {
 
 constexpr std::int64_t kSettledAfterNs = 1'000'000'000;
 
-void evaluate(OfflineReport& report) {
-  report.coverage = report.frames == 0 ? 0.0 : static_cast<double>(report.tracked) / static_cast<double>(report.frames);
-  report.ate_rmse_m = eval::ate(report.trajectory, report.groundtruth).error_m.rmse;
-  const eval::RpeResult rpe = eval::rpe(report.trajectory, report.groundtruth);
-  report.rpe_trans_rmse_m = rpe.translation_m.rmse;
-  report.rpe_rot_rmse_deg = rpe.rotation_rad.rmse * 180 / std::numbers::pi;
-}
-
 std::optional<Eigen::Isometry3d> true_pose(const eval::Trajectory& groundtruth, std::int64_t stamp_ns) {
   const auto found = std::find_if(groundtruth.begin(), groundtruth.end(),
                                   [stamp_ns](const auto& pose) { return pose.stamp_ns == stamp_ns; });
   if (found == groundtruth.end()) return std::nullopt;
   return found->T_world_body;
+}
+
+/// Mean over the poses published in the first map, whose frame is that of its first pose.
+double mean_nees(const std::vector<slam::FrameResult>& published, const eval::Trajectory& groundtruth) {
+  constexpr std::size_t kFirst = 5;  // the first covariances are those of a map that has just begun
+  std::optional<Eigen::Isometry3d> T_truth_world;
+  double sum = 0;
+  std::size_t counted = 0;
+  for (std::size_t i = 0; i < published.size(); ++i) {
+    const auto truth = true_pose(groundtruth, published[i].stamp_ns);
+    if (!truth) continue;
+    if (!T_truth_world) T_truth_world = *truth * published[i].T_world_camera.inverse();
+    if (i < kFirst) continue;
+    sum += nees(published[i], T_truth_world->inverse() * *truth);
+    ++counted;
+  }
+  return counted == 0 ? std::nan("") : sum / static_cast<double>(counted);
+}
+
+void evaluate(const std::vector<slam::FrameResult>& published, OfflineReport& report) {
+  const auto tracked = static_cast<double>(report.trajectory.size());
+  report.coverage = report.frames == 0 ? 0.0 : tracked / static_cast<double>(report.frames);
+  report.ate_rmse_m = eval::ate(report.trajectory, report.groundtruth).error_m.rmse;
+  eval::Trajectory online;
+  for (const slam::FrameResult& result : published) online.push_back({result.stamp_ns, result.T_world_camera});
+  report.online_ate_rmse_m = eval::ate(online, report.groundtruth).error_m.rmse;
+  report.nees = mean_nees(published, report.groundtruth);
+  const eval::RpeResult rpe = eval::rpe(report.trajectory, report.groundtruth);
+  report.rpe_trans_rmse_m = rpe.translation_m.rmse;
+  report.rpe_rot_rmse_deg = rpe.rotation_rad.rmse * 180 / std::numbers::pi;
 }
 
 ClosedLoop judge(const slam::LoopClosure& closure, const eval::Trajectory& groundtruth) {
@@ -76,6 +99,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
   slam::SlamSystem slam(options.slam, options.mapping, options.now_ns);
   if (options.on_start) options.on_start(slam);
   OfflineReport report;
+  std::vector<slam::FrameResult> published;
   for (std::size_t i = 0; i < options.first_frame; ++i) source->next();
   std::optional<std::int64_t> first_ns;
   auto next_frame = std::chrono::steady_clock::now();
@@ -99,7 +123,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
     report.keyframes = output.result.keyframes;
     report.landmarks = output.result.landmarks;
     ++report.frames;
-    if (output.result.state == msg::TrackingState::kOk) ++report.tracked;
+    if (output.result.state == msg::TrackingState::kOk && output.result.map_id == 0) published.push_back(output.result);
     if (options.on_frame) options.on_frame(output);
   }
   report.disparity_px_m = slam.disparity_px_m();
@@ -112,7 +136,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
   report.trajectory = slam.trajectory();
   report.groundtruth = source->groundtruth();
   for (const slam::LoopClosure& closure : slam.loops()) report.loops.push_back(judge(closure, report.groundtruth));
-  evaluate(report);
+  evaluate(published, report);
   return report;
 }
 

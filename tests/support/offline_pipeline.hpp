@@ -72,12 +72,14 @@ struct ClosedLoop {
 
 /// The whole system in one thread without transport: what lockstep computes.
 struct OfflineReport {
-  std::size_t frames = 0, tracked = 0, keyframes = 0, landmarks = 0;
+  std::size_t frames = 0, keyframes = 0, landmarks = 0;
   std::string trajectory_tum;  ///< as rtd-slam writes trajectory.txt
   eval::Trajectory trajectory, groundtruth;
-  double ate_rmse_m = 0;                              ///< NaN without ground truth
+  double ate_rmse_m = 0;         ///< of the final trajectory; NaN without ground truth
+  double online_ate_rmse_m = 0;  ///< of the poses as they were published
+  double nees = 0;  ///< mean of the published poses and covariances, 6 when they are true; NaN without ground truth
   double rpe_trans_rmse_m = 0, rpe_rot_rmse_deg = 0;  ///< per second
-  double coverage = 0;                                ///< tracked / frames
+  double coverage = 0;                                ///< share of the frames that `trajectory` has
   double disparity_px_m = 0, readout_s = 0;           ///< of the sensor, as slam knows it at the end
   std::vector<ClosedLoop> loops;
   eval::RemovalQuality removal;                         ///< after the first second; of sources with masks

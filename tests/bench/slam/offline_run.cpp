@@ -30,9 +30,10 @@ double percentile(std::vector<double> values, double fraction) {
 }
 
 void print(const rtd::test_support::OfflineReport& report) {
-  std::printf("frames %zu  coverage %.3f  ATE %.4f m  RPE %.4f m %.3f deg  keyframes %zu  landmarks %zu\n",
-              report.frames, report.coverage, report.ate_rmse_m, report.rpe_trans_rmse_m, report.rpe_rot_rmse_deg,
-              report.keyframes, report.landmarks);
+  std::printf("frames %zu  coverage %.3f  ATE %.4f m, as published %.4f m, NEES %.1f  RPE %.4f m %.3f deg\n",
+              report.frames, report.coverage, report.ate_rmse_m, report.online_ate_rmse_m, report.nees,
+              report.rpe_trans_rmse_m, report.rpe_rot_rmse_deg);
+  std::printf("keyframes %zu  landmarks %zu\n", report.keyframes, report.landmarks);
   if (report.removal.removed_rightly + report.removal.kept_wrongly > 0) {
     std::printf("removed features after 1 s: precision %.3f  recall %.3f\n", report.removal.precision(),
                 report.removal.recall());
@@ -71,6 +72,8 @@ void print_json(const rtd::test_support::OfflineReport& report) {
                                {"loop_error_m", loop_error_m},
                                {"coverage", report.coverage},
                                {"ate_m", report.ate_rmse_m},
+                               {"online_ate_m", report.online_ate_rmse_m},
+                               {"nees", report.nees},
                                {"max_error_m", lost_m},
                                {"rpe_m", report.rpe_trans_rmse_m},
                                {"rpe_deg", report.rpe_rot_rmse_deg},
