@@ -39,6 +39,7 @@ struct SensorConfig {
   double disparity_px_m = 0;  ///< vision::RgbdProjection::disparity_px_m
   double close_depth_m = 4.0;
   double shared_error = 3.0;
+  double calibration_error = 0.01;
   double readout_s = 0;
   double max_depth_m = 8.0;
 
@@ -49,6 +50,9 @@ struct SensorConfig {
                  "nearer depths make landmarks at once, farther ones wait for a second view");
     binder.field("shared_error", shared_error, {0.1, 100.0},
                  "factor on the covariance of the pose: features share errors of image and depth");
+    binder.field(
+        "calibration_error", calibration_error, {0.0, 0.5},
+        "share by which focal length and depth may be off: the covariance grows by it with the way from the origin");
     binder.field("readout_s", readout_s, {-0.1, 0.1},
                  "readout time of the image, first row to last, if known; 0: estimated while tracking");
     binder.field("max_depth_m", max_depth_m, {0.5, 50.0}, "farther depths are not used");

@@ -28,7 +28,8 @@ std::array<double, kLooks.size()> mean_nees(double noise_px, double depth_noise_
     options.points = 800;
     const FeatureWorld features(options);
     SlamConfig config;
-    config.sensor.shared_error = 1;  // the noise of these features is independent
+    config.sensor.shared_error = 1;       // the noise of these features is independent
+    config.sensor.calibration_error = 0;  // and the camera known exactly
     SlamSystem slam(config, MappingMode::kSynchronous, [] { return std::int64_t{0}; });
     for (std::uint64_t seq = 0; seq <= kLooks.back(); ++seq) {
       const SlamOutput output = slam.process(*features.view(seq, FeatureWorld::T_world_camera(seq)));

@@ -21,8 +21,11 @@ using test_support::frozen_clock;
 
 constexpr std::uint64_t kFrames = 90;
 
+/// The features are those of a camera that is known exactly.
 SlamSystem make_slam(MappingMode mode = MappingMode::kSynchronous) {
-  return {SlamConfig{}, mode, frozen_clock};
+  SlamConfig config;
+  config.sensor.calibration_error = 0;
+  return {config, mode, frozen_clock};
 }
 
 std::unique_ptr<msg::FeatureFrame> empty_view(std::uint64_t seq) {

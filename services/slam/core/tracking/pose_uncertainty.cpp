@@ -61,6 +61,14 @@ double pose_distance2(const PredictedPose& a, const PredictedPose& b) {
   return difference.dot(covariance.ldlt().solve(difference));
 }
 
+Matrix6d calibration_covariance(const Eigen::Isometry3d& T_world_camera, double scene_m, double share) {
+  const double turn_rad = geometry::rotation_angle_rad(T_world_camera);
+  const double way2_m2 = T_world_camera.translation().squaredNorm() + std::pow(turn_rad * scene_m, 2);
+  geometry::Vector6d variances;
+  variances << Eigen::Vector3d::Constant(way2_m2), Eigen::Vector3d::Constant(turn_rad * turn_rad);
+  return (share * share * variances).asDiagonal();
+}
+
 Matrix6d MapUncertainty::in_world(const Matrix6d& local, const Eigen::Vector3d& position,
                                   const std::vector<LandmarkId>& landmarks, const LocalMap& map) {
   if (const auto inherited = of_landmarks(position, landmarks, map)) return local + *inherited;

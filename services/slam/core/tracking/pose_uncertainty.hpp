@@ -35,6 +35,12 @@ PredictedPose predict_motion(const CameraMotion& motion, double gap_s, const Pre
 /// Squared Mahalanobis distance between two estimates of one pose.
 double pose_distance2(const PredictedPose& a, const PredictedPose& b);
 
+/// What a camera whose focal length, principal point and depth may be off by a share adds to the covariance of a pose,
+/// (x y z rx ry rz) in the world frame: every way and turn from the origin of the map is wrong by that share, in a
+/// direction that nobody knows, and a wrong turn looks like a way across a scene at `scene_m`.
+/// docs/theory/tracking.md Eq. (15).
+geometry::Matrix6d calibration_covariance(const Eigen::Isometry3d& T_world_camera, double scene_m, double share);
+
 /// How uncertain the map itself is where the camera is, docs/theory/tracking.md Eq. (13), (14): a landmark is as
 /// uncertain as the keyframe that found it first, a keyframe as uncertain as what it was tracked by and its own pose
 /// against it. Covariances are of (x y z rx ry rz) in the world frame.

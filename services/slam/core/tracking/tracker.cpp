@@ -26,6 +26,21 @@ bool is_steady(const CameraMotion& motion, const Eigen::Isometry3d& T_last_camer
          geometry::rotation_angle_rad(T_expected_camera) < kMaxAcceleration_rad_s2 * gap_s * gap_s;
 }
 
+/// How far away what a frame sees is, m.
+double median_distance(const LocalMap& map, const TrackedFrame& tracked) {
+  std::vector<double> distances_m;
+  distances_m.reserve(tracked.landmarks.size());
+  for (const LandmarkId id : tracked.landmarks) {
+    const LocalLandmark* landmark = id == kNoLandmark ? nullptr : map.find_landmark(id);
+    if (landmark == nullptr) continue;
+    distances_m.push_back((landmark->position - tracked.T_world_camera.translation()).norm());
+  }
+  if (distances_m.empty()) return 0;
+  const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
+  std::nth_element(distances_m.begin(), middle, distances_m.end());
+  return *middle;
+}
+
 }  // namespace
 
 KeyframeId vote_reference(const LocalMap& map, const std::vector<LandmarkId>& landmarks) {
@@ -186,7 +201,9 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   const geometry::Matrix6d local = config_.sensor.shared_error * tracking.guess.covariance;
   covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
   map_covariance_ = covariance_ - local;
-  outcome.covariance = covariance_;
+  scene_m_ = median_distance(*outcome.map, last_);
+  outcome.covariance =
+      covariance_ + calibration_covariance(last_.T_world_camera, scene_m_, config_.sensor.calibration_error);
 }
 
 /// Found by the reference keyframe's descriptors alone, or by hardly any landmark of the last frame, the camera may as
@@ -248,7 +265,8 @@ void Tracker::reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess&
       claimed = measured;
     }
     outcome.tracked.T_world_camera = claimed->T_world_camera;
-    outcome.covariance = config_.sensor.shared_error * claimed->covariance + map_covariance_;
+    outcome.covariance = config_.sensor.shared_error * claimed->covariance + map_covariance_ +
+                         calibration_covariance(claimed->T_world_camera, scene_m_, config_.sensor.calibration_error);
     outcome.state = state_ = msg::TrackingState::kPredicted;
     return;
   }

@@ -101,6 +101,7 @@ class Tracker {
   MapUncertainty uncertainty_;
   geometry::Matrix6d covariance_ = geometry::Matrix6d::Zero();      ///< of last_, in the world
   geometry::Matrix6d map_covariance_ = geometry::Matrix6d::Zero();  ///< the map's part of it
+  double scene_m_ = 0;                                              ///< how far away what last_ sees is
   std::optional<CameraMotion> motion_;  ///< at the last tracked frame, whose pose the map may have moved since
   int inliers_ = 0;
   int frames_since_keyframe_ = 0;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/slam/core/slam_system.hpp"
@@ -109,7 +111,9 @@ TEST(Prediction, tracking_continues_in_the_same_map) {
 
 TEST(Prediction, few_landmarks_are_better_than_none) {
   const FeatureWorld world = FeatureWorld::noisy();
-  SlamSystem slam({}, MappingMode::kSynchronous, frozen_clock);
+  SlamConfig config;
+  config.sensor.calibration_error = 0;  // leaves what the landmarks say
+  SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);
   std::uint64_t seq = 0;
   for (; seq < 30; ++seq) slam.process(*world.view(seq));
   int weak = 0;
@@ -122,6 +126,16 @@ TEST(Prediction, few_landmarks_are_better_than_none) {
   }
   EXPECT_GT(weak, 5);
   EXPECT_EQ(slam.frames_tracked(), 30U);
+}
+
+TEST(CalibrationCovariance, grows_with_way_and_turn_from_the_origin) {
+  constexpr double kScene_m = 3, kShare = 0.01, kTurn_rad = 0.5;
+  EXPECT_TRUE(calibration_covariance(Eigen::Isometry3d::Identity(), kScene_m, kShare).isZero());
+  Eigen::Isometry3d T_world_camera(Eigen::AngleAxisd(kTurn_rad, Eigen::Vector3d::UnitY()));
+  T_world_camera.translation() = Eigen::Vector3d(0, 3, 4);
+  const geometry::Vector6d sigma = calibration_covariance(T_world_camera, kScene_m, kShare).diagonal().cwiseSqrt();
+  EXPECT_NEAR(sigma(0), std::hypot(0.05, 0.015), 1e-12);  // 1 % of 5 m, and of half a radian at 3 m
+  EXPECT_NEAR(sigma(3), 0.005, 1e-12);
 }
 
 TEST(Prediction, can_be_switched_off) {
