@@ -18,6 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// On the median of docs/results.md, "Accuracy": what an unlucky run or another processor may add.
+constexpr double kSlack = 1.3;
+
 std::string read_file(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
@@ -56,14 +59,14 @@ class ClipTest : public ::testing::Test {
 TEST_F(ClipTest, real_desk_is_tracked_as_well_as_without_removal) {
   run("fr1_xyz", "--pace lockstep --filter rtd", "fr1_xyz");
   if (IsSkipped() || HasFatalFailure()) return;
-  EXPECT_LE(ate_m(), 0.012);
+  EXPECT_LE(ate_m(), kSlack * 0.0077);
   EXPECT_GE(coverage(), 0.99);
 }
 
 TEST_F(ClipTest, walking_people_do_not_bend_the_trajectory) {
   run("walk_xyz", "--pace lockstep --filter rtd", "walk_xyz");
   if (IsSkipped() || HasFatalFailure()) return;
-  EXPECT_LE(ate_m(), 0.015);
+  EXPECT_LE(ate_m(), kSlack * 0.0024);
   EXPECT_GE(coverage(), 0.99);
   double peak_mb = 0;
   for (const auto& process : report_.at("peak_rss_mb")) peak_mb += process.get<double>();
@@ -73,14 +76,14 @@ TEST_F(ClipTest, walking_people_do_not_bend_the_trajectory) {
 TEST_F(ClipTest, rolling_camera_with_people_stays_on_course) {
   run("walk_rpy", "--pace lockstep --filter rtd", "walk_rpy");
   if (IsSkipped() || HasFatalFailure()) return;
-  EXPECT_LE(ate_m(), 0.03);
+  EXPECT_LE(ate_m(), kSlack * 0.0049);
   EXPECT_GE(coverage(), 0.99);
 }
 
 TEST_F(ClipTest, carried_boxes_without_a_class_do_not_bend_the_trajectory) {
   run("walk_box", "--pace lockstep --filter rtd", "walk_box");
   if (IsSkipped() || HasFatalFailure()) return;
-  EXPECT_LE(ate_m(), 0.02);
+  EXPECT_LE(ate_m(), kSlack * 0.0016);
   EXPECT_GE(coverage(), 0.99);
 }
 

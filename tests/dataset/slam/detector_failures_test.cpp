@@ -22,7 +22,7 @@ OfflineOptions clip(const std::string& name, const std::string& mode) {
 
 struct SlowClip {
   const char* name;
-  double full_rate_ate_m;  ///< asked of a detector that answers every frame
+  double ate_m;  ///< the worse of the two tests, docs/results.md "Accuracy"
 };
 void PrintTo(const SlowClip& slow, std::ostream* out) {
   *out << slow.name;
@@ -34,13 +34,13 @@ class SlowDetector : public ::testing::TestWithParam<SlowClip> {
     if (options.source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no " << GetParam().name;
     if (std::getenv("RTD_MODEL_DIR") == nullptr) GTEST_SKIP() << "RTD_MODEL_DIR is not set";
     const OfflineReport report = run_offline(options);
-    EXPECT_LE(report.ate_rmse_m, 1.5 * GetParam().full_rate_ate_m);
+    EXPECT_LE(report.ate_rmse_m, 1.3 * GetParam().ate_m);
     EXPECT_GE(report.coverage, 1.0);
   }
 };
 INSTANTIATE_TEST_SUITE_P(Clips, SlowDetector,
-                         ::testing::Values(SlowClip{"walk_xyz", 0.0048}, SlowClip{"walk_rpy", 0.0080},
-                                           SlowClip{"walk_box", 0.0030}),
+                         ::testing::Values(SlowClip{"walk_xyz", 0.0024}, SlowClip{"walk_rpy", 0.0056},
+                                           SlowClip{"walk_box", 0.0015}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST_P(SlowDetector, at_5_hz_and_80_ms_late_hardly_changes_the_poses) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "tests/support/clip_uri.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
@@ -15,9 +17,12 @@ OfflineReport run(const std::string& source, const std::string& mode) {
   return run_offline(options);
 }
 
+/// On the published median: what an unlucky run or another processor may add.
+constexpr double kSlack = 1.3;
+
 struct MaskedClip {
   const char* name;
-  double max_ate_m;
+  double median_ate_m;  ///< of docs/results.md, "Accuracy"
 };
 void PrintTo(const MaskedClip& masked, std::ostream* out) {
   *out << masked.name;
@@ -30,13 +35,27 @@ TEST_P(TrueMaskClip, is_tracked_as_well_as_by_orb_slam2) {
   const std::string source = clip_uri(GetParam().name, "?masks=1");
   if (source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no " << GetParam().name;
   const OfflineReport report = run(source, "true-mask");
-  EXPECT_LE(report.ate_rmse_m, GetParam().max_ate_m);
+  EXPECT_LE(report.ate_rmse_m, kSlack * GetParam().median_ate_m);
   EXPECT_GE(report.coverage, 0.99);
 }
-// ORB-SLAM2 with the same masks: 0.0041, 0.0087, 0.0023 m.
 INSTANTIATE_TEST_SUITE_P(Clips, TrueMaskClip,
-                         ::testing::Values(MaskedClip{"walk_xyz", 0.006}, MaskedClip{"walk_rpy", 0.011},
-                                           MaskedClip{"walk_box", 0.0035}));
+                         ::testing::Values(MaskedClip{"walk_xyz", 0.0029}, MaskedClip{"walk_rpy", 0.0058},
+                                           MaskedClip{"walk_box", 0.0020}, MaskedClip{"kinect_half", 0.0135},
+                                           MaskedClip{"kinect_rpy", 0.0174}));
+
+class FaultySensorClip : public ::testing::TestWithParam<MaskedClip> {};
+
+/// A sensor with a Kinect's faults, and three people in its view.
+TEST_P(FaultySensorClip, is_tracked_with_the_real_detector) {
+  const std::string source = clip_uri(GetParam().name, "?masks=1");
+  if (source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no " << GetParam().name;
+  if (std::getenv("RTD_MODEL_DIR") == nullptr) GTEST_SKIP() << "RTD_MODEL_DIR is not set";
+  const OfflineReport report = run(source, "rtd");
+  EXPECT_LE(report.ate_rmse_m, kSlack * GetParam().median_ate_m);
+  EXPECT_GE(report.coverage, 1.0);
+}
+INSTANTIATE_TEST_SUITE_P(Clips, FaultySensorClip,
+                         ::testing::Values(MaskedClip{"kinect_half", 0.0126}, MaskedClip{"kinect_rpy", 0.0170}));
 
 TEST(StaticClip, fr1_xyz_is_tracked_as_well_as_by_orb_slam2) {
   const std::string source = clip_uri("fr1_xyz");
