@@ -16,7 +16,7 @@ fi
 
 started=$SECONDS
 "$root/deploy/setup.sh" --no-models
-echo "test: building into build/release (first time: about 12 minutes on two cores)"
+echo "test: building into build/release (first time: about 10 minutes on two cores)"
 build_release ON
 built=$SECONDS
 echo "test: built in $((built - started)) s"

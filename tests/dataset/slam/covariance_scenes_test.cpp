@@ -53,8 +53,8 @@ INSTANTIATE_TEST_SUITE_P(Faults, FaultySensor,
                          ::testing::Values("depth_error=0.02", "calibration_error=0.01", "sensor=d435",
                                            "sensor=kinect"));
 
-/// 95 % of the mean of two chi2 values with 6 degrees of freedom lie below 11.7; without calibration_error the mean is
-/// 14 to 250.
+/// 95 % of the means of two chi2 values with 6 degrees of freedom lie below 10.5, 97.5 % below 11.7. Without
+/// calibration_error it is 24 to 273 (docs/theory/tracking.md, "Validation").
 TEST_P(FaultySensor, is_covered_by_the_default_calibration_error) {
   const double share = slam::SensorConfig{}.calibration_error;
   double mean = 0;
