@@ -20,7 +20,8 @@ import sys
 
 import stress
 
-COLUMNS = ["clip", "mode", "runs", "ATE median, m", "best", "worst", "as published", "NEES", "coverage, least", "precision", "recall"]
+COLUMNS = ["clip", "mode", "runs", "ATE median, m", "best", "worst", "as published", "NEES", "coverage, least",
+           "precision", "recall"]
 
 
 def perturbation(run: int) -> list:
@@ -49,8 +50,9 @@ def row(clip: str, mode: str, results: list) -> list:
     if not good:
         return [clip, mode, "0 of " + str(len(results)), *["-"] * (len(COLUMNS) - 3)]
     errors = sorted(result["ate_m"] for result in good)
+    coverage = min(result["coverage"] for result in good)
     return [clip, mode, str(len(good)), f"{statistics.median(errors):.4f}", f"{errors[0]:.4f}", f"{errors[-1]:.4f}",
-            median_of(good, "online_ate_m", 4), median_of(good, "nees", 0), f"{min(result['coverage'] for result in good):.2f}",
+            median_of(good, "online_ate_m", 4), median_of(good, "nees", 0), f"{coverage:.2f}",
             median_of(good, "precision"), median_of(good, "recall")]
 
 

@@ -6,7 +6,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
+
+#include "common/vision/samples.hpp"
 
 namespace rtd::vision {
 namespace {
@@ -49,9 +52,7 @@ double median_scale2(std::span<const SquaredResidual> residuals) {
   ratios.reserve(residuals.size());
   for (const SquaredResidual& r : residuals)
     ratios.push_back(r.chi2 / (r.dimension == 2 ? kMedianChi2Pixel : kMedianChi2Rgbd));
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return std::clamp(*middle, kMinScale2, kMaxScale2);
+  return std::clamp(median(std::move(ratios)), kMinScale2, kMaxScale2);
 }
 
 constexpr double kNearly = 1e-9;

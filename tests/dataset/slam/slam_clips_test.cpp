@@ -38,6 +38,7 @@ TEST_P(TrueMaskClip, is_tracked_as_well_as_by_orb_slam2) {
   EXPECT_LE(report.ate_rmse_m, kSlack * GetParam().median_ate_m);
   EXPECT_GE(report.coverage, 0.99);
 }
+// ORB-SLAM2 with the same masks: 0.0041, 0.0087, 0.0023, 0.019 to 0.022, 0.0173 to 0.0178 m.
 INSTANTIATE_TEST_SUITE_P(Clips, TrueMaskClip,
                          ::testing::Values(MaskedClip{"walk_xyz", 0.0029}, MaskedClip{"walk_rpy", 0.0058},
                                            MaskedClip{"walk_box", 0.0020}, MaskedClip{"kinect_half", 0.0135},

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/belief/object_motion.hpp"
+#include "common/vision/samples.hpp"
 
 #include <cmath>
-
-#include "services/filter/core/samples.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -15,7 +14,7 @@ float median_variance(const std::vector<float>& values, float middle) {
   std::vector<float> deviations;
   deviations.reserve(values.size());
   for (const float value : values) deviations.push_back(std::abs(value - middle));
-  const float sigma = kSigmaPerMad * median(std::move(deviations));
+  const float sigma = kSigmaPerMad * vision::median(std::move(deviations));
   return kMedianVariance * sigma * sigma / static_cast<float>(values.size());
 }
 
@@ -53,7 +52,7 @@ ObjectDrift drift_of(const std::vector<int>& cells, const FeatureVotes& votes, s
     y_px.push_back(shift.y_px);
   }
   if (x_px.empty()) return {};
-  const float x = median(x_px), y = median(y_px);
+  const float x = vision::median(x_px), y = vision::median(y_px);
   return {static_cast<int>(x_px.size()), std::hypot(x, y),
           std::sqrt(median_variance(x_px, x) + median_variance(y_px, y))};
 }

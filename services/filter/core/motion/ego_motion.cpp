@@ -4,8 +4,8 @@
 
 #include <utility>
 
+#include "common/vision/samples.hpp"
 #include "services/filter/core/motion/static_consensus.hpp"
-#include "services/filter/core/samples.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -56,7 +56,7 @@ std::vector<FeatureMatch> usable(const std::vector<FeatureMatch>& matches, const
     if (cluster >= 0 && moving_cluster[static_cast<std::size_t>(cluster)] != 0) continue;
     kept.push_back(match);
   }
-  return thin_out(std::move(kept), limit);
+  return vision::thin_out(std::move(kept), limit);
 }
 
 /// Votes of the features found again in a view up to 1.5 s old: what moves at a few cm/s stays within the noise over

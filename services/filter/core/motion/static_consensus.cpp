@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "common/vision/pose_optimizer.hpp"
-#include "services/filter/core/samples.hpp"
+#include "common/vision/samples.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -99,7 +99,7 @@ StaticConsensus find_static_consensus(const std::vector<PointSighting>& sighting
   };
   propose(T_world_camera_predicted);
   for (const std::vector<PointSighting>& group : proposing_groups(sightings, config)) {
-    const auto thinned = thin_out(group, static_cast<std::size_t>(config.max_proposal_sightings));
+    const auto thinned = vision::thin_out(group, static_cast<std::size_t>(config.max_proposal_sightings));
     const RefinedPose pose = refine_pose(thinned, camera, T_world_camera_predicted, config.min_inliers);
     if (pose.success) propose(pose.T_world_camera);
   }

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/surfaces/object_masks.hpp"
+#include "common/vision/samples.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
-
-#include "services/filter/core/samples.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -68,7 +67,7 @@ std::vector<ClusterInBox> clusters_in(const CellBox& box, const DepthGrid& grid,
     std::vector<float> depths;
     depths.reserve(cells.size());
     for (const int cell : cells) depths.push_back(grid.depth_m[static_cast<std::size_t>(cell)]);
-    found.push_back({static_cast<std::int32_t>(label), std::move(cells), median(std::move(depths))});
+    found.push_back({static_cast<std::int32_t>(label), std::move(cells), vision::median(std::move(depths))});
   }
   return found;
 }

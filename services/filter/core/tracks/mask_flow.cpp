@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/tracks/mask_flow.hpp"
+#include "common/vision/samples.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
-
-#include "services/filter/core/samples.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -33,7 +32,7 @@ float scale_of(const std::vector<cv::Point2f>& from_px, const std::vector<cv::Po
       if (before >= kMinDistancePx) ratios.push_back(static_cast<float>(cv::norm(to_px[i] - to_px[j])) / before);
     }
   }
-  return ratios.size() < kMinFlowPoints ? 1.0F : std::clamp(median(std::move(ratios)), 0.8F, 1.25F);
+  return ratios.size() < kMinFlowPoints ? 1.0F : std::clamp(vision::median(std::move(ratios)), 0.8F, 1.25F);
 }
 
 }  // namespace
@@ -49,7 +48,7 @@ std::optional<BoxFlow> motion_of_points(const Box& box, const std::vector<cv::Po
     dx.push_back(to_px[i].x - grown.x);
     dy.push_back(to_px[i].y - grown.y);
   }
-  return BoxFlow{{median(std::move(dx)), median(std::move(dy))}, scale};
+  return BoxFlow{{vision::median(std::move(dx)), vision::median(std::move(dy))}, scale};
 }
 
 void MaskFlow::see(std::int64_t stamp_ns, const cv::Mat& color_bgr) {

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/tracks/object_tracker.hpp"
+#include "common/vision/samples.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "services/filter/core/samples.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -22,7 +21,7 @@ std::vector<cv::Point2f> points_on(const View& view, const Box& box, double dept
     if (depth_m > 0 && std::abs(static_cast<double>(f.depth_m) - depth_m) > tolerance_m) continue;
     points.emplace_back(f.u_raw_px, f.v_raw_px);
   }
-  return thin_out(std::move(points), kMaxPoints);
+  return vision::thin_out(std::move(points), kMaxPoints);
 }
 
 /// Median depth of a grid at some raw pixels, 0 = nothing measured.
@@ -34,7 +33,7 @@ double depth_at(const std::vector<cv::Point2f>& points_px, const geometry::Camer
     if (cell >= 0 && grid.depth_m[static_cast<std::size_t>(cell)] > 0)
       depths.push_back(grid.depth_m[static_cast<std::size_t>(cell)]);
   }
-  return static_cast<double>(median(std::move(depths)));
+  return static_cast<double>(vision::median(std::move(depths)));
 }
 
 }  // namespace
@@ -116,7 +115,7 @@ void ObjectTracker::learn_depths(const std::vector<SceneObject>& objects, const 
       const float depth_m = grid.depth_m[static_cast<std::size_t>(cell)];
       if (depth_m > 0) depths.push_back(depth_m);
     }
-    if (!depths.empty()) tracks_.set_depth(object.track_id, static_cast<double>(median(std::move(depths))));
+    if (!depths.empty()) tracks_.set_depth(object.track_id, static_cast<double>(vision::median(std::move(depths))));
   }
 }
 

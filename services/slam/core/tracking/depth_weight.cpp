@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "common/vision/samples.hpp"
 #include "services/slam/core/map/frame.hpp"
 
 namespace rtd::slam {
@@ -20,12 +22,6 @@ constexpr double kMin_px_m = 10, kMax_px_m = 80;
 constexpr double kStep = 1.1;
 /// Residuals below these come from rounding, not from a sensor.
 constexpr double kMinPixel_px = 0.05, kMinInverseDepth_per_m = 5e-5;
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -51,9 +47,9 @@ void DepthWeightEstimator::add(const Frame& frame, const Eigen::Isometry3d& T_wo
     inverse_depths_per_m.push_back(std::abs(residual.z()) / (sigma * frame.camera.disparity_px_m));
   }
   if (inverse_depths_per_m.size() < kMinDepths) return;
-  const double ratio_px_m =
-      std::max(median(pixels_px), kMinPixel_px) / std::max(median(inverse_depths_per_m), kMinInverseDepth_per_m);
   const auto depths = static_cast<double>(inverse_depths_per_m.size());
+  const double ratio_px_m = std::max(vision::median(std::move(pixels_px)), kMinPixel_px) /
+                            std::max(vision::median(std::move(inverse_depths_per_m)), kMinInverseDepth_per_m);
   weighted_log_sum_ += depths * std::log(kShareOfRatio * ratio_px_m);
   depths_ += depths;
   const double kept = std::min(1.0, kMaxDepths / depths_);

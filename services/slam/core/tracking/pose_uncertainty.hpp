@@ -36,8 +36,8 @@ PredictedPose predict_motion(const CameraMotion& motion, double gap_s, const Pre
 double pose_distance2(const PredictedPose& a, const PredictedPose& b);
 
 /// What a camera whose focal length, principal point and depth may be off by a share adds to the covariance of a pose,
-/// (x y z rx ry rz) in the world frame: every way and turn from the origin of the map is wrong by that share, in a
-/// direction that nobody knows, and a wrong turn looks like a way across a scene at `scene_m`.
+/// (x y z rx ry rz) in the world frame: every way and turn from the origin of the map is wrong by that share, in an
+/// unknown direction, and a wrong turn looks like a way across a scene at `scene_m`.
 /// docs/theory/tracking.md Eq. (15).
 geometry::Matrix6d calibration_covariance(const Eigen::Isometry3d& T_world_camera, double scene_m, double share);
 

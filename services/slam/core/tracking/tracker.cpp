@@ -3,7 +3,9 @@
 #include "services/slam/core/tracking/tracker.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "common/vision/samples.hpp"
 #include "services/slam/core/tracking/tracking_steps.hpp"
 
 namespace rtd::slam {
@@ -35,10 +37,7 @@ double median_distance(const LocalMap& map, const TrackedFrame& tracked) {
     if (landmark == nullptr) continue;
     distances_m.push_back((landmark->position - tracked.T_world_camera.translation()).norm());
   }
-  if (distances_m.empty()) return 0;
-  const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
-  std::nth_element(distances_m.begin(), middle, distances_m.end());
-  return *middle;
+  return vision::median(std::move(distances_m));
 }
 
 }  // namespace

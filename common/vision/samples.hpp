@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <vector>
 
-namespace rtd::filter {
+namespace rtd::vision {
 
 /// The middle value, of an even number the upper one; 0 of none.
-inline float median(std::vector<float> values) {
-  if (values.empty()) return 0;
+template <class T>
+T median(std::vector<T> values) {
+  if (values.empty()) return T{};
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -24,4 +25,4 @@ std::vector<T> thin_out(std::vector<T> all, std::size_t limit) {
   return kept;
 }
 
-}  // namespace rtd::filter
+}  // namespace rtd::vision
