@@ -133,10 +133,11 @@ Look make_look(const DetectorOptions& options) {
     throw std::invalid_argument("detector: recall is " + std::to_string(options.recall) + ", allowed is [" +
                                 std::to_string(kLeastRecall) + ", 1]");
   }
-  if (options.kind == "real")
-    return options.remembered_in.empty() ? real_look(options)
-                                         : remembered_look(real_look(options), options.remembered_in);
-  if (options.kind == "truth") return [options](const auto& frame) { return see_truth(frame, options); };
+  const auto remember = [&options](Look look) {
+    return options.remembered_in.empty() ? std::move(look) : remembered_look(std::move(look), options.remembered_in);
+  };
+  if (options.kind == "real") return remember(real_look(options));
+  if (options.kind == "truth") return remember([options](const auto& frame) { return see_truth(frame, options); });
   if (options.kind == "lying") return [options](const auto& frame) { return lie(frame, options); };
   throw std::invalid_argument("unknown detector '" + options.kind + "': real, truth, lying, off");
 }

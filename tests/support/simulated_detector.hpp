@@ -43,7 +43,7 @@ struct DetectorOptions {
   double confidence = detector::DecodeConfig{}.confidence_threshold;
   /// real: on the image turned upright, as rtd-detector does; none = as it is
   std::optional<detector::RollConfig> derotate;
-  std::string remembered_in;                   ///< real: file of answers that are known (remembered_detections.hpp)
+  std::string remembered_in;                   ///< real and truth: file of known answers (remembered_detections.hpp)
   std::shared_ptr<detector::CameraRoll> roll;  ///< of the run, made from `derotate`
 };
 

@@ -61,7 +61,7 @@ struct SensorConfig {
 
 struct TrackerConfig {
   int min_initial_points = 100;
-  double motion_radius_px = 15.0;
+  double motion_turn_rad_s = 0.86;
   double local_radius_px = 3.0;
   int min_motion_matches = 20;
   int min_inliers = 30;
@@ -71,8 +71,8 @@ struct TrackerConfig {
   void bind(auto& binder) {
     binder.field("min_initial_points", min_initial_points, {10, 2048},
                  "features with depth that the first keyframe needs");
-    binder.field("motion_radius_px", motion_radius_px, {2.0, 200.0},
-                 "search radius around the predicted position at the finest octave");
+    binder.field("motion_turn_rad_s", motion_turn_rad_s, {0.05, 20.0},
+                 "landmarks are searched around their predicted place as far as this turns them since the last frame");
     binder.field("local_radius_px", local_radius_px, {1.0, 20.0},
                  "factor on 2.5 / 4 px when the local map is searched");
     binder.field("min_motion_matches", min_motion_matches, {5, 500},

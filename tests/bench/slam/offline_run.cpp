@@ -116,7 +116,7 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
       },
       "real: on the image turned upright, from this roll on (degrees)");
   app.add_option("--detections", detector.remembered_in,
-                 "real: file that remembers its answers for this source, so that the next run need not ask again")
+                 "real and truth: file that remembers the answers for this source, so that the next run need not ask again")
       ->excludes(derotate);
   app.add_option_function<std::vector<std::string>>(
       "--detector-outage",

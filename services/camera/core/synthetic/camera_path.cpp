@@ -14,10 +14,12 @@ constexpr double kSecondRate = 2.618;   ///< times the rate: never in step with 
 constexpr double kTremorShare = 0.004;  ///< of the amplitude
 constexpr double kTremorRateRadS = 23.0;
 constexpr double kWatchingYawShare = 0.4;
+constexpr double kSteadyShare = 0.02;
+constexpr double kRollingRad = 0.8;  ///< with the second sway up to 60 degrees
 constexpr double kTurnRateRadS = kTwoPi / 60.0;
 constexpr double kMeanYM = -1.5, kMeanZM = 1.3, kMeanPitchRad = -0.14;
 
-constexpr std::size_t kYaw = 3;  ///< index of Sway
+constexpr std::size_t kYaw = 3, kRoll = 5;  ///< indices of Sway
 struct Axis {
   double amplitude, rate_rad_s;
 };
@@ -49,9 +51,14 @@ CameraPath::CameraPath(CameraMotion motion, std::uint64_t seed) : motion_(motion
     sways_[i] = {kAxes[i].amplitude, kAxes[i].rate_rad_s, first, second, phase()};
   }
   if (motion == CameraMotion::kWatching) sways_[kYaw].amplitude *= kWatchingYawShare;
+  if (motion == CameraMotion::kRolling) sways_[kRoll].amplitude = kRollingRad;
+  if (motion == CameraMotion::kSteady) {
+    for (Sway& sway : sways_) sway.amplitude *= kSteadyShare;
+  }
 }
 
 Eigen::Isometry3d CameraPath::T_world_camera(double t_s) const {
+  if (motion_ == CameraMotion::kFixed) t_s = 0;
   const auto& [x, y, z, yaw, pitch, roll] = sways_;
   const double turned_rad = motion_ == CameraMotion::kTour ? kTurnRateRadS * t_s : 0.0;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();

@@ -13,6 +13,9 @@ enum class CameraMotion {
   kHandHeld,  ///< swaying in the rear half of the room, looking to the front
   kWatching,  ///< the same sway, turning less: what is in the middle stays in view
   kTour,      ///< the same sway while turning round once a minute
+  kRolling,   ///< the same sway while rolling about the viewing axis by up to 60 degrees either way
+  kSteady,    ///< nearly at rest, as held by a person who stands: 2 cm, 1 degree
+  kFixed,     ///< on a tripod
 };
 
 /// A smooth, endless, hand-held-like path: slow sways of incommensurate periods and a small tremor. At most about

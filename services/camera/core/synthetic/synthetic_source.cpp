@@ -3,9 +3,11 @@
 #include "services/camera/core/synthetic/synthetic_source.hpp"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
@@ -110,9 +112,22 @@ synthetic::SensorFaults find_preset(const SourceUri& uri, const std::string& nam
   throw SourceError("source '" + uri.text + "': sensor is '" + name + "', allowed are " + names);
 }
 
+synthetic::CameraMotion find_motion(const SourceUri& uri, const std::string& name) {
+  using enum synthetic::CameraMotion;
+  constexpr std::array<std::pair<const char*, synthetic::CameraMotion>, 6> kMotions = {
+      {{"handheld", kHandHeld}, {"watching", kWatching}, {"tour", kTour}, {"rolling", kRolling}, {"steady", kSteady},
+       {"fixed", kFixed}}};
+  std::string names;
+  for (const auto& [each, motion] : kMotions) {
+    if (each == name) return motion;
+    names += (names.empty() ? "" : ", ") + std::string(each);
+  }
+  throw SourceError("source '" + uri.text + "': motion is '" + name + "', allowed are " + names);
+}
+
 [[noreturn]] void refuse_parameter(const SourceUri& uri, const std::string& key,
                                    const std::vector<Parameter>& parameters) {
-  std::vector<std::string> keys = {"sensor"};
+  std::vector<std::string> keys = {"sensor", "motion"};
   for (const Parameter& parameter : parameters) keys.push_back(parameter.key);
   const std::string near = io::nearest_name(key, keys);
   std::string known;
@@ -131,9 +146,12 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
   if (const auto preset = uri.parameters.find("sensor"); preset != uri.parameters.end()) {
     options.faults = find_preset(uri, preset->second);
   }
+  if (const auto motion = uri.parameters.find("motion"); motion != uri.parameters.end()) {
+    options.scene.motion = find_motion(uri, motion->second);
+  }
   const std::vector<Parameter> parameters = parameters_of(options);
   for (const auto& [key, value] : uri.parameters) {
-    if (key == "sensor") continue;
+    if (key == "sensor" || key == "motion") continue;
     const auto known =
         std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& p) { return key == p.key; });
     if (known == parameters.end()) refuse_parameter(uri, key, parameters);
