@@ -100,7 +100,10 @@ OfflineReport run_offline(const OfflineOptions& options) {
   if (options.on_start) options.on_start(slam);
   OfflineReport report;
   std::vector<slam::FrameResult> published;
-  for (std::size_t i = 0; i < options.first_frame; ++i) source->next();
+  const auto pass_over = [&source](std::size_t frames) {
+    for (std::size_t i = 0; i < frames; ++i) source->next();
+  };
+  pass_over(options.first_frame);
   std::optional<std::int64_t> first_ns;
   auto next_frame = std::chrono::steady_clock::now();
   while (options.max_frames == 0 || report.frames < options.max_frames) {
@@ -125,6 +128,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
     ++report.frames;
     if (output.result.state == msg::TrackingState::kOk && output.result.map_id == 0) published.push_back(output.result);
     if (options.on_frame) options.on_frame(output);
+    pass_over(options.frame_step - 1);
   }
   report.disparity_px_m = slam.disparity_px_m();
   report.readout_s = slam.readout_s();

@@ -52,6 +52,7 @@ struct OfflineOptions {
   std::string source;  ///< URI, e.g. "tum:/data/walk_xyz?masks=1"
   FrontEndOptions front_end;
   std::size_t first_frame = 0;  ///< so many frames of the source are passed over
+  std::size_t frame_step = 1;   ///< only one of so many frames is used, as from a slower camera
   std::size_t max_frames = 0;   ///< 0 = all
   slam::SlamConfig slam;
   slam::MappingMode mapping = slam::MappingMode::kSynchronous;

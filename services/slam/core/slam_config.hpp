@@ -65,7 +65,7 @@ struct TrackerConfig {
   double local_radius_px = 3.0;
   int min_motion_matches = 20;
   int min_inliers = 30;
-  int recently_lost_frames = 30;
+  double recently_lost_s = 1.0;
   int recovery_keyframes = 3;
 
   void bind(auto& binder) {
@@ -78,8 +78,8 @@ struct TrackerConfig {
     binder.field("min_motion_matches", min_motion_matches, {5, 500},
                  "matches with the last frame; with fewer, the reference keyframe is tried");
     binder.field("min_inliers", min_inliers, {6, 500}, "landmarks that a pose needs to count as tracked");
-    binder.field("recently_lost_frames", recently_lost_frames, {0, 100000},
-                 "failed frames before 'recently lost' becomes 'lost'");
+    binder.field("recently_lost_s", recently_lost_s, {0.0, 1000.0},
+                 "without a pose for longer, 'recently lost' becomes 'lost'");
     binder.field("recovery_keyframes", recovery_keyframes, {0, 100}, "keyframes tried in each frame while lost");
   }
 };
@@ -125,8 +125,8 @@ struct BeliefConfig {
 
 /// When a frame becomes a keyframe: docs/theory/tracking.md, "Keyframes".
 struct KeyframeConfig {
-  int max_gap_frames = 30;
-  int min_gap_frames = 0;
+  double max_gap_s = 1.0;
+  double min_gap_s = 0;
   double reference_ratio = 0.9;
   double weak_ratio = 0.25;
   int min_close_tracked = 100;
@@ -134,8 +134,8 @@ struct KeyframeConfig {
   int min_inliers = 15;
 
   void bind(auto& binder) {
-    binder.field("max_gap_frames", max_gap_frames, {1, 10000}, "a changed view becomes a keyframe at least so often");
-    binder.field("min_gap_frames", min_gap_frames, {0, 10000}, "frames between keyframes while tracking is strong");
+    binder.field("max_gap_s", max_gap_s, {0.0, 1000.0}, "a changed view becomes a keyframe at least so often");
+    binder.field("min_gap_s", min_gap_s, {0.0, 1000.0}, "between keyframes while tracking is strong");
     binder.field("reference_ratio", reference_ratio, {0.1, 1.0},
                  "tracked / reference landmarks: below, the view is new");
     binder.field("weak_ratio", weak_ratio, {0.0, 1.0}, "below, a keyframe is inserted although the mapper is busy");

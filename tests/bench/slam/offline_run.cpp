@@ -131,7 +131,7 @@ void add_slam_options(CLI::App& app, rtd::slam::SlamConfig& slam) {
   app.add_option("--close-depth", slam.sensor.close_depth_m);
   app.add_option("--max-depth", slam.sensor.max_depth_m);
   app.add_option("--reference-ratio", slam.keyframe.reference_ratio);
-  app.add_option("--min-gap", slam.keyframe.min_gap_frames);
+  app.add_option("--min-gap", slam.keyframe.min_gap_s);
   app.add_option("--ba-keyframes", slam.mapper.ba_keyframes);
   app.add_option("--ba-fixed", slam.mapper.ba_fixed_keyframes);
   app.add_option("--ba-robust", slam.mapper.ba_iterations_robust);
@@ -179,6 +179,8 @@ int main(int argc, char** argv) {
   add_detector_options(app, options.front_end.detector);
   add_slam_options(app, slam_settings.core);
   app.add_option("--first-frame", options.first_frame, "pass over so many frames of the source");
+  app.add_option("--every", options.frame_step, "use only every n-th frame, as from a slower camera")
+      ->check(CLI::Range(1, 1000));
   app.add_option("--frames", options.max_frames, "stop after so many frames, 0 = all");
   app.add_option("--out", trajectory_file, "write the trajectory here, TUM format");
   app.add_option("--truth", truth_file, "write the source's own trajectory here, TUM format");

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "common/vision/samples.hpp"
 #include "tests/support/clip_uri.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
@@ -57,6 +58,41 @@ TEST_P(FaultySensorClip, is_tracked_with_the_real_detector) {
 }
 INSTANTIATE_TEST_SUITE_P(Clips, FaultySensorClip,
                          ::testing::Values(MaskedClip{"kinect_half", 0.0126}, MaskedClip{"kinect_rpy", 0.0170}));
+
+class SlowCameraClip : public ::testing::TestWithParam<MaskedClip> {};
+
+/// Every sixth frame: 5 Hz, so that people and camera move up to half a metre between two frames. The clips are short
+/// then: the median of three runs, with other first frames.
+TEST_P(SlowCameraClip, is_tracked_at_5_Hz) {
+  OfflineOptions options;
+  options.source = clip_uri(GetParam().name, "?masks=1");
+  if (options.source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no " << GetParam().name;
+  if (std::getenv("RTD_MODEL_DIR") == nullptr) GTEST_SKIP() << "RTD_MODEL_DIR is not set";
+  options.front_end.mode = "rtd";
+  options.frame_step = 6;
+  std::vector<double> errors_m;
+  for (const std::size_t first : {0, 2, 4}) {
+    options.first_frame = first;
+    const OfflineReport report = run_offline(options);
+    EXPECT_GE(report.coverage, 1.0);
+    errors_m.push_back(report.ate_rmse_m);
+  }
+  EXPECT_LE(vision::median(errors_m), kSlack * GetParam().median_ate_m);
+}
+INSTANTIATE_TEST_SUITE_P(Clips, SlowCameraClip,
+                         ::testing::Values(MaskedClip{"walk_xyz", 0.0023}, MaskedClip{"walk_rpy", 0.0058},
+                                           MaskedClip{"kinect_half", 0.0146}, MaskedClip{"kinect_rpy", 0.0169}));
+
+TEST(StaticClip, fr1_xyz_is_tracked_at_5_Hz) {
+  OfflineOptions options;
+  options.source = clip_uri("fr1_xyz");
+  if (options.source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no fr1_xyz";
+  options.front_end.mode = "off";
+  options.frame_step = 6;
+  const OfflineReport report = run_offline(options);
+  EXPECT_LE(report.ate_rmse_m, kSlack * 0.0101);
+  EXPECT_GE(report.coverage, 1.0);
+}
 
 TEST(StaticClip, fr1_xyz_is_tracked_as_well_as_by_orb_slam2) {
   const std::string source = clip_uri("fr1_xyz");

@@ -108,7 +108,7 @@ TEST(SlamSystem, maps_in_a_thread_as_well) {
 TEST(SlamSystem, is_lost_without_features_and_recovers) {
   const FeatureWorld world({});
   SlamConfig config;
-  config.tracker.recently_lost_frames = 5;
+  config.tracker.recently_lost_s = 0.14;  // five frames
   config.techniques.prediction = false;
   SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);
   std::uint64_t seq = 0;

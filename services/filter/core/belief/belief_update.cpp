@@ -43,7 +43,7 @@ class BeliefStep {
     const bool never_used = object != nullptr && object->level == MotionLevel::kHigh && !techniques_.resting_objects;
     const float before = !is_known(recalled) ? pace.prior : never_used ? std::min(recalled, pace.prior) : recalled;
     const MotionEvidence& evidence = input_.evidence;
-    if (evidence.regions.frames_left[cell] > 0 || motion == ObjectMotion::kMoving) return lowest_;
+    if (evidence.regions.hold_cs[cell] > 0 || motion == ObjectMotion::kMoving) return lowest_;
     if (!evidence.regions.trusted) return before;
     if (evidence.depth.violated[cell] == 0 && rests(cell, object, motion))
       return std::min(before + pace.gain, std::max(before, pace.limit));

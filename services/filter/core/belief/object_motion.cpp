@@ -23,7 +23,7 @@ ObjectMotion judge(const SceneObject& object, const MotionEvidence& evidence, co
   int dynamic = 0, lasting = 0, resting = 0, moving = 0;
   for (const int at : object.cells) {
     const auto cell = static_cast<std::size_t>(at);
-    dynamic += evidence.regions.frames_left[cell] > 0 ? 1 : 0;
+    dynamic += evidence.regions.hold_cs[cell] > 0 ? 1 : 0;
     lasting += evidence.depth.lasting[cell] > 0 ? 1 : 0;
     resting += votes.resting[cell];
     moving += votes.moving[cell];
@@ -66,7 +66,7 @@ std::vector<ObjectMotion> judge_objects(const std::vector<SceneObject>& objects,
                                         const BeliefConfig& config) {
   std::vector<ObjectMotion> motions(objects.size(), ObjectMotion::kUnknown);
   if (!evidence.regions.trusted || objects.empty()) return motions;
-  const VotesByCell votes = by_cell(evidence.votes, evidence.regions.frames_left.size());
+  const VotesByCell votes = by_cell(evidence.votes, evidence.regions.hold_cs.size());
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (!objects[i].cells.empty()) motions[i] = judge(objects[i], evidence, votes, config);
   }

@@ -88,7 +88,7 @@ void weigh_alike(std::vector<msg::Feature>& features) {
 std::vector<msg::Feature> weigh_static_probability(std::vector<msg::Feature> features, const FrameKnowledge& known,
                                                    const FilterConfig& config) {
   const std::vector<std::int16_t> painted = paint_objects(known, config.masks.dilate_cells);
-  const CellMask dynamic = dilate(known.shape, known.regions.frames_left, config.masks.dilate_cells);
+  const CellMask dynamic = dilate(known.shape, known.regions.hold_cs, config.masks.dilate_cells);
   const CellBeliefs beliefs = grow_doubt(known, config.masks.dilate_cells);
   for (msg::Feature& feature : features) {
     const auto cell = static_cast<std::size_t>(known.shape.nearest_cell(feature.u_px, feature.v_px));

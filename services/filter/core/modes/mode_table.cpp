@@ -81,7 +81,7 @@ FilterConfig with_techniques_applied(FilterConfig config) {
     config.geometry.tau_floor_m = kPaperTauM;
     config.geometry.tau_sigmas = 0;
   }
-  if (!on.mover_memory) config.geometry.memory_frames = config.geometry.loose_memory_frames = 1;  // this frame itself
+  if (!on.mover_memory) config.geometry.memory_s = config.geometry.loose_memory_s = 0.01;  // this frame itself
   if (!on.surface_poses) config.ego_motion.max_proposals = 0;
   if (!on.more_features) config.fusion.boost = 1;
   if (!on.keep_doubtful) config.fusion.min_static_features = 0;

@@ -121,10 +121,12 @@ RefinedPose PaperJudge::find_pose(const Scene& scene, const std::vector<msg::Fea
   if (views_.empty()) return {};
   const auto& p = scene.image.camera.parameters();
   const vision::FeatureGrid grid(features, p.width, p.height);
-  const Eigen::Isometry3d T_world_predicted = views_.predict_pose();
+  const double window_px =
+      search_window_px(scene.image.camera, scene.image.stamp_ns - views_.newest().stamp_ns, ego_motion_);
+  const Eigen::Isometry3d T_world_predicted = views_.predict_pose(scene.image.stamp_ns);
   std::vector<PointSighting> sightings;
   for (const FeatureMatch& match : match_by_projection(views_.newest(), {features, grid, scene.image.camera},
-                                                       T_world_predicted, ego_motion_.window_px, ego_motion_)) {
+                                                       T_world_predicted, window_px, ego_motion_)) {
     const msg::Feature& f = features[match.current];
     if (!match.reference_static || high[static_cast<std::size_t>(scene.shape().nearest_cell(f.u_px, f.v_px))] != 0)
       continue;

@@ -11,9 +11,11 @@
 namespace rtd::filter {
 namespace {
 
-/// How far to look back for slow movers.
-std::int64_t look_back_ns(std::uint64_t seq) {
-  return seq % kFramesPerLookBack == 0 ? 1'500'000'000 : 0;
+constexpr std::int64_t kCentisecondNs = 10'000'000;
+
+/// How far to look back for slow movers; 0 = not in this frame.
+std::int64_t look_back_ns(std::int64_t last_ns, std::int64_t now_ns) {
+  return now_ns / kLookBackEveryNs != last_ns / kLookBackEveryNs ? 1'500'000'000 : 0;
 }
 
 MoverFrame mover_frame(const Scene& scene, const Eigen::Isometry3d& T_world_camera) {
@@ -65,7 +67,7 @@ RtdJudge::Foreground RtdJudge::separate_foreground(const Scene& scene) const {
 CellMask RtdJudge::without_known_surfaces(const Scene& scene, CellMask may_move) const {
   if (views_.empty() || !config_.techniques.belief || !config_.techniques.resting_objects) return may_move;
   if (std::none_of(may_move.begin(), may_move.end(), [](int cell) { return cell != 0; })) return may_move;
-  const CellBeliefs beliefs = recall_beliefs(scene, views_.predict_pose());
+  const CellBeliefs beliefs = recall_beliefs(scene, views_.predict_pose(scene.image.stamp_ns));
   const float enough = log_odds(config_.belief.min_used_probability);
   for (std::size_t cell = 0; cell < beliefs.size(); ++cell) {
     if (is_known(beliefs[cell]) && beliefs[cell] >= enough) may_move[cell] = 0;
@@ -79,17 +81,23 @@ CellBeliefs RtdJudge::recall_beliefs(const Scene& scene, const Eigen::Isometry3d
                          views_.newest().T_world_camera.inverse() * T_world_camera);
 }
 
-/// Per cell: for how many more frames it counts as moving because of earlier frames; 0 = it does not.
-CellMask RtdJudge::recall_movers(const Scene& scene, const Foreground& foreground,
-                                 const Eigen::Isometry3d& T_world_camera) const {
-  constexpr std::uint8_t kExpectedFrames = 3;
-  CellMask remembered = memory_.recall(scene.surfaces.grid, scene.image.camera,
-                                       T_world_camera.inverse() * views_.newest().T_world_camera);
+/// Per cell: for how long it counts as moving because of earlier frames; 0 = it does not.
+RememberedMotion RtdJudge::recall_movers(const Scene& scene, const Foreground& foreground,
+                                         const Eigen::Isometry3d& T_world_camera) const {
+  constexpr int kExpectedCs = 7;  // after this frame
+  const View& newest = views_.newest();
+  RememberedMotion remembered;
+  remembered.elapsed_cs = static_cast<int>(
+      std::clamp<std::int64_t>(scene.image.stamp_ns / kCentisecondNs - newest.stamp_ns / kCentisecondNs, 1, 255));
+  remembered.hold_cs = memory_.recall(scene.surfaces.grid, scene.image.camera,
+                                      T_world_camera.inverse() * newest.T_world_camera,
+                                      1e-9 * static_cast<double>(scene.image.stamp_ns - newest.stamp_ns));
   if (!config_.techniques.mover_tracks) return remembered;
+  const auto expected_cs = static_cast<std::uint8_t>(std::min(255, kExpectedCs + remembered.elapsed_cs));
   const CellMask expected = movers_.expected(mover_frame(scene, T_world_camera));
   for (std::size_t cell = 0; cell < expected.size(); ++cell) {
-    if (expected[cell] != 0 && foreground.high[cell] == 0)
-      remembered[cell] = std::max(remembered[cell], kExpectedFrames);
+    if (expected[cell] == 0 || foreground.high[cell] != 0) continue;
+    remembered.hold_cs[cell] = std::max(remembered.hold_cs[cell], expected_cs);
   }
   return remembered;
 }
@@ -98,8 +106,8 @@ EgoMotion RtdJudge::find_ego_motion(const Scene& scene, const Foreground& foregr
                                     const std::vector<msg::Feature>& features) const {
   if (!compares()) return {};
   const GridShape& shape = scene.shape();
-  const Eigen::Isometry3d T_world_predicted = views_.predict_pose();
-  CellMask avoid = united(dilate(shape, recall_movers(scene, foreground, T_world_predicted), 1), foreground.may_move);
+  const Eigen::Isometry3d T_world_predicted = views_.predict_pose(scene.image.stamp_ns);
+  CellMask avoid = united(dilate(shape, recall_movers(scene, foreground, T_world_predicted).hold_cs, 1), foreground.may_move);
   if (!views_.spans(scene.image.stamp_ns, kMinSettledAgeNs)) {  // too early to tell movers from the camera's motion
     avoid = united(std::move(avoid), free_standing(scene.surfaces.grid, foreground.clusters, config_.masks));
   }
@@ -117,7 +125,7 @@ EgoMotion RtdJudge::find_ego_motion(const Scene& scene, const Foreground& foregr
                                        views_,
                                        scene.image.stamp_ns,
                                        T_world_predicted,
-                                       look_back_ns(scene.image.seq)},
+                                       look_back_ns(views_.newest().stamp_ns, scene.image.stamp_ns)},
                                       config_.ego_motion, config_.geometry);
   // Objects of a high level have a rule of their own (belief): a second later they may have stopped again.
   ego.slow_votes = without_votes_on(foreground.may_move, std::move(ego.slow_votes), foreground.clusters);
@@ -149,9 +157,10 @@ DynamicRegions RtdJudge::find_regions(const Scene& scene, const Foreground& fore
 std::vector<Mover> RtdJudge::follow_movers(const Scene& scene, const Foreground& foreground, const EgoMotion& ego,
                                            const DynamicRegions& regions) {
   if (!config_.techniques.mover_tracks || !regions.trusted) return {};
-  CellMask moving(regions.frames_left);
+  CellMask moving(regions.hold_cs);
+  const std::uint8_t longest_cs = to_cs(config_.geometry.memory_s);  // seen in this very frame
   for (std::size_t cell = 0; cell < moving.size(); ++cell)
-    moving[cell] = moving[cell] == config_.geometry.memory_frames && foreground.high[cell] == 0 ? 1 : 0;
+    moving[cell] = moving[cell] == longest_cs && foreground.high[cell] == 0 ? 1 : 0;
   movers_.update(mover_frame(scene, ego.T_world_camera), foreground.clusters, moving, ego.slow_votes);
   return movers_.movers();
 }
@@ -174,7 +183,7 @@ std::vector<msg::Feature> RtdJudge::weigh(const Scene& scene, const EgoMotion& e
 
 void RtdJudge::remember(const Scene& scene, const EgoMotion& ego, const DynamicRegions& regions,
                         const CellMask& dynamic, const std::vector<msg::Feature>& features) {
-  memory_.store(scene.surfaces.grid, scene.surfaces.rays, regions.frames_left);
+  memory_.store(scene.surfaces.grid, scene.surfaces.rays, regions.hold_cs);
   View view;
   view.seq = scene.image.seq;
   view.stamp_ns = scene.image.stamp_ns;

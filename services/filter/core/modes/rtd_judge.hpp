@@ -40,7 +40,7 @@ class RtdJudge final : public ModeJudge {
                                   const DynamicRegions& regions, std::vector<msg::Feature> features);
   /// All that moves or may move, grown by masks.dilate_cells.
   CellMask dynamic_cells(const Scene& scene, const Foreground& foreground, const DynamicRegions& regions) const {
-    return united(dilate(scene.shape(), regions.frames_left, config_.masks.dilate_cells), foreground.may_move);
+    return united(dilate(scene.shape(), regions.hold_cs, config_.masks.dilate_cells), foreground.may_move);
   }
   void remember(const Scene& scene, const EgoMotion& ego, const DynamicRegions& regions, const CellMask& dynamic,
                 const std::vector<msg::Feature>& features);
@@ -50,8 +50,8 @@ class RtdJudge final : public ModeJudge {
   bool compares() const { return uses_geometry() && !views_.empty(); }
   CellMask without_known_surfaces(const Scene& scene, CellMask may_move) const;
   CellBeliefs recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const;
-  CellMask recall_movers(const Scene& scene, const Foreground& foreground,
-                         const Eigen::Isometry3d& T_world_camera) const;
+  RememberedMotion recall_movers(const Scene& scene, const Foreground& foreground,
+                                 const Eigen::Isometry3d& T_world_camera) const;
 
   FilterConfig config_;
   std::uint32_t map_ = 0;  ///< of slam's last pose

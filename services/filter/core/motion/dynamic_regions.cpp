@@ -10,13 +10,13 @@ namespace rtd::filter {
 namespace {
 
 constexpr double kMinRememberedShare = 0.4;
-constexpr int kForgetFaster = 4;  // frames of memory that one frame at rest costs
+constexpr int kForgetFaster = 4;  // a surface at rest is forgotten so many times faster
 
 /// The counts by which a cluster is judged.
 struct ClusterEvidence {
   int seen = 0;  ///< cells with a statement, or that were there a while ago even if they counted as dynamic then
   int stated = 0, violating = 0, remembered = 0;
-  std::uint8_t frames_left = 0;
+  std::uint8_t hold_cs = 0;
 };
 
 std::vector<ClusterEvidence> gather(const DepthClusters& clusters, const DepthEvidence& evidence,
@@ -29,7 +29,7 @@ std::vector<ClusterEvidence> gather(const DepthClusters& clusters, const DepthEv
     cluster.stated += evidence.violated[cell] > 0 || evidence.consistent[cell] > 0 ? 1 : 0;
     cluster.seen += evidence.violated[cell] > 0 || evidence.consistent[cell] > 0 || evidence.lasting[cell] > 0 ? 1 : 0;
     cluster.remembered += remembered[cell] > 0 ? 1 : 0;
-    cluster.frames_left = std::max(cluster.frames_left, remembered[cell]);
+    cluster.hold_cs = std::max(cluster.hold_cs, remembered[cell]);
   }
   return gathered;
 }
@@ -39,9 +39,10 @@ bool violates(const ClusterEvidence& cluster, const GeometryConfig& config) {
          cluster.violating >= config.min_violated_share * cluster.stated;
 }
 
-std::uint8_t one_less(std::uint8_t frames) {
-  return frames > 0 ? static_cast<std::uint8_t>(frames - 1) : frames;
+std::uint8_t what_is_left(int hold_cs, int elapsed_cs) {
+  return static_cast<std::uint8_t>(std::max(0, hold_cs - elapsed_cs));
 }
+
 
 int vote_count(const std::vector<int>& per_cluster, std::size_t cluster) {
   return cluster < per_cluster.size() ? per_cluster[cluster] : 0;
@@ -65,21 +66,21 @@ bool rests(const ClusterEvidence& cluster, const MotionVotes& votes, std::size_t
          at_place(votes.slow);
 }
 
-/// Per cluster: for how many frames it counts as dynamic, 0 = not.
+/// Per cluster: for how many 1/100 s it counts as dynamic, 0 = not.
 std::vector<std::uint8_t> judge_clusters(const DepthClusters& clusters, const DepthEvidence& evidence,
-                                         const MotionVotes& votes, const CellMask& remembered,
+                                         const MotionVotes& votes, const RememberedMotion& remembered,
                                          const GeometryConfig& config) {
-  const std::vector<ClusterEvidence> gathered = gather(clusters, evidence, remembered);
-  std::vector<std::uint8_t> frames_left(gathered.size(), 0);
+  const std::vector<ClusterEvidence> gathered = gather(clusters, evidence, remembered.hold_cs);
+  std::vector<std::uint8_t> hold_cs(gathered.size(), 0);
   for (std::size_t i = 0; i < gathered.size(); ++i) {
     if (violates(gathered[i], config) || votes.quick.cluster_moves(i, config) || creeps(votes, i, config)) {
-      frames_left[i] = static_cast<std::uint8_t>(config.memory_frames);
+      hold_cs[i] = to_cs(config.memory_s);
     } else if (gathered[i].remembered >= kMinRememberedShare * clusters.cells[i]) {
-      const int fewer = rests(gathered[i], votes, i, config) ? kForgetFaster : 1;
-      frames_left[i] = static_cast<std::uint8_t>(std::max(0, gathered[i].frames_left - fewer));
+      const int faster = rests(gathered[i], votes, i, config) ? kForgetFaster : 1;
+      hold_cs[i] = what_is_left(gathered[i].hold_cs, faster * remembered.elapsed_cs);
     }
   }
-  return frames_left;
+  return hold_cs;
 }
 
 /// Votes on the cells of a region: at their place, displaced.
@@ -110,6 +111,10 @@ CellMask resting_parts(const DepthClusters& clusters, const DepthEvidence& evide
 
 }  // namespace
 
+std::uint8_t to_cs(double time_s) {
+  return static_cast<std::uint8_t>(std::min(255L, std::lround(100 * time_s)));
+}
+
 DepthEvidence accept_arrivals(DepthEvidence evidence, const DepthClusters& clusters, const FeatureVotes& quick,
                               const FeatureVotes& old, const GeometryConfig& config) {
   std::vector<int> seen_through(clusters.cells.size(), 0), settled(clusters.cells.size(), 0);
@@ -134,9 +139,9 @@ DepthEvidence accept_arrivals(DepthEvidence evidence, const DepthClusters& clust
 }
 
 DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEvidence& evidence,
-                                    const MotionVotes& votes, const CellMask& remembered,
+                                    const MotionVotes& votes, const RememberedMotion& remembered,
                                     const GeometryConfig& config) {
-  const auto loose_memory = static_cast<std::uint8_t>(config.loose_memory_frames);
+  const std::uint8_t loose_memory_cs = to_cs(config.loose_memory_s);
   const std::vector<std::uint8_t> of_cluster = judge_clusters(clusters, evidence, votes, remembered, config);
   const CellMask resting = resting_parts(clusters, evidence, votes, config);
   const CellMask none(clusters.label.size(), 0);
@@ -144,45 +149,47 @@ DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEv
   CellMask loose(none);  // evidence inside clusters that are not dynamic as a whole
   for (std::size_t cell = 0; cell < none.size(); ++cell) {
     const std::int32_t label = clusters.label[cell];
-    const std::uint8_t frames_left = label < 0 ? std::uint8_t{0} : of_cluster[static_cast<std::size_t>(label)];
-    if (frames_left > 0) {  // resting parts are left out, but what has moved is released slowly
-      regions.frames_left[cell] = resting[cell] == 0 ? frames_left : std::min(frames_left, one_less(remembered[cell]));
+    const std::uint8_t hold_cs = label < 0 ? std::uint8_t{0} : of_cluster[static_cast<std::size_t>(label)];
+    const std::uint8_t left_cs = what_is_left(remembered.hold_cs[cell], remembered.elapsed_cs);
+    if (hold_cs > 0) {  // resting parts are left out, but what has moved is released slowly
+      regions.hold_cs[cell] = resting[cell] == 0 ? hold_cs : std::min(hold_cs, left_cs);
     } else {
-      loose[cell] = evidence.violated[cell] > 0 ? loose_memory : std::min(loose_memory, one_less(remembered[cell]));
+      loose[cell] = evidence.violated[cell] > 0 ? loose_memory_cs : std::min(loose_memory_cs, left_cs);
     }
   }
   const CellMask groups = keep_regions(clusters.shape, compact(clusters.shape, loose), [&](const auto& region) {
     return static_cast<int>(region.size()) >= config.min_region_cells;
   });
   for (std::size_t cell = 0; cell < none.size(); ++cell) {
-    regions.frames_left[cell] = std::max(regions.frames_left[cell], groups[cell]);
+    regions.hold_cs[cell] = std::max(regions.hold_cs[cell], groups[cell]);
   }
   const auto dynamic =
-      std::count_if(regions.frames_left.begin(), regions.frames_left.end(), [](int n) { return n > 0; });
+      std::count_if(regions.hold_cs.begin(), regions.hold_cs.end(), [](int n) { return n > 0; });
   if (static_cast<double>(dynamic) > config.max_dynamic_share * clusters.shape.size()) return {false, none, 0};
   regions.clusters = static_cast<int>(std::count_if(of_cluster.begin(), of_cluster.end(), [](int n) { return n > 0; }));
   return regions;
 }
 
 void DynamicMemory::store(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
-                          const std::vector<std::uint8_t>& frames_left) {
+                          const std::vector<std::uint8_t>& hold_cs) {
   points_.clear();
-  for (std::size_t cell = 0; cell < frames_left.size(); ++cell) {
-    if (frames_left[cell] > 0 && grid.depth_m[cell] > 0)
-      points_.push_back({rays[cell] * grid.depth_m[cell], frames_left[cell]});
+  for (std::size_t cell = 0; cell < hold_cs.size(); ++cell) {
+    if (hold_cs[cell] > 0 && grid.depth_m[cell] > 0)
+      points_.push_back({rays[cell] * grid.depth_m[cell], hold_cs[cell]});
   }
 }
 
 std::vector<std::uint8_t> DynamicMemory::recall(const DepthGrid& grid, const geometry::CameraModel& camera,
-                                                const Eigen::Isometry3d& T_current_last) const {
-  constexpr float kOwnDepthM = 0.2F;  // a mover of 3 m/s gets 0.1 m nearer from frame to frame
+                                                const Eigen::Isometry3d& T_current_last, double elapsed_s) const {
+  constexpr double kOwnDepthM = 0.1, kFastMS = 3, kMostOwnDepthM = 0.4;
+  const auto own_depth_m = static_cast<float>(std::min(kMostOwnDepthM, kOwnDepthM + kFastMS * elapsed_s));
   constexpr float kMinDepthM = 0.1F;
   const Eigen::Matrix3f rotation = T_current_last.linear().cast<float>();
   const Eigen::Vector3f translation = T_current_last.translation().cast<float>();
   const auto& p = camera.parameters();
   const auto fx = static_cast<float>(p.fx), fy = static_cast<float>(p.fy);
   const auto cx = static_cast<float>(p.cx), cy = static_cast<float>(p.cy);
-  std::vector<std::uint8_t> frames_left(static_cast<std::size_t>(grid.shape.size()), 0);
+  std::vector<std::uint8_t> hold_cs(static_cast<std::size_t>(grid.shape.size()), 0);
   for (const Point& point : points_) {
     const Eigen::Vector3f p_current = rotation * point.p_camera + translation;
     if (p_current.z() < kMinDepthM) continue;
@@ -192,12 +199,12 @@ std::vector<std::uint8_t> DynamicMemory::recall(const DepthGrid& grid, const geo
     for (int row = std::max(top, 0); row <= std::min(top + 1, grid.shape.rows - 1); ++row) {
       for (int column = std::max(left, 0); column <= std::min(left + 1, grid.shape.columns - 1); ++column) {
         const auto i = static_cast<std::size_t>(grid.shape.index(column, row));
-        if (std::abs(grid.depth_m[i] - p_current.z()) < kOwnDepthM)
-          frames_left[i] = std::max(frames_left[i], point.frames_left);
+        if (std::abs(grid.depth_m[i] - p_current.z()) < own_depth_m)
+          hold_cs[i] = std::max(hold_cs[i], point.hold_cs);
       }
     }
   }
-  return frames_left;
+  return hold_cs;
 }
 
 }  // namespace rtd::filter

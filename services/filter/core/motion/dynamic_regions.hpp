@@ -25,7 +25,7 @@ DepthEvidence accept_arrivals(DepthEvidence evidence, const DepthClusters& clust
 /// What moves in a frame, from geometry alone.
 struct DynamicRegions {
   bool trusted = false;  ///< false: no statement (no pose, or an implausibly large part of the image moves)
-  CellMask frames_left;  ///< 0 = not dynamic, else the number of frames for which this holds without new evidence
+  CellMask hold_cs;      ///< 0 = not dynamic, else for how many 1/100 s this holds without new evidence
   int clusters = 0;      ///< depth clusters that are dynamic as a whole
 };
 
@@ -35,29 +35,38 @@ struct MotionVotes {
   const FeatureVotes& slow;
 };
 
+/// As in DynamicRegions::hold_cs; at most 2.55 s.
+std::uint8_t to_cs(double time_s);
+
+/// DynamicRegions::hold_cs of the last frame, brought to this one, and the time since.
+struct RememberedMotion {
+  CellMask hold_cs;
+  int elapsed_cs = 0;  ///< 1/100 s
+};
+
 /// Judges whole depth clusters (share of violated cells, votes of displaced features, or memory) and, inside clusters
 /// that are not dynamic, compact groups of violated or remembered cells. Parts of a dynamic cluster that demonstrably
-/// rest are left out. docs/theory/dynamic_points.md section 4. `remembered`: frames_left of the last frame, brought to
-/// this one.
+/// rest are left out. docs/theory/dynamic_points.md section 4.
 DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEvidence& evidence,
-                                    const MotionVotes& votes, const CellMask& remembered, const GeometryConfig& config);
+                                    const MotionVotes& votes, const RememberedMotion& remembered,
+                                    const GeometryConfig& config);
 
 /// Where things moved in the last frame, so that a mover that slows down or pauses does not count as static at once.
 class DynamicMemory {
  public:
-  /// `frames_left` per cell of the frame just judged; its points are kept in the camera frame.
+  /// `hold_cs` per cell of the frame just judged; its points are kept in the camera frame.
   void store(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
-             const std::vector<std::uint8_t>& frames_left);
+             const std::vector<std::uint8_t>& hold_cs);
   /// The same, seen from the current frame: points follow the camera's motion and count where the depth is about their
-  /// own.
+  /// own, give or take what a mover covers in `elapsed_s`.
   std::vector<std::uint8_t> recall(const DepthGrid& grid, const geometry::CameraModel& camera,
-                                   const Eigen::Isometry3d& T_current_last) const;
+                                   const Eigen::Isometry3d& T_current_last, double elapsed_s) const;
   void clear() { points_.clear(); }
 
  private:
   struct Point {
     Eigen::Vector3f p_camera;
-    std::uint8_t frames_left;
+    std::uint8_t hold_cs;
   };
   std::vector<Point> points_;
 };

@@ -12,23 +12,26 @@ namespace {
 
 constexpr std::int64_t kNearAgeNs = 100'000'000;
 constexpr std::int64_t kOldAgeNs = 500'000'000;
-constexpr double kRefineWindowPx = 8.0;
+constexpr double kRefineWindowRad = 0.015;
 constexpr std::int64_t kMinSlowAgeNs = 400'000'000;
-constexpr double kSlowWindowPx = 16.0, kSlowMS = 0.05;  // the window grows by what such a mover covers
+constexpr double kSlowWindowRad = 0.03, kSlowMS = 0.05;  // the window grows by what such a mover covers
 
 /// Matches with the view 0.1 s ago and, when they are few, with the previous one.
 std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& near, const EgoMotionConfig& config) {
   const View& previous = input.views.newest();
   const Eigen::Isometry3d& T_world_camera = input.T_world_camera_predicted;
   const std::size_t enough = 4 * static_cast<std::size_t>(config.min_inliers);
+  const auto window_px = [&](const View& view) {
+    return search_window_px(input.current.camera, input.stamp_ns - view.stamp_ns, config);
+  };
   std::vector<FeatureMatch> matches =
-      match_by_projection(near, input.current, T_world_camera, config.window_px, config);
+      match_by_projection(near, input.current, T_world_camera, window_px(near), config);
   if (matches.size() < enough && previous.seq != near.seq) {
-    const auto more = match_by_projection(previous, input.current, T_world_camera, config.window_px, config);
+    const auto more = match_by_projection(previous, input.current, T_world_camera, window_px(previous), config);
     matches.insert(matches.end(), more.begin(), more.end());
   }
   if (matches.size() < enough) {  // the prediction is off: look farther
-    matches = match_by_projection(previous, input.current, T_world_camera, 3 * config.window_px, config);
+    matches = match_by_projection(previous, input.current, T_world_camera, 3 * window_px(previous), config);
   }
   return matches;
 }
@@ -69,7 +72,8 @@ FeatureVotes count_slow_votes(const EgoMotionInput& input, const Eigen::Isometry
   const std::int64_t age_ns = input.stamp_ns - old.stamp_ns;
   if (age_ns < kMinSlowAgeNs) return {};
   const double reach_m = kSlowMS * 1e-9 * static_cast<double>(age_ns);
-  const auto matches = match_by_projection(old, input.current, T_world_camera, kSlowWindowPx, config, reach_m);
+  const auto matches = match_by_projection(old, input.current, T_world_camera,
+                                           kSlowWindowRad * input.current.camera.parameters().fx, config, reach_m);
   const std::vector<char> none_moves(input.clusters.cells.size(), 0);
   const auto limit = static_cast<std::size_t>(config.max_observations);
   const auto sightings = to_sightings(usable(matches, input, none_moves, limit), input);
@@ -100,7 +104,8 @@ EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig
   for (std::size_t i = 0; i < moves.size(); ++i) moves[i] = first_votes.cluster_moves(i, geometry) ? 1 : 0;
 
   const View& old = input.views.of_age(input.stamp_ns, kOldAgeNs);
-  const auto old_matches = match_by_projection(old, input.current, consensus.T_world_camera, kRefineWindowPx, config);
+  const auto old_matches = match_by_projection(old, input.current, consensus.T_world_camera,
+                                               kRefineWindowRad * camera.parameters().fx, config);
   std::vector<PointSighting> sightings = to_sightings(usable(near_matches, input, moves, limit / 2), input);
   const std::vector<PointSighting> more = to_sightings(usable(old_matches, input, moves, limit / 2), input);
   sightings.insert(sightings.end(), more.begin(), more.end());

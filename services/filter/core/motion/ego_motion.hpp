@@ -36,8 +36,8 @@ struct EgoMotion {
   FeatureVotes slow_votes;  ///< and in one of up to 1.5 s ago; none in most frames
 };
 
-/// Slow votes are counted only in one of this many frames: what is slow can wait.
-inline constexpr unsigned kFramesPerLookBack = 3;
+/// Slow votes are counted only so often: what is slow can wait.
+inline constexpr std::int64_t kLookBackEveryNs = 100'000'000;
 
 /// A pose found over less time may have followed a mover.
 inline constexpr std::int64_t kMinSettledAgeNs = 90'000'000;

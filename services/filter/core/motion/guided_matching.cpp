@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/motion/guided_matching.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 
@@ -45,6 +46,12 @@ std::vector<FeatureMatch> make_unique(std::vector<FeatureMatch> matches, std::si
 }
 
 }  // namespace
+
+double search_window_px(const geometry::CameraModel& camera, std::int64_t age_ns, const EgoMotionConfig& config) {
+  constexpr double kShortest_s = 0.1, kMost_rad = 0.2;  // even the last frame is known no better
+  const double age_s = std::max(kShortest_s, 1e-9 * static_cast<double>(age_ns));
+  return camera.parameters().fx * std::min(kMost_rad, config.window_rad_s * age_s);
+}
 
 std::vector<FeatureMatch> match_by_projection(const View& reference, const SearchableFeatures& current,
                                               const Eigen::Isometry3d& T_world_camera, double window_px,

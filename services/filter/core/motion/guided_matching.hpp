@@ -30,6 +30,9 @@ struct SearchableFeatures {
   const geometry::CameraModel& camera;
 };
 
+/// How far from the prediction features of a view of this age are searched for.
+double search_window_px(const geometry::CameraModel& camera, std::int64_t age_ns, const EgoMotionConfig& config);
+
 /// Projects the measured features of `reference` into the expected current pose and takes the nearest descriptor within
 /// `window_px` (plus the image of `reach_m` at its depth), if it is near enough and clearly nearer than the second.
 /// Each current feature is matched at most once.

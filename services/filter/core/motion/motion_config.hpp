@@ -8,7 +8,7 @@ namespace rtd::filter {
 
 /// Quick pose estimate.
 struct EgoMotionConfig {
-  double window_px = 30.0;
+  double window_rad_s = 0.57;
   int max_hamming = 64;
   double max_ratio = 0.85;
   int max_observations = 350;
@@ -18,7 +18,8 @@ struct EgoMotionConfig {
   int max_proposal_sightings = 100;
 
   void bind(auto& binder) {
-    binder.field("window_px", window_px, {2.0, 200.0}, "half side of the search window towards the view 0.1 s ago");
+    binder.field("window_rad_s", window_rad_s, {0.04, 10.0},
+                 "half side of the search window: the camera's turn may differ so much from the prediction");
     binder.field("max_hamming", max_hamming, {1, 256}, "largest descriptor distance of a match");
     binder.field("max_ratio", max_ratio, {0.1, 1.0}, "best to second best distance");
     binder.field("max_observations", max_observations, {20, 2048}, "per pose optimisation");
@@ -49,8 +50,8 @@ struct GeometryConfig {
   double min_creeping_share = 0.7;
   double max_static_chi2 = 6.0;
   double min_moving_chi2 = 16.0;
-  int memory_frames = 30;
-  int loose_memory_frames = 5;
+  double memory_s = 1.0;
+  double loose_memory_s = 0.17;
   double max_dynamic_share = 0.75;
 
   void bind(auto& binder) {
@@ -88,10 +89,9 @@ struct GeometryConfig {
                  "squared normalised displacement up to which a feature is at "
                  "its place");
     binder.field("min_moving_chi2", min_moving_chi2, {0.1, 1000.0}, "... and from which it has moved");
-    binder.field("memory_frames", memory_frames, {0, 255},
-                 "frames for which a dynamic surface is remembered after the "
-                 "last evidence");
-    binder.field("loose_memory_frames", loose_memory_frames, {0, 255},
+    binder.field("memory_s", memory_s, {0.0, 2.55},
+                 "for how long a dynamic surface is remembered after the last evidence");
+    binder.field("loose_memory_s", loose_memory_s, {0.0, 2.55},
                  "the same for a moving part of a resting surface");
     binder.field("max_dynamic_share", max_dynamic_share, {0.1, 1.0},
                  "if more of the image is dynamic, the pose is wrong: no statement");

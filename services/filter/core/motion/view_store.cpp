@@ -25,7 +25,10 @@ auto find_seq(std::deque<View>& views, std::uint64_t seq) {
 
 void ViewStore::add(View view) {
   recent_.push_back(std::move(view));
-  if (recent_.size() > kMaxRecent) retire_oldest();
+  const auto outdated = [this] {
+    return recent_.size() > kMinRecent && recent_.back().stamp_ns - recent_.front().stamp_ns > kRecentNs;
+  };
+  while (recent_.size() > kMaxRecent || outdated()) retire_oldest();
 }
 
 void ViewStore::retire_oldest() {
@@ -148,11 +151,16 @@ std::vector<const View*> ViewStore::near_keyframes(const Eigen::Isometry3d& T_wo
   return chosen;
 }
 
-Eigen::Isometry3d ViewStore::predict_pose() const {
+Eigen::Isometry3d ViewStore::predict_pose(std::int64_t stamp_ns) const {
+  constexpr std::int64_t kLongGapNs = 500'000'000;
   const View* before = second_newest();
   const Eigen::Isometry3d& T_world_newest = newest().T_world_camera;
   if (before == nullptr) return T_world_newest;
-  return geometry::normalized(T_world_newest * before->T_world_camera.inverse() * T_world_newest);
+  const std::int64_t known_ns = newest().stamp_ns - before->stamp_ns, ahead_ns = stamp_ns - newest().stamp_ns;
+  if (known_ns <= 0 || known_ns > kLongGapNs || ahead_ns > kLongGapNs) return T_world_newest;
+  const geometry::Vector6d step = geometry::se3_log(before->T_world_camera.inverse() * T_world_newest);
+  const double steps = static_cast<double>(ahead_ns) / static_cast<double>(known_ns);
+  return geometry::normalized(T_world_newest * geometry::se3_exp(steps * step));
 }
 
 }  // namespace rtd::filter

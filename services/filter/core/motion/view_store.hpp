@@ -62,8 +62,8 @@ class ViewStore {
   }
   /// The recent view with this stamp; null when there is none.
   const View* at(std::int64_t stamp_ns) const;
-  /// Constant velocity: the pose at which the camera would be in the next frame. Precondition: not empty.
-  Eigen::Isometry3d predict_pose() const;
+  /// Constant velocity: the pose at which the camera would be then; at rest after a long gap. Precondition: not empty.
+  Eigen::Isometry3d predict_pose(std::int64_t stamp_ns) const;
   /// The settled recent view whose age is nearest to the wanted one. Precondition: not empty.
   const View& of_age(std::int64_t now_ns, std::int64_t age_ns) const;
   /// The settled view whose age is nearest to the wanted one, also from before the recent ones. Precondition: not
@@ -77,7 +77,8 @@ class ViewStore {
   std::vector<const View*> near_keyframes(const Eigen::Isometry3d& T_world_camera, const ReferenceLimits& limits) const;
   std::size_t size() const { return recent_.size() + past_.size() + keyframes_.size(); }
 
-  static constexpr std::size_t kMaxRecent = 32;
+  static constexpr std::int64_t kRecentNs = 1'050'000'000;
+  static constexpr std::size_t kMinRecent = 16, kMaxRecent = 64;  ///< slam's answers may be late at a low rate
   static constexpr std::size_t kMaxPast = 8;
   static constexpr std::size_t kMaxKeyframes = 16;
 

@@ -33,11 +33,15 @@ double MoverTracks::margin_m(const Track& track) const {
   return std::min(kMaxMarginM, kMarginM + kMarginPerWay * track.velocity().norm() * track.unseen_s());
 }
 
+bool MoverTracks::confirmed(const Track& track) const {
+  return track.hits >= config_.confirm_hits && seconds(track.seen_ns - track.first_ns) >= config_.confirm_s;
+}
+
 CellMask MoverTracks::expected(const MoverFrame& frame) const {
   CellMask mask(static_cast<std::size_t>(frame.grid.shape.size()), 0);
   for (Track track : tracks_) {
     predict(track, frame.pose.stamp_ns);
-    if (track.hits < config_.confirm_hits || !track.out_of_sight || track.unseen_s() < config_.expect_after_s) continue;
+    if (!confirmed(track) || !track.out_of_sight || track.unseen_s() < config_.expect_after_s) continue;
     for (const int cell : look_into(track.extent(margin_m(track)), frame).cells)
       mask[static_cast<std::size_t>(cell)] = 1;
   }
@@ -134,14 +138,14 @@ void MoverTracks::miss(Track& track, double elapsed_s, const MoverFrame& frame, 
   for (const FeatureVote& vote : slow_votes.votes) {
     if (std::binary_search(content.cells.begin(), content.cells.end(), vote.cell)) ++(vote.moving ? moving : resting);
   }
-  if (resting >= kMinVotes && resting >= kRestingRatio * moving) track.rest_s += kFramesPerLookBack * elapsed_s;
+  if (resting >= kMinVotes && resting >= kRestingRatio * moving) track.rest_s += std::max(elapsed_s, seconds(kLookBackEveryNs));
 }
 
 bool MoverTracks::ended(const Track& track) const {
   constexpr double kUnconfirmedS = 0.3;
   return track.rest_s > config_.rest_s || track.gone_s > config_.gone_s || track.unseen_s() > config_.max_unseen_s ||
          track.unseen_s() * track.velocity().norm() > config_.max_unseen_way_m ||
-         (track.hits < config_.confirm_hits && track.unseen_s() > kUnconfirmedS);
+         (!confirmed(track) && track.unseen_s() > kUnconfirmedS);
 }
 
 void MoverTracks::start_track(const MoverSighting& sighting, std::int64_t stamp_ns) {
@@ -157,7 +161,7 @@ void MoverTracks::start_track(const MoverSighting& sighting, std::int64_t stamp_
 std::vector<Mover> MoverTracks::movers() const {
   std::vector<Mover> movers;
   for (const Track& track : tracks_) {
-    if (track.hits < config_.confirm_hits) continue;
+    if (!confirmed(track)) continue;
     const double age_s = seconds(track.now_ns - track.first_ns);
     movers.push_back({track.id, track.extent(0), track.velocity(), age_s, track.unseen_s()});
   }

@@ -61,6 +61,7 @@ class MoverTracks {
   void miss(Track& track, double elapsed_s, const MoverFrame& frame, const FeatureVotes& slow_votes) const;
   void start_track(const MoverSighting& sighting, std::int64_t stamp_ns);
   void place(Track& track, const Eigen::AlignedBox3d& extent_world) const;
+  bool confirmed(const Track& track) const;
   double margin_m(const Track& track) const;
   bool ended(const Track& track) const;
 

@@ -52,7 +52,8 @@ struct BoxTrackConfig {
 
 /// The life of tracks of movers without a class; docs/theory/dynamic_points.md section 4.
 struct MoverTrackConfig {
-  int confirm_hits = 5;
+  int confirm_hits = 3;
+  double confirm_s = 0.13;
   double acceleration_m_s2 = 0.5;
   double expect_after_s = 1.0;
   double rest_s = 1.5;
@@ -62,6 +63,7 @@ struct MoverTrackConfig {
 
   void bind(auto& binder) {
     binder.field("confirm_hits", confirm_hits, {1, 100}, "a surface seen moving less often is not yet a mover");
+    binder.field("confirm_s", confirm_s, {0.0, 10.0}, "... nor is one first seen moving less long ago");
     binder.field("acceleration_m_s2", acceleration_m_s2, {0.01, 100.0}, "of a mover without a class");
     binder.field("expect_after_s", expect_after_s, {0.0, 60.0},
                  "unseen for this long, it is masked where its track expects "

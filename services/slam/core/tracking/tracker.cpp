@@ -70,7 +70,8 @@ TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
   outcome.tracked = last_;
   outcome.inliers = static_cast<int>(map->landmarks.size());
   motion_.reset();
-  frames_since_keyframe_ = failed_frames_ = 0;
+  keyframe_ns_ = last_.frame->stamp_ns;
+  failing_since_ns_.reset();
   relocalizer_.settle(map);
   outcome.map = std::move(map);
   return outcome;
@@ -116,7 +117,6 @@ void Tracker::await_relocalization() {
   motion_.reset();
   last_ = TrackedFrame{};
   state_ = msg::TrackingState::kLost;
-  failed_frames_ = config_.tracker.recently_lost_frames;
   relocalizer_.await();
 }
 
@@ -194,8 +194,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
     return;
   }
   count(*last_.frame, *outcome.map, tracking);
-  failed_frames_ = 0;
-  ++frames_since_keyframe_;
+  failing_since_ns_.reset();
   outcome.state = state_ = msg::TrackingState::kOk;
   const geometry::Matrix6d local = config_.sensor.shared_error * tracking.guess.covariance;
   covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
@@ -269,10 +268,11 @@ void Tracker::reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess&
     outcome.state = state_ = msg::TrackingState::kPredicted;
     return;
   }
-  ++failed_frames_;
+  if (!failing_since_ns_) failing_since_ns_ = frame.stamp_ns;
+  const double failing_s = 1e-9 * static_cast<double>(frame.stamp_ns - *failing_since_ns_);
   motion_.reset();
-  state_ = failed_frames_ > config_.tracker.recently_lost_frames ? msg::TrackingState::kLost
-                                                                 : msg::TrackingState::kRecentlyLost;
+  const bool recent = state_ != msg::TrackingState::kLost && failing_s <= config_.tracker.recently_lost_s;
+  state_ = recent ? msg::TrackingState::kRecentlyLost : msg::TrackingState::kLost;
   relocalizer_.give_up();
   outcome.state = relocalizer_.located() ? state_ : msg::TrackingState::kRelocalizing;
 }
@@ -298,7 +298,7 @@ void Tracker::count(const Frame& frame, const LocalMap& map, const LocalMapTrack
 
 KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_idle) const {
   KeyframeSituation situation;
-  situation.frames_since_keyframe = frames_since_keyframe_;
+  situation.since_keyframe_s = 1e-9 * static_cast<double>(last_.frame->stamp_ns - keyframe_ns_);
   situation.map_keyframes = static_cast<int>(map.component_keyframes);
   situation.inliers = inliers_;
   situation.mapper_idle = mapper_idle;
@@ -318,7 +318,7 @@ KeyframeProposal Tracker::propose_keyframe() {
   uncertainty_.add_keyframe(last_.frame->seq, last_.T_world_camera.translation(), covariance_);
   for (const auto& [id, statistics] : statistics_) proposal.statistics.push_back(statistics);  // sums: order is free
   statistics_.clear();
-  frames_since_keyframe_ = 0;
+  keyframe_ns_ = last_.frame->stamp_ns;
   return proposal;
 }
 
@@ -327,8 +327,8 @@ bool wants_keyframe(const KeyframeSituation& s, const KeyframeConfig& config) {
   const double ratio = s.map_keyframes < 2 ? kYoungMapRatio : config.reference_ratio;
   const bool starving_of_close =
       s.close_tracked < config.min_close_tracked && s.close_untracked > config.min_close_untracked;
-  const bool overdue = s.frames_since_keyframe >= config.max_gap_frames;
-  const bool convenient = s.frames_since_keyframe >= config.min_gap_frames && s.mapper_idle;
+  const bool overdue = s.since_keyframe_s >= config.max_gap_s;
+  const bool convenient = s.since_keyframe_s >= config.min_gap_s && s.mapper_idle;
   const bool weak = s.inliers < config.weak_ratio * s.reference_landmarks || starving_of_close;
   const bool new_view = s.inliers < ratio * s.reference_landmarks || starving_of_close;
   return (overdue || convenient || weak) && new_view && s.inliers > config.min_inliers;

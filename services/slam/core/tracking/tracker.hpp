@@ -20,7 +20,7 @@ namespace rtd::slam {
 
 /// What the decision looks at.
 struct KeyframeSituation {
-  int frames_since_keyframe = 0;
+  double since_keyframe_s = 0;
   int map_keyframes = 0;
   int inliers = 0;              ///< landmarks tracked in this frame
   int reference_landmarks = 0;  ///< confirmed landmarks of the reference keyframe
@@ -104,8 +104,8 @@ class Tracker {
   double scene_m_ = 0;                                              ///< how far away what last_ sees is
   std::optional<CameraMotion> motion_;  ///< at the last tracked frame, whose pose the map may have moved since
   int inliers_ = 0;
-  int frames_since_keyframe_ = 0;
-  int failed_frames_ = 0;
+  std::int64_t keyframe_ns_ = 0;            ///< stamp of the last frame that was proposed
+  std::optional<std::int64_t> failing_since_ns_;  ///< stamp of the last frame with a pose, while there is none
   std::size_t next_recovery_ = 0;
   std::pmr::unsynchronized_pool_resource statistics_memory_;  ///< used again from keyframe to keyframe
   StatisticsById statistics_{&statistics_memory_};

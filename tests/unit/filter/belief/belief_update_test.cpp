@@ -60,8 +60,8 @@ TEST_F(BeliefTest, rises_slowly_for_a_person_at_rest_and_stays_below_its_limit) 
 TEST_F(BeliefTest, falls_at_once_when_the_person_moves) {
   rest();
   see(100);
-  regions_.frames_left.assign(kBeliefCells / 2, 30);
-  regions_.frames_left.resize(kBeliefCells, 0);
+  regions_.hold_cs.assign(kBeliefCells / 2, 30);
+  regions_.hold_cs.resize(kBeliefCells, 0);
   EXPECT_NEAR(see(1), config_.lowest_probability, 1e-3);
   EXPECT_GT(on_wall(), 0.9);
 }
@@ -77,16 +77,16 @@ TEST_F(BeliefTest, falls_when_a_third_of_the_features_are_displaced) {
 TEST_F(BeliefTest, removes_only_the_arm_of_a_person_who_waves) {
   rest();
   see(100);
-  for (std::size_t cell = 0; cell < 25; ++cell) regions_.frames_left[cell] = 5;  // 4 % of the person
+  for (std::size_t cell = 0; cell < 25; ++cell) regions_.hold_cs[cell] = 5;  // 4 % of the person
   see(1);
   EXPECT_NEAR(probability(beliefs_[10]), config_.lowest_probability, 1e-3);
   EXPECT_GT(on_object(), 0.5);
 }
 
 TEST_F(BeliefTest, recovers_after_a_stop_within_two_seconds) {
-  regions_.frames_left.assign(kBeliefCells, 30);
+  regions_.hold_cs.assign(kBeliefCells, 30);
   see(5);
-  regions_.frames_left.assign(kBeliefCells, 0);
+  regions_.hold_cs.assign(kBeliefCells, 0);
   rest();
   EXPECT_LT(see(15), 0.25);
   EXPECT_GT(see(30), 0.25);

@@ -94,7 +94,7 @@ TEST_F(StaticProbabilityTest, trusts_a_screen_unless_it_moves) {
   objects_[0].level = MotionLevel::kLow;
   weigh();
   EXPECT_FALSE(removed(on_object()));
-  regions_.frames_left.assign(kImageCells, 10);
+  regions_.hold_cs.assign(kImageCells, 10);
   weigh();
   EXPECT_TRUE(removed(on_object()));
 }
@@ -117,7 +117,7 @@ TEST_F(StaticProbabilityTest, prefers_the_person_where_masks_overlap) {
 
 TEST_F(StaticProbabilityTest, removes_what_moves_without_a_class) {
   objects_.clear();
-  regions_.frames_left.assign(kImageCells, 10);
+  regions_.hold_cs.assign(kImageCells, 10);
   weigh();
   EXPECT_TRUE(removed(background()));
   EXPECT_NE(background().flags & msg::kFeatureGeometryMoving, 0);
@@ -139,7 +139,7 @@ TEST_F(StaticProbabilityTest, keeps_the_best_of_the_doubtful_when_too_few_remain
 }
 
 TEST_F(StaticProbabilityTest, never_takes_back_what_geometry_saw_moving) {
-  regions_.frames_left.assign(kImageCells, 10);
+  regions_.hold_cs.assign(kImageCells, 10);
   config_.fusion.min_static_features = 100;
   weigh();
   EXPECT_EQ(std::count_if(features_.begin(), features_.end(), [](const auto& f) { return !removed(f); }), 0);

@@ -17,6 +17,8 @@ using test::kShape;
 constexpr std::size_t kRegionCells = 160 * 120;
 
 /// A wall with a block in front, as clusters, and evidence that starts empty.
+constexpr int kElapsedCs = 3;  // from frame to frame
+
 class DynamicRegionsTest : public ::testing::Test {
  protected:
   DynamicRegionsTest() {
@@ -41,7 +43,7 @@ class DynamicRegionsTest : public ::testing::Test {
     }
   }
   DynamicRegions judge() const {
-    return find_dynamic_regions(clusters_, evidence_, {votes_, slow_votes_}, remembered_, config_);
+    return find_dynamic_regions(clusters_, evidence_, {votes_, slow_votes_}, {remembered_, kElapsedCs}, config_);
   }
   void vote(const cv::Point& pixel, bool moving) {
     const int cell = kShape.cell_at(pixel.x, pixel.y);
@@ -63,13 +65,13 @@ TEST_F(DynamicRegionsTest, takes_the_whole_cluster_when_a_part_of_it_violates) {
   set(evidence_.violated, {240, 160, 40, 160}, 1);  // the leading third
   const DynamicRegions regions = judge();
   EXPECT_EQ(regions.clusters, 1);
-  EXPECT_EQ(count_in(kShape, regions.frames_left, kBlock), cells_in(kBlock));
-  EXPECT_EQ(count_in(kShape, regions.frames_left, {0, 0, 640, 480}), cells_in(kBlock)) << "and not the wall";
+  EXPECT_EQ(count_in(kShape, regions.hold_cs, kBlock), cells_in(kBlock));
+  EXPECT_EQ(count_in(kShape, regions.hold_cs, {0, 0, 640, 480}), cells_in(kBlock)) << "and not the wall";
 }
 
 TEST_F(DynamicRegionsTest, takes_the_cluster_whose_features_are_displaced) {
   for (int i = 0; i < config_.min_moving_features; ++i) vote({250 + 8 * i, 200}, true);
-  EXPECT_EQ(count_in(kShape, judge().frames_left, kBlock), cells_in(kBlock));
+  EXPECT_EQ(count_in(kShape, judge().hold_cs, kBlock), cells_in(kBlock));
 }
 
 TEST_F(DynamicRegionsTest, takes_the_cluster_that_is_displaced_over_a_second_only) {
@@ -77,7 +79,7 @@ TEST_F(DynamicRegionsTest, takes_the_cluster_that_is_displaced_over_a_second_onl
   const auto block = static_cast<std::size_t>(clusters_.label[static_cast<std::size_t>(kShape.cell_at(300, 200))]);
   for (int i = 0; i < 20; ++i) vote({250, 170 + 5 * i}, false);
   slow_votes_.moving[block] = config_.min_creeping_features;
-  EXPECT_EQ(count_in(kShape, judge().frames_left, kBlock), cells_in(kBlock));
+  EXPECT_EQ(count_in(kShape, judge().hold_cs, kBlock), cells_in(kBlock));
   slow_votes_.resting[block] = config_.min_creeping_features;
   EXPECT_EQ(judge().clusters, 0);
 }
@@ -102,7 +104,7 @@ TEST_F(DynamicRegionsTest, ignores_specks_and_edges) {
   set(evidence_.consistent, {0, 0, 640, 480}, 2);
   set(evidence_.violated, {40, 40, 16, 16}, 1);
   set(evidence_.violated, {0, 300, 640, 4}, 1);
-  EXPECT_EQ(count_in(kShape, judge().frames_left, {0, 0, 640, 480}), 0);
+  EXPECT_EQ(count_in(kShape, judge().hold_cs, {0, 0, 640, 480}), 0);
 }
 
 TEST_F(DynamicRegionsTest, takes_a_compact_part_of_a_resting_surface) {
@@ -111,23 +113,23 @@ TEST_F(DynamicRegionsTest, takes_a_compact_part_of_a_resting_surface) {
   set(evidence_.violated, part, 1);
   const DynamicRegions regions = judge();
   EXPECT_EQ(regions.clusters, 0);
-  EXPECT_EQ(count_in(kShape, regions.frames_left, part), cells_in(part) - 4) << "all but its corners";
+  EXPECT_EQ(count_in(kShape, regions.hold_cs, part), cells_in(part) - 4) << "all but its corners";
 }
 
 TEST_F(DynamicRegionsTest, remembers_a_mover_that_pauses_for_a_while) {
   set(evidence_.consistent, kBlock, 2);
   set(remembered_, kBlock, 30);
-  EXPECT_EQ(count_in(kShape, judge().frames_left, kBlock), cells_in(kBlock));
-  EXPECT_EQ(judge().frames_left[static_cast<std::size_t>(kShape.cell_at(300, 240))], 29);
-  set(remembered_, kBlock, 1);
-  EXPECT_EQ(count_in(kShape, judge().frames_left, kBlock), 0) << "the last frame of memory";
+  EXPECT_EQ(count_in(kShape, judge().hold_cs, kBlock), cells_in(kBlock));
+  EXPECT_EQ(judge().hold_cs[static_cast<std::size_t>(kShape.cell_at(300, 240))], 27);
+  set(remembered_, kBlock, 3);
+  EXPECT_EQ(count_in(kShape, judge().hold_cs, kBlock), 0) << "the last frame of memory";
 }
 
 TEST_F(DynamicRegionsTest, forgets_faster_what_depth_and_features_see_at_rest) {
   set(evidence_.consistent, kBlock, 2);
   set(remembered_, kBlock, 30);
   for (int i = 0; i < 20; ++i) vote({250, 170 + 5 * i}, false);
-  EXPECT_EQ(judge().frames_left[static_cast<std::size_t>(kShape.cell_at(300, 240))], 26);
+  EXPECT_EQ(judge().hold_cs[static_cast<std::size_t>(kShape.cell_at(300, 240))], 18);
 }
 
 TEST_F(DynamicRegionsTest, leaves_out_the_floor_under_a_walker) {
@@ -142,15 +144,15 @@ TEST_F(DynamicRegionsTest, leaves_out_the_floor_under_a_walker) {
   set(evidence_.violated, kBlock, 1);
   for (int i = 0; i < 30; ++i) vote({20 * i + 20, 420}, false);
   const DynamicRegions regions = judge();
-  EXPECT_EQ(count_in(kShape, regions.frames_left, kBlock), cells_in(kBlock));
-  EXPECT_EQ(count_in(kShape, regions.frames_left, {8, 388, 624, 88}), 0);
+  EXPECT_EQ(count_in(kShape, regions.hold_cs, kBlock), cells_in(kBlock));
+  EXPECT_EQ(count_in(kShape, regions.hold_cs, {8, 388, 624, 88}), 0);
 }
 
 TEST_F(DynamicRegionsTest, makes_no_statement_when_nearly_everything_moves) {
   set(evidence_.violated, {0, 0, 640, 480}, 1);
   const DynamicRegions regions = judge();
   EXPECT_FALSE(regions.trusted);
-  EXPECT_EQ(count_in(kShape, regions.frames_left, {0, 0, 640, 480}), 0);
+  EXPECT_EQ(count_in(kShape, regions.hold_cs, {0, 0, 640, 480}), 0);
 }
 
 /// Remembers a block at 1.5 m as dynamic for 20 frames.
@@ -158,9 +160,9 @@ class DynamicMemoryTest : public ::testing::Test {
  protected:
   DynamicMemoryTest() {
     const DepthGrid grid = sampler_.sample(block_at(kBlock, 1.5));
-    std::vector<std::uint8_t> frames_left(grid.depth_m.size(), 0);
-    for (std::size_t i = 0; i < frames_left.size(); ++i) frames_left[i] = grid.depth_m[i] < 2 ? 20 : 0;
-    memory_.store(grid, sampler_.rays(), frames_left);
+    std::vector<std::uint8_t> hold_cs(grid.depth_m.size(), 0);
+    for (std::size_t i = 0; i < hold_cs.size(); ++i) hold_cs[i] = grid.depth_m[i] < 2 ? 20 : 0;
+    memory_.store(grid, sampler_.rays(), hold_cs);
   }
   static vision::RgbdImage block_at(const cv::Rect& area, double depth_m) {
     vision::RgbdImage image = test::wall_image(3.0);
@@ -168,16 +170,16 @@ class DynamicMemoryTest : public ::testing::Test {
     return image;
   }
   std::vector<std::uint8_t> recall(const vision::RgbdImage& image, const Eigen::Isometry3d& T_current_last) {
-    return memory_.recall(sampler_.sample(image), image.camera, T_current_last);
+    return memory_.recall(sampler_.sample(image), image.camera, T_current_last, 0.033);
   }
   DepthGridSampler sampler_ = test::make_sampler();
   DynamicMemory memory_;
 };
 
 TEST_F(DynamicMemoryTest, finds_the_block_again) {
-  const auto frames_left = recall(block_at(kBlock, 1.45), Eigen::Isometry3d::Identity());
-  EXPECT_EQ(count_in(kShape, frames_left, kBlock), cells_in(kBlock));
-  EXPECT_EQ(frames_left[static_cast<std::size_t>(kShape.cell_at(300, 240))], 20);
+  const auto hold_cs = recall(block_at(kBlock, 1.45), Eigen::Isometry3d::Identity());
+  EXPECT_EQ(count_in(kShape, hold_cs, kBlock), cells_in(kBlock));
+  EXPECT_EQ(hold_cs[static_cast<std::size_t>(kShape.cell_at(300, 240))], 20);
 }
 
 TEST_F(DynamicMemoryTest, follows_the_motion_of_the_camera) {

@@ -25,13 +25,31 @@ std::int64_t stamp(std::uint64_t seq) {
   return static_cast<std::int64_t>(seq) * kPeriodNs;
 }
 
-TEST(ViewStore, is_bounded) {
-  ViewStore store;
-  for (std::uint64_t seq = 0; seq < 1000; ++seq) {
-    store.add(view(seq));
-    store.mark_keyframe(seq, at(0));
+TEST(ViewStore, is_bounded_and_keeps_a_second_at_any_rate) {
+  for (const std::int64_t period_ns : {4'000'000, 16'600'000, 33'300'000, 200'000'000}) {
+    ViewStore store;
+    View last;
+    for (std::uint64_t seq = 0; seq < 1000; ++seq) {
+      last = view(seq);
+      last.stamp_ns = static_cast<std::int64_t>(seq) * period_ns;
+      store.add(last);
+      store.mark_keyframe(seq, at(0));
+    }
+    EXPECT_LE(store.size(), ViewStore::kMaxRecent + ViewStore::kMaxPast + ViewStore::kMaxKeyframes) << period_ns;
+    if (period_ns > 16'000'000) {
+      EXPECT_TRUE(store.spans(last.stamp_ns, 1'000'000'000)) << period_ns;
+    }
   }
-  EXPECT_EQ(store.size(), ViewStore::kMaxRecent + ViewStore::kMaxPast + ViewStore::kMaxKeyframes);
+}
+
+TEST(ViewStore, predicts_by_the_stamps_of_the_frames) {
+  ViewStore store;
+  store.add(view(0));
+  EXPECT_NEAR(store.predict_pose(stamp(3)).translation().x(), 0, 1e-9) << "one view, no velocity";
+  store.add(view(1, 0.01));
+  EXPECT_NEAR(store.predict_pose(stamp(2)).translation().x(), 0.02, 1e-9);
+  EXPECT_NEAR(store.predict_pose(stamp(4)).translation().x(), 0.04, 1e-9) << "two frames are missing";
+  EXPECT_NEAR(store.predict_pose(stamp(100)).translation().x(), 0.01, 1e-9) << "after a long gap";
 }
 
 TEST(ViewStore, keeps_a_view_from_longer_ago_than_the_recent_ones) {

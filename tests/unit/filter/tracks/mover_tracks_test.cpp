@@ -123,7 +123,7 @@ TEST_F(MoverTracksTest, ends_when_it_was_seen_at_rest) {
   see_mover();
   for (int i = 0; i < 30; ++i) step(block_at(kBlock), false);
   EXPECT_EQ(tracks_.movers().size(), 1U) << "nobody has said that it rests";
-  for (int i = 0; i < 6; ++i) step(block_at(kBlock), false, Eigen::Isometry3d::Identity(), resting());
+  for (int i = 0; i < 16; ++i) step(block_at(kBlock), false, Eigen::Isometry3d::Identity(), resting());
   EXPECT_TRUE(tracks_.movers().empty());
 }
 

@@ -10,7 +10,7 @@ namespace {
 /// Well tracked: 290 of 300 landmarks, plenty of close ones.
 KeyframeSituation steady() {
   KeyframeSituation s;
-  s.frames_since_keyframe = 5;
+  s.since_keyframe_s = 0.2;
   s.map_keyframes = 6;
   s.inliers = 290;
   s.reference_landmarks = 300;
@@ -26,7 +26,7 @@ bool inserts(const KeyframeSituation& s) {
 TEST(KeyframePolicy, leaves_a_well_known_view_alone) {
   EXPECT_FALSE(inserts(steady()));
   KeyframeSituation overdue = steady();
-  overdue.frames_since_keyframe = 1000;
+  overdue.since_keyframe_s = 30;
   EXPECT_FALSE(inserts(overdue)) << "time alone makes no new view";
 }
 
@@ -52,9 +52,9 @@ TEST(KeyframePolicy, spares_a_busy_mapper_unless_tracking_is_weak) {
   s.mapper_idle = false;
   s.inliers = 200;
   EXPECT_FALSE(inserts(s));
-  s.frames_since_keyframe = 30;
+  s.since_keyframe_s = 1;
   EXPECT_TRUE(inserts(s)) << "overdue";
-  s.frames_since_keyframe = 5;
+  s.since_keyframe_s = 0.2;
   s.inliers = 70;
   EXPECT_TRUE(inserts(s)) << "weak";
 }
@@ -80,9 +80,9 @@ TEST(KeyframePolicy, keeps_the_configured_distance) {
   KeyframeSituation s = steady();
   s.inliers = 200;
   KeyframeConfig config;
-  config.min_gap_frames = 6;
+  config.min_gap_s = 0.25;
   EXPECT_FALSE(wants_keyframe(s, config));
-  s.frames_since_keyframe = 6;
+  s.since_keyframe_s = 0.25;
   EXPECT_TRUE(wants_keyframe(s, config));
 }
 
