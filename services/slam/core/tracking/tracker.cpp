@@ -12,6 +12,9 @@ namespace rtd::slam {
 namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
+/// Of the landmarks that should be seen, or of the features if fewer: that many must agree on a pose that the camera can
+/// hardly have reached. Wrong matches agree by chance to 0.17, true ones to 0.3.
+constexpr double kMinShareOfJump = 0.25;
 constexpr double kMaxPredictionGap_s = 0.5;  ///< nothing is known of the motion over a longer gap
 
 double seconds_between(const Frame& earlier, const Frame& later) {
@@ -78,25 +81,29 @@ TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
 }
 
 TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
-  const std::int64_t start_ns = now_ns_();
   TrackOutcome outcome;
   outcome.map = relocalizer_.choose_map(snapshot, last_.reference);
   adopt(*outcome.map);
-  const PoseGuess guess = find_pose(*frame, *outcome.map);
-  const std::int64_t matched_ns = now_ns_();
-  outcome.stage_ms[msg::kStageMatch] = to_ms(matched_ns - start_ns - guess.optimizer_ns);
-  outcome.stage_ms[msg::kStagePose] = to_ms(guess.optimizer_ns);
   LocalMapTracking tracking;
-  if (guess.success) {
+  std::int64_t optimizer_ns = 0;
+  for (const Attempt attempt : {Attempt::kLastFrame, Attempt::kKeyframe, Attempt::kAround, Attempt::kRecovery}) {
+    const std::int64_t begin_ns = now_ns_();
+    const PoseGuess guess = find_pose(attempt, *frame, *outcome.map);
+    const std::int64_t matched_ns = now_ns_();
+    outcome.stage_ms[msg::kStageMatch] += to_ms(matched_ns - begin_ns - guess.optimizer_ns);
+    optimizer_ns += guess.optimizer_ns;
+    if (!guess.success) continue;
     tracking = track_local_map(*frame, *outcome.map, guess, context());
-    outcome.stage_ms[msg::kStageLocalMap] = to_ms(now_ns_() - matched_ns - tracking.guess.optimizer_ns);
-    outcome.stage_ms[msg::kStagePose] += to_ms(tracking.guess.optimizer_ns);
-  }
-  outcome.inliers = tracking.guess.inliers;
-  if (acceptable(tracking.guess) && believable(*frame, guess, tracking)) {
+    outcome.stage_ms[msg::kStageLocalMap] += to_ms(now_ns_() - matched_ns - tracking.guess.optimizer_ns);
+    optimizer_ns += tracking.guess.optimizer_ns;
+    if (!acceptable(tracking.guess) || !believable(*frame, guess, tracking)) continue;
+    outcome.stage_ms[msg::kStagePose] = to_ms(optimizer_ns);
+    outcome.inliers = tracking.guess.inliers;
     accept(outcome, std::move(frame), tracking);
     return outcome;
   }
+  outcome.stage_ms[msg::kStagePose] = to_ms(optimizer_ns);
+  outcome.inliers = tracking.guess.inliers;
   const std::int64_t failed_ns = now_ns_();
   auto found = relocalizer_.search(frame, msg::has_pose(state_), context());
   outcome.stage_ms[msg::kStageRelocalize] = to_ms(now_ns_() - failed_ns);
@@ -156,16 +163,21 @@ std::optional<PredictedPose> Tracker::hold(const Frame& frame) const {
   return predict_motion(motion, gap_s, config_.prediction);
 }
 
-PoseGuess Tracker::find_pose(const Frame& frame, const LocalMap& map) {
-  if (state_ != msg::TrackingState::kLost) {
-    PoseGuess guess = track_last_frame(frame, last_, map, predict(frame), context());
-    if (guess.success) return guess;
-    if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
-      guess = track_keyframe(frame, *reference, map, context());
-      if (guess.success) return guess;
+PoseGuess Tracker::find_pose(Attempt attempt, const Frame& frame, const LocalMap& map) {
+  const bool lost = state_ == msg::TrackingState::kLost, has_pose = msg::has_pose(state_);
+  switch (attempt) {
+    case Attempt::kLastFrame:
+      return lost ? PoseGuess{} : track_last_frame(frame, last_, map, predict(frame), context());
+    case Attempt::kKeyframe: {
+      const LocalKeyframe* reference = map.find_keyframe(last_.reference);
+      return lost || reference == nullptr ? PoseGuess{} : track_keyframe(frame, *reference, map, context());
     }
+    case Attempt::kAround:
+      return has_pose ? track_around(frame, last_, map, predict(frame), context()) : PoseGuess{};
+    case Attempt::kRecovery:
+      return has_pose || config_.techniques.place_recognition ? PoseGuess{} : recover(frame, map);
   }
-  return msg::has_pose(state_) || config_.techniques.place_recognition ? PoseGuess{} : recover(frame, map);
+  return {};
 }
 
 /// Without place recognition: tries a few keyframes of the window in each frame, going round.
@@ -210,14 +222,28 @@ bool Tracker::believable(const Frame& frame, const PoseGuess& start, const Local
   if (!config_.techniques.place_recognition) return true;
   if (continues_motion(frame, tracking.guess.T_world_camera)) return true;
   if (!start.guided) return is_convincing(frame, tracking, config_.place);
-  return start.inliers >= config_.tracker.min_inliers || agrees_widely(frame, tracking, config_.place);
+  if (!msg::has_pose(state_)) {
+    return start.inliers >= config_.tracker.min_inliers || agrees_widely(frame, tracking, config_.place);
+  }
+  const auto possible = static_cast<double>(std::min(tracking.visible.size(), frame.features.size()));
+  return start.inliers >= config_.tracker.min_inliers && tracking.guess.inliers >= kMinShareOfJump * possible;
 }
 
-/// Whether the camera got there as it moved before: no other place looks alike from just where it is expected.
+/// Whether the camera got there as it moved before, or from rest as a hand may move it: no other place looks alike from
+/// just where it is expected.
 bool Tracker::continues_motion(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const {
+  constexpr double kMaxOff_m = 0.1, kMaxOff_rad = 0.2;  // however long the gap
+  constexpr double kMaxSpeed_m_s = 2, kMaxSpeed_rad_s = 5;
   const double gap_s = last_.frame == nullptr ? 0 : seconds_between(*last_.frame, frame);
-  const bool known = motion_ && msg::has_pose(state_) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
-  return known && is_steady(*motion_, last_.T_world_camera.inverse() * T_world_camera, gap_s);
+  if (!msg::has_pose(state_) || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return false;
+  const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * T_world_camera;
+  const auto within = [&](const Eigen::Isometry3d& T, double limit_m, double limit_rad) {
+    return T.translation().norm() <= std::min(limit_m, kMaxOff_m) &&
+           geometry::rotation_angle_rad(T) <= std::min(limit_rad, kMaxOff_rad);
+  };
+  if (within(T_last_camera, kMaxSpeed_m_s * gap_s, kMaxSpeed_rad_s * gap_s)) return true;
+  if (!motion_ || !is_steady(*motion_, T_last_camera, gap_s)) return false;
+  return within(geometry::se3_exp(gap_s * motion_->velocity_per_s).inverse() * T_last_camera, kMaxOff_m, kMaxOff_rad);
 }
 
 /// No pose yet: the next frames have to agree.

@@ -81,7 +81,9 @@ class Tracker {
  private:
   TrackingContext context() const { return {config_, now_ns_, statistics_}; }
   Eigen::Isometry3d predict(const Frame& frame) const;
-  PoseGuess find_pose(const Frame& frame, const LocalMap& map);
+  /// Ways to a first guess of the pose, in the order in which they are tried.
+  enum class Attempt { kLastFrame, kKeyframe, kAround, kRecovery };
+  PoseGuess find_pose(Attempt attempt, const Frame& frame, const LocalMap& map);
   PoseGuess recover(const Frame& frame, const LocalMap& map);
   bool acceptable(const PoseGuess& guess) const;
   bool believable(const Frame& frame, const PoseGuess& start, const LocalMapTracking& tracking) const;

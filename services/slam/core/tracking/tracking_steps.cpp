@@ -12,6 +12,8 @@
 namespace rtd::slam {
 namespace {
 
+constexpr int kMinLandmarks = 10;  ///< of a first guess of the pose
+
 /// A landmark as the world point of a feature, believed as much as the frames since the last keyframe let us.
 Association associate(std::uint32_t feature, const LocalLandmark& landmark, const TrackingContext& context) {
   double probability = landmark.static_probability;
@@ -116,7 +118,6 @@ std::vector<SearchPoint> predict_points(const Frame& frame, const TrackedFrame& 
 PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
                            const Eigen::Isometry3d& T_world_camera_predicted, const TrackingContext& context) {
   const SlamConfig& config = context.config;
-  constexpr int kMinLandmarks = 10;
   const std::vector<Association> points = points_of(last, map, context);
   const MatchRules rules{100, 1.0, RotationCheck::kOn};
   const double radius_px = search_radius_px(frame, last, config.tracker);
@@ -161,6 +162,29 @@ PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, cons
       optimize(frame, associations, coarse.success ? coarse.T_world_camera : keyframe.T_world_camera, context);
   guess.guided = false;
   guess.success = guess.success && guess.inliers >= kMinInliers;
+  return guess;
+}
+
+PoseGuess track_around(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
+                       const Eigen::Isometry3d& T_world_camera_predicted, const TrackingContext& context) {
+  const double radius_px = search_radius_px(frame, last, context.config.tracker);
+  const Eigen::Isometry3d T_camera_world = T_world_camera_predicted.inverse();
+  std::vector<SearchPoint> search;
+  search.reserve(map.landmarks.size());
+  for (std::uint32_t i = 0; i < map.landmarks.size(); ++i) {
+    const LocalLandmark& landmark = map.landmarks[i];
+    const auto view =
+        predict_view(frame, T_world_camera_predicted, T_camera_world,
+                     {landmark.position, landmark.normal, landmark.min_distance_m, landmark.max_distance_m});
+    if (view) search.push_back(make_search_point(*view, radius_px, landmark.descriptor, i));
+  }
+  std::vector<Association> associations;
+  for (const Match& match : match_projected(frame, search, {}, {100, 0.8, RotationCheck::kOff})) {
+    associations.push_back(associate(match.feature, map.landmarks[match.tag], context));
+  }
+  if (static_cast<int>(associations.size()) < context.config.tracker.min_motion_matches) return {};
+  PoseGuess guess = optimize(frame, associations, T_world_camera_predicted, context);
+  guess.success = guess.success && guess.inliers >= kMinLandmarks;
   return guess;
 }
 

@@ -61,6 +61,12 @@ PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const L
 PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, const LocalMap& map,
                          const TrackingContext& context);
 
+/// Frame to local map without a guess: looks for every landmark of the local map as far around
+/// `T_world_camera_predicted` as the camera may have turned since the last frame; when hardly any landmark of the last
+/// frame is still in view, because something covers them now.
+PoseGuess track_around(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
+                       const Eigen::Isometry3d& T_world_camera_predicted, const TrackingContext& context);
+
 /// Frame to local map: looks for every landmark of the local map that should be visible from `guess`, and optimises
 /// the pose with all of them.
 struct LocalMapTracking {
