@@ -61,6 +61,10 @@ bool Relocalizer::confirm() {
   return true;
 }
 
+void Relocalizer::believe() {
+  if (state_ == State::kConfirming) confirmations_ = config_.place.confirmations - 1;
+}
+
 void Relocalizer::give_up() {
   if (state_ == State::kConfirming) state_ = State::kSearching;
 }

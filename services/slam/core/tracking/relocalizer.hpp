@@ -54,6 +54,8 @@ class Relocalizer {
   std::optional<Found> search(const FramePtr& frame, bool had_pose, const TrackingContext& context);
   /// The frame was tracked, at the recognised place if there is one. True when its pose counts.
   bool confirm();
+  /// The place was expected: the frame that was found there counts at once.
+  void believe();
   /// The frame was neither tracked nor found.
   void give_up();
   /// The frame before the present one was at the recognised place already.

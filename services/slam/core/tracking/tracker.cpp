@@ -246,8 +246,10 @@ bool Tracker::continues_motion(const Frame& frame, const Eigen::Isometry3d& T_wo
   return within(geometry::se3_exp(gap_s * motion_->velocity_per_s).inverse() * T_last_camera, kMaxOff_m, kMaxOff_rad);
 }
 
-/// No pose yet: the next frames have to agree.
+/// No pose yet: the next frames have to agree. But a place where the camera was a moment ago is no other place.
 void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalizer::Found found) {
+  const bool same_place = found.place->find_keyframe(last_.reference) != nullptr;
+  if (same_place && continues_motion(*frame, found.tracking.guess.T_world_camera)) relocalizer_.believe();
   state_ = msg::TrackingState::kRecentlyLost;
   outcome.map = std::move(found.place);
   outcome.inliers = found.tracking.guess.inliers;
