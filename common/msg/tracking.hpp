@@ -39,18 +39,25 @@ enum class TrackingState : std::uint32_t {
   kLost = 3,
   kRelocalizing = 4,  ///< a place was recognised; its pose is published once the next frames agree
   kPredicted = 5,     ///< nothing static in view: the last motion continues for a moment, without measurement
+  kDoubtful = 6,      ///< measured, but much of what is seen contradicts the pose: something may take it along
 };
 
 /// For logs, diagnostics and the live line.
 constexpr const char* to_string(TrackingState state) {
-  constexpr const char* kNames[] = {"initializing", "ok", "recently lost", "lost", "relocalizing", "predicted"};
+  constexpr const char* kNames[] = {"initializing", "ok", "recently lost", "lost", "relocalizing", "predicted",
+                                    "doubtful"};
   const auto place = static_cast<std::size_t>(state);
   return place < std::size(kNames) ? kNames[place] : "unknown";
 }
 
-/// Whether a result of this state has a pose: measured (kOk) or predicted.
+/// Whether the pose of a result of this state was measured in its frame.
+constexpr bool is_measured(TrackingState state) {
+  return state == TrackingState::kOk || state == TrackingState::kDoubtful;
+}
+
+/// Whether a result of this state has a pose: measured or predicted.
 constexpr bool has_pose(TrackingState state) {
-  return state == TrackingState::kOk || state == TrackingState::kPredicted;
+  return is_measured(state) || state == TrackingState::kPredicted;
 }
 
 /// Stages of slam whose time travels in TrackingResult::stage_ms.
@@ -89,7 +96,7 @@ RTD_FIELDS(rtd_msgs, TrackingResult, seq, stamp_ns, published_ns, finished_ns, T
 
 /// Whether the result is a measured pose in frame `map`.
 constexpr bool is_measured_in_map(const TrackingResult& result) {
-  return result.state == TrackingState::kOk && result.map_id == 0;
+  return is_measured(result.state) && result.map_id == 0;
 }
 static_assert(std::is_trivially_copyable_v<KeyframeEvent> && std::is_trivially_copyable_v<TrackingResult>);
 

@@ -46,7 +46,7 @@ DetectionBatch to_detection_batch(const msg::Detection2DArray& message) {
 }
 
 std::optional<SlamPose> to_slam_pose(const msg::TrackingResult& result) {
-  if (result.state != msg::TrackingState::kOk) return std::nullopt;
+  if (!msg::is_measured(result.state)) return std::nullopt;
   return SlamPose{result.seq, result.map_id, msg::to_isometry(result.T_world_camera)};
 }
 

@@ -38,6 +38,7 @@ struct ServiceConfig {
     binder.section("sensor", core.sensor);
     binder.section("tracker", core.tracker);
     binder.section("prediction", core.prediction);
+    binder.section("consistency", core.consistency);
     binder.section("belief", core.belief);
     binder.section("keyframe", core.keyframe);
     binder.section("mapper", core.mapper);

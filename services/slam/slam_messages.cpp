@@ -137,6 +137,7 @@ msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const S
                    {"maps", std::to_string(result.maps)},
                    {"frames", std::to_string(counters.frames)},
                    {"frames_tracked", std::to_string(counters.tracked)},
+                   {"frames_doubtful", std::to_string(counters.doubtful)},
                    {"frames_dropped", std::to_string(counters.dropped)},
                    {"frames_duplicate", std::to_string(counters.duplicates)},
                    {"frames_unusable", std::to_string(counters.unusable_frames)},

@@ -46,8 +46,8 @@ msg::PointCloud2 make_cloud(const std::vector<MapPoint>& points, std::int64_t st
 
 /// Counters of the adapter.
 struct SlamCounters {
-  std::uint64_t frames = 0, tracked = 0, dropped = 0, duplicates = 0, invalid_features = 0, unusable_frames = 0,
-                source_restarts = 0, loops = 0;
+  std::uint64_t frames = 0, tracked = 0, doubtful = 0, dropped = 0, duplicates = 0, invalid_features = 0,
+                unusable_frames = 0, source_restarts = 0, loops = 0;
 };
 /// One status "rtd-slam: tracking".
 msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const SlamCounters& counters,

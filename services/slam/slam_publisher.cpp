@@ -28,9 +28,9 @@ SlamPublisher::~SlamPublisher() {
 void SlamPublisher::publish(const SlamOutput& output, const msg::TrackingResult& result) {
   for (const msg::KeyframeEvent& event : make_events(output)) keyframes_.write(event);
   tracking_.write(result);
-  const bool measured = result.state == msg::TrackingState::kOk;
+  const bool measured = msg::is_measured(result.state);
   // From a predicted pose to a measured one the estimate may step: that is no velocity.
-  if (measured && previous_ && previous_->result.state != msg::TrackingState::kOk) previous_.reset();
+  if (measured && previous_ && !msg::is_measured(previous_->result.state)) previous_.reset();
   if (previous_ && previous_->result.map_id != result.map_id) previous_.reset();
   if (!msg::has_pose(result.state)) {
     previous_.reset();

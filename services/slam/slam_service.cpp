@@ -133,7 +133,8 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
 
 void SlamService::count(const SlamOutput& output) {
   ++counters_.frames;
-  if (output.result.state == msg::TrackingState::kOk) ++counters_.tracked;
+  if (msg::is_measured(output.result.state)) ++counters_.tracked;
+  if (output.result.state == msg::TrackingState::kDoubtful) ++counters_.doubtful;
   if (output.result.features_static == 0 && !output.problem.empty()) ++counters_.unusable_frames;
   counters_.invalid_features += output.invalid_features;
   counters_.loops += output.loops.size();
@@ -142,6 +143,7 @@ void SlamService::count(const SlamOutput& output) {
   service::Heartbeat& heartbeat = runtime_.heartbeat;
   heartbeat.set_metric("frames", static_cast<double>(counters_.frames));
   heartbeat.set_metric("frames_tracked", static_cast<double>(counters_.tracked));
+  heartbeat.set_metric("frames_doubtful", static_cast<double>(counters_.doubtful));
   heartbeat.set_metric("frames_dropped", static_cast<double>(counters_.dropped));
   heartbeat.set_metric("features_invalid", static_cast<double>(counters_.invalid_features));
   heartbeat.set_metric("keyframes", output.result.keyframes);
@@ -152,19 +154,23 @@ void SlamService::count(const SlamOutput& output) {
 
 void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
   const FrameResult& result = output.result;
-  const bool tracked = result.state == msg::TrackingState::kOk, was_tracked = previous == msg::TrackingState::kOk;
+  const bool tracked = msg::is_measured(result.state), was_tracked = msg::is_measured(previous);
   if (tracked && counters_.tracked == 1 && !map_cameras_.empty()) {
     SPDLOG_INFO("event=relocalized frame={} inliers={} after_frames={}", result.seq, result.inliers, counters_.frames);
   } else if (tracked && counters_.tracked == 1) {
     SPDLOG_INFO("event=map_started frame={} landmarks={}", result.seq, result.landmarks);
   } else if (tracked && !was_tracked) {
     SPDLOG_INFO("event=tracking_recovered frame={} inliers={}", result.seq, result.inliers);
+  } else if (result.state == msg::TrackingState::kDoubtful && previous == msg::TrackingState::kOk) {
+    SPDLOG_WARN("event=pose_doubtful frame={} inliers={} cause=\"{}\"", result.seq, result.inliers, output.problem);
+  } else if (result.state == msg::TrackingState::kOk && previous == msg::TrackingState::kDoubtful) {
+    SPDLOG_INFO("event=pose_trusted frame={} inliers={}", result.seq, result.inliers);
   } else if (result.state == msg::TrackingState::kPredicted && was_tracked) {
     SPDLOG_WARN("event=tracking_predicted frame={} inliers={} cause=\"{}\"", result.seq, result.inliers,
                 output.problem);
   } else if (!tracked && msg::has_pose(previous) && result.state != previous && counters_.frames > 1) {
     SPDLOG_WARN("event=tracking_lost frame={} inliers={} cause=\"{}\"", result.seq, result.inliers, output.problem);
-  } else if (!output.problem.empty() && problem_log_.pass()) {
+  } else if (!tracked && !output.problem.empty() && problem_log_.pass()) {
     SPDLOG_WARN("event=not_tracked frame={} state=\"{}\" cause=\"{}\"", result.seq, to_string(result.state),
                 output.problem);
   }

@@ -126,7 +126,8 @@ OfflineReport run_offline(const OfflineOptions& options) {
     report.keyframes = output.result.keyframes;
     report.landmarks = output.result.landmarks;
     ++report.frames;
-    if (output.result.state == msg::TrackingState::kOk && output.result.map_id == 0) published.push_back(output.result);
+    if (output.result.state == msg::TrackingState::kDoubtful) ++report.doubtful_frames;
+    if (msg::is_measured(output.result.state) && output.result.map_id == 0) published.push_back(output.result);
     if (options.on_frame) options.on_frame(output);
     pass_over(options.frame_step - 1);
   }

@@ -103,6 +103,20 @@ struct PredictionConfig {
   }
 };
 
+/// When a measured pose is doubtful: docs/theory/tracking.md, "Consistency".
+struct ConsistencyConfig {
+  double doubtful_below = 0.42;
+  double usual = 0.55;
+  double memory_s = 0.5;
+
+  void bind(auto& binder) {
+    binder.field("doubtful_below", doubtful_below, {0.0, 1.0},
+                 "share of the matched landmarks that agree with the pose, less if they agree loosely; 0: never doubtful");
+    binder.field("usual", usual, {0.05, 1.0}, "below this share the covariance grows");
+    binder.field("memory_s", memory_s, {0.01, 60.0}, "time constant of the share");
+  }
+};
+
 /// What a frame says about a landmark's static probability, as log odds: docs/theory/tracking.md, "Belief".
 struct BeliefConfig {
   double found = 0.4;  ///< of a feature that is surely static; -0.4: surely dynamic
@@ -242,6 +256,7 @@ struct SlamConfig {
   SensorConfig sensor;
   TrackerConfig tracker;
   PredictionConfig prediction;
+  ConsistencyConfig consistency;
   BeliefConfig belief;
   KeyframeConfig keyframe;
   MapperConfig mapper;

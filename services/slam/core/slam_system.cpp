@@ -3,6 +3,8 @@
 #include "services/slam/core/slam_system.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 namespace rtd::slam {
 namespace {
@@ -16,6 +18,11 @@ std::string why_without_pose(int inliers, int needed) {
   const std::string found = std::to_string(inliers);
   if (inliers < needed) return found + " of " + std::to_string(needed) + " landmarks that a pose needs";
   return found + " landmarks agree with a pose that is not believed, because too few of the expected ones were found";
+}
+
+std::string why_doubtful(double consistency) {
+  return "doubtful: only " + std::to_string(std::lround(100 * consistency)) +
+         " % of the matched landmarks agree closely with the pose; it may follow something that moves";
 }
 
 }  // namespace
@@ -114,11 +121,12 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
     follow_reference(outcome);
     return outcome;
   }
-  if (outcome.state != msg::TrackingState::kOk) {
+  if (!msg::is_measured(outcome.state)) {
     output.problem = std::string(failure_name(outcome.state)) + ": " +
                      why_without_pose(outcome.inliers, config_.tracker.min_inliers);
     return outcome;
   }
+  if (outcome.state == msg::TrackingState::kDoubtful) output.problem = why_doubtful(outcome.consistency);
   record(outcome.tracked);
   if (!had_pose_ && outcome.map->map != map_) odometry_.correct(before, tracker_.T_world_camera());
   observe_sensor(*outcome.map, outcome);

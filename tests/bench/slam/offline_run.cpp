@@ -74,6 +74,7 @@ void print_json(const rtd::test_support::OfflineReport& report) {
                                {"ate_m", report.ate_rmse_m},
                                {"online_ate_m", report.online_ate_rmse_m},
                                {"nees", report.nees},
+                               {"doubtful", static_cast<double>(report.doubtful_frames) / std::max<double>(1, static_cast<double>(report.frames))},
                                {"max_error_m", lost_m},
                                {"rpe_m", report.rpe_trans_rmse_m},
                                {"rpe_deg", report.rpe_rot_rmse_deg},

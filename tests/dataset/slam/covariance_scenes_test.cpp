@@ -52,5 +52,21 @@ TEST_P(FaultySensor, is_covered_by_the_default_calibration_error) {
   EXPECT_LT(mean, 11.7);
 }
 
+/// Without a filter the people take the pose along, half a metre and more, with hundreds of inliers.
+TEST(DoubtfulPoses, are_called_so_when_movers_take_the_pose_along) {
+  OfflineOptions options;
+  options.source = "synthetic:office?frames=150&seed=1&sensor=kinect";
+  options.front_end.mode = "off";
+  const OfflineReport off = run_offline(options);
+  options.front_end.mode = "true-mask";
+  const OfflineReport masked = run_offline(options);
+  std::printf("ATE %.3f m, doubtful %zu of %zu, NEES %.0f; true masks %.3f m, doubtful %zu\n", off.ate_rmse_m,
+              off.doubtful_frames, off.frames, off.nees, masked.ate_rmse_m, masked.doubtful_frames);
+  EXPECT_GT(off.ate_rmse_m, 0.1);
+  EXPECT_GT(off.doubtful_frames, off.frames / 3);
+  EXPECT_LT(masked.ate_rmse_m, 0.03);
+  EXPECT_EQ(masked.doubtful_frames, 0U);
+}
+
 }  // namespace
 }  // namespace rtd::test_support

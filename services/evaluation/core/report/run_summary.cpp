@@ -19,7 +19,7 @@ constexpr std::array<const char*, msg::kStageSlamTotal + 1> kSlamStageNames{
 constexpr float kRanMs = 0.01F;  // a shorter time only means that the stage had nothing to do
 
 bool is_tracked(const FrameRecord& frame) {
-  return frame.tracking.state == msg::TrackingState::kOk;
+  return msg::is_measured(frame.tracking.state);
 }
 
 std::vector<double> latencies_ms(const Run& run) {

@@ -60,7 +60,7 @@ void RecordBuilder::add(const msg::TrackingResult& result) {
   if (frame.has_result) return;
   frame.has_result = true;
   frame.record.tracking = result;
-  tracked_any_ = tracked_any_ || result.state == msg::TrackingState::kOk;
+  tracked_any_ = tracked_any_ || msg::is_measured(result.state);
   recent_.push_back(result);
   if (recent_.size() > kRecentFrames) recent_.pop_front();
 }

@@ -76,6 +76,7 @@ TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
   keyframe_ns_ = last_.frame->stamp_ns;
   failing_since_ns_.reset();
   relocalizer_.settle(map);
+  consistency_.reset();
   outcome.map = std::move(map);
   return outcome;
 }
@@ -199,6 +200,8 @@ bool Tracker::acceptable(const PoseGuess& guess) const {
 
 /// The frame was tracked. After a recognised place some more must agree before a pose counts.
 void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking) {
+  const double elapsed_s = last_.frame == nullptr ? 0 : seconds_between(*last_.frame, *frame);
+  consistency_.add(*frame, *outcome.map, tracking, elapsed_s);
   follow(std::move(frame), *outcome.map, tracking);
   outcome.tracked = last_;
   if (!relocalizer_.confirm()) {
@@ -207,11 +210,14 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   }
   count(*last_.frame, *outcome.map, tracking);
   failing_since_ns_.reset();
-  outcome.state = state_ = msg::TrackingState::kOk;
-  const geometry::Matrix6d local = config_.sensor.shared_error * tracking.guess.covariance;
+  scene_m_ = median_distance(*outcome.map, last_);
+  state_ = msg::TrackingState::kOk;
+  outcome.state = consistency_.doubtful() ? msg::TrackingState::kDoubtful : state_;
+  outcome.consistency = consistency_.value();
+  const geometry::Matrix6d local =
+      config_.sensor.shared_error * tracking.guess.covariance + consistency_.covariance(scene_m_);
   covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
   map_covariance_ = covariance_ - local;
-  scene_m_ = median_distance(*outcome.map, last_);
   outcome.covariance =
       covariance_ + calibration_covariance(last_.T_world_camera, scene_m_, config_.sensor.calibration_error);
 }
@@ -254,6 +260,7 @@ void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalizer::Fo
   outcome.map = std::move(found.place);
   outcome.inliers = found.tracking.guess.inliers;
   motion_.reset();
+  consistency_.reset();
   accept(outcome, std::move(frame), found.tracking);
 }
 

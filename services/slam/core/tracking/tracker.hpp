@@ -12,6 +12,7 @@
 #include "common/msg/tracking.hpp"
 #include "services/slam/core/mapping/mapper.hpp"
 #include "services/slam/core/slam_config.hpp"
+#include "services/slam/core/tracking/consistency.hpp"
 #include "services/slam/core/tracking/pose_uncertainty.hpp"
 #include "services/slam/core/tracking/relocalizer.hpp"
 #include "services/slam/core/tracking/tracking_steps.hpp"
@@ -39,6 +40,7 @@ struct TrackOutcome {
   TrackedFrame tracked;  ///< in state kPredicted the pose only
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
   int inliers = 0;
+  double consistency = 1;  ///< Consistency::value()
   std::array<float, msg::kSlamStages> stage_ms{};
 
   /// A place was recognised and is not confirmed yet.
@@ -52,7 +54,10 @@ class Tracker {
  public:
   /// Without `places` a lost camera is found only around its last pose.
   Tracker(const SlamConfig& config, Clock now_ns, PlaceSource places = {})
-      : config_(config), now_ns_(std::move(now_ns)), relocalizer_(config, std::move(places)) {}
+      : config_(config),
+        now_ns_(std::move(now_ns)),
+        relocalizer_(config, std::move(places)),
+        consistency_(config.consistency) {}
 
   /// Whether a first keyframe can be made of this frame.
   bool can_initialize(const Frame& frame) const;
@@ -100,14 +105,15 @@ class Tracker {
   Relocalizer relocalizer_;
   msg::TrackingState state_ = msg::TrackingState::kInitializing;
   TrackedFrame last_;
+  Consistency consistency_;
   MapUncertainty uncertainty_;
   geometry::Matrix6d covariance_ = geometry::Matrix6d::Zero();      ///< of last_, in the world
   geometry::Matrix6d map_covariance_ = geometry::Matrix6d::Zero();  ///< the map's part of it
   double scene_m_ = 0;                                              ///< how far away what last_ sees is
   std::optional<CameraMotion> motion_;  ///< at the last tracked frame, whose pose the map may have moved since
   int inliers_ = 0;
-  std::int64_t keyframe_ns_ = 0;            ///< stamp of the last frame that was proposed
-  std::optional<std::int64_t> failing_since_ns_;  ///< stamp of the last frame with a pose, while there is none
+  std::int64_t keyframe_ns_ = 0;                  ///< stamp of the last frame that was proposed
+  std::optional<std::int64_t> failing_since_ns_;  ///< stamp of the first frame without a pose, while there is none
   std::size_t next_recovery_ = 0;
   std::pmr::unsynchronized_pool_resource statistics_memory_;  ///< used again from keyframe to keyframe
   StatisticsById statistics_{&statistics_memory_};
