@@ -149,6 +149,7 @@ void SlamService::count(const SlamOutput& output) {
   heartbeat.set_metric("keyframes", output.result.keyframes);
   heartbeat.set_metric("loops_closed", static_cast<double>(counters_.loops));
   heartbeat.set_metric("landmarks", output.result.landmarks);
+  heartbeat.set_metric("readout_ms", 1e3 * slam_.readout_s());
   heartbeat.set_metric("slam_ms", static_cast<double>(output.result.stage_ms[msg::kStageSlamTotal]));
 }
 
@@ -173,6 +174,11 @@ void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
   } else if (!tracked && !output.problem.empty() && problem_log_.pass()) {
     SPDLOG_WARN("event=not_tracked frame={} state=\"{}\" cause=\"{}\"", result.seq, to_string(result.state),
                 output.problem);
+  }
+  if (!readout_logged_ && slam_.readout_s() != 0) {
+    SPDLOG_INFO("event=readout_estimated frame={} readout_ms={:.1f} setting=slam.sensor.readout_s", result.seq,
+                1e3 * slam_.readout_s());
+    readout_logged_ = true;
   }
   for (const LoopClosure& loop : output.loops) {
     SPDLOG_INFO("event=loop_closed keyframe={} place={} inliers={} moved_m={:.3f} joined={} maps_merged={}",

@@ -67,6 +67,7 @@ class SlamService {
   msg::TrackingResult last_result_{};
   std::string last_problem_;
   std::int64_t last_arrival_ns_ = 0, last_diagnostics_ns_ = 0;
+  bool readout_logged_ = false;
   bool input_gone_ = false;
   std::uint64_t dropped_logged_ = 0;
   service::RateLimit problem_log_{std::chrono::seconds(1)}, invalid_log_{std::chrono::seconds(1)},

@@ -167,7 +167,7 @@ void SlamSystem::observe_sensor(const LocalMap& map, const TrackOutcome& outcome
   }
   const TrackedFrame& tracked = outcome.tracked;
   if (wants_weight) depth_weight_.add(*tracked.frame, tracked.T_world_camera, points);
-  if (wants_readout) readout_.add(*tracked.frame, tracked.T_world_camera, points, shutter_);
+  if (wants_readout) readout_.add(*tracked.frame, tracked.T_world_camera, points, map, shutter_);
 }
 
 /// Lost for long, with unknown views: the camera continues in a new map.

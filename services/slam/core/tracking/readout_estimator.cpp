@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "common/vision/pose_optimizer.hpp"
 #include "services/slam/core/map/frame.hpp"
@@ -19,30 +20,61 @@ using geometry::Vector6d;
 /// Residuals of one frame share the errors of map and calibration: together they carry less information than so many
 /// independent ones. Factor on the variance.
 constexpr double kVarianceInflation = 9.0;
-constexpr double kMinSureReadout_s = 0.004, kMaxReadout_s = 0.05, kSureSigmas = 4.0;
-/// The map is made of the same images and has taken up a part of the effect: only the rest shows. Measured: the
-/// estimate falls short by this factor, whatever readout time was undone before.
-constexpr double kVisibleShare = 0.5;
+constexpr double kMinSureReadout_s = 0.004, kMaxReadout_s = 0.05, kSureSigmas = 2.5;
 constexpr double kMaxChi2 = 9.0;  // larger residuals come from wrong matches
 
-/// Derivative of the residual (predicted minus measured) by the readout time. Eq. (3).
-Eigen::Vector3d readout_jacobian(const Frame& frame, std::uint32_t feature, const Eigen::Vector3d& p_camera,
-                                 const Vector6d& velocity_per_s) {
-  const vision::RgbdMeasurement measured = frame.measurement(feature);
-  const double tau = row_time(measured.pixel.y(), frame.height_px);
-  // Moving the measurement by dm changes the residual by -dm.
-  return -tau * vision::rgbd_jacobian(frame.camera, p_camera, measured) * drift_of(p_camera, velocity_per_s);
+constexpr std::size_t kMaxFrames = 2048;  ///< of which it is remembered how they were exposed
+
+/// How a point moves in the camera's frame when the pose changes by this (vision::pose_jacobian).
+Eigen::Vector3d moved_by(const Vector6d& pose, const Eigen::Vector3d& p_rotated) {
+  return pose.head<3>() + pose.tail<3>().cross(p_rotated);
+}
+
+/// A displacement that depends on the readout time s: slope * s - offset, m, world frame.
+struct Displacement {
+  Eigen::Vector3d slope = Eigen::Vector3d::Zero(), offset = Eigen::Vector3d::Zero();
+};
+
+/// How the readout time has displaced a landmark, by the frames that it was mapped from; empty when none is known.
+/// Eq. (4).
+std::optional<Displacement> displacement_of_landmark(const LocalLandmark& landmark, const LocalMap& map,
+                                                     const std::map<std::uint64_t, ExposedFrame>& exposed) {
+  Displacement mean;
+  int count = 0;
+  for (std::uint32_t i = 0; i < landmark.observers; ++i) {
+    const LocalKeyframe& keyframe = map.keyframes[map.observers[landmark.first_observer + i]];
+    const auto known = exposed.find(keyframe.frame->seq);
+    if (known == exposed.end()) continue;
+    const ExposedFrame& then = known->second;
+    const Eigen::Matrix3d R_camera_world = keyframe.T_world_camera.linear().transpose();
+    const Eigen::Vector3d p_rotated = R_camera_world * landmark.position;
+    const Eigen::Vector3d p_camera = p_rotated - R_camera_world * keyframe.T_world_camera.translation();
+    if (p_camera.z() < vision::kMinProjectionDepth_m) continue;
+    const vision::RgbdProjection& camera = keyframe.frame->camera;
+    const double v_px = camera.fy * p_camera.y() / p_camera.z() + camera.cy;
+    const Eigen::Vector3d swept = row_time(v_px, keyframe.frame->height_px) * drift_of(p_camera, then.velocity_per_s);
+    const Eigen::Matrix3d& R_world_camera = keyframe.T_world_camera.linear();
+    mean.slope += R_world_camera * (moved_by(then.pose_slope, p_rotated) - swept);
+    mean.offset += R_world_camera * (moved_by(then.pose_offset, p_rotated) - then.readout_s * swept);
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  mean.slope /= count, mean.offset /= count;
+  return mean;
 }
 
 }  // namespace
 
 void ReadoutEstimator::add(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                           const std::vector<Association>& points, const ShutterMotion& motion) {
+                           const std::vector<Association>& points, const LocalMap& map, const ShutterMotion& motion) {
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   Matrix6d H = Matrix6d::Zero();
-  Vector6d H_xs = Vector6d::Zero(), b_x = Vector6d::Zero();
-  double H_ss = 0, b_s = 0;
+  Vector6d Jg = Vector6d::Zero(), Jd = Vector6d::Zero(), Jr = Vector6d::Zero();
+  double gg = 0, gr = 0;
   for (const Association& point : points) {
+    const LocalLandmark* landmark = map.find_landmark(point.landmark);
+    const auto displaced = landmark == nullptr ? std::nullopt : displacement_of_landmark(*landmark, map, exposed_);
+    if (!displaced) continue;
     const Eigen::Vector3d p_rotated = T_camera_world.linear() * point.p_world;
     const Eigen::Vector3d p_camera = p_rotated + T_camera_world.translation();
     if (p_camera.z() < vision::kMinProjectionDepth_m) continue;
@@ -53,22 +85,37 @@ void ReadoutEstimator::add(const Frame& frame, const Eigen::Isometry3d& T_world_
     if (weight * residual.squaredNorm() > kMaxChi2) continue;
     const Eigen::Matrix<double, 3, 6> J =
         vision::pose_jacobian(frame.camera, p_rotated, p_camera, Eigen::Matrix3d::Identity(), measured);
-    const Eigen::Vector3d g = readout_jacobian(frame, point.feature, p_camera, motion.velocity_per_s);
+    const auto J_point = vision::rgbd_jacobian(frame.camera, p_camera, measured);
+    const Eigen::Vector3d swept =
+        row_time(measured.pixel.y(), frame.height_px) * drift_of(p_camera, motion.velocity_per_s);
+    // The residual is g * readout - d, Eq. (5).
+    const Eigen::Vector3d g = J_point * (swept + T_camera_world.linear() * displaced->slope);
+    const Eigen::Vector3d d = J_point * (motion.readout_s * swept + T_camera_world.linear() * displaced->offset);
     H += weight * J.transpose() * J;
-    H_xs += weight * J.transpose() * g;
-    H_ss += weight * g.squaredNorm();
-    b_x -= weight * J.transpose() * residual;
-    b_s -= weight * g.dot(residual);
+    Jg += weight * J.transpose() * g;
+    Jd += weight * J.transpose() * d;
+    Jr += weight * J.transpose() * (residual + d);
+    gg += weight * g.squaredNorm();
+    gr += weight * g.dot(residual + d);
   }
-  // What the pose explains is taken out. Eq. (4).
+  // What the pose explains is taken out. Eq. (6).
   const Eigen::LDLT<Matrix6d> factor(H);
-  if (factor.info() != Eigen::Success || !factor.isPositive() || H_ss <= 0) return;
-  const Vector6d explained = factor.solve(H_xs);
-  const double information = H_ss - H_xs.dot(explained), right_side = b_s - b_x.dot(explained);
-  if (!std::isfinite(information) || !std::isfinite(right_side) || information <= 0) return;
-  information_ += information;
-  // In terms of the whole readout time, Eq. (5).
-  weighted_sum_ += right_side / kVisibleShare + information * motion.readout_s;
+  ExposedFrame exposed{motion.velocity_per_s, motion.readout_s};
+  if (factor.info() == Eigen::Success && factor.isPositive() && gg > 0) {
+    exposed.pose_slope = factor.solve(Jg);
+    exposed.pose_offset = factor.solve(Jd);
+    const double information = gg - Jg.dot(exposed.pose_slope), right_side = gr - Jg.dot(factor.solve(Jr));
+    if (std::isfinite(information) && std::isfinite(right_side) && information > 0) {
+      information_ += information;
+      weighted_sum_ += right_side;
+    }
+  }
+  if (!exposed.pose_slope.allFinite() || !exposed.pose_offset.allFinite()) {
+    exposed.pose_slope.setZero();
+    exposed.pose_offset.setZero();
+  }
+  exposed_[frame.seq] = exposed;
+  if (exposed_.size() > kMaxFrames) exposed_.erase(exposed_.begin());
 }
 
 double ReadoutEstimator::estimate_s() const {
@@ -76,8 +123,7 @@ double ReadoutEstimator::estimate_s() const {
 }
 
 double ReadoutEstimator::sigma_s() const {
-  return information_ > 0 ? std::sqrt(kVarianceInflation / information_) / kVisibleShare
-                          : std::numeric_limits<double>::infinity();
+  return information_ > 0 ? std::sqrt(kVarianceInflation / information_) : std::numeric_limits<double>::infinity();
 }
 
 double ReadoutEstimator::readout_s() const {

@@ -2,20 +2,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <vector>
 
 #include "services/slam/core/tracking/tracking_steps.hpp"
 
 namespace rtd::slam {
 
+/// How a frame was exposed, and what the readout time s has done to its pose: pose_offset - pose_slope * s, as
+/// [translation; rotation] of vision::pose_jacobian.
+struct ExposedFrame {
+  geometry::Vector6d velocity_per_s = geometry::Vector6d::Zero();
+  double readout_s = 0;  ///< undone before it was tracked
+  geometry::Vector6d pose_slope = geometry::Vector6d::Zero(), pose_offset = geometry::Vector6d::Zero();
+};
+
 /// Estimates the readout time of a camera while it is tracked: what remains of the residuals of a pose after the best
-/// pose is taken out grows with readout time, motion and distance from the middle row. Eq. (3)-(5). Deterministic.
+/// pose is taken out grows with readout time, motion and distance from the middle row, and with the same of the frames
+/// that the landmarks were mapped from. docs/theory/rolling_shutter.md, Eq. (3)-(6). Deterministic.
 class ReadoutEstimator {
  public:
   /// One tracked frame and the points that its features show. `motion` is the velocity during this frame and the
   /// readout time that its features were corrected with.
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera, const std::vector<Association>& points,
-           const ShutterMotion& motion);
+           const LocalMap& map, const ShutterMotion& motion);
   /// The readout time, s; 0 until it is sure that it is not 0.
   double readout_s() const;
   /// What it is so far, sure or not, and its standard deviation.
@@ -23,6 +34,7 @@ class ReadoutEstimator {
   double sigma_s() const;
 
  private:
+  std::map<std::uint64_t, ExposedFrame> exposed_;  ///< by seq, the newest
   double information_ = 0, weighted_sum_ = 0;
 };
 
