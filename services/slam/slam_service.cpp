@@ -239,7 +239,8 @@ void SlamService::report_state() {
 
 /// The map too when the other files cannot be written, and the other way round.
 service::ExitCode SlamService::finish() {
-  slam_.finish();
+  // A stop from outside must not wait for seconds; a source that has ended gives its final map.
+  slam_.finish(source_ended_ ? PendingAdjustment::kAwait : PendingAdjustment::kCancel);
   const bool written = write_files();
   const bool saved = !map_keeper_ || map_keeper_->save_at_end();
   return written && saved ? service::kOk : service::kRunFailed;

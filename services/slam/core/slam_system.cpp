@@ -140,6 +140,9 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
 }
 
 void SlamSystem::record(const TrackedFrame& tracked) {
+  constexpr std::size_t kMaxFrames = 200'000;  // two hours at 30 Hz, 32 MB
+  ++frames_tracked_;
+  thin_out(frames_, kMaxFrames);
   frames_.push_back({tracked.frame->seq, tracked.frame->stamp_ns, tracked.reference, tracked.T_reference_camera});
 }
 

@@ -57,7 +57,8 @@ class SlamSystem {
   /// source that started again: motion is forgotten, the map stays.
   SlamOutput process(const msg::FeatureFrame& message);
   /// Ends mapping: everything queued is worked off. The trajectories are final after it.
-  void finish() { mapping_.finish(); }
+  /// `pending`: what happens to a global adjustment that is under way.
+  void finish(PendingAdjustment pending = PendingAdjustment::kAwait) { mapping_.finish(pending); }
 
   /// Of one map: each has a world frame of its own.
   std::vector<StampedPose> trajectory(MapId id = 0) const;
@@ -67,7 +68,7 @@ class SlamSystem {
   /// Reads the whole map: may wait for a bundle adjustment, and the mapper waits until it is done.
   void read_map(const std::function<void(const Map&)>& look) const { mapping_.read(look); }
   std::vector<LoopClosure> loops() const { return mapping_.loops(); }
-  std::size_t frames_tracked() const { return frames_.size(); }
+  std::size_t frames_tracked() const { return frames_tracked_; }
   std::uint64_t source_restarts() const { return source_restarts_; }
   /// Of the camera, as it is undone now; 0: rows are taken to be exposed at once.
   double readout_s() const { return shutter_.readout_s; }
@@ -101,7 +102,8 @@ class SlamSystem {
   bool had_pose_ = false;  ///< the last frame
   MapId map_ = 0;          ///< component that it was tracked in
   KeyframeChangeQueue changes_;
-  std::vector<FrameRecord> frames_;
+  std::vector<FrameRecord> frames_;  ///< all of the last hours (thin_out())
+  std::size_t frames_tracked_ = 0;
   std::uint64_t event_count_ = 0;
   std::size_t loops_reported_ = 0;
   std::uint64_t source_restarts_ = 0;

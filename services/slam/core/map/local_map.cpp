@@ -25,7 +25,7 @@ std::vector<KeyframeId> select_window(const Map& map, KeyframeId centre, std::si
 }
 
 LocalKeyframe copy_keyframe(const Keyframe& keyframe) {
-  return {keyframe.id, keyframe.frame, keyframe.T_world_camera, keyframe.landmarks};
+  return {keyframe.id, keyframe.frame, keyframe.T_world_camera, keyframe.landmarks, keyframe.covariance};
 }
 
 LocalLandmark copy_landmark(const Landmark& landmark) {

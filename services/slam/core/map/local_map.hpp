@@ -26,7 +26,8 @@ struct LocalKeyframe {
   KeyframeId id = kNoKeyframe;
   FramePtr frame;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  std::vector<LandmarkId> landmarks;  ///< per feature
+  std::vector<LandmarkId> landmarks;                                    ///< per feature
+  std::optional<geometry::Matrix6d> covariance = std::nullopt;  ///< Keyframe::covariance
 };
 
 /// The part of the map around one keyframe, copied out of it: immutable, so that tracking needs no lock.

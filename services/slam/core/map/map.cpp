@@ -247,6 +247,20 @@ MapId Map::map_of(KeyframeId id) const {
   return keyframes_.at(id).map;
 }
 
+void spread_certainty(Map& map, KeyframeId older, KeyframeId newer) {
+  const Keyframe *tied = map.find_keyframe(older), *newest = map.find_keyframe(newer);
+  if (tied == nullptr || newest == nullptr || older >= newer) return;
+  const geometry::Matrix6d kept = tied->covariance.value_or(geometry::Matrix6d::Zero());
+  const MapId component = newest->map;
+  for (auto it = map.keyframes().upper_bound(older); it != map.keyframes().end(); ++it) {
+    Keyframe& keyframe = *map.find_keyframe(it->first);
+    if (keyframe.map != component || !keyframe.covariance) continue;
+    const double way = std::min(1.0, static_cast<double>(keyframe.id - older) / static_cast<double>(newer - older));
+    const geometry::Matrix6d gained = *keyframe.covariance - kept;
+    if (gained.trace() > 0) keyframe.covariance = kept + (1 - way) * gained;
+  }
+}
+
 std::vector<MapId> Map::maps() const {
   std::vector<MapId> maps;
   for (const auto& [map, size] : component_sizes_) maps.push_back(map);

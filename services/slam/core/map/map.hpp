@@ -5,10 +5,12 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/geometry/se3.hpp"
 #include "services/slam/core/map/frame.hpp"
 #include "services/slam/core/map/landmark.hpp"
 
@@ -23,6 +25,8 @@ struct Keyframe {
   KeyframeId parent = kNoKeyframe;      ///< older keyframe it was tracked from; none for the first of its map
   std::vector<KeyframeId> children;     ///< keyframes whose parent it is, ascending
   MapId map = 0;                        ///< component that it belongs to
+  /// Of its pose in the world, (x y z rx ry rz); empty when unknown: the first of a map, or a map that was loaded.
+  std::optional<geometry::Matrix6d> covariance = std::nullopt;
 
   /// The first keyframe of its map: holds that map's frame, is never moved by adjustment nor culled.
   bool is_origin() const { return parent == kNoKeyframe; }
@@ -134,5 +138,9 @@ class Map {
   KeyframeId next_keyframe_ = 0;
   LandmarkId next_landmark_ = 0;
 };
+
+/// A loop has tied `newer` to `older`, which is as certain as ever: what was uncertain about the keyframes in between is
+/// spread over the way back, most at the older end. docs/theory/loop_closing.md.
+void spread_certainty(Map& map, KeyframeId older, KeyframeId newer);
 
 }  // namespace rtd::slam

@@ -15,6 +15,16 @@ constexpr std::size_t kLineLength = 256;
 
 }  // namespace
 
+void thin_out(std::vector<FrameRecord>& frames, std::size_t limit) {
+  if (frames.size() < limit) return;
+  const std::size_t half = frames.size() / 2;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (i >= half || i % 2 == 0) frames[kept++] = frames[i];
+  }
+  frames.resize(kept);
+}
+
 std::vector<StampedPose> compose_trajectory(const Map& map, const std::vector<FrameRecord>& frames, MapId id) {
   std::vector<StampedPose> poses;
   poses.reserve(frames.size());

@@ -21,6 +21,10 @@ struct FrameRecord {
   Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
 };
 
+/// A long run keeps all frames of its last hours and ever fewer of the earlier ones: when there are `limit`, every second
+/// one of the older half goes.
+void thin_out(std::vector<FrameRecord>& frames, std::size_t limit);
+
 using geometry::StampedPose;
 
 struct MapPoint {

@@ -66,6 +66,7 @@ KeyframeId Mapper::add_keyframe(const KeyframeProposal& proposal) {
   KeyframeId parent = proposal.reference;
   while (!first && map_.find_keyframe(parent) == nullptr) parent = map_.parent_of_removed(parent);
   const KeyframeId id = map_.add_keyframe(proposal.frame, geometry::normalized(T_world_camera), parent);
+  map_.find_keyframe(id)->covariance = proposal.covariance;
   for (std::uint32_t feature = 0; feature < proposal.landmarks.size(); ++feature) {
     const LandmarkId landmark = proposal.landmarks[feature];
     if (landmark == kNoLandmark || map_.find_landmark(landmark) == nullptr) continue;
@@ -113,6 +114,7 @@ void Mapper::close_loop(KeyframeId newest) {
   const std::optional<LoopClosure> closure = loop_closer_.close(map_, places_, newest);
   if (!closure) return;
   loops_.push_back(*closure);
+  spread_certainty(map_, closure->edge.older, closure->edge.newer);
   note_all_moved_keyframes();
   if (config_.loop.global_iterations == 0) return;
   adjuster_.start(copy_global_problem(map_, closure->map));

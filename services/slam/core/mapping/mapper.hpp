@@ -28,6 +28,7 @@ struct KeyframeProposal {
   Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
   std::vector<LandmarkId> landmarks;  ///< per feature
   std::vector<LandmarkStatistics> statistics;
+  std::optional<geometry::Matrix6d> covariance = std::nullopt;  ///< Keyframe::covariance
 };
 
 /// What became of a keyframe since it was last announced.
@@ -63,6 +64,8 @@ class Mapper {
   void apply_adjustment();
   /// Waits for a global bundle adjustment that is running, and applies it.
   void finish_adjustment();
+  /// Gives up an adjustment that is under way: the map stays as the loop closure left it.
+  void cancel_adjustment() { adjuster_.cancel(); }
   const std::vector<LoopClosure>& loops() const { return loops_; }
   const Map& map() const { return map_; }
   /// Words of all keyframes in the map; empty when place recognition is off.

@@ -25,7 +25,7 @@ MappingWorker::MappingWorker(const SlamConfig& config, MappingMode mode, std::fu
 }
 
 MappingWorker::~MappingWorker() {
-  finish();
+  finish(PendingAdjustment::kCancel);
 }
 
 void MappingWorker::restore(MapContents contents) {
@@ -83,12 +83,16 @@ std::vector<KeyframeChange> MappingWorker::take_changes() {
   return std::exchange(changes_, {});
 }
 
-void MappingWorker::finish() {
+void MappingWorker::finish(PendingAdjustment pending) {
   queue_.close();
   if (!thread_.joinable()) return;
   thread_.join();
   const std::lock_guard mapper_lock(mapper_mutex_);
-  mapper_.finish_adjustment();
+  if (pending == PendingAdjustment::kAwait) {
+    mapper_.finish_adjustment();
+  } else {
+    mapper_.cancel_adjustment();
+  }
   if (!mapper_.map().keyframes().empty()) publish();
 }
 

@@ -20,6 +20,9 @@ enum class MappingMode : std::uint8_t {
   kThreaded,     ///< beside tracking
 };
 
+/// What happens to a global bundle adjustment that is under way when mapping ends: it may need seconds.
+enum class PendingAdjustment : std::uint8_t { kAwait, kCancel };
+
 /// Runs a Mapper in the caller's thread or in one of its own, and provides what tracking needs from it.
 /// restore(), insert(), begin_map(), recentre(), places_like(), finish(): one thread (tracking). snapshot(),
 /// take_changes(), room(), idle(), read(): any.
@@ -50,7 +53,7 @@ class MappingWorker {
   /// Loops closed so far, from the `first` on.
   std::vector<LoopClosure> loops(std::size_t first = 0) const;
   /// Works off what is queued and ends the thread; later calls of insert() do nothing.
-  void finish();
+  void finish(PendingAdjustment pending);
   /// Reads the whole map between two keyframes: may wait for a bundle adjustment.
   void read(const std::function<void(const Map&)>& look) const;
 

@@ -71,20 +71,14 @@ Matrix6d calibration_covariance(const Eigen::Isometry3d& T_world_camera, double 
 
 Matrix6d MapUncertainty::in_world(const Matrix6d& local, const Eigen::Vector3d& position,
                                   const std::vector<LandmarkId>& landmarks, const LocalMap& map) {
-  if (const auto inherited = of_landmarks(position, landmarks, map)) return local + *inherited;
-  // A map that begins, or was loaded: its first keyframe is the world, by measurements that are no better than these.
-  add_keyframe(map.keyframes.front().frame->seq, position, local);
-  return 2 * local;
+  if (!known_ || map_ != map.map) of_origin_ = local;
+  known_ = true;
+  map_ = map.map;
+  return local + of_landmarks(position, landmarks, map);
 }
 
-void MapUncertainty::add_keyframe(std::uint64_t frame_seq, const Eigen::Vector3d& position,
-                                  const Matrix6d& covariance) {
-  keyframes_[frame_seq] = {position, covariance};
-}
-
-std::optional<Matrix6d> MapUncertainty::of_landmarks(const Eigen::Vector3d& position,
-                                                     const std::vector<LandmarkId>& landmarks,
-                                                     const LocalMap& map) const {
+Matrix6d MapUncertainty::of_landmarks(const Eigen::Vector3d& position, const std::vector<LandmarkId>& landmarks,
+                                      const LocalMap& map) const {
   std::vector<int> seen(map.keyframes.size(), 0);
   for (const LandmarkId id : landmarks) {
     const LocalLandmark* landmark = id == kNoLandmark ? nullptr : map.find_landmark(id);
@@ -93,13 +87,12 @@ std::optional<Matrix6d> MapUncertainty::of_landmarks(const Eigen::Vector3d& posi
   Matrix6d sum = Matrix6d::Zero();
   int count = 0;
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    const auto known = keyframes_.find(map.keyframes[i].frame->seq);
-    if (seen[i] == 0 || known == keyframes_.end()) continue;
-    sum += seen[i] * moved(known->second.covariance, known->second.position, position);
+    if (seen[i] == 0) continue;
+    const LocalKeyframe& keyframe = map.keyframes[i];
+    sum += seen[i] * moved(keyframe.covariance.value_or(of_origin_), keyframe.T_world_camera.translation(), position);
     count += seen[i];
   }
-  if (count == 0) return std::nullopt;
-  return sum / count;
+  return count == 0 ? of_origin_ : Matrix6d(sum / count);
 }
 
 }  // namespace rtd::slam

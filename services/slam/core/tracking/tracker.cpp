@@ -350,7 +350,7 @@ KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_i
 
 KeyframeProposal Tracker::propose_keyframe() {
   KeyframeProposal proposal{last_.frame, last_.reference, last_.T_reference_camera, last_.landmarks, {}};
-  uncertainty_.add_keyframe(last_.frame->seq, last_.T_world_camera.translation(), covariance_);
+  proposal.covariance = covariance_;
   for (const auto& [id, statistics] : statistics_) proposal.statistics.push_back(statistics);  // sums: order is free
   statistics_.clear();
   keyframe_ns_ = last_.frame->stamp_ns;

@@ -189,5 +189,21 @@ TEST(Map, keeps_its_invariants_under_random_edits) {
   EXPECT_GT(map.keyframes().size(), 1U);
 }
 
+TEST(SpreadCertainty, makes_the_newest_keyframe_of_a_loop_as_certain_as_the_place) {
+  Map map = make_map();
+  for (const KeyframeId id : {0U, 1U, 2U}) {
+    map.find_keyframe(id)->covariance = (1.0 + id) * geometry::Matrix6d::Identity();
+  }
+  const KeyframeId after = map.add_keyframe(make_test_frame(3), moved_right(0.3), 2);
+  map.find_keyframe(after)->covariance = 5 * geometry::Matrix6d::Identity();
+  spread_certainty(map, 0, 2);
+  const auto variance = [&map](KeyframeId id) { return (*map.find_keyframe(id)->covariance)(0, 0); };
+  EXPECT_EQ(variance(0), 1);
+  EXPECT_EQ(variance(1), 1.5) << "half of the way";
+  EXPECT_EQ(variance(2), 1);
+  EXPECT_EQ(variance(after), 1) << "what came after hangs on it";
+  spread_certainty(map, 7, 9);  // keyframes that have been removed since: nothing
+}
+
 }  // namespace
 }  // namespace rtd::slam

@@ -33,6 +33,22 @@ TEST(ComposeTrajectory, follows_corrected_and_removed_keyframes) {
   EXPECT_EQ(keyframes[1].stamp_ns, 200);
 }
 
+TEST(ThinOut, keeps_the_last_half_and_ever_less_of_what_was_before) {
+  constexpr std::size_t kLimit = 1000;
+  std::vector<FrameRecord> frames;
+  for (std::uint64_t seq = 0; seq < 20 * kLimit; ++seq) {
+    thin_out(frames, kLimit);
+    ASSERT_LT(frames.size(), kLimit);
+    frames.push_back({seq});
+  }
+  const std::uint64_t newest = frames.back().seq;
+  EXPECT_EQ(newest, 20 * kLimit - 1);
+  EXPECT_EQ(frames[frames.size() - kLimit / 4].seq, newest + 1 - kLimit / 4) << "without a gap";
+  EXPECT_EQ(frames.front().seq, 0U);
+  EXPECT_GT(frames.size(), kLimit / 2);
+  for (std::size_t i = 1; i < frames.size(); ++i) ASSERT_LT(frames[i - 1].seq, frames[i].seq);
+}
+
 TEST(Ply, counts_its_vertices) {
   std::ostringstream out;
   write_ply(out, {{{1, 2, 3}, 0.5F}, {{-1, 0, 4}, 1.0F}});
