@@ -19,11 +19,6 @@ bool seen_by_others(const Map& map, const Landmark& landmark, KeyframeId keyfram
   return false;
 }
 
-bool is_close_landmark(const Keyframe& keyframe, std::size_t feature, double close_depth_m) {
-  const float depth_m = keyframe.frame->features[feature].depth_m;
-  return keyframe.landmarks[feature] != kNoLandmark && depth_m > 0 && depth_m <= close_depth_m;
-}
-
 }  // namespace
 
 void RecentLandmarks::add(const std::vector<LandmarkId>& landmarks) {
@@ -52,20 +47,19 @@ int RecentLandmarks::cull(Map& map, KeyframeId newest, double min_found_ratio) {
   return removed;
 }
 
-bool is_redundant_keyframe(const Map& map, KeyframeId id, double redundant_ratio, double close_depth_m) {
+bool is_redundant_keyframe(const Map& map, KeyframeId id, double redundant_ratio) {
   const Keyframe& keyframe = *map.find_keyframe(id);
   if (keyframe.is_origin()) return false;
-  int close = 0;
-  for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
-    if (is_close_landmark(keyframe, i, close_depth_m)) ++close;
-  }
+  const auto landmarks =
+      std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(), [](LandmarkId l) { return l != kNoLandmark; });
+  const double enough = redundant_ratio * static_cast<double>(landmarks);
   // Most keyframes are not redundant, which shows before all landmarks are checked.
-  int seen = close;
-  for (std::size_t i = 0; i < keyframe.landmarks.size() && seen > redundant_ratio * close; ++i) {
-    if (!is_close_landmark(keyframe, i, close_depth_m)) continue;
+  auto seen = static_cast<double>(landmarks);
+  for (std::size_t i = 0; i < keyframe.landmarks.size() && seen > enough; ++i) {
+    if (keyframe.landmarks[i] == kNoLandmark) continue;
     if (!seen_by_others(map, *map.find_landmark(keyframe.landmarks[i]), id, keyframe.frame->features[i].octave)) --seen;
   }
-  return seen > redundant_ratio * close;
+  return seen > enough;
 }
 
 }  // namespace rtd::slam

@@ -97,7 +97,7 @@ void Mapper::create_landmarks(KeyframeId keyframe) {
 
 void Mapper::cull_keyframes(KeyframeId newest) {
   for (const KeyframeId id : map_.best_covisible(newest, kMaxRedundancyCandidates)) {
-    if (!is_redundant_keyframe(map_, id, config_.mapper.redundant_ratio, config_.sensor.close_depth_m)) continue;
+    if (!is_redundant_keyframe(map_, id, config_.mapper.redundant_ratio)) continue;
     const Keyframe& keyframe = *map_.find_keyframe(id);
     if (announced_.erase(id) > 0) {
       changes_.push_back(

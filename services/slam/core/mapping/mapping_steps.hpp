@@ -57,9 +57,9 @@ class RecentLandmarks {
 /// Covisible keyframes of the newest one that are checked for redundancy.
 inline constexpr std::size_t kMaxRedundancyCandidates = 30;
 
-/// Whether nearly all (`redundant_ratio`) close landmarks of a keyframe are seen by at least three others at the same
+/// Whether nearly all (`redundant_ratio`) landmarks of a keyframe are seen by at least three others at the same
 /// or a finer scale. Never true for the first keyframe of a map.
-bool is_redundant_keyframe(const Map& map, KeyframeId keyframe, double redundant_ratio, double close_depth_m);
+bool is_redundant_keyframe(const Map& map, KeyframeId keyframe, double redundant_ratio);
 
 /// Bundle adjustment of the newest keyframe, its best covisible ones and all landmarks they see; older keyframes that
 /// see these landmarks are fixed. Outlier observations are taken out of the map. docs/theory/mapping.md, "Local bundle

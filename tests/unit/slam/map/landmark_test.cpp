@@ -194,11 +194,11 @@ TEST(Culling, finds_keyframes_that_three_others_make_superfluous) {
     for (KeyframeId k = 1; k < 4; ++k) map.add_observation(id, {k, i});
     if (i % 5 == 0) map.add_observation(id, {4, i});  // a fifth of what the others see, nothing else
   }
-  EXPECT_TRUE(is_redundant_keyframe(map, 4, 0.9, 10.0));
-  EXPECT_TRUE(is_redundant_keyframe(map, 2, 0.9, 10.0)) << "0, 1 and 3 see all of it";
-  EXPECT_FALSE(is_redundant_keyframe(map, 0, 0.9, 10.0)) << "the first is never removed";
+  EXPECT_TRUE(is_redundant_keyframe(map, 4, 0.9));
+  EXPECT_TRUE(is_redundant_keyframe(map, 2, 0.9)) << "0, 1 and 3 see all of it";
+  EXPECT_FALSE(is_redundant_keyframe(map, 0, 0.9)) << "the first is never removed";
   map.remove_keyframe(2);
-  EXPECT_FALSE(is_redundant_keyframe(map, 1, 0.9, 10.0)) << "most of it is left with two others";
+  EXPECT_FALSE(is_redundant_keyframe(map, 1, 0.9)) << "most of it is left with two others";
 }
 
 const Eigen::Isometry3d kFarPose =
