@@ -33,17 +33,27 @@ bool detectable(const camera::SourceObject& object, const DetectorOptions& optio
          std::find(classes.begin(), classes.end(), object.class_name) != classes.end();
 }
 
-/// The box with every edge a little off, within the image.
-vision::Detection jittered(const camera::SourceObject& object, float share, const cv::Size& image,
-                           SeededRandom& random) {
-  const cv::Rect2f box = object.box_px;
+/// The box with every edge a little off, within the image; share: of its size, standard deviation.
+vision::Detection jittered(vision::Detection box, float share, const cv::Size& image, SeededRandom& random) {
   const auto edge = [&](float at, float size, int end) {
     return std::clamp(at + share * size * random.normal(), 0.0F, static_cast<float>(end));
   };
-  const float left = edge(box.x, box.width, image.width), right = edge(box.x + box.width, box.width, image.width);
-  const float top = edge(box.y, box.height, image.height), low = edge(box.y + box.height, box.height, image.height);
-  const float score = random.between(kLowestScore, kHighestScore);
-  return {object.class_name, score, left, top, std::max(right - left, 1.0F), std::max(low - top, 1.0F)};
+  const float left = edge(box.x_px, box.width_px, image.width);
+  const float right = edge(box.x_px + box.width_px, box.width_px, image.width);
+  const float top = edge(box.y_px, box.height_px, image.height);
+  const float low = edge(box.y_px + box.height_px, box.height_px, image.height);
+  box.x_px = left, box.width_px = std::max(right - left, 1.0F);
+  box.y_px = top, box.height_px = std::max(low - top, 1.0F);
+  return box;
+}
+
+/// The object as a detector finds it.
+vision::Detection find(const camera::SourceObject& object, float share, const cv::Size& image, SeededRandom& random) {
+  const cv::Rect2f box = object.box_px;
+  vision::Detection found =
+      jittered({object.class_name, 0, box.x, box.y, box.width, box.height}, share, image, random);
+  found.score = random.between(kLowestScore, kHighestScore);
+  return found;
 }
 
 /// A generator for one object in one frame or span of time, apart from the frame's own.
@@ -87,7 +97,7 @@ Boxes see_truth(const camera::SourceFrame& frame, const DetectorOptions& options
   for (const camera::SourceObject& object : frame.objects) {
     const bool missed = static_cast<double>(random.unit()) < options.missed_share;
     vision::Detection box =
-        jittered(object, static_cast<float>(options.jitter_share), frame.image.color_bgr.size(), random);
+        find(object, static_cast<float>(options.jitter_share), frame.image.color_bgr.size(), random);
     if (missed || !detectable(object, options) || in_burst(options, object.id, frame.image.stamp_ns)) continue;
     SeededRandom cuts = random_of(options, object.id, frame.image.seq);
     if (static_cast<double>(cuts.unit()) < options.cut_share) cut(box, cuts);
@@ -126,6 +136,19 @@ Look real_look(const DetectorOptions& options) {
       };
 }
 
+/// The same answers, a little off.
+Look jitter(Look look, const DetectorOptions& options) {
+  return [look = std::move(look), options](const camera::SourceFrame& frame) {
+    SeededRandom random = random_of(options, frame);
+    Boxes boxes = look(frame);
+    for (vision::Detection& box : boxes) {
+      box = jittered(std::move(box), static_cast<float>(options.jitter_real_share), frame.image.color_bgr.size(),
+                     random);
+    }
+    return boxes;
+  };
+}
+
 }  // namespace
 
 Look make_look(const DetectorOptions& options) {
@@ -136,6 +159,7 @@ Look make_look(const DetectorOptions& options) {
   const auto remember = [&options](Look look) {
     return options.remembered_in.empty() ? std::move(look) : remembered_look(std::move(look), options.remembered_in);
   };
+  if (options.kind == "real" && options.jitter_real_share > 0) return jitter(remember(real_look(options)), options);
   if (options.kind == "real") return remember(real_look(options));
   if (options.kind == "truth") return remember([options](const auto& frame) { return see_truth(frame, options); });
   if (options.kind == "lying") return [options](const auto& frame) { return lie(frame, options); };

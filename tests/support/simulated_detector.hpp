@@ -34,6 +34,7 @@ struct DetectorOptions {
   std::vector<Outage> outages;
   std::uint64_t seed = 1;      ///< of truth and lying
   double jitter_share = 0.03;  ///< truth: standard deviation of each edge, of the box's size
+  double jitter_real_share = 0;  ///< the same of real's boxes
   double missed_share = 0.04;  ///< truth: boxes that are not found
   double recall = 1;           ///< truth: share of the boxes found, >= kLeastRecall; misses come in bursts
   double cut_share = 0;        ///< truth: boxes that lack a fifth to a half at one side

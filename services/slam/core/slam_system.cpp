@@ -70,6 +70,10 @@ void SlamSystem::watch_source(const msg::FeatureFrame& message) {
       (message.seq <= *last_seq_ || message.stamp_ns <= last_stamp_ns_ || message.intrinsics != last_intrinsics_)) {
     ++source_restarts_;
     tracker_.forget_motion();
+    if (message.intrinsics != last_intrinsics_) {  // another camera, or another mode of the same
+      readout_ = {};
+      depth_weight_ = DepthWeightEstimator();
+    }
   }
   last_seq_ = message.seq;
   last_stamp_ns_ = message.stamp_ns;

@@ -102,7 +102,10 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
       ->check(CLI::IsMember({"real", "truth", "lying", "off"}));
   app.add_option("--detector-hz", detector.rate_hz, "at most so many images a second, 0 = every frame");
   app.add_option("--detector-delay-ms", detector.delay_ms, "its boxes come so late");
-  app.add_option("--detector-seed", detector.seed, "of truth and lying");
+  app.add_option("--detector-seed", detector.seed, "of truth, lying and jitter");
+  app.add_option("--detector-jitter", detector.jitter_real_share,
+                 "real: standard deviation by which the edges of its boxes are moved, share of their size")
+      ->check(CLI::Range(0.0, 0.5));
   app.add_option("--detector-missed", detector.missed_share, "truth: share of the boxes not found");
   app.add_option("--detector-recall", detector.recall,
                  "truth: share of the boxes found; misses come in bursts of 0.3 to 2 s")

@@ -84,6 +84,10 @@ LocalProblem build(const Map& map, KeyframeId newest, const MapperConfig& config
   }
   for (const KeyframeId id : fixed) problem.add_keyframe(*map.find_keyframe(id), true);
   problem.bundle.camera = map.find_keyframe(newest)->frame->camera;
+  for (std::size_t i = 0; i < problem.keyframes.size(); ++i) {
+    problem.bundle.cameras[i].intrinsics =
+        intrinsics_of(*map.find_keyframe(problem.keyframes[i])->frame, problem.bundle.camera);
+  }
   add_observations(map, problem);
   return problem;
 }
@@ -126,6 +130,12 @@ std::vector<KeyframeId> apply(Map& map, const LocalProblem& problem) {
 }
 
 }  // namespace
+
+vision::RgbdProjection intrinsics_of(const Frame& frame, const vision::RgbdProjection& newest) {
+  vision::RgbdProjection intrinsics = frame.camera;
+  intrinsics.disparity_px_m = newest.disparity_px_m;
+  return intrinsics;
+}
 
 BundleObservation bundle_observation(const Frame& frame, std::uint32_t feature, const Landmark& landmark,
                                      std::uint32_t camera, std::uint32_t point) {

@@ -67,6 +67,9 @@ bool is_redundant_keyframe(const Map& map, KeyframeId keyframe, double redundant
 std::vector<KeyframeId> adjust_local_map(Map& map, KeyframeId newest, const MapperConfig& config,
                                          const std::function<bool()>& interrupted);
 
+/// The intrinsics that a frame was seen with, with the weight of depth of another: the newest knows the sensor best.
+vision::RgbdProjection intrinsics_of(const Frame& frame, const vision::RgbdProjection& newest);
+
 /// One observation of a landmark as bundle adjustment weighs it.
 BundleObservation bundle_observation(const Frame& frame, std::uint32_t feature, const Landmark& landmark,
                                      std::uint32_t camera, std::uint32_t point);

@@ -81,11 +81,12 @@ class SparseBundle {
     for (const BundleObservation& observation : problem_.observations) {
       if (!observation.inlier) continue;
       const Eigen::Isometry3d& T_camera_world = T_camera_world_[observation.camera];
+      const vision::RgbdProjection& camera = problem_.projection_of(observation);
       ceres::CostFunction* cost = nullptr;
       if (observation.measured.has_depth()) {
-        cost = new ObservationCost<3>(problem_.camera, T_camera_world, observation);  // owned by the ceres problem
+        cost = new ObservationCost<3>(camera, T_camera_world, observation);  // owned by the ceres problem
       } else {
-        cost = new ObservationCost<2>(problem_.camera, T_camera_world, observation);
+        cost = new ObservationCost<2>(camera, T_camera_world, observation);
       }
       ceres::LossFunction* loss = robust == RobustLoss::kHuber ? &huber(observation) : nullptr;
       if (observation.weight < 1) {
@@ -141,7 +142,7 @@ int classify(BundleProblem& problem, const BundleOptions& options) {
         problem.cameras[observation.camera].T_world_camera.inverse() * problem.points[observation.point];
     observation.inlier =
         p_camera.z() >= vision::kMinProjectionDepth_m &&
-        (vision::rgbd_residual(problem.camera, p_camera, observation.measured) / observation.sigma_px).squaredNorm() <=
+        (vision::rgbd_residual(problem.projection_of(observation), p_camera, observation.measured) / observation.sigma_px).squaredNorm() <=
             chi2_limit(options, observation);
     if (!observation.inlier) ++outliers;
   }

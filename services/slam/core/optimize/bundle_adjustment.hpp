@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "common/vision/reprojection.hpp"
@@ -13,7 +14,8 @@ namespace rtd::slam {
 
 struct BundleCamera {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  bool fixed = false;  ///< holds the gauge
+  bool fixed = false;                                                ///< holds the gauge
+  std::optional<vision::RgbdProjection> intrinsics = std::nullopt;  ///< where they are not BundleProblem::camera
 };
 
 struct BundleObservation {
@@ -30,6 +32,11 @@ struct BundleProblem {
   std::vector<BundleCamera> cameras;
   std::vector<Eigen::Vector3d> points;  ///< p_world, m
   std::vector<BundleObservation> observations;
+
+  const vision::RgbdProjection& projection_of(const BundleObservation& observation) const {
+    const auto& own = cameras[observation.camera].intrinsics;
+    return own ? *own : camera;
+  }
 };
 
 enum class BundleSolver : std::uint8_t {

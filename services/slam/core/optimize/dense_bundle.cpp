@@ -132,11 +132,12 @@ void DenseBundle::add(const BundleObservation& observation, std::size_t place, c
   const Eigen::Matrix3d R = T_camera_world.linear();
   const Eigen::Vector3d p_rotated = R * state.points[observation.point];
   const Eigen::Vector3d p_camera = p_rotated + T_camera_world.translation();
+  const vision::RgbdProjection& projection = problem_.projection_of(observation);
   const double limit = observation.measured.has_depth() ? options_.max_chi2_rgbd : options_.max_chi2_pixel;
   const bool in_front = p_camera.z() >= vision::kMinProjectionDepth_m;
   const double inverse_variance = 1 / (observation.sigma_px * observation.sigma_px);
   const Eigen::Vector3d residual =
-      in_front ? vision::rgbd_residual(problem_.camera, p_camera, observation.measured) : Eigen::Vector3d::Zero();
+      in_front ? vision::rgbd_residual(projection, p_camera, observation.measured) : Eigen::Vector3d::Zero();
   const double squared = in_front ? residual.squaredNorm() * inverse_variance
                                   : observation.measured.dimension() * kBehindCameraResidual * kBehindCameraResidual;
   const Robust robust = loss == RobustLoss::kHuber ? huber(squared, limit) : Robust{squared, 1.0};
@@ -146,7 +147,7 @@ void DenseBundle::add(const BundleObservation& observation, std::size_t place, c
     E_[place].setZero();
     return;
   }
-  const Eigen::Matrix3d A = vision::rgbd_jacobian(problem_.camera, p_camera, observation.measured);
+  const Eigen::Matrix3d A = vision::rgbd_jacobian(projection, p_camera, observation.measured);
   const double factor = observation.weight * robust.slope * inverse_variance;
   const Eigen::Matrix3d M = factor * A.transpose() * A;
   const Eigen::Vector3d g = factor * A.transpose() * residual;

@@ -70,6 +70,35 @@ double camera_error_m(const Scene& scene, std::size_t camera) {
       .norm();
 }
 
+/// The same scene as if every second camera had zoomed in.
+void zoom_every_second(Scene& scene) {
+  vision::RgbdProjection zoomed = kCamera;
+  zoomed.fx *= 1.4, zoomed.fy *= 1.4, zoomed.cx += 12;
+  for (std::size_t i = 1; i < scene.problem.cameras.size(); i += 2) scene.problem.cameras[i].intrinsics = zoomed;
+  for (BundleObservation& observation : scene.problem.observations) {
+    if (observation.camera % 2 == 0) continue;
+    Eigen::Vector2d& pixel = observation.measured.pixel;
+    pixel = {(pixel.x() - kCamera.cx) / kCamera.fx * zoomed.fx + zoomed.cx,
+             (pixel.y() - kCamera.cy) / kCamera.fy * zoomed.fy + zoomed.cy};
+  }
+}
+
+TEST(BundleAdjustment, each_camera_has_its_own_intrinsics) {
+  for (const BundleSolver solver : {BundleSolver::kDense, BundleSolver::kSparse}) {
+    Scene scene = make_scene(0);
+    zoom_every_second(scene);
+    BundleOptions options;
+    options.solver = solver;
+    options.iterations_robust = options.iterations = 10;
+    EXPECT_EQ(adjust_bundle(scene.problem, options).outliers, 0);
+    for (std::size_t i = 2; i < 5; ++i) {
+      const Eigen::Isometry3d T_error =
+          scene.problem.cameras[i].T_world_camera.inverse() * scene.truth.cameras[i].T_world_camera;
+      EXPECT_LT(T_error.translation().norm(), 1e-4) << "camera " << i;
+    }
+  }
+}
+
 TEST(BundleAdjustment, recovers_a_disturbed_scene) {
   Scene scene = make_scene(0.0);
   const BundleSummary summary = adjust_bundle(scene.problem, {20, 20});
