@@ -145,8 +145,12 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
 
 void SlamSystem::record(const TrackedFrame& tracked) {
   constexpr std::size_t kMaxFrames = 200'000;  // two hours at 30 Hz, 32 MB
+  constexpr std::size_t kTidyEvery = 20'000;   // frames
   ++frames_tracked_;
   thin_out(frames_, kMaxFrames);
+  if (frames_tracked_ % kTidyEvery == 0) {
+    mapping_.forget_removed([this](const Map& map) { tie_to_living(frames_, map); });
+  }
   frames_.push_back({tracked.frame->seq, tracked.frame->stamp_ns, tracked.reference, tracked.T_reference_camera});
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -130,6 +131,7 @@ void Map::remove_keyframe(KeyframeId id) {
   }
   Keyframe& parent = keyframe_at(keyframe.parent);
   removed_[id] = {keyframe.parent, parent.T_world_camera.inverse() * keyframe.T_world_camera};
+  removed_order_.push_back(id);
   parent.children.erase(std::find(parent.children.begin(), parent.children.end(), id));
   for (const KeyframeId child : keyframe.children) adopt_child(keyframe.parent, child);
   --component_sizes_[keyframe.map];
@@ -233,13 +235,35 @@ void Map::refresh_appearance(Landmark& landmark) {
   }
 }
 
-Eigen::Isometry3d Map::T_world_keyframe(KeyframeId id) const {
+std::pair<KeyframeId, Eigen::Isometry3d> Map::living_ancestor(KeyframeId id) const {
   Eigen::Isometry3d T_ancestor_camera = Eigen::Isometry3d::Identity();
   for (auto it = removed_.find(id); it != removed_.end(); it = removed_.find(id)) {
     T_ancestor_camera = it->second.T_parent_camera * T_ancestor_camera;
     id = it->second.parent;
   }
-  return keyframe_at(id).T_world_camera * T_ancestor_camera;
+  return {id, T_ancestor_camera};
+}
+
+Eigen::Isometry3d Map::T_world_keyframe(KeyframeId id) const {
+  const auto [ancestor, T_ancestor_camera] = living_ancestor(id);
+  return keyframe_at(ancestor).T_world_camera * T_ancestor_camera;
+}
+
+void Map::forget_removed(std::size_t recent, const std::function<bool(KeyframeId)>& needed) {
+  if (removed_order_.size() <= recent) return;
+  const auto first_kept = removed_order_.end() - static_cast<std::ptrdiff_t>(recent);
+  std::set<KeyframeId> kept(first_kept, removed_order_.end());
+  for (const auto& [id, removed] : removed_) {
+    if (needed(id)) kept.insert(id);
+  }
+  // What is kept may hang on what goes.
+  std::map<KeyframeId, RemovedKeyframe> remaining;
+  for (const KeyframeId id : kept) {
+    const auto [ancestor, T_ancestor_camera] = living_ancestor(id);
+    remaining[id] = {ancestor, geometry::normalized(T_ancestor_camera)};
+  }
+  removed_ = std::move(remaining);
+  removed_order_.erase(removed_order_.begin(), first_kept);
 }
 
 MapId Map::map_of(KeyframeId id) const {

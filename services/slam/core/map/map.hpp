@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -97,6 +98,11 @@ class Map {
 
   /// Current pose of a keyframe that exists or existed.
   Eigen::Isometry3d T_world_keyframe(KeyframeId id) const;
+  /// The nearest ancestor of a keyframe that still exists, and the pose relative to it; itself if it exists.
+  std::pair<KeyframeId, Eigen::Isometry3d> living_ancestor(KeyframeId id) const;
+  /// Forgets removed keyframes, so that a long run does not gather them: all but the last `recent` to go, and those that
+  /// are `needed`. Their poses cannot be asked for any more.
+  void forget_removed(std::size_t recent, const std::function<bool(KeyframeId)>& needed);
   /// The map that a keyframe that exists or existed belongs to.
   MapId map_of(KeyframeId id) const;
   /// The maps that there are, oldest first.
@@ -133,6 +139,7 @@ class Map {
   PagedIndex<Keyframe*, nullptr> keyframe_index_;  ///< into keyframes_, whose nodes stay where they are
   LandmarkStore landmarks_;
   std::map<KeyframeId, RemovedKeyframe> removed_;
+  std::vector<KeyframeId> removed_order_;         ///< of those removed by this map, oldest first
   std::map<MapId, std::size_t> component_sizes_;  ///< keyframes
   MapId next_map_ = 0;
   KeyframeId next_keyframe_ = 0;

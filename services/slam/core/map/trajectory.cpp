@@ -25,6 +25,15 @@ void thin_out(std::vector<FrameRecord>& frames, std::size_t limit) {
   frames.resize(kept);
 }
 
+void tie_to_living(std::vector<FrameRecord>& frames, const Map& map) {
+  for (FrameRecord& frame : frames) {
+    if (map.find_keyframe(frame.reference) != nullptr) continue;
+    const auto [ancestor, T_ancestor_reference] = map.living_ancestor(frame.reference);
+    frame.T_reference_camera = T_ancestor_reference * frame.T_reference_camera;
+    frame.reference = ancestor;
+  }
+}
+
 std::vector<StampedPose> compose_trajectory(const Map& map, const std::vector<FrameRecord>& frames, MapId id) {
   std::vector<StampedPose> poses;
   poses.reserve(frames.size());

@@ -25,6 +25,9 @@ struct FrameRecord {
 /// one of the older half goes.
 void thin_out(std::vector<FrameRecord>& frames, std::size_t limit);
 
+/// Ties frames of keyframes that were removed to those that still exist.
+void tie_to_living(std::vector<FrameRecord>& frames, const Map& map);
+
 using geometry::StampedPose;
 
 struct MapPoint {

@@ -96,6 +96,12 @@ void MappingWorker::finish(PendingAdjustment pending) {
   if (!mapper_.map().keyframes().empty()) publish();
 }
 
+void MappingWorker::forget_removed(const std::function<void(const Map&)>& before) {
+  const std::lock_guard lock(mapper_mutex_);
+  before(mapper_.map());
+  mapper_.forget_removed();
+}
+
 void MappingWorker::read(const std::function<void(const Map&)>& look) const {
   const std::lock_guard lock(mapper_mutex_);
   look(mapper_.map());

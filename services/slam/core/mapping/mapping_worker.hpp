@@ -52,6 +52,8 @@ class MappingWorker {
   std::vector<KeyframeChange> take_changes();
   /// Loops closed so far, from the `first` on.
   std::vector<LoopClosure> loops(std::size_t first = 0) const;
+  /// Forgets keyframes that were removed long ago, after `before` has had a last look at the map. Waits for the mapper.
+  void forget_removed(const std::function<void(const Map&)>& before);
   /// Works off what is queued and ends the thread; later calls of insert() do nothing.
   void finish(PendingAdjustment pending);
   /// Reads the whole map between two keyframes: may wait for a bundle adjustment.

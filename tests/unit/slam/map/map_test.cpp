@@ -189,6 +189,20 @@ TEST(Map, keeps_its_invariants_under_random_edits) {
   EXPECT_GT(map.keyframes().size(), 1U);
 }
 
+TEST(ForgetRemoved, keeps_what_is_recent_or_needed_at_its_place) {
+  Map map;
+  for (KeyframeId id = 0; id < 8; ++id) map.add_keyframe(make_test_frame(id), moved_right(id), id == 0 ? kNoKeyframe : id - 1);
+  for (const KeyframeId id : {1U, 2U, 3U, 4U, 5U}) map.remove_keyframe(id);
+  map.forget_removed(1, [](KeyframeId id) { return id == 2; });
+  EXPECT_EQ(map.removed_keyframes().size(), 2U);
+  EXPECT_NEAR(map.T_world_keyframe(2).translation().x(), 2, 1e-12) << "needed";
+  EXPECT_NEAR(map.T_world_keyframe(5).translation().x(), 5, 1e-12) << "the last to go";
+  EXPECT_THROW(map.T_world_keyframe(3), std::out_of_range);
+  map.find_keyframe(0)->T_world_camera = moved_right(10);
+  EXPECT_NEAR(map.T_world_keyframe(2).translation().x(), 12, 1e-12) << "hangs on the first now";
+  EXPECT_EQ(map.check_invariants(), "");
+}
+
 TEST(SpreadCertainty, makes_the_newest_keyframe_of_a_loop_as_certain_as_the_place) {
   Map map = make_map();
   for (const KeyframeId id : {0U, 1U, 2U}) {

@@ -33,6 +33,26 @@ TEST(ComposeTrajectory, follows_corrected_and_removed_keyframes) {
   EXPECT_EQ(keyframes[1].stamp_ns, 200);
 }
 
+TEST(TieToLiving, leaves_the_poses_where_they_are) {
+  Map map;
+  for (KeyframeId k = 0; k < 4; ++k) {
+    map.add_keyframe(std::make_shared<Frame>(), at_x(k), k == 0 ? kNoKeyframe : k - 1);
+  }
+  std::vector<FrameRecord> frames{{0, 0, 1, at_x(0.5)}, {1, 1, 2, at_x(0.25)}, {2, 2, 3, at_x(0.1)}};
+  map.remove_keyframe(1);
+  map.remove_keyframe(2);
+  const auto before = compose_trajectory(map, frames);
+  tie_to_living(frames, map);
+  map.forget_removed(0, [](KeyframeId) { return false; });
+  const auto after = compose_trajectory(map, frames);
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    EXPECT_TRUE(after[i].T_world_body.isApprox(before[i].T_world_body, 1e-12)) << "frame " << i;
+  }
+  EXPECT_EQ(frames[0].reference, 0U);
+  EXPECT_EQ(frames[2].reference, 3U);
+}
+
 TEST(ThinOut, keeps_the_last_half_and_ever_less_of_what_was_before) {
   constexpr std::size_t kLimit = 1000;
   std::vector<FrameRecord> frames;
