@@ -44,8 +44,8 @@ enum class TrackingState : std::uint32_t {
 
 /// For logs, diagnostics and the live line.
 constexpr const char* to_string(TrackingState state) {
-  constexpr const char* kNames[] = {"initializing", "ok", "recently lost", "lost", "relocalizing", "predicted",
-                                    "doubtful"};
+  constexpr const char* kNames[] = {"initializing", "ok",        "recently lost", "lost",
+                                    "relocalizing", "predicted", "doubtful"};
   const auto place = static_cast<std::size_t>(state);
   return place < std::size(kNames) ? kNames[place] : "unknown";
 }

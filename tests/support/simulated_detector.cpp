@@ -50,8 +50,7 @@ vision::Detection jittered(vision::Detection box, float share, const cv::Size& i
 /// The object as a detector finds it.
 vision::Detection find(const camera::SourceObject& object, float share, const cv::Size& image, SeededRandom& random) {
   const cv::Rect2f box = object.box_px;
-  vision::Detection found =
-      jittered({object.class_name, 0, box.x, box.y, box.width, box.height}, share, image, random);
+  vision::Detection found = jittered({object.class_name, 0, box.x, box.y, box.width, box.height}, share, image, random);
   found.score = random.between(kLowestScore, kHighestScore);
   return found;
 }
@@ -142,8 +141,8 @@ Look jitter(Look look, const DetectorOptions& options) {
     SeededRandom random = random_of(options, frame);
     Boxes boxes = look(frame);
     for (vision::Detection& box : boxes) {
-      box = jittered(std::move(box), static_cast<float>(options.jitter_real_share), frame.image.color_bgr.size(),
-                     random);
+      box =
+          jittered(std::move(box), static_cast<float>(options.jitter_real_share), frame.image.color_bgr.size(), random);
     }
     return boxes;
   };
@@ -159,8 +158,10 @@ Look make_look(const DetectorOptions& options) {
   const auto remember = [&options](Look look) {
     return options.remembered_in.empty() ? std::move(look) : remembered_look(std::move(look), options.remembered_in);
   };
-  if (options.kind == "real" && options.jitter_real_share > 0) return jitter(remember(real_look(options)), options);
-  if (options.kind == "real") return remember(real_look(options));
+  if (options.kind == "real") {
+    Look look = remember(real_look(options));
+    return options.jitter_real_share > 0 ? jitter(std::move(look), options) : look;
+  }
   if (options.kind == "truth") return remember([options](const auto& frame) { return see_truth(frame, options); });
   if (options.kind == "lying") return [options](const auto& frame) { return lie(frame, options); };
   throw std::invalid_argument("unknown detector '" + options.kind + "': real, truth, lying, off");

@@ -32,14 +32,14 @@ struct DetectorOptions {
   double rate_hz = 0;   ///< at most so many images a second, 0 = every frame
   double delay_ms = 0;  ///< from an image to its boxes; other images wait meanwhile
   std::vector<Outage> outages;
-  std::uint64_t seed = 1;      ///< of truth and lying
-  double jitter_share = 0.03;  ///< truth: standard deviation of each edge, of the box's size
+  std::uint64_t seed = 1;        ///< of truth and lying
+  double jitter_share = 0.03;    ///< truth: standard deviation of each edge, of the box's size
   double jitter_real_share = 0;  ///< the same of real's boxes
-  double missed_share = 0.04;  ///< truth: boxes that are not found
-  double recall = 1;           ///< truth: share of the boxes found, >= kLeastRecall; misses come in bursts
-  double cut_share = 0;        ///< truth: boxes that lack a fifth to a half at one side
-  int min_visible_px = 900;    ///< truth: less of an object is not found
-  int max_lies = 8;            ///< lying: boxes of one image
+  double missed_share = 0.04;    ///< truth: boxes that are not found
+  double recall = 1;             ///< truth: share of the boxes found, >= kLeastRecall; misses come in bursts
+  double cut_share = 0;          ///< truth: boxes that lack a fifth to a half at one side
+  int min_visible_px = 900;      ///< truth: less of an object is not found
+  int max_lies = 8;              ///< lying: boxes of one image
   /// real: least score
   double confidence = detector::DecodeConfig{}.confidence_threshold;
   /// real: on the image turned upright, as rtd-detector does; none = as it is

@@ -110,8 +110,9 @@ struct ConsistencyConfig {
   double memory_s = 0.5;
 
   void bind(auto& binder) {
-    binder.field("doubtful_below", doubtful_below, {0.0, 1.0},
-                 "share of the matched landmarks that agree with the pose, less if they agree loosely; 0: never doubtful");
+    binder.field(
+        "doubtful_below", doubtful_below, {0.0, 1.0},
+        "share of the matched landmarks that agree with the pose, less if they agree loosely; 0: never doubtful");
     binder.field("usual", usual, {0.05, 1.0}, "below this share the covariance grows");
     binder.field("memory_s", memory_s, {0.01, 60.0}, "time constant of the share");
   }

@@ -74,7 +74,8 @@ void print_json(const rtd::test_support::OfflineReport& report) {
                                {"ate_m", report.ate_rmse_m},
                                {"online_ate_m", report.online_ate_rmse_m},
                                {"nees", report.nees},
-                               {"doubtful", static_cast<double>(report.doubtful_frames) / std::max<double>(1, static_cast<double>(report.frames))},
+                               {"doubtful", static_cast<double>(report.doubtful_frames) /
+                                                std::max<double>(1, static_cast<double>(report.frames))},
                                {"max_error_m", lost_m},
                                {"rpe_m", report.rpe_trans_rmse_m},
                                {"rpe_deg", report.rpe_rot_rmse_deg},
@@ -119,8 +120,9 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
         detector.derotate = rtd::detector::RollConfig{.min_roll_rad = min_deg * rtd::detector::kRadPerDeg};
       },
       "real: on the image turned upright, from this roll on (degrees)");
-  app.add_option("--detections", detector.remembered_in,
-                 "real and truth: file that remembers the answers for this source, so that the next run need not ask again")
+  app.add_option(
+         "--detections", detector.remembered_in,
+         "real and truth: file that remembers the answers for this source, so that the next run need not ask again")
       ->excludes(derotate);
   app.add_option_function<std::vector<std::string>>(
       "--detector-outage",

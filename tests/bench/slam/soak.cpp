@@ -64,8 +64,10 @@ int main(int argc, char** argv) {
   rtd::slam::SlamSystem slam({}, rtd::slam::MappingMode::kSynchronous, cpu_ns);
   const auto frames = static_cast<std::uint64_t>(minutes * kFramesPerMinute);
   const std::uint64_t per_row = std::max<std::uint64_t>(1, frames / static_cast<std::uint64_t>(rows));
-  std::printf("| simulated min | keyframes (ever) | landmarks (ever) | memory, MB | tracking, ms | with mapping, ms | error, mm | not ok |\n"
-              "|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| simulated min | keyframes (ever) | landmarks (ever) | memory, MB | tracking, ms | with mapping, ms | error, "
+      "mm | not ok |\n"
+      "|---|---|---|---|---|---|---|---|\n");
   std::vector<double> tracking_ms, total_ms;
   double error2_m2 = 0;
   std::uint64_t lost = 0;
@@ -84,9 +86,10 @@ int main(int argc, char** argv) {
     slam.read_map([&](const rtd::slam::Map& map) {
       keyframes = map.next_keyframe(), landmarks = static_cast<std::size_t>(map.next_landmark());
     });
-    std::printf("| %.0f | %u (%zu) | %u (%zu) | %.1f | %.2f | %.2f | %.1f | %lu |\n", static_cast<double>(seq + 1) / kFramesPerMinute,
-                output.result.keyframes, keyframes, output.result.landmarks, landmarks, resident_mb(), rtd::vision::median(tracking_ms),
-                mean_ms, 1e3 * std::sqrt(error2_m2 / static_cast<double>(tracking_ms.size())), lost);
+    std::printf("| %.0f | %u (%zu) | %u (%zu) | %.1f | %.2f | %.2f | %.1f | %lu |\n",
+                static_cast<double>(seq + 1) / kFramesPerMinute, output.result.keyframes, keyframes,
+                output.result.landmarks, landmarks, resident_mb(), rtd::vision::median(tracking_ms), mean_ms,
+                1e3 * std::sqrt(error2_m2 / static_cast<double>(tracking_ms.size())), lost);
     std::fflush(stdout);
     tracking_ms.clear(), total_ms.clear();
     error2_m2 = 0;

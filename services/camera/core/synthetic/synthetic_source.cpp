@@ -3,11 +3,11 @@
 #include "services/camera/core/synthetic/synthetic_source.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <limits>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
@@ -103,26 +103,28 @@ std::vector<Parameter> parameters_of(SyntheticOptions& options) {
   return parameters;
 }
 
-synthetic::SensorFaults find_preset(const SourceUri& uri, const std::string& name) {
-  std::string names;
-  for (const synthetic::SensorPreset& preset : synthetic::sensor_presets()) {
-    if (preset.name == name) return preset.faults;
-    names += (names.empty() ? "" : ", ") + preset.name;
-  }
-  throw SourceError("source '" + uri.text + "': sensor is '" + name + "', allowed are " + names);
+struct NamedMotion {
+  std::string name;
+  synthetic::CameraMotion motion;
+};
+
+const std::vector<NamedMotion>& camera_motions() {
+  using enum synthetic::CameraMotion;
+  static const std::vector<NamedMotion> motions = {{"handheld", kHandHeld}, {"watching", kWatching}, {"tour", kTour},
+                                                   {"rolling", kRolling},   {"steady", kSteady},     {"fixed", kFixed}};
+  return motions;
 }
 
-synthetic::CameraMotion find_motion(const SourceUri& uri, const std::string& name) {
-  using enum synthetic::CameraMotion;
-  constexpr std::array<std::pair<const char*, synthetic::CameraMotion>, 6> kMotions = {
-      {{"handheld", kHandHeld}, {"watching", kWatching}, {"tour", kTour}, {"rolling", kRolling}, {"steady", kSteady},
-       {"fixed", kFixed}}};
+/// The choice of this name, for a parameter whose value is a word.
+template <class Named>
+const Named& choose(const SourceUri& uri, const std::string& key, const std::vector<Named>& choices) {
+  const std::string& name = uri.parameters.at(key);
   std::string names;
-  for (const auto& [each, motion] : kMotions) {
-    if (each == name) return motion;
-    names += (names.empty() ? "" : ", ") + std::string(each);
+  for (const Named& choice : choices) {
+    if (choice.name == name) return choice;
+    names += (names.empty() ? "" : ", ") + choice.name;
   }
-  throw SourceError("source '" + uri.text + "': motion is '" + name + "', allowed are " + names);
+  throw SourceError("source '" + uri.text + "': " + key + " is '" + name + "', allowed are " + names);
 }
 
 [[noreturn]] void refuse_parameter(const SourceUri& uri, const std::string& key,
@@ -143,12 +145,8 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
   options.scene = find_scene(uri);
   options.frames = options.scene.frames;
   options.fps = options.scene.fps;
-  if (const auto preset = uri.parameters.find("sensor"); preset != uri.parameters.end()) {
-    options.faults = find_preset(uri, preset->second);
-  }
-  if (const auto motion = uri.parameters.find("motion"); motion != uri.parameters.end()) {
-    options.scene.motion = find_motion(uri, motion->second);
-  }
+  if (uri.parameters.contains("sensor")) options.faults = choose(uri, "sensor", synthetic::sensor_presets()).faults;
+  if (uri.parameters.contains("motion")) options.scene.motion = choose(uri, "motion", camera_motions()).motion;
   const std::vector<Parameter> parameters = parameters_of(options);
   for (const auto& [key, value] : uri.parameters) {
     if (key == "sensor" || key == "motion") continue;

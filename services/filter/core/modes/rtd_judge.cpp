@@ -89,9 +89,9 @@ RememberedMotion RtdJudge::recall_movers(const Scene& scene, const Foreground& f
   RememberedMotion remembered;
   remembered.elapsed_cs = static_cast<int>(
       std::clamp<std::int64_t>(scene.image.stamp_ns / kCentisecondNs - newest.stamp_ns / kCentisecondNs, 1, 255));
-  remembered.hold_cs = memory_.recall(scene.surfaces.grid, scene.image.camera,
-                                      T_world_camera.inverse() * newest.T_world_camera,
-                                      1e-9 * static_cast<double>(scene.image.stamp_ns - newest.stamp_ns));
+  remembered.hold_cs =
+      memory_.recall(scene.surfaces.grid, scene.image.camera, T_world_camera.inverse() * newest.T_world_camera,
+                     1e-9 * static_cast<double>(scene.image.stamp_ns - newest.stamp_ns));
   if (!config_.techniques.mover_tracks) return remembered;
   const auto expected_cs = static_cast<std::uint8_t>(std::min(255, kExpectedCs + remembered.elapsed_cs));
   const CellMask expected = movers_.expected(mover_frame(scene, T_world_camera));
@@ -107,7 +107,8 @@ EgoMotion RtdJudge::find_ego_motion(const Scene& scene, const Foreground& foregr
   if (!compares()) return {};
   const GridShape& shape = scene.shape();
   const Eigen::Isometry3d T_world_predicted = views_.predict_pose(scene.image.stamp_ns);
-  CellMask avoid = united(dilate(shape, recall_movers(scene, foreground, T_world_predicted).hold_cs, 1), foreground.may_move);
+  CellMask avoid =
+      united(dilate(shape, recall_movers(scene, foreground, T_world_predicted).hold_cs, 1), foreground.may_move);
   if (!views_.spans(scene.image.stamp_ns, kMinSettledAgeNs)) {  // too early to tell movers from the camera's motion
     avoid = united(std::move(avoid), free_standing(scene.surfaces.grid, foreground.clusters, config_.masks));
   }

@@ -43,7 +43,6 @@ std::uint8_t what_is_left(int hold_cs, int elapsed_cs) {
   return static_cast<std::uint8_t>(std::max(0, hold_cs - elapsed_cs));
 }
 
-
 int vote_count(const std::vector<int>& per_cluster, std::size_t cluster) {
   return cluster < per_cluster.size() ? per_cluster[cluster] : 0;
 }
@@ -163,8 +162,7 @@ DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEv
   for (std::size_t cell = 0; cell < none.size(); ++cell) {
     regions.hold_cs[cell] = std::max(regions.hold_cs[cell], groups[cell]);
   }
-  const auto dynamic =
-      std::count_if(regions.hold_cs.begin(), regions.hold_cs.end(), [](int n) { return n > 0; });
+  const auto dynamic = std::count_if(regions.hold_cs.begin(), regions.hold_cs.end(), [](int n) { return n > 0; });
   if (static_cast<double>(dynamic) > config.max_dynamic_share * clusters.shape.size()) return {false, none, 0};
   regions.clusters = static_cast<int>(std::count_if(of_cluster.begin(), of_cluster.end(), [](int n) { return n > 0; }));
   return regions;
@@ -199,8 +197,7 @@ std::vector<std::uint8_t> DynamicMemory::recall(const DepthGrid& grid, const geo
     for (int row = std::max(top, 0); row <= std::min(top + 1, grid.shape.rows - 1); ++row) {
       for (int column = std::max(left, 0); column <= std::min(left + 1, grid.shape.columns - 1); ++column) {
         const auto i = static_cast<std::size_t>(grid.shape.index(column, row));
-        if (std::abs(grid.depth_m[i] - p_current.z()) < own_depth_m)
-          hold_cs[i] = std::max(hold_cs[i], point.hold_cs);
+        if (std::abs(grid.depth_m[i] - p_current.z()) < own_depth_m) hold_cs[i] = std::max(hold_cs[i], point.hold_cs);
       }
     }
   }

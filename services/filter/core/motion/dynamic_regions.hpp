@@ -55,8 +55,7 @@ DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEv
 class DynamicMemory {
  public:
   /// `hold_cs` per cell of the frame just judged; its points are kept in the camera frame.
-  void store(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
-             const std::vector<std::uint8_t>& hold_cs);
+  void store(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays, const std::vector<std::uint8_t>& hold_cs);
   /// The same, seen from the current frame: points follow the camera's motion and count where the depth is about their
   /// own, give or take what a mover covers in `elapsed_s`.
   std::vector<std::uint8_t> recall(const DepthGrid& grid, const geometry::CameraModel& camera,

@@ -24,8 +24,7 @@ std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& 
   const auto window_px = [&](const View& view) {
     return search_window_px(input.current.camera, input.stamp_ns - view.stamp_ns, config);
   };
-  std::vector<FeatureMatch> matches =
-      match_by_projection(near, input.current, T_world_camera, window_px(near), config);
+  std::vector<FeatureMatch> matches = match_by_projection(near, input.current, T_world_camera, window_px(near), config);
   if (matches.size() < enough && previous.seq != near.seq) {
     const auto more = match_by_projection(previous, input.current, T_world_camera, window_px(previous), config);
     matches.insert(matches.end(), more.begin(), more.end());

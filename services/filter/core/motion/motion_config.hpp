@@ -91,8 +91,7 @@ struct GeometryConfig {
     binder.field("min_moving_chi2", min_moving_chi2, {0.1, 1000.0}, "... and from which it has moved");
     binder.field("memory_s", memory_s, {0.0, 2.55},
                  "for how long a dynamic surface is remembered after the last evidence");
-    binder.field("loose_memory_s", loose_memory_s, {0.0, 2.55},
-                 "the same for a moving part of a resting surface");
+    binder.field("loose_memory_s", loose_memory_s, {0.0, 2.55}, "the same for a moving part of a resting surface");
     binder.field("max_dynamic_share", max_dynamic_share, {0.1, 1.0},
                  "if more of the image is dynamic, the pose is wrong: no statement");
   }

@@ -138,7 +138,8 @@ void MoverTracks::miss(Track& track, double elapsed_s, const MoverFrame& frame, 
   for (const FeatureVote& vote : slow_votes.votes) {
     if (std::binary_search(content.cells.begin(), content.cells.end(), vote.cell)) ++(vote.moving ? moving : resting);
   }
-  if (resting >= kMinVotes && resting >= kRestingRatio * moving) track.rest_s += std::max(elapsed_s, seconds(kLookBackEveryNs));
+  if (resting >= kMinVotes && resting >= kRestingRatio * moving)
+    track.rest_s += std::max(elapsed_s, seconds(kLookBackEveryNs));
 }
 
 bool MoverTracks::ended(const Track& track) const {

@@ -63,9 +63,8 @@ class GraphBuilder {
     Eigen::Isometry3d T_keyframe_camera;
   };
   Standing stand(KeyframeId id) const {
-    const Eigen::Isometry3d T_world_camera = map_.T_world_keyframe(id);
-    while (map_.find_keyframe(id) == nullptr) id = map_.parent_of_removed(id);
-    return {id, map_.find_keyframe(id)->T_world_camera.inverse() * T_world_camera};
+    const auto [ancestor, T_ancestor_camera] = map_.living_ancestor(id);
+    return {ancestor, T_ancestor_camera};
   }
   static int shared(const Keyframe& keyframe, KeyframeId other) {
     const auto it = keyframe.covisible.find(other);

@@ -52,10 +52,7 @@ GlobalProblem copy_global_problem(const Map& map, MapId component) {
     problem.bundle.cameras.push_back({keyframe.T_world_camera, keyframe.is_origin()});
     problem.bundle.camera = keyframe.frame->camera;
   }
-  for (std::size_t i = 0; i < problem.keyframes.size(); ++i) {
-    problem.bundle.cameras[i].intrinsics =
-        intrinsics_of(*map.find_keyframe(problem.keyframes[i])->frame, problem.bundle.camera);
-  }
+  set_intrinsics(map, problem.keyframes, problem.bundle);
   for (const LandmarkId id : map.landmark_ids()) {
     const Landmark& landmark = *map.find_landmark(id);
     if (landmark.observations.size() < 2 || map.find_keyframe(landmark.reference)->map != component) continue;

@@ -26,7 +26,7 @@ struct LocalKeyframe {
   KeyframeId id = kNoKeyframe;
   FramePtr frame;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  std::vector<LandmarkId> landmarks;                                    ///< per feature
+  std::vector<LandmarkId> landmarks;                            ///< per feature
   std::optional<geometry::Matrix6d> covariance = std::nullopt;  ///< Keyframe::covariance
 };
 

@@ -241,6 +241,7 @@ std::pair<KeyframeId, Eigen::Isometry3d> Map::living_ancestor(KeyframeId id) con
     T_ancestor_camera = it->second.T_parent_camera * T_ancestor_camera;
     id = it->second.parent;
   }
+  keyframe_at(id);
   return {id, T_ancestor_camera};
 }
 
@@ -267,8 +268,7 @@ void Map::forget_removed(std::size_t recent, const std::function<bool(KeyframeId
 }
 
 MapId Map::map_of(KeyframeId id) const {
-  for (auto it = removed_.find(id); it != removed_.end(); it = removed_.find(id)) id = it->second.parent;
-  return keyframes_.at(id).map;
+  return keyframe_at(living_ancestor(id).first).map;
 }
 
 void spread_certainty(Map& map, KeyframeId older, KeyframeId newer) {

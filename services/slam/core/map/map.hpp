@@ -98,17 +98,16 @@ class Map {
 
   /// Current pose of a keyframe that exists or existed.
   Eigen::Isometry3d T_world_keyframe(KeyframeId id) const;
-  /// The nearest ancestor of a keyframe that still exists, and the pose relative to it; itself if it exists.
+  /// The nearest ancestor of a keyframe that still exists, and T_ancestor_camera; itself if it exists. Throws
+  /// std::out_of_range for a keyframe that never existed or was forgotten, as T_world_keyframe() and map_of() do.
   std::pair<KeyframeId, Eigen::Isometry3d> living_ancestor(KeyframeId id) const;
-  /// Forgets removed keyframes, so that a long run does not gather them: all but the last `recent` to go, and those that
-  /// are `needed`. Their poses cannot be asked for any more.
+  /// Forgets removed keyframes, so that a long run does not gather them: all but the last `recent` to go, and those
+  /// that are `needed`. Their poses cannot be asked for any more.
   void forget_removed(std::size_t recent, const std::function<bool(KeyframeId)>& needed);
   /// The map that a keyframe that exists or existed belongs to.
   MapId map_of(KeyframeId id) const;
   /// The maps that there are, oldest first.
   std::vector<MapId> maps() const;
-  /// The keyframe that a removed one is relative to (possibly removed itself).
-  KeyframeId parent_of_removed(KeyframeId id) const { return removed_.at(id).parent; }
   /// Up to `count` keyframes with at least `min_shared` landmarks in common, most first.
   std::vector<KeyframeId> best_covisible(KeyframeId id, std::size_t count, int min_shared = 15) const;
 
@@ -146,8 +145,8 @@ class Map {
   LandmarkId next_landmark_ = 0;
 };
 
-/// A loop has tied `newer` to `older`, which is as certain as ever: what was uncertain about the keyframes in between is
-/// spread over the way back, most at the older end. docs/theory/loop_closing.md.
+/// A loop has tied `newer` to `older`: what it had become more uncertain by on the way is gone, and of the keyframes in
+/// between the less is left the nearer they are to it. docs/theory/tracking.md, Eq. (14).
 void spread_certainty(Map& map, KeyframeId older, KeyframeId newer);
 
 }  // namespace rtd::slam

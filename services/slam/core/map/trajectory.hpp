@@ -21,8 +21,8 @@ struct FrameRecord {
   Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
 };
 
-/// A long run keeps all frames of its last hours and ever fewer of the earlier ones: when there are `limit`, every second
-/// one of the older half goes.
+/// A long run keeps all frames of its last hours and ever fewer of the earlier ones: when there are `limit`, every
+/// second one of the older half goes.
 void thin_out(std::vector<FrameRecord>& frames, std::size_t limit);
 
 /// Ties frames of keyframes that were removed to those that still exist.

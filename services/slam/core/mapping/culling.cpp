@@ -50,8 +50,8 @@ int RecentLandmarks::cull(Map& map, KeyframeId newest, double min_found_ratio) {
 bool is_redundant_keyframe(const Map& map, KeyframeId id, double redundant_ratio) {
   const Keyframe& keyframe = *map.find_keyframe(id);
   if (keyframe.is_origin()) return false;
-  const auto landmarks =
-      std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(), [](LandmarkId l) { return l != kNoLandmark; });
+  const auto landmarks = std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
+                                       [](LandmarkId l) { return l != kNoLandmark; });
   const double enough = redundant_ratio * static_cast<double>(landmarks);
   // Most keyframes are not redundant, which shows before all landmarks are checked.
   auto seen = static_cast<double>(landmarks);

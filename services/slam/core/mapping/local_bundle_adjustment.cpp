@@ -84,10 +84,7 @@ LocalProblem build(const Map& map, KeyframeId newest, const MapperConfig& config
   }
   for (const KeyframeId id : fixed) problem.add_keyframe(*map.find_keyframe(id), true);
   problem.bundle.camera = map.find_keyframe(newest)->frame->camera;
-  for (std::size_t i = 0; i < problem.keyframes.size(); ++i) {
-    problem.bundle.cameras[i].intrinsics =
-        intrinsics_of(*map.find_keyframe(problem.keyframes[i])->frame, problem.bundle.camera);
-  }
+  set_intrinsics(map, problem.keyframes, problem.bundle);
   add_observations(map, problem);
   return problem;
 }
@@ -131,10 +128,12 @@ std::vector<KeyframeId> apply(Map& map, const LocalProblem& problem) {
 
 }  // namespace
 
-vision::RgbdProjection intrinsics_of(const Frame& frame, const vision::RgbdProjection& newest) {
-  vision::RgbdProjection intrinsics = frame.camera;
-  intrinsics.disparity_px_m = newest.disparity_px_m;
-  return intrinsics;
+void set_intrinsics(const Map& map, const std::vector<KeyframeId>& keyframes, BundleProblem& bundle) {
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    vision::RgbdProjection intrinsics = map.find_keyframe(keyframes[i])->frame->camera;
+    intrinsics.disparity_px_m = bundle.camera.disparity_px_m;
+    bundle.cameras[i].intrinsics = intrinsics;
+  }
 }
 
 BundleObservation bundle_observation(const Frame& frame, std::uint32_t feature, const Landmark& landmark,

@@ -64,8 +64,7 @@ KeyframeId Mapper::add_keyframe(const KeyframeProposal& proposal) {
   const bool first = proposal.reference == kNoKeyframe;
   const Eigen::Isometry3d T_world_camera =
       first ? proposal.T_reference_camera : map_.T_world_keyframe(proposal.reference) * proposal.T_reference_camera;
-  KeyframeId parent = proposal.reference;
-  while (!first && map_.find_keyframe(parent) == nullptr) parent = map_.parent_of_removed(parent);
+  const KeyframeId parent = first ? kNoKeyframe : map_.living_ancestor(proposal.reference).first;
   const KeyframeId id = map_.add_keyframe(proposal.frame, geometry::normalized(T_world_camera), parent);
   map_.find_keyframe(id)->covariance = proposal.covariance;
   for (std::uint32_t feature = 0; feature < proposal.landmarks.size(); ++feature) {
@@ -179,8 +178,7 @@ void Mapper::note_if_moved(KeyframeId id) {
 }
 
 LocalMapPtr Mapper::local_map(KeyframeId centre) {
-  while (map_.find_keyframe(centre) == nullptr) centre = map_.parent_of_removed(centre);
-  return make_local_map(map_, centre, ++snapshots_);
+  return make_local_map(map_, map_.living_ancestor(centre).first, ++snapshots_);
 }
 
 std::vector<LocalMapPtr> Mapper::places_like(const Frame& frame, std::size_t first, std::size_t count) {

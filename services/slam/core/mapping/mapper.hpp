@@ -63,11 +63,11 @@ class Mapper {
   void adjust_in_background(std::function<void()> on_done) { adjuster_.run_in_background(std::move(on_done)); }
   void apply_adjustment();
   /// Waits for a global bundle adjustment that is running, and applies it.
-  /// Map::forget_removed(): of no use are those that no loop ends at and that nothing recent refers to.
-  void forget_removed();
   void finish_adjustment();
   /// Gives up an adjustment that is under way: the map stays as the loop closure left it.
   void cancel_adjustment() { adjuster_.cancel(); }
+  /// Map::forget_removed(): of no use are those that no loop ends at and that nothing recent refers to.
+  void forget_removed();
   const std::vector<LoopClosure>& loops() const { return loops_; }
   const Map& map() const { return map_; }
   /// Words of all keyframes in the map; empty when place recognition is off.

@@ -67,8 +67,9 @@ bool is_redundant_keyframe(const Map& map, KeyframeId keyframe, double redundant
 std::vector<KeyframeId> adjust_local_map(Map& map, KeyframeId newest, const MapperConfig& config,
                                          const std::function<bool()>& interrupted);
 
-/// The intrinsics that a frame was seen with, with the weight of depth of another: the newest knows the sensor best.
-vision::RgbdProjection intrinsics_of(const Frame& frame, const vision::RgbdProjection& newest);
+/// Gives the camera of each keyframe the intrinsics that its frame was seen with, but BundleProblem::camera's weight of
+/// depth: the newest frame knows the sensor best.
+void set_intrinsics(const Map& map, const std::vector<KeyframeId>& keyframes, BundleProblem& bundle);
 
 /// One observation of a landmark as bundle adjustment weighs it.
 BundleObservation bundle_observation(const Frame& frame, std::uint32_t feature, const Landmark& landmark,

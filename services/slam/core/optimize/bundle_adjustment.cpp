@@ -140,10 +140,10 @@ int classify(BundleProblem& problem, const BundleOptions& options) {
   for (BundleObservation& observation : problem.observations) {
     const Eigen::Vector3d p_camera =
         problem.cameras[observation.camera].T_world_camera.inverse() * problem.points[observation.point];
-    observation.inlier =
-        p_camera.z() >= vision::kMinProjectionDepth_m &&
-        (vision::rgbd_residual(problem.projection_of(observation), p_camera, observation.measured) / observation.sigma_px).squaredNorm() <=
-            chi2_limit(options, observation);
+    observation.inlier = p_camera.z() >= vision::kMinProjectionDepth_m &&
+                         (vision::rgbd_residual(problem.projection_of(observation), p_camera, observation.measured) /
+                          observation.sigma_px)
+                                 .squaredNorm() <= chi2_limit(options, observation);
     if (!observation.inlier) ++outliers;
   }
   return outliers;

@@ -14,7 +14,7 @@ namespace rtd::slam {
 
 struct BundleCamera {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  bool fixed = false;                                                ///< holds the gauge
+  bool fixed = false;                                               ///< holds the gauge
   std::optional<vision::RgbdProjection> intrinsics = std::nullopt;  ///< where they are not BundleProblem::camera
 };
 

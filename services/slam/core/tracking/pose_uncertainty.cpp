@@ -71,8 +71,7 @@ Matrix6d calibration_covariance(const Eigen::Isometry3d& T_world_camera, double 
 
 Matrix6d MapUncertainty::in_world(const Matrix6d& local, const Eigen::Vector3d& position,
                                   const std::vector<LandmarkId>& landmarks, const LocalMap& map) {
-  if (!known_ || map_ != map.map) of_origin_ = local;
-  known_ = true;
+  if (map_ != map.map) of_origin_ = local;
   map_ = map.map;
   return local + of_landmarks(position, landmarks, map);
 }

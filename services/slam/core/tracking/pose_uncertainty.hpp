@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/geometry/se3.hpp"
@@ -55,8 +56,7 @@ class MapUncertainty {
   /// Of keyframes that have none: a map that begins, or was loaded, is the world, by measurements that are no better
   /// than the first ones against it.
   geometry::Matrix6d of_origin_ = geometry::Matrix6d::Zero();
-  MapId map_ = 0;  ///< that `of_origin_` is from
-  bool known_ = false;
+  std::optional<MapId> map_;  ///< that `of_origin_` is from
 };
 
 }  // namespace rtd::slam

@@ -36,7 +36,7 @@ struct Displacement {
 };
 
 /// How the readout time has displaced a landmark, by the frames that it was mapped from; empty when none is known.
-/// Eq. (4).
+/// Eq. (3).
 std::optional<Displacement> displacement_of_landmark(const LocalLandmark& landmark, const LocalMap& map,
                                                      const std::map<std::uint64_t, ExposedFrame>& exposed) {
   Displacement mean;
@@ -88,7 +88,7 @@ void ReadoutEstimator::add(const Frame& frame, const Eigen::Isometry3d& T_world_
     const auto J_point = vision::rgbd_jacobian(frame.camera, p_camera, measured);
     const Eigen::Vector3d swept =
         row_time(measured.pixel.y(), frame.height_px) * drift_of(p_camera, motion.velocity_per_s);
-    // The residual is g * readout - d, Eq. (5).
+    // The residual is g * readout - d, Eq. (4).
     const Eigen::Vector3d g = J_point * (swept + T_camera_world.linear() * displaced->slope);
     const Eigen::Vector3d d = J_point * (motion.readout_s * swept + T_camera_world.linear() * displaced->offset);
     H += weight * J.transpose() * J;
@@ -98,7 +98,7 @@ void ReadoutEstimator::add(const Frame& frame, const Eigen::Isometry3d& T_world_
     gg += weight * g.squaredNorm();
     gr += weight * g.dot(residual + d);
   }
-  // What the pose explains is taken out. Eq. (6).
+  // What the pose explains is taken out. Eq. (5).
   const Eigen::LDLT<Matrix6d> factor(H);
   ExposedFrame exposed{motion.velocity_per_s, motion.readout_s};
   if (factor.info() == Eigen::Success && factor.isPositive() && gg > 0) {

@@ -6,13 +6,13 @@
 
 namespace rtd::slam {
 
-bool agrees_widely(const Frame& frame, const LocalMapTracking& tracking, const PlaceConfig& config) {
+bool agrees_widely(const Frame& frame, const LocalMapTracking& tracking, double min_found_ratio) {
   const auto possible = static_cast<double>(std::min(tracking.visible.size(), frame.features.size()));
-  return tracking.guess.success && tracking.guess.inliers >= config.min_found_ratio * possible;
+  return tracking.guess.success && tracking.guess.inliers >= min_found_ratio * possible;
 }
 
 bool is_convincing(const Frame& frame, const LocalMapTracking& tracking, const PlaceConfig& config) {
-  return tracking.guess.inliers >= config.min_inliers && agrees_widely(frame, tracking, config);
+  return tracking.guess.inliers >= config.min_inliers && agrees_widely(frame, tracking, config.min_found_ratio);
 }
 
 void Relocalizer::settle(LocalMapPtr map) {

@@ -12,7 +12,7 @@ namespace rtd::slam {
 
 /// Whether more landmarks were found than chance makes agree with any pose: a part of those that should be seen, or of
 /// the frame's features where these are fewer. docs/theory/place_recognition.md Eq. (5).
-bool agrees_widely(const Frame& frame, const LocalMapTracking& tracking, const PlaceConfig& config);
+bool agrees_widely(const Frame& frame, const LocalMapTracking& tracking, double min_found_ratio);
 
 /// Whether a pose found by descriptors alone can be believed.
 bool is_convincing(const Frame& frame, const LocalMapTracking& tracking, const PlaceConfig& config);

@@ -12,7 +12,7 @@ namespace rtd::slam {
 namespace {
 
 constexpr double kNanosecondsPerSecond = 1e9;
-/// Of the landmarks that should be seen, or of the features if fewer: that many must agree on a pose that the camera can
+/// Of the landmarks that should be seen, or of the features if fewer, so many must agree on a pose that the camera can
 /// hardly have reached. Wrong matches agree by chance to 0.17, true ones to 0.3.
 constexpr double kMinShareOfJump = 0.25;
 constexpr double kMaxPredictionGap_s = 0.5;  ///< nothing is known of the motion over a longer gap
@@ -229,10 +229,10 @@ bool Tracker::believable(const Frame& frame, const PoseGuess& start, const Local
   if (continues_motion(frame, tracking.guess.T_world_camera)) return true;
   if (!start.guided) return is_convincing(frame, tracking, config_.place);
   if (!msg::has_pose(state_)) {
-    return start.inliers >= config_.tracker.min_inliers || agrees_widely(frame, tracking, config_.place);
+    return start.inliers >= config_.tracker.min_inliers ||
+           agrees_widely(frame, tracking, config_.place.min_found_ratio);
   }
-  const auto possible = static_cast<double>(std::min(tracking.visible.size(), frame.features.size()));
-  return start.inliers >= config_.tracker.min_inliers && tracking.guess.inliers >= kMinShareOfJump * possible;
+  return start.inliers >= config_.tracker.min_inliers && agrees_widely(frame, tracking, kMinShareOfJump);
 }
 
 /// Whether the camera got there as it moved before, or from rest as a hand may move it: no other place looks alike from

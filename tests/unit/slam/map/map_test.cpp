@@ -191,7 +191,8 @@ TEST(Map, keeps_its_invariants_under_random_edits) {
 
 TEST(ForgetRemoved, keeps_what_is_recent_or_needed_at_its_place) {
   Map map;
-  for (KeyframeId id = 0; id < 8; ++id) map.add_keyframe(make_test_frame(id), moved_right(id), id == 0 ? kNoKeyframe : id - 1);
+  for (KeyframeId id = 0; id < 8; ++id)
+    map.add_keyframe(make_test_frame(id), moved_right(id), id == 0 ? kNoKeyframe : id - 1);
   for (const KeyframeId id : {1U, 2U, 3U, 4U, 5U}) map.remove_keyframe(id);
   map.forget_removed(1, [](KeyframeId id) { return id == 2; });
   EXPECT_EQ(map.removed_keyframes().size(), 2U);
