@@ -18,6 +18,8 @@ class Maker {
 
   MapContents make() {
     for (std::uint32_t id = 0; id < options_.keyframes; ++id) add_keyframe(id);
+    const Eigen::Isometry3d T_old_new(Eigen::Translation3d(0.1 * options_.keyframes, 0, 0));
+    contents_.loops.push_back({0, options_.keyframes - 1, T_old_new, 80});
     contents_.next_keyframe = options_.keyframes;
     contents_.next_landmark = contents_.landmarks.size();
     contents_.next_map = 1;
@@ -50,6 +52,7 @@ class Maker {
     frame->camera = {520, 521, 319.5, 239.5, 40};
     frame->width_px = 640;
     frame->height_px = 480;
+    frame->readout_s = 0.02;
     for (std::uint32_t i = 0; i < options_.features; ++i) frame->features.push_back(make_feature());
     frame->grid = vision::FeatureGrid(frame->features, 640, 480);
     return frame;
@@ -63,6 +66,8 @@ class Maker {
     twist << 0.1 * id, 0, 0, 0, 0.01 * unit(), 0;
     keyframe.T_world_camera = geometry::se3_exp(twist);
     keyframe.parent = id == 0 ? kNoKeyframe : id - 1;
+    keyframe.way_m = 0.1 * id;
+    if (id > 0) keyframe.covariance = 1e-4 * id * (geometry::Matrix6d::Identity() + 0.1 * geometry::Matrix6d::Ones());
     keyframe.landmarks.assign(options_.features, kNoLandmark);
     // Landmarks of the keyframes shortly before, each once, by ascending features; then new ones.
     const std::size_t known = contents_.landmarks.size(), recent = 4UL * options_.seen_per_keyframe;

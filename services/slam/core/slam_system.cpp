@@ -38,7 +38,9 @@ SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns,
 
 void SlamSystem::restore(MapContents contents) {
   if (!contents.keyframes.empty()) {
-    depth_weight_ = DepthWeightEstimator(contents.keyframes.back().frame->camera.disparity_px_m);
+    const Frame& last = *contents.keyframes.back().frame;
+    depth_weight_ = DepthWeightEstimator(last.camera.disparity_px_m);
+    readout_ = ReadoutEstimator(last.readout_s);
   }
   mapping_.restore(std::move(contents));
   tracker_.await_relocalization();

@@ -119,6 +119,7 @@ MapReport report_on(const slam::MapContents& contents, std::uint64_t file_bytes)
   for (const auto& [id, keyframes] : by_time(contents.keyframes)) parts[id] = describe(id, keyframes);
   add_landmarks(contents, parts);
   for (const auto& [id, part] : parts) report.maps.push_back(part);
+  report.loops = contents.loops.size();
   return report;
 }
 
@@ -146,6 +147,7 @@ std::string to_text(const MapReport& report, const std::string& name) {
   text += row("keyframes", fmt::format("{} with {} features; {} removed", report.keyframes, report.features,
                                        report.removed_keyframes));
   text += row("landmarks", fmt::format("{} seen {} times", report.landmarks, report.observations));
+  text += row("loops", fmt::format("{}", report.loops));
   for (const slam::FramePtr& camera : report.cameras) text += row("camera", camera_text(*camera));
   for (const MapPart& part : report.maps) text += part_rows(part);
   return text;
@@ -161,6 +163,7 @@ nlohmann::ordered_json to_json(const MapReport& report, const std::string& name)
                                  {"removed_keyframes", report.removed_keyframes},
                                  {"landmarks", report.landmarks},
                                  {"observations", report.observations},
+                                 {"loops", report.loops},
                                  {"cameras", nlohmann::ordered_json::array()},
                                  {"maps", nlohmann::ordered_json::array()}};
   for (const slam::FramePtr& camera : report.cameras) {

@@ -26,7 +26,7 @@ struct MapPart {
 /// What is in a map file.
 struct MapReport {
   std::uint64_t bytes = 0;  ///< of the file
-  std::size_t keyframes = 0, landmarks = 0, observations = 0, features = 0, removed_keyframes = 0;
+  std::size_t keyframes = 0, landmarks = 0, observations = 0, features = 0, removed_keyframes = 0, loops = 0;
   std::vector<slam::FramePtr> cameras;  ///< a frame of each camera
   std::vector<MapPart> maps;            ///< by id
 };

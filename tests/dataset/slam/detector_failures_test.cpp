@@ -72,7 +72,7 @@ TEST_P(LyingDetector, does_not_lead_the_camera_astray) {
   lying.front_end.detector.seed = GetParam();
   const OfflineReport report = run_offline(lying);
   EXPECT_LE(report.ate_rmse_m, 1.5 * off_ate_m_);
-  EXPECT_GE(report.coverage, 0.97);  // seed 5: 0.975, dynamic_points.md, "Known weakness"
+  EXPECT_EQ(report.coverage, 1.0);
 }
 
 }  // namespace

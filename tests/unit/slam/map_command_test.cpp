@@ -61,7 +61,7 @@ TEST_F(MapCommand, info_shows_what_is_in_the_file) {
   EXPECT_THAT(out_.str(), HasSubstr("keyframes    11 with 440 features; 2 removed"));
   EXPECT_THAT(out_.str(), HasSubstr(std::to_string(map_.landmark_count()) + " seen"));
   EXPECT_THAT(out_.str(), HasSubstr("640x480, fx 520.00"));
-  EXPECT_THAT(out_.str(), HasSubstr("version      1, checksums all right"));
+  EXPECT_THAT(out_.str(), HasSubstr("version      2, checksums all right"));
   EXPECT_THAT(out_.str(), HasSubstr("map 0        10 keyframes"));
   EXPECT_THAT(out_.str(), HasSubstr("map 1        1 keyframes, 5 landmarks"));
 }

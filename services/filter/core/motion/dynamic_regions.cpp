@@ -163,7 +163,9 @@ DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEv
     regions.hold_cs[cell] = std::max(regions.hold_cs[cell], groups[cell]);
   }
   const auto dynamic = std::count_if(regions.hold_cs.begin(), regions.hold_cs.end(), [](int n) { return n > 0; });
-  if (static_cast<double>(dynamic) > config.max_dynamic_share * clusters.shape.size()) return {false, none, 0};
+  const auto measured =
+      std::count_if(clusters.label.begin(), clusters.label.end(), [](int label) { return label >= 0; });
+  if (static_cast<double>(dynamic) > config.max_dynamic_share * static_cast<double>(measured)) return {false, none, 0};
   regions.clusters = static_cast<int>(std::count_if(of_cluster.begin(), of_cluster.end(), [](int n) { return n > 0; }));
   return regions;
 }

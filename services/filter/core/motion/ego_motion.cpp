@@ -14,6 +14,7 @@ constexpr std::int64_t kNearAgeNs = 100'000'000;
 constexpr std::int64_t kOldAgeNs = 500'000'000;
 constexpr double kRefineWindowRad = 0.015;
 constexpr std::int64_t kMinSlowAgeNs = 400'000'000;
+constexpr double kMinSlowImageShare = 0.4;               // if less agrees, the pose is wrong, not the surroundings
 constexpr double kSlowWindowRad = 0.03, kSlowMS = 0.05;  // the window grows by what such a mover covers
 
 /// Matches with the view 0.1 s ago and, when they are few, with the previous one.
@@ -77,7 +78,7 @@ FeatureVotes count_slow_votes(const EgoMotionInput& input, const Eigen::Isometry
   const auto limit = static_cast<std::size_t>(config.max_observations);
   const auto sightings = to_sightings(usable(matches, input, none_moves, limit), input);
   const StaticConsensus consensus = find_static_consensus(sightings, input.current.camera, T_world_camera, config);
-  if (consensus.image_share < config.min_image_share) return {};
+  if (consensus.image_share < kMinSlowImageShare) return {};
   return count_votes(to_sightings(matches, input), input.current.camera, consensus.T_world_camera, input.clusters,
                      geometry);
 }

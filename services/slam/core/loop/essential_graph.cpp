@@ -90,11 +90,11 @@ class GraphBuilder {
 
 }  // namespace
 
-EssentialGraph make_essential_graph(const Map& map, MapId component, const std::vector<LoopEdge>& loops) {
+EssentialGraph make_essential_graph(const Map& map, MapId component) {
   GraphBuilder builder(map, component);
   builder.add_tree();
   builder.add_covisibility();
-  for (const LoopEdge& loop : loops) builder.add_loop(loop);
+  for (const LoopEdge& loop : map.loops()) builder.add_loop(loop);
   return builder.take();
 }
 

@@ -11,13 +11,6 @@
 
 namespace rtd::slam {
 
-/// Two keyframes that were found to show the same place.
-struct LoopEdge {
-  KeyframeId older = kNoKeyframe, newer = kNoKeyframe;
-  Eigen::Isometry3d T_older_newer = Eigen::Isometry3d::Identity();  ///< between their cameras, as measured
-  int inliers = 0;  ///< landmarks of the old place that the newer keyframe was found to see
-};
-
 /// The pose graph of one component with the keyframes behind its nodes (ascending).
 struct EssentialGraph {
   PoseGraph graph;
@@ -27,7 +20,7 @@ struct EssentialGraph {
 /// Spanning tree, strong covisibility and loops of one component; the motions of the first two are those that the map
 /// has now. The first keyframe is held. docs/theory/loop_closing.md, "Essential graph". Loops with removed
 /// keyframes go to the closest remaining ancestors of those.
-EssentialGraph make_essential_graph(const Map& map, MapId component, const std::vector<LoopEdge>& loops);
+EssentialGraph make_essential_graph(const Map& map, MapId component);
 
 /// Moves keyframes to new poses; landmarks follow their reference keyframe.
 using KeyframePoses = std::map<KeyframeId, Eigen::Isometry3d>;  ///< T_world_camera

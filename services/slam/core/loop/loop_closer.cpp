@@ -46,7 +46,7 @@ std::optional<LoopClosure> LoopCloser::close(Map& map, const KeyframeDatabase& p
   closure.older_ns = map.find_keyframe(closure.edge.older)->frame->stamp_ns;
   closure.newer_ns = map.find_keyframe(closure.edge.newer)->frame->stamp_ns;
   closure.merged = two_maps;
-  edges_.push_back(closure.edge);
+  map.add_loop(closure.edge);
   if (two_maps) {
     closure.map = merge(map, *loop);
   } else {
@@ -61,7 +61,7 @@ std::optional<LoopClosure> LoopCloser::close(Map& map, const KeyframeDatabase& p
 
 /// Lets the drift go into all keyframes of the loop.
 void LoopCloser::straighten(Map& map, MapId component) {
-  EssentialGraph essential = make_essential_graph(map, component, edges_);
+  EssentialGraph essential = make_essential_graph(map, component);
   PoseGraphOptions options;
   options.max_iterations = config_.loop.graph_iterations;
   if (!optimize_pose_graph(essential.graph, options).usable) return;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "services/slam/core/loop/essential_graph.hpp"
 #include "services/slam/core/loop/loop_detector.hpp"
@@ -28,7 +27,6 @@ class LoopCloser {
 
   /// Looks for a loop at the newest keyframe, whose local mapping is done, and closes it.
   std::optional<LoopClosure> close(Map& map, const KeyframeDatabase& places, KeyframeId newest);
-  const std::vector<LoopEdge>& edges() const { return edges_; }
   const LoopCounters& counters() const { return detector_.counters(); }
 
  private:
@@ -37,7 +35,6 @@ class LoopCloser {
 
   SlamConfig config_;
   LoopDetector detector_;
-  std::vector<LoopEdge> edges_;
 };
 
 }  // namespace rtd::slam

@@ -45,7 +45,6 @@ Eigen::Isometry3d correction(const Keyframe& keyframe, const PlaceMeeting& meeti
 }  // namespace
 
 std::optional<Loop> LoopDetector::detect(const Map& map, const KeyframeDatabase& places, KeyframeId newest) {
-  count_way(map, newest);
   const std::optional<PlaceMeeting> meeting = meet(map, places, newest);
   if (!meeting) {
     if (hypothesis_ && ++hypothesis_->misses > config_.loop.max_misses) hypothesis_.reset();
@@ -58,19 +57,6 @@ std::optional<Loop> LoopDetector::detect(const Map& map, const KeyframeDatabase&
   if (confirmations < config_.loop.confirmations) return std::nullopt;
   hypothesis_.reset();
   return Loop{newest, *meeting};
-}
-
-void LoopDetector::count_way(const Map& map, KeyframeId newest) {
-  const double before_m = way_m_.empty() ? 0 : way_m_.back();
-  way_m_.resize(newest + 1, before_m);
-  if (map.find_keyframe(newest)->is_origin() || newest == 0) return;
-  const Eigen::Vector3d step_m =
-      map.T_world_keyframe(newest).translation() - map.T_world_keyframe(newest - 1).translation();
-  way_m_[newest] = before_m + step_m.norm();
-}
-
-double LoopDetector::way_between_m(KeyframeId older, KeyframeId newer) const {
-  return older < way_m_.size() && newer < way_m_.size() ? way_m_[newer] - way_m_[older] : 0;
 }
 
 std::optional<PlaceMeeting> LoopDetector::meet(const Map& map, const KeyframeDatabase& places, KeyframeId newest) {
@@ -96,8 +82,9 @@ std::optional<PlaceMeeting> LoopDetector::meet(const Map& map, const KeyframeDat
 /// known.
 bool LoopDetector::plausible(const Map& map, KeyframeId newest, const PlaceMeeting& meeting) const {
   const Keyframe& keyframe = *map.find_keyframe(newest);
-  if (map.find_keyframe(meeting.place)->map != keyframe.map) return true;
-  const double way_m = way_between_m(meeting.place, newest);
+  const Keyframe& place = *map.find_keyframe(meeting.place);
+  if (place.map != keyframe.map) return true;
+  const double way_m = keyframe.way_m - place.way_m;
   const Eigen::Isometry3d T_old_new = keyframe.T_world_camera.inverse() * meeting.T_world_camera;
   const LoopConfig& config = config_.loop;
   return T_old_new.translation().norm() <= config.max_offset_m + config.max_drift_ratio * way_m &&

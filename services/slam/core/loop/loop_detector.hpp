@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "services/slam/core/loop/place_meeting.hpp"
 #include "services/slam/core/place/keyframe_database.hpp"
@@ -45,15 +44,12 @@ class LoopDetector {
     int confirmations = 0, misses = 0;
   };
 
-  void count_way(const Map& map, KeyframeId newest);
-  double way_between_m(KeyframeId older, KeyframeId newer) const;
   std::optional<PlaceMeeting> meet(const Map& map, const KeyframeDatabase& places, KeyframeId newest);
   bool plausible(const Map& map, KeyframeId newest, const PlaceMeeting& meeting) const;
   bool agrees(const Map& map, KeyframeId newest, const PlaceMeeting& meeting) const;
 
   SlamConfig config_;
   std::optional<Hypothesis> hypothesis_;
-  std::vector<double> way_m_;  ///< per keyframe id: walked until there
   LoopCounters counters_;
 };
 

@@ -52,6 +52,7 @@ FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& conf
   if (config.disparity_px_m > 0) frame->camera.disparity_px_m = config.disparity_px_m;
   frame->width_px = static_cast<int>(message.width);
   frame->height_px = static_cast<int>(message.height);
+  frame->readout_s = motion.readout_s;
   frame->features.reserve(count_usable(message));  // exactly: keyframes keep their features
   for (std::uint32_t i = 0; i < message.count; ++i) {
     msg::Feature feature = message.features[i];

@@ -57,6 +57,7 @@ struct Frame {
   std::int64_t stamp_ns = 0;
   vision::RgbdProjection camera;
   int width_px = 0, height_px = 0;
+  double readout_s = 0;                ///< of a rolling shutter, undone in the features; 0 = none
   std::vector<msg::Feature> features;  ///< usable ones only; depth_m is 0 where not measured or beyond max_depth_m
   vision::FeatureGrid grid;
   std::vector<msg::Feature>

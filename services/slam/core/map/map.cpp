@@ -46,12 +46,16 @@ KeyframeId Map::add_keyframe(FramePtr frame, const Eigen::Isometry3d& T_world_ca
   keyframe.frame = std::move(frame);
   keyframe.T_world_camera = T_world_camera;
   keyframe.parent = parent;
+  const Keyframe* before = keyframes_.empty() ? nullptr : &keyframes_.rbegin()->second;
+  if (before != nullptr) keyframe.way_m = before->way_m;
   if (keyframe.is_origin()) {
     keyframe.map = next_map_++;
   } else {
     Keyframe& older = keyframe_at(parent);
     keyframe.map = older.map;
     older.children.push_back(id);
+    if (before->map == keyframe.map)
+      keyframe.way_m += (T_world_camera.translation() - before->T_world_camera.translation()).norm();
   }
   ++component_sizes_[keyframe.map];
   keyframe_index_.add(id, &keyframes_.emplace(id, std::move(keyframe)).first->second);
@@ -250,12 +254,14 @@ Eigen::Isometry3d Map::T_world_keyframe(KeyframeId id) const {
   return keyframe_at(ancestor).T_world_camera * T_ancestor_camera;
 }
 
-void Map::forget_removed(std::size_t recent, const std::function<bool(KeyframeId)>& needed) {
+void Map::forget_removed(std::size_t recent) {
   if (removed_order_.size() <= recent) return;
   const auto first_kept = removed_order_.end() - static_cast<std::ptrdiff_t>(recent);
   std::set<KeyframeId> kept(first_kept, removed_order_.end());
-  for (const auto& [id, removed] : removed_) {
-    if (needed(id)) kept.insert(id);
+  for (const LoopEdge& loop : loops_) {
+    for (const KeyframeId end : {loop.older, loop.newer}) {
+      if (removed_.contains(end)) kept.insert(end);
+    }
   }
   // What is kept may hang on what goes.
   std::map<KeyframeId, RemovedKeyframe> remaining;

@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -26,7 +25,8 @@ struct Keyframe {
   KeyframeId parent = kNoKeyframe;      ///< older keyframe it was tracked from; none for the first of its map
   std::vector<KeyframeId> children;     ///< keyframes whose parent it is, ascending
   MapId map = 0;                        ///< component that it belongs to
-  /// Of its pose in the world, (x y z rx ry rz); empty when unknown: the first of a map, or a map that was loaded.
+  double way_m = 0;                     ///< from the first keyframe to this one, along the keyframes
+  /// Of its pose in the world, (x y z rx ry rz); empty when unknown: the first of a map.
   std::optional<geometry::Matrix6d> covariance = std::nullopt;
 
   /// The first keyframe of its map: holds that map's frame, is never moved by adjustment nor culled.
@@ -37,6 +37,13 @@ struct Keyframe {
 struct RemovedKeyframe {
   KeyframeId parent = kNoKeyframe;
   Eigen::Isometry3d T_parent_camera = Eigen::Isometry3d::Identity();
+};
+
+/// Two keyframes that were found to show the same place.
+struct LoopEdge {
+  KeyframeId older = kNoKeyframe, newer = kNoKeyframe;
+  Eigen::Isometry3d T_older_newer = Eigen::Isometry3d::Identity();  ///< between their cameras, as measured
+  int inliers = 0;  ///< landmarks of the old place that the newer keyframe was found to see
 };
 
 /// Where a landmark's static probability comes from.
@@ -51,6 +58,7 @@ struct MapContents {
   std::vector<Keyframe> keyframes;                              ///< by id; without `covisible` and `children`
   std::vector<Landmark> landmarks;                              ///< by id
   std::vector<std::pair<KeyframeId, RemovedKeyframe>> removed;  ///< by id
+  std::vector<LoopEdge> loops;                                  ///< in the order in which they were closed
   KeyframeId next_keyframe = 0;                                 ///< ids from here on are free
   LandmarkId next_landmark = 0;
   MapId next_map = 0;
@@ -102,8 +110,11 @@ class Map {
   /// std::out_of_range for a keyframe that never existed or was forgotten, as T_world_keyframe() and map_of() do.
   std::pair<KeyframeId, Eigen::Isometry3d> living_ancestor(KeyframeId id) const;
   /// Forgets removed keyframes, so that a long run does not gather them: all but the last `recent` to go, and those
-  /// that are `needed`. Their poses cannot be asked for any more.
-  void forget_removed(std::size_t recent, const std::function<bool(KeyframeId)>& needed);
+  /// that a loop ends at. Their poses cannot be asked for any more.
+  void forget_removed(std::size_t recent);
+  /// Both keyframes exist or existed.
+  void add_loop(const LoopEdge& loop) { loops_.push_back(loop); }
+  const std::vector<LoopEdge>& loops() const { return loops_; }
   /// The map that a keyframe that exists or existed belongs to.
   MapId map_of(KeyframeId id) const;
   /// The maps that there are, oldest first.
@@ -138,6 +149,7 @@ class Map {
   PagedIndex<Keyframe*, nullptr> keyframe_index_;  ///< into keyframes_, whose nodes stay where they are
   LandmarkStore landmarks_;
   std::map<KeyframeId, RemovedKeyframe> removed_;
+  std::vector<LoopEdge> loops_;
   std::vector<KeyframeId> removed_order_;         ///< of those removed by this map, oldest first
   std::map<MapId, std::size_t> component_sizes_;  ///< keyframes
   MapId next_map_ = 0;

@@ -41,6 +41,7 @@ class SharedLandmarks {
 Map::Map(MapContents contents)
     : probability_rule_(contents.probability_rule),
       removed_(contents.removed.begin(), contents.removed.end()),
+      loops_(std::move(contents.loops)),
       next_map_(contents.next_map),
       next_keyframe_(contents.next_keyframe),
       next_landmark_(contents.next_landmark) {

@@ -3,7 +3,6 @@
 #include "services/slam/core/mapping/mapper.hpp"
 
 #include <algorithm>
-#include <set>
 
 #include "common/geometry/se3.hpp"
 #include "services/slam/core/mapping/mapping_steps.hpp"
@@ -130,9 +129,7 @@ void Mapper::apply_adjustment() {
 
 void Mapper::forget_removed() {
   constexpr std::size_t kRecent = 1000;  // snapshots and proposals that are under way may refer to them
-  std::set<KeyframeId> ends;
-  for (const LoopClosure& loop : loops_) ends.insert({loop.edge.older, loop.edge.newer});
-  map_.forget_removed(kRecent, [&ends](KeyframeId id) { return ends.contains(id); });
+  map_.forget_removed(kRecent);
 }
 
 void Mapper::finish_adjustment() {

@@ -14,8 +14,8 @@ constexpr std::size_t kCrcBytes = 4;
 
 /// Empty for an unknown one.
 std::string name_of(BlockTag tag) {
-  constexpr std::array kKnown = {BlockTag::kHead, BlockTag::kLandmarks, BlockTag::kKeyframes, BlockTag::kRemoved,
-                                 BlockTag::kEnd};
+  constexpr std::array kKnown = {BlockTag::kHead,    BlockTag::kLandmarks, BlockTag::kKeyframes,
+                                 BlockTag::kRemoved, BlockTag::kLoops,     BlockTag::kEnd};
   if (std::ranges::count(kKnown, tag) == 0) return {};
   io::Bytes letters;
   FieldWriter{letters}(static_cast<std::uint32_t>(tag));

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "common/geometry/se3.hpp"
 #include "common/io/byte_sink.hpp"
 #include "common/io/byte_source.hpp"
 #include "common/io/bytes.hpp"
@@ -29,6 +30,12 @@ class FieldWriter {
   void put(T value) { out_.insert(out_.end(), bytes(&value), bytes(&value) + sizeof(T)); }
   void put(const msg::Descriptor& value) { out_.insert(out_.end(), bytes(&value), bytes(&value) + value.size()); }
   void put(const Eigen::Vector3d& v) { (*this)(v.x(), v.y(), v.z()); }
+  /// Its upper triangle, row by row.
+  void put(const geometry::Matrix6d& symmetric) {
+    for (int row = 0; row < 6; ++row) {
+      for (int column = row; column < 6; ++column) put(symmetric(row, column));
+    }
+  }
   void put(const Eigen::Isometry3d& T) {
     for (int column = 0; column < 4; ++column) put(Eigen::Vector3d(T.matrix().col(column).head<3>()));
   }
@@ -56,6 +63,14 @@ class FieldReader {
   void get(T& value) { value = cursor_.read<T>(); }
   void get(msg::Descriptor& value) { std::memcpy(value.data(), cursor_.take(value.size()).data(), value.size()); }
   void get(Eigen::Vector3d& v) { (*this)(v.x(), v.y(), v.z()); }
+  void get(geometry::Matrix6d& symmetric) {
+    for (int row = 0; row < 6; ++row) {
+      for (int column = row; column < 6; ++column) {
+        get(symmetric(row, column));
+        symmetric(column, row) = symmetric(row, column);
+      }
+    }
+  }
   void get(Eigen::Isometry3d& T) {
     for (int column = 0; column < 4; ++column) {
       Eigen::Vector3d v;

@@ -38,7 +38,7 @@ class MapFileError : public std::runtime_error {
 namespace rtd::slam::map_format {
 
 constexpr std::string_view kMagic{"\x89RTDMAP\n", 8};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kPreambleBytes = 16;  ///< magic, version, CRC of both: the same in every version
 
 /// What a block holds; the four letters as they stand in the file.
@@ -47,6 +47,7 @@ enum class BlockTag : std::uint32_t {
   kLandmarks = 0x444E414C,  ///< "LAND"
   kKeyframes = 0x4659454B,  ///< "KEYF"
   kRemoved = 0x564D4552,    ///< "REMV"
+  kLoops = 0x504F4F4C,      ///< "LOOP"
   kEnd = 0x53444E45,        ///< "ENDS"
 };
 constexpr std::size_t kBlockHeadBytes = 8;       ///< tag, size of the payload
@@ -57,8 +58,11 @@ constexpr std::size_t kTransformBytes = 12 * 8;
 constexpr std::size_t kLandmarkBytes = 4 + 10 * 8 + sizeof(msg::Descriptor) + 4 * 4;
 constexpr std::size_t kObservationBytes = 2 + 4;
 constexpr std::size_t kFeatureBytes = 5 * 4 + 2 + sizeof(msg::Descriptor);
-constexpr std::size_t kKeyframeBytes = 3 * 4 + 3 * 2 + 2 * 8 + kTransformBytes;  ///< without observations and features
+/// Without covariance, observations and features.
+constexpr std::size_t kKeyframeBytes = 3 * 4 + 3 * 2 + 2 * 8 + kTransformBytes + 2 * 8 + 1;
 constexpr std::size_t kRemovedBytes = 2 * 4 + kTransformBytes;
+constexpr std::size_t kLoopBytes = 3 * 4 + kTransformBytes;
+constexpr double kMaxReadout_s = 1;  ///< of a frame
 constexpr std::size_t kMaxCameras = 0xFFFF;
 constexpr int kMaxImageSide_px = 16384;
 
@@ -76,7 +80,7 @@ struct StoredCamera {
 
 /// Block HEAD: what the file holds.
 struct Head {
-  std::uint32_t keyframes = 0, landmarks = 0, removed = 0;
+  std::uint32_t keyframes = 0, landmarks = 0, removed = 0, loops = 0;
   KeyframeId next_keyframe = 0;
   LandmarkId next_landmark = 0;
   MapId next_map = 0;
@@ -89,6 +93,14 @@ inline bool is_rigid(const Eigen::Isometry3d& T) {
   const Eigen::Matrix3d R = T.linear();
   return T.translation().allFinite() && R.allFinite() &&
          (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kTolerance && R.determinant() > 0;
+}
+
+/// Finite, and no correlation beyond 1.
+inline bool is_sound(const geometry::Matrix6d& covariance) {
+  constexpr double kTolerance = 1e-9;
+  if (!covariance.allFinite() || covariance.diagonal().minCoeff() < 0) return false;
+  const geometry::Vector6d sigma = covariance.diagonal().cwiseSqrt();
+  return ((covariance.cwiseAbs() - sigma * sigma.transpose()).array() <= kTolerance).all();
 }
 
 inline bool is_sound(const Landmark& landmark) {

@@ -37,8 +37,8 @@ Head read_head(FieldReader fields) {
   Head head;
   std::uint8_t rule = 0;
   std::uint16_t cameras = 0;
-  fields(head.keyframes, head.landmarks, head.removed, head.next_keyframe, head.next_landmark, head.next_map, rule,
-         cameras);
+  fields(head.keyframes, head.landmarks, head.removed, head.loops, head.next_keyframe, head.next_landmark,
+         head.next_map, rule, cameras);
   require(rule <= static_cast<std::uint8_t>(ProbabilityRule::kBelief), "the map", "has an unknown probability rule");
   require(head.keyframes > 0, "the map", "holds no keyframe");
   head.probability_rule = static_cast<ProbabilityRule>(rule);
@@ -62,10 +62,11 @@ class ContentsBuilder {
   /// `file_bytes` bounds the memory that the contents may need.
   ContentsBuilder(const Head& head, StoredFeatures features, std::uint64_t file_bytes);
 
-  /// In this order: all landmarks, all keyframes, all removed keyframes.
+  /// In this order: all landmarks, all keyframes, all removed keyframes, all loops.
   void add_landmark(FieldReader& fields);
   void add_keyframe(FieldReader& fields);
   void add_removed(FieldReader& fields);
+  void add_loop(FieldReader& fields);
   /// The contents; the builder is empty then.
   MapContents finish();
 
@@ -99,6 +100,7 @@ ContentsBuilder::ContentsBuilder(const Head& head, StoredFeatures features, std:
   contents_.landmarks.reserve(std::min<std::uint64_t>(head.landmarks, file_bytes / kLandmarkBytes));
   contents_.keyframes.reserve(std::min<std::uint64_t>(head.keyframes, file_bytes / kKeyframeBytes));
   contents_.removed.reserve(std::min<std::uint64_t>(head.removed, file_bytes / kRemovedBytes));
+  contents_.loops.reserve(std::min<std::uint64_t>(head.loops, file_bytes / kLoopBytes));
 }
 
 void ContentsBuilder::add_landmark(FieldReader& fields) {
@@ -118,12 +120,19 @@ void ContentsBuilder::add_keyframe(FieldReader& fields) {
   std::uint16_t camera = 0, features = 0, observations = 0;
   std::uint64_t seq = 0;
   std::int64_t stamp_ns = 0;
+  double readout_s = 0;
+  std::uint8_t has_covariance = 0;
   fields(keyframe.id, keyframe.parent, keyframe.map, camera, features, observations, seq, stamp_ns,
-         keyframe.T_world_camera);
+         keyframe.T_world_camera, keyframe.way_m, readout_s, has_covariance);
+  if (has_covariance != 0) fields(keyframe.covariance.emplace());
   const std::string name = "keyframe " + std::to_string(keyframe.id);
   require(contents_.keyframes.empty() || contents_.keyframes.back().id < keyframe.id, name, "comes behind a later one");
   require(keyframe.id < head_.next_keyframe, name, "has an id that is still free");
   require(is_rigid(keyframe.T_world_camera), name, "has an impossible pose");
+  require(std::isfinite(keyframe.way_m) && keyframe.way_m >= 0, name, "has an impossible way");
+  require(std::abs(readout_s) <= kMaxReadout_s, name, "has an impossible readout time");
+  require(has_covariance <= 1 && (has_covariance == 0 || is_sound(*keyframe.covariance)), name,
+          "has an impossible covariance");
   require(camera < head_.cameras.size(), name, "was seen with an unknown camera");
   require(features <= msg::kMaxFeatures, name, "has too many features");
   check_parent(name, keyframe);
@@ -134,6 +143,7 @@ void ContentsBuilder::add_keyframe(FieldReader& fields) {
   frame->height_px = stored.height_px;
   frame->seq = seq;
   frame->stamp_ns = stamp_ns;
+  frame->readout_s = readout_s;
   keyframe.landmarks.assign(features, kNoLandmark);
   const std::vector<SeenLandmark> seen = read_observations(fields, observations, keyframe);
   read_features(fields, keyframe, *frame);
@@ -218,6 +228,16 @@ void ContentsBuilder::add_removed(FieldReader& fields) {
   contents_.removed.emplace_back(id, removed);
 }
 
+void ContentsBuilder::add_loop(FieldReader& fields) {
+  LoopEdge loop;
+  fields(loop.older, loop.newer, loop.inliers, loop.T_older_newer);
+  const std::string name = "loop " + std::to_string(contents_.loops.size());
+  require(loop.older < loop.newer && is_known(loop.older) && is_known(loop.newer), name,
+          "ends at keyframes that cannot be");
+  require(is_rigid(loop.T_older_newer), name, "has an impossible pose");
+  contents_.loops.push_back(loop);
+}
+
 bool ContentsBuilder::is_known(KeyframeId id) const {
   const auto keyframe = find_by_id(contents_.keyframes, id);
   if (keyframe != contents_.keyframes.end() && keyframe->id == id) return true;
@@ -261,6 +281,7 @@ class MapReader {
     read_records(BlockTag::kLandmarks, head.landmarks, [&](FieldReader& fields) { builder.add_landmark(fields); });
     read_records(BlockTag::kKeyframes, head.keyframes, [&](FieldReader& fields) { builder.add_keyframe(fields); });
     read_records(BlockTag::kRemoved, head.removed, [&](FieldReader& fields) { builder.add_removed(fields); });
+    read_records(BlockTag::kLoops, head.loops, [&](FieldReader& fields) { builder.add_loop(fields); });
     block_ = blocks_.next();
     return located([&] {
       blocks_.check_end(block_);

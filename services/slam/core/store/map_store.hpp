@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "common/io/byte_sink.hpp"
@@ -21,6 +22,8 @@ struct MapSnapshot {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
     KeyframeId id = kNoKeyframe, parent = kNoKeyframe;
     MapId map = 0;
+    double way_m = 0;
+    std::optional<geometry::Matrix6d> covariance;
     std::uint16_t camera = 0;          ///< index into head.cameras
     std::size_t observations_end = 0;  ///< in `observations`; they begin where those of the keyframe before end
   };
@@ -35,9 +38,10 @@ struct MapSnapshot {
   std::vector<Keyframe> keyframes;       ///< by id
   std::vector<Observation> observations;
   io::Bytes removed;  ///< records of blocks REMV
+  io::Bytes loops;    ///< records of blocks LOOP
 };
 
-/// Leaves out landmarks whose position is not finite, which no reader would take.
+/// Leaves out landmarks whose position is not finite and covariances that cannot be, which no reader would take.
 MapSnapshot take_snapshot(const Map& map);
 
 /// Writes a map file (docs/map_file.md) in blocks of about 1 MiB: needs no more memory than that. Throws io::IoError,

@@ -44,7 +44,9 @@ void copy_keyframes(const Map& map, MapSnapshot& snapshot) {
       if (keyframe.landmarks[i] != kNoLandmark)
         snapshot.observations.push_back({keyframe.landmarks[i], static_cast<std::uint16_t>(i)});
     }
+    const bool known = keyframe.covariance && map_format::is_sound(*keyframe.covariance);
     snapshot.keyframes.push_back({keyframe.frame, keyframe.T_world_camera, id, keyframe.parent, keyframe.map,
+                                  keyframe.way_m, known ? keyframe.covariance : std::nullopt,
                                   find_camera(snapshot.head.cameras, *keyframe.frame), snapshot.observations.size()});
   }
 }
@@ -55,12 +57,17 @@ void copy_removed(const Map& map, MapSnapshot& snapshot) {
   for (const auto& [id, removed] : map.removed_keyframes()) write(id, removed.parent, removed.T_parent_camera);
 }
 
+void copy_loops(const Map& map, MapSnapshot& snapshot) {
+  FieldWriter write(snapshot.loops);
+  for (const LoopEdge& loop : map.loops()) write(loop.older, loop.newer, loop.inliers, loop.T_older_newer);
+}
+
 using namespace map_format;
 
 io::Bytes encode_head(const Head& head) {
   io::Bytes bytes;
   FieldWriter write(bytes);
-  write(head.keyframes, head.landmarks, head.removed, head.next_keyframe, head.next_landmark, head.next_map,
+  write(head.keyframes, head.landmarks, head.removed, head.loops, head.next_keyframe, head.next_landmark, head.next_map,
         static_cast<std::uint8_t>(head.probability_rule), static_cast<std::uint16_t>(head.cameras.size()));
   for (const StoredCamera& camera : head.cameras) {
     const auto& [fx, fy, cx, cy, disparity_px_m] = camera.projection;
@@ -87,7 +94,9 @@ class KeyframeEncoder {
     const auto observations = observations_of(keyframe);
     write(keyframe.id, keyframe.parent, keyframe.map, keyframe.camera,
           static_cast<std::uint16_t>(keyframe.frame->features.size()), static_cast<std::uint16_t>(observations.size()),
-          keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera);
+          keyframe.frame->seq, keyframe.frame->stamp_ns, keyframe.T_world_camera, keyframe.way_m,
+          keyframe.frame->readout_s, static_cast<std::uint8_t>(keyframe.covariance ? 1 : 0));
+    if (keyframe.covariance) write(*keyframe.covariance);
     for (const auto& [feature, landmark] : observations) write(feature, landmark);
     for (const msg::Feature& f : keyframe.frame->features)
       write(f.u_px, f.v_px, f.depth_m, f.angle_rad, f.static_probability, f.octave, f.flags, f.descriptor);
@@ -136,9 +145,11 @@ MapSnapshot take_snapshot(const Map& map) {
   copy_landmarks(map, snapshot);
   copy_keyframes(map, snapshot);
   copy_removed(map, snapshot);
+  copy_loops(map, snapshot);
   snapshot.head.keyframes = static_cast<std::uint32_t>(snapshot.keyframes.size());
   snapshot.head.landmarks = static_cast<std::uint32_t>(snapshot.landmark_ids.size());
   snapshot.head.removed = static_cast<std::uint32_t>(map.removed_keyframes().size());
+  snapshot.head.loops = static_cast<std::uint32_t>(map.loops().size());
   snapshot.head.next_keyframe = map.next_keyframe();
   snapshot.head.next_landmark = map.next_landmark();
   snapshot.head.next_map = map.next_map();
@@ -152,6 +163,7 @@ void write_map(const MapSnapshot& snapshot, io::ByteSink& sink) {
   write_records(blocks, BlockTag::kLandmarks, snapshot.landmarks, kLandmarkBytes);
   write_keyframes(blocks, snapshot);
   write_records(blocks, BlockTag::kRemoved, snapshot.removed, kRemovedBytes);
+  write_records(blocks, BlockTag::kLoops, snapshot.loops, kLoopBytes);
   blocks.end();
 }
 

@@ -65,6 +65,13 @@ std::optional<Displacement> displacement_of_landmark(const LocalLandmark& landma
 
 }  // namespace
 
+ReadoutEstimator::ReadoutEstimator(double readout_s) {
+  constexpr double kSigma_s = 0.0015;  // of an estimate that was sure
+  if (readout_s == 0) return;
+  information_ = kVarianceInflation / (kSigma_s * kSigma_s);
+  weighted_sum_ = information_ * readout_s;
+}
+
 void ReadoutEstimator::add(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                            const std::vector<Association>& points, const LocalMap& map, const ShutterMotion& motion) {
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();

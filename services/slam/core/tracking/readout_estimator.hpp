@@ -23,6 +23,9 @@ struct ExposedFrame {
 /// that the landmarks were mapped from. docs/theory/rolling_shutter.md, Eq. (3)-(6). Deterministic.
 class ReadoutEstimator {
  public:
+  ReadoutEstimator() = default;
+  /// Goes on from a readout time that was estimated before; 0 when it was not.
+  explicit ReadoutEstimator(double readout_s);
   /// One tracked frame and the points that its features show. `motion` is the velocity during this frame and the
   /// readout time that its features were corrected with.
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera, const std::vector<Association>& points,

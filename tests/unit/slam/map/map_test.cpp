@@ -189,14 +189,15 @@ TEST(Map, keeps_its_invariants_under_random_edits) {
   EXPECT_GT(map.keyframes().size(), 1U);
 }
 
-TEST(ForgetRemoved, keeps_what_is_recent_or_needed_at_its_place) {
+TEST(ForgetRemoved, keeps_what_is_recent_or_ends_a_loop_at_its_place) {
   Map map;
   for (KeyframeId id = 0; id < 8; ++id)
     map.add_keyframe(make_test_frame(id), moved_right(id), id == 0 ? kNoKeyframe : id - 1);
   for (const KeyframeId id : {1U, 2U, 3U, 4U, 5U}) map.remove_keyframe(id);
-  map.forget_removed(1, [](KeyframeId id) { return id == 2; });
+  map.add_loop({2, 7, moved_right(5)});
+  map.forget_removed(1);
   EXPECT_EQ(map.removed_keyframes().size(), 2U);
-  EXPECT_NEAR(map.T_world_keyframe(2).translation().x(), 2, 1e-12) << "needed";
+  EXPECT_NEAR(map.T_world_keyframe(2).translation().x(), 2, 1e-12) << "a loop ends there";
   EXPECT_NEAR(map.T_world_keyframe(5).translation().x(), 5, 1e-12) << "the last to go";
   EXPECT_THROW(map.T_world_keyframe(3), std::out_of_range);
   map.find_keyframe(0)->T_world_camera = moved_right(10);

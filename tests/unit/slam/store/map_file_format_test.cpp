@@ -45,7 +45,14 @@ TEST(MapFile, gives_the_same_map_back) {
     EXPECT_EQ(restored.find_keyframe(id)->covisible, keyframe.covisible);
     EXPECT_EQ(restored.find_keyframe(id)->children, keyframe.children);
     EXPECT_EQ(restored.find_keyframe(id)->T_world_camera.matrix(), keyframe.T_world_camera.matrix());
+    EXPECT_EQ(restored.find_keyframe(id)->covariance, keyframe.covariance);
+    EXPECT_EQ(restored.find_keyframe(id)->way_m, keyframe.way_m);
+    EXPECT_EQ(restored.find_keyframe(id)->frame->readout_s, 0.02);
   }
+  ASSERT_THAT(restored.loops(), SizeIs(1));
+  EXPECT_EQ(restored.loops()[0].newer, 29U);
+  EXPECT_EQ(restored.loops()[0].inliers, 80);
+  EXPECT_EQ(restored.loops()[0].T_older_newer.matrix(), map.loops()[0].T_older_newer.matrix());
   EXPECT_EQ(restored.T_world_keyframe(2).matrix(), map.T_world_keyframe(2).matrix()) << "removed, but not forgotten";
 }
 
@@ -85,6 +92,14 @@ TEST(MapFile, leaves_out_landmarks_without_a_finite_position) {
   const Map restored(read_bytes(bytes_of_map(map)));
   EXPECT_EQ(restored.landmark_count() + 1, map.landmark_count());
   EXPECT_EQ(restored.check_invariants(), "");
+}
+
+TEST(MapFile, leaves_out_covariances_that_cannot_be) {
+  Map map = sample_map();
+  (*map.find_keyframe(1)->covariance)(0, 1) = 1;  // a correlation far beyond 1
+  const Map restored(read_bytes(bytes_of_map(map)));
+  EXPECT_FALSE(restored.find_keyframe(1)->covariance.has_value());
+  EXPECT_TRUE(restored.find_keyframe(4)->covariance.has_value());
 }
 
 TEST(MapFile, is_not_written_with_a_pose_that_cannot_be_read) {
@@ -139,10 +154,10 @@ io::Bytes file_of_version(std::uint32_t version) {
 }
 
 TEST(MapFile, of_another_version_is_refused_naming_both) {
-  EXPECT_THAT(refusal(file_of_version(2)),
-              AllOf(HasSubstr("version 2"), HasSubstr("reads version 1"), HasSubstr("newer program")));
-  EXPECT_THAT(refusal(file_of_version(0)),
-              AllOf(HasSubstr("version 0"), HasSubstr("reads version 1"), HasSubstr("older program")));
+  EXPECT_THAT(refusal(file_of_version(3)),
+              AllOf(HasSubstr("version 3"), HasSubstr("reads version 2"), HasSubstr("newer program")));
+  EXPECT_THAT(refusal(file_of_version(1)),
+              AllOf(HasSubstr("version 1"), HasSubstr("reads version 2"), HasSubstr("older program")));
 }
 
 TEST(MapFile, of_another_kind_is_refused) {
@@ -209,6 +224,21 @@ const Lie kLies[] = {
     {"parent_elsewhere", [](MapSnapshot& s) { s.keyframes[1].map = 1; }, "parent in another map"},
     {"map_never_was", [](MapSnapshot& s) { s.keyframes[1].map = 9; }, "map that never was"},
     {"second_origin", [](MapSnapshot& s) { s.keyframes[1].parent = kNoKeyframe; }, "second origin"},
+    {"way", [](MapSnapshot& s) { s.keyframes[1].way_m = std::nan(""); }, "impossible way"},
+    {"covariance", [](MapSnapshot& s) { (*s.keyframes[1].covariance)(0, 0) = -1; }, "impossible covariance"},
+    {"loop_order", [](MapSnapshot& s) { overwrite(s.loops, 0, KeyframeId{50}); }, "ends at keyframes"},
+    {"loop_never_was", [](MapSnapshot& s) { overwrite(s.loops, 4, KeyframeId{5000}); }, "ends at keyframes"},
+    {"loop_pose", [](MapSnapshot& s) { overwrite(s.loops, 12, 2.0); }, "impossible pose"},
+    {"more_loops", [](MapSnapshot& s) { ++s.head.loops; }, "missing or in another order"},
+    {"readout",
+     [](MapSnapshot& s) {
+       auto frame = std::make_shared<Frame>();
+       frame->features = s.keyframes[1].frame->features;
+       frame->camera = s.keyframes[1].frame->camera;
+       frame->readout_s = std::nan("");
+       s.keyframes[1].frame = frame;
+     },
+     "impossible readout"},
     {"removed_order", [](MapSnapshot& s) { overwrite(s.removed, 0, KeyframeId{3}); }, "behind a later one"},
     {"removed_still_there", [](MapSnapshot& s) { overwrite(s.removed, 0, KeyframeId{1}); }, "still there"},
     {"removed_circle", [](MapSnapshot& s) { overwrite(s.removed, 4, KeyframeId{3}); }, "has no parent"},

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "services/slam/core/map/frame.hpp"
+#include "services/slam/core/tracking/readout_estimator.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -71,6 +72,12 @@ TEST(DepthWeight, learns_nothing_from_few_points_or_without_depth) {
   DepthWeightEstimator estimator;
   for (int i = 0; i < 100; ++i) estimator.add(seen.frame, Eigen::Isometry3d::Identity(), seen.points);
   EXPECT_EQ(estimator.disparity_px_m(), 80.0);
+}
+
+TEST(ReadoutEstimator, goes_on_from_what_a_map_knows) {
+  EXPECT_NEAR(ReadoutEstimator(0.02).readout_s(), 0.02, 1e-12) << "sure from the first frame on";
+  EXPECT_LT(ReadoutEstimator(0.02).sigma_s(), 0.005) << "but other frames may correct it";
+  EXPECT_EQ(ReadoutEstimator(0).readout_s(), 0);
 }
 
 }  // namespace
