@@ -107,16 +107,6 @@ void print_timeline(const std::vector<double>& used) {
 
 class SittingPerson : public ::testing::TestWithParam<int> {};
 
-/// Memory without new evidence takes no wall out of the pose: here it grew over most of the image.
-TEST(MoverMemory, does_not_spread_over_walls) {
-  OfflineOptions options = rtd_on("office?frames=300&seed=2");
-  options.front_end.mode = "geometry";
-  const OfflineReport report = run_offline(options);
-  EXPECT_LE(report.ate_rmse_m, 0.0072);
-  EXPECT_EQ(report.coverage, 1.0);
-  EXPECT_GE(report.removal.precision(), 0.85);
-}
-
 TEST_P(SittingPerson, is_used_within_two_seconds_of_rest_and_dropped_within_three_frames) {
   constexpr int kFps = 30, kRises = 10 * kFps, kStops = 16 * kFps, kFrames = kStops + 2 * kFps + 10;
   const std::string source = "sitting?frames=" + std::to_string(kFrames) + "&seed=" + std::to_string(GetParam());

@@ -81,16 +81,6 @@ CellBeliefs RtdJudge::recall_beliefs(const Scene& scene, const Eigen::Isometry3d
                          views_.newest().T_world_camera.inverse() * T_world_camera);
 }
 
-/// Memory that has spread over a surface which was seen at rest until now, and not accused, is none.
-void RtdJudge::forget_where_it_rested(const CellBeliefs& beliefs, CellMask& hold_cs) const {
-  constexpr double kRestedProbability = 0.98;  // 0.17 s at rest
-  if (!config_.techniques.belief) return;
-  const float rested = log_odds(kRestedProbability);
-  for (std::size_t cell = 0; cell < hold_cs.size(); ++cell) {
-    if (is_known(beliefs[cell]) && beliefs[cell] >= rested) hold_cs[cell] = 0;
-  }
-}
-
 /// Per cell: for how long it counts as moving because of earlier frames; 0 = it does not.
 RememberedMotion RtdJudge::recall_movers(const Scene& scene, const Foreground& foreground,
                                          const Eigen::Isometry3d& T_world_camera) const {
@@ -102,7 +92,6 @@ RememberedMotion RtdJudge::recall_movers(const Scene& scene, const Foreground& f
   remembered.hold_cs =
       memory_.recall(scene.surfaces.grid, scene.image.camera, T_world_camera.inverse() * newest.T_world_camera,
                      1e-9 * static_cast<double>(scene.image.stamp_ns - newest.stamp_ns));
-  forget_where_it_rested(recall_beliefs(scene, T_world_camera), remembered.hold_cs);
   if (!config_.techniques.mover_tracks) return remembered;
   const auto expected_cs = static_cast<std::uint8_t>(std::min(255, kExpectedCs + remembered.elapsed_cs));
   const CellMask expected = movers_.expected(mover_frame(scene, T_world_camera));
