@@ -14,6 +14,17 @@ if [ "${1:-}" = "--help" ]; then
   exit 0
 fi
 
+# What did not run, and why. ctest itself names only executables of which every check was skipped.
+list_skipped() {
+  awk '/: Skipped$/ { getline reason }
+       /^\[  SKIPPED \] .* \(/ { count[reason]++; first[reason] = $4; total++ }
+       / \.\.\. skipped / { split($0, part, " ... skipped "); count[part[2]]++; first[part[2]] = $1; total++ }
+       END {
+         if (total) print "test: " total " checks were skipped:"
+         for (reason in count) print "  " count[reason] " x " reason " (" first[reason] ")"
+       }' "$root/build/release/Testing/Temporary/LastTest.log"
+}
+
 started=$SECONDS
 "$root/deploy/setup.sh" --no-models
 echo "test: building into build/release (first time: about 10 minutes on two cores)"
@@ -23,6 +34,7 @@ echo "test: built in $((built - started)) s"
 
 status=0
 ctest --test-dir "$root/build/release" -j "$(nproc)" --output-on-failure --no-tests=error "$@" || status=$?
+list_skipped
 echo "test: tests took $((SECONDS - built)) s, total $((SECONDS - started)) s"
 if [ "$status" -eq 0 ]; then
   echo "test: next: ./deploy/demo.sh"

@@ -129,4 +129,4 @@ class FetchModel(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)  # names what was skipped, and why

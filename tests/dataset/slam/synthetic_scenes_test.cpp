@@ -46,6 +46,18 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SyntheticScene,
                                            SceneDemand{"flicker", "flicker?frames=120&seed=2", 0.0079, 1.0, 0.8, 0.9}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
+/// Surfaces here are divided in another way from frame to frame. What is remembered as moving must not spread over them
+/// until the filter no longer believes its pose.
+TEST(MemoryOfMotion, does_not_spread_over_what_rests) {
+  OfflineOptions options;
+  options.source = "synthetic:office?seed=2&frames=260";
+  options.front_end.mode = "geometry";
+  const OfflineReport report = run_offline(options);
+  EXPECT_LE(report.ate_rmse_m, 0.0072);
+  EXPECT_EQ(report.coverage, 1.0);
+  EXPECT_GE(report.removal.precision(), 0.85);
+}
+
 cv::Rect trunk_of(const cv::Rect& person) {
   return {person.x + person.width * 3 / 10, person.y + person.height / 4, person.width * 2 / 5, person.height * 7 / 20};
 }

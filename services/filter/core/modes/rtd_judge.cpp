@@ -12,6 +12,8 @@ namespace rtd::filter {
 namespace {
 
 constexpr std::int64_t kCentisecondNs = 10'000'000;
+constexpr double kKnownToRest = 0.98;  // belief of a surface whose memory of motion came from a neighbour
+constexpr int kBesidePeopleCells = 8;
 
 /// How far to look back for slow movers; 0 = not in this frame.
 std::int64_t look_back_ns(std::int64_t last_ns, std::int64_t now_ns) {
@@ -81,6 +83,20 @@ CellBeliefs RtdJudge::recall_beliefs(const Scene& scene, const Eigen::Isometry3d
                          views_.newest().T_world_camera.inverse() * T_world_camera);
 }
 
+/// Memory spreads where surfaces are divided in another way than before: what has rested for long does not take part.
+/// People and what they touch do: the chair of somebody who gets up is judged with its person.
+void RtdJudge::forget_what_is_known_to_rest(const Scene& scene, const Foreground& foreground,
+                                            const Eigen::Isometry3d& T_world_camera, CellMask& hold_cs) const {
+  const bool remembers = std::any_of(hold_cs.begin(), hold_cs.end(), [](int cs) { return cs != 0; });
+  if (!remembers || !config_.techniques.belief) return;
+  const CellBeliefs beliefs = recall_beliefs(scene, T_world_camera);
+  const float known = log_odds(kKnownToRest);
+  const CellMask beside_people = dilate(scene.shape(), foreground.high, kBesidePeopleCells);
+  for (std::size_t cell = 0; cell < beliefs.size(); ++cell) {
+    if (is_known(beliefs[cell]) && beliefs[cell] >= known && beside_people[cell] == 0) hold_cs[cell] = 0;
+  }
+}
+
 /// Per cell: for how long it counts as moving because of earlier frames; 0 = it does not.
 RememberedMotion RtdJudge::recall_movers(const Scene& scene, const Foreground& foreground,
                                          const Eigen::Isometry3d& T_world_camera) const {
@@ -92,6 +108,7 @@ RememberedMotion RtdJudge::recall_movers(const Scene& scene, const Foreground& f
   remembered.hold_cs =
       memory_.recall(scene.surfaces.grid, scene.image.camera, T_world_camera.inverse() * newest.T_world_camera,
                      1e-9 * static_cast<double>(scene.image.stamp_ns - newest.stamp_ns));
+  forget_what_is_known_to_rest(scene, foreground, T_world_camera, remembered.hold_cs);
   if (!config_.techniques.mover_tracks) return remembered;
   const auto expected_cs = static_cast<std::uint8_t>(std::min(255, kExpectedCs + remembered.elapsed_cs));
   const CellMask expected = movers_.expected(mover_frame(scene, T_world_camera));

@@ -50,6 +50,8 @@ class RtdJudge final : public ModeJudge {
   bool compares() const { return uses_geometry() && !views_.empty(); }
   CellMask without_known_surfaces(const Scene& scene, CellMask may_move) const;
   CellBeliefs recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const;
+  void forget_what_is_known_to_rest(const Scene& scene, const Foreground& foreground,
+                                    const Eigen::Isometry3d& T_world_camera, CellMask& hold_cs) const;
   RememberedMotion recall_movers(const Scene& scene, const Foreground& foreground,
                                  const Eigen::Isometry3d& T_world_camera) const;
 

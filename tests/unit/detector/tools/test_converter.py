@@ -262,4 +262,4 @@ class MaliciousCheckpoints(ConverterTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)  # names what was skipped, and why
