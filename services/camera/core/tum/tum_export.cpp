@@ -58,6 +58,7 @@ std::uint64_t export_tum(FrameSource& source, const fs::path& folder, std::uint6
                          const OnFrame& on_frame) {
   check_end(source, max_frames);
   prepare(folder);
+  const SourceInfo& info = source.info();
   Lists lists;
   std::uint64_t frames = 0;
   while (max_frames == 0 || frames < max_frames) {
@@ -81,7 +82,7 @@ std::uint64_t export_tum(FrameSource& source, const fs::path& folder, std::uint6
   geometry::write_tum_trajectory(groundtruth, source.groundtruth(), geometry::TumStyle::kGroundtruth);
   write_text(folder / "groundtruth.txt", groundtruth.str());
   write_text(folder / "calibration.yaml",
-             to_yaml({source.info().camera, source.info().depth_scale_m, source.info().fps}));
+             to_yaml({info.camera, info.depth_scale_m, info.fps, info.readout_s, info.depth_offset_s}));
   return frames;
 }
 
