@@ -61,6 +61,7 @@ struct FeatureFrame {
   std::int64_t stamp_ns;             ///< stamp of the RgbdFrame
   std::int64_t published_ns;         ///< copied from the RgbdFrame: the start of the camera -> pose latency
   std::array<double, 4> intrinsics;  ///< fx fy cx cy of the undistorted image
+  double readout_s;                  ///< copied from the RgbdFrame, s: the features are where their rows saw them
   std::uint32_t width, height;       ///< px
   std::uint32_t count;               ///< used entries of `features`
   std::uint32_t removed;             ///< how many of them carry kFeatureRemoved
@@ -70,8 +71,8 @@ struct FeatureFrame {
   std::array<Feature, kMaxFeatures> features;
 };
 static_assert(std::is_trivially_copyable_v<FeatureFrame> && std::is_standard_layout_v<FeatureFrame>);
-RTD_FIELDS(rtd_msgs, FeatureFrame, seq, stamp_ns, published_ns, intrinsics, width, height, count, removed, objects,
-           detection_use, stage_ms, features)
+RTD_FIELDS(rtd_msgs, FeatureFrame, seq, stamp_ns, published_ns, intrinsics, readout_s, width, height, count, removed,
+           objects, detection_use, stage_ms, features)
 inline bool is_plausible(const FeatureFrame& features) {
   return features.count <= kMaxFeatures;
 }

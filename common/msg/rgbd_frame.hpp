@@ -64,15 +64,19 @@ struct RgbdFrame {
   std::array<Unaligned<double>, 4> intrinsics;  ///< fx fy cx cy, px
   std::array<Unaligned<double>, 5> distortion;  ///< Brown-Conrady k1 k2 p1 p2 k3 (OpenCV order), zero when rectified
   Unaligned<double> depth_scale_m;              ///< metres of one depth unit (TUM: 1/5000)
-  std::uint32_t width;                          ///< px, <= kMaxFrameWidth
-  std::uint32_t height;                         ///< px, <= kMaxFrameHeight
-  Unaligned<std::uint64_t> source_id;           ///< random per camera process: distinguishes two cameras on one topic
+  /// Readout time of the colour image's rolling shutter, first row to last, s; the stamp belongs to the middle row. 0 =
+  /// all rows at once, or unknown.
+  Unaligned<double> readout_s;
+  Unaligned<double> depth_offset_s;    ///< time of the depth image minus that of the colour image, s; 0 = same, unknown
+  std::uint32_t width;                 ///< px, <= kMaxFrameWidth
+  std::uint32_t height;                ///< px, <= kMaxFrameHeight
+  Unaligned<std::uint64_t> source_id;  ///< random per camera process: distinguishes two cameras on one topic
   std::array<std::uint8_t, kMaxFramePixels * 3> color_bgr;  ///< 8-bit BGR
   std::array<std::uint16_t, kMaxFramePixels> depth;         ///< raw depth, 0 = no measurement
 };
 static_assert(std::is_trivially_copyable_v<RgbdFrame> && std::is_standard_layout_v<RgbdFrame>);
-RTD_FIELDS(rtd_msgs, RgbdFrame, seq, stamp_ns, published_ns, intrinsics, distortion, depth_scale_m, width, height,
-           source_id, color_bgr, depth)
+RTD_FIELDS(rtd_msgs, RgbdFrame, seq, stamp_ns, published_ns, intrinsics, distortion, depth_scale_m, readout_s,
+           depth_offset_s, width, height, source_id, color_bgr, depth)
 static_assert(alignof(RgbdFrame) == 4);
 inline bool is_plausible(const RgbdFrame& frame) {
   return frame.width > 0 && frame.width <= kMaxFrameWidth && frame.height > 0 && frame.height <= kMaxFrameHeight;

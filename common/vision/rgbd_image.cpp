@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "common/msg/rgbd_frame.hpp"
+#include "common/msg/sensor_time.hpp"
 
 namespace rtd::vision {
 namespace {
@@ -32,6 +33,10 @@ std::string defect(const msg::RgbdFrame& frame) {
   if (!finite) return "distortion is not finite";
   if (!positive(frame.depth_scale_m))
     return fmt::format("depth scale {} m is not positive", frame.depth_scale_m.value());
+  if (!msg::is_sensor_time(frame.readout_s) || !msg::is_sensor_time(frame.depth_offset_s)) {
+    return fmt::format("readout time {} s or depth offset {} s is not within +-{:g} s", frame.readout_s.value(),
+                       frame.depth_offset_s.value(), msg::kMaxSensorTime_s);
+  }
   return {};
 }
 
@@ -45,6 +50,8 @@ RgbdImage view_image(const msg::RgbdFrame& frame) {
   image.depth_scale_m = frame.depth_scale_m;
   const auto [fx, fy, cx, cy] = msg::aligned(frame.intrinsics);
   image.camera = geometry::CameraModel({fx, fy, cx, cy, msg::aligned(frame.distortion), cols, rows});
+  image.readout_s = frame.readout_s;
+  image.depth_offset_s = frame.depth_offset_s;
   return image;
 }
 

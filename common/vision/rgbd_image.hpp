@@ -22,9 +22,11 @@ struct RgbdImage {
   cv::Mat depth;               ///< CV_16UC1, registered to colour, 0 = no measurement
   double depth_scale_m = 0.0;  ///< metres of one depth unit
   geometry::CameraModel camera;
+  double readout_s = 0;       ///< of the colour image's rolling shutter, first row to last, s; 0 = none or unknown
+  double depth_offset_s = 0;  ///< time of the depth image minus that of the colour image, s; 0 = same or unknown
 };
 
-/// Why a frame cannot be used (size, intrinsics or depth scale out of bounds); empty when it can.
+/// Why a frame cannot be used (size, intrinsics, depth scale or times out of bounds); empty when it can.
 std::string defect(const msg::RgbdFrame& frame);
 
 /// The images of a message without copying: `frame` must outlive the result, which must not be written to. The frame

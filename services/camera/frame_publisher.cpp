@@ -83,6 +83,8 @@ void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::in
   frame.intrinsics = {p.fx, p.fy, p.cx, p.cy};
   frame.distortion = msg::unaligned(p.distortion);
   frame.depth_scale_m = image.depth_scale_m;
+  frame.readout_s = image.readout_s;
+  frame.depth_offset_s = image.depth_offset_s;
   frame.width = static_cast<std::uint32_t>(image.color_bgr.cols);
   frame.height = static_cast<std::uint32_t>(image.color_bgr.rows);
   frame.source_id = source_id;

@@ -61,6 +61,7 @@ void fill_message(const msg::RgbdFrame& frame, const FilterResult& result, msg::
   message.stamp_ns = frame.stamp_ns;
   message.published_ns = frame.published_ns;
   message.intrinsics = msg::aligned(frame.intrinsics);
+  message.readout_s = frame.readout_s;
   message.width = frame.width;
   message.height = frame.height;
   message.objects = static_cast<std::uint32_t>(result.objects.size());

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/replay/outputs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -10,9 +12,11 @@
 #include "common/msg/ros.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/offered_qos.hpp"
+#include "common/ros2/type_description.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/config.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "services/replay/core/type_layout.hpp"
 
 namespace rtd::replay {
 namespace {
@@ -37,12 +41,27 @@ bus::RawQos qos_of(const mcap::Channel& channel) {
   return qos;
 }
 
+/// A sample with other fields would be dropped by every reader, and at pace lockstep the replay would wait in vain.
+void check_layout(const mcap::Channel& channel, const mcap::Schema& schema, const std::string& dds_type) {
+  constexpr std::string_view kOurs = "rtd_msgs::msg::dds_::";
+  if (!dds_type.starts_with(kOurs) || schema.encoding != "omgidl") return;
+  const std::string name = dds_type.substr(kOurs.size());
+  const std::string recorded = layout_in(schema.data, name), ours = layout_in(ros2::own_idl(), name);
+  if (recorded.empty() || ours.empty() || recorded == ours) return;
+  throw service::ConfigError(
+      fmt::format("topic {} was recorded by another version of RTD-SLAM, whose {} has other fields: replay it with "
+                  "that version, or leave it out with --exclude {}",
+                  channel.topic, name.substr(0, name.size() - 1), channel.topic));
+}
+
 std::string type_of(const mcap::Channel& channel, const mcap::Summary& summary) {
   const auto schema = summary.schemas.find(channel.schema_id);
   if (schema == summary.schemas.end() || schema->second.name.empty())
     throw service::ConfigError("topic " + channel.topic +
                                " has no type in the recording: leave it out with --exclude " + channel.topic);
-  return ros2::dds_type(schema->second.name);
+  const std::string type = ros2::dds_type(schema->second.name);
+  check_layout(channel, schema->second, type);
+  return type;
 }
 
 }  // namespace

@@ -37,7 +37,8 @@ struct Output {
 /// The writers of a replay, with types and QoS as recorded.
 class Outputs {
  public:
-  /// A writer for each topic among `channels`. Throws BusError; ConfigError: two types on one topic.
+  /// A writer for each topic among `channels`. Throws BusError; ConfigError: two types on one topic, a type of ours
+  /// with other fields than it has now.
   Outputs(bus::RawBus& bus, const std::vector<const mcap::Channel*>& channels, const mcap::Summary& summary,
           OutputOptions options);
   ~Outputs();

@@ -176,8 +176,14 @@ void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
                 output.problem);
   }
   if (!readout_logged_ && slam_.readout_s() != 0) {
-    SPDLOG_INFO("event=readout_estimated frame={} readout_ms={:.1f} setting=slam.sensor.readout_s", result.seq,
-                1e3 * slam_.readout_s());
+    const double readout_ms = 1e3 * slam_.readout_s();
+    if (slam_.readout_given()) {
+      SPDLOG_INFO("event=readout_given frame={} readout_ms={:.1f}", result.seq, readout_ms);
+    } else {
+      SPDLOG_INFO(
+          "event=readout_estimated frame={} readout_ms={:.1f} setting=slam.sensor.readout_s calibration_key=readout_s",
+          result.seq, readout_ms);
+    }
     readout_logged_ = true;
   }
   for (const LoopClosure& loop : output.loops) {

@@ -86,6 +86,7 @@ std::unique_ptr<msg::FeatureFrame> make_feature_frame(const vision::RgbdImage& i
   message->stamp_ns = image.stamp_ns;
   const geometry::CameraModel::Parameters& camera = image.camera.parameters();
   message->intrinsics = {camera.fx, camera.fy, camera.cx, camera.cy};
+  message->readout_s = image.readout_s;
   message->width = static_cast<std::uint32_t>(image.color_bgr.cols);
   message->height = static_cast<std::uint32_t>(image.color_bgr.rows);
   message->count = static_cast<std::uint32_t>(std::min<std::size_t>(features.size(), msg::kMaxFeatures));

@@ -12,12 +12,14 @@
 
 #include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
+#include "common/msg/sensor_time.hpp"
 #include "services/camera/core/frame_source.hpp"
 
 namespace rtd::camera {
 namespace {
 
-constexpr const char* kAllowedKeys = "width height fx fy cx cy (needed), k1 k2 p1 p2 k3 depth_factor fps (optional)";
+constexpr const char* kAllowedKeys =
+    "width height fx fy cx cy (needed), k1 k2 p1 p2 k3 depth_factor fps readout_s depth_offset_s (optional)";
 
 struct KeyRule {
   double min, max;
@@ -25,12 +27,22 @@ struct KeyRule {
 };
 
 const std::map<std::string, KeyRule>& key_rules() {
-  static const std::map<std::string, KeyRule> rules = {
-      {"width", {16, 1e5, true}},       {"height", {16, 1e5, true}}, {"fx", {1, 1e5, true}},
-      {"fy", {1, 1e5, true}},           {"cx", {-1e5, 1e5, true}},   {"cy", {-1e5, 1e5, true}},
-      {"k1", {-100, 100, false}},       {"k2", {-100, 100, false}},  {"p1", {-10, 10, false}},
-      {"p2", {-10, 10, false}},         {"k3", {-100, 100, false}},  {"fps", {0.1, 1000, false}},
-      {"depth_factor", {1, 1e6, false}}};
+  constexpr double kTime = msg::kMaxSensorTime_s;
+  static const std::map<std::string, KeyRule> rules = {{"width", {16, 1e5, true}},
+                                                       {"height", {16, 1e5, true}},
+                                                       {"fx", {1, 1e5, true}},
+                                                       {"fy", {1, 1e5, true}},
+                                                       {"cx", {-1e5, 1e5, true}},
+                                                       {"cy", {-1e5, 1e5, true}},
+                                                       {"k1", {-100, 100, false}},
+                                                       {"k2", {-100, 100, false}},
+                                                       {"p1", {-10, 10, false}},
+                                                       {"p2", {-10, 10, false}},
+                                                       {"k3", {-100, 100, false}},
+                                                       {"fps", {0.1, 1000, false}},
+                                                       {"depth_factor", {1, 1e6, false}},
+                                                       {"readout_s", {-kTime, kTime, false}},
+                                                       {"depth_offset_s", {-kTime, kTime, false}}};
   return rules;
 }
 
@@ -67,6 +79,7 @@ Calibration from_values(std::map<std::string, double>& values, const std::string
   calibration.camera = geometry::CameraModel(parameters);
   if (values.count("depth_factor") != 0) calibration.depth_scale_m = 1.0 / values["depth_factor"];
   if (values.count("fps") != 0) calibration.fps = values["fps"];
+  calibration.readout_s = values["readout_s"], calibration.depth_offset_s = values["depth_offset_s"];
   return calibration;
 }
 
@@ -135,11 +148,14 @@ Calibration load_calibration(const std::filesystem::path& folder) {
 std::string to_yaml(const Calibration& calibration) {
   const auto& p = calibration.camera.parameters();
   const auto& d = p.distortion;
-  return fmt::format(
+  std::string text = fmt::format(
       "width: {}\nheight: {}\nfx: {:.9g}\nfy: {:.9g}\ncx: {:.9g}\ncy: {:.9g}\n"
       "k1: {:.9g}\nk2: {:.9g}\np1: {:.9g}\np2: {:.9g}\nk3: {:.9g}\ndepth_factor: {:.9g}\nfps: {:.9g}\n",
       p.width, p.height, p.fx, p.fy, p.cx, p.cy, d[0], d[1], d[2], d[3], d[4], 1.0 / calibration.depth_scale_m,
       calibration.fps);
+  if (calibration.readout_s != 0) text += fmt::format("readout_s: {:.9g}\n", calibration.readout_s);
+  if (calibration.depth_offset_s != 0) text += fmt::format("depth_offset_s: {:.9g}\n", calibration.depth_offset_s);
+  return text;
 }
 
 }  // namespace rtd::camera

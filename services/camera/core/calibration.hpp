@@ -15,11 +15,13 @@ struct Calibration {
   geometry::CameraModel camera;
   double depth_scale_m = 1.0 / 5000.0;  ///< metres of one depth unit; the file gives its inverse, depth_factor
   double fps = 30.0;                    ///< Hz
+  double readout_s = 0;       ///< of the colour image's rolling shutter, first row to last, s; 0 = none or unknown
+  double depth_offset_s = 0;  ///< added to the difference of the stamps of depth and colour, s
 };
 
-/// Reads "key: value" lines with the keys width height fx fy cx cy (needed) k1 k2 p1 p2 k3 depth_factor fps.
-/// Throws SourceError naming `origin`, line and fix: unknown or doubled key, not a finite number, out of range, size
-/// above the frame type's.
+/// Reads "key: value" lines with the keys width height fx fy cx cy (needed) k1 k2 p1 p2 k3 depth_factor fps readout_s
+/// depth_offset_s. Throws SourceError naming `origin`, line and fix: unknown or doubled key, not a finite number, out
+/// of range, size above the frame type's.
 Calibration parse_calibration(const std::string& text, const std::string& origin);
 
 /// The same of a file. Throws SourceError also when it cannot be read.

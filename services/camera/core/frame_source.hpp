@@ -82,6 +82,9 @@ struct SourceInfo {
   double fps = 30;           ///< nominal rate, Hz
   std::uint64_t frames = 0;  ///< frames expected (an upper bound: broken ones are skipped); 0 = endless
   bool live = false;         ///< a running camera: frames come when they come, camera and unit are known after open()
+  double readout_s = 0;      ///< of the colour image's rolling shutter, first row to last, s; 0 = none or unknown
+  /// What the device adds to the difference of the stamps of depth and colour, s; 0 = nothing or unknown.
+  double depth_offset_s = 0;
 };
 
 /// A sequence of RGB-D frames. Errors at opening throw SourceError; single bad frames are skipped and counted.
@@ -161,7 +164,11 @@ inline constexpr std::int64_t kGroundtruthMarginNs = 500'000'000;
 std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat& color, const cv::Mat& depth,
                                           const geometry::CameraModel& camera);
 
-/// The frame that a pair of images makes; seq is given when it is handed out.
+/// Time of the depth image minus that of the colour image, s: by their stamps, and what the device adds. 0 = unknown
+/// when they are farther apart than a frame may say.
+double depth_offset_s(std::int64_t color_ns, std::int64_t depth_ns, const SourceInfo& info);
+
+/// The frame that a pair of images of one stamp makes; seq is given when it is handed out.
 SourceFrame to_frame(std::int64_t stamp_ns, cv::Mat color_bgr, cv::Mat depth, const SourceInfo& info);
 
 /// The poses between these stamps and kGroundtruthMarginNs around them.

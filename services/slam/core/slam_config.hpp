@@ -53,8 +53,9 @@ struct SensorConfig {
     binder.field(
         "calibration_error", calibration_error, {0.0, 0.5},
         "share by which focal length and depth may be off: the covariance grows by it with the way from the origin");
-    binder.field("readout_s", readout_s, {-0.1, 0.1},
-                 "readout time of the image, first row to last, if known; 0: estimated while tracking");
+    binder.field(
+        "readout_s", readout_s, {-0.1, 0.1},
+        "readout time of the image, first row to last, if known; 0: that of the frames, or estimated while tracking");
     binder.field("max_depth_m", max_depth_m, {0.5, 50.0}, "farther depths are not used");
   }
 };

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "common/msg/sensor_time.hpp"
+
 namespace rtd::slam {
 namespace {
 
@@ -80,6 +82,7 @@ void SlamSystem::watch_source(const msg::FeatureFrame& message) {
   last_seq_ = message.seq;
   last_stamp_ns_ = message.stamp_ns;
   last_intrinsics_ = message.intrinsics;
+  frame_readout_s_ = msg::is_sensor_time(message.readout_s) ? message.readout_s : 0;
 }
 
 TrackOutcome SlamSystem::initialize(const FrameInput& input, SlamOutput& output) {
@@ -156,11 +159,15 @@ void SlamSystem::record(const TrackedFrame& tracked) {
   frames_.push_back({tracked.frame->seq, tracked.frame->stamp_ns, tracked.reference, tracked.T_reference_camera});
 }
 
+/// The configured value wins; 0 when neither configuration nor frame says.
+double SlamSystem::given_readout_s() const {
+  return config_.sensor.readout_s != 0 ? config_.sensor.readout_s : frame_readout_s_;
+}
+
 /// The motion during the next frame, as the last ones let expect.
 ShutterMotion SlamSystem::shutter_motion() const {
   if (!config_.techniques.rolling_shutter || !tracker_.motion()) return {};
-  const double known_s = config_.sensor.readout_s;
-  return {tracker_.motion()->velocity_per_s, known_s != 0 ? known_s : readout_.readout_s()};
+  return {tracker_.motion()->velocity_per_s, readout_given() ? given_readout_s() : readout_.readout_s()};
 }
 
 double SlamSystem::disparity_px_m() const {
@@ -170,7 +177,7 @@ double SlamSystem::disparity_px_m() const {
 void SlamSystem::observe_sensor(const LocalMap& map, const TrackOutcome& outcome) {
   const bool wants_weight = config_.sensor.disparity_px_m == 0;
   const bool wants_readout =
-      config_.techniques.rolling_shutter && config_.sensor.readout_s == 0 && !shutter_.velocity_per_s.isZero(0);
+      config_.techniques.rolling_shutter && !readout_given() && !shutter_.velocity_per_s.isZero(0);
   if (!wants_weight && !wants_readout) return;
   std::vector<Association> points;
   for (std::uint32_t i = 0; i < outcome.tracked.landmarks.size(); ++i) {

@@ -72,6 +72,8 @@ class SlamSystem {
   std::uint64_t source_restarts() const { return source_restarts_; }
   /// Of the camera, as it is undone now; 0: rows are taken to be exposed at once.
   double readout_s() const { return shutter_.readout_s; }
+  /// Whether it is given, by slam.sensor.readout_s or by the frames, and not estimated.
+  bool readout_given() const { return given_readout_s() != 0; }
   /// The weight of depth of the next frame, px*m: slam.sensor.disparity_px_m, or the estimate.
   double disparity_px_m() const;
 
@@ -82,6 +84,7 @@ class SlamSystem {
   bool wants_new_map(const Frame& frame, const TrackOutcome& outcome);
   TrackOutcome track(const FrameInput& input, SlamOutput& output);
   void record(const TrackedFrame& tracked);
+  double given_readout_s() const;
   ShutterMotion shutter_motion() const;
   void observe_sensor(const LocalMap& map, const TrackOutcome& outcome);
   void maybe_insert_keyframe(TrackOutcome& outcome);
@@ -110,6 +113,7 @@ class SlamSystem {
   std::optional<std::uint64_t> last_seq_;
   std::int64_t last_stamp_ns_ = 0;
   std::array<double, 4> last_intrinsics_{};
+  double frame_readout_s_ = 0;  ///< of the frame in work; 0 when it does not say
   KeyframeId requested_centre_ = kNoKeyframe;
 };
 

@@ -19,6 +19,8 @@ inline void fill_frame(msg::RgbdFrame& frame, std::uint64_t seq) {
   frame.intrinsics = {525.0, 525.0, 319.5, 239.5};
   frame.distortion = {};
   frame.depth_scale_m = 1.0 / 5000.0;
+  frame.readout_s = 0.02;
+  frame.depth_offset_s = -0.01;
   frame.width = msg::kMaxFrameWidth;
   frame.height = msg::kMaxFrameHeight;
   frame.source_id = ~seq;

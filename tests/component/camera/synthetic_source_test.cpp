@@ -169,6 +169,30 @@ TEST(TumExport, is_read_back_as_it_was) {
   EXPECT_TRUE(poses[3].T_world_body.isApprox(*before[3].T_world_camera, 1e-8));
 }
 
+TEST(TumExport, keeps_what_is_known_of_the_times_of_the_sensor) {
+  const test::SequenceFolder folder;
+  const auto source =
+      make_source("synthetic:static?frames=1&width=64&height=48&rolling_shutter_ms=30&depth_lag_ms=8&timing=known");
+  EXPECT_EQ(export_tum(*source, folder.path() / "clip", 0), 1U);
+  const auto after = play("tum:" + (folder.path() / "clip").string());
+  ASSERT_THAT(after, SizeIs(1));
+  EXPECT_DOUBLE_EQ(after[0].image.readout_s, 0.03);
+  EXPECT_DOUBLE_EQ(after[0].image.depth_offset_s, 0.008);
+}
+
+TEST(TumExport, keeps_the_stamps_of_both_images) {
+  const test::SequenceFolder folder;
+  folder.three_frames();
+  folder.append("calibration.yaml", "depth_offset_s: 0.002\n");
+  folder.write("associations.txt", "1.0 rgb/1.0.png 0.987 depth/1.0.png\n1.1 rgb/1.1.png 1.1 depth/1.1.png\n");
+  const auto source = make_source(folder.uri());
+  EXPECT_EQ(export_tum(*source, folder.path() / "clip", 0), 2U);
+  const auto after = play("tum:" + (folder.path() / "clip").string());
+  ASSERT_THAT(after, SizeIs(2));
+  EXPECT_NEAR(after[0].image.depth_offset_s, -0.011, 1e-9);
+  EXPECT_NEAR(after[1].image.depth_offset_s, 0.002, 1e-9);
+}
+
 TEST(TumExport, refuses_endless_sources_and_used_folders) {
   const test::SequenceFolder folder;
   const auto endless = make_source("synthetic:static?frames=0&width=64&height=48");

@@ -46,8 +46,10 @@ inline std::string type_of(const std::string& topic) {
   return "test_msgs::msg::dds_::Blob_";
 }
 
-/// Writes a recording as rtd record does: names of ROS 2, QoS in the channel.
-inline void write_recording(const std::string& path, const std::vector<Piece>& pieces, bool reliable = true) {
+/// Writes a recording as rtd record does: names of ROS 2, QoS in the channel. `idl`: text of the types, not kept when
+/// empty.
+inline void write_recording(const std::string& path, const std::vector<Piece>& pieces, bool reliable = true,
+                            const std::string& idl = "") {
   io::FileSink sink(path, io::IfExists::kReplace);
   mcap::Writer writer(sink, {.profile = "ros2", .chunk_size = 20'000});
   std::map<std::string, mcap::ChannelId> channels;
@@ -55,7 +57,8 @@ inline void write_recording(const std::string& path, const std::vector<Piece>& p
   qos.reliable = reliable;
   for (const Piece& piece : pieces) {
     if (!channels.contains(piece.topic)) {
-      const mcap::SchemaId schema = writer.add(mcap::Schema{0, ros2::ros_type(type_of(piece.topic)), "", ""});
+      const mcap::SchemaId schema =
+          writer.add(mcap::Schema{0, ros2::ros_type(type_of(piece.topic)), idl.empty() ? "" : "omgidl", idl});
       channels[piece.topic] = writer.add(mcap::Channel{
           0, schema, ros2::ros_topic(piece.topic), "cdr", {{"offered_qos_profiles", ros2::offered_qos_text({qos})}}});
     }

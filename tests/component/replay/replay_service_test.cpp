@@ -6,6 +6,7 @@
 
 #include <future>
 
+#include "common/ros2/type_description.hpp"
 #include "common/service/config.hpp"
 #include "tests/component/replay/raw_recording.hpp"
 
@@ -170,6 +171,24 @@ TEST_F(ReplayServiceTest, names_what_is_wrong_with_the_recording) {
   EXPECT_THAT(refusal(), HasSubstr("no topics"));
   config_.file.clear();
   EXPECT_THAT(refusal(), HasSubstr("rtd replay FILE"));
+}
+
+TEST_F(ReplayServiceTest, refuses_types_whose_fields_were_others_when_they_were_recorded) {
+  std::string former = ros2::own_idl();
+  const std::string field = "  double readout_s;\n";
+  for (std::size_t at = former.find(field); at != std::string::npos; at = former.find(field)) {
+    former.erase(at, field.size());
+  }
+  write_recording(file_.path(), frames_and_boxes(), true, former);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("rtd/features was recorded by another version of RTD-SLAM"),
+                               HasSubstr("FeatureFrame has other fields"), HasSubstr("--exclude rtd/features")));
+  config_.exclude = {"rtd/features"};
+  start();
+  EXPECT_EQ(ended(), service::kOk);
+  config_.exclude.clear();
+  write_recording(file_.path(), frames_and_boxes(), true, ros2::own_idl());
+  start();
+  EXPECT_EQ(ended(), service::kOk);
 }
 
 TEST_F(ReplayServiceTest, names_the_option_that_is_wrong_and_what_there_is) {

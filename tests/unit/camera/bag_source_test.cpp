@@ -14,6 +14,7 @@ namespace {
 using test::ImageBag;
 using test::play_all;
 using test::Played;
+using test::SequenceFolder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -52,6 +53,25 @@ TEST(BagSource, plays_pairs_with_the_stamps_of_their_headers) {
   EXPECT_DOUBLE_EQ(image.depth_scale_m, 0.001);
   EXPECT_DOUBLE_EQ(image.camera.parameters().fy, 31);
   EXPECT_THAT(played.skipped, IsEmpty());
+}
+
+TEST(BagSource, frames_say_how_far_their_images_are_apart_and_what_the_calibration_says) {
+  ImageBag bag;
+  bag.three_frames();
+  const std::string uri = bag.uri();
+  for (const SourceFrame& frame : play_all(uri).frames) {
+    EXPECT_NEAR(frame.image.depth_offset_s, 0.01, 1e-9);
+    EXPECT_EQ(frame.image.readout_s, 0);
+  }
+  const SequenceFolder folder;
+  folder.write("own.yaml", SequenceFolder::calibration(ImageBag::kWidth, ImageBag::kHeight) +
+                               "readout_s: 0.02\ndepth_offset_s: -0.004\n");
+  const Played played = play_all(uri + "?calibration=" + (folder.path() / "own.yaml").string());
+  ASSERT_THAT(played.frames, SizeIs(3));
+  for (const SourceFrame& frame : played.frames) {
+    EXPECT_NEAR(frame.image.depth_offset_s, 0.006, 1e-9);
+    EXPECT_EQ(frame.image.readout_s, 0.02);
+  }
 }
 
 TEST(BagSource, passes_over_old_frames_which_keep_their_seq) {

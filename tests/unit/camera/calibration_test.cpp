@@ -27,19 +27,29 @@ TEST(Calibration, has_defaults_for_what_is_optional) {
   const Calibration calibration = parse_calibration(kMinimal, "x");
   EXPECT_DOUBLE_EQ(calibration.depth_scale_m, 1.0 / 5000);
   EXPECT_DOUBLE_EQ(calibration.fps, 30);
+  EXPECT_EQ(calibration.readout_s, 0);
+  EXPECT_EQ(calibration.depth_offset_s, 0);
   EXPECT_FALSE(calibration.camera.distorted());
   EXPECT_EQ(calibration.camera.parameters().width, 320);
 }
 
 TEST(Calibration, survives_writing_and_reading) {
-  const Calibration before = parse_calibration(
-      std::string(kMinimal) + "k1: 0.2624\nk2: -0.95\np1: -0.005\np2: 0.0026\nk3: 1.16\ndepth_factor: 1000\nfps: 15\n",
-      "x");
+  const Calibration before =
+      parse_calibration(std::string(kMinimal) +
+                            "k1: 0.2624\nk2: -0.95\np1: -0.005\np2: 0.0026\nk3: 1.16\ndepth_factor: 1000\nfps: 15\n"
+                            "readout_s: 0.021\ndepth_offset_s: -0.009\n",
+                        "x");
   const Calibration after = parse_calibration(to_yaml(before), "y");
   EXPECT_EQ(after.camera.parameters().distortion, before.camera.parameters().distortion);
   EXPECT_DOUBLE_EQ(after.camera.parameters().fx, 262);
   EXPECT_DOUBLE_EQ(after.depth_scale_m, 0.001);
   EXPECT_DOUBLE_EQ(after.fps, 15);
+  EXPECT_DOUBLE_EQ(after.readout_s, 0.021);
+  EXPECT_DOUBLE_EQ(after.depth_offset_s, -0.009);
+}
+
+TEST(Calibration, does_not_write_times_that_are_not_known) {
+  EXPECT_THAT(to_yaml(parse_calibration(kMinimal, "x")), testing::Not(HasSubstr("_s:")));
 }
 
 TEST(Calibration, refuses_with_key_line_and_fix) {
@@ -52,6 +62,9 @@ TEST(Calibration, refuses_with_key_line_and_fix) {
   refuses("fx: 0\n", "allowed is a number in [1")();
   refuses("depth_factor: -5000\n", "depth_factor")();
   refuses("fx: 5x\n", "fx is '5x'")();
+  refuses("readout_s: 21\n", "cal.yaml:1: readout_s is '21', allowed is a number in [-0.1, 0.1]")();
+  refuses("depth_offset_s: -0.2\n", "depth_offset_s is '-0.2', allowed is a number in [-0.1, 0.1]")();
+  refuses("depth_offset_s: nan\n", "depth_offset_s is 'nan'")();
 }
 
 TEST(Calibration, refuses_sizes_that_no_frame_type_carries) {

@@ -103,6 +103,8 @@ TEST_F(LiveSourceTest, pairs_by_stamp_as_soon_as_both_are_there_and_keeps_the_dr
   EXPECT_EQ(first.image.seq, 0U);
   EXPECT_EQ(first.image.stamp_ns, 1'100'000'000);
   EXPECT_EQ(second.image.stamp_ns, 1'200'000'000);
+  EXPECT_NEAR(first.image.depth_offset_s, 0.005, 1e-9);
+  EXPECT_EQ(second.image.depth_offset_s, 0);
   EXPECT_EQ(second.image.depth.at<std::uint16_t>(3, 3), 1500);
   EXPECT_EQ(played.counters().frames, 2U);
   EXPECT_EQ(played.counters().skipped_total(), 0U);

@@ -129,7 +129,10 @@ TEST(McapSource, plays_frames_of_our_own_first) {
   McapFile file;
   file.add("/camera/color/image_raw/compressed", kCompressed, msg::CompressedImage{}, 1);
   file.add_own(*own_frame(1'000'000'000, 10, 100), 1.0);
-  file.add_own(*own_frame(1'100'000'000, 11, 65000), 1.1);
+  const auto timed = own_frame(1'100'000'000, 11, 65000);
+  timed->readout_s = 0.02;
+  timed->depth_offset_s = -0.013;
+  file.add_own(*timed, 1.1);
   const std::string uri = file.uri();
   const auto source = make_source(uri);
   EXPECT_EQ(source->info().frames, 2U);
@@ -144,6 +147,9 @@ TEST(McapSource, plays_frames_of_our_own_first) {
   EXPECT_EQ(image.color_bgr.at<cv::Vec3b>(9, 19), cv::Vec3b(11, 11, 11));
   EXPECT_EQ(image.depth.at<std::uint16_t>(9, 19), 65000);
   EXPECT_DOUBLE_EQ(image.camera.parameters().distortion[0], 0.1);
+  EXPECT_EQ(image.readout_s, 0.02);
+  EXPECT_EQ(image.depth_offset_s, -0.013);
+  EXPECT_EQ(played.frames[0].image.depth_offset_s, 0);
   EXPECT_THAT(played.skipped, IsEmpty());
 }
 
@@ -176,6 +182,13 @@ TEST(McapSource, refuses_a_damaged_first_frame) {
   frame->intrinsics[0] = 0;
   file.add_own(*frame, 1);
   EXPECT_THAT([&] { make_source(file.uri()); }, ThrowsMessage<SourceError>(HasSubstr("intrinsics fx 0")));
+}
+
+TEST(McapSource, refuses_frames_of_a_former_version_and_says_so) {
+  McapFile file;
+  file.add_own(*own_frame(1, 1, 1), 1, 4 + sizeof(msg::RgbdFrame) - 2 * sizeof(double));
+  EXPECT_THAT([&] { make_source(file.uri()); },
+              ThrowsMessage<SourceError>(AllOf(HasSubstr("1536124 bytes"), HasSubstr("another version of RTD-SLAM"))));
 }
 
 TEST(McapSource, plays_the_intact_part_of_a_cut_file_and_reports_the_loss) {

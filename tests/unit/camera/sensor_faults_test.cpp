@@ -53,6 +53,30 @@ TEST(SensorFaults, refuse_what_is_unknown_or_out_of_range) {
               ThrowsMessage<SourceError>(AllOf(HasSubstr("'kinnect'"), HasSubstr("kinect, d435"))));
 }
 
+TEST(SyntheticOptions, refuse_words_that_a_parameter_does_not_know) {
+  EXPECT_THAT([] { parse("?timing=maybe"); },
+              ThrowsMessage<SourceError>(HasSubstr("timing is 'maybe', allowed are unknown, known")));
+  EXPECT_THAT(
+      [] { parse("?motion=still"); },
+      ThrowsMessage<SourceError>(HasSubstr("motion is 'still', allowed are handheld, watching, tour, rolling")));
+  EXPECT_THAT([] { parse("?timings=known"); }, ThrowsMessage<SourceError>(HasSubstr("did you mean 'timing'?")));
+}
+
+TEST(SyntheticOptions, frames_say_how_the_sensor_is_timed_only_on_request) {
+  const auto first_image = [](const std::string& parameters) {
+    return make_source("synthetic:static?frames=1&width=64&height=48&rolling_shutter_ms=30&depth_lag_ms=-5" +
+                       parameters)
+        ->next()
+        ->image;
+  };
+  for (const char* parameters : {"", "&timing=unknown"}) {
+    EXPECT_EQ(first_image(parameters).readout_s, 0) << parameters;
+    EXPECT_EQ(first_image(parameters).depth_offset_s, 0) << parameters;
+  }
+  EXPECT_EQ(first_image("&timing=known").readout_s, 0.03);
+  EXPECT_EQ(first_image("&timing=known").depth_offset_s, -0.005);
+}
+
 TEST(FrameDrops, lose_a_share_at_random_places) {
   const FrameDrops drops(0.1, 3);
   EXPECT_EQ(drops.arrived_before(1000), 900U);

@@ -39,6 +39,33 @@ TEST(TumSource, plays_frames_in_order_with_calibration) {
   EXPECT_THAT(played.skipped, IsEmpty());
 }
 
+TEST(TumSource, frames_say_how_far_their_images_are_apart_and_what_the_calibration_says) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  folder.append("calibration.yaml", "readout_s: 0.02\ndepth_offset_s: 0.001\n");
+  folder.write("associations.txt",
+               "1.0 rgb/1.0.png 0.987 depth/1.0.png\n1.1 rgb/1.1.png 1.1 depth/1.1.png\n"
+               "1.2 rgb/1.2.png 1.5 depth/1.2.png\n");
+  const auto source = make_source(folder.uri());
+  EXPECT_EQ(source->info().readout_s, 0.02);
+  EXPECT_EQ(source->info().depth_offset_s, 0.001);
+  const Played played = play(folder);
+  ASSERT_THAT(played.frames, SizeIs(3));
+  for (const SourceFrame& frame : played.frames) EXPECT_EQ(frame.image.readout_s, 0.02);
+  EXPECT_NEAR(played.frames[0].image.depth_offset_s, -0.012, 1e-12) << "depth is 13 ms older, the device adds 1 ms";
+  EXPECT_NEAR(played.frames[1].image.depth_offset_s, 0.001, 1e-12);
+  EXPECT_EQ(played.frames[2].image.depth_offset_s, 0) << "farther apart than a frame may say: unknown";
+}
+
+TEST(TumSource, images_of_one_stamp_and_a_plain_calibration_have_no_offset) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  for (const SourceFrame& frame : play(folder).frames) {
+    EXPECT_EQ(frame.image.readout_s, 0);
+    EXPECT_EQ(frame.image.depth_offset_s, 0);
+  }
+}
+
 TEST(TumSource, passes_over_old_frames_which_keep_their_seq) {
   const SequenceFolder folder;
   folder.three_frames();

@@ -113,6 +113,33 @@ TEST(FrameMessages, names_what_is_wrong_with_a_frame) {
   EXPECT_THAT(defect(*frame), HasSubstr("distortion"));
 }
 
+TEST(FrameMessages, refuses_times_that_no_sensor_has) {
+  const auto is_refused = [](msg::Unaligned<double> msg::RgbdFrame::*field, double time_s) {
+    auto frame = good_frame();
+    *frame.*field = time_s;
+    return !defect(*frame).empty();
+  };
+  for (const auto field : {&msg::RgbdFrame::readout_s, &msg::RgbdFrame::depth_offset_s}) {
+    EXPECT_FALSE(is_refused(field, -0.1));
+    EXPECT_FALSE(is_refused(field, 0.1));
+    EXPECT_TRUE(is_refused(field, 0.11));
+    EXPECT_TRUE(is_refused(field, std::nan("")));
+    EXPECT_TRUE(is_refused(field, -std::numeric_limits<double>::infinity()));
+  }
+}
+
+TEST(FrameMessages, hand_on_the_times_of_the_sensor) {
+  auto frame = good_frame();
+  frame->readout_s = 0.02;
+  frame->depth_offset_s = -0.01;
+  const vision::RgbdImage image = vision::view_image(*frame);
+  EXPECT_EQ(image.readout_s, 0.02);
+  EXPECT_EQ(image.depth_offset_s, -0.01);
+  const auto message = std::make_unique<msg::FeatureFrame>();
+  fill_message(*frame, {}, msg::DetectionUse::kNone, *message);
+  EXPECT_EQ(message->readout_s, 0.02);
+}
+
 TEST(FrameMessages, views_rows_of_the_frame_width) {
   auto frame = good_frame();
   frame->depth[320 * 2 + 5] = 777;

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
 #include <set>
 #include <sstream>
@@ -201,6 +202,12 @@ TEST(SlamSystem, refuses_frames_without_intrinsics_or_size) {
   frame->intrinsics = {0, 0, 0, 0};
   EXPECT_THAT(slam.process(*frame).problem, ::testing::HasSubstr("intrinsics"));
   slam.process(*world.view(1));
+  frame = world.view(2);
+  for (const double readout_s : {0.11, -0.11, std::nan("")}) {
+    frame->readout_s = readout_s;
+    EXPECT_THAT(slam.process(*frame).problem, ::testing::HasSubstr("readout time")) << readout_s;
+    EXPECT_EQ(slam.readout_s(), 0);
+  }
   frame = world.view(2);
   frame->count = msg::kMaxFeatures + 1;
   const SlamOutput output = slam.process(*frame);

@@ -90,6 +90,8 @@ LiveSource::LiveSource(std::string uri, std::unique_ptr<LiveFeed> feed, LiveOpti
   const Calibration own = read_calibration(options_.calibration_file);
   info_.camera = own.camera;
   info_.depth_scale_m = own.depth_scale_m;
+  info_.readout_s = own.readout_s;
+  info_.depth_offset_s = own.depth_offset_s;
   calibrated_ = true;
 }
 

@@ -84,7 +84,9 @@ std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, double flo
   if (depth.problem) return skips.add(*depth.problem), std::nullopt;
   const auto mismatch = size_mismatch(name_of(pair.color.message), color.image, depth.image, info.camera);
   if (mismatch) return skips.add(*mismatch), std::nullopt;
-  return to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info);
+  SourceFrame frame = to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info);
+  frame.image.depth_offset_s = depth_offset_s(pair.color.stamp_ns, pair.depth.stamp_ns, info);
+  return frame;
 }
 
 }  // namespace rtd::camera

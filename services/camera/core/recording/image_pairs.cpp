@@ -151,6 +151,8 @@ void ImagePairs::load_calibration(const RecordingOptions& options) {
     const Calibration own = read_calibration(options.calibration_file);
     info_.camera = own.camera;
     info_.depth_scale_m = own.depth_scale_m;
+    info_.readout_s = own.readout_s;
+    info_.depth_offset_s = own.depth_offset_s;
     return;
   }
   if (topics_.info.empty()) {

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <cstring>
 #include <utility>
 
 #include "common/msg/rgbd_frame.hpp"
-#include "common/ros_codec/byte_cursor.hpp"
 #include "common/vision/rgbd_image.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/recording/recording_source.hpp"
@@ -13,12 +14,17 @@
 namespace rtd::camera {
 namespace {
 
-/// The frame behind the 4-byte header of CDR. Throws ros::WireError: too short, a size or calibration that cannot be.
+/// The frame behind the 4-byte header of CDR. Throws ros::WireError: cut, or of a version of the program with another
+/// frame type; a size, calibration or time that cannot be.
 std::unique_ptr<msg::RgbdFrame> to_frame_message(const RecordedMessage& message) {
-  ros::ByteCursor cursor(message.bytes);
-  cursor.take(4);
+  constexpr std::size_t kHeaderBytes = 4, kBytes = kHeaderBytes + sizeof(msg::RgbdFrame);
+  if (message.bytes.size() != kBytes) {
+    throw ros::WireError(fmt::format(
+        "it has {} bytes, a frame has {}: it is cut, or was recorded by another version of RTD-SLAM, which can play it",
+        message.bytes.size(), kBytes));
+  }
   auto frame = std::make_unique<msg::RgbdFrame>();
-  std::memcpy(frame.get(), cursor.take(sizeof(msg::RgbdFrame)).data(), sizeof(msg::RgbdFrame));
+  std::memcpy(frame.get(), message.bytes.data() + kHeaderBytes, sizeof(msg::RgbdFrame));
   if (const std::string defect = vision::defect(*frame); !defect.empty()) throw ros::WireError(defect);
   return frame;
 }
@@ -51,6 +57,7 @@ OwnFrames::OwnFrames(std::string uri, std::unique_ptr<Recording> recording)
     const vision::RgbdImage image = vision::view_image(*frame);
     info_.camera = image.camera;
     info_.depth_scale_m = image.depth_scale_m;
+    info_.readout_s = image.readout_s;
     source_id_ = frame->source_id;
   } catch (const ros::WireError& error) {
     throw SourceError(recording_->name() + ": the first frame of " + topic + " is damaged: " + error.what());
@@ -89,7 +96,10 @@ std::optional<SourceFrame> OwnFrames::decode() {
   if (const auto mismatch = size_mismatch("frame", image.color_bgr, image.depth, info_.camera)) {
     return skips_.add(*mismatch), std::nullopt;
   }
-  return to_frame(image.stamp_ns, image.color_bgr.clone(), image.depth.clone(), info_);
+  SourceFrame frame = to_frame(image.stamp_ns, image.color_bgr.clone(), image.depth.clone(), info_);
+  frame.image.readout_s = image.readout_s;
+  frame.image.depth_offset_s = image.depth_offset_s;
+  return frame;
 }
 
 }  // namespace

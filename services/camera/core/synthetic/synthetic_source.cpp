@@ -115,6 +115,21 @@ const std::vector<NamedMotion>& camera_motions() {
   return motions;
 }
 
+struct NamedTiming {
+  std::string name;
+  bool known;
+};
+const std::vector<NamedTiming>& timings() {
+  static const std::vector<NamedTiming> choices = {{"unknown", false}, {"known", true}};
+  return choices;
+}
+
+/// The parameters whose value is a word.
+const std::vector<std::string>& word_keys() {
+  static const std::vector<std::string> keys = {"sensor", "motion", "timing"};
+  return keys;
+}
+
 /// The choice of this name, for a parameter whose value is a word.
 template <class Named>
 const Named& choose(const SourceUri& uri, const std::string& key, const std::vector<Named>& choices) {
@@ -129,7 +144,7 @@ const Named& choose(const SourceUri& uri, const std::string& key, const std::vec
 
 [[noreturn]] void refuse_parameter(const SourceUri& uri, const std::string& key,
                                    const std::vector<Parameter>& parameters) {
-  std::vector<std::string> keys = {"sensor", "motion"};
+  std::vector<std::string> keys = word_keys();
   for (const Parameter& parameter : parameters) keys.push_back(parameter.key);
   const std::string near = io::nearest_name(key, keys);
   std::string known;
@@ -146,10 +161,11 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
   options.frames = options.scene.frames;
   options.fps = options.scene.fps;
   if (uri.parameters.contains("sensor")) options.faults = choose(uri, "sensor", synthetic::sensor_presets()).faults;
+  if (uri.parameters.contains("timing")) options.timing_known = choose(uri, "timing", timings()).known;
   if (uri.parameters.contains("motion")) options.scene.motion = choose(uri, "motion", camera_motions()).motion;
   const std::vector<Parameter> parameters = parameters_of(options);
   for (const auto& [key, value] : uri.parameters) {
-    if (key == "sensor" || key == "motion") continue;
+    if (std::ranges::find(word_keys(), key) != word_keys().end()) continue;
     const auto known =
         std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& p) { return key == p.key; });
     if (known == parameters.end()) refuse_parameter(uri, key, parameters);
@@ -164,7 +180,11 @@ SyntheticSource::SyntheticSource(std::string uri, const SyntheticOptions& option
       info_{std::move(uri), make_calibration(options), 1.0 / kDepthUnitsPerM, options.fps,
             arriving_frames(options, drops_)},
       scene_(options.scene, options.seed),
-      camera_(scene_, {make_camera(options), make_sensor(options), options.faults, options.fps, options.seed}) {}
+      camera_(scene_, {make_camera(options), make_sensor(options), options.faults, options.fps, options.seed}) {
+  if (!options.timing_known) return;
+  info_.readout_s = options.faults.rolling_shutter_ms / 1000;
+  info_.depth_offset_s = options.faults.depth_lag_ms / 1000;
+}
 
 std::int64_t SyntheticSource::stamp_ns(std::uint64_t exposure) const {
   return kFirstStampNs + static_cast<std::int64_t>(time_s(exposure) * 1e6) * 1000;  // whole µs, as TUM files carry

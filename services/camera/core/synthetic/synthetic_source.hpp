@@ -22,6 +22,7 @@ struct SyntheticOptions {
   bool noise = true;
   int width = 640, height = 480;
   synthetic::SensorFaults faults;
+  bool timing_known = false;  ///< frames say how the shutter rolls and how late depth is, as a calibrated camera's do
 };
 
 /// Reads scene and parameters; throws SourceError naming the parameter, its value, the range or the names known.

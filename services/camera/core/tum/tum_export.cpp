@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/tum/tum_export.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
@@ -36,13 +38,19 @@ void prepare(const fs::path& folder) {
   }
 }
 
+/// The depth image's own stamp; the calibration gives the rest of the time between the two images.
+std::int64_t depth_stamp_ns(const vision::RgbdImage& image, const SourceInfo& info) {
+  const std::int64_t offset_ns = std::llround((image.depth_offset_s - info.depth_offset_s) * 1e9);
+  return std::max<std::int64_t>(0, image.stamp_ns + offset_ns);  // lists have no times before 0
+}
+
 /// The list files while they grow.
 struct Lists {
   std::string rgb = "# timestamp filename\n", depth = rgb, associations;
-  void add(const std::string& stamp, const std::string& file) {
+  void add(const std::string& stamp, const std::string& depth_stamp, const std::string& file) {
     rgb += stamp + " rgb/" + file + '\n';
-    depth += stamp + " depth/" + file + '\n';
-    associations += stamp + " rgb/" + file + ' ' + stamp + " depth/" + file + '\n';
+    depth += depth_stamp + " depth/" + file + '\n';
+    associations += stamp + " rgb/" + file + ' ' + depth_stamp + " depth/" + file + '\n';
   }
 };
 
@@ -58,6 +66,7 @@ std::uint64_t export_tum(FrameSource& source, const fs::path& folder, std::uint6
                          const OnFrame& on_frame) {
   check_end(source, max_frames);
   prepare(folder);
+  const SourceInfo& info = source.info();
   Lists lists;
   std::uint64_t frames = 0;
   while (max_frames == 0 || frames < max_frames) {
@@ -70,7 +79,7 @@ std::uint64_t export_tum(FrameSource& source, const fs::path& folder, std::uint6
       fs::create_directory(folder / "mask");
       write_png(folder / "mask" / file, frame->dynamic_mask);
     }
-    lists.add(stamp, file);
+    lists.add(stamp, geometry::tum_stamp(depth_stamp_ns(frame->image, info)), file);
     ++frames;
     if (on_frame) on_frame(frames);
   }
@@ -81,7 +90,7 @@ std::uint64_t export_tum(FrameSource& source, const fs::path& folder, std::uint6
   geometry::write_tum_trajectory(groundtruth, source.groundtruth(), geometry::TumStyle::kGroundtruth);
   write_text(folder / "groundtruth.txt", groundtruth.str());
   write_text(folder / "calibration.yaml",
-             to_yaml({source.info().camera, source.info().depth_scale_m, source.info().fps}));
+             to_yaml({info.camera, info.depth_scale_m, info.fps, info.readout_s, info.depth_offset_s}));
   return frames;
 }
 

@@ -164,6 +164,8 @@ TumSource::TumSource(std::string uri, std::filesystem::path folder, Options opti
   for (SkippedInput& input : list.skipped) skips_.add(std::move(input));
   groundtruth_ = read_groundtruth(folder_, pairs_);
   info_ = {std::move(uri), calibration.camera, calibration.depth_scale_m, calibration.fps, pairs_.size()};
+  info_.readout_s = calibration.readout_s;
+  info_.depth_offset_s = calibration.depth_offset_s;
   if (pairs_.empty()) throw SourceError("no usable frame in " + folder_.string() + ": its lists are empty");
   read_first(folder_.string());
 }
@@ -181,6 +183,7 @@ std::optional<SourceFrame> TumSource::decode() {
   if (depth.problem) return skips_.add(*depth.problem), std::nullopt;
   if (const auto problem = check_sizes(pair, color.image, depth.image)) return skips_.add(*problem), std::nullopt;
   SourceFrame frame = to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info_);
+  frame.image.depth_offset_s = depth_offset_s(pair.color.stamp_ns, pair.depth.stamp_ns, info_);
   if (options_.masks) frame.dynamic_mask = read_mask(pair);
   return frame;
 }

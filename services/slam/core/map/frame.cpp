@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/msg/sensor_time.hpp"
+
 namespace rtd::slam {
 namespace {
 
@@ -38,6 +40,10 @@ FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& conf
   FrameInput input;
   if (!usable_intrinsics(message)) {
     input.error = "intrinsics are zero or not finite";
+    return input;
+  }
+  if (!msg::is_sensor_time(message.readout_s)) {
+    input.error = "readout time is not finite or beyond 0.1 s";
     return input;
   }
   if (message.width == 0 || message.height == 0 || message.count > msg::kMaxFeatures) {
