@@ -28,7 +28,7 @@ float SurfaceBeliefs::near(int cell, float depth_m, float tolerance_m) const {
 
 CellBeliefs SurfaceBeliefs::recall(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
                                    const geometry::CameraModel& camera, const Eigen::Isometry3d& T_last_current,
-                                   float tolerance_m) const {
+                                   const CellMask* where, float tolerance_m) const {
   constexpr float kMinDepthM = 0.1F;
   CellBeliefs recalled(grid.depth_m.size(), kNoBelief);
   if (beliefs_.empty() || !(shape_ == grid.shape)) return recalled;
@@ -38,7 +38,7 @@ CellBeliefs SurfaceBeliefs::recall(const DepthGrid& grid, const std::vector<Eige
   const auto fx = static_cast<float>(p.fx), fy = static_cast<float>(p.fy);
   const auto cx = static_cast<float>(p.cx), cy = static_cast<float>(p.cy);
   for (std::size_t cell = 0; cell < recalled.size(); ++cell) {
-    if (grid.depth_m[cell] <= 0) continue;
+    if (grid.depth_m[cell] <= 0 || (where != nullptr && (*where)[cell] == 0)) continue;
     const Eigen::Vector3f p_last = rotation * (rays[cell] * grid.depth_m[cell]) + translation;
     if (p_last.z() < kMinDepthM) continue;
     const int at = shape_.cell_at(fx * p_last.x() / p_last.z() + cx, fy * p_last.y() / p_last.z() + cy);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/geometry/camera_model.hpp"
+#include "services/filter/core/surfaces/cell_masks.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {
@@ -40,9 +41,10 @@ class SurfaceBeliefs {
 
   /// Looks up every measured cell of the current frame where `T_last_current` puts it in the last one; the depth there
   /// must agree within `tolerance_m`, at the cell or at one beside it. `rays`: viewing rays of the cells at z = 1.
+  /// `where`, if given: only cells that are not 0 there.
   CellBeliefs recall(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
                      const geometry::CameraModel& camera, const Eigen::Isometry3d& T_last_current,
-                     float tolerance_m = kOwnDepthM) const;
+                     const CellMask* where = nullptr, float tolerance_m = kOwnDepthM) const;
 
   static constexpr float kOwnDepthM = 0.15F;
 

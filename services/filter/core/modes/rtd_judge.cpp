@@ -77,10 +77,11 @@ CellMask RtdJudge::without_known_surfaces(const Scene& scene, CellMask may_move)
   return may_move;
 }
 
-CellBeliefs RtdJudge::recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const {
+CellBeliefs RtdJudge::recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera,
+                                     const CellMask* where) const {
   if (views_.empty()) return CellBeliefs(static_cast<std::size_t>(scene.shape().size()), kNoBelief);
   return beliefs_.recall(scene.surfaces.grid, scene.surfaces.rays, scene.image.camera,
-                         views_.newest().T_world_camera.inverse() * T_world_camera);
+                         views_.newest().T_world_camera.inverse() * T_world_camera, where);
 }
 
 /// Memory spreads where surfaces are divided in another way than before: what has rested for long does not take part.
@@ -89,7 +90,7 @@ void RtdJudge::forget_what_is_known_to_rest(const Scene& scene, const Foreground
                                             const Eigen::Isometry3d& T_world_camera, CellMask& hold_cs) const {
   const bool remembers = std::any_of(hold_cs.begin(), hold_cs.end(), [](int cs) { return cs != 0; });
   if (!remembers || !config_.techniques.belief) return;
-  const CellBeliefs beliefs = recall_beliefs(scene, T_world_camera);
+  const CellBeliefs beliefs = recall_beliefs(scene, T_world_camera, &hold_cs);
   const float known = log_odds(kKnownToRest);
   const CellMask beside_people = dilate(scene.shape(), foreground.high, kBesidePeopleCells);
   for (std::size_t cell = 0; cell < beliefs.size(); ++cell) {

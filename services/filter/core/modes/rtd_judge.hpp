@@ -49,7 +49,8 @@ class RtdJudge final : public ModeJudge {
   /// There is something to compare this frame with.
   bool compares() const { return uses_geometry() && !views_.empty(); }
   CellMask without_known_surfaces(const Scene& scene, CellMask may_move) const;
-  CellBeliefs recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera) const;
+  CellBeliefs recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera,
+                             const CellMask* where = nullptr) const;
   void forget_what_is_known_to_rest(const Scene& scene, const Foreground& foreground,
                                     const Eigen::Isometry3d& T_world_camera, CellMask& hold_cs) const;
   RememberedMotion recall_movers(const Scene& scene, const Foreground& foreground,
