@@ -162,6 +162,17 @@ class Docs(unittest.TestCase):
                           for number, line in enumerate(without_code_blocks(text_of(page)), 1)
                           if len(line) > MAX_LINE and not line.startswith("|") and "://" not in line])
 
+    def test_tables_are_whole(self):
+        """A line of dashes follows a heading with as many columns; no table has been joined into one line."""
+        problems = []
+        for page in PAGES:
+            lines = without_code_blocks(text_of(page))
+            for number, (heading, line) in enumerate(zip(["", *lines], lines), 1):
+                if "|---|" in line and (not re.fullmatch(r"\|(-+\|)+", line) or not heading.startswith("|")
+                                        or heading.replace("\\|", "").count("|") != line.count("|")):
+                    problems.append(f"{page}:{number}: a table without heading, or joined into one line")
+        self.assert_none(problems)
+
     def test_no_document_outside_the_project_is_cited(self):
         self.assert_none([f"{path}: {found.group()}" for path in FILES
                           if path.suffix in (".cpp", ".hpp", ".txt", ".cmake", ".idl", ".yaml")
