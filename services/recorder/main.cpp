@@ -12,6 +12,7 @@
 #include "common/mcap/copy.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/service/command_line.hpp"
+#include "common/service/json_text.hpp"
 #include "common/service/run_service.hpp"
 #include "services/recorder/recorder_service.hpp"
 
@@ -62,7 +63,7 @@ void print(const Report& report, const FileOptions& options, nlohmann::json summ
                   {"problem_count", report.problem_count},
                   {"problems", nlohmann::json::array()}});
   for (const mcap::Problem& problem : report.problems) summary["problems"].push_back(to_string(problem));
-  std::cout << summary.dump(2) << '\n';
+  std::cout << service::json_text(summary) << '\n';
 }
 
 void print(const mcap::RecoverReport& report, const FileOptions& options) {

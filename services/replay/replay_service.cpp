@@ -18,6 +18,7 @@
 #include "common/mcap/recording_file.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/config.hpp"
+#include "common/service/json_text.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/pacer.hpp"
@@ -274,7 +275,7 @@ service::ExitCode ReplayService::finish(const Player& player, PlayOutcome outcom
   if (outcome == PlayOutcome::kEnded) outputs_->wait_acknowledged(kLastAcknowledgementMs);
   const nlohmann::ordered_json report = report_of(player, *outputs_, config_.file, outcome, reader_->problems());
   SPDLOG_INFO("event=summary {}", log_text(report));
-  if (config_.json) std::cout << report.dump(2) << std::endl;
+  if (config_.json) std::cout << service::json_text(report) << std::endl;
   for (const mcap::Problem& problem : reader_->problems().listed())
     SPDLOG_WARN("event=recording_damaged kind={} cause=\"{}\"", mcap::name_of(problem.kind), mcap::to_string(problem));
   if (outcome == PlayOutcome::kUnanswered)

@@ -9,6 +9,7 @@
 #include "common/mcap/recording_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/json_text.hpp"
 #include "services/recorder/inspect/recording_diff.hpp"
 #include "services/recorder/inspect/recording_report.hpp"
 
@@ -29,7 +30,7 @@ void warn(const Contents& contents, const std::string& path, std::ostream& err) 
 
 template <class Diff>
 void print(const Diff& diff, bool json, std::ostream& out) {
-  out << (json ? to_json(diff).dump(2) + '\n' : to_text(diff));
+  out << (json ? service::json_text(to_json(diff)) + '\n' : to_text(diff));
 }
 
 int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream& err) {
@@ -115,7 +116,7 @@ int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
     how.on_progress = [&](std::uint64_t bytes) { progress.reach(bytes); };
     RecordingReport report = report_on(source, how);
     report.being_written = source.being_written();
-    out << (options.json ? to_json(report, options.file).dump(2) + '\n' : to_text(report, options.file));
+    out << (options.json ? service::json_text(to_json(report, options.file)) + '\n' : to_text(report, options.file));
     return report.damaged() ? service::kPartialLoss : service::kOk;
   });
 }

@@ -33,7 +33,7 @@ class RecordingCommandsTest : public testing::Test {
     return file(name, io::Bytes(view.begin(), view.end()));
   }
   int info(const std::string& path, bool json = false) { return run_info({path, json}, out_, err_); }
-  int diff(const std::string& a, const std::string& b) { return run_diff({a, b}, out_, err_); }
+  int diff(const std::string& a, const std::string& b, bool json = false) { return run_diff({a, b, json}, out_, err_); }
 
   std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / ("rtd_rec_" + std::to_string(getpid()));
   std::ostringstream out_, err_;
@@ -49,6 +49,13 @@ TEST_F(RecordingCommandsTest, info_of_a_cut_file_is_exit_code_3_behind_what_can_
   bytes.resize(bytes.size() - 10);
   EXPECT_EQ(info(file("a.mcap", bytes), true), 3);
   EXPECT_THAT(out_.str(), HasSubstr("\"messages\": 5"));
+}
+
+TEST_F(RecordingCommandsTest, json_replaces_bytes_that_are_not_utf8) {
+  const std::string latin1 = file("a.mcap", recording_of(regular_messages("/caf\xe9", 5), {}, "test_msgs/msg/B\xf6"));
+  EXPECT_EQ(info(latin1, true), 0) << err_.str();
+  EXPECT_EQ(diff(latin1, latin1, true), 0) << err_.str();
+  EXPECT_THAT(out_.str(), testing::AllOf(HasSubstr("/caf\xef\xbf\xbd"), HasSubstr("B\xef\xbf\xbd")));
 }
 
 TEST_F(RecordingCommandsTest, what_is_no_recording_is_named_with_a_way_out) {
