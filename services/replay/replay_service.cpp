@@ -276,8 +276,10 @@ service::ExitCode ReplayService::finish(const Player& player, PlayOutcome outcom
   const nlohmann::ordered_json report = report_of(player, *outputs_, config_.file, outcome, reader_->problems());
   SPDLOG_INFO("event=summary {}", log_text(report));
   if (config_.json) std::cout << service::json_text(report) << std::endl;
-  for (const mcap::Problem& problem : reader_->problems().listed())
+  for (const mcap::Problem& problem : reader_->problems().listed()) {
+    if (!mcap::is_damage(problem)) continue;
     SPDLOG_WARN("event=recording_damaged kind={} cause=\"{}\"", mcap::name_of(problem.kind), mcap::to_string(problem));
+  }
   if (outcome == PlayOutcome::kUnanswered)
     return fail(fmt::format("no message of {} for number {} of {} within {:g} s: are its publishers alive?",
                             config_.lockstep, player.unanswered_seq(), paced_->topic.name, config_.result_timeout_s));

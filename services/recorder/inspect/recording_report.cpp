@@ -138,9 +138,7 @@ void report_from_everything(const io::ByteSource& source, const ReportOptions& o
 }
 
 bool is_damage(const mcap::Problem& problem, bool being_written) {
-  using Kind = mcap::ProblemKind;
-  if (problem.kind == Kind::kUnknownRecord || problem.kind == Kind::kNoSummary) return problem.data_lost;
-  return problem.kind != Kind::kTruncated || !being_written;
+  return mcap::is_damage(problem) && (problem.kind != mcap::ProblemKind::kTruncated || !being_written);
 }
 
 }  // namespace
