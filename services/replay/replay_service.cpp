@@ -52,6 +52,17 @@ void require(const char* name, double value, double max) {
   throw ConfigError(fmt::format("{} {}: give a number from 0 to {:g}", name, value, max));
 }
 
+/// "/a (json), /b": the topics, and the encodings that are not CDR.
+std::string text_of(const std::map<mcap::ChannelId, mcap::Channel>& channels) {
+  if (channels.empty()) return "no topics";
+  std::string text;
+  for (const auto& [id, channel] : channels) {
+    text += (text.empty() ? "" : ", ") + channel.topic;
+    if (!is_cdr(channel)) text += " (" + encoding_of(channel) + ")";
+  }
+  return text;
+}
+
 /// Throws ConfigError naming the option, the value and what is allowed.
 void validate(const ServiceConfig& config) {
   if (config.file.empty()) throw ConfigError("name a recording: rtd replay FILE (replay.file)");
@@ -147,12 +158,24 @@ void ReplayService::choose_topics() {
   std::vector<std::string> known;
   for (const auto& [id, channel] : reader_->summary().channels) {
     known.push_back(channel.topic);
-    if (choice.wants(channel.topic)) channels_.push_back(&channel);
+    if (!choice.wants(channel.topic)) continue;
+    if (is_cdr(channel)) {
+      channels_.push_back(&channel);
+    } else {
+      left_out_.push_back(&channel);
+    }
   }
-  const std::string listed = known.empty() ? "no topics" : fmt::format("{}", fmt::join(known, ", "));
+  const std::string listed = text_of(reader_->summary().channels);
   if (const std::vector<std::string> unmet = choice.unmet(known); !unmet.empty())
     throw ConfigError(fmt::format("--topics {}: not in {}; it has {}", fmt::join(unmet, ", "), config_.file, listed));
-  if (channels_.empty()) throw ConfigError(fmt::format("{}: nothing to play; it has {}", config_.file, listed));
+  if (channels_.empty())
+    throw ConfigError(fmt::format("{}: nothing to play{}; it has {}", config_.file,
+                                  left_out_.empty() ? "" : ", for DDS carries only messages in CDR", listed));
+  for (const mcap::Channel* channel : left_out_)
+    SPDLOG_WARN(
+        "event=channel_left_out topic={} channel={} encoding={} cause=\"DDS carries only messages in CDR\" "
+        "fix=\"record it in ROS 2 or DDS, or use --exclude {}\"",
+        channel->topic, channel->id, encoding_of(*channel), channel->topic);
 }
 
 void ReplayService::choose_span() {

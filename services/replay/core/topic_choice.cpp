@@ -33,6 +33,14 @@ std::string topic_name(const std::string& name, const std::string& whole) {
 
 }  // namespace
 
+bool is_cdr(const mcap::Channel& channel) {
+  return channel.message_encoding == "cdr";
+}
+
+std::string encoding_of(const mcap::Channel& channel) {
+  return channel.message_encoding.empty() ? "none" : channel.message_encoding;
+}
+
 bool TopicChoice::wants(const std::string& topic) const {
   if (matches_any(excluded_, topic)) return false;
   return wanted_.empty() ? topic != kHeartbeats : matches_any(wanted_, topic);

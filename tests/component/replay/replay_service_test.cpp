@@ -191,6 +191,28 @@ TEST_F(ReplayServiceTest, refuses_types_whose_fields_were_others_when_they_were_
   EXPECT_EQ(ended(), service::kOk);
 }
 
+TEST_F(ReplayServiceTest, leaves_out_channels_that_are_not_in_cdr) {
+  const std::vector<Piece> in_cdr = frames_and_boxes();
+  std::vector<Piece> pieces = in_cdr;
+  pieces.push_back({"rt/settings", kEpoch, kEpoch, "{\"gain\": 1}", "json"});
+  record(pieces);
+  Recorder recorder(*raw_);
+  config_.rate = 0;
+  testing::internal::CaptureStdout();
+  start();
+  const std::vector<Piece> again = recorder.wait(in_cdr.size());
+  EXPECT_EQ(ended(), service::kOk);
+  EXPECT_EQ(recorder.wait(in_cdr.size() + 1, std::chrono::seconds(1)).size(), in_cdr.size());
+  for (const char* topic : {"rtd/features", "rt/boxes"}) expect_same(in_cdr, again, topic);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), AllOf(HasSubstr("/settings"), HasSubstr("json")));
+}
+
+TEST_F(ReplayServiceTest, refuses_a_recording_of_which_nothing_is_in_cdr) {
+  record({{"rt/settings", kEpoch, kEpoch, "{}", "json"}, {"rt/old", kEpoch, kEpoch, "abcd", "ros1"}});
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("nothing to play"), HasSubstr("CDR"), HasSubstr("/settings (json)"),
+                               HasSubstr("/old (ros1)")));
+}
+
 TEST_F(ReplayServiceTest, names_the_option_that_is_wrong_and_what_there_is) {
   record(frames_and_boxes());
   const ServiceConfig good = config_;
