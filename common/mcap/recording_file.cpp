@@ -21,7 +21,11 @@ struct KnownFormat {
 };
 
 constexpr std::array kOtherFormats = {
-    KnownFormat{"#ROSBAG V2.0", "a ROS 1 bag: play it with --source bag:FILE or make an MCAP of it with 'rtd convert'"},
+    KnownFormat{
+        "#ROSBAG V2.0",
+        "a ROS 1 bag: MCAP's own tool makes a recording with all its topics ('mcap convert FILE.bag FILE.mcap'); "
+        "of its colour and depth images alone, 'rtd convert bag:FILE NEW.mcap' makes one and --source bag:FILE "
+        "plays them"},
     KnownFormat{"SQLite format 3", "a rosbag2 database: make an MCAP of it with 'ros2 bag convert'"},
     KnownFormat{"\x28\xb5\x2f\xfd", "compressed with zstd: unpack it first ('zstd -d')"},
     KnownFormat{"\x04\x22\x4d\x18", "compressed with LZ4: unpack it first ('lz4 -d')"},
