@@ -78,11 +78,14 @@ bool looks_like_recording(const io::ByteSource& source) {
   return header && header->opcode == Opcode::kHeader && begins_record(window, kMagic.size());
 }
 
+void require_recording(const io::ByteSource& source, const std::string& path) {
+  if (!looks_like_recording(source)) throw RecordingFileError(path + ": " + explain(source));
+}
+
 io::FileSource open_recording(const std::string& path) {
   try {
     const fs::path file = recording_path(path);
-    const io::FileSource source(file);
-    if (!looks_like_recording(source)) throw RecordingFileError(path + ": " + explain(source));
+    require_recording(io::FileSource(file), path);
     return io::FileSource(file);
   } catch (const io::IoError& error) {
     throw RecordingFileError(error.what());

@@ -20,6 +20,10 @@ class RecordingFileError : public std::runtime_error {
 /// (byte_sink.hpp): the folder holds no recording, or several parts of a split one.
 std::filesystem::path recording_path(const std::filesystem::path& path);
 
+/// Throws RecordingFileError, which says what the file is instead, unless looks_like_recording(). `path` is for the
+/// text.
+void require_recording(const io::ByteSource& source, const std::string& path);
+
 /// Opens an MCAP file, or the only one of a folder. Throws RecordingFileError: missing, unreadable, empty, another
 /// format. A file whose first bytes are damaged passes when a header follows.
 io::FileSource open_recording(const std::string& path);
