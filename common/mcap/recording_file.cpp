@@ -57,7 +57,9 @@ fs::path recording_path(const fs::path& path) {
     if (entry.path().extension() == ".mcap") files.push_back(entry.path());
   std::ranges::sort(files);
   if (files.size() == 1) return files.front();
-  if (files.empty()) throw io::IoError(EISDIR, path.string() + ": this folder holds no .mcap file");
+  if (files.empty())
+    throw io::IoError(EISDIR,
+                      path.string() + ": this folder holds no .mcap file: name a recording or a folder with one");
   throw io::IoError(EISDIR, path.string() + ": this folder holds " + std::to_string(files.size()) +
                                 " .mcap files: name one of them, e.g. " + files.front().string() +
                                 ", or join them: rtd record join " + path.string() + " -o FILE");

@@ -123,7 +123,8 @@ std::vector<fs::path> files_of(const std::vector<std::string>& inputs) {
     const std::size_t before = files.size();
     for (const fs::directory_entry& entry : fs::directory_iterator(input))
       if (entry.path().extension() == ".mcap") files.push_back(entry.path());
-    if (files.size() == before) throw io::IoError(EISDIR, input + ": this folder holds no .mcap file");
+    if (files.size() == before)
+      throw io::IoError(EISDIR, input + ": this folder holds no .mcap file: name the parts, or their folder");
   }
   return files;
 }
