@@ -39,11 +39,16 @@ std::string first_bytes(const io::ByteSource& source) {
   return {reinterpret_cast<const char*>(bytes.data()), count};
 }
 
-std::string explain(const io::ByteSource& source) {
+std::string other_format(const io::ByteSource& source) {
   const std::string begin = first_bytes(source);
-  if (begin.empty()) return "the file is empty: nothing was recorded, or the disk was full from the start";
   for (const KnownFormat& format : kOtherFormats)
-    if (begin.starts_with(format.begin)) return std::string("this is ") + format.advice;
+    if (begin.starts_with(format.begin)) return format.advice;
+  return {};
+}
+
+std::string explain(const io::ByteSource& source) {
+  if (source.size() == 0) return "the file is empty: nothing was recorded, or the disk was full from the start";
+  if (const std::string other = other_format(source); !other.empty()) return "this is " + other;
   return "this is not an MCAP file: it does not begin with the MCAP magic; 'rtd record' writes such files";
 }
 
@@ -63,6 +68,14 @@ fs::path recording_path(const fs::path& path) {
   throw io::IoError(EISDIR, path.string() + ": this folder holds " + std::to_string(files.size()) +
                                 " .mcap files: name one of them, e.g. " + files.front().string() +
                                 ", or join them: rtd record join " + path.string() + " -o FILE");
+}
+
+std::string other_format(const std::string& path) {
+  try {
+    return other_format(io::FileSource(recording_path(path)));
+  } catch (const io::IoError& error) {
+    throw RecordingFileError(error.what());
+  }
 }
 
 bool looks_like_recording(const std::string& path) {

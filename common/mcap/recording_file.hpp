@@ -28,6 +28,10 @@ void require_recording(const io::ByteSource& source, const std::string& path);
 /// format. A file whose first bytes are damaged passes when a header follows.
 io::FileSource open_recording(const std::string& path);
 
+/// What a file of another well-known format is and how to make a recording of it: "a ROS 1 bag: ..."; empty for all
+/// other files. Throws RecordingFileError.
+std::string other_format(const std::string& path);
+
 /// True when the file begins as an MCAP file does, or as one whose magic is damaged.
 bool looks_like_recording(const io::ByteSource& source);
 /// The same of a file, or of the only recording in a folder. Throws RecordingFileError.

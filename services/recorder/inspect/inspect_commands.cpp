@@ -47,11 +47,25 @@ int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream&
   return in_a.data_lost || in_b.data_lost ? service::kPartialLoss : service::kOk;
 }
 
+constexpr char kCompared[] = "'rtd diff' compares two MCAP recordings, or two trajectories in TUM format";
+
+eval::Trajectory read_trajectory(const std::string& path) {
+  try {
+    return eval::read_tum_trajectory(path);
+  } catch (const eval::TrajectoryError& error) {
+    throw eval::TrajectoryError(std::string(error.what()) + "; " + kCompared);
+  }
+}
+
 int diff_trajectories(const DiffRequest& request, std::ostream& out) {
-  const TrajectoryDiff difference =
-      diff(eval::read_tum_trajectory(request.a), eval::read_tum_trajectory(request.b), request.tolerance);
+  const TrajectoryDiff difference = diff(read_trajectory(request.a), read_trajectory(request.b), request.tolerance);
   print(difference, request.json, out);
   return difference.equal() ? service::kOk : service::kRunFailed;
+}
+
+void refuse_other_format(const std::string& path) {
+  if (const std::string other = mcap::other_format(path); !other.empty())
+    throw mcap::RecordingFileError(path + " is " + other + "; " + kCompared);
 }
 
 }  // namespace
@@ -90,6 +104,8 @@ CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
 int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
   return service::report_errors<mcap::RecordingFileError, eval::TrajectoryError>("rtd diff", err, [&] {
     const bool a = mcap::looks_like_recording(request.a), b = mcap::looks_like_recording(request.b);
+    if (!a) refuse_other_format(request.a);
+    if (!b) refuse_other_format(request.b);
     if (a != b)
       throw mcap::RecordingFileError((a ? request.a : request.b) + " is a recording, " + (a ? request.b : request.a) +
                                      " is not: compare two files of the same kind");

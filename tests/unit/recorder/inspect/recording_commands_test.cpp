@@ -102,6 +102,16 @@ TEST_F(RecordingCommandsTest, diff_of_a_damaged_recording_is_no_clean_bill) {
   EXPECT_THAT(err_.str(), HasSubstr("damaged"));
 }
 
+TEST_F(RecordingCommandsTest, diff_names_what_it_compares_and_how_to_convert) {
+  const std::string bag = file("a.bag", std::string("#ROSBAG V2.0\nxxx"));
+  EXPECT_EQ(diff(bag, bag), 2);
+  EXPECT_THAT(err_.str(), testing::AllOf(HasSubstr("a.bag is a ROS 1 bag"), HasSubstr("mcap convert"),
+                                         HasSubstr("compares two MCAP recordings, or two trajectories")));
+  const std::string table = file("a.csv", std::string("1 2 3 4\n"));
+  EXPECT_EQ(diff(table, table), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("4 columns instead of 8 (stamp tx ty tz qx qy qz qw); 'rtd diff' compares"));
+}
+
 TEST_F(RecordingCommandsTest, diff_compares_trajectories_and_no_two_kinds) {
   const std::string a = file("a.txt", std::string("1.0 0 0 0 0 0 0 1\n1.1 1 0 0 0 0 0 1\n"));
   const std::string b = file("b.txt", std::string("1.0 0 0 0 0 0 0 1\n1.1 1 0 0.5 0 0 0 1\n"));
