@@ -148,6 +148,10 @@ void ReplayService::open() {
                                                      .restamp = config_.restamp,
                                                      .wait_for_readers = window_ == 0 && !by_time,
                                                      .frames_apart = by_time});
+  // rtd run reads it before it starts in this domain.
+  runtime_.heartbeat.set_metric("run_topics",
+                                static_cast<double>(std::ranges::count_if(
+                                    outputs_->all(), [](const auto& output) { return is_run_topic(output.first); })));
   if (window_ > 0) choose_paced_topic();
 }
 
