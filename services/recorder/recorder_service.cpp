@@ -215,6 +215,7 @@ void RecorderService::record_until_stopped() {
     while (const auto message = queue_.pop()) recording_->write(*message, service::monotonic_ns());
     const std::int64_t now_ns = service::monotonic_ns();
     recording_->tick(now_ns);
+    readers_->tick(now_ns);
     if (now_ns - reported_ns_ >= kReportPeriodNs) report_state(now_ns);
   }
 }

@@ -6,6 +6,7 @@
 
 #include <future>
 
+#include "common/ros2/schema_texts.hpp"
 #include "common/ros2/type_description.hpp"
 #include "common/service/config.hpp"
 #include "tests/component/replay/raw_recording.hpp"
@@ -189,6 +190,24 @@ TEST_F(ReplayServiceTest, refuses_types_whose_fields_were_others_when_they_were_
   write_recording(file_.path(), frames_and_boxes(), true, ros2::own_idl());
   start();
   EXPECT_EQ(ended(), service::kOk);
+}
+
+TEST_F(ReplayServiceTest, publishes_the_texts_of_types_that_are_not_built_in) {
+  write_recording(file_.path(), {{"rt/boxes", kEpoch, kEpoch, cdr_of(1, 20)}}, true, "struct Blob_ { octet b; };");
+  start();
+  std::promise<std::vector<ros2::SchemaText>> came;
+  bus::RawHandlers handlers;
+  handlers.on_sample = [&](const bus::RawSample& sample) { came.set_value(ros2::decode_schemas(sample.cdr())); };
+  const auto reader = raw_->reader({ros2::kSchemasTopic, ros2::kSchemasType}, {.transient_local = true}, handlers);
+  auto texts = came.get_future();
+  ASSERT_EQ(texts.wait_for(std::chrono::seconds(10)), std::future_status::ready);
+  const std::vector<ros2::SchemaText> schemas = texts.get();
+  EXPECT_EQ(ended(), service::kOk);
+  ASSERT_EQ(schemas.size(), 1U);
+  EXPECT_EQ(schemas[0].dds_type, "test_msgs::msg::dds_::Blob_");
+  EXPECT_EQ(schemas[0].definition.name, "test_msgs/msg/Blob");
+  EXPECT_EQ(schemas[0].definition.encoding, "omgidl");
+  EXPECT_EQ(schemas[0].definition.text, "struct Blob_ { octet b; };");
 }
 
 TEST_F(ReplayServiceTest, leaves_out_channels_that_are_not_in_cdr) {
