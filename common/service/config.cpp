@@ -190,7 +190,8 @@ void ConfigBinder::set(const std::string& assignment, const std::vector<std::str
 }
 
 void ConfigBinder::load_file(const std::string& path, const std::vector<std::string>& other_sections) {
-  if (std::filesystem::is_directory(path))
+  std::error_code unreadable;
+  if (std::filesystem::is_directory(path, unreadable))
     throw ConfigError(fmt::format("config file '{}' is a folder: name a file in it with --config", path));
   std::ifstream file(path);
   if (!file) throw ConfigError(fmt::format("config file '{}' cannot be read: check the path given to --config", path));
