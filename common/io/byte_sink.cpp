@@ -31,6 +31,8 @@ std::string reason(int error_number) {
       return "no permission to write in this folder";
     case ENOENT:
       return "there is no such folder";
+    case EISDIR:
+      return "this is a folder: name a file in it";
     case EFBIG:
       return "the file may not become larger (ulimit -f, or the file system)";
     default:

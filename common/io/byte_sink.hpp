@@ -3,19 +3,29 @@
 #pragma once
 
 #include <atomic>
+#include <cerrno>
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <stdexcept>
+#include <string>
 #include <system_error>
 
 #include "common/io/bytes.hpp"
 
 namespace rtd::io {
 
-/// A sink or source failed: what() names the path and the system's reason, code() is the errno.
+/// A sink or source failed: what() names the path and the system's reason, code() is the errno. Of a folder in place of
+/// a file the system's words say less than the given text: they are left out.
 class IoError : public std::system_error {
  public:
-  IoError(int error_number, const std::string& what) : std::system_error(error_number, std::generic_category(), what) {}
+  IoError(int error_number, const std::string& what)
+      : std::system_error(error_number, std::generic_category(), what),
+        text_(error_number == EISDIR ? what : std::system_error::what()) {}
+  const char* what() const noexcept override { return text_.what(); }
+
+ private:
+  std::runtime_error text_;  ///< unlike a string, copied without throwing
 };
 
 /// Where a writer puts its bytes, in order. append() is for one thread; sync() and the positions for any.

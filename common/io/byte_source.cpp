@@ -31,7 +31,8 @@ FileSource::FileSource(const std::filesystem::path& path)
     error_number = S_ISDIR(status.st_mode) ? EISDIR : ESPIPE;
   if (error_number != 0) {
     if (fd_ >= 0) ::close(fd_);
-    throw IoError(error_number, path.string() + ": cannot read");
+    throw IoError(error_number,
+                  path.string() + (error_number == EISDIR ? ": this is a folder: name a file in it" : ": cannot read"));
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
 }

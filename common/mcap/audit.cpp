@@ -136,6 +136,8 @@ Found IndexAudit::check(const MetadataIndex& index) const {
 
 Found IndexAudit::check(const SummaryOffset& group) const {
   const auto seen = groups_.find(group.group_opcode);
+  // Some writers list the groups that they left empty, too.
+  if (seen == groups_.end() && group.group_length == 0) return std::nullopt;
   if (seen == groups_.end()) return "the summary has no such group";
   return first_of({differs("the start of the group", group.group_start, seen->second.start),
                    differs("the length of the group", group.group_length, seen->second.length)});

@@ -17,6 +17,8 @@ struct ReaderOptions {
   std::uint64_t cache_bytes = 1 << 26;       ///< of uncompressed chunks that an IndexedReader keeps
   std::size_t max_problems = 1000;           ///< listed; more are counted
   bool check_crcs = true;
+  /// Delivers the whole records of an uncompressed chunk that the end of the file cuts. No CRC covers them.
+  bool salvage_cut_chunk = false;
 };
 
 /// The uncompressed records of a chunk, or why there are none.

@@ -145,7 +145,9 @@ std::optional<std::uint64_t> RecoverReport::messages_lost() const {
 RecoverReport recover(const io::ByteSource& source, io::ByteSink& sink, const RecoverOptions& options) {
   RecoverReport report;
   Recovered file(sink, options.writer);
-  copy(source, file, options, 0, report);
+  CopyOptions salvaging = options;
+  salvaging.reader.salvage_cut_chunk = true;
+  copy(source, file, salvaging, 0, report);
   report.recovered = file.finish();
   report.announced = file.announced;
   return report;

@@ -38,7 +38,8 @@ struct JoinReport : CopyReport {
   Statistics joined;  ///< what the new file holds
 };
 
-/// Copies everything of `source` that is whole, in file order, byte by byte, into a file with summary.
+/// Copies everything of `source` that is whole, in file order, byte by byte, into a file with summary. Of an
+/// uncompressed chunk that the end of the file cuts, the whole messages; no checksum covers these.
 RecoverReport recover(const io::ByteSource& source, io::ByteSink& sink, const RecoverOptions& options = {});
 
 /// Copies the parts one behind the other: messages byte by byte, channels that are the same in several parts as one,

@@ -19,6 +19,11 @@ std::string name_of(ProblemKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
+bool is_damage(const Problem& problem) {
+  const bool legal = problem.kind == ProblemKind::kUnknownRecord || problem.kind == ProblemKind::kNoSummary;
+  return !legal || problem.data_lost;
+}
+
 std::string to_string(const Problem& problem) {
   const std::string times = problem.count > 1 ? " (" + std::to_string(problem.count) + " times)" : "";
   return "offset " + std::to_string(problem.offset) + ": " + problem.what + times + "; " + problem.consequence;

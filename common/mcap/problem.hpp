@@ -38,6 +38,9 @@ struct Problem {
   std::uint64_t count = 1;   ///< how often, for problems that repeat
 };
 
+/// False for what a whole file may have or lack: records of a later version, a summary.
+bool is_damage(const Problem& problem);
+
 /// "offset 123: what; consequence"
 std::string to_string(const Problem& problem);
 

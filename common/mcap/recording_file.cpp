@@ -21,7 +21,11 @@ struct KnownFormat {
 };
 
 constexpr std::array kOtherFormats = {
-    KnownFormat{"#ROSBAG V2.0", "a ROS 1 bag: play it with --source bag:FILE or make an MCAP of it with 'rtd convert'"},
+    KnownFormat{
+        "#ROSBAG V2.0",
+        "a ROS 1 bag: MCAP's own tool makes a recording with all its topics ('mcap convert FILE.bag FILE.mcap'); "
+        "of its colour and depth images alone, 'rtd convert bag:FILE NEW.mcap' makes one and --source bag:FILE "
+        "plays them"},
     KnownFormat{"SQLite format 3", "a rosbag2 database: make an MCAP of it with 'ros2 bag convert'"},
     KnownFormat{"\x28\xb5\x2f\xfd", "compressed with zstd: unpack it first ('zstd -d')"},
     KnownFormat{"\x04\x22\x4d\x18", "compressed with LZ4: unpack it first ('lz4 -d')"},
@@ -35,11 +39,16 @@ std::string first_bytes(const io::ByteSource& source) {
   return {reinterpret_cast<const char*>(bytes.data()), count};
 }
 
-std::string explain(const io::ByteSource& source) {
+std::string other_format(const io::ByteSource& source) {
   const std::string begin = first_bytes(source);
-  if (begin.empty()) return "the file is empty: nothing was recorded, or the disk was full from the start";
   for (const KnownFormat& format : kOtherFormats)
-    if (begin.starts_with(format.begin)) return std::string("this is ") + format.advice;
+    if (begin.starts_with(format.begin)) return format.advice;
+  return {};
+}
+
+std::string explain(const io::ByteSource& source) {
+  if (source.size() == 0) return "the file is empty: nothing was recorded, or the disk was full from the start";
+  if (const std::string other = other_format(source); !other.empty()) return "this is " + other;
   return "this is not an MCAP file: it does not begin with the MCAP magic; 'rtd record' writes such files";
 }
 
@@ -53,10 +62,20 @@ fs::path recording_path(const fs::path& path) {
     if (entry.path().extension() == ".mcap") files.push_back(entry.path());
   std::ranges::sort(files);
   if (files.size() == 1) return files.front();
-  if (files.empty()) throw io::IoError(EISDIR, path.string() + ": this folder holds no .mcap file");
+  if (files.empty())
+    throw io::IoError(EISDIR,
+                      path.string() + ": this folder holds no .mcap file: name a recording or a folder with one");
   throw io::IoError(EISDIR, path.string() + ": this folder holds " + std::to_string(files.size()) +
                                 " .mcap files: name one of them, e.g. " + files.front().string() +
                                 ", or join them: rtd record join " + path.string() + " -o FILE");
+}
+
+std::string other_format(const std::string& path) {
+  try {
+    return other_format(io::FileSource(recording_path(path)));
+  } catch (const io::IoError& error) {
+    throw RecordingFileError(error.what());
+  }
 }
 
 bool looks_like_recording(const std::string& path) {
@@ -74,11 +93,14 @@ bool looks_like_recording(const io::ByteSource& source) {
   return header && header->opcode == Opcode::kHeader && begins_record(window, kMagic.size());
 }
 
+void require_recording(const io::ByteSource& source, const std::string& path) {
+  if (!looks_like_recording(source)) throw RecordingFileError(path + ": " + explain(source));
+}
+
 io::FileSource open_recording(const std::string& path) {
   try {
     const fs::path file = recording_path(path);
-    const io::FileSource source(file);
-    if (!looks_like_recording(source)) throw RecordingFileError(path + ": " + explain(source));
+    require_recording(io::FileSource(file), path);
     return io::FileSource(file);
   } catch (const io::IoError& error) {
     throw RecordingFileError(error.what());

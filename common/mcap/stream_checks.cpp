@@ -99,10 +99,11 @@ void StreamReader::check_footer(const Frame& frame, const Footer& footer) {
     report(ProblemKind::kMisplacedRecord, frame.offset, "Footer: there is no DataEnd before it",
            "the CRC of the data section is not checked");
   const bool has_summary = footer.summary_start != 0;
-  const bool starts_behind_data = footer.summary_start == data_end_ && data_end_ < frame.offset;
+  const bool starts_behind_data = footer.summary_start == data_end_;
+  // Some writers also say where a summary or offsets would be that they left out: right before the Footer.
   const bool offsets_inside =
       footer.summary_offset_start == 0 ||
-      (footer.summary_offset_start >= footer.summary_start && footer.summary_offset_start < frame.offset);
+      (footer.summary_offset_start >= footer.summary_start && footer.summary_offset_start <= frame.offset);
   if ((has_summary ? !starts_behind_data : data_end_ != 0 && data_end_ != frame.offset) || !offsets_inside) {
     report(ProblemKind::kIndexMismatch, frame.offset, "Footer: its offsets are not those of the summary",
            "the CRC of the summary is not checked");

@@ -85,10 +85,32 @@ StreamReader::Step StreamReader::cut(const Frame& frame) {
   const std::string what = "it says " + bytes_text(frame.length) + ", the file ends after " +
                            std::to_string(frame.left_in_file(file_.size()));
   if (!is_known(frame.opcode) || find_record(file_, frame.offset + 1, !chunked_)) return damaged(frame, what);
+  salvaging_ = options_.salvage_cut_chunk && frame.opcode == Opcode::kChunk && salvage(frame);
   report(ProblemKind::kTruncated, frame.offset, name_of(frame.opcode) + ": " + what,
-         "the file is cut here: this record is lost, and what came after it", true);
+         salvaging_ ? "the file is cut here: the whole messages before the cut are kept, but no checksum covers them"
+                    : "the file is cut here: this record is lost, and what came after it",
+         true);
   position_ = file_.size();
   return Step::kEnd;
+}
+
+/// Opens what is left of an uncompressed chunk; false when there is nothing to read.
+bool StreamReader::salvage(const Frame& frame) {
+  const std::uint64_t left = frame.left_in_file(file_.size());
+  const std::optional<ByteView> bytes =
+      left > options_.max_record_bytes ? std::nullopt : file_.view(frame.content(), left);
+  if (!bytes) return false;
+  Chunk chunk;
+  std::uint64_t announced = 0;
+  Decoder decoder(*bytes);
+  decoder(chunk.message_start_time, chunk.message_end_time, chunk.uncompressed_size, chunk.uncompressed_crc,
+          chunk.compression, announced);
+  decoder.rest(chunk.records);
+  if (!decoder.ok() || !chunk.compression.empty()) return false;
+  audit_.begin_chunk(frame.offset, kFrameBytes + left, chunk);
+  location_ = {frame};
+  chunk_ = RecordCursor(chunk.records);
+  return true;
 }
 
 /// Goes on behind the record where its length can be trusted, else at the next place that looks like a record.
@@ -222,6 +244,7 @@ bool StreamReader::take_inner(const InnerRecord& inner) {
 }
 
 void StreamReader::end_chunk() {
+  if (salvaging_) return chunk_.reset();  // reported where it was cut
   const std::uint64_t chunk = location_.record.offset;
   if (chunk_->cut())
     report(ProblemKind::kDamagedRecord, chunk,

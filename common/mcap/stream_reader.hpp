@@ -55,6 +55,7 @@ class StreamReader {
   Step leave_out(const Frame& frame, ProblemKind kind, const std::string& what);
   Step damaged(const Frame& frame, const std::string& what);
   Step cut(const Frame& frame);
+  bool salvage(const Frame& frame);
   void extend_crc(std::uint64_t end);
 
   // Each checks one record in its place; false: it must not be delivered.
@@ -85,6 +86,7 @@ class StreamReader {
   Location location_;
   std::uint64_t position_ = 0;
   std::optional<RecordCursor> chunk_;
+  bool salvaging_ = false;  ///< chunk_ is what is left of a cut one
   Decompressor decompress_;
   Buffer uncompressed_;
   std::uint32_t crc_ = 0;  ///< of [0, crc_end_)

@@ -131,8 +131,12 @@ Check check_complete(const Summary& summary, std::uint64_t offset) {
     return incomplete("counts " + std::to_string(statistics.chunk_count) + " chunks, but indexes " +
                       std::to_string(summary.chunk_indexes.size()));
   if (statistics.message_count > 0 && !has_chunks) return incomplete("does not index the messages");
-  if (statistics.channel_count != summary.channels.size() && statistics.message_count > 0)
+  // Some writers do not count channels without messages.
+  if (statistics.channel_count > summary.channels.size() && statistics.message_count > 0)
     return incomplete("does not have all channels");
+  for (const auto& [channel, messages] : statistics.channel_message_counts)
+    if (messages > 0 && has_chunks && !summary.channels.contains(channel))
+      return incomplete("does not have channel " + std::to_string(channel));
   return std::nullopt;
 }
 

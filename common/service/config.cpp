@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -189,6 +190,9 @@ void ConfigBinder::set(const std::string& assignment, const std::vector<std::str
 }
 
 void ConfigBinder::load_file(const std::string& path, const std::vector<std::string>& other_sections) {
+  std::error_code unreadable;
+  if (std::filesystem::is_directory(path, unreadable))
+    throw ConfigError(fmt::format("config file '{}' is a folder: name a file in it with --config", path));
   std::ifstream file(path);
   if (!file) throw ConfigError(fmt::format("config file '{}' cannot be read: check the path given to --config", path));
   load_text({std::istreambuf_iterator<char>(file), {}}, path, other_sections);

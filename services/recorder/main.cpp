@@ -11,7 +11,9 @@
 
 #include "common/mcap/copy.hpp"
 #include "common/mcap/indexed_reader.hpp"
+#include "common/mcap/recording_file.hpp"
 #include "common/service/command_line.hpp"
+#include "common/service/json_text.hpp"
 #include "common/service/run_service.hpp"
 #include "services/recorder/recorder_service.hpp"
 
@@ -41,8 +43,9 @@ io::FileSink open_sink(const FileOptions& options) {
 
 /// The same for both commands: a file that cannot be used is exit code 2, another failure 1.
 int run_on_files(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
-  return service::run_command(app, argc, argv,
-                              [&] { return service::report_errors<io::IoError>("rtd record", std::cerr, work); });
+  return service::run_command(app, argc, argv, [&] {
+    return service::report_errors<io::IoError, mcap::RecordingFileError>("rtd record", std::cerr, work);
+  });
 }
 
 std::string default_output(const fs::path& input) {
@@ -62,7 +65,7 @@ void print(const Report& report, const FileOptions& options, nlohmann::json summ
                   {"problem_count", report.problem_count},
                   {"problems", nlohmann::json::array()}});
   for (const mcap::Problem& problem : report.problems) summary["problems"].push_back(to_string(problem));
-  std::cout << summary.dump(2) << '\n';
+  std::cout << service::json_text(summary) << '\n';
 }
 
 void print(const mcap::RecoverReport& report, const FileOptions& options) {
@@ -77,7 +80,7 @@ void print(const mcap::RecoverReport& report, const FileOptions& options) {
 }
 
 int recover(const FileOptions& options) {
-  const io::FileSource source(options.input);
+  const io::FileSource source = mcap::open_recording(options.input);
   if (source.being_written()) {
     std::cerr << "rtd record: " << options.input << " is still being written: stop its recorder first\n";
     return service::kUsageOrConfig;
@@ -95,11 +98,11 @@ int recover(const FileOptions& options) {
 int recover_command(int argc, char** argv) {
   FileOptions options;
   CLI::App app{"Write what is intact in a damaged or unfinished recording to a well-formed file", "rtd record recover"};
-  app.add_option("FILE", options.input, "Recording, MCAP")->required();
+  app.add_option("FILE", options.input, "Recording (MCAP), or a folder with one")->required();
   app.add_option("-o,--output", options.output, "New file (default: FILE.recovered.mcap)");
   add_output_options(app, options);
   return run_on_files(app, argc, argv, [&] {
-    if (options.output.empty()) options.output = default_output(options.input);
+    if (options.output.empty()) options.output = default_output(mcap::recording_path(options.input));
     return recover(options);
   });
 }
@@ -120,7 +123,8 @@ std::vector<fs::path> files_of(const std::vector<std::string>& inputs) {
     const std::size_t before = files.size();
     for (const fs::directory_entry& entry : fs::directory_iterator(input))
       if (entry.path().extension() == ".mcap") files.push_back(entry.path());
-    if (files.size() == before) throw io::IoError(EISDIR, input + ": this folder holds no .mcap file");
+    if (files.size() == before)
+      throw io::IoError(EISDIR, input + ": this folder holds no .mcap file: name the parts, or their folder");
   }
   return files;
 }
@@ -128,11 +132,8 @@ std::vector<fs::path> files_of(const std::vector<std::string>& inputs) {
 Part open_part(const fs::path& file) {
   Part part{std::make_unique<io::FileSource>(file)};
   if (part.source->being_written()) throw io::IoError(EBUSY, file.string() + ": stop its recorder first");
+  mcap::require_recording(*part.source, file.string());
   const mcap::IndexedReader reader(*part.source);
-  for (const mcap::Problem& problem : reader.problems().listed()) {
-    if (problem.kind == mcap::ProblemKind::kNotMcap && problem.data_lost)
-      throw io::IoError(EINVAL, file.string() + ": this is not an MCAP file");
-  }
   if (reader.summary().statistics) part.begin = reader.summary().statistics->message_start_time;
   return part;
 }

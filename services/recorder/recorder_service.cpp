@@ -16,6 +16,7 @@
 #include "common/bus/raw_bus.hpp"
 #include "common/concurrency/thread_priority.hpp"
 #include "common/service/config.hpp"
+#include "common/service/json_text.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/recorder/core/recording.hpp"
@@ -106,17 +107,16 @@ std::string report_json(const RecordingReport& report) {
     bytes += file.bytes;
   }
   for (const RecordedTopic& topic : report.topics) topics.push_back(to_json(topic));
-  return nlohmann::json{{"folder", report.folder},
-                        {"duration_s", report.duration_s},
-                        {"acknowledged_bytes", report.acknowledged_bytes},
-                        {"partial", report.partial()},
-                        {"failure", report.failure},
-                        {"messages", report.totals.written},
-                        {"lost", report.totals.lost()},
-                        {"bytes", bytes},
-                        {"files", files},
-                        {"topics", topics}}
-      .dump(2);
+  return service::json_text(nlohmann::json{{"folder", report.folder},
+                                           {"duration_s", report.duration_s},
+                                           {"acknowledged_bytes", report.acknowledged_bytes},
+                                           {"partial", report.partial()},
+                                           {"failure", report.failure},
+                                           {"messages", report.totals.written},
+                                           {"lost", report.totals.lost()},
+                                           {"bytes", bytes},
+                                           {"files", files},
+                                           {"topics", topics}});
 }
 
 /// The losses, as metadata of the file.
@@ -215,6 +215,7 @@ void RecorderService::record_until_stopped() {
     while (const auto message = queue_.pop()) recording_->write(*message, service::monotonic_ns());
     const std::int64_t now_ns = service::monotonic_ns();
     recording_->tick(now_ns);
+    readers_->tick(now_ns);
     if (now_ns - reported_ns_ >= kReportPeriodNs) report_state(now_ns);
   }
 }

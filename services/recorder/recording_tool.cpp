@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/service/command_line.hpp"
+#include "common/service/json_text.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/recorder/inspect/inspect_commands.hpp"
 #include "services/recorder/mcap_export.hpp"
@@ -82,7 +83,7 @@ void print(const ConvertOptions& options, std::uint64_t frames, camera::FrameSou
   }
   if (skipped.size() > kMostLines) err << "rtd convert: ... and " << skipped.size() - kMostLines << " more\n";
   if (options.json) {
-    out << to_json(options, frames, source.counters()).dump(2) << '\n';
+    out << service::json_text(to_json(options, frames, source.counters())) << '\n';
   } else {
     out << frames << " frames written to " << options.destination << ", " << source.counters().skipped_total()
         << " pieces of the source left out\n";

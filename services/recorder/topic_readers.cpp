@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "common/bus/backend.hpp"
+#include "common/ros2/schema_texts.hpp"
+#include "common/ros_codec/wire.hpp"
 
 namespace rtd::recorder {
 namespace {
@@ -26,6 +28,12 @@ TopicReaders::TopicReaders(bus::RawBus& bus, TopicFilter filter, bool in_place, 
 
 void TopicReaders::stop() {
   bus_.watch(nullptr);
+  std::unique_ptr<bus::RawReader> schema_reader;
+  {
+    const std::lock_guard lock(mutex_);
+    schema_reader = std::move(schema_reader_);
+  }
+  schema_reader.reset();  // its thread may be subscribing and needs the lock
   const std::lock_guard lock(mutex_);
   readers_.clear();
 }
@@ -39,14 +47,97 @@ bool TopicReaders::settled() const {
   const std::vector<bus::TopicWriter> writers = bus_.writers();
   const std::lock_guard lock(mutex_);
   return std::ranges::all_of(writers, [this](const bus::TopicWriter& writer) {
-    if (writer.own || !filter_.wants(writer.topic.name) || refused_.contains(key_of(writer.topic))) return true;
+    if (writer.own || writer.topic.name == ros2::kSchemasTopic || !filter_.wants(writer.topic.name)) return true;
+    if (refused_.contains(key_of(writer.topic))) return true;
     const auto reader = readers_.find({book_.find_or_add(writer.topic.name, writer.topic.type), offer_of(writer.qos)});
     return reader != readers_.end() && reader->second->matched() > 0;
   });
 }
 
 void TopicReaders::on_writer(const bus::TopicWriter& writer, bus::WriterChange change) {
+  if (writer.topic.name == ros2::kSchemasTopic) return on_schema_writer(writer, change);
   if (change == bus::WriterChange::kGone || writer.own || !filter_.wants(writer.topic.name)) return;
+  if (!postpone(writer)) try_to_subscribe(writer);
+}
+
+/// A writer of another kind, that is not ours, would let topics wait in vain.
+void TopicReaders::on_schema_writer(const bus::TopicWriter& writer, bus::WriterChange change) {
+  const bool latched = writer.qos.reliable && writer.qos.durability != bus::RawQos::Durability::kVolatile;
+  if (writer.own || writer.topic.type != ros2::kSchemasType || !latched) return;
+  if (change == bus::WriterChange::kAppeared) {
+    listen_to_schemas(writer);
+  } else if (change == bus::WriterChange::kGone) {
+    {
+      const std::lock_guard lock(mutex_);
+      schemas_read_.erase(writer.id);
+    }
+    subscribe_postponed();
+  }
+}
+
+void TopicReaders::listen_to_schemas(const bus::TopicWriter& writer) {
+  const std::lock_guard lock(mutex_);
+  try {
+    if (!schema_reader_) {
+      bus::RawHandlers handlers;
+      handlers.on_sample = [this](const bus::RawSample& sample) { learn(sample); };
+      schema_reader_ = bus_.reader(writer.topic, {.reliable = true, .transient_local = true}, std::move(handlers));
+    }
+    schemas_read_.try_emplace(writer.id, false);  // the sample may be faster
+  } catch (const bus::BusError& error) {
+    SPDLOG_WARN("event=schemas_not_read topic={} cause=\"{}\"", writer.topic.name, error.what());
+  }
+}
+
+void TopicReaders::learn(const bus::RawSample& sample) {
+  try {
+    for (const auto& [dds_type, definition] : ros2::decode_schemas(sample.cdr())) book_.learn(dds_type, definition);
+  } catch (const ros::WireError& error) {
+    SPDLOG_WARN("event=schemas_not_read topic={} cause=\"{}\"", ros2::kSchemasTopic, error.what());
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    schemas_read_[sample.writer] = true;
+  }
+  subscribe_postponed();
+}
+
+/// True when the text of its type may still come.
+bool TopicReaders::postpone(const bus::TopicWriter& writer) {
+  const std::lock_guard lock(mutex_);
+  if (!schemas_may_come() || book_.knows(writer.topic.type)) return false;
+  postponed_.push_back(writer);
+  return true;
+}
+
+bool TopicReaders::schemas_may_come() const {
+  return std::ranges::any_of(schemas_read_, [](const auto& writer) { return !writer.second; });
+}
+
+void TopicReaders::tick(std::int64_t now_ns) {
+  constexpr std::int64_t kPatienceNs = 2'000'000'000;
+  {
+    const std::lock_guard lock(mutex_);
+    if (postponed_.empty()) return;
+    if (postponed_ns_ == 0) postponed_ns_ = now_ns;
+    if (now_ns - postponed_ns_ < kPatienceNs) return;
+    for (auto& [writer, read] : schemas_read_) read = true;
+  }
+  subscribe_postponed();
+}
+
+void TopicReaders::subscribe_postponed() {
+  std::vector<bus::TopicWriter> postponed;
+  {
+    const std::lock_guard lock(mutex_);
+    if (schemas_may_come()) return;
+    postponed_ns_ = 0;
+    postponed.swap(postponed_);
+  }
+  for (const bus::TopicWriter& writer : postponed) try_to_subscribe(writer);
+}
+
+void TopicReaders::try_to_subscribe(const bus::TopicWriter& writer) {
   try {
     subscribe(writer);
   } catch (const bus::BusError& error) {

@@ -12,6 +12,7 @@
 #include "common/msg/ros.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/offered_qos.hpp"
+#include "common/ros2/schema_texts.hpp"
 #include "common/ros2/type_description.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/config.hpp"
@@ -77,6 +78,7 @@ Outputs::Outputs(bus::RawBus& bus, const std::vector<const mcap::Channel*>& chan
                                  known->second.topic.type + " and " + type_of(*channel, summary) + "; leave one out");
     by_channel_[channel->id] = &known->second;
   }
+  publish_schemas(channels, summary);  // first, so that a recorder knows of them before it sees the topics
   for (auto& [topic, output] : outputs_) output.writer = bus_.writer(output.topic, output.options);
   if (!options_.frames_apart) return;
   frame_thread_ = std::thread([this] {
@@ -91,6 +93,25 @@ Outputs::~Outputs() {
 void Outputs::finish() {
   frames_.close();
   if (frame_thread_.joinable()) frame_thread_.join();
+}
+
+/// Of the types that a recorder does not know by itself.
+void Outputs::publish_schemas(const std::vector<const mcap::Channel*>& channels, const mcap::Summary& summary) {
+  std::map<std::string, ros2::SchemaText> texts;
+  for (const mcap::Channel* channel : channels) {
+    const mcap::Schema& schema = summary.schemas.at(channel->schema_id);
+    const std::string type = ros2::dds_type(schema.name);
+    if (schema.encoding.empty() || ros2::definition_of(type).known()) continue;
+    texts.try_emplace(type, ros2::SchemaText{type, {schema.name, schema.encoding, schema.data}});
+  }
+  if (texts.empty()) return;
+  std::vector<ros2::SchemaText> schemas;
+  for (auto& [type, text] : texts) schemas.push_back(std::move(text));
+  bus::RawWriterOptions latched;
+  latched.qos.durability = bus::RawQos::Durability::kTransientLocal;
+  latched.qos.depth = 1;
+  schemas_ = bus_.writer({ros2::kSchemasTopic, ros2::kSchemasType}, latched);
+  schemas_->write(ros2::encode_schemas(schemas));
 }
 
 Output Outputs::make_output(const mcap::Channel& channel, const mcap::Summary& summary) const {

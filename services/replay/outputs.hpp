@@ -37,8 +37,8 @@ struct Output {
 /// The writers of a replay, with types and QoS as recorded.
 class Outputs {
  public:
-  /// A writer for each topic among `channels`. Throws BusError; ConfigError: two types on one topic, a type of ours
-  /// with other fields than it has now.
+  /// A writer for each topic among `channels`, and one for the texts of their types, for recorders. Throws BusError;
+  /// ConfigError: two types on one topic, a type of ours with other fields than it has now.
   Outputs(bus::RawBus& bus, const std::vector<const mcap::Channel*>& channels, const mcap::Summary& summary,
           OutputOptions options);
   ~Outputs();
@@ -60,6 +60,7 @@ class Outputs {
  private:
   static constexpr std::size_t kWaitingFrames = 4;
 
+  void publish_schemas(const std::vector<const mcap::Channel*>& channels, const mcap::Summary& summary);
   void write(Output& output, const PlayedMessage& message) const;
   Output make_output(const mcap::Channel& channel, const mcap::Summary& summary) const;
 
@@ -67,7 +68,7 @@ class Outputs {
   const OutputOptions options_;
   std::map<std::string, Output> outputs_;  ///< by topic
   std::map<mcap::ChannelId, Output*> by_channel_;
-  std::unique_ptr<bus::RawWriter> clock_;
+  std::unique_ptr<bus::RawWriter> clock_, schemas_;
   concurrency::BoundedQueue<PlayedMessage> frames_{kWaitingFrames, concurrency::Overflow::kBlock};
   std::thread frame_thread_;
 };

@@ -18,6 +18,7 @@
 #include "common/mcap/recording_file.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/config.hpp"
+#include "common/service/json_text.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/pacer.hpp"
@@ -49,6 +50,17 @@ std::int64_t signed_time(mcap::Timestamp time) {
 void require(const char* name, double value, double max) {
   if (std::isfinite(value) && value >= 0 && value <= max) return;
   throw ConfigError(fmt::format("{} {}: give a number from 0 to {:g}", name, value, max));
+}
+
+/// "/a (json), /b": the topics, and the encodings that are not CDR.
+std::string text_of(const std::map<mcap::ChannelId, mcap::Channel>& channels) {
+  if (channels.empty()) return "no topics";
+  std::string text;
+  for (const auto& [id, channel] : channels) {
+    text += (text.empty() ? "" : ", ") + channel.topic;
+    if (!is_cdr(channel)) text += " (" + encoding_of(channel) + ")";
+  }
+  return text;
 }
 
 /// Throws ConfigError naming the option, the value and what is allowed.
@@ -136,6 +148,10 @@ void ReplayService::open() {
                                                      .restamp = config_.restamp,
                                                      .wait_for_readers = window_ == 0 && !by_time,
                                                      .frames_apart = by_time});
+  // rtd run reads it before it starts in this domain.
+  runtime_.heartbeat.set_metric("run_topics",
+                                static_cast<double>(std::ranges::count_if(
+                                    outputs_->all(), [](const auto& output) { return is_run_topic(output.first); })));
   if (window_ > 0) choose_paced_topic();
 }
 
@@ -146,12 +162,24 @@ void ReplayService::choose_topics() {
   std::vector<std::string> known;
   for (const auto& [id, channel] : reader_->summary().channels) {
     known.push_back(channel.topic);
-    if (choice.wants(channel.topic)) channels_.push_back(&channel);
+    if (!choice.wants(channel.topic)) continue;
+    if (is_cdr(channel)) {
+      channels_.push_back(&channel);
+    } else {
+      left_out_.push_back(&channel);
+    }
   }
-  const std::string listed = known.empty() ? "no topics" : fmt::format("{}", fmt::join(known, ", "));
+  const std::string listed = text_of(reader_->summary().channels);
   if (const std::vector<std::string> unmet = choice.unmet(known); !unmet.empty())
     throw ConfigError(fmt::format("--topics {}: not in {}; it has {}", fmt::join(unmet, ", "), config_.file, listed));
-  if (channels_.empty()) throw ConfigError(fmt::format("{}: nothing to play; it has {}", config_.file, listed));
+  if (channels_.empty())
+    throw ConfigError(fmt::format("{}: nothing to play{}; it has {}", config_.file,
+                                  left_out_.empty() ? "" : ", for DDS carries only messages in CDR", listed));
+  for (const mcap::Channel* channel : left_out_)
+    SPDLOG_WARN(
+        "event=channel_left_out topic={} channel={} encoding={} cause=\"DDS carries only messages in CDR\" "
+        "fix=\"record it in ROS 2 or DDS, or use --exclude {}\"",
+        channel->topic, channel->id, encoding_of(*channel), channel->topic);
 }
 
 void ReplayService::choose_span() {
@@ -274,9 +302,11 @@ service::ExitCode ReplayService::finish(const Player& player, PlayOutcome outcom
   if (outcome == PlayOutcome::kEnded) outputs_->wait_acknowledged(kLastAcknowledgementMs);
   const nlohmann::ordered_json report = report_of(player, *outputs_, config_.file, outcome, reader_->problems());
   SPDLOG_INFO("event=summary {}", log_text(report));
-  if (config_.json) std::cout << report.dump(2) << std::endl;
-  for (const mcap::Problem& problem : reader_->problems().listed())
+  if (config_.json) std::cout << service::json_text(report) << std::endl;
+  for (const mcap::Problem& problem : reader_->problems().listed()) {
+    if (!mcap::is_damage(problem)) continue;
     SPDLOG_WARN("event=recording_damaged kind={} cause=\"{}\"", mcap::name_of(problem.kind), mcap::to_string(problem));
+  }
   if (outcome == PlayOutcome::kUnanswered)
     return fail(fmt::format("no message of {} for number {} of {} within {:g} s: are its publishers alive?",
                             config_.lockstep, player.unanswered_seq(), paced_->topic.name, config_.result_timeout_s));

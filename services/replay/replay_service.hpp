@@ -108,6 +108,7 @@ class ReplayService final : public PlayerHost {
   std::unique_ptr<io::FileSource> source_;
   std::unique_ptr<mcap::IndexedReader> reader_;
   std::vector<const mcap::Channel*> channels_;  ///< the ones played
+  std::vector<const mcap::Channel*> left_out_;  ///< wanted, but not in CDR
   std::int64_t first_ns_ = 0, start_ns_ = 0, end_ns_ = 0;
   std::shared_ptr<Inbox> inbox_;
   std::shared_ptr<bus::RawBus> bus_;

@@ -11,6 +11,7 @@
 
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
+#include "common/service/json_text.hpp"
 #include "services/topics/core/topic_report.hpp"
 #include "services/topics/topics_session.hpp"
 
@@ -68,7 +69,8 @@ void discover(double longest_s, TopicsSession& session) {
 int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err) {
   discover(request.wait_s, session);
   const std::vector<TopicRow> rows = rows_of(session.writers());
-  if (request.json || !rows.empty()) out << (request.json ? list_json(rows).dump(2) + '\n' : list_text(rows));
+  if (request.json || !rows.empty())
+    out << (request.json ? service::json_text(list_json(rows)) + '\n' : list_text(rows));
   if (!rows.empty()) return service::kOk;
   err << fmt::format("rtd topics: no topic within {:.1f} s in {}\n", session.seconds(), session.empty_place());
   return service::kRunFailed;

@@ -9,6 +9,7 @@
 
 #include "common/bus/raw_bus.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/json_text.hpp"
 #include "services/topics/core/topic_report.hpp"
 #include "services/topics/topics_session.hpp"
 
@@ -112,7 +113,7 @@ int measure_topics(const TopicsRequest& request, TopicsSession& session, std::os
   std::vector<TopicRow> rows = meters.rows();
   meters.stop();
   if (request.json || !rows.empty())
-    out << (request.json ? rate_json(rows, seconds).dump(2) + '\n' : rate_text(rows, seconds));
+    out << (request.json ? service::json_text(rate_json(rows, seconds)) + '\n' : rate_text(rows, seconds));
   int code = rows.empty() ? service::kRunFailed : service::kOk;
   if (rows.empty() && request.topics.empty()) {
     err << fmt::format("rtd topics: no topic within {:.1f} s in {}\n", seconds, session.empty_place());

@@ -16,6 +16,7 @@
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/json_text.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/source_factory.hpp"
@@ -31,7 +32,7 @@ namespace {
 
 /// Called after every run, so that no measurement is lost.
 void write_results(const Ablation& ablation, const fs::path& out_dir) {
-  write_file(out_dir / "ablation.json", ablation_json(ablation).dump(2) + "\n");
+  write_file(out_dir / "ablation.json", service::json_text(ablation_json(ablation)) + "\n");
   write_file(out_dir / "ablation.md", ablation_markdown(ablation));
   write_file(out_dir / "ablation.html", ablation_html(ablation));
 }
@@ -193,7 +194,8 @@ VariantRun run_variant(const AblateOptions& options, const VariantTask& task) {
   if (code != service::kOk) {
     measurement.failure = last_event(folder).value_or("exit code " + std::to_string(code));
   } else {  // only a complete run may be kept
-    std::ofstream(folder / kTaskFile) << nlohmann::json{{"settings", settings}, {"duration_s", duration_s}}.dump(2);
+    std::ofstream(folder / kTaskFile) << service::json_text(
+        nlohmann::json{{"settings", settings}, {"duration_s", duration_s}});
   }
   return {measurement, false, false};
 }
@@ -252,7 +254,7 @@ service::ExitCode run_ablation(const AblateOptions& options) {
   const bool finished = measure_all(options, ablation);
   write_results(ablation, options.out_dir);
   if (options.json) {
-    std::cout << ablation_json(ablation).dump(2) << '\n';
+    std::cout << service::json_text(ablation_json(ablation)) << '\n';
   } else {
     std::cout << ablation_text(ablation) << "  report: " << options.out_dir << "/ablation.html\n";
   }

@@ -13,6 +13,7 @@
 #include <optional>
 #include <ostream>
 
+#include "common/service/json_text.hpp"
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 #include "services/evaluation/core/trajectory/evaluation.hpp"
@@ -150,7 +151,7 @@ int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
       return service::kRunFailed;
     }
     if (!options.plot.empty()) write_plot(evaluation, inputs, options);
-    out << (options.json ? to_json(evaluation).dump(2) + "\n" : evaluation_table(evaluation, options));
+    out << (options.json ? service::json_text(to_json(evaluation)) + "\n" : evaluation_table(evaluation, options));
     return service::kOk;
   });
 }

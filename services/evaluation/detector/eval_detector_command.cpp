@@ -8,6 +8,7 @@
 #include <fstream>
 #include <ostream>
 
+#include "common/service/json_text.hpp"
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/detector/detector_report.hpp"
 #include "services/evaluation/detector/evaluate.hpp"
@@ -47,7 +48,7 @@ void write_results(const EvalDetectorOptions& options, const auto& results, cons
                    std::ostream& out, std::ostream& err) {
   err << input_lines(results);
   out << to_table(results);
-  if (!options.json.empty()) write_file(options.json, to_json(results).dump(2) + "\n", "--json");
+  if (!options.json.empty()) write_file(options.json, service::json_text(to_json(results)) + "\n", "--json");
   if (options.out_dir.empty()) return;
   write_file(options.out_dir + "/" + plot_name, to_plot(results).document(), "--out");
   write_file(options.out_dir + "/detector.html", to_html(results), "--out");

@@ -59,9 +59,9 @@ bool Collector::connected(bool with_filter) const {
   return tracking_.matched() > 0 && (!with_filter || features_.matched() > 0);
 }
 
-std::string Collector::active_services(bool without_detector) const {
+std::string Collector::active_services(const Tolerated& tolerated) const {
   const std::lock_guard lock(mutex_);
-  return builder_.active_services(without_detector);
+  return builder_.active_services(tolerated);
 }
 
 LiveStatus Collector::live() const {

@@ -30,7 +30,7 @@ class Collector {
   /// Connected to slam, and to the filter if there is one: from now on no frame is missed.
   bool connected(bool with_filter = true) const;
   /// As RecordBuilder::active_services.
-  std::string active_services(bool without_detector = false) const;
+  std::string active_services(const Tolerated& tolerated = {}) const;
   LiveStatus live() const;
   std::optional<std::string> take_notice();
   bool tracked_any() const;

@@ -4,6 +4,7 @@
 
 #include "common/io/text.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "services/camera/core/live/live_source.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -53,18 +54,36 @@ RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
   return supervisor_.outcome();
 }
 
-/// Two runs in one domain would mix their frames until the services notice.
+/// Two runs in one domain would mix their frames until the services notice. A replay of another camera's topics is what
+/// a live source may be for.
 void RunSession::require_free_domain() {
+  const bool live = camera::is_live(setup_.source);
+  const Tolerated known{.detector = setup_.remote_detector, .harmless_replay = live};
+  Tolerated at_first = known;
+  at_first.silent_replay = live;
   const milliseconds until = now() + milliseconds(setup_.launcher.domain_check_ms);
   while (now() < until) {
     host_.wait(kTick);
-    const std::string others = collector_.active_services(setup_.remote_detector);
-    if (others.empty()) continue;
-    const bool only_detector = collector_.active_services(true).empty();
-    throw service::ConfigError("DDS domain " + std::to_string(setup_.bus_options.domain) + " is taken by " + others +
-                               (only_detector ? ": use its boxes with --detector remote, stop it" : ": stop them") +
-                               ", or choose another domain with --domain");
+    require_none_active(at_first);
   }
+  require_none_active(known);
+}
+
+void RunSession::require_none_active(const Tolerated& tolerated) const {
+  const std::string others = collector_.active_services(tolerated);
+  if (others.empty()) return;
+  Tolerated with_detector = tolerated;
+  with_detector.detector = true;
+  std::string fix = ": stop them";
+  if (collector_.active_services(with_detector).empty()) {
+    fix = ": use its boxes with --detector remote, stop it";
+  } else if (tolerated.harmless_replay && others.starts_with("replay")) {
+    fix =
+        ", which plays topics of a run: leave them out (rtd replay --exclude 'rtd/*' '/slam/*' '/detector/*' "
+        "'/filter/*' '/dense/*'), stop it";
+  }
+  throw service::ConfigError("DDS domain " + std::to_string(setup_.bus_options.domain) + " is taken by " + others +
+                             fix + ", or choose another domain with --domain");
 }
 
 void RunSession::supervise(const ServicePlan& camera) {

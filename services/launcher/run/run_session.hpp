@@ -34,6 +34,7 @@ class RunSession {
   using Milliseconds = std::chrono::milliseconds;
 
   void require_free_domain();
+  void require_none_active(const Tolerated& tolerated) const;
   void supervise(const ServicePlan& camera);
   bool camera_may_start(Milliseconds now) const;
   void on_event(const SupervisorEvent& event);

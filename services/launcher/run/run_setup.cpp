@@ -156,6 +156,8 @@ ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole rol
 }
 
 void choose_map(RunSetup& setup) {
+  if (!setup.map.empty() && fs::is_directory(setup.map))
+    throw ConfigError("--map " + setup.map + ": this is a folder: name a map file in it");
   if (!setup.map.empty() && !fs::is_regular_file(setup.map)) throw ConfigError("--map " + setup.map + ": no such file");
   if (setup.localize_only && setup.map.empty())
     throw ConfigError("--localize-only needs a map: give its file with --map");

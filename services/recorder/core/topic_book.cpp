@@ -22,7 +22,7 @@ std::size_t TopicBook::find_or_add(const std::string& dds_name, const std::strin
   const auto known = std::ranges::find_if(
       topics_, [&](const RecordedTopic& topic) { return topic.dds_name == dds_name && topic.dds_type == dds_type; });
   if (known != topics_.end()) return static_cast<std::size_t>(known - topics_.begin());
-  topics_.push_back({dds_name, dds_type, ros2::ros_topic(dds_name), ros2::definition_of(dds_type), {}, {}});
+  topics_.push_back({dds_name, dds_type, ros2::ros_topic(dds_name), definition_of(dds_type), {}, {}});
   return topics_.size() - 1;
 }
 
@@ -30,6 +30,24 @@ void TopicBook::add_offer(std::size_t topic, const bus::RawQos& qos) {
   const std::lock_guard lock(mutex_);
   auto& offered = topics_[topic].offered;
   if (std::ranges::count(offered, qos) == 0) offered.push_back(qos);
+}
+
+void TopicBook::learn(const std::string& dds_type, const ros2::TypeDefinition& definition) {
+  const std::lock_guard lock(mutex_);
+  if (!definition.known() || !learned_.emplace(dds_type, definition).second) return;
+  for (RecordedTopic& topic : topics_)
+    if (topic.dds_type == dds_type) topic.type = definition_of(dds_type);
+}
+
+bool TopicBook::knows(const std::string& dds_type) const {
+  const std::lock_guard lock(mutex_);
+  return definition_of(dds_type).known();
+}
+
+ros2::TypeDefinition TopicBook::definition_of(const std::string& dds_type) const {
+  ros2::TypeDefinition built_in = ros2::definition_of(dds_type);
+  const auto learned = learned_.find(dds_type);
+  return built_in.known() || learned == learned_.end() ? built_in : learned->second;
 }
 
 void TopicBook::count_acknowledged(const std::vector<std::uint64_t>& per_topic) {

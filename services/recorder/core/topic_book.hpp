@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -44,6 +45,10 @@ class TopicBook {
  public:
   std::size_t find_or_add(const std::string& dds_name, const std::string& dds_type);
   void add_offer(std::size_t topic, const bus::RawQos& qos);
+  /// Describes a type that is not built in; a text that came before stays.
+  void learn(const std::string& dds_type, const ros2::TypeDefinition& definition);
+  /// Whether the text of the type is there.
+  bool knows(const std::string& dds_type) const;
 
   /// Calls `change` with the counts of a topic.
   void count(std::size_t topic, auto change) {
@@ -57,8 +62,11 @@ class TopicBook {
   TopicCounts totals() const;
 
  private:
+  ros2::TypeDefinition definition_of(const std::string& dds_type) const;
+
   mutable std::mutex mutex_;
   std::vector<RecordedTopic> topics_;
+  std::map<std::string, ros2::TypeDefinition> learned_;  ///< by DDS name
 };
 
 }  // namespace rtd::recorder

@@ -9,6 +9,7 @@
 #include "common/mcap/recording_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/json_text.hpp"
 #include "services/recorder/inspect/recording_diff.hpp"
 #include "services/recorder/inspect/recording_report.hpp"
 
@@ -29,7 +30,7 @@ void warn(const Contents& contents, const std::string& path, std::ostream& err) 
 
 template <class Diff>
 void print(const Diff& diff, bool json, std::ostream& out) {
-  out << (json ? to_json(diff).dump(2) + '\n' : to_text(diff));
+  out << (json ? service::json_text(to_json(diff)) + '\n' : to_text(diff));
 }
 
 int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream& err) {
@@ -46,11 +47,25 @@ int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream&
   return in_a.data_lost || in_b.data_lost ? service::kPartialLoss : service::kOk;
 }
 
+constexpr char kCompared[] = "'rtd diff' compares two MCAP recordings, or two trajectories in TUM format";
+
+eval::Trajectory read_trajectory(const std::string& path) {
+  try {
+    return eval::read_tum_trajectory(path);
+  } catch (const eval::TrajectoryError& error) {
+    throw eval::TrajectoryError(std::string(error.what()) + "; " + kCompared);
+  }
+}
+
 int diff_trajectories(const DiffRequest& request, std::ostream& out) {
-  const TrajectoryDiff difference =
-      diff(eval::read_tum_trajectory(request.a), eval::read_tum_trajectory(request.b), request.tolerance);
+  const TrajectoryDiff difference = diff(read_trajectory(request.a), read_trajectory(request.b), request.tolerance);
   print(difference, request.json, out);
   return difference.equal() ? service::kOk : service::kRunFailed;
+}
+
+void refuse_other_format(const std::string& path) {
+  if (const std::string other = mcap::other_format(path); !other.empty())
+    throw mcap::RecordingFileError(path + " is " + other + "; " + kCompared);
 }
 
 }  // namespace
@@ -89,6 +104,8 @@ CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
 int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
   return service::report_errors<mcap::RecordingFileError, eval::TrajectoryError>("rtd diff", err, [&] {
     const bool a = mcap::looks_like_recording(request.a), b = mcap::looks_like_recording(request.b);
+    if (!a) refuse_other_format(request.a);
+    if (!b) refuse_other_format(request.b);
     if (a != b)
       throw mcap::RecordingFileError((a ? request.a : request.b) + " is a recording, " + (a ? request.b : request.a) +
                                      " is not: compare two files of the same kind");
@@ -115,7 +132,7 @@ int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
     how.on_progress = [&](std::uint64_t bytes) { progress.reach(bytes); };
     RecordingReport report = report_on(source, how);
     report.being_written = source.being_written();
-    out << (options.json ? to_json(report, options.file).dump(2) + '\n' : to_text(report, options.file));
+    out << (options.json ? service::json_text(to_json(report, options.file)) + '\n' : to_text(report, options.file));
     return report.damaged() ? service::kPartialLoss : service::kOk;
   });
 }

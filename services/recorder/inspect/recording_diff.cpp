@@ -3,6 +3,7 @@
 #include "services/recorder/inspect/recording_diff.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,7 @@ using Json = nlohmann::ordered_json;
 using Messages = std::vector<Fingerprint>;
 
 constexpr std::size_t kShownFields = 8;
+constexpr char kCdr[] = "cdr";
 
 std::uint64_t hash_of(io::ByteView bytes) {
   return std::hash<std::string_view>{}({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
@@ -131,11 +133,18 @@ std::optional<std::vector<std::byte>> payload_of(mcap::IndexedReader& reader, co
   return std::nullopt;
 }
 
+std::string joined(const std::set<std::string>& encodings) {
+  return fmt::format("{}", fmt::join(encodings, ","));
+}
+
 std::string verdict(const TopicDiff& topic, const DiffOptions& options) {
   if (topic.equal(options)) return "equal";
   if (topic.messages_a == 0) return "only in B";
   if (topic.messages_b == 0) return "only in A";
-  return topic.type_a == topic.type_b ? "differs" : "differs in type: " + topic.type_a + " | " + topic.type_b;
+  if (topic.type_a != topic.type_b) return "differs in type: " + topic.type_a + " | " + topic.type_b;
+  if (topic.encoding_a != topic.encoding_b)
+    return "differs in encoding: " + topic.encoding_a + " | " + topic.encoding_b;
+  return "differs";
 }
 
 std::string row(const TopicDiff& topic, const DiffOptions& options, std::size_t width) {
@@ -193,7 +202,8 @@ Contents contents_of(const io::ByteSource& source, const std::function<void(std:
       target.topic = &contents.topics[channel.topic];
       const auto schema = reader.schemas().find(channel.schema_id);
       if (schema != reader.schemas().end()) target.topic->type = schema->second.name;
-      target.of_the_run = run_ranges(target.topic->type);
+      target.topic->encodings.insert(channel.message_encoding);
+      if (channel.message_encoding == kCdr) target.of_the_run = run_ranges(target.topic->type);
     }
     target.topic->messages.push_back(fingerprint(*message, target.of_the_run));
   }
@@ -218,8 +228,8 @@ MessagePairs pair_messages(const TopicContents& a, const TopicContents& b) {
 
 bool TopicDiff::equal(const DiffOptions& options) const {
   const std::size_t counted = options.ignore_run_fields ? payloads - run_fields_only : payloads;
-  return type_a == type_b && only_a == 0 && only_b == 0 && counted == 0 && out_of_order == 0 &&
-         (stamps == 0 || options.ignore_stamps);
+  return type_a == type_b && encoding_a == encoding_b && only_a == 0 && only_b == 0 && counted == 0 &&
+         out_of_order == 0 && (stamps == 0 || options.ignore_stamps);
 }
 
 bool RecordingDiff::equal() const {
@@ -235,7 +245,13 @@ RecordingDiff diff(const Contents& a, const Contents& b, const DiffOptions& opti
   for (const auto& [topic, contents] : both) {
     const TopicContents& in_a = contents.first != nullptr ? *contents.first : none;
     const TopicContents& in_b = contents.second != nullptr ? *contents.second : none;
-    TopicDiff of_topic{topic, in_a.type, in_b.type, in_a.messages.size(), in_b.messages.size()};
+    TopicDiff of_topic{topic,
+                       in_a.type,
+                       in_b.type,
+                       joined(in_a.encodings),
+                       joined(in_b.encodings),
+                       in_a.messages.size(),
+                       in_b.messages.size()};
     compare(of_topic, in_a, in_b, options);
     result.topics.push_back(std::move(of_topic));
   }
@@ -248,7 +264,8 @@ void explain(RecordingDiff& diff, const io::ByteSource& a, const io::ByteSource&
     if (!topic.first) continue;
     const auto payload_a = payload_of(in_a, topic.topic, topic.first->a);
     const auto payload_b = payload_of(in_b, topic.topic, topic.first->b);
-    if (payload_a && payload_b) topic.first->why = differences(topic.type_a, *payload_a, *payload_b);
+    const bool decodable = topic.encoding_a == kCdr && topic.encoding_b == kCdr;
+    if (payload_a && payload_b) topic.first->why = differences(decodable ? topic.type_a : "", *payload_a, *payload_b);
   }
 }
 
@@ -273,6 +290,8 @@ Json to_json(const RecordingDiff& diff) {
                               {"equal", topic.equal(diff.options)},
                               {"type_a", topic.type_a},
                               {"type_b", topic.type_b},
+                              {"encoding_a", topic.encoding_a},
+                              {"encoding_b", topic.encoding_b},
                               {"messages_a", topic.messages_a},
                               {"messages_b", topic.messages_b},
                               {"paired_by", name_of(topic.paired_by)},

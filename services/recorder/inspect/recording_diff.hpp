@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct Fingerprint {
 
 struct TopicContents {
   std::string type;
+  std::set<std::string> encodings;    ///< of its channels: "cdr", "json", ...
   std::vector<Fingerprint> messages;  ///< in file order
 };
 
@@ -75,6 +77,7 @@ struct MessagePlace {
 
 struct TopicDiff {
   std::string topic, type_a, type_b;
+  std::string encoding_a, encoding_b;  ///< of the messages: "cdr"; several joined by a comma
   std::size_t messages_a = 0, messages_b = 0;
   PairedBy paired_by = PairedBy::kPosition;
   std::size_t only_a = 0, only_b = 0;

@@ -19,6 +19,7 @@ struct PerChannel {
   std::vector<Timestamp> times_ns;
   std::uint64_t payload_bytes = 0;
   SequenceCount sequences;
+  std::vector<std::uint32_t> numbers;  ///< what it has counted
 };
 using Collected = std::map<ChannelId, PerChannel>;
 
@@ -26,6 +27,13 @@ void take(RecordingReport& report, const mcap::Problems& problems) {
   report.problems = problems.listed();
   report.problem_count = problems.total();
   report.data_lost = problems.data_lost();
+}
+
+std::optional<std::uint64_t> missing_in_all(Collected& collected) {
+  std::vector<std::vector<std::uint32_t>> of_channels;
+  for (auto& [id, channel] : collected)
+    if (channel.sequences.numbered()) of_channels.push_back(std::move(channel.numbers));
+  return missing_of_shared_counter(of_channels);
 }
 
 /// Adds the channels once their definitions and times are known.
@@ -108,6 +116,7 @@ void add_record(RecordingReport& report, Collected& collected, const mcap::Recor
     channel.times_ns.push_back(message->log_time);
     channel.payload_bytes += message->data.size();
     channel.sequences.add(message->sequence);
+    channel.numbers.push_back(message->sequence);
   } else if (const auto* chunk = std::get_if<mcap::Chunk>(&record)) {
     add_chunk(report, chunk->compression, chunk->records.size(), chunk->uncompressed_size,
               chunk->uncompressed_crc != 0 || chunk->uncompressed_size == 0);
@@ -133,14 +142,13 @@ void report_from_everything(const io::ByteSource& source, const ReportOptions& o
     add_record(report, collected, *record, reader.location().record.offset);
     if (options.on_progress) options.on_progress(reader.bytes_read());
   }
+  report.missing_in_shared_counter = missing_in_all(collected);
   add_channels(report, collected, reader.channels(), reader.schemas());
   take(report, reader.problems());
 }
 
 bool is_damage(const mcap::Problem& problem, bool being_written) {
-  using Kind = mcap::ProblemKind;
-  if (problem.kind == Kind::kUnknownRecord || problem.kind == Kind::kNoSummary) return problem.data_lost;
-  return problem.kind != Kind::kTruncated || !being_written;
+  return mcap::is_damage(problem) && (problem.kind != mcap::ProblemKind::kTruncated || !being_written);
 }
 
 }  // namespace
@@ -179,6 +187,23 @@ void SequenceCount::add(std::uint32_t sequence) {
   if (any_ && sequence <= last_) ++restarts_;
   last_ = sequence;
   any_ = true;
+}
+
+std::optional<std::uint64_t> missing_of_shared_counter(const std::vector<std::vector<std::uint32_t>>& of_channels) {
+  if (of_channels.size() < 2) return std::nullopt;
+  const auto missing_in = [](std::vector<std::uint32_t>& numbers) -> std::optional<std::uint64_t> {
+    std::ranges::sort(numbers);
+    if (std::ranges::adjacent_find(numbers) != numbers.end()) return std::nullopt;
+    return std::uint64_t{numbers.back()} - numbers.front() + 1 - numbers.size();
+  };
+  std::vector<std::uint32_t> all;
+  std::uint64_t missing_alone = 0;
+  for (std::vector<std::uint32_t> numbers : of_channels) {
+    all.insert(all.end(), numbers.begin(), numbers.end());
+    missing_alone += missing_in(numbers).value_or(0);
+  }
+  const std::optional<std::uint64_t> missing = missing_in(all);
+  return missing && *missing < missing_alone ? missing : std::nullopt;
 }
 
 std::map<std::string, std::string> RecordingReport::losses() const {

@@ -48,6 +48,11 @@ class SequenceCount {
   std::uint64_t missing_ = 0, gaps_ = 0, restarts_ = 0;
 };
 
+/// Missing numbers of one counter that all channels share, as eProsima's DDS Recorder has it. `of_channels`: the
+/// numbers of each channel that has any. Empty when each channel counts for itself: then numbers occur in several
+/// channels, or the channels together have no fewer gaps than each alone.
+std::optional<std::uint64_t> missing_of_shared_counter(const std::vector<std::vector<std::uint32_t>>& of_channels);
+
 /// One channel. Channels of one topic differ in their ids.
 struct ChannelReport {
   mcap::Channel channel;
@@ -71,8 +76,11 @@ struct RecordingReport {
   bool has_summary = false;
   bool read_all = false;  ///< every byte was read and every checksum compared, not only the summary
   std::uint64_t messages = 0;
-  mcap::Timestamp start_ns = 0, end_ns = 0;   ///< log_time of the first and last message
-  std::vector<ChannelReport> channels;        ///< by topic, then id
+  mcap::Timestamp start_ns = 0, end_ns = 0;  ///< log_time of the first and last message
+  std::vector<ChannelReport> channels;       ///< by topic, then id
+  /// Set when one sequence counter runs through all channels: its missing numbers. Gaps of one channel then say
+  /// nothing.
+  std::optional<std::uint64_t> missing_in_shared_counter;
   std::map<std::string, ChunkReport> chunks;  ///< by compression
   std::vector<mcap::AttachmentIndex> attachments;
   std::vector<mcap::Metadata> metadata;

@@ -71,18 +71,19 @@ std::string loss_rows(const RecordingReport& report) {
   return text;
 }
 
-std::string missing_text(const ChannelReport& channel) {
-  if (!channel.sequences || !channel.sequences->numbered()) return "-";
+std::string missing_text(const RecordingReport& report, const ChannelReport& channel) {
+  if (report.missing_in_shared_counter || !channel.sequences || !channel.sequences->numbered()) return "-";
   const std::optional<std::uint64_t> missing = channel.sequences->missing();
   return missing ? std::to_string(*missing) : "-";
 }
 
-std::string channel_row(const ChannelReport& channel, std::size_t topic_width, std::size_t type_width) {
+std::string channel_row(const RecordingReport& report, const ChannelReport& channel, std::size_t topic_width,
+                        std::size_t type_width) {
   const Timing& timing = channel.timing;
   return fmt::format("{:<{}} {:<{}} {:>8} {:>9.2f} {:>10.1f} {:>10.1f} {:>5} {:>6} {:>9}\n", channel.channel.topic,
                      topic_width, channel.type.empty() ? "(no schema)" : channel.type, type_width, timing.messages,
                      timing.rate_hz, static_cast<double>(timing.median_period_ns) * 1e-6,
-                     static_cast<double>(timing.largest_gap_ns) * 1e-6, timing.gaps, missing_text(channel),
+                     static_cast<double>(timing.largest_gap_ns) * 1e-6, timing.gaps, missing_text(report, channel),
                      channel.payload_bytes ? service::bytes_text(*channel.payload_bytes) : "-");
 }
 
@@ -96,7 +97,11 @@ std::string channel_table(const RecordingReport& report) {
   std::string text =
       fmt::format("\n{:<{}} {:<{}} {:>8} {:>9} {:>10} {:>10} {:>5} {:>6} {:>9}\n", "topic", topic_width, "type",
                   type_width, "messages", "rate Hz", "median ms", "longest ms", "gaps", "lost", "size");
-  for (const ChannelReport& channel : report.channels) text += channel_row(channel, topic_width, type_width);
+  for (const ChannelReport& channel : report.channels) text += channel_row(report, channel, topic_width, type_width);
+  if (report.missing_in_shared_counter)
+    return text +
+           fmt::format("gaps: periods above {} medians; lost: {} of the sequence numbers that all topics share\n",
+                       kGapPeriods, *report.missing_in_shared_counter);
   return text +
          fmt::format("gaps: periods above {} medians; lost: missing sequence numbers, - with several writers{}\n",
                      kGapPeriods, report.read_all ? "" : " (--check counts them)");
@@ -119,14 +124,15 @@ Json timing_json(const Timing& timing) {
           {"gaps", timing.gaps}};
 }
 
-Json sequence_json(const std::optional<SequenceCount>& sequences) {
-  if (!sequences || !sequences->numbered()) return nullptr;
+/// Of a counter that the channel has for itself.
+Json sequence_json(const RecordingReport& report, const std::optional<SequenceCount>& sequences) {
+  if (report.missing_in_shared_counter || !sequences || !sequences->numbered()) return nullptr;
   const std::optional<std::uint64_t> missing = sequences->missing();
   return {
       {"missing", missing ? Json(*missing) : Json()}, {"gaps", sequences->gaps()}, {"restarts", sequences->restarts()}};
 }
 
-Json channel_json(const ChannelReport& entry) {
+Json channel_json(const RecordingReport& report, const ChannelReport& entry) {
   Json json = {{"topic", entry.channel.topic},
                {"id", entry.channel.id},
                {"type", entry.type},
@@ -136,7 +142,7 @@ Json channel_json(const ChannelReport& entry) {
                {"metadata", entry.channel.metadata}};
   json.update(timing_json(entry.timing));
   json["payload_bytes"] = entry.payload_bytes ? Json(*entry.payload_bytes) : Json(nullptr);
-  json["sequence"] = sequence_json(entry.sequences);
+  json["sequence"] = sequence_json(report, entry.sequences);
   return json;
 }
 
@@ -206,7 +212,9 @@ Json to_json(const RecordingReport& report, const std::string& name) {
                {"duration_s", seconds(report.end_ns - report.start_ns)},
                {"chunks", chunks_json(report)}};
   json["topics"] = Json::array();
-  for (const ChannelReport& channel : report.channels) json["topics"].push_back(channel_json(channel));
+  for (const ChannelReport& channel : report.channels) json["topics"].push_back(channel_json(report, channel));
+  const auto& shared = report.missing_in_shared_counter;
+  json["shared_sequence"] = shared ? Json{{"missing", *shared}} : Json(nullptr);
   json["losses"] = report.losses().empty() ? Json(nullptr) : Json(report.losses());
   json["metadata"] = Json::array();
   for (const mcap::Metadata& metadata : report.metadata)

@@ -5,6 +5,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <array>
 
 #include "common/ros2/names.hpp"
 #include "common/service/config.hpp"
@@ -32,6 +33,19 @@ std::string topic_name(const std::string& name, const std::string& whole) {
 }
 
 }  // namespace
+
+bool is_cdr(const mcap::Channel& channel) {
+  return channel.message_encoding == "cdr";
+}
+
+std::string encoding_of(const mcap::Channel& channel) {
+  return channel.message_encoding.empty() ? "none" : channel.message_encoding;
+}
+
+bool is_run_topic(const std::string& dds_topic) {
+  constexpr std::array kOfARun = {"rtd/", "rt/detector/", "rt/filter/", "rt/slam/", "rt/dense/"};
+  return std::ranges::any_of(kOfARun, [&](const char* prefix) { return dds_topic.starts_with(prefix); });
+}
 
 bool TopicChoice::wants(const std::string& topic) const {
   if (matches_any(excluded_, topic)) return false;

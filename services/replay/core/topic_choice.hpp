@@ -7,7 +7,19 @@
 #include <utility>
 #include <vector>
 
+#include "common/mcap/records.hpp"
+
 namespace rtd::replay {
+
+/// Whether the messages of a channel can be sent over DDS as they are; others ("json", "protobuf", "ros1") would arrive
+/// as garbage under their type's name.
+bool is_cdr(const mcap::Channel& channel);
+/// Its message encoding, for messages; "none" if it has none.
+std::string encoding_of(const mcap::Channel& channel);
+
+/// Whether the services of a run publish this topic (DDS name) for each other or as their result: a replay of it would
+/// mix with a run in the same domain. rt/tf, rt/diagnostics and rt/camera/* belong to everyone.
+bool is_run_topic(const std::string& dds_topic);
 
 /// Which topics of a recording are played. Patterns are those of a shell ("/slam/*") and meet the name in the recording
 /// as well as the DDS name ("/slam/pose", "rt/slam/pose").

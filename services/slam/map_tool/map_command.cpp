@@ -12,6 +12,7 @@
 
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/json_text.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_tool/map_report.hpp"
 
@@ -38,7 +39,7 @@ slam::MapContents read(const std::string& file, std::ostream& err) {
 void print_info(const MapRequest& request, std::ostream& out, std::ostream& err) {
   const slam::MapContents contents = read(request.file, err);
   const MapReport report = report_on(contents, fs::file_size(request.file));
-  out << (request.json ? to_json(report, request.file).dump(2) + '\n' : to_text(report, request.file));
+  out << (request.json ? service::json_text(to_json(report, request.file)) + '\n' : to_text(report, request.file));
 }
 
 /// The requested map.

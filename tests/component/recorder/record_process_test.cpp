@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // rtd-record beside publishers over Fast DDS, as people use it.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "common/bus/raw_bus.hpp"
@@ -182,6 +184,24 @@ TEST_F(RecordProcess, a_full_disk_ends_it_and_keeps_what_was_written) {
   const std::vector<ReadMessage>& recorded = file.topics.at("/laser");
   EXPECT_GE(recorded.size() * kSize, kDiskBytes - (2U << 20U)) << "at most the last chunks are missing";
   for (std::uint32_t i = 0; i < recorded.size(); ++i) ASSERT_TRUE(recorded[i].cdr == some_bytes(i, kSize)) << i;
+}
+
+TEST_F(RecordProcess, recover_and_join_refuse_what_is_no_recording_and_write_nothing) {
+  std::ofstream(folder_ / "a.bag") << "#ROSBAG V2.0\n and more of it";
+  std::ofstream(folder_ / "notes.txt") << "not a recording";
+  const auto run = [&](const std::string& arguments) {
+    return testing::run_command(std::string(RTD_RECORD_PATH) + ' ' + arguments + " -o " +
+                                (folder_ / "new.mcap").string());
+  };
+  for (const char* command : {"recover ", "join "}) {
+    const auto bag = run(command + (folder_ / "a.bag").string()),
+               notes = run(command + (folder_ / "notes.txt").string());
+    EXPECT_EQ(bag.exit_code, 2);
+    EXPECT_THAT(bag.output, ::testing::HasSubstr("a ROS 1 bag"));
+    EXPECT_EQ(notes.exit_code, 2);
+    EXPECT_THAT(notes.output, ::testing::HasSubstr("not an MCAP file"));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "new.mcap"));
 }
 
 TEST_F(RecordProcess, wrong_output_is_exit_code_2) {

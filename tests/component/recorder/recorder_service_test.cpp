@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "common/bus/raw_bus.hpp"
+#include "common/ros2/schema_texts.hpp"
 #include "common/service/config.hpp"
 #include "tests/component/recorder/recorded_file.hpp"
 #include "tests/support/service_fixture.hpp"
@@ -71,6 +72,47 @@ TEST_F(RecorderTest, records_known_and_unknown_types_byte_by_byte) {
     EXPECT_EQ(file.topics.at("some/thing")[i].cdr, cdr(i, 100'000));
   }
   EXPECT_TRUE(std::filesystem::exists(folder_ / "metadata.yaml"));
+}
+
+TEST_F(RecorderTest, keeps_the_text_of_a_type_that_a_replay_publishes) {
+  bus::RawQos latched;
+  latched.durability = bus::RawQos::Durability::kTransientLocal;
+  start(service::Pace::kRealtime);
+  const auto schemas = writer(ros2::kSchemasTopic, ros2::kSchemasType, latched);
+  const auto laser = writer("rt/laser", "vendor_msgs::msg::dds_::Laser_");
+  std::this_thread::sleep_for(50ms);
+  EXPECT_EQ(laser->matched(), 0) << "it waits for the text";
+  schemas->write(ros2::encode_schemas(
+      {{"vendor_msgs::msg::dds_::Laser_", {"vendor_msgs/msg/Laser", "ros2msg", "float32 range\n"}},
+       {"geometry_msgs::msg::dds_::PoseStamped_", {"geometry_msgs/msg/PoseStamped", "ros2msg", "not this"}}}));
+  wait_heard(*laser);
+  laser->write(cdr(1));
+  const auto pose = writer("rt/slam/pose", "geometry_msgs::msg::dds_::PoseStamped_");
+  wait_heard(*pose);
+  pose->write(cdr(2));
+  ASSERT_TRUE(wait_metric("acknowledged", 2));
+  EXPECT_EQ(stop(), service::kOk);
+
+  const io::FileSource source(config_.output);
+  const mcap::IndexedReader reader(source);
+  std::map<std::string, mcap::Schema> schema_of;
+  for (const auto& [id, channel] : reader.summary().channels)
+    schema_of[channel.topic] = reader.summary().schemas.at(channel.schema_id);
+  EXPECT_EQ(schema_of.size(), 2U) << "the texts themselves are not recorded";
+  EXPECT_EQ(schema_of["/laser"].name, "vendor_msgs/msg/Laser");
+  EXPECT_EQ(schema_of["/laser"].encoding, "ros2msg");
+  EXPECT_EQ(schema_of["/laser"].data, "float32 range\n");
+  EXPECT_NE(schema_of["/slam/pose"].data, "not this") << "built in";
+}
+
+TEST_F(RecorderTest, waits_for_texts_for_a_while_only) {
+  bus::RawQos latched;
+  latched.durability = bus::RawQos::Durability::kTransientLocal;
+  start(service::Pace::kRealtime);
+  const auto silent = writer(ros2::kSchemasTopic, ros2::kSchemasType, latched);
+  const auto laser = writer("rt/laser", "vendor_msgs::msg::dds_::Laser_");
+  wait_heard(*laser);
+  EXPECT_EQ(stop(), service::kOk);
 }
 
 TEST_F(RecorderTest, records_only_what_matches_and_says_that_it_waits) {

@@ -26,6 +26,7 @@ struct Piece {
   std::string topic;  ///< as DDS has it
   std::int64_t log_ns = 0, publish_ns = 0;
   std::string cdr;
+  std::string encoding = "cdr";  ///< of its channel: that of the first piece of the topic
 };
 
 /// "\0\1\0\0" and the rest of a little-endian sample.
@@ -59,8 +60,11 @@ inline void write_recording(const std::string& path, const std::vector<Piece>& p
     if (!channels.contains(piece.topic)) {
       const mcap::SchemaId schema =
           writer.add(mcap::Schema{0, ros2::ros_type(type_of(piece.topic)), idl.empty() ? "" : "omgidl", idl});
-      channels[piece.topic] = writer.add(mcap::Channel{
-          0, schema, ros2::ros_topic(piece.topic), "cdr", {{"offered_qos_profiles", ros2::offered_qos_text({qos})}}});
+      channels[piece.topic] = writer.add(mcap::Channel{0,
+                                                       schema,
+                                                       ros2::ros_topic(piece.topic),
+                                                       piece.encoding,
+                                                       {{"offered_qos_profiles", ros2::offered_qos_text({qos})}}});
     }
     writer.write(mcap::Message{channels.at(piece.topic), 1, static_cast<mcap::Timestamp>(piece.log_ns),
                                static_cast<mcap::Timestamp>(piece.publish_ns), io::bytes_of(piece.cdr)});
@@ -96,7 +100,7 @@ class Recorder {
     handlers.on_sample = [this, topic](const bus::RawSample& sample) {
       const std::lock_guard lock(mutex_);
       pieces_.push_back({topic, sample.received_ns, sample.source_ns,
-                         std::string(reinterpret_cast<const char*>(sample.cdr().data()), sample.cdr().size())});
+                         std::string(reinterpret_cast<const char*>(sample.cdr().data()), sample.cdr().size()), "cdr"});
       came_.notify_all();
     };
     readers_[topic] = bus_.reader(writer.topic, {.reliable = writer.qos.reliable, .depth = 4096}, std::move(handlers));

@@ -6,6 +6,7 @@
 
 #include <future>
 
+#include "common/ros2/schema_texts.hpp"
 #include "common/ros2/type_description.hpp"
 #include "common/service/config.hpp"
 #include "tests/component/replay/raw_recording.hpp"
@@ -189,6 +190,46 @@ TEST_F(ReplayServiceTest, refuses_types_whose_fields_were_others_when_they_were_
   write_recording(file_.path(), frames_and_boxes(), true, ros2::own_idl());
   start();
   EXPECT_EQ(ended(), service::kOk);
+}
+
+TEST_F(ReplayServiceTest, publishes_the_texts_of_types_that_are_not_built_in) {
+  write_recording(file_.path(), {{"rt/boxes", kEpoch, kEpoch, cdr_of(1, 20)}}, true, "struct Blob_ { octet b; };");
+  start();
+  std::promise<std::vector<ros2::SchemaText>> came;
+  bus::RawHandlers handlers;
+  handlers.on_sample = [&](const bus::RawSample& sample) { came.set_value(ros2::decode_schemas(sample.cdr())); };
+  const auto reader = raw_->reader({ros2::kSchemasTopic, ros2::kSchemasType}, {.transient_local = true}, handlers);
+  auto texts = came.get_future();
+  ASSERT_EQ(texts.wait_for(std::chrono::seconds(10)), std::future_status::ready);
+  const std::vector<ros2::SchemaText> schemas = texts.get();
+  EXPECT_EQ(ended(), service::kOk);
+  ASSERT_EQ(schemas.size(), 1U);
+  EXPECT_EQ(schemas[0].dds_type, "test_msgs::msg::dds_::Blob_");
+  EXPECT_EQ(schemas[0].definition.name, "test_msgs/msg/Blob");
+  EXPECT_EQ(schemas[0].definition.encoding, "omgidl");
+  EXPECT_EQ(schemas[0].definition.text, "struct Blob_ { octet b; };");
+}
+
+TEST_F(ReplayServiceTest, leaves_out_channels_that_are_not_in_cdr) {
+  const std::vector<Piece> in_cdr = frames_and_boxes();
+  std::vector<Piece> pieces = in_cdr;
+  pieces.push_back({"rt/settings", kEpoch, kEpoch, "{\"gain\": 1}", "json"});
+  record(pieces);
+  Recorder recorder(*raw_);
+  config_.rate = 0;
+  testing::internal::CaptureStdout();
+  start();
+  const std::vector<Piece> again = recorder.wait(in_cdr.size());
+  EXPECT_EQ(ended(), service::kOk);
+  EXPECT_EQ(recorder.wait(in_cdr.size() + 1, std::chrono::seconds(1)).size(), in_cdr.size());
+  for (const char* topic : {"rtd/features", "rt/boxes"}) expect_same(in_cdr, again, topic);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), AllOf(HasSubstr("/settings"), HasSubstr("json")));
+}
+
+TEST_F(ReplayServiceTest, refuses_a_recording_of_which_nothing_is_in_cdr) {
+  record({{"rt/settings", kEpoch, kEpoch, "{}", "json"}, {"rt/old", kEpoch, kEpoch, "abcd", "ros1"}});
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("nothing to play"), HasSubstr("CDR"), HasSubstr("/settings (json)"),
+                               HasSubstr("/old (ros1)")));
 }
 
 TEST_F(ReplayServiceTest, names_the_option_that_is_wrong_and_what_there_is) {

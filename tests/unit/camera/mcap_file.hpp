@@ -18,6 +18,8 @@ namespace rtd::camera::test {
 /// An MCAP file that a test puts together.
 class McapFile {
  public:
+  explicit McapFile(const mcap::WriterOptions& options = {}) : writer_(sink_, options) {}
+
   void add(const std::string& topic, const std::string& type, const std::string& encoding,
            const std::vector<std::uint8_t>& bytes, double logged_s) {
     auto [channel, is_new] = channels_.try_emplace(topic, mcap::ChannelId{0});
@@ -54,7 +56,7 @@ class McapFile {
 
  private:
   io::MemorySink sink_;
-  mcap::Writer writer_{sink_};
+  mcap::Writer writer_;
   std::map<std::string, mcap::ChannelId> channels_;
   std::optional<rtd::test::TemporaryFile> file_;
 };

@@ -112,6 +112,19 @@ TEST(McapSource, plays_bags_that_were_converted_to_mcap) {
   EXPECT_THAT(play_all(file.uri()).frames, SizeIs(1));
 }
 
+TEST(McapSource, a_file_without_summary_and_chunks_is_whole) {
+  mcap::WriterOptions options;
+  options.use_chunks = options.use_chunk_index = options.use_message_index = options.use_statistics = false;
+  options.use_repeated_schemas = options.use_repeated_channels = options.use_summary_offset = false;
+  McapFile file(options);
+  file.add("/camera/color/image_raw", kImage, ImageBag::image(ImageBag::color(), "bgr8", 1), 1);
+  file.add("/camera/aligned_depth_to_color/image_raw", kImage, ImageBag::image(ImageBag::depth(), "16UC1", 1), 1);
+  file.add("/camera/color/camera_info", "sensor_msgs/msg/CameraInfo", ImageBag::camera_info(), 1);
+  const Played played = play_all(file.uri());
+  EXPECT_THAT(played.frames, SizeIs(1));
+  EXPECT_THAT(played.skipped, IsEmpty());
+}
+
 TEST(McapSource, wants_depth_registered_to_colour) {
   McapFile file;
   msg::Image depth = ImageBag::image(ImageBag::depth(), "16UC1", 1);

@@ -182,8 +182,21 @@ TEST(record_builder, names_the_services_that_are_heard_and_have_not_finished) {
   EXPECT_EQ(builder.active_services(), "filter (pid 7), slam (pid 8)") << "a recorder disturbs nobody";
   builder.add(status_of("detector", 11, {}));
   EXPECT_EQ(builder.active_services(), "detector (pid 11), filter (pid 7), slam (pid 8)");
-  EXPECT_EQ(builder.active_services(true), "filter (pid 7), slam (pid 8)")
+  EXPECT_EQ(builder.active_services({.detector = true}), "filter (pid 7), slam (pid 8)")
       << "the detector of another host is expected";
+}
+
+TEST(record_builder, tolerates_a_replay_that_plays_no_topic_of_a_run) {
+  const Tolerated live{.harmless_replay = true}, at_first{.harmless_replay = true, .silent_replay = true};
+  RecordBuilder builder;
+  builder.add(status_of("replay", 7, {}));
+  EXPECT_EQ(builder.active_services(at_first), "") << "it may still report what it plays";
+  EXPECT_EQ(builder.active_services(live), "replay (pid 7)");
+  builder.add(status_of("replay", 7, {{"run_topics", 0}}));
+  EXPECT_EQ(builder.active_services(live), "");
+  EXPECT_EQ(builder.active_services(), "replay (pid 7)") << "the source of the run is not live";
+  builder.add(status_of("replay", 7, {{"run_topics", 2}}));
+  EXPECT_EQ(builder.active_services(at_first), "replay (pid 7)");
 }
 
 TEST(record_builder, knows_the_clocks_of_other_hosts_from_slam) {

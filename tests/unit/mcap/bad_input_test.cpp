@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/io/bytes.hpp"
+#include "tests/unit/mcap/raw_file.hpp"
 #include "tests/unit/mcap/sample_file.hpp"
 
 namespace rtd::mcap {
@@ -18,51 +18,6 @@ using ::testing::SizeIs;
 
 auto kind(ProblemKind kind) {
   return Field(&Problem::kind, kind);
-}
-
-/// A file made record by record; finish() gives it a correct end.
-class RawFile {
- public:
-  RawFile() {
-    Encoder(bytes_).rest(io::bytes_of(kMagic));
-    add(Header{"", "test"});
-  }
-  template <class R>
-  RawFile& add(const R& record) {
-    append_record(bytes_, record);
-    return *this;
-  }
-  RawFile& add_raw(std::uint8_t opcode, std::uint64_t length, ByteView content) {
-    Encoder encoder(bytes_);
-    encoder(static_cast<Opcode>(opcode), length);
-    encoder.rest(content);
-    return *this;
-  }
-  RawFile& add_channel(ChannelId id = 1, SchemaId schema = 0) { return add(Channel{id, schema, "/a", "cdr", {}}); }
-  /// `summary`: records behind the DataEnd.
-  Bytes finish(ByteView summary = {}) {
-    add(DataEnd{});
-    Footer footer;
-    if (!summary.empty()) footer.summary_start = bytes_.size();
-    Encoder(bytes_).rest(summary);
-    add(footer);
-    Encoder(bytes_).rest(io::bytes_of(kMagic));
-    return bytes_;
-  }
-  std::uint64_t size() const { return bytes_.size(); }
-
- private:
-  Bytes bytes_;
-};
-
-Bytes message_record(ChannelId channel, const std::string& data, Timestamp log_time = 5) {
-  Bytes record;
-  append_record(record, Message{channel, 0, log_time, 5, io::bytes_of(data)});
-  return record;
-}
-
-Chunk chunk_of(ByteView records) {
-  return Chunk{5, 5, records.size(), io::crc32(records), "", records};
 }
 
 TEST(BadInput, not_an_mcap) {

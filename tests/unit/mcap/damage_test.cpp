@@ -38,6 +38,23 @@ std::vector<std::uint64_t> ends_of_messages(const Bytes& file) {
   return ends;
 }
 
+/// The same for recover(), which opens a cut uncompressed chunk: by how many bytes the message itself is whole.
+std::vector<std::uint64_t> ends_in_chunks(const Bytes& file) {
+  const io::MemorySource source(file);
+  StreamReader reader(source);
+  std::vector<std::uint64_t> ends;
+  while (const Record* record = reader.next()) {
+    const auto* message = std::get_if<Message>(record);
+    if (message == nullptr) continue;
+    constexpr std::uint64_t kChunkHead = 9 + 40, kMessageHead = 9 + 22;
+    const Location& location = reader.location();
+    ends.push_back(location.in_chunk ? location.record.offset + kChunkHead + location.offset_in_chunk + kMessageHead +
+                                           message->data.size()
+                                     : location.record.end());
+  }
+  return ends;
+}
+
 std::size_t whole_messages(const std::vector<std::uint64_t>& ends, std::uint64_t cut) {
   return static_cast<std::size_t>(std::ranges::upper_bound(ends, cut) - ends.begin());
 }
@@ -75,7 +92,8 @@ TEST_P(Damage, a_file_cut_at_any_byte_gives_every_whole_chunk) {
 TEST_P(Damage, a_file_cut_at_any_byte_is_made_whole_again) {
   const auto messages = sample_messages(12, 20);
   const Bytes file = file_of(messages, options_of(GetParam(), 200));
-  const std::vector<std::uint64_t> ends = ends_of_messages(file);
+  const bool compressed = GetParam().compression != Compression::kNone;
+  const std::vector<std::uint64_t> ends = compressed ? ends_of_messages(file) : ends_in_chunks(file);
   for (std::size_t cut = 0; cut < file.size(); ++cut) {
     io::MemorySink sink;
     const RecoverReport report = recover(io::MemorySource(ByteView(file).first(cut)), sink);
@@ -166,6 +184,21 @@ TEST_P(BitFlips, several_at_once_are_reported_too) {
 
 INSTANTIATE_TEST_SUITE_P(Compressions, BitFlips,
                          ::testing::Values(Compression::kNone, Compression::kLz4, Compression::kZstd));
+
+TEST(Recover, keeps_the_whole_messages_of_a_cut_chunk_and_says_that_no_checksum_covers_them) {
+  const auto messages = sample_messages(10, 50);
+  const Bytes file = file_of(messages);  // one chunk
+  const std::uint64_t end_of_seventh = ends_in_chunks(file)[6];
+  io::MemorySink sink;
+  const RecoverReport report = recover(io::MemorySource(ByteView(file).first(end_of_seventh + 20)), sink);
+  EXPECT_TRUE(report.data_lost);
+  ASSERT_EQ(report.problems.size(), 1U) << texts(report.problems);
+  EXPECT_EQ(report.problems[0].kind, ProblemKind::kTruncated);
+  EXPECT_THAT(report.problems[0].consequence, ::testing::HasSubstr("no checksum"));
+  const ReadBack again = stream(sink.bytes());
+  EXPECT_THAT(again.problems, IsEmpty()) << texts(again.problems);
+  EXPECT_TRUE(is_first_of(again.messages, messages, 7));
+}
 
 TEST(Recover, reports_the_loss_and_keeps_the_rest) {
   const auto messages = sample_messages(40, 50);

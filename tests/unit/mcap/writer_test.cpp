@@ -184,7 +184,7 @@ TEST_F(FileSinkTest, names_the_reason_when_it_cannot_write) {
   EXPECT_THAT(reason_of([&] { io::FileSink sink(folder_ / "no" / "a.mcap"); }), HasSubstr("no such folder"));
   EXPECT_THAT(reason_of([&] { io::FileSink sink("/proc/a.mcap"); }), HasSubstr("/proc/a.mcap"));
   EXPECT_THAT(reason_of([&] { io::FileSource source(folder_ / "none.mcap"); }), HasSubstr("none.mcap"));
-  EXPECT_THAT(reason_of([&] { io::FileSource source(folder_); }), HasSubstr("directory"));
+  EXPECT_THAT(reason_of([&] { io::FileSource source(folder_); }), HasSubstr("this is a folder: name a file in it"));
 }
 
 /// Files of this process cannot grow beyond `bytes` while it lives: a disk that is full in the middle of a record.
@@ -219,6 +219,22 @@ TEST_F(FileSinkTest, full_disk_leaves_whole_records) {
   const io::FileSource source(path_);
   EXPECT_EQ(IndexedReader(source).summary().statistics->message_count, messages.size());
   EXPECT_FALSE(IndexedReader(source).summary().scanned);
+}
+
+TEST(Files, a_folder_in_place_of_a_file_is_named_with_the_fix) {
+  const std::string folder = ::testing::TempDir();
+  const auto message_of = [](const auto& open) -> std::string {
+    try {
+      open();
+    } catch (const io::IoError& error) {
+      EXPECT_EQ(error.code().value(), EISDIR);
+      return error.what();
+    }
+    return "it was opened";
+  };
+  const std::string expected = folder + ": this is a folder: name a file in it";
+  EXPECT_EQ(message_of([&] { io::FileSource source(folder); }), expected);
+  EXPECT_EQ(message_of([&] { io::FileSink sink(folder, io::IfExists::kReplace); }), expected);
 }
 
 }  // namespace

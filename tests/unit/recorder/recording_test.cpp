@@ -137,6 +137,19 @@ TEST_F(RecordingTest, says_what_ros2_tools_look_for) {
   EXPECT_EQ(recorded->sequence, 1U);
 }
 
+TEST_F(RecordingTest, a_type_that_is_not_built_in_is_described_by_what_the_book_learns) {
+  const ros2::TypeDefinition laser{"vendor_msgs/msg/Laser", "ros2msg", "float32 range\n"};
+  const std::size_t before = book_.find_or_add("rt/front", "vendor_msgs::msg::dds_::Laser_");
+  EXPECT_FALSE(book_.knows("vendor_msgs::msg::dds_::Laser_"));
+  book_.learn("vendor_msgs::msg::dds_::Laser_", laser);
+  book_.learn("vendor_msgs::msg::dds_::Laser_", {"vendor_msgs/msg/Laser", "ros2msg", "another"});
+  EXPECT_TRUE(book_.knows("vendor_msgs::msg::dds_::Laser_"));
+  const std::size_t after = book_.find_or_add("rt/back", "vendor_msgs::msg::dds_::Laser_");
+  for (const std::size_t topic : {before, after}) EXPECT_EQ(book_.topic(topic).type.text, laser.text);
+  book_.learn("geometry_msgs::msg::dds_::PoseStamped_", laser);
+  EXPECT_NE(book_.topic(book_.find_or_add("rt/p", "geometry_msgs::msg::dds_::PoseStamped_")).type.text, laser.text);
+}
+
 TEST_F(RecordingTest, each_part_of_a_split_recording_stands_alone) {
   const std::size_t pose = book_.find_or_add("rt/slam/pose", "geometry_msgs::msg::dds_::PoseStamped_");
   RecordingOptions options;

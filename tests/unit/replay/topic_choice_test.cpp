@@ -18,6 +18,13 @@ TEST(TopicChoice, plays_all_but_the_heartbeats_unless_asked) {
   EXPECT_TRUE(TopicChoice({"rtd/status"}, {}).wants("rtd/status"));
 }
 
+TEST(TopicChoice, knows_the_topics_that_a_run_publishes_itself) {
+  for (const char* topic : {"rtd/frame", "rtd/status", "rt/slam/pose", "rt/detector/detections"})
+    EXPECT_TRUE(is_run_topic(topic)) << topic;
+  for (const char* topic : {"rt/camera/color/image_raw", "rt/tf", "rt/slammed", "imu"})
+    EXPECT_FALSE(is_run_topic(topic)) << topic;
+}
+
 TEST(TopicChoice, takes_patterns_on_either_spelling_of_a_name) {
   const TopicChoice choice({"/slam/*", "rt/tf"}, {"*/path"});
   EXPECT_TRUE(choice.wants("/slam/pose"));

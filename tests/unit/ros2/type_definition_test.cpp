@@ -14,7 +14,9 @@
 #include <sstream>
 
 #include "common/ros2/names.hpp"
+#include "common/ros2/schema_texts.hpp"
 #include "common/ros2/type_description.hpp"
+#include "common/ros_codec/wire.hpp"
 
 namespace rtd::ros2 {
 namespace {
@@ -122,6 +124,17 @@ TEST(TypeDefinitions, an_unknown_type_has_a_name_and_nothing_else) {
     EXPECT_EQ(definition.text, "");
     EXPECT_EQ(definition.name, ros_type(type));
   }
+}
+
+TEST(SchemaTexts, come_back_from_their_sample_and_garbage_is_refused) {
+  const std::vector<std::byte> cdr = encode_schemas({{"a::msg::dds_::B_", {"a/msg/B", "ros2msg", "int32 x\n"}}});
+  const std::vector<SchemaText> schemas = decode_schemas(cdr);
+  ASSERT_EQ(schemas.size(), 1U);
+  EXPECT_EQ(schemas[0].dds_type, "a::msg::dds_::B_");
+  EXPECT_EQ(schemas[0].definition.name, "a/msg/B");
+  EXPECT_EQ(schemas[0].definition.encoding, "ros2msg");
+  EXPECT_EQ(schemas[0].definition.text, "int32 x\n");
+  EXPECT_THROW(decode_schemas(std::span(cdr).first(cdr.size() / 2)), ros::WireError);
 }
 
 }  // namespace

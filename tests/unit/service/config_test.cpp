@@ -108,6 +108,7 @@ TEST_F(ConfigTest, broken_yaml_names_the_line) {
 
 TEST_F(ConfigTest, missing_file_is_named) {
   EXPECT_THROW(binder_.load_file("/nonexistent/rtd.yaml", {}), ConfigError);
+  EXPECT_THROW(binder_.load_file(testing::TempDir(), {}), ConfigError) << "a folder";
 }
 
 TEST_F(ConfigTest, set_overrides_one_key) {

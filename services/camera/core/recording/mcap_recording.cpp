@@ -66,8 +66,10 @@ class McapRecording final : public Recording {
   std::vector<std::string> take_damages() override {
     std::vector<std::string> damages;
     const auto& problems = reader_.problems().listed();
-    for (; reported_ < problems.size(); ++reported_)
-      damages.push_back(name_ + ", " + mcap::to_string(problems[reported_]));
+    for (; reported_ < problems.size(); ++reported_) {
+      const mcap::Problem& problem = problems[reported_];
+      if (mcap::is_damage(problem)) damages.push_back(name_ + ", " + mcap::to_string(problem));
+    }
     return damages;
   }
 

@@ -135,11 +135,19 @@ std::optional<std::string> RecordBuilder::take_notice() {
   return notice;
 }
 
-std::string RecordBuilder::active_services(bool without_detector) const {
+bool RecordBuilder::disturbs_a_run(const std::string& name, const Service& service, const Tolerated& tolerated) {
+  if (service.state == msg::ServiceState::kFinished || name == "record") return false;
+  if (name == "detector") return !tolerated.detector;
+  if (name != "replay") return true;
+  const auto run_topics = service.counters.find("run_topics");
+  if (run_topics == service.counters.end()) return !tolerated.silent_replay;
+  return !tolerated.harmless_replay || run_topics->second.current > 0;
+}
+
+std::string RecordBuilder::active_services(const Tolerated& tolerated) const {
   std::string text;
   for (const auto& [name, service] : services_) {
-    if (service.state == msg::ServiceState::kFinished || name == "record") continue;  // a recorder only subscribes
-    if (without_detector && name == "detector") continue;
+    if (!disturbs_a_run(name, service, tolerated)) continue;
     text += (text.empty() ? "" : ", ") + name + " (pid " + std::to_string(service.pid) + ")";
   }
   return text;

@@ -34,6 +34,13 @@ struct LiveStatus {
 /// columns.
 std::string format_live_status(const LiveStatus& status);
 
+/// Services of others in the domain that disturb no run, beside recorders, which only subscribe.
+struct Tolerated {
+  bool detector = false;         ///< it runs on another host
+  bool harmless_replay = false;  ///< a replay that plays no topic of a run: its metric run_topics is 0
+  bool silent_replay = false;    ///< one that has not reported yet what it plays
+};
+
 /// Joins the message streams of a run into its record. Messages may be missing, doubled or out of order: the first
 /// message of a frame counts, because later ones answer a frame that was sent again. Not thread-safe.
 class RecordBuilder {
@@ -51,9 +58,9 @@ class RecordBuilder {
   /// The newest message of a degraded service; returned once each time it changes.
   std::optional<std::string> take_notice();
 
-  /// "filter (pid 42), slam (pid 43)": every service seen that has not ended. A recorder only subscribes
-  /// and does not count; `without_detector` also ignores a detector. Empty when there is none.
-  std::string active_services(bool without_detector = false) const;
+  /// "filter (pid 42), slam (pid 43)": every service seen that has not ended and is not tolerated. Empty when there is
+  /// none.
+  std::string active_services(const Tolerated& tolerated = {}) const;
 
   /// Writes frames, frames_in, frames_dropped and drops.
   void fill(eval::RunRecord& record) const;
@@ -70,6 +77,7 @@ class RecordBuilder {
     std::map<std::string, Counter> counters;
   };
 
+  static bool disturbs_a_run(const std::string& name, const Service& service, const Tolerated& tolerated);
   std::map<std::string, double> drops() const;
   std::vector<eval::HostClock> clocks() const;
   void note_troubles(const msg::ServiceStatus& status);

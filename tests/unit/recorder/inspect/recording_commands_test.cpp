@@ -33,7 +33,7 @@ class RecordingCommandsTest : public testing::Test {
     return file(name, io::Bytes(view.begin(), view.end()));
   }
   int info(const std::string& path, bool json = false) { return run_info({path, json}, out_, err_); }
-  int diff(const std::string& a, const std::string& b) { return run_diff({a, b}, out_, err_); }
+  int diff(const std::string& a, const std::string& b, bool json = false) { return run_diff({a, b, json}, out_, err_); }
 
   std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / ("rtd_rec_" + std::to_string(getpid()));
   std::ostringstream out_, err_;
@@ -51,9 +51,17 @@ TEST_F(RecordingCommandsTest, info_of_a_cut_file_is_exit_code_3_behind_what_can_
   EXPECT_THAT(out_.str(), HasSubstr("\"messages\": 5"));
 }
 
+TEST_F(RecordingCommandsTest, json_replaces_bytes_that_are_not_utf8) {
+  const std::string latin1 = file("a.mcap", recording_of(regular_messages("/caf\xe9", 5), {}, "test_msgs/msg/B\xf6"));
+  EXPECT_EQ(info(latin1, true), 0) << err_.str();
+  EXPECT_EQ(diff(latin1, latin1, true), 0) << err_.str();
+  EXPECT_THAT(out_.str(), testing::AllOf(HasSubstr("/caf\xef\xbf\xbd"), HasSubstr("B\xef\xbf\xbd")));
+}
+
 TEST_F(RecordingCommandsTest, what_is_no_recording_is_named_with_a_way_out) {
   EXPECT_EQ(info(file("a.bag", std::string("#ROSBAG V2.0\nxxx"))), 2);
-  EXPECT_THAT(err_.str(), HasSubstr("rtd convert"));
+  EXPECT_THAT(err_.str(),
+              testing::AllOf(HasSubstr("mcap convert FILE.bag"), HasSubstr("images alone, 'rtd convert bag:")));
   EXPECT_EQ(info(file("a.txt", std::string("hello"))), 2);
   EXPECT_THAT(err_.str(), HasSubstr("not an MCAP file"));
   EXPECT_EQ(info(file("empty.mcap", std::string())), 2);
@@ -64,13 +72,13 @@ TEST_F(RecordingCommandsTest, what_is_no_recording_is_named_with_a_way_out) {
 
 TEST_F(RecordingCommandsTest, a_folder_stands_for_the_only_recording_in_it) {
   EXPECT_EQ(info(folder_.string()), 2);
-  EXPECT_THAT(err_.str(), HasSubstr("holds no .mcap file"));
+  EXPECT_THAT(err_.str(), HasSubstr("holds no .mcap file: name a recording or a folder with one\n"));
   file("a_0.mcap", recording_of(regular_messages("/pose", 5)));
   EXPECT_EQ(info(folder_.string()), 0);
   EXPECT_EQ(diff(folder_.string(), folder_.string()), 0);
   file("a_1.mcap", recording_of(regular_messages("/pose", 5)));
   EXPECT_EQ(info(folder_.string()), 2);
-  EXPECT_THAT(err_.str(), HasSubstr("name one of them"));
+  EXPECT_THAT(err_.str(), testing::AllOf(HasSubstr("name one of them"), testing::Not(HasSubstr("Is a directory"))));
 }
 
 TEST_F(RecordingCommandsTest, diff_says_equal_and_different_by_its_exit_code) {
@@ -92,6 +100,16 @@ TEST_F(RecordingCommandsTest, diff_of_a_damaged_recording_is_no_clean_bill) {
   const std::string damaged = file("a.mcap", bytes);
   EXPECT_EQ(diff(damaged, damaged), 3);
   EXPECT_THAT(err_.str(), HasSubstr("damaged"));
+}
+
+TEST_F(RecordingCommandsTest, diff_names_what_it_compares_and_how_to_convert) {
+  const std::string bag = file("a.bag", std::string("#ROSBAG V2.0\nxxx"));
+  EXPECT_EQ(diff(bag, bag), 2);
+  EXPECT_THAT(err_.str(), testing::AllOf(HasSubstr("a.bag is a ROS 1 bag"), HasSubstr("mcap convert"),
+                                         HasSubstr("compares two MCAP recordings, or two trajectories")));
+  const std::string table = file("a.csv", std::string("1 2 3 4\n"));
+  EXPECT_EQ(diff(table, table), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("4 columns instead of 8 (stamp tx ty tz qx qy qz qw); 'rtd diff' compares"));
 }
 
 TEST_F(RecordingCommandsTest, diff_compares_trajectories_and_no_two_kinds) {

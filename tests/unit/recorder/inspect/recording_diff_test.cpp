@@ -102,6 +102,30 @@ TEST(RecordingDiff, a_topic_on_one_side_is_a_difference) {
   EXPECT_THAT(to_text(result), HasSubstr("only in B"));
 }
 
+TEST(RecordingDiff, the_same_bytes_in_another_encoding_are_a_difference) {
+  const std::vector<SampleMessage> messages = regular_messages("/pose", 5);
+  const io::Bytes cdr = recording_of(messages), json = recording_of(messages, {}, {}, "json");
+  const io::MemorySource source_cdr(cdr), source_json(json);
+  const RecordingDiff result = diff(contents_of(source_cdr), contents_of(source_json));
+  EXPECT_FALSE(result.equal());
+  EXPECT_THAT(to_text(result), HasSubstr("differs in encoding: cdr | json"));
+  EXPECT_EQ(to_json(result)["topics"][0]["encoding_b"], "json");
+  EXPECT_TRUE(diff(contents_of(source_json), contents_of(source_json)).equal());
+}
+
+/// CDR of that type would be too short.
+TEST(RecordingDiff, messages_that_are_not_cdr_are_compared_by_bytes) {
+  std::vector<SampleMessage> messages = regular_messages("rtd/tracking", 5);
+  const io::Bytes a = recording_of(messages, {}, "rtd_msgs/msg/TrackingResult", "json");
+  messages[3].payload[2] = 'X';
+  const io::Bytes b = recording_of(messages, {}, "rtd_msgs/msg/TrackingResult", "json");
+  const io::MemorySource source_a(a), source_b(b);
+  RecordingDiff result = diff(contents_of(source_a), contents_of(source_b));
+  explain(result, source_a, source_b);
+  ASSERT_TRUE(result.topics[0].first);
+  EXPECT_THAT(result.topics[0].first->why, Contains("first at byte 2 of the payload"));
+}
+
 TEST(RecordingDiff, two_runs_are_paired_by_frame_and_told_apart_from_their_times) {
   std::vector<SampleMessage> a, b;
   for (std::uint64_t i = 0; i < 20; ++i) {

@@ -71,6 +71,19 @@ TEST(RecordingReport, tells_the_same_of_a_big_file_from_its_summary_and_indexes)
   EXPECT_GT(report.chunks.at("zstd").chunks, 2U);
 }
 
+TEST(RecordingReport, numbers_that_run_through_all_topics_are_no_loss_of_each) {
+  std::vector<SampleMessage> messages;
+  for (std::uint32_t i = 0; i < 30; ++i)
+    messages.push_back({i % 3 == 0 ? "/pose" : "/frame", 1'000'000'000 + i * 10'000'000ULL, "x", i + 1});
+  messages.erase(messages.begin() + 10);
+  const RecordingReport report = report_of(recording_of(messages));
+  EXPECT_EQ(report.missing_in_shared_counter, 1U);
+  EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("lost: 1 of the sequence numbers that all topics share"));
+  const nlohmann::json json = to_json(report, "x.mcap");
+  EXPECT_EQ(json["shared_sequence"]["missing"], 1);
+  EXPECT_TRUE(json["topics"][0]["sequence"].is_null());
+}
+
 TEST(RecordingReport, reads_everything_where_the_indexes_are_missing) {
   mcap::WriterOptions options = small_chunks();
   options.use_message_index = false;

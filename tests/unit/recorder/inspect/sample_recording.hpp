@@ -19,7 +19,7 @@ struct SampleMessage {
 
 /// A file of these messages; the type of a topic is "test_msgs/msg/" and its last word unless `type` is given.
 inline io::Bytes recording_of(const std::vector<SampleMessage>& messages, mcap::WriterOptions options = {},
-                              const std::string& type = {}) {
+                              const std::string& type = {}, const std::string& encoding = "cdr") {
   options.profile = "ros2";
   io::MemorySink sink;
   mcap::Writer writer(sink, options);
@@ -29,7 +29,7 @@ inline io::Bytes recording_of(const std::vector<SampleMessage>& messages, mcap::
       const std::string name =
           type.empty() ? "test_msgs/msg/" + message.topic.substr(message.topic.rfind('/') + 1) : type;
       const mcap::SchemaId schema = writer.add(mcap::Schema{0, name, "omgidl", "struct X {};"});
-      channels[message.topic] = writer.add(mcap::Channel{0, schema, message.topic, "cdr", {}});
+      channels[message.topic] = writer.add(mcap::Channel{0, schema, message.topic, encoding, {}});
     }
     writer.write(mcap::Message{channels.at(message.topic), message.sequence, message.time_ns,
                                message.publish_ns != 0 ? message.publish_ns : message.time_ns,

@@ -46,5 +46,19 @@ TEST(SequenceCount, knows_a_recording_without_numbers) {
   EXPECT_FALSE(count.numbered());
 }
 
+TEST(SharedCounter, is_recognised_by_numbers_that_only_all_channels_together_have) {
+  EXPECT_EQ(missing_of_shared_counter({{1, 3, 5, 7}, {2, 4, 6}, {8}}), 0U);
+  EXPECT_EQ(missing_of_shared_counter({{1, 3, 5, 9}, {2, 4, 6, 8}}), 1U) << "7 is lost";
+  EXPECT_EQ(missing_of_shared_counter({{5, 3, 1}, {6, 2, 4}}), 0U) << "in any order";
+}
+
+TEST(SharedCounter, channels_that_count_for_themselves_are_told_apart) {
+  EXPECT_EQ(missing_of_shared_counter({}), std::nullopt);
+  EXPECT_EQ(missing_of_shared_counter({{1, 2, 5}}), std::nullopt) << "one channel";
+  EXPECT_EQ(missing_of_shared_counter({{1, 2, 5}, {1, 2, 3}}), std::nullopt);
+  EXPECT_EQ(missing_of_shared_counter({{1, 2, 3}, {5000, 5001, 5003}}), std::nullopt) << "an older writer";
+  EXPECT_EQ(missing_of_shared_counter({{1, 2, 3}, {4, 5}}), std::nullopt) << "nothing is missing in either";
+}
+
 }  // namespace
 }  // namespace rtd::recording
