@@ -58,7 +58,7 @@ TEST_F(CollectorTest, keeps_every_frame_and_a_few_pictures) {
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
     publish(seq);
     std::this_thread::sleep_for(
-        std::chrono::milliseconds(3));  // a camera; the encoder lets pictures go rather than wait
+        std::chrono::milliseconds(20));  // a camera; the encoder lets pictures go rather than wait
   }
   const eval::RunRecord record = record_when_complete(6);
   ASSERT_EQ(record.frames.size(), kFrames);
