@@ -99,6 +99,13 @@ std::optional<int> family_in(const std::string& name) {
 
 }  // namespace
 
+void apply(const Calibration& calibration, SourceInfo& info) {
+  info.camera = calibration.camera;
+  info.depth_scale_m = calibration.depth_scale_m;
+  info.readout_s = calibration.readout_s;
+  info.depth_offset_s = calibration.depth_offset_s;
+}
+
 void check_frame_size(double width, double height, const std::string& origin) {
   if (width <= msg::kMaxFrameWidth && height <= msg::kMaxFrameHeight) return;
   throw SourceError(

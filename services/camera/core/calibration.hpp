@@ -27,6 +27,10 @@ Calibration parse_calibration(const std::string& text, const std::string& origin
 /// The same of a file. Throws SourceError also when it cannot be read.
 Calibration read_calibration(const std::string& file);
 
+struct SourceInfo;
+/// What the calibration says about a source; neither its rate nor anything else changes.
+void apply(const Calibration& calibration, SourceInfo& info);
+
 /// Throws SourceError naming `origin` for images larger than the frame type.
 void check_frame_size(double width_px, double height_px, const std::string& origin);
 

@@ -35,6 +35,12 @@ class RecorderTest : public test_support::ServiceFixture<RecorderService> {
   std::unique_ptr<bus::RawWriter> writer(const std::string& topic, const std::string& type, bus::RawQos qos = {}) {
     return raw_->writer({topic, type}, {qos});
   }
+  /// As a replay has it.
+  std::unique_ptr<bus::RawWriter> schemas_writer() {
+    bus::RawQos latched;
+    latched.durability = bus::RawQos::Durability::kTransientLocal;
+    return writer(ros2::kSchemasTopic, ros2::kSchemasType, latched);
+  }
   static void wait_heard(const bus::RawWriter& writer, int readers = 1) {
     for (int i = 0; i < 5000 && writer.matched() < readers; ++i) std::this_thread::sleep_for(1ms);
     ASSERT_EQ(writer.matched(), readers);
@@ -75,10 +81,8 @@ TEST_F(RecorderTest, records_known_and_unknown_types_byte_by_byte) {
 }
 
 TEST_F(RecorderTest, keeps_the_text_of_a_type_that_a_replay_publishes) {
-  bus::RawQos latched;
-  latched.durability = bus::RawQos::Durability::kTransientLocal;
   start(service::Pace::kRealtime);
-  const auto schemas = writer(ros2::kSchemasTopic, ros2::kSchemasType, latched);
+  const auto schemas = schemas_writer();
   const auto laser = writer("rt/laser", "vendor_msgs::msg::dds_::Laser_");
   std::this_thread::sleep_for(50ms);
   EXPECT_EQ(laser->matched(), 0) << "it waits for the text";
@@ -106,10 +110,8 @@ TEST_F(RecorderTest, keeps_the_text_of_a_type_that_a_replay_publishes) {
 }
 
 TEST_F(RecorderTest, waits_for_texts_for_a_while_only) {
-  bus::RawQos latched;
-  latched.durability = bus::RawQos::Durability::kTransientLocal;
   start(service::Pace::kRealtime);
-  const auto silent = writer(ros2::kSchemasTopic, ros2::kSchemasType, latched);
+  const auto silent = schemas_writer();
   const auto laser = writer("rt/laser", "vendor_msgs::msg::dds_::Laser_");
   wait_heard(*laser);
   EXPECT_EQ(stop(), service::kOk);

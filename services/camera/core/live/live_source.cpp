@@ -87,11 +87,7 @@ LiveSource::LiveSource(std::string uri, std::unique_ptr<LiveFeed> feed, LiveOpti
   info_.uri = std::move(uri);
   info_.live = true;
   if (options_.calibration_file.empty()) return;
-  const Calibration own = read_calibration(options_.calibration_file);
-  info_.camera = own.camera;
-  info_.depth_scale_m = own.depth_scale_m;
-  info_.readout_s = own.readout_s;
-  info_.depth_offset_s = own.depth_offset_s;
+  apply(read_calibration(options_.calibration_file), info_);
   calibrated_ = true;
 }
 

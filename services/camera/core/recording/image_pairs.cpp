@@ -148,11 +148,7 @@ void ImagePairs::look_at_first_images(bool depth_named) {
 
 void ImagePairs::load_calibration(const RecordingOptions& options) {
   if (!options.calibration_file.empty()) {
-    const Calibration own = read_calibration(options.calibration_file);
-    info_.camera = own.camera;
-    info_.depth_scale_m = own.depth_scale_m;
-    info_.readout_s = own.readout_s;
-    info_.depth_offset_s = own.depth_offset_s;
+    apply(read_calibration(options.calibration_file), info_);
     return;
   }
   if (topics_.info.empty()) {

@@ -163,9 +163,10 @@ TumSource::TumSource(std::string uri, std::filesystem::path folder, Options opti
   pairs_ = std::move(list.pairs);
   for (SkippedInput& input : list.skipped) skips_.add(std::move(input));
   groundtruth_ = read_groundtruth(folder_, pairs_);
-  info_ = {std::move(uri), calibration.camera, calibration.depth_scale_m, calibration.fps, pairs_.size()};
-  info_.readout_s = calibration.readout_s;
-  info_.depth_offset_s = calibration.depth_offset_s;
+  info_.uri = std::move(uri);
+  info_.fps = calibration.fps;
+  info_.frames = pairs_.size();
+  apply(calibration, info_);
   if (pairs_.empty()) throw SourceError("no usable frame in " + folder_.string() + ": its lists are empty");
   read_first(folder_.string());
 }
