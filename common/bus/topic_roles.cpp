@@ -12,6 +12,7 @@ namespace {
 using Roles = std::vector<std::string_view>;
 
 const Roles kServices = {"camera", "detector", "filter", "slam", "dense", "record", "replay", "viewer"};
+const Roles kFrameReaders = {"filter", "detector", "dense", "launcher", "viewer"};
 /// They read the results.
 const Roles kOnlookers = {"viewer", "observer"};
 
@@ -29,7 +30,10 @@ bool has(const Roles& listed, const std::string& role) {
 const std::vector<TopicRoles>& topic_roles() {
   using namespace topics;
   static const std::vector<TopicRoles> kRoles = {
-      {kFrame.name, {"camera"}, {"filter", "detector", "dense", "launcher", "viewer"}},
+      {kFrame.name, {"camera"}, kFrameReaders},
+      {kFrame848.name, {"camera"}, kFrameReaders},
+      {kFrame1280.name, {"camera"}, kFrameReaders},
+      {kFrame1920.name, {"camera"}, kFrameReaders},
       {kColorJpeg.name, {"camera"}, Roles{"detector"} + kOnlookers},
       {kCameraInfo.name, {"camera"}, kOnlookers},
       {kDetections.name, {"detector"}, Roles{"filter"} + kOnlookers},

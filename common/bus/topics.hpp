@@ -16,6 +16,10 @@ struct Topic {
 
 namespace topics {
 inline constexpr Topic<msg::RgbdFrame> kFrame{"rtd/frame", QosProfile::kRawFrame};
+/// The same for larger frames (common/bus/frame_topics.hpp).
+inline constexpr Topic<msg::RgbdFrame848> kFrame848{"rtd/frame_848x480", QosProfile::kRawFrame};
+inline constexpr Topic<msg::RgbdFrame1280> kFrame1280{"rtd/frame_1280x720", QosProfile::kRawFrame};
+inline constexpr Topic<msg::RgbdFrame1920> kFrame1920{"rtd/frame_1920x1200", QosProfile::kRawFrame};
 inline constexpr Topic<msg::FeatureFrame> kFeatures{"rtd/features", QosProfile::kFeatures};
 inline constexpr Topic<msg::KeyframeEvent> kKeyframes{"rtd/keyframes", QosProfile::kKeyframes};
 inline constexpr Topic<msg::TrackingResult> kTracking{"rtd/tracking", QosProfile::kTracking};

@@ -4,17 +4,25 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 
 namespace rtd::geometry {
 
-/// Pinhole camera with Brown-Conrady distortion. Camera frame: optical (x right, y down, z forward).
+/// How a lens bends the pinhole image; the values are those of the wire.
+enum class Lens : std::uint32_t {
+  kBrownConrady = 0,  ///< k1 k2 p1 p2 k3 (k4 k5 k6: OpenCV's rational model)
+  kFisheye = 1,       ///< k1 k2 k3 k4 of the equidistant model (OpenCV's fisheye)
+};
+
+/// Pinhole camera with the distortion of its lens. Camera frame: optical (x right, y down, z forward).
 /// Source: docs/theory/camera.md, Eq. (1)-(3). Immutable value, thread-safe.
 class CameraModel {
  public:
   struct Parameters {
     double fx = 0, fy = 0, cx = 0, cy = 0;  ///< px
-    std::array<double, 5> distortion{};     ///< k1 k2 p1 p2 k3
+    std::array<double, 8> distortion{};     ///< coefficients as listed for each Lens, the rest zero
     int width = 0, height = 0;              ///< px
+    Lens lens = Lens::kBrownConrady;
     bool operator==(const Parameters&) const = default;
   };
 
@@ -34,7 +42,8 @@ class CameraModel {
     return {(pixel.x() - parameters_.cx) / parameters_.fx * depth_m,
             (pixel.y() - parameters_.cy) / parameters_.fy * depth_m, depth_m};
   }
-  /// Pixel of the camera's own image -> pixel of the ideal pinhole image (Newton on Eq. (2)).
+  /// Pixel of the camera's own image -> pixel of the ideal pinhole image (Newton on Eq. (2)). What a fisheye lens sees
+  /// farther off the axis than kWidestView_rad comes to lie at that angle.
   Eigen::Vector2d undistort(const Eigen::Vector2d& raw_pixel) const;
   /// Pixel of the ideal pinhole image -> pixel of the camera's own image, Eq. (2).
   Eigen::Vector2d distort(const Eigen::Vector2d& pixel) const;
@@ -44,8 +53,13 @@ class CameraModel {
            pixel.y() < parameters_.height - margin_px;
   }
 
+  /// 80 degrees: beyond it a pinhole image would be of no use.
+  static constexpr double kWidestView_rad = 1.4;
+
  private:
   Eigen::Vector2d distort_normalized(const Eigen::Vector2d& n) const;
+  double fisheye_radius(double angle_rad) const;
+  Eigen::Vector2d undistort_fisheye(const Eigen::Vector2d& target) const;
   Parameters parameters_;
   bool distorted_ = false;
 };

@@ -10,7 +10,12 @@
 
 namespace rtd::msg {
 
-inline constexpr std::uint32_t kMaxFeatures = 2048;
+inline constexpr std::uint32_t kMaxFeatures = 4096;
+/// How many times an image of this size is enlarged before features are looked for: small ones are doubled
+/// (docs/theory/orb.md). The positions of features are given in pixels of the image as it came.
+constexpr int feature_scale(std::uint32_t width_px, std::uint32_t height_px) {
+  return width_px < 400 && height_px < 400 ? 2 : 1;
+}
 
 using Descriptor = std::array<std::uint8_t, 32>;  ///< rotated BRIEF, 256 bits
 

@@ -9,7 +9,7 @@
 #include "common/geometry/camera_model.hpp"
 
 namespace rtd::msg {
-struct RgbdFrame;
+struct FrameView;
 }
 
 namespace rtd::vision {
@@ -27,13 +27,13 @@ struct RgbdImage {
 };
 
 /// Why a frame cannot be used (size, intrinsics, depth scale or times out of bounds); empty when it can.
-std::string defect(const msg::RgbdFrame& frame);
+std::string defect(const msg::FrameView& frame);
 
-/// The images of a message without copying: `frame` must outlive the result, which must not be written to. The frame
-/// has no defect().
-RgbdImage view_image(const msg::RgbdFrame& frame);
+/// The images of a message without copying: the memory of `frame` must outlive the result, which must not be written
+/// to. The frame has no defect().
+RgbdImage view_image(const msg::FrameView& frame);
 
 /// The colour image alone; empty when its size is out of bounds. Otherwise as view_image().
-cv::Mat view_color(const msg::RgbdFrame& frame);
+cv::Mat view_color(const msg::FrameView& frame);
 
 }  // namespace rtd::vision

@@ -93,6 +93,7 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
       tracking_(runtime.bus.reader<msg::TrackingResult>(
           bus::topics::kTracking, [results = results_](const auto& result) { results->push(result->seq); })) {
   cv::setNumThreads(1);
+  if (!source_->info().live) open_publisher();
   std::erase(config_.wait_for, "none");
   runtime.heartbeat.on_status([changes = changes_](const auto&) { changes->push(true); });
   runtime.stop.on_stop([source = source_, results = results_, changes = changes_] {
@@ -125,10 +126,16 @@ CameraService::Outcome CameraService::open() {
   } catch (const SourceError& error) {
     return fail(fmt::format("source {}: {}", config_.source, error.what()));
   }
+  if (source_->info().live) open_publisher();
   const auto& camera = source_->info().camera.parameters();
   SPDLOG_INFO("event=source_opened uri={} frames={} width={} height={} fx={} fps={}", source_->info().uri,
               source_->info().frames, camera.width, camera.height, camera.fx, source_->info().fps);
   return Outcome::kDone;
+}
+
+void CameraService::open_publisher() {
+  const auto& camera = source_->info().camera.parameters();
+  publisher_.open({camera.width, camera.height});
 }
 
 /// Called by the source: in open(), later in the thread that reads ahead.

@@ -77,6 +77,8 @@ class CameraService {
 
   /// Waits for the first frame of a running camera.
   Outcome open();
+  /// Once the size of the images is known.
+  void open_publisher();
   void report_wait(const std::string& what);
   Outcome wait_for_others();
   std::vector<std::string> missing() const;

@@ -32,16 +32,6 @@ std::uint64_t random_id() {
   return (static_cast<std::uint64_t>(device()) << 32U) | device();
 }
 
-/// Copies the rows packed and clears what a smaller image leaves of the fixed array.
-template <class Array>
-void copy_packed(const cv::Mat& image, Array& target) {
-  auto* bytes = reinterpret_cast<std::uint8_t*>(target.data());
-  const std::size_t row_bytes = static_cast<std::size_t>(image.cols) * image.elemSize();
-  for (int row = 0; row < image.rows; ++row, bytes += row_bytes) std::memcpy(bytes, image.ptr(row), row_bytes);
-  const std::size_t used = row_bytes * static_cast<std::size_t>(image.rows);
-  std::memset(bytes, 0, sizeof(target) - used);
-}
-
 bus::StatusCallbacks on_match(const std::function<void()>& notify) {
   bus::StatusCallbacks callbacks;
   callbacks.on_matched = [notify](int) { notify(); };
@@ -74,45 +64,32 @@ void JpegPublisher::publish(const Waiting& image) {
   writer_.write(message);
 }
 
-void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::int64_t published_ns,
-                msg::RgbdFrame& frame) {
-  const auto& p = image.camera.parameters();
-  frame.seq = image.seq;
-  frame.stamp_ns = image.stamp_ns;
-  frame.published_ns = published_ns;
-  frame.intrinsics = {p.fx, p.fy, p.cx, p.cy};
-  frame.distortion = msg::unaligned(p.distortion);
-  frame.depth_scale_m = image.depth_scale_m;
-  frame.readout_s = image.readout_s;
-  frame.depth_offset_s = image.depth_offset_s;
-  frame.width = static_cast<std::uint32_t>(image.color_bgr.cols);
-  frame.height = static_cast<std::uint32_t>(image.color_bgr.rows);
-  frame.source_id = source_id;
-  copy_packed(image.color_bgr, frame.color_bgr);
-  copy_packed(image.depth, frame.depth);
+void copy_packed(const cv::Mat& image, std::uint8_t* bytes, std::size_t size) {
+  const std::size_t row_bytes = static_cast<std::size_t>(image.cols) * image.elemSize();
+  for (int row = 0; row < image.rows; ++row, bytes += row_bytes) std::memcpy(bytes, image.ptr(row), row_bytes);
+  std::memset(bytes, 0, size - row_bytes * static_cast<std::size_t>(image.rows));
 }
 
 FramePublisher::FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Overflow jpeg_overflow,
                                std::function<void()> on_matched)
-    : source_id_(random_id()),
-      frames_(bus.writer(bus::topics::kFrame, on_match(on_matched))),
+    : bus_(bus),
+      on_matched_(std::move(on_matched)),
+      source_id_(random_id()),
       infos_(bus.writer(bus::topics::kCameraInfo)),
-      jpegs_(bus.writer(bus::topics::kColorJpeg, on_match(on_matched)), jpeg_quality, jpeg_overflow) {}
+      jpegs_(bus.writer(bus::topics::kColorJpeg, on_match(on_matched_)), jpeg_quality, jpeg_overflow) {}
+
+void FramePublisher::open(cv::Size size_px) {
+  frames_ = bus::FrameWriter(bus_, static_cast<std::uint32_t>(size_px.width),
+                             static_cast<std::uint32_t>(size_px.height), on_match(on_matched_));
+}
 
 bool FramePublisher::publish(const vision::RgbdImage& image) {
-  const bool taken = publish_raw(image);
+  const bool taken = frames_.write([&](auto& frame) { fill_frame(image, source_id_, service::monotonic_ns(), frame); });
   jpegs_.offer(image.color_bgr, image.stamp_ns);
   if (!std::exchange(info_sent_, true) || infos_.matched() > 0) {
     infos_.write(to_camera_info(image.camera, image.stamp_ns));
   }
   return taken;
-}
-
-bool FramePublisher::publish_raw(const vision::RgbdImage& image) {
-  bus::Loan<msg::RgbdFrame> frame = frames_.loan();
-  if (frame.operator->() == nullptr) return false;
-  fill_frame(image, source_id_, service::monotonic_ns(), *frame);
-  return frames_.write(std::move(frame));
 }
 
 }  // namespace rtd::camera

@@ -8,7 +8,7 @@
 #include <opencv2/core/mat.hpp>
 #include <thread>
 
-#include "common/bus/bus.hpp"
+#include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "services/camera/core/frame_source.hpp"
 
@@ -46,9 +46,30 @@ class JpegPublisher {
   std::thread thread_;
 };
 
-/// Fills every field of a loaned frame.
+/// Copies the rows packed and clears the rest of the `size` bytes of a message.
+void copy_packed(const cv::Mat& image, std::uint8_t* bytes, std::size_t size);
+
+/// Fills every field of a loaned frame, which has room for the image.
+template <std::uint32_t kWidth, std::uint32_t kHeight>
 void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::int64_t published_ns,
-                msg::RgbdFrame& frame);
+                msg::SizedFrame<kWidth, kHeight>& frame) {
+  const auto& p = image.camera.parameters();
+  frame.seq = image.seq;
+  frame.stamp_ns = image.stamp_ns;
+  frame.published_ns = published_ns;
+  frame.intrinsics = {p.fx, p.fy, p.cx, p.cy};
+  frame.distortion = msg::unaligned(p.distortion);
+  frame.depth_scale_m = image.depth_scale_m;
+  frame.readout_s = image.readout_s;
+  frame.depth_offset_s = image.depth_offset_s;
+  frame.width = static_cast<std::uint32_t>(image.color_bgr.cols);
+  frame.height = static_cast<std::uint32_t>(image.color_bgr.rows);
+  frame.lens = static_cast<std::uint32_t>(p.lens);
+  frame.reserved = 0;
+  frame.source_id = source_id;
+  copy_packed(image.color_bgr, frame.color_bgr.data(), sizeof frame.color_bgr);
+  copy_packed(image.depth, reinterpret_cast<std::uint8_t*>(frame.depth.data()), sizeof frame.depth);
+}
 
 /// Publishes frames: raw by loan, as JPEG while that topic has readers (in another thread, a little later), and the
 /// camera's calibration. One thread.
@@ -59,6 +80,9 @@ class FramePublisher {
   FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Overflow jpeg_overflow,
                  std::function<void()> on_matched);
 
+  /// Chooses the frame topic for images of this size; to be called once, before the first frame. Throws bus::BusError
+  /// when images are too large.
+  void open(cv::Size size_px);
   /// False when the bus did not take the raw frame.
   bool publish(const vision::RgbdImage& image);
   /// Readers of the raw frame and of the JPEG topic.
@@ -67,10 +91,10 @@ class FramePublisher {
   const JpegPublisher& jpegs() const { return jpegs_; }
 
  private:
-  bool publish_raw(const vision::RgbdImage& image);
-
+  bus::Bus& bus_;
+  std::function<void()> on_matched_;
   std::uint64_t source_id_;
-  bus::Writer<msg::RgbdFrame> frames_;
+  bus::FrameWriter frames_;
   bus::Writer<msg::CameraInfo> infos_;
   bool info_sent_ = false;
   JpegPublisher jpegs_;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "common/bus/frame_topics.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
@@ -82,7 +83,7 @@ class DenseService {
   bus::Reader<msg::KeyframeEvent> keyframe_reader_;
   bus::Reader<msg::TrackingResult> tracking_reader_;
   bus::Reader<msg::Image> mask_reader_;
-  bus::Reader<msg::RgbdFrame> frame_reader_;
+  bus::FrameReader frame_reader_;
 
   struct Totals {
     std::uint64_t frames = 0, defective = 0, points = 0, masked = 0, refused = 0, carved = 0;

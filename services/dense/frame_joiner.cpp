@@ -29,7 +29,7 @@ auto with_stamp(Queue& queue, std::int64_t stamp_ns) {
 
 }  // namespace
 
-void FrameJoiner::put(std::shared_ptr<const msg::RgbdFrame> frame) {
+void FrameJoiner::put(std::shared_ptr<const msg::FrameView> frame) {
   const std::lock_guard lock(mutex_);
   if (with_stamp(frames_, frame->stamp_ns) != frames_.end()) return;  // sent again
   frames_.push_back(std::move(frame));

@@ -25,7 +25,7 @@ struct KeyframeUpdate {
 
 /// Everything about one frame that is to be fused.
 struct JoinedFrame {
-  std::shared_ptr<const msg::RgbdFrame> frame;
+  std::shared_ptr<const msg::FrameView> frame;
   std::optional<DynamicMask> mask;  ///< empty: the filter sent none
   msg::TrackingResult result{};
   std::vector<KeyframeUpdate> updates;  ///< those that slam published up to this frame, in order
@@ -49,7 +49,7 @@ class FrameJoiner {
   };
   explicit FrameJoiner(const Options& options) : options_(options) {}
 
-  void put(std::shared_ptr<const msg::RgbdFrame> frame);
+  void put(std::shared_ptr<const msg::FrameView> frame);
   void put(std::int64_t stamp_ns, DynamicMask mask);
   void put(const msg::TrackingResult& result);
   void put(const msg::KeyframeEvent& event);
@@ -76,7 +76,7 @@ class FrameJoiner {
   const Options options_;
   mutable std::mutex mutex_;
   std::condition_variable arrived_;
-  std::deque<std::shared_ptr<const msg::RgbdFrame>> frames_;
+  std::deque<std::shared_ptr<const msg::FrameView>> frames_;
   std::deque<StampedMask> masks_;
   std::deque<msg::TrackingResult> results_;
   std::deque<KeyframeUpdate> updates_;

@@ -20,11 +20,10 @@ ImageInput::ImageInput(service::Runtime& runtime, const std::string& input, OnIm
     read_jpegs();
     return;
   }
-  frames_ = runtime.bus.reader<msg::RgbdFrame>(bus::topics::kFrame,
-                                               [on_image = on_image_](std::shared_ptr<const msg::RgbdFrame> frame) {
-                                                 const std::int64_t stamp_ns = frame->stamp_ns;
-                                                 on_image({stamp_ns, std::move(frame), nullptr});
-                                               });
+  frames_ = bus::FrameReader(runtime.bus, [on_image = on_image_](std::shared_ptr<const msg::FrameView> frame) {
+    const std::int64_t stamp_ns = frame->stamp_ns;
+    on_image({stamp_ns, std::move(frame), nullptr});
+  });
 }
 
 void ImageInput::read_jpegs() {

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <string>
 
-#include "common/bus/bus.hpp"
+#include "common/bus/frame_topics.hpp"
 #include "common/service/runtime.hpp"
 
 namespace rtd::detector {
@@ -16,7 +16,7 @@ namespace rtd::detector {
 /// An image as it came; the pixels are decoded by the worker.
 struct Arrival {
   std::int64_t stamp_ns = 0;
-  std::shared_ptr<const msg::RgbdFrame> frame;       ///< raw, of this host
+  std::shared_ptr<const msg::FrameView> frame;       ///< raw, of this host
   std::shared_ptr<const msg::CompressedImage> jpeg;  ///< of any host
 };
 
@@ -42,7 +42,7 @@ class ImageInput {
   const bool automatic_;
   mutable std::mutex mutex_;
   std::int64_t unmatched_since_ns_ = 0;  ///< since when a camera is known without raw frames here; 0: there is none
-  bus::Reader<msg::RgbdFrame> frames_;
+  bus::FrameReader frames_;
   bus::Reader<msg::CompressedImage> jpegs_;
 };
 

@@ -54,13 +54,13 @@ SlamKeyframe to_slam_keyframe(const msg::KeyframeEvent& event) {
   return {event.frame_seq, event.kind == msg::KeyframeEventKind::kRemoved, msg::to_isometry(event.T_world_camera)};
 }
 
-void fill_message(const msg::RgbdFrame& frame, const FilterResult& result, msg::DetectionUse use,
+void fill_message(const msg::FrameView& frame, const FilterResult& result, msg::DetectionUse use,
                   msg::FeatureFrame& message) {
   message = {};
   message.seq = frame.seq;
   message.stamp_ns = frame.stamp_ns;
   message.published_ns = frame.published_ns;
-  message.intrinsics = msg::aligned(frame.intrinsics);
+  message.intrinsics = frame.intrinsics;
   message.readout_s = frame.readout_s;
   message.width = frame.width;
   message.height = frame.height;
@@ -76,8 +76,10 @@ void fill_message(const msg::RgbdFrame& frame, const FilterResult& result, msg::
   }
 }
 
-msg::Image make_mask(const msg::RgbdFrame& frame, const FilterResult& result) {
-  const auto cells = [](std::uint32_t px) { return std::max(1U, px / kCellPx); };
+msg::Image make_mask(const msg::FrameView& frame, const FilterResult& result) {
+  const auto side_px =
+      static_cast<std::uint32_t>(cell_side_px(static_cast<int>(frame.width), static_cast<int>(frame.height)));
+  const auto cells = [&](std::uint32_t px) { return std::max(1U, px / side_px); };
   const bool judged = !result.motion.empty();
   msg::Image mask;
   mask.header = {msg::to_time(frame.stamp_ns), "camera_color_optical_frame"};

@@ -21,11 +21,11 @@ std::optional<SlamPose> to_slam_pose(const msg::TrackingResult& result);
 SlamKeyframe to_slam_keyframe(const msg::KeyframeEvent& event);
 
 /// Fills a feature message. Of more than kMaxFeatures features, the removed ones are left out first.
-void fill_message(const msg::RgbdFrame& frame, const FilterResult& result, msg::DetectionUse use,
+void fill_message(const msg::FrameView& frame, const FilterResult& result, msg::DetectionUse use,
                   msg::FeatureFrame& message);
 
 /// What moves, as a grey image of grid cells (4x4 undistorted pixels each) with the values of CellMotion and the stamp
 /// of the frame. Mode off takes everything to be static: all its cells are.
-msg::Image make_mask(const msg::RgbdFrame& frame, const FilterResult& result);
+msg::Image make_mask(const msg::FrameView& frame, const FilterResult& result);
 
 }  // namespace rtd::filter

@@ -56,8 +56,8 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
       bus::topics::kDetections, [this](const std::shared_ptr<const msg::Detection2DArray>& message) {
         detections_->put(to_detection_batch(*message));
       });
-  frame_reader_ = runtime.bus.reader<msg::RgbdFrame>(
-      bus::topics::kFrame, [this](std::shared_ptr<const msg::RgbdFrame> frame) { frames_->push(std::move(frame)); });
+  frame_reader_ = bus::FrameReader(
+      runtime.bus, [this](std::shared_ptr<const msg::FrameView> frame) { frames_->push(std::move(frame)); });
 }
 
 /// A reader waits for its running callback, which may be blocked on the full queue.
@@ -80,7 +80,7 @@ service::ExitCode FilterService::run() {
 }
 
 /// One frame: features while the detector still works on it, then its boxes, then the judgement.
-void FilterService::process(const msg::RgbdFrame& frame) {
+void FilterService::process(const msg::FrameView& frame) {
   const vision::RgbdImage image = vision::view_image(frame);
   std::vector<msg::Feature> features = filter_.extract(image);
   const std::int64_t waiting_since_ns = service::monotonic_ns();
@@ -100,7 +100,7 @@ void FilterService::process(const msg::RgbdFrame& frame) {
 
 /// False for a frame that is not to be processed: from a second camera, defective, or sent again (its features are
 /// published again).
-bool FilterService::accept(const msg::RgbdFrame& frame) {
+bool FilterService::accept(const msg::FrameView& frame) {
   if (from_other_camera(frame)) return false;
   if (const std::string cause = vision::defect(frame); !cause.empty()) {
     publish_no_features(frame, cause);
@@ -113,30 +113,30 @@ bool FilterService::accept(const msg::RgbdFrame& frame) {
   }
   if (frame.stamp_ns <= message_->stamp_ns) {
     forget_views(frame, "time went back");
-  } else if (msg::aligned(frame.intrinsics) != message_->intrinsics) {
+  } else if (frame.intrinsics != message_->intrinsics) {
     forget_views(frame, "another calibration");
   }
   return true;
 }
 
 /// What was seen before cannot be compared with this frame.
-void FilterService::forget_views(const msg::RgbdFrame& frame, const char* cause) {
-  SPDLOG_WARN("event=views_forgotten frame={} stamp_ns={} last_stamp_ns={} cause=\"{}\"", frame.seq.value(),
-              frame.stamp_ns.value(), message_->stamp_ns, cause);
+void FilterService::forget_views(const msg::FrameView& frame, const char* cause) {
+  SPDLOG_WARN("event=views_forgotten frame={} stamp_ns={} last_stamp_ns={} cause=\"{}\"", frame.seq, frame.stamp_ns,
+              message_->stamp_ns, cause);
   filter_.reset();
   detections_->clear();
 }
 
 /// The other services wait for every frame: a frame that cannot be used has no features.
-void FilterService::publish_no_features(const msg::RgbdFrame& frame, const std::string& cause) {
+void FilterService::publish_no_features(const msg::FrameView& frame, const std::string& cause) {
   runtime_.heartbeat.set_metric("frames_defective", static_cast<double>(++defective_));
-  if (defect_log_.pass()) SPDLOG_ERROR("event=frame_defective frame={} cause=\"{}\"", frame.seq.value(), cause);
+  if (defect_log_.pass()) SPDLOG_ERROR("event=frame_defective frame={} cause=\"{}\"", frame.seq, cause);
   fill_message(frame, {}, msg::DetectionUse::kNone, *message_);
   writer_.write(*message_);
 }
 
 /// Of two cameras on the topic, the first is followed as long as it sends.
-bool FilterService::from_other_camera(const msg::RgbdFrame& frame) {
+bool FilterService::from_other_camera(const msg::FrameView& frame) {
   const std::int64_t now_ns = service::monotonic_ns();
   const bool other = published_ > 0 && frame.source_id != source_id_;
   if (other && now_ns - source_heard_ns_ < kSourceGoneAfterNs) {
@@ -173,13 +173,13 @@ void FilterService::apply_slam_feedback() {
 }
 
 /// Realtime: what has arrived so far. Asap and lockstep: waits for the detections of exactly this frame.
-DetectorUpdate FilterService::collect_detections(const msg::RgbdFrame& frame) {
+DetectorUpdate FilterService::collect_detections(const msg::FrameView& frame) {
   if (!looks_at_boxes(mode_) || config_.detector == "off") return {};
   if (runtime_.pace != service::Pace::kRealtime) wait_for_detections(frame);
   return {detector_seen_ && !detector_gone_, detections_->take_until(frame.stamp_ns)};
 }
 
-void FilterService::wait_for_detections(const msg::RgbdFrame& frame) {
+void FilterService::wait_for_detections(const msg::FrameView& frame) {
   if (!detector_seen_ || detector_gone_) return;
   const std::int64_t since_ns = service::monotonic_ns();
   const auto give_up = [&] {
@@ -190,7 +190,7 @@ void FilterService::wait_for_detections(const msg::RgbdFrame& frame) {
   };
   if (detections_->wait_for(frame.stamp_ns, give_up) || runtime_.stop.stop_requested()) return;
   ++unpaired_;
-  if (wait_log_.pass()) SPDLOG_WARN("event=no_detections frame={} total={}", frame.seq.value(), unpaired_);
+  if (wait_log_.pass()) SPDLOG_WARN("event=no_detections frame={} total={}", frame.seq, unpaired_);
 }
 
 msg::DetectionUse FilterService::use_of(const DetectorUpdate& detector, const FilterResult& result,

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
@@ -37,17 +38,17 @@ class FilterService {
   service::ExitCode run();
 
  private:
-  using Frames = concurrency::BoundedQueue<std::shared_ptr<const msg::RgbdFrame>>;
+  using Frames = concurrency::BoundedQueue<std::shared_ptr<const msg::FrameView>>;
 
-  void process(const msg::RgbdFrame& frame);
-  bool accept(const msg::RgbdFrame& frame);
-  void publish_no_features(const msg::RgbdFrame& frame, const std::string& cause);
-  void forget_views(const msg::RgbdFrame& frame, const char* cause);
+  void process(const msg::FrameView& frame);
+  bool accept(const msg::FrameView& frame);
+  void publish_no_features(const msg::FrameView& frame, const std::string& cause);
+  void forget_views(const msg::FrameView& frame, const char* cause);
   bool detector_alive() const;
-  bool from_other_camera(const msg::RgbdFrame& frame);
+  bool from_other_camera(const msg::FrameView& frame);
   void apply_slam_feedback();
-  DetectorUpdate collect_detections(const msg::RgbdFrame& frame);
-  void wait_for_detections(const msg::RgbdFrame& frame);
+  DetectorUpdate collect_detections(const msg::FrameView& frame);
+  void wait_for_detections(const msg::FrameView& frame);
   msg::DetectionUse use_of(const DetectorUpdate& detector, const FilterResult& result, std::int64_t stamp_ns) const;
   void watch_detector();
   void count(const FilterResult& result);
@@ -62,7 +63,7 @@ class FilterService {
   std::shared_ptr<SlamFeedback> feedback_ = std::make_shared<SlamFeedback>();
   bus::Writer<msg::FeatureFrame> writer_;
   bus::Writer<msg::Image> mask_writer_;
-  bus::Reader<msg::RgbdFrame> frame_reader_;
+  bus::FrameReader frame_reader_;
   bus::Reader<msg::Detection2DArray> detection_reader_;
   bus::Reader<msg::TrackingResult> tracking_reader_;
   bus::Reader<msg::KeyframeEvent> keyframe_reader_;

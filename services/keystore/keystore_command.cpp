@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <ostream>
 
+#include "common/bus/frame_topics.hpp"
 #include "common/bus/topic_roles.hpp"
 #include "common/bus/topics.hpp"
 #include "common/security/enclave.hpp"
@@ -85,7 +86,9 @@ void create(const KeystoreRequest& request, std::int64_t now_s, std::ostream& ou
   const std::string folder = folder_of(request);
   security::KeystoreOptions options{
       from_now(now_s, request.days), from_now(now_s, std::max(kCaDays, request.days)), {domains_of(request), {}}};
-  if (!request.encrypt_frames) options.governance.access_only = {bus::topics::kFrame.name};
+  if (!request.encrypt_frames) {
+    for (const bus::FrameTopic& topic : bus::frame_topics()) options.governance.access_only.emplace_back(topic.name);
+  }
   security::create_keystore(folder, options);
   std::vector<security::EnclaveRequest> enclaves;
   for (const std::string& role : bus::roles()) enclaves.push_back(enclave_of(role));

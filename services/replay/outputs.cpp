@@ -8,7 +8,7 @@
 #include <cstring>
 #include <utility>
 
-#include "common/msg/rgbd_frame.hpp"
+#include "common/bus/frame_topics.hpp"
 #include "common/msg/ros.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/offered_qos.hpp"
@@ -24,12 +24,18 @@ namespace {
 
 constexpr std::size_t kCdrHeaderBytes = 4;
 constexpr std::size_t kPublishedAt = kCdrHeaderBytes + 16;  // behind seq and stamp_ns
-constexpr char kFrameType[] = "rtd_msgs::msg::dds_::RgbdFrame_";
 constexpr char kFeaturesType[] = "rtd_msgs::msg::dds_::FeatureFrame_";
 constexpr char kTrackingType[] = "rtd_msgs::msg::dds_::TrackingResult_";
 // History for late readers. DDS does not announce the depth of a writer, so a recording seldom knows it.
 constexpr int kFrameDepth = 8, kLatchedDepth = 10, kUsualDepth = 64;
 constexpr int kSlowReaderMs = 2000;
+
+/// Size of a frame of this DDS type; 0 for other types.
+std::size_t frame_bytes_of(const std::string& dds_type) {
+  for (const bus::FrameTopic& topic : bus::frame_topics())
+    if (bus::dds_type_name(topic.type) == dds_type) return topic.message_bytes;
+  return 0;
+}
 
 /// As recorded, but a sample of the past has not expired.
 bus::RawQos qos_of(const mcap::Channel& channel) {
@@ -121,12 +127,13 @@ Output Outputs::make_output(const mcap::Channel& channel, const mcap::Summary& s
     output.topic.name = renamed->second;
   output.topic.type = type_of(channel, summary);
   output.options.qos = qos_of(channel);
-  const bool frames = output.topic.type == kFrameType;
+  const std::size_t frame_bytes = frame_bytes_of(output.topic.type);
+  const bool frames = frame_bytes > 0;
   output.carries_published = frames || output.topic.type == kFeaturesType;
   output.carries_seq = output.carries_published || output.topic.type == kTrackingType;
   if (frames) {
     output.options.qos.depth = kFrameDepth;
-    output.options.fixed_bytes = kCdrHeaderBytes + sizeof(msg::RgbdFrame);
+    output.options.fixed_bytes = static_cast<std::uint32_t>(kCdrHeaderBytes + frame_bytes);
   }
   return output;
 }

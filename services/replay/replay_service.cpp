@@ -13,6 +13,7 @@
 #include <limits>
 #include <set>
 
+#include "common/bus/frame_topics.hpp"
 #include "common/io/byte_sink.hpp"
 #include "common/mcap/codec.hpp"
 #include "common/mcap/recording_file.hpp"
@@ -196,9 +197,13 @@ void ReplayService::choose_span() {
 }
 
 void ReplayService::choose_paced_topic() {
-  const std::vector<std::string> candidates = config_.paced_topic.empty()
-                                                  ? std::vector<std::string>{"rtd/frame", "rtd/features"}
-                                                  : std::vector<std::string>{ros2::dds_topic(config_.paced_topic)};
+  std::vector<std::string> candidates;
+  if (config_.paced_topic.empty()) {
+    for (const bus::FrameTopic& topic : bus::frame_topics()) candidates.emplace_back(topic.name);
+    candidates.emplace_back(bus::topics::kFeatures.name);
+  } else {
+    candidates.push_back(ros2::dds_topic(config_.paced_topic));
+  }
   for (const std::string& candidate : candidates)
     if (const auto found = outputs_->all().find(candidate); paced_ == nullptr && found != outputs_->all().end())
       paced_ = &found->second;

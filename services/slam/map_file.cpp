@@ -11,13 +11,11 @@ namespace {
 
 constexpr double kTolerance = 0.05;  ///< of the focal length; Kinects differ by less than 0.04
 
-bool is_near(const MapCamera& camera, const msg::FeatureFrame& frame) {
-  const vision::RgbdProjection& p = camera.projection;
-  const auto& [fx, fy, cx, cy] = frame.intrinsics;
+bool is_near(const MapCamera& camera, const FrameRaster& frame) {
+  const vision::RgbdProjection &p = camera.projection, &q = frame.camera;
   const double most_px = kTolerance * p.fx;
-  return static_cast<int>(frame.width) == camera.width_px && static_cast<int>(frame.height) == camera.height_px &&
-         std::abs(fx - p.fx) < most_px && std::abs(fy - p.fy) < most_px && std::abs(cx - p.cx) < most_px &&
-         std::abs(cy - p.cy) < most_px;
+  return frame.width_px == camera.width_px && frame.height_px == camera.height_px && std::abs(q.fx - p.fx) < most_px &&
+         std::abs(q.fy - p.fy) < most_px && std::abs(q.cx - p.cx) < most_px && std::abs(q.cy - p.cy) < most_px;
 }
 
 std::string text(int width, int height, double fx, double fy, double cx, double cy) {
@@ -63,7 +61,8 @@ MapCameras cameras_of(const MapContents& contents) {
 
 std::string difference_to(const MapCameras& cameras, const msg::FeatureFrame& frame) {
   if (cameras.empty()) return {};
-  if (std::ranges::any_of(cameras, [&](const MapCamera& camera) { return is_near(camera, frame); })) return {};
+  if (std::ranges::any_of(cameras, [&](const MapCamera& camera) { return is_near(camera, raster_of(frame)); }))
+    return {};
   const auto& [fx, fy, cx, cy] = frame.intrinsics;
   const MapCamera& camera = cameras.front();
   const vision::RgbdProjection& p = camera.projection;

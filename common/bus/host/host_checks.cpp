@@ -15,7 +15,8 @@ namespace {
 constexpr std::uint64_t kKib = 1024, kMib = 1024 * kKib;
 constexpr std::uint64_t kProcesses = 4;  // camera, detector, filter, slam
 
-/// Shared memory of one frame writer: its history and the slot on loan, plus one for the pool's own bookkeeping.
+/// Shared memory of one writer of VGA frames: its history and the slot on loan, plus one for the pool's own
+/// bookkeeping.
 std::uint64_t frame_pool_bytes() {
   const auto depth = static_cast<std::uint64_t>(qos_settings(QosProfile::kRawFrame).depth);
   return (depth + 2) * sizeof(msg::RgbdFrame);

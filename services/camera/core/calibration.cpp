@@ -19,7 +19,8 @@ namespace rtd::camera {
 namespace {
 
 constexpr const char* kAllowedKeys =
-    "width height fx fy cx cy (needed), k1 k2 p1 p2 k3 depth_factor fps readout_s depth_offset_s (optional)";
+    "width height fx fy cx cy (needed), fisheye k1 k2 p1 p2 k3 k4 k5 k6 depth_factor fps readout_s depth_offset_s "
+    "(optional)";
 
 struct KeyRule {
   double min, max;
@@ -39,11 +40,22 @@ const std::map<std::string, KeyRule>& key_rules() {
                                                        {"p1", {-10, 10, false}},
                                                        {"p2", {-10, 10, false}},
                                                        {"k3", {-100, 100, false}},
+                                                       {"k4", {-100, 100, false}},
+                                                       {"k5", {-100, 100, false}},
+                                                       {"k6", {-100, 100, false}},
+                                                       {"fisheye", {0, 1, false}},
                                                        {"fps", {0.1, 1000, false}},
                                                        {"depth_factor", {1, 1e6, false}},
                                                        {"readout_s", {-kTime, kTime, false}},
                                                        {"depth_offset_s", {-kTime, kTime, false}}};
   return rules;
+}
+
+/// Keys of the distortion in the order of CameraModel::Parameters.
+const std::vector<std::string>& coefficient_names(geometry::Lens lens) {
+  static const std::vector<std::string> brown = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+  static const std::vector<std::string> fisheye = {"k1", "k2", "k3", "k4"};
+  return lens == geometry::Lens::kFisheye ? fisheye : brown;
 }
 
 std::pair<std::string, double> parse_entry(const io::TextLine& line, const std::string& origin) {
@@ -73,7 +85,13 @@ Calibration from_values(std::map<std::string, double>& values, const std::string
   geometry::CameraModel::Parameters parameters;
   parameters.fx = values["fx"], parameters.fy = values["fy"], parameters.cx = values["cx"],
   parameters.cy = values["cy"];
-  parameters.distortion = {values["k1"], values["k2"], values["p1"], values["p2"], values["k3"]};
+  parameters.lens = values["fisheye"] != 0 ? geometry::Lens::kFisheye : geometry::Lens::kBrownConrady;
+  const std::vector<std::string>& names = coefficient_names(parameters.lens);
+  for (const std::string name : {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}) {
+    if (values[name] != 0 && std::ranges::find(names, name) == names.end())
+      throw SourceError(origin + ": a fisheye lens has k1 k2 k3 k4; remove " + name);
+  }
+  std::ranges::transform(names, parameters.distortion.begin(), [&](const std::string& name) { return values[name]; });
   parameters.width = static_cast<int>(values["width"]), parameters.height = static_cast<int>(values["height"]);
   Calibration calibration;
   calibration.camera = geometry::CameraModel(parameters);
@@ -107,11 +125,13 @@ void apply(const Calibration& calibration, SourceInfo& info) {
 }
 
 void check_frame_size(double width, double height, const std::string& origin) {
-  if (width <= msg::kMaxFrameWidth && height <= msg::kMaxFrameHeight) return;
+  if (width >= 1 && height >= 1 && width <= msg::kMaxFrameSide && height <= msg::kMaxFrameSide &&
+      width * height <= static_cast<double>(msg::kMaxFramePixels))
+    return;
   throw SourceError(
-      fmt::format("{}: {:g} x {:g} px, but a frame carries at most {} x {} px; scale the images down and fx fy cx cy "
-                  "with them",
-                  origin, width, height, msg::kMaxFrameWidth, msg::kMaxFrameHeight));
+      fmt::format("{}: {:g} x {:g} px, but a frame carries at most 1920 x 1200 px; scale the images down "
+                  "and fx fy cx cy with them",
+                  origin, width, height));
 }
 
 Calibration parse_calibration(const std::string& text, const std::string& origin) {
@@ -154,12 +174,14 @@ Calibration load_calibration(const std::filesystem::path& folder) {
 
 std::string to_yaml(const Calibration& calibration) {
   const auto& p = calibration.camera.parameters();
-  const auto& d = p.distortion;
-  std::string text = fmt::format(
-      "width: {}\nheight: {}\nfx: {:.9g}\nfy: {:.9g}\ncx: {:.9g}\ncy: {:.9g}\n"
-      "k1: {:.9g}\nk2: {:.9g}\np1: {:.9g}\np2: {:.9g}\nk3: {:.9g}\ndepth_factor: {:.9g}\nfps: {:.9g}\n",
-      p.width, p.height, p.fx, p.fy, p.cx, p.cy, d[0], d[1], d[2], d[3], d[4], 1.0 / calibration.depth_scale_m,
-      calibration.fps);
+  std::string text = fmt::format("width: {}\nheight: {}\nfx: {:.9g}\nfy: {:.9g}\ncx: {:.9g}\ncy: {:.9g}\n", p.width,
+                                 p.height, p.fx, p.fy, p.cx, p.cy);
+  if (p.lens == geometry::Lens::kFisheye) text += "fisheye: 1\n";
+  const std::vector<std::string>& names = coefficient_names(p.lens);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i < 5 || p.distortion[i] != 0) text += fmt::format("{}: {:.9g}\n", names[i], p.distortion[i]);
+  }
+  text += fmt::format("depth_factor: {:.9g}\nfps: {:.9g}\n", 1.0 / calibration.depth_scale_m, calibration.fps);
   if (calibration.readout_s != 0) text += fmt::format("readout_s: {:.9g}\n", calibration.readout_s);
   if (calibration.depth_offset_s != 0) text += fmt::format("depth_offset_s: {:.9g}\n", calibration.depth_offset_s);
   return text;

@@ -19,9 +19,9 @@ struct Calibration {
   double depth_offset_s = 0;  ///< added to the difference of the stamps of depth and colour, s
 };
 
-/// Reads "key: value" lines with the keys width height fx fy cx cy (needed) k1 k2 p1 p2 k3 depth_factor fps readout_s
-/// depth_offset_s. Throws SourceError naming `origin`, line and fix: unknown or doubled key, not a finite number, out
-/// of range, size above the frame type's.
+/// Reads "key: value" lines with the keys width height fx fy cx cy (needed) fisheye k1 k2 p1 p2 k3 k4 k5 k6
+/// depth_factor fps readout_s depth_offset_s. Throws SourceError naming `origin`, line and fix: unknown or doubled key,
+/// not a finite number, out of range, size above the frame type's.
 Calibration parse_calibration(const std::string& text, const std::string& origin);
 
 /// The same of a file. Throws SourceError also when it cannot be read.

@@ -49,11 +49,8 @@ DynamicMask all_static() {
 
 void PixelTable::fit(const geometry::CameraModel& camera) {
   const auto& p = camera.parameters();
-  const auto& [k1, k2, p1, p2, k3] = p.distortion;
-  const std::array<double, 11> wanted{
-      p.fx, p.fy, p.cx, p.cy, k1, k2, p1, p2, k3, static_cast<double>(p.width), static_cast<double>(p.height)};
-  if (wanted == fitted_) return;
-  fitted_ = wanted;
+  if (p == fitted_) return;
+  fitted_ = p;
   width_ = p.width;
   height_ = p.height;
   fx_ = static_cast<float>(p.fx);

@@ -56,7 +56,7 @@ class PixelTable {
   }
 
  private:
-  std::array<double, 11> fitted_{};
+  geometry::CameraModel::Parameters fitted_;
   int width_ = 0, height_ = 0;
   float fx_ = 1, fy_ = 1, cx_ = 0, cy_ = 0;
   std::vector<Eigen::Vector2f> undistorted_;

@@ -83,7 +83,7 @@ struct OrbConfig {
   double max_depth_m = 10.0;
 
   void bind(auto& binder) {
-    binder.field("feature_count", feature_count, {100, 1300}, "wanted features per frame");
+    binder.field("feature_count", feature_count, {100, 2700}, "wanted features per frame");
     binder.field("levels", levels, {1, 12}, "pyramid levels");
     binder.field("scale_factor", scale_factor, {1.05, 2.0}, "between two levels");
     binder.field("fast_threshold", fast_threshold, {1, 255}, "grey values, first attempt");

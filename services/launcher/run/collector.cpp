@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kJpegQuality = 80;
 
-std::vector<std::uint8_t> encode_jpeg(const msg::RgbdFrame& frame) {
+std::vector<std::uint8_t> encode_jpeg(const msg::FrameView& frame) {
   const cv::Mat color = vision::view_color(frame);
   if (color.empty()) return {};
   std::vector<std::uint8_t> jpeg;
@@ -40,7 +40,7 @@ Collector::Collector(bus::Bus& bus, const Options& options)
     const std::lock_guard lock(mutex_);
     builder_.add(*status);
   });
-  frames_ = bus.reader<msg::RgbdFrame>(bus::topics::kFrame, [this](const auto& frame) {
+  frames_ = bus::FrameReader(bus, [this](const auto& frame) {
     {
       const std::lock_guard lock(mutex_);
       if (!samples_.wants(frame->seq)) return;

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "common/bus/bus.hpp"
+#include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
 
@@ -48,12 +48,12 @@ class Collector {
   std::uint64_t total_;
   bool keep_features_;
   std::map<std::int64_t, std::vector<eval::JudgedFeature>> judged_;  ///< by stamp
-  concurrency::BoundedQueue<std::shared_ptr<const msg::RgbdFrame>> images_{2, concurrency::Overflow::kDropOldest};
+  concurrency::BoundedQueue<std::shared_ptr<const msg::FrameView>> images_{2, concurrency::Overflow::kDropOldest};
   std::thread encoder_;
   bus::Reader<msg::TrackingResult> tracking_;
   bus::Reader<msg::FeatureFrame> features_;
   bus::Reader<msg::ServiceStatus> status_;
-  bus::Reader<msg::RgbdFrame> frames_;
+  bus::FrameReader frames_;
 };
 
 }  // namespace rtd::launcher

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 
+#include "common/bus/frame_topics.hpp"
 #include "common/bus/topics.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
@@ -44,8 +45,11 @@ std::map<std::string, std::uint64_t> counts_of(const std::string& file) {
 void choose_topics(ReplaySetup& replay, const std::map<std::string, std::uint64_t>& counts) {
   using namespace bus::topics;
   const auto has = [&](const std::string& topic) { return counts.contains(topic) && counts.at(topic) > 0; };
-  replay.topics = replay.features ? std::vector<std::string>{kFeatures.name}
-                                  : std::vector<std::string>{kFrame.name, kDetections.name};
+  std::string frames = kFrame.name;  // of the size class that was recorded
+  for (const bus::FrameTopic& topic : bus::frame_topics())
+    if (has(topic.name)) frames = topic.name;
+  replay.topics =
+      replay.features ? std::vector<std::string>{kFeatures.name} : std::vector<std::string>{frames, kDetections.name};
   for (const std::string& topic : replay.topics) {
     if (has(topic)) continue;
     std::vector<std::string> known;
@@ -55,7 +59,7 @@ void choose_topics(ReplaySetup& replay, const std::map<std::string, std::uint64_
                                   fmt::join(known, ", ")));
   }
   replay.frames = counts.at(replay.topics.front());
-  if (replay.features && has(kFrame.name)) replay.topics.emplace_back(kFrame.name);
+  if (replay.features && has(frames)) replay.topics.push_back(frames);
   if (has(kCameraInfo.name)) replay.topics.emplace_back(kCameraInfo.name);
 }
 

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 
 extern char** environ;
@@ -51,7 +52,7 @@ int answer(std::uint32_t domain) {
     result.seq = seq;
     results.write(result);
   };
-  const auto frames = bus->reader(topics::kFrame, [&](auto frame) { reply(frame->seq); });
+  const FrameReader frames(*bus, [&](const auto& frame) { reply(frame->seq); });
   const auto features = bus->reader(topics::kFeatures, [&](auto message) { reply(message->seq); });
   while (true) pause();
 }
@@ -98,9 +99,10 @@ Percentiles measure_memcpy(int messages) {
   return percentiles(samples_us);
 }
 
-void make_plausible(msg::RgbdFrame& frame) {
-  frame.width = msg::kMaxFrameWidth;
-  frame.height = msg::kMaxFrameHeight;
+template <std::uint32_t kWidth, std::uint32_t kHeight>
+void make_plausible(msg::SizedFrame<kWidth, kHeight>& frame) {
+  frame.width = kWidth;
+  frame.height = kHeight;
 }
 void make_plausible(msg::FeatureFrame& features) {
   features.count = msg::kMaxFeatures;
@@ -123,19 +125,27 @@ void print(const char* what, std::size_t bytes, const Percentiles& latency) {
   std::printf("%-34s %10zu %9.0f %9.0f %9.0f\n", what, bytes, latency.min_us, latency.p50_us, latency.p99_us);
 }
 
+/// The message against a memcpy of as many bytes.
+template <class T>
+void compare(const std::string& name, const Topic<T>& topic, Bus& bus, int messages, Results& results) {
+  Writer<T> writer = bus.writer(topic);
+  while (writer.matched() == 0) usleep(1000);
+  const Percentiles copy = measure_memcpy<T>(messages), sent = measure_loan(messages, results, writer);
+  print(("memcpy of " + name).c_str(), sizeof(T), copy);
+  print((name + ": write -> copy elsewhere").c_str(), sizeof(T), sent);
+  std::printf("%-34s %10s %9s %9.2f\n", "  ratio", "", "", sent.p50_us / copy.p50_us);
+}
+
 void run(int messages, std::uint32_t domain) {
   const auto bus = connect_bench(domain);
   Results results(64, concurrency::Overflow::kDropOldest);
-  auto frames = bus->writer(topics::kFrame);
-  auto features = bus->writer(topics::kFeatures);
   const auto reader = bus->reader(topics::kTracking, [&](auto result) { results.push(*result); });
-  while (frames.matched() == 0 || features.matched() == 0 || reader.matched() == 0) usleep(1000);
+  while (reader.matched() == 0) usleep(1000);
 
   std::printf("%-34s %10s %9s %9s %9s\n", "", "bytes", "min us", "p50 us", "p99 us");
-  print("memcpy of a frame", sizeof(msg::RgbdFrame), measure_memcpy<msg::RgbdFrame>(messages));
-  print("frame: write -> copy elsewhere", sizeof(msg::RgbdFrame), measure_loan(messages, results, frames));
-  print("memcpy of features", sizeof(msg::FeatureFrame), measure_memcpy<msg::FeatureFrame>(messages));
-  print("features: write -> copy elsewhere", sizeof(msg::FeatureFrame), measure_loan(messages, results, features));
+  std::apply([&](const auto&... topic) { (compare(topic.name, topic, *bus, messages, results), ...); },
+             topics::kFrames);
+  compare("features", topics::kFeatures, *bus, messages, results);
 }
 
 }  // namespace

@@ -59,8 +59,8 @@ int publish(const Options& options) {
   auto frames = bus->writer(topics::kFrame);
   for (auto next = Clock::now();; next += 33'333us) {
     auto frame = frames.loan();
-    frame->width = msg::kMaxFrameWidth;
-    frame->height = msg::kMaxFrameHeight;
+    frame->width = 640;
+    frame->height = 480;
     frame->source_id = static_cast<std::uint64_t>(getpid());
     frames.write(std::move(frame));
     std::this_thread::sleep_until(next);

@@ -248,6 +248,7 @@ TEST_F(CameraServiceTest, encodes_jpeg_while_the_topic_has_readers) {
       bus_->reader<msg::CameraInfo>(bus::topics::kCameraInfo, [&](const auto& message) { info.set_value(*message); });
   FramePublisher publisher(*bus_, 90, concurrency::Overflow::kBlock, [] {});
   const auto frame = make_source(std::string(kTinyScene) + "1")->next();
+  publisher.open(frame->image.color_bgr.size());
   EXPECT_TRUE(publisher.publish(frame->image));
   auto received = jpeg.get_future();
   ASSERT_EQ(received.wait_for(kPatience), std::future_status::ready);
@@ -264,6 +265,7 @@ TEST_F(CameraServiceTest, encodes_jpeg_while_the_topic_has_readers) {
 TEST_F(CameraServiceTest, does_not_encode_jpeg_without_readers) {
   FramePublisher publisher(*bus_, 90, concurrency::Overflow::kBlock, [] {});
   const auto frame = make_source(std::string(kTinyScene) + "1")->next();
+  publisher.open(frame->image.color_bgr.size());
   EXPECT_TRUE(publisher.publish(frame->image));
   EXPECT_EQ(publisher.jpegs().encoded(), 0U);
 }

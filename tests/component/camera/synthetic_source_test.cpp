@@ -145,7 +145,7 @@ TEST(SyntheticSource, refuses_what_it_does_not_know) {
           HasSubstr("office, static, box, crowd, tour, sitting, fill, approach, slow, flicker, corridor, lookalike"))));
   EXPECT_THAT([] { make_source("synthetic:office?sed=1"); },
               ThrowsMessage<SourceError>(AllOf(HasSubstr("'sed'"), HasSubstr("seed"))));
-  EXPECT_THAT([] { make_source("synthetic:office?width=1280"); }, ThrowsMessage<SourceError>(HasSubstr("[64, 640]")));
+  EXPECT_THAT([] { make_source("synthetic:office?width=2560"); }, ThrowsMessage<SourceError>(HasSubstr("[64, 1920]")));
   EXPECT_THAT([] { make_source("synthetic:office?fps=fast"); }, ThrowsMessage<SourceError>(HasSubstr("fps is 'fast'")));
   EXPECT_THAT([] { make_source("synthetic:office?frames=nan"); }, ThrowsMessage<SourceError>(HasSubstr("frames")));
 }

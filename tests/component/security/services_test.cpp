@@ -59,7 +59,9 @@ TEST_F(SecuredServicesTest, services_open_what_the_table_of_roles_says_and_nothi
   for (const std::string role : {"camera", "filter", "slam", "dense", "launcher"}) {
     const bus::RoleTopics table = bus::topics_of(role);
     const auto& topics = opened[role == "launcher" ? "rtd" : "rtd-" + role];
-    EXPECT_EQ(topics.writes, set_of(table.writes)) << role;
+    auto writes = set_of(table.writes);
+    if (role == "camera") std::erase_if(writes, [](const auto& topic) { return topic.starts_with("rtd/frame_"); });
+    EXPECT_EQ(topics.writes, writes) << role << ", whose frames are those of one size";
     EXPECT_EQ(topics.reads, set_of(table.reads)) << role;
   }
   auto detector = opened.find("rtd-detector");

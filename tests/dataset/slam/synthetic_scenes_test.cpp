@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
 
 #include "tests/support/offline_pipeline.hpp"
 
@@ -45,6 +47,23 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SyntheticScene,
                                                        0.85},
                                            SceneDemand{"flicker", "flicker?frames=120&seed=2", 0.0079, 1.0, 0.8, 0.9}),
                          [](const auto& tested) { return std::string(tested.param.name); });
+
+/// The same room at other resolutions, against 640x480 in the same build.
+TEST(SizesOfImages, are_tracked_about_as_well_as_vga) {
+  const auto median_ate_m = [](const std::string& size) {
+    std::vector<double> ates_m;
+    for (const char* seed : {"1", "2", "3"}) {
+      const OfflineReport report = run_offline(rtd_on("office?frames=120&seed=" + std::string(seed) + size));
+      EXPECT_EQ(report.coverage, 1.0) << size;
+      ates_m.push_back(report.ate_rmse_m);
+    }
+    std::ranges::nth_element(ates_m, ates_m.begin() + 1);
+    return ates_m[1];
+  };
+  const double vga_m = median_ate_m("");
+  for (const char* size : {"&width=320&height=240", "&width=848&height=480", "&width=1280&height=720"})
+    EXPECT_LE(median_ate_m(size), 1.3 * 1.5 * vga_m) << size;
+}
 
 /// Surfaces here are divided in another way from frame to frame. What is remembered as moving must not spread over them
 /// until the filter no longer believes its pose.

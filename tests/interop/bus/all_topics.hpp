@@ -38,9 +38,10 @@ constexpr int kForgotten = 5;
 
 template <class T>
 void make_plausible(T&) {}
-inline void make_plausible(msg::RgbdFrame& frame) {
-  frame.width = msg::kMaxFrameWidth;
-  frame.height = msg::kMaxFrameHeight;
+template <std::uint32_t kWidth, std::uint32_t kHeight>
+void make_plausible(msg::SizedFrame<kWidth, kHeight>& frame) {
+  frame.width = kWidth;
+  frame.height = kHeight;
 }
 inline void make_plausible(msg::FeatureFrame& features) {
   features.count = msg::kMaxFeatures;

@@ -30,6 +30,9 @@ struct Pair {
 // clang-format off
 using Pairs = testing::Types<
     Pair<msg::RgbdFrame, rtd_msgs::msg::dds_::RgbdFrame_PubSubType>,
+    Pair<msg::RgbdFrame848, rtd_msgs::msg::dds_::RgbdFrame848_PubSubType>,
+    Pair<msg::RgbdFrame1280, rtd_msgs::msg::dds_::RgbdFrame1280_PubSubType>,
+    Pair<msg::RgbdFrame1920, rtd_msgs::msg::dds_::RgbdFrame1920_PubSubType>,
     Pair<msg::FeatureFrame, rtd_msgs::msg::dds_::FeatureFrame_PubSubType>,
     Pair<msg::KeyframeEvent, rtd_msgs::msg::dds_::KeyframeEvent_PubSubType>,
     Pair<msg::TrackingResult, rtd_msgs::msg::dds_::TrackingResult_PubSubType>,

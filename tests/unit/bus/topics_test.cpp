@@ -5,11 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "common/bus/backend.hpp"
+#include "common/bus/frame_topics.hpp"
 #include "common/bus/qos.hpp"
 
 namespace rtd::bus {
@@ -58,7 +60,8 @@ TEST(Topics, every_message_type_is_reachable_by_its_id) {
 TEST(QosProfiles, only_the_raw_frame_shares_the_writers_memory) {
   for (const TopicFacts& topic : all_topics()) {
     const QosSettings settings = qos_settings(topic.profile);
-    EXPECT_EQ(settings.data_sharing, topic.type == MessageTraits<msg::RgbdFrame>::kId) << topic.name;
+    const auto is_frame = [&](const FrameTopic& frames) { return frames.type == topic.type; };
+    EXPECT_EQ(settings.data_sharing, std::ranges::any_of(frame_topics(), is_frame)) << topic.name;
     EXPECT_TRUE(topic.plain || !settings.data_sharing) << topic.name;
     EXPECT_GE(settings.depth, 1) << topic.name;
   }

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "services/camera/core/recording/ros_images.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"
@@ -181,11 +182,11 @@ TEST(BagSource, leaves_out_frames_of_other_sizes_and_short_messages) {
 TEST(BagSource, refuses_frames_larger_than_the_frame_type) {
   ImageBag bag;
   msg::CameraInfo info = ImageBag::camera_info();
-  info.width = 1280, info.height = 720;
+  info.width = 2560, info.height = 1440;
   bag.add_info(info);
   bag.add_color(1);
   bag.add_depth(1);
-  EXPECT_TRUE(refuses(bag.uri(), {"1280 x 720", "at most 640 x 480"}));
+  EXPECT_TRUE(refuses(bag.uri(), {"2560 x 1440", "at most 1920 x 1200"}));
 }
 
 TEST(BagSource, needs_a_calibration_it_understands) {
@@ -199,11 +200,31 @@ TEST(BagSource, needs_a_calibration_it_understands) {
   EXPECT_TRUE(with(ImageBag::camera_info(0)));
   EXPECT_TRUE(with(ImageBag::camera_info(std::numeric_limits<double>::quiet_NaN())));
   msg::CameraInfo fisheye = ImageBag::camera_info();
-  fisheye.distortion_model = "equidistant", fisheye.d = {0.1, 0, 0, 0};
+  fisheye.distortion_model = "equidistant", fisheye.d = {0.1, 0, 0, 0, 0.5};
   EXPECT_TRUE(with(fisheye));
-  msg::CameraInfo rational = ImageBag::camera_info();
-  rational.distortion_model = "rational_polynomial", rational.d = {0.1, 0, 0, 0, 0, 0.2, 0, 0};
-  EXPECT_TRUE(with(rational));
+  msg::CameraInfo thin_prism = ImageBag::camera_info();
+  thin_prism.distortion_model = "thin_prism", thin_prism.d = {0.1, 0, 0, 0, 0, 0.2, 0, 0, 0.001, 0, 0, 0};
+  EXPECT_TRUE(with(thin_prism));
+}
+
+TEST(BagSource, knows_rational_and_fisheye_lenses) {
+  const auto camera_of = [](const std::string& model, const std::vector<double>& coefficients) {
+    msg::CameraInfo info = ImageBag::camera_info();
+    info.distortion_model = model, info.d = coefficients;
+    ImageBag bag;
+    bag.add_info(info);
+    bag.add_color(1);
+    bag.add_depth(1);
+    return make_source(bag.uri())->info().camera;
+  };
+  const auto rational = camera_of("rational_polynomial", {0.1, 0, 0, 0, 0, 0.2, 0, 0.05}).parameters();
+  EXPECT_EQ(rational.lens, geometry::Lens::kBrownConrady);
+  EXPECT_EQ(rational.distortion[5], 0.2);
+  EXPECT_EQ(to_camera_info(geometry::CameraModel(rational), 0).distortion_model, "rational_polynomial");
+  const auto fisheye = camera_of("equidistant", {0.1, 0, 0, 0.01}).parameters();
+  EXPECT_EQ(fisheye.lens, geometry::Lens::kFisheye);
+  EXPECT_EQ(fisheye.distortion[3], 0.01);
+  EXPECT_EQ(to_camera_info(geometry::CameraModel(fisheye), 0).d.size(), 4U);
 }
 
 TEST(BagSource, takes_a_calibration_of_its_own) {

@@ -68,9 +68,22 @@ TEST(Calibration, refuses_with_key_line_and_fix) {
 }
 
 TEST(Calibration, refuses_sizes_that_no_frame_type_carries) {
-  EXPECT_THAT(
-      [] { parse_calibration(SequenceFolder::calibration(1280, 720), "cal.yaml"); },
-      ThrowsMessage<SourceError>(AllOf(HasSubstr("1280 x 720"), HasSubstr("at most 640 x 480"), HasSubstr("scale"))));
+  EXPECT_THAT([] { parse_calibration(SequenceFolder::calibration(1920, 1440), "cal.yaml"); },
+              ThrowsMessage<SourceError>(
+                  AllOf(HasSubstr("1920 x 1440"), HasSubstr("at most 1920 x 1200"), HasSubstr("scale"))));
+}
+
+TEST(Calibration, reads_rational_and_fisheye_lenses_and_writes_them_again) {
+  const std::string image = SequenceFolder::calibration(640, 576);
+  const Calibration rational = parse_calibration(image + "k1: 0.5\nk4: 0.8\nk6: -0.1\n", "cal.yaml");
+  EXPECT_EQ(rational.camera.parameters().distortion, (std::array<double, 8>{0.5, 0, 0, 0, 0, 0.8, 0, -0.1}));
+  EXPECT_EQ(parse_calibration(to_yaml(rational), "again").camera.parameters(), rational.camera.parameters());
+  const Calibration fisheye = parse_calibration(image + "fisheye: 1\nk1: 0.1\nk4: -0.02\n", "cal.yaml");
+  EXPECT_EQ(fisheye.camera.parameters().lens, geometry::Lens::kFisheye);
+  EXPECT_EQ(fisheye.camera.parameters().distortion, (std::array<double, 8>{0.1, 0, 0, -0.02}));
+  EXPECT_EQ(parse_calibration(to_yaml(fisheye), "again").camera.parameters(), fisheye.camera.parameters());
+  EXPECT_THAT([&] { parse_calibration(image + "fisheye: 1\np1: 0.1\n", "cal.yaml"); },
+              ThrowsMessage<SourceError>(HasSubstr("remove p1")));
 }
 
 TEST(TumFamily, is_read_from_the_innermost_folder_that_names_one) {

@@ -165,10 +165,10 @@ TEST_F(LiveSourceTest, refuses_encodings_sizes_and_byte_orders_by_name) {
   refusal(
       [&] {
         msg::CameraInfo large = ImageBag::camera_info();
-        large.width = 1280, large.height = 720;
+        large.width = 2560, large.height = 1440;
         info(large);
       },
-      "1280 x 720 px, but a frame carries at most 640 x 480");
+      "2560 x 1440 px, but a frame carries at most 1920 x 1200");
   refusal(
       [&] {
         msg::Image big_endian = ImageBag::image(ImageBag::depth(), "16UC1", 1);

@@ -183,11 +183,11 @@ TEST(TumSource, treats_saturated_depth_as_missing) {
 TEST(TumSource, refuses_frames_larger_than_the_frame_type) {
   const SequenceFolder folder;
   folder.write("calibration.yaml", SequenceFolder::calibration());
-  folder.image("rgb/a.png", SequenceFolder::color(800, 600));
+  folder.image("rgb/a.png", SequenceFolder::color(1600, 1600));
   folder.image("depth/a.png", SequenceFolder::depth());
   folder.write("associations.txt", "1 rgb/a.png 1 depth/a.png\n");
   EXPECT_THAT([&] { make_source(folder.uri()); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr("800 x 600"), HasSubstr("at most 640 x 480"))));
+              ThrowsMessage<SourceError>(AllOf(HasSubstr("1600 x 1600"), HasSubstr("at most 1920 x 1200"))));
 }
 
 TEST(TumSource, skips_frames_of_another_size_than_calibrated) {

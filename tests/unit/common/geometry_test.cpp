@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <opencv2/calib3d.hpp>
 #include <random>
+#include <vector>
 
 #include "common/geometry/camera_model.hpp"
 #include "common/geometry/se3.hpp"
@@ -29,6 +31,41 @@ TEST(CameraModel, undistort_inverts_distort_over_the_whole_image) {
 TEST(CameraModel, distortion_moves_the_corner_by_pixels) {
   const CameraModel camera = tum_fr1();
   EXPECT_GT((camera.undistort({5, 5}) - Eigen::Vector2d(5, 5)).norm(), 2.0);
+}
+
+TEST(CameraModel, agrees_with_opencv_for_every_lens) {
+  CameraModel::Parameters rational = tum_fr1().parameters();
+  rational.distortion = {0.6, -2.7, 0.0004, -0.0002, 1.6, 0.48, -2.5, 1.5};  // of an Azure Kinect
+  CameraModel::Parameters fisheye = tum_fr1().parameters();
+  fisheye.fx = fisheye.fy = 280, fisheye.lens = Lens::kFisheye;
+  fisheye.distortion = {-0.007, 0.04, -0.04, 0.007};
+  for (const CameraModel::Parameters& p : {rational, fisheye}) {
+    const CameraModel camera(p);
+    const cv::Matx33d k(p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1);
+    const bool is_fisheye = p.lens == Lens::kFisheye;
+    const std::vector<double> coefficients(p.distortion.begin(), p.distortion.begin() + (is_fisheye ? 4 : 8));
+    for (const cv::Point3d& point : {cv::Point3d(0, 0, 1), cv::Point3d(0.4, -0.3, 1), cv::Point3d(-0.5, 0.2, 1)}) {
+      std::vector<cv::Point2d> expected;
+      const std::vector<cv::Point3d> points{point};
+      if (is_fisheye) {
+        cv::fisheye::projectPoints(points, expected, cv::Vec3d(), cv::Vec3d(), k, coefficients);
+      } else {
+        cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), k, coefficients, expected);
+      }
+      const Eigen::Vector2d pinhole = camera.project({point.x, point.y, point.z});
+      const Eigen::Vector2d raw = camera.distort(pinhole);
+      EXPECT_NEAR(raw.x(), expected[0].x, 1e-6);
+      EXPECT_NEAR(raw.y(), expected[0].y, 1e-6);
+      EXPECT_LT((camera.undistort(raw) - pinhole).norm(), 1e-4);
+    }
+  }
+}
+
+TEST(CameraModel, what_a_fisheye_lens_sees_behind_it_stays_finite) {
+  CameraModel::Parameters p = tum_fr1().parameters();
+  p.fx = p.fy = 150, p.lens = Lens::kFisheye;
+  const Eigen::Vector2d corner = CameraModel(p).undistort({0, 0});  // 2.6 rad off the axis
+  EXPECT_NEAR((corner - Eigen::Vector2d(p.cx, p.cy)).norm(), 150 * std::tan(CameraModel::kWidestView_rad), 1e-6);
 }
 
 TEST(CameraModel, unproject_inverts_project) {

@@ -19,7 +19,7 @@ class FrameJoinerTest : public testing::Test {
     auto frame = std::make_shared<msg::RgbdFrame>();
     frame->seq = seq;
     frame->stamp_ns = stamp(seq);
-    joiner_.put(std::shared_ptr<const msg::RgbdFrame>(frame));
+    joiner_.put(std::make_shared<const msg::FrameView>(*frame, frame));
   }
   void mask(std::uint64_t seq) { joiner_.put(stamp(seq), all_static()); }
   void pose(std::uint64_t seq, std::uint64_t events = 0, msg::TrackingState state = msg::TrackingState::kOk) {
@@ -88,7 +88,7 @@ TEST_F(FrameJoinerTest, drops_a_frame_whose_mask_does_not_come) {
 TEST_F(FrameJoinerTest, does_without_masks_when_configured) {
   FrameJoiner joiner({.every = 1, .needs_masks = false});
   auto frame = std::make_shared<msg::RgbdFrame>();
-  joiner.put(std::shared_ptr<const msg::RgbdFrame>(frame));
+  joiner.put(std::make_shared<const msg::FrameView>(*frame, frame));
   msg::TrackingResult result{};
   result.state = msg::TrackingState::kOk;
   joiner.put(result);

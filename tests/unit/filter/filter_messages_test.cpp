@@ -100,8 +100,8 @@ std::unique_ptr<msg::RgbdFrame> good_frame() {
 TEST(FrameMessages, names_what_is_wrong_with_a_frame) {
   auto frame = good_frame();
   EXPECT_EQ(defect(*frame), "");
-  frame->width = 1280;
-  EXPECT_THAT(defect(*frame), HasSubstr("1280x240"));
+  frame->width = 1281;
+  EXPECT_THAT(defect(*frame), HasSubstr("1281x240"));
   frame = good_frame();
   frame->intrinsics[0] = 0;
   EXPECT_THAT(defect(*frame), HasSubstr("fx 0"));
@@ -150,7 +150,7 @@ TEST(FrameMessages, views_rows_of_the_frame_width) {
 
 TEST(FrameMessages, leaves_out_removed_features_first) {
   FilterResult result;
-  for (int i = 0; i < 3000; ++i) {
+  for (std::uint32_t i = 0; i < 2 * msg::kMaxFeatures - 1000; ++i) {
     msg::Feature feature{};
     feature.flags = i % 2 == 0 ? msg::kFeatureRemoved : 0;
     result.features.push_back(feature);
@@ -158,7 +158,7 @@ TEST(FrameMessages, leaves_out_removed_features_first) {
   const auto frame = good_frame();
   const auto message = std::make_unique<msg::FeatureFrame>();
   fill_message(*frame, result, msg::DetectionUse::kExact, *message);
-  EXPECT_EQ(message->count, 1500U);
+  EXPECT_EQ(message->count, msg::kMaxFeatures - 500);
   EXPECT_EQ(message->removed, 0U);
   result.features.resize(100);
   fill_message(*frame, result, msg::DetectionUse::kExact, *message);
@@ -188,10 +188,10 @@ TEST(FrameMessages, show_the_motion_of_the_cells_as_a_grey_image) {
   const auto frame = std::make_unique<msg::RgbdFrame>();
   *frame = {};
   frame->stamp_ns = 1'500'000'000;
-  frame->width = 12;
-  frame->height = 8;
+  frame->width = 640;
+  frame->height = 480;
   FilterResult result;
-  EXPECT_EQ(make_mask(*frame, result).data, std::vector<std::uint8_t>(6, 0)) << "mode off: all is static";
+  EXPECT_EQ(make_mask(*frame, result).data, std::vector<std::uint8_t>(160 * 120, 0)) << "mode off: all is static";
   result.cells = {3, 2};
   result.motion.assign(6, CellMotion::kUnknown);
   result.motion[4] = CellMotion::kDynamic;

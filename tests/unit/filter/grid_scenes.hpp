@@ -7,6 +7,10 @@
 #include "services/filter/core/surfaces/depth_grid.hpp"
 #include "tests/unit/filter/orb/test_images.hpp"
 
+namespace rtd::filter {
+inline constexpr int kCellPx = cell_side_px(640, 480);  ///< side of a cell of the scenes' camera
+}
+
 namespace rtd::filter::test {
 
 /// Cells of a 640x480 image, and a block in it on whole cells.

@@ -59,7 +59,7 @@ TEST(MessageJson, has_every_field_of_our_own_messages) {
   features->features[2047].object_id = -1;
   const Json frame = read("rtd_msgs::msg::dds_::FeatureFrame_", *features);
   EXPECT_EQ(frame["count"], 2);
-  EXPECT_EQ(frame["features"].size(), 2048U);
+  EXPECT_EQ(frame["features"].size(), msg::kMaxFeatures);
   EXPECT_EQ(frame["features"][2047]["object_id"], -1);
   EXPECT_EQ(frame["features"][0]["descriptor"].size(), 32U);
 

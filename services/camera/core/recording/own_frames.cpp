@@ -14,17 +14,29 @@
 namespace rtd::camera {
 namespace {
 
-/// The frame behind the 4-byte header of CDR. Throws ros::WireError: cut, or of a version of the program with another
-/// frame type; a size, calibration or time that cannot be.
-std::unique_ptr<msg::RgbdFrame> to_frame_message(const RecordedMessage& message) {
-  constexpr std::size_t kHeaderBytes = 4, kBytes = kHeaderBytes + sizeof(msg::RgbdFrame);
+constexpr char kTypeStem[] = "rtd_msgs/RgbdFrame";
+
+template <class Frame>
+std::shared_ptr<const msg::FrameView> frame_in(const RecordedMessage& message) {
+  constexpr std::size_t kHeaderBytes = 4, kBytes = kHeaderBytes + sizeof(Frame);
   if (message.bytes.size() != kBytes) {
     throw ros::WireError(fmt::format(
         "it has {} bytes, a frame has {}: it is cut, or was recorded by another version of RTD-SLAM, which can play it",
         message.bytes.size(), kBytes));
   }
-  auto frame = std::make_unique<msg::RgbdFrame>();
-  std::memcpy(frame.get(), message.bytes.data() + kHeaderBytes, sizeof(msg::RgbdFrame));
+  auto frame = std::make_shared<Frame>();
+  std::memcpy(frame.get(), message.bytes.data() + kHeaderBytes, sizeof(Frame));
+  return std::make_shared<const msg::FrameView>(*frame, frame);
+}
+
+/// The frame behind the 4-byte header of CDR, of any size class. Throws ros::WireError: cut, or of a version of the
+/// program with another frame type; a size, calibration or time that cannot be.
+std::shared_ptr<const msg::FrameView> to_frame_message(const RecordedMessage& message) {
+  std::shared_ptr<const msg::FrameView> frame;
+  msg::for_each_frame_type([&]<class Frame>() {
+    if (message.type == msg::type_name(msg::TypeOf<Frame>())) frame = frame_in<Frame>(message);
+  });
+  if (!frame) throw ros::WireError(message.type + " is not a type of frames");
   if (const std::string defect = vision::defect(*frame); !defect.empty()) throw ros::WireError(defect);
   return frame;
 }
@@ -43,7 +55,7 @@ class OwnFrames final : public RecordingSource {
   std::optional<SourceFrame> decode() override;
   bool take(const RecordedMessage& message);
 
-  std::unique_ptr<msg::RgbdFrame> frame_;  ///< gone to
+  std::shared_ptr<const msg::FrameView> frame_;  ///< gone to
   std::uint64_t source_id_ = 0;
   std::optional<std::int64_t> last_ns_;
 };
@@ -106,7 +118,7 @@ std::optional<SourceFrame> OwnFrames::decode() {
 
 std::string own_frames_topic(const Recording& recording) {
   for (const RecordedTopic& topic : recording.topics()) {
-    if (topic.type == "rtd_msgs/RgbdFrame" && topic.messages > 0) return topic.name;
+    if (topic.type.starts_with(kTypeStem) && topic.messages > 0) return topic.name;
   }
   return {};
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <span>
 
 #include "common/ros_codec/byte_cursor.hpp"
@@ -132,16 +133,30 @@ ImageRead compressed_depth(const RecordedMessage& message, double float_unit_m) 
 
 constexpr const char* kFix = "; give a calibration of your own: ?calibration=FILE";
 
-void take_distortion(const msg::CameraInfo& info, const std::string& origin, std::array<double, 5>& distortion) {
+constexpr const char* kFisheyeModel = "equidistant";  // ROS's name
+
+void take_distortion(const msg::CameraInfo& info, const std::string& origin,
+                     geometry::CameraModel::Parameters& parameters) {
   const auto is_zero = [](double value) { return value == 0; };
-  if (std::ranges::all_of(info.d, is_zero)) return;
-  const std::size_t known = std::min<std::size_t>(5, info.d.size());
-  const bool tail_zero = std::ranges::all_of(std::span(info.d).subspan(known), is_zero);
-  if (info.distortion_model == "equidistant" || info.distortion_model == "fisheye" || !tail_zero) {
-    throw SourceError(origin + ": distortion model '" + info.distortion_model + "' with " +
-                      std::to_string(info.d.size()) + " values; known: plumb_bob with k1 k2 p1 p2 k3" + kFix);
+  const bool fisheye = info.distortion_model == kFisheyeModel || info.distortion_model == "fisheye";
+  if (!fisheye && std::ranges::all_of(info.d, is_zero)) return;
+  const std::size_t known = std::min<std::size_t>(fisheye ? 4 : parameters.distortion.size(), info.d.size());
+  if (!std::ranges::all_of(std::span(info.d).subspan(known), is_zero)) {
+    throw SourceError(
+        origin + ": distortion model '" + info.distortion_model + "' with " + std::to_string(info.d.size()) +
+        " values; known: plumb_bob (k1 k2 p1 p2 k3), rational_polynomial (... k4 k5 k6), equidistant (k1 k2 "
+        "k3 k4)" +
+        kFix);
   }
-  std::copy_n(info.d.begin(), known, distortion.begin());
+  parameters.lens = fisheye ? geometry::Lens::kFisheye : geometry::Lens::kBrownConrady;
+  std::copy_n(info.d.begin(), known, parameters.distortion.begin());
+}
+
+/// ROS's name of the distortion and the number of its coefficients.
+std::pair<const char*, std::ptrdiff_t> ros_distortion(const geometry::CameraModel::Parameters& p) {
+  if (p.lens == geometry::Lens::kFisheye) return {kFisheyeModel, 4};
+  const bool rational = p.distortion[5] != 0 || p.distortion[6] != 0 || p.distortion[7] != 0;
+  return rational ? std::pair("rational_polynomial", std::ptrdiff_t{8}) : std::pair("plumb_bob", std::ptrdiff_t{5});
 }
 
 }  // namespace
@@ -177,8 +192,9 @@ msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t
   info.header = {msg::to_time(stamp_ns), kCameraFrame};
   info.width = static_cast<std::uint32_t>(p.width);
   info.height = static_cast<std::uint32_t>(p.height);
-  info.distortion_model = "plumb_bob";
-  info.d.assign(p.distortion.begin(), p.distortion.end());
+  const auto [model, coefficients] = ros_distortion(p);
+  info.distortion_model = model;
+  info.d.assign(p.distortion.begin(), p.distortion.begin() + coefficients);
   info.k = {p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1};
   info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   info.p = {p.fx, 0, p.cx, 0, 0, p.fy, p.cy, 0, 0, 0, 1, 0};
@@ -193,10 +209,9 @@ geometry::CameraModel to_camera_model(const msg::CameraInfo& info, const std::st
     p.fx = info.p[0], p.fy = info.p[5], p.cx = info.p[2], p.cy = info.p[6];
   } else {
     p.fx = info.k[0], p.fy = info.k[4], p.cx = info.k[2], p.cy = info.k[5];
-    take_distortion(info, origin, p.distortion);
+    take_distortion(info, origin, p);
   }
-  const double sum = p.fx + p.fy + p.cx + p.cy + p.distortion[0] + p.distortion[1] + p.distortion[2] + p.distortion[3] +
-                     p.distortion[4];
+  const double sum = std::accumulate(p.distortion.begin(), p.distortion.end(), p.fx + p.fy + p.cx + p.cy);
   if (!(p.fx > 0) || !(p.fy > 0) || !std::isfinite(sum)) {
     throw SourceError(origin + ": fx is " + std::to_string(p.fx) + ", fy " + std::to_string(p.fy) +
                       ": the camera was not calibrated" + kFix);

@@ -7,7 +7,7 @@
 namespace rtd::camera::synthetic {
 namespace {
 
-constexpr std::array<double, 5> kFreiburg1 = {0.262383, -0.953104, -0.005358, 0.002628, 1.163314};
+constexpr std::array<double, 8> kFreiburg1 = {0.262383, -0.953104, -0.005358, 0.002628, 1.163314};
 constexpr double kMs = 1e-3;
 
 cv::Size size_of(const geometry::CameraModel& camera) {
@@ -16,9 +16,9 @@ cv::Size size_of(const geometry::CameraModel& camera) {
 
 }  // namespace
 
-std::array<double, 5> lens_distortion(double factor) {
+std::array<double, 8> lens_distortion(double factor) {
   if (factor == 0) return {};  // a product would be -0, which calibration.yaml shows
-  std::array<double, 5> distortion = kFreiburg1;
+  std::array<double, 8> distortion = kFreiburg1;
   for (double& coefficient : distortion) coefficient *= factor;
   return distortion;
 }

@@ -61,6 +61,6 @@ class SceneCamera {
 geometry::CameraModel miscalibrated(const geometry::CameraModel& camera, double error, std::uint64_t seed);
 
 /// TUM freiburg1's distortion times a factor.
-std::array<double, 5> lens_distortion(double factor);
+std::array<double, 8> lens_distortion(double factor);
 
 }  // namespace rtd::camera::synthetic

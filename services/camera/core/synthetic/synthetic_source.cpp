@@ -95,8 +95,8 @@ std::vector<Parameter> parameters_of(SyntheticOptions& options) {
       {"flicker", 0, 1, [&](double v) { options.scene.flicker = v; }},
       {"sit", 0, 1e6, [&](double v) { options.scene.sit_s = v; }},
       {"fidget", 0, 0.5, [&](double v) { options.scene.fidget_rad = v; }},
-      {"width", 64, msg::kMaxFrameWidth, [&](double v) { options.width = static_cast<int>(v); }},
-      {"height", 48, msg::kMaxFrameHeight, [&](double v) { options.height = static_cast<int>(v); }}};
+      {"width", 64, 1920, [&](double v) { options.width = static_cast<int>(v); }},
+      {"height", 48, 1200, [&](double v) { options.height = static_cast<int>(v); }}};
   for (const synthetic::FaultParameter& fault : synthetic::fault_parameters()) {
     parameters.push_back({fault.key, fault.min, fault.max, [&, fault](double v) { options.faults.*fault.value = v; }});
   }

@@ -191,12 +191,7 @@ std::optional<SourceFrame> TumSource::decode() {
 
 std::optional<SkippedInput> TumSource::check_sizes(const FilePair& pair, const cv::Mat& color,
                                                    const cv::Mat& depth) const {
-  if (color.cols > static_cast<int>(msg::kMaxFrameWidth) || color.rows > static_cast<int>(msg::kMaxFrameHeight)) {
-    throw SourceError((folder_ / pair.color.file).string() + " has " + size_text(color.size()) +
-                      " px, but a frame carries at most " +
-                      size_text(cv::Size(msg::kMaxFrameWidth, msg::kMaxFrameHeight)) +
-                      " px; scale the images and the calibration down");
-  }
+  check_frame_size(color.cols, color.rows, (folder_ / pair.color.file).string());
   return size_mismatch(pair.color.file, color, depth, info_.camera);
 }
 

@@ -130,7 +130,8 @@ RefinedPose PaperJudge::find_pose(const Scene& scene, const std::vector<msg::Fea
     const msg::Feature& f = features[match.current];
     if (!match.reference_static || high[static_cast<std::size_t>(scene.shape().nearest_cell(f.u_px, f.v_px))] != 0)
       continue;
-    sightings.push_back({match.p_world, {f.u_px, f.v_px}, f.depth_m, displacement_sigma_px(f.octave), -1});
+    sightings.push_back(
+        {match.p_world, {f.u_px, f.v_px}, f.depth_m, displacement_sigma_px(f.octave, scene.image.camera), -1});
   }
   const RefinedPose refined = refine_pose(sightings, scene.image.camera, T_world_predicted, ego_motion_.min_inliers);
   if (!refined.success) return {false, T_world_predicted, 0};

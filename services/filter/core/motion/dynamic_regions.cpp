@@ -189,13 +189,14 @@ std::vector<std::uint8_t> DynamicMemory::recall(const DepthGrid& grid, const geo
   const auto& p = camera.parameters();
   const auto fx = static_cast<float>(p.fx), fy = static_cast<float>(p.fy);
   const auto cx = static_cast<float>(p.cx), cy = static_cast<float>(p.cy);
+  const auto cell_px = static_cast<float>(grid.shape.cell_px);
   std::vector<std::uint8_t> hold_cs(static_cast<std::size_t>(grid.shape.size()), 0);
   for (const Point& point : points_) {
     const Eigen::Vector3f p_current = rotation * point.p_camera + translation;
     if (p_current.z() < kMinDepthM) continue;
     // Two by two cells: no holes when things come nearer.
-    const auto left = static_cast<int>(std::floor((fx * p_current.x() / p_current.z() + cx) / kCellPx - 0.5F));
-    const auto top = static_cast<int>(std::floor((fy * p_current.y() / p_current.z() + cy) / kCellPx - 0.5F));
+    const auto left = static_cast<int>(std::floor((fx * p_current.x() / p_current.z() + cx) / cell_px - 0.5F));
+    const auto top = static_cast<int>(std::floor((fy * p_current.y() / p_current.z() + cy) / cell_px - 0.5F));
     for (int row = std::max(top, 0); row <= std::min(top + 1, grid.shape.rows - 1); ++row) {
       for (int column = std::max(left, 0); column <= std::min(left + 1, grid.shape.columns - 1); ++column) {
         const auto i = static_cast<std::size_t>(grid.shape.index(column, row));

@@ -38,7 +38,8 @@ std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& 
 
 PointSighting to_sighting(const FeatureMatch& match, const EgoMotionInput& input) {
   const msg::Feature& f = input.current.features[match.current];
-  return {match.p_world, {f.u_px, f.v_px}, f.depth_m, displacement_sigma_px(f.octave), input.cluster_of[match.current]};
+  const double sigma_px = displacement_sigma_px(f.octave, input.current.camera);
+  return {match.p_world, {f.u_px, f.v_px}, f.depth_m, sigma_px, input.cluster_of[match.current]};
 }
 
 std::vector<PointSighting> to_sightings(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "common/msg/features.hpp"
 #include "common/vision/pose_optimizer.hpp"
 #include "common/vision/samples.hpp"
 
@@ -52,8 +53,10 @@ std::vector<std::vector<PointSighting>> proposing_groups(const std::vector<Point
 
 }  // namespace
 
-double displacement_sigma_px(int octave) {
-  return std::numbers::sqrt2 * kKeypointSigmaPx * std::pow(1.2, octave);
+double displacement_sigma_px(int octave, const geometry::CameraModel& camera) {
+  const auto& p = camera.parameters();
+  const int scale = msg::feature_scale(static_cast<std::uint32_t>(p.width), static_cast<std::uint32_t>(p.height));
+  return std::numbers::sqrt2 * kKeypointSigmaPx * std::pow(1.2, octave) / scale;
 }
 
 std::optional<Eigen::Vector2d> displacement_px(const PointSighting& s, const geometry::CameraModel& camera,

@@ -20,8 +20,8 @@ struct PointSighting {
   int cluster = -1;                                   ///< depth cluster it lies on
 };
 
-/// Standard deviation of the displacement of a keypoint between two views: both ends are uncertain.
-double displacement_sigma_px(int octave);
+/// Standard deviation of the displacement of a keypoint between two views: both ends are uncertain. px of the image.
+double displacement_sigma_px(int octave, const geometry::CameraModel& camera);
 
 /// From where the point would appear at rest to where it was seen; nullopt if it lies behind the camera.
 std::optional<Eigen::Vector2d> displacement_px(const PointSighting& sighting, const geometry::CameraModel& camera,

@@ -60,24 +60,28 @@ cv::Point2f UndistortionTable::undistort(cv::Point2f raw_pixel) const {
 }
 
 void ImagePyramid::build(const cv::Mat& image) {
+  size_ = image.size();
   if (image.channels() == 3) {
     cv::cvtColor(image, images_[0], cv::COLOR_BGR2GRAY);
   } else {
     image.copyTo(images_[0]);
   }
+  const double enlarged =
+      msg::feature_scale(static_cast<std::uint32_t>(size_.width), static_cast<std::uint32_t>(size_.height));
+  if (enlarged > 1) cv::resize(images_[0], images_[0], {}, enlarged, enlarged, cv::INTER_CUBIC);
   double scale = 1.0;
   for (std::size_t level = 1; level < images_.size(); ++level) {
     scale *= scale_factor_;
-    const cv::Size size(std::max(1, static_cast<int>(std::lround(image.cols / scale))),
-                        std::max(1, static_cast<int>(std::lround(image.rows / scale))));
+    const cv::Size size(std::max(1, static_cast<int>(std::lround(images_[0].cols / scale))),
+                        std::max(1, static_cast<int>(std::lround(images_[0].rows / scale))));
     cv::resize(images_[level - 1], images_[level], size, 0, 0, cv::INTER_LINEAR);
   }
 }
 
 cv::Point2f ImagePyramid::to_base(cv::Point2f pixel, int level) const {
   const cv::Mat& from = image(level);
-  const float scale_x = static_cast<float>(images_[0].cols) / static_cast<float>(from.cols);
-  const float scale_y = static_cast<float>(images_[0].rows) / static_cast<float>(from.rows);
+  const float scale_x = static_cast<float>(size_.width) / static_cast<float>(from.cols);
+  const float scale_y = static_cast<float>(size_.height) / static_cast<float>(from.rows);
   return {(pixel.x + 0.5F) * scale_x - 0.5F, (pixel.y + 0.5F) * scale_y - 0.5F};
 }
 

@@ -27,7 +27,8 @@ class UndistortionTable {
   std::vector<cv::Point2f> nodes_;  ///< undistorted pixel of every kStepPx-th raw pixel
 };
 
-/// Grey images of one frame, each smaller by the scale factor. Buffers are reused from frame to frame.
+/// Grey images of one frame, each smaller by the scale factor. Small images are doubled first, because a corner is
+/// found to a fraction of a pixel of its level only. Buffers are reused from frame to frame.
 class ImagePyramid {
  public:
   ImagePyramid(int levels, double scale_factor)
@@ -38,11 +39,13 @@ class ImagePyramid {
 
   int levels() const { return static_cast<int>(images_.size()); }
   const cv::Mat& image(int level) const { return images_[static_cast<std::size_t>(level)]; }
-  /// Pixel of a level -> pixel of level 0. Pixel centres map to pixel centres, so no octave is biased against another.
+  /// Pixel of a level -> pixel of the image. Pixel centres map to pixel centres, so no octave is biased against
+  /// another.
   cv::Point2f to_base(cv::Point2f pixel, int level) const;
 
  private:
   double scale_factor_;
+  cv::Size size_;  ///< of the image
   std::vector<cv::Mat> images_;
 };
 

@@ -42,20 +42,21 @@ void DepthGridSampler::fit(const vision::RgbdImage& image) {
   if (size_ == image.depth.size() && parameters_ == image.camera.parameters()) return;
   size_ = image.depth.size();
   parameters_ = image.camera.parameters();
-  shape_ = {std::max(1, size_.width / kCellPx), std::max(1, size_.height / kCellPx)};
+  const int side_px = cell_side_px(size_.width, size_.height);
+  shape_ = {std::max(1, size_.width / side_px), std::max(1, size_.height / side_px), side_px};
   pixels_.clear();
   rays_.clear();
-  constexpr std::array<double, 2> kOffsets{0.5, 2.5};  // two by two samples, evenly spread over the cell
+  const std::array<double, 2> offsets{0.25 * side_px - 0.5, 0.75 * side_px - 0.5};  // two by two samples, evenly spread
   for (int row = 0; row < shape_.rows; ++row) {
     for (int column = 0; column < shape_.columns; ++column) {
-      const Eigen::Vector2d corner(column * kCellPx, row * kCellPx);
+      const Eigen::Vector2d corner(column * side_px, row * side_px);
       for (int k = 0; k < kSamples; ++k) {
-        const Eigen::Vector2d raw = image.camera.distort(corner + Eigen::Vector2d(kOffsets[k % 2], kOffsets[k / 2]));
+        const Eigen::Vector2d raw = image.camera.distort(corner + Eigen::Vector2d(offsets[k % 2], offsets[k / 2]));
         const long u = std::lround(raw.x()), v = std::lround(raw.y());
         const bool inside = u >= 0 && v >= 0 && u < size_.width && v < size_.height;
         pixels_.push_back(inside ? static_cast<int>(v * size_.width + u) : -1);
       }
-      const Eigen::Vector2d centre = corner.array() + 0.5 * (kCellPx - 1);
+      const Eigen::Vector2d centre = corner.array() + 0.5 * (side_px - 1);
       rays_.push_back(image.camera.unproject(centre, 1.0).cast<float>());
     }
   }

@@ -11,23 +11,28 @@
 
 namespace rtd::filter {
 
-/// Side of a grid cell in pixels of the undistorted image: 640x480 gives 160x120 cells.
-inline constexpr int kCellPx = 4;
+/// Side of a grid cell in pixels of the undistorted image, so that the longer side has about 160 cells at any
+/// resolution: 640x480 gives 160x120 cells of 4 px.
+constexpr int cell_side_px(int width_px, int height_px) {
+  constexpr int kCells = 160;
+  return std::max(1, (std::max(width_px, height_px) + kCells / 2) / kCells);
+}
 
 /// Shape of the grids of one camera; cells are numbered row by row.
 struct GridShape {
   int columns = 0, rows = 0;
+  int cell_px = 4;  ///< side of a cell
   int size() const { return columns * rows; }
   int index(int column, int row) const { return row * columns + column; }
   /// Cell of an undistorted pixel, -1 outside.
   int cell_at(double u_px, double v_px) const {
-    if (!(u_px >= 0 && v_px >= 0 && u_px < columns * kCellPx && v_px < rows * kCellPx)) return -1;
-    return index(static_cast<int>(u_px) / kCellPx, static_cast<int>(v_px) / kCellPx);
+    if (!(u_px >= 0 && v_px >= 0 && u_px < columns * cell_px && v_px < rows * cell_px)) return -1;
+    return index(static_cast<int>(u_px) / cell_px, static_cast<int>(v_px) / cell_px);
   }
   /// The same for any position, outside ones to the nearest cell.
   int nearest_cell(double u_px, double v_px) const {
-    const auto clamp = [](double px, int count) {
-      return static_cast<int>(std::clamp(px / kCellPx, 0.0, count - 1.0));
+    const auto clamp = [this](double px, int count) {
+      return static_cast<int>(std::clamp(px / cell_px, 0.0, count - 1.0));
     };
     return index(clamp(u_px, columns), clamp(v_px, rows));
   }

@@ -34,8 +34,8 @@ std::optional<CellBox> to_cells(const vision::Detection& box, const geometry::Ca
   const Eigen::Vector2d first = Eigen::Vector2d(box.x_px, box.y_px).cwiseMax(0.0).cwiseMin(size);
   const Eigen::Vector2d last =
       Eigen::Vector2d(box.x_px + box.width_px, box.y_px + box.height_px).cwiseMax(0.0).cwiseMin(size);
-  if (last.x() - first.x() < kCellPx || last.y() - first.y() < kCellPx) return std::nullopt;
-  const Eigen::Vector2d from = camera.undistort(first) / kCellPx, to = camera.undistort(last) / kCellPx;
+  if (last.x() - first.x() < shape.cell_px || last.y() - first.y() < shape.cell_px) return std::nullopt;
+  const Eigen::Vector2d from = camera.undistort(first) / shape.cell_px, to = camera.undistort(last) / shape.cell_px;
   const CellBox cells{std::max(0, static_cast<int>(std::floor(from.x()))),
                       std::max(0, static_cast<int>(std::floor(from.y()))),
                       std::min(shape.columns, static_cast<int>(std::ceil(to.x())) + 1),

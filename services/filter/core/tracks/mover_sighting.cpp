@@ -59,9 +59,9 @@ bool touches_border(const std::vector<int>& cells, const GridShape& shape) {
 }
 
 /// First and last cell that [first_px, last_px] touches, within 0 .. count - 1; empty when it ends before it begins.
-std::pair<int, int> cell_span(double first_px, double last_px, int count) {
+std::pair<int, int> cell_span(double first_px, double last_px, int count, int cell_px) {
   const auto cell = [&](double px) {
-    return static_cast<int>(std::floor(std::clamp(px / kCellPx, -1.0, count * 1.0)));
+    return static_cast<int>(std::floor(std::clamp(px / cell_px, -1.0, count * 1.0)));
   };
   return {std::max(0, cell(first_px)), std::min(count - 1, cell(last_px))};
 }
@@ -100,8 +100,8 @@ BoxContent look_into(const Eigen::AlignedBox3d& box_world, const MoverFrame& fra
   if (!box) return content;
   const GridShape& shape = frame.grid.shape;
   const Eigen::Vector2d first = box->centre_px - 0.5 * box->size_px, last = box->centre_px + 0.5 * box->size_px;
-  const auto [first_column, last_column] = cell_span(first.x(), last.x(), shape.columns);
-  const auto [first_row, last_row] = cell_span(first.y(), last.y(), shape.rows);
+  const auto [first_column, last_column] = cell_span(first.x(), last.x(), shape.columns, shape.cell_px);
+  const auto [first_row, last_row] = cell_span(first.y(), last.y(), shape.rows, shape.cell_px);
   for (int row = first_row; row <= last_row; ++row) {
     for (int column = first_column; column <= last_column; ++column) {
       const int cell = shape.index(column, row);

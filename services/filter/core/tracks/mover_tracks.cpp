@@ -124,7 +124,8 @@ void MoverTracks::miss(Track& track, double elapsed_s, const MoverFrame& frame, 
   constexpr double kMostlyVisible = 0.5, kMinFoundShare = 0.2, kRestingRatio = 5;
   constexpr int kMinVotes = 6;
   const std::optional<Box> box = project(track.extent(0), frame);
-  const double awaited = box ? box->area_px2() / (kCellPx * kCellPx) : 0.0;
+  const double cell_px2 = frame.grid.shape.cell_px * frame.grid.shape.cell_px;
+  const double awaited = box ? box->area_px2() / cell_px2 : 0.0;
   const auto& image = frame.camera.parameters();
   const bool in_sight = box && visible_share(*box, Eigen::Vector2d(image.width, image.height)) > kMostlyVisible &&
                         look_into(track.extent(0), frame).measured > kMostlyVisible * awaited;

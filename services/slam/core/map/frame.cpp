@@ -24,6 +24,16 @@ std::size_t count_usable(const msg::FeatureFrame& message) {
 
 }  // namespace
 
+FrameRaster raster_of(const msg::FeatureFrame& message) {
+  const int scale = msg::feature_scale(message.width, message.height);
+  const double first_px = 0.5 * (scale - 1);
+  const auto& [fx, fy, cx, cy] = message.intrinsics;
+  return {{fx * scale, fy * scale, cx * scale + first_px, cy * scale + first_px},
+          scale * static_cast<int>(message.width),
+          scale * static_cast<int>(message.height),
+          scale};
+}
+
 bool usable(const msg::Feature& feature) {
   return std::isfinite(feature.u_px) && std::isfinite(feature.v_px) && std::isfinite(feature.angle_rad) &&
          std::isfinite(feature.depth_m) && feature.depth_m >= 0 && feature.static_probability >= 0 &&
@@ -53,15 +63,19 @@ FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& conf
   auto frame = std::make_shared<Frame>();
   frame->seq = message.seq;
   frame->stamp_ns = message.stamp_ns;
-  const auto& [fx, fy, cx, cy] = message.intrinsics;
-  frame->camera = {fx, fy, cx, cy};
+  const FrameRaster raster = raster_of(message);
+  frame->camera = raster.camera;
   if (config.disparity_px_m > 0) frame->camera.disparity_px_m = config.disparity_px_m;
-  frame->width_px = static_cast<int>(message.width);
-  frame->height_px = static_cast<int>(message.height);
+  frame->width_px = raster.width_px;
+  frame->height_px = raster.height_px;
   frame->readout_s = motion.readout_s;
   frame->features.reserve(count_usable(message));  // exactly: keyframes keep their features
   for (std::uint32_t i = 0; i < message.count; ++i) {
     msg::Feature feature = message.features[i];
+    if (raster.scale != 1) {
+      feature.u_px = raster.from_image(feature.u_px);
+      feature.v_px = raster.from_image(feature.v_px);
+    }
     if ((feature.flags & msg::kFeatureRemoved) != 0) {
       ++input.removed;
       if (removed == RemovedFeatures::kKeep && usable(feature)) frame->removed.push_back(feature);

@@ -81,6 +81,17 @@ bool usable(const msg::Feature& feature);
 /// Whether a frame keeps the features that the filter removed: only the landmark belief needs them.
 enum class RemovedFeatures { kDrop, kKeep };
 
+/// The pixels that a frame's positions are given in: those of the image that the features were found in, which is the
+/// doubled one of a small image (docs/theory/orb.md), because windows and deviations in pixels belong to them.
+struct FrameRaster {
+  vision::RgbdProjection camera;
+  int width_px = 0, height_px = 0;
+  int scale = 1;  ///< its pixels per pixel of the camera's image
+  /// Position along one axis of the camera's image -> the same place here.
+  float from_image(float px) const { return static_cast<float>(scale) * px + 0.5F * static_cast<float>(scale - 1); }
+};
+FrameRaster raster_of(const msg::FeatureFrame& message);
+
 /// What make_frame() did with the message.
 struct FrameInput {
   FramePtr frame;             ///< null when the message as a whole is unusable

@@ -65,8 +65,8 @@ inline Tag tag_of(const msg::PoseStamped& pose) {
 
 /// New content for every message, as a producer writes it.
 inline void fill(msg::RgbdFrame& frame, std::uint64_t number) {
-  frame.width = msg::kMaxFrameWidth;
-  frame.height = msg::kMaxFrameHeight;
+  frame.width = 640;
+  frame.height = 480;
   std::memset(frame.color_bgr.data(), static_cast<int>(number), sizeof(frame.color_bgr));
   std::memset(frame.depth.data(), static_cast<int>(number), sizeof(frame.depth));
 }
