@@ -26,6 +26,7 @@ constexpr double kFieldMargin = 1.2;        // beyond the image's corners, of th
 constexpr std::uint16_t kNothing = 0xFFFF;  // the nearest wins by the minimum
 constexpr float kFarthest = kNothing;
 constexpr int kMostLanes = 8;
+constexpr int kRowsBehind = 4;  // of an image that is one pixel wide: for four pixels
 
 void check(const geometry::CameraModel& camera, const std::string& name) {
   const auto& p = camera.parameters();
@@ -142,16 +143,19 @@ RTD_INLINE typename L::Ints first_beyond(const typename L::Floats& at, float siz
   return L::ints(L::within(at, L::all(-1), L::all(size - 1)) + 1.0F);
 }
 
-/// All the pixels of a quad.
+/// All the pixels of a quad, four at a time: those beyond its right end stay as they are.
 void paint_all(const SeenRow& row, const Quads& quads, std::size_t i, std::uint16_t* nearest, int width) {
-  const float u = row.u[i + 1], v = row.v[i + 1], z = quads.z[i] + 0.5F, slack = quads.slack[i], z_u = quads.z_u[i];
-  const int left = quads.left[i], right = quads.right[i];
+  using L = Lanes<4>;
+  const float u = row.u[i + 1], v = row.v[i + 1], z_u = quads.z_u[i];
+  const L::Floats z = L::all(quads.z[i] + 0.5F), slack = L::all(quads.slack[i]), ahead = {0, 1, 2, 3};
   for (int y = quads.top[i]; y < quads.bottom[i]; ++y) {
-    auto* const to = nearest + std::ptrdiff_t{y} * width;
     const float rise = quads.z_v[i] * (static_cast<float>(y) - v);
-    for (int x = left; x < right; ++x) {
-      const float change = std::clamp(rise + z_u * (static_cast<float>(x) - u), -slack, slack);
-      to[x] = std::min(to[x], static_cast<std::uint16_t>(std::clamp(z + change, 1.0F, kFarthest)));
+    for (int x = quads.left[i]; x < quads.right[i]; x += 4) {
+      const L::Floats change = L::within(z_u * (ahead + (static_cast<float>(x) - u)) + rise, -slack, slack);
+      const L::Ints units = L::ints(L::within(z + change, L::all(1), L::all(kFarthest)));
+      const L::Ints inside = ahead < static_cast<float>(quads.right[i] - x);
+      std::uint16_t* const to = nearest + std::ptrdiff_t{y} * width + x;
+      L::store_lesser(to, inside ? units : L::Ints{} + kNothing);
     }
   }
 }
@@ -312,8 +316,8 @@ cv::Mat DepthRegistration::operator()(const cv::Mat& depth) const {
     throw std::invalid_argument("depth registration: the depth image is not of 16 bits and " +
                                 std::to_string(depth_columns_) + " x " + std::to_string(depth_rows_) + " px");
   }
-  // A row more than the image: that is where empty quads paint.
-  cv::Mat nearest(color_.height + 1, color_.width, CV_16UC1, cv::Scalar(kNothing));
+  // Behind the image is where empty quads paint and where quads of its last pixels read.
+  cv::Mat nearest(color_.height + kRowsBehind, color_.width, CV_16UC1, cv::Scalar(kNothing));
   auto* const pixels = nearest.ptr<std::uint16_t>();
   std::array<SeenRow, 3> ring{SeenRow(depth.cols), SeenRow(depth.cols), SeenRow(depth.cols)};
   const SeenRow outside(depth.cols);

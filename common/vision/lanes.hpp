@@ -55,6 +55,11 @@ struct Lanes : Vectors<kLanes> {
   }
   static RTD_INLINE void store(float* to, const Floats& vector) { *reinterpret_cast<FloatsInRow*>(to) = vector; }
   static RTD_INLINE void store(std::int32_t* to, const Ints& vector) { *reinterpret_cast<IntsInRow*>(to) = vector; }
+  /// Keeps what is less; the numbers fit.
+  static RTD_INLINE void store_lesser(std::uint16_t* to, const Ints& vector) {
+    const Shorts before = *reinterpret_cast<const ShortsInRow*>(to), now = __builtin_convertvector(vector, Shorts);
+    *reinterpret_cast<ShortsInRow*>(to) = now < before ? now : before;
+  }
 
   static RTD_INLINE Floats floats(const Ints& a) { return __builtin_convertvector(a, Floats); }
   /// Rounds towards zero.
