@@ -143,20 +143,23 @@ RTD_INLINE typename L::Ints first_beyond(const typename L::Floats& at, float siz
   return L::ints(L::within(at, L::all(-1), L::all(size - 1)) + 1.0F);
 }
 
-/// All the pixels of a quad, four at a time: those beyond its right end stay as they are.
+/// All the pixels of a quad, four at a time: those beyond its right end stay as they are. Most have one or two rows,
+/// which are painted without asking which: the same row twice is the same.
 void paint_all(const SeenRow& row, const Quads& quads, std::size_t i, std::uint16_t* nearest, int width) {
   using L = Lanes<4>;
-  const float u = row.u[i + 1], v = row.v[i + 1], z_u = quads.z_u[i];
+  const float u = row.u[i + 1], v = row.v[i + 1], z_u = quads.z_u[i], z_v = quads.z_v[i];
   const L::Floats z = L::all(quads.z[i] + 0.5F), slack = L::all(quads.slack[i]), ahead = {0, 1, 2, 3};
-  for (int y = quads.top[i]; y < quads.bottom[i]; ++y) {
-    const float rise = quads.z_v[i] * (static_cast<float>(y) - v);
-    for (int x = quads.left[i]; x < quads.right[i]; x += 4) {
-      const L::Floats change = L::within(z_u * (ahead + (static_cast<float>(x) - u)) + rise, -slack, slack);
-      const L::Ints units = L::ints(L::within(z + change, L::all(1), L::all(kFarthest)));
-      const L::Ints inside = ahead < static_cast<float>(quads.right[i] - x);
-      std::uint16_t* const to = nearest + std::ptrdiff_t{y} * width + x;
-      L::store_lesser(to, inside ? units : L::Ints{} + kNothing);
-    }
+  const int right = quads.right[i], top = quads.top[i], last = quads.bottom[i] - 1;
+  const auto paint_row = [&](int x, int y) {
+    const L::Floats change = z_u * (ahead + (static_cast<float>(x) - u)) + z_v * (static_cast<float>(y) - v);
+    const L::Floats units = L::within(z + L::within(change, -slack, slack), L::all(1), L::all(kFarthest));
+    const L::Ints inside = ahead < static_cast<float>(right - x);
+    L::store_lesser(nearest + std::ptrdiff_t{y} * width + x, inside ? L::ints(units) : L::Ints{} + kNothing);
+  };
+  for (int x = quads.left[i]; x < right; x += 4) {
+    paint_row(x, top);
+    paint_row(x, last);
+    for (int y = top + 1; y < last; ++y) paint_row(x, y);
   }
 }
 
