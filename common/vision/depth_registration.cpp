@@ -22,6 +22,7 @@ constexpr float kSteepest = 6;              // slope of a surface against the vi
 constexpr float kLargestStep = 0.2F;        // between neighbours, relative: more is an edge whatever the lens
 constexpr float kOverlap_px = 0.02F;        // closes the quads where their corners do not meet exactly
 constexpr float kSmallestArea_px = 1e-4F;   // of a quad whose slope can be told
+constexpr float kBorder_px = 64;            // around the image: farther out nothing reaches into it
 constexpr double kFieldMargin = 1.2;        // beyond the image's corners, of the squared distance from the axis
 constexpr std::uint16_t kNothing = 0xFFFF;  // the nearest wins by the minimum
 constexpr float kFarthest = kNothing;
@@ -200,17 +201,28 @@ struct DepthRegistration::Kernels {
     const Floats p1 = L::all(c.distortion[2]), p2 = L::all(c.distortion[3]);
     const Floats t_x = L::all(self.t_color_depth_.x()), t_y = L::all(self.t_color_depth_.y());
     const Floats t_z = L::all(self.t_color_depth_.z()), nearest = L::all(kNearest_m);
+    const Floats right = L::all(c.width + kBorder_px), bottom = L::all(c.height + kBorder_px);
+    const Floats scale_m = L::all(self.scale_m_), farthest = L::all(self.farthest_squared_);
+    const bool distorted = self.distorted_;
     const std::size_t columns = to.units.size();
     const float *const ray_x = &self.rays_[0][row * columns], *const ray_y = &self.rays_[1][row * columns];
     const float* const ray_z = &self.rays_[2][row * columns];
     for (std::size_t i = 0; i < columns; i += sizeof(Floats) / sizeof(float)) {
-      const Floats units = L::load(&to.units[i]), z = units * self.scale_m_;
+      const Floats units = L::load(&to.units[i]), z = units * scale_m;
       const Floats Z = L::load(&ray_z[i]) * z + t_z, inverse = 1.0F / L::greater(Z, nearest);
       const Floats x = (L::load(&ray_x[i]) * z + t_x) * inverse, y = (L::load(&ray_y[i]) * z + t_y) * inverse;
-      const Floats r2 = x * x + y * y, xy2 = 2.0F * x * y, radial = 1.0F + r2 * (k1 + r2 * (k2 + r2 * k3));
-      const auto seen = (units > 0.0F) & (units < kFarthest) & (Z > nearest) & (r2 < self.farthest_squared_);
-      L::store(&to.u[i + 1], L::where(seen, fx * (x * radial + p1 * xy2 + p2 * (r2 + 2.0F * x * x)) + cx));
-      L::store(&to.v[i + 1], L::where(seen, fy * (y * radial + p1 * (r2 + 2.0F * y * y) + p2 * xy2) + cy));
+      const Floats r2 = x * x + y * y;
+      Floats bent_x = x, bent_y = y;
+      if (distorted) {
+        const Floats xy2 = 2.0F * x * y, radial = 1.0F + r2 * (k1 + r2 * (k2 + r2 * k3));
+        bent_x = x * radial + p1 * xy2 + p2 * (r2 + 2.0F * x * x);
+        bent_y = y * radial + p1 * (r2 + 2.0F * y * y) + p2 * xy2;
+      }
+      const Floats u = fx * bent_x + cx, v = fy * bent_y + cy;
+      const auto measured = (units > 0.0F) & (units < kFarthest) & (Z > nearest) & (r2 < farthest);
+      const auto seen = measured & (u > -kBorder_px) & (u < right) & (v > -kBorder_px) & (v < bottom);
+      L::store(&to.u[i + 1], L::where(seen, u));
+      L::store(&to.v[i + 1], L::where(seen, v));
       L::store(&to.z_m[i + 1], L::where(seen, Z));
       L::store(&to.zoom[i + 1], L::where(seen, z * inverse));
     }
@@ -226,8 +238,13 @@ struct DepthRegistration::Kernels {
     const auto width = static_cast<float>(self.color_.width), height = static_cast<float>(self.color_.height);
     const float per_m = 1 / self.scale_m_, slope = self.slope_;
     const Eigen::Vector2f right_px = self.right_px_, down_px = self.down_px_;
+    const Ints behind = Ints{} + self.color_.width * self.color_.height;
     for (std::size_t i = 0; i < quads.z.size(); i += sizeof(Floats) / sizeof(float)) {
       const Floats u = L::load(&row.u[i + 1]), v = L::load(&row.v[i + 1]), z_m = L::load(&row.z_m[i + 1]);
+      if (!L::any(z_m > 0.0F)) {
+        L::store(&quads.first[i], behind), L::store(&quads.larger[i], Ints{});
+        continue;
+      }
       const Floats zoom = L::load(&row.zoom[i + 1]);
       const Floats largest_m = L::lesser(slope * z_m + kNoise_m + kNoisePer_m * z_m * z_m, kLargestStep * z_m);
       const auto across = step_between<L, Floats>(neighbour<L>(row, i, u, v, z_m), neighbour<L>(row, i + 2, u, v, z_m),
@@ -250,8 +267,7 @@ struct DepthRegistration::Kernels {
       const Ints columns = right - left, rows = bottom - top, some = (columns > 0) & (rows > 0) & (z_m > 0.0F);
       const Floats change = L::within(z_u * (L::floats(left) - u) + z_v * (L::floats(top) - v), -slack, slack);
 
-      L::store(&quads.first[i],
-               some ? top * self.color_.width + left : Ints{} + self.color_.width * self.color_.height);
+      L::store(&quads.first[i], some ? top * self.color_.width + left : behind);
       L::store(&quads.nearest[i], L::ints(L::within(z + change + 0.5F, L::all(1), L::all(kFarthest))));
       L::store(&quads.larger[i], some & ((columns > 1) | (rows > 1)) & 1);
       L::store(&quads.left[i], left), L::store(&quads.right[i], right);
@@ -286,6 +302,7 @@ struct DepthRegistration::Kernels {
 DepthRegistration::DepthRegistration(const geometry::CameraModel& color, const geometry::CameraModel& depth,
                                      const Eigen::Isometry3d& T_color_depth, double depth_scale_m)
     : color_(color.parameters()),
+      distorted_(color.distorted()),
       depth_columns_(depth.parameters().width),
       depth_rows_(depth.parameters().height),
       scale_m_(static_cast<float>(depth_scale_m)),

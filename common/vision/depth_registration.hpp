@@ -38,6 +38,7 @@ class DepthRegistration {
   struct Kernels;
 
   geometry::CameraModel::Parameters color_;
+  bool distorted_;  ///< colour
   int depth_columns_, depth_rows_;
   float farthest_squared_;                  ///< from colour's axis, normalised: beyond, its lens model may fold back
   float scale_m_;                           ///< of a depth unit

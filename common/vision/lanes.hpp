@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 /// Inlined into functions for another instruction set, too.
@@ -19,6 +20,7 @@ template <>
 struct Vectors<4> {
   using Floats = float __attribute__((vector_size(16)));
   using Ints = std::int32_t __attribute__((vector_size(16)));
+  using Pairs = std::int64_t __attribute__((vector_size(16), may_alias));
   using Shorts = std::uint16_t __attribute__((vector_size(8)));
   using FloatsInRow = float __attribute__((vector_size(16), aligned(4)));
   using IntsInRow = std::int32_t __attribute__((vector_size(16), aligned(4)));
@@ -28,6 +30,7 @@ template <>
 struct Vectors<8> {
   using Floats = float __attribute__((vector_size(32)));
   using Ints = std::int32_t __attribute__((vector_size(32)));
+  using Pairs = std::int64_t __attribute__((vector_size(32), may_alias));
   using Shorts = std::uint16_t __attribute__((vector_size(16)));
   using FloatsInRow = float __attribute__((vector_size(32), aligned(4)));
   using IntsInRow = std::int32_t __attribute__((vector_size(32), aligned(4)));
@@ -39,6 +42,7 @@ template <int kLanes>
 struct Lanes : Vectors<kLanes> {
   using typename Vectors<kLanes>::Floats;
   using typename Vectors<kLanes>::Ints;
+  using typename Vectors<kLanes>::Pairs;
   using typename Vectors<kLanes>::Shorts;
   using typename Vectors<kLanes>::FloatsInRow;
   using typename Vectors<kLanes>::IntsInRow;
@@ -70,6 +74,13 @@ struct Lanes : Vectors<kLanes> {
     return lesser(greater(a, low), high);
   }
   static RTD_INLINE Floats magnitude(const Floats& a) { return greater(a, -a); }
+  /// Whether a condition holds anywhere.
+  static RTD_INLINE bool any(const Ints& holds) {
+    const Pairs pairs = reinterpret_cast<const Pairs&>(holds);
+    std::int64_t some = 0;
+    for (std::size_t i = 0; i < sizeof pairs / sizeof some; ++i) some |= pairs[i];
+    return some != 0;
+  }
   /// 0 where the condition does not hold, whatever stands there.
   static RTD_INLINE Floats where(const Ints& holds, const Floats& a) { return holds ? a : Floats{}; }
 };
