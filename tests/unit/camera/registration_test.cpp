@@ -158,6 +158,25 @@ TEST(Registration, one_frame_with_other_intrinsics_is_another_raster) {
   cameras.expect_registered(frames[0].image);
 }
 
+TEST(Registration, a_calibration_file_is_that_of_colour_and_of_the_depth_unit) {
+  TwoCameras cameras;
+  cameras.depth_frame = cameras.color_frame;
+  cameras.T_color_depth = Eigen::Isometry3d::Identity();
+  cameras.depth = geometry::CameraModel({50, 50, 32, 24, {}, TwoCameras::kWidth, TwoCameras::kHeight});
+  ImageBag bag;
+  add_color(bag, cameras), add_depth(bag, cameras);
+  bag.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
+  const std::string uri = uri_of(bag);
+  std::string text = SequenceFolder::calibration(TwoCameras::kWidth, TwoCameras::kHeight);
+  text.replace(text.find("5000"), 4, "1000");
+  const rtd::test::TemporaryFile file("c.yaml", text);
+  const auto frames = play(uri + "&calibration=" + file.path().string());
+  ASSERT_THAT(frames, SizeIs(1));
+  cameras.color = frames[0].image.camera;
+  EXPECT_DOUBLE_EQ(cameras.color.parameters().fx, 52);
+  cameras.expect_registered(frames[0].image);
+}
+
 TEST(Registration, damaged_transforms_do_not_count) {
   const TwoCameras cameras;
   ImageBag bag;

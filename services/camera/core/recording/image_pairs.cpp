@@ -110,8 +110,10 @@ void ImagePairs::align_depth() {
                         "; if it is elsewhere, name it: ?depth_info=TOPIC";
   try {
     depth_.camera = recorded_camera(topics_.depth_info, topics_.depth);
+    // A calibration file says nothing of how the two images compare.
+    if (!color_.camera) color_.camera = recorded_camera(topics_.info, topics_.color);
   } catch (const SourceError& error) {
-    missing = std::string("the camera of depth must be known, but ") + error.what();
+    missing = std::string("the cameras must be known, but ") + error.what();
   }
   const std::string cause = why_unregistered(color_, depth_);
   if (cause.empty()) return;
