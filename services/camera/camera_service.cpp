@@ -26,6 +26,7 @@ constexpr std::chrono::milliseconds kLongestWait{100};        // between two loo
 constexpr std::int64_t kLastResultTimeoutNs = 2'000'000'000;  // pace realtime
 constexpr std::chrono::milliseconds kFarewell{300};           // the last heartbeats reach their readers
 constexpr int kReportEvery = 10;                              // frames
+constexpr std::size_t kOffsetsToLog = 30;                     // frames
 
 std::int64_t seconds_to_ns(double seconds) {
   return static_cast<std::int64_t>(seconds * 1e9);
@@ -198,6 +199,7 @@ CameraService::Outcome CameraService::play(ReadAhead& frames) {
 
 CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frames) {
   ++frames_in_;
+  note_depth_offset(frame);
   while (!runtime_.stop.stop_requested()) {
     take_results();
     const service::PaceDecision decision = pacer_.next(frame.image.stamp_ns, frames.waiting());
@@ -306,6 +308,13 @@ void CameraService::log_timeline(const service::PaceDecision& decision, const So
   }
 }
 
+void CameraService::note_depth_offset(const SourceFrame& frame) {
+  if (!frame.depth_after_color_ns) return;
+  depth_offsets_.add(*frame.depth_after_color_ns);
+  if (frames_in_ != kOffsetsToLog) return;
+  SPDLOG_INFO("event=depth_offset median_ms={:.1f} frames={}", *depth_offsets_.median_ms(), depth_offsets_.size());
+}
+
 void CameraService::report_counters() {
   const auto set = [this](const char* name, std::uint64_t value) {
     runtime_.heartbeat.set_metric(name, static_cast<double>(value));
@@ -318,6 +327,7 @@ void CameraService::report_counters() {
   set("frames_refused", refused_);
   set("jpegs_dropped", publisher_.jpegs().dropped());
   set("resends", pacer_.resends());
+  if (const auto offset_ms = depth_offsets_.median_ms()) runtime_.heartbeat.set_metric("depth_offset_ms", *offset_ms);
 }
 
 void CameraService::write_groundtruth() {
@@ -344,9 +354,11 @@ service::ExitCode CameraService::finish(Outcome outcome) {
   write_groundtruth();
   report_counters();
   if (outcome != Outcome::kFailed) runtime_.heartbeat.set_state(msg::ServiceState::kFinished);
-  SPDLOG_INFO("event=summary frames_in={} published={} late={} skipped={} without_depth={} refused={} resends={}",
-              frames_in_, published_, late(), counters_.skipped_total(), counters_.frames_without_depth, refused_,
-              pacer_.resends());
+  SPDLOG_INFO(
+      "event=summary frames_in={} published={} late={} skipped={} without_depth={} refused={} resends={} "
+      "depth_offset_ms={:.1f}",
+      frames_in_, published_, late(), counters_.skipped_total(), counters_.frames_without_depth, refused_,
+      pacer_.resends(), depth_offsets_.median_ms().value_or(0.0));
   if (outcome != Outcome::kStopped) runtime_.stop.wait_for(kFarewell);
   return outcome == Outcome::kFailed ? service::kRunFailed : service::kOk;
 }

@@ -14,6 +14,7 @@
 #include "common/service/log.hpp"
 #include "common/service/pacer.hpp"
 #include "common/service/runtime.hpp"
+#include "services/camera/core/depth_offsets.hpp"
 #include "services/camera/core/read_ahead.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/camera/frame_publisher.hpp"
@@ -95,6 +96,7 @@ class CameraService {
   void resend();
   void log_skipped(const ReadItem& item);
   void log_timeline(const service::PaceDecision& decision, const SourceFrame& frame);
+  void note_depth_offset(const SourceFrame& frame);
   void report_counters();
   void write_groundtruth();
   Outcome fail(const std::string& message);
@@ -112,6 +114,7 @@ class CameraService {
   bus::Reader<msg::TrackingResult> tracking_;
   std::deque<vision::RgbdImage> in_flight_;  ///< kept for sending again; empty at pace realtime
   SourceCounters counters_;
+  DepthOffsets depth_offsets_;
   std::uint64_t frames_in_ = 0, passed_over_ = 0, published_ = 0, refused_ = 0, last_seq_ = 0, newest_result_ = 0;
   bool any_result_ = false;
   std::atomic<bool> playing_{false};

@@ -15,11 +15,12 @@
 namespace rtd::camera {
 namespace {
 
-constexpr std::size_t kQueue = 24;  // messages of three topics: a quarter of a second
+constexpr std::size_t kQueue = 32;  // messages of four topics: a quarter of a second
 constexpr int kReaderDepth = 8;     // images that may wait for the reader's thread
 constexpr const char* kImage = "sensor_msgs/Image";
 constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
 constexpr const char* kInfo = "sensor_msgs/CameraInfo";
+constexpr const char* kTransform = "tf2_msgs/TFMessage";
 
 /// rtd's own images come from no camera.
 bool is_ours(const std::string& dds_topic) {
@@ -36,9 +37,14 @@ Ros2Feed::Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics)
     : domain_(options.domain),
       loopback_only_(options.network.loopback_only),
       queue_(kQueue, concurrency::Overflow::kDropOldest),
-      bus_(bus::connect_raw(options)),
-      lines_{Line{topics.color, {kImage, kCompressed}, nullptr}, Line{topics.depth, {kImage, kCompressed}, nullptr},
-             Line{topics.info, {kInfo}, nullptr}} {
+      bus_(bus::connect_raw(options)) {
+  const std::pair<std::string, std::set<std::string>> read[] = {
+      {topics.color, {kImage, kCompressed}}, {topics.depth, {kImage, kCompressed}}, {topics.info, {kInfo}},
+      {topics.depth_info, {kInfo}},          {kLastingTransforms, {kTransform}},    {kTransforms, {kTransform}}};
+  for (const auto& [topic, types] : read) {
+    const bool doubled = std::ranges::any_of(lines_, [&](const Line& line) { return line.topic == topic; });
+    if (!doubled) lines_.push_back({topic, types, nullptr});
+  }
   bus_->watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { take_note(writer, change); });
 }
 
@@ -76,7 +82,9 @@ void Ros2Feed::subscribe(Line& line, const bus::TopicWriter& writer) {
 
 bus::RawHandlers Ros2Feed::handlers(const Line& line, const bus::TopicWriter& writer) {
   bus::RawHandlers handlers;
-  handlers.on_sample = [this, topic = line.topic, type = plain_dds_type(writer)](const bus::RawSample& sample) {
+  const bool is_transform = line.types.contains(kTransform);
+  handlers.on_sample = [=, this, topic = line.topic, type = plain_dds_type(writer)](const bus::RawSample& sample) {
+    if (is_transform && !wants_transforms_) return;
     const auto* const bytes = reinterpret_cast<const std::uint8_t*>(sample.cdr().data());
     RecordedMessage message{topic, now_ns(), ros::Wire::kCdr, {bytes, bytes + sample.cdr().size()}, type};
     queue_.push(std::move(message));
@@ -84,20 +92,24 @@ bus::RawHandlers Ros2Feed::handlers(const Line& line, const bus::TopicWriter& wr
   return handlers;
 }
 
-std::string Ros2Feed::state_of(const std::string& topic) const {
-  int writers = 0;
-  std::string other_type;
+Ros2Feed::Publishers Ros2Feed::publishers(const std::string& topic) const {
+  Publishers found;
   const auto line = std::ranges::find_if(lines_, [&](const Line& one) { return one.topic == topic; });
   for (const bus::TopicWriter& writer : bus_->writers()) {
     if (ros2::ros_topic(writer.topic.name) != topic) continue;
     if (line != lines_.end() && line->types.contains(plain_dds_type(writer))) {
-      ++writers;
+      ++found.readable;
     } else {
-      other_type = ros2::ros_type(writer.topic.type);
+      found.other_type = ros2::ros_type(writer.topic.type);
     }
   }
-  if (writers > 0)
-    return fmt::format("{} of its type, but no message arrives", writers == 1 ? "one publisher" : "publishers");
+  return found;
+}
+
+std::string Ros2Feed::state_of(const std::string& topic) const {
+  const auto [readable, other_type] = publishers(topic);
+  if (readable > 0)
+    return fmt::format("{} of its type, but no message arrives", readable == 1 ? "one publisher" : "publishers");
   if (!other_type.empty()) return fmt::format("it is published as {}, which is not read here", other_type);
   return without_publisher();
 }

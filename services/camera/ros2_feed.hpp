@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
+#include <atomic>
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "common/bus/raw_bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
@@ -24,11 +25,13 @@ class Ros2Feed final : public LiveFeed {
 
   std::optional<RecordedMessage> next(std::chrono::milliseconds timeout) override { return queue_.pop_for(timeout); }
   void clear() override;
+  void end_transforms() override { wants_transforms_ = false; }
   void close() override { queue_.close(); }
   bool closed() const override { return queue_.closed(); }
   std::uint64_t dropped() const override { return queue_.dropped(); }
   std::int64_t now_ns() const override { return service::monotonic_ns(); }
   std::string state_of(const std::string& topic) const override;
+  bool is_published(const std::string& topic) const override { return publishers(topic).readable > 0; }
 
  private:
   struct Line {
@@ -37,6 +40,11 @@ class Ros2Feed final : public LiveFeed {
     std::unique_ptr<bus::TopicListener> listener;
   };
 
+  struct Publishers {
+    int readable = 0;
+    std::string other_type;  ///< of one that cannot be read
+  };
+  Publishers publishers(const std::string& topic) const;
   void take_note(const bus::TopicWriter& writer, bus::WriterChange change);
   void subscribe(Line& line, const bus::TopicWriter& writer);
   bus::RawHandlers handlers(const Line& line, const bus::TopicWriter& writer);
@@ -46,7 +54,8 @@ class Ros2Feed final : public LiveFeed {
   const bool loopback_only_;
   concurrency::BoundedQueue<RecordedMessage> queue_;
   std::shared_ptr<bus::RawBus> bus_;
-  std::array<Line, 3> lines_;  ///< only the thread of the bus's watcher changes listeners
+  std::atomic<bool> wants_transforms_{true};
+  std::vector<Line> lines_;  ///< only the thread of the bus's watcher changes listeners
 };
 
 }  // namespace rtd::camera

@@ -85,18 +85,21 @@ std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat
                                                      size_text(calibrated) + " px differ"};
 }
 
-double depth_offset_s(std::int64_t color_ns, std::int64_t depth_ns, const SourceInfo& info) {
-  constexpr double kNear_ns = 1e9;  // their difference cannot overflow
-  if (std::abs(static_cast<double>(depth_ns) - static_cast<double>(color_ns)) > kNear_ns) return 0;
-  const double offset_s = static_cast<double>(depth_ns - color_ns) * 1e-9 + info.depth_offset_s;
-  return msg::is_sensor_time(offset_s) ? offset_s : 0;
-}
-
 SourceFrame to_frame(std::int64_t stamp_ns, cv::Mat color_bgr, cv::Mat depth, const SourceInfo& info) {
   const bool has_depth = cv::countNonZero(depth) > 0;
   return {.image = {0, stamp_ns, std::move(color_bgr), std::move(depth), info.depth_scale_m, info.camera,
                     info.readout_s, info.depth_offset_s},
           .has_depth = has_depth};
+}
+
+void set_depth_stamp(SourceFrame& frame, std::int64_t depth_ns, const SourceInfo& info) {
+  frame.image.depth_offset_s = 0;
+  frame.depth_after_color_ns.reset();
+  constexpr double kNear_ns = 1e9;  // their difference cannot overflow
+  if (std::abs(static_cast<double>(depth_ns) - static_cast<double>(frame.image.stamp_ns)) > kNear_ns) return;
+  frame.depth_after_color_ns = depth_ns - frame.image.stamp_ns;
+  const double offset_s = static_cast<double>(*frame.depth_after_color_ns) * 1e-9 + info.depth_offset_s;
+  if (msg::is_sensor_time(offset_s)) frame.image.depth_offset_s = offset_s;
 }
 
 geometry::Trajectory poses_of_span(geometry::Trajectory poses, std::int64_t from_ns, std::int64_t to_ns) {

@@ -72,6 +72,8 @@ struct SourceFrame {
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< exact pose, synthetic sources only
   std::vector<SourceObject> objects;                ///< all that are seen, synthetic sources only
   bool has_depth = true;                            ///< some pixel has a measurement
+  /// Stamp of the depth image minus that of the colour image; empty where both have one stamp.
+  std::optional<std::int64_t> depth_after_color_ns = {};
 };
 
 /// What is known about a source before its first frame.
@@ -154,7 +156,7 @@ class PlayedSource : public FrameSource {
   std::optional<SourceFrame> first_;     ///< read while opening
 };
 
-/// TUM's tolerance for pairing colour and depth stamps.
+/// TUM's tolerance for pairing colour and depth stamps; the default of `tolerance_ms`.
 inline constexpr std::int64_t kPairingToleranceNs = 20'000'000;
 
 /// Ground truth is given this far beyond the first and last frame, so that an evaluator can interpolate.
@@ -164,12 +166,12 @@ inline constexpr std::int64_t kGroundtruthMarginNs = 500'000'000;
 std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat& color, const cv::Mat& depth,
                                           const geometry::CameraModel& camera);
 
-/// Time of the depth image minus that of the colour image, s: by their stamps, and what the device adds. 0 = unknown
-/// when they are farther apart than a frame may say.
-double depth_offset_s(std::int64_t color_ns, std::int64_t depth_ns, const SourceInfo& info);
-
 /// The frame that a pair of images of one stamp makes; seq is given when it is handed out.
 SourceFrame to_frame(std::int64_t stamp_ns, cv::Mat color_bgr, cv::Mat depth, const SourceInfo& info);
+
+/// For a depth image with a stamp of its own: the frame's depth_offset_s is the difference of the stamps and what the
+/// device adds; 0 = unknown when that is more than a frame may say.
+void set_depth_stamp(SourceFrame& frame, std::int64_t depth_ns, const SourceInfo& info);
 
 /// The poses between these stamps and kGroundtruthMarginNs around them.
 geometry::Trajectory poses_of_span(geometry::Trajectory poses, std::int64_t from_ns, std::int64_t to_ns);

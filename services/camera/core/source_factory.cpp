@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "common/io/text.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/core/recording/recording.hpp"
@@ -38,6 +39,22 @@ SourceUri parse_source_uri(const std::string& text) {
   return uri;
 }
 
+std::int64_t parse_tolerance_ns(const std::string& uri, const std::string& value) {
+  constexpr double kMaxMs = 1000;
+  const std::optional<double> ms = io::parse_number(value);
+  if (!ms || !(*ms > 0) || *ms > kMaxMs) {
+    throw SourceError("source '" + uri + "': tolerance_ms is '" + value + "', allowed: more than 0, at most 1000");
+  }
+  return static_cast<std::int64_t>(*ms * 1e6);
+}
+
+bool parse_flag(const std::string& uri, const std::string& key, const std::string& value) {
+  if (value != "0" && value != "1") {
+    throw SourceError("source '" + uri + "': " + key + " is 0 or 1, not '" + value + "'");
+  }
+  return value == "1";
+}
+
 std::string complete_uri(const std::string& source) {
   if (source.find(':') != std::string::npos) return source;
   const std::filesystem::path path = source;
@@ -51,11 +68,13 @@ namespace {
 std::unique_ptr<FrameSource> make_tum_source(const SourceUri& uri) {
   TumSource::Options options;
   for (const auto& [key, value] : uri.parameters) {
-    if (key != "masks")
-      throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; tum: knows masks");
-    if (value != "0" && value != "1")
-      throw SourceError("source '" + uri.text + "': masks is 0 or 1, not '" + value + "'");
-    options.masks = value == "1";
+    if (key == "masks") {
+      options.masks = parse_flag(uri.text, key, value);
+    } else if (key == "tolerance_ms") {
+      options.tolerance_ns = parse_tolerance_ns(uri.text, value);
+    } else {
+      throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; tum: knows masks, tolerance_ms");
+    }
   }
   if (uri.path.empty()) throw SourceError("source 'tum:' needs a folder: tum:FOLDER");
   return std::make_unique<TumSource>(uri.text, uri.path, options);
@@ -67,14 +86,19 @@ RecordingOptions recording_options(const SourceUri& uri) {
   const std::map<std::string, std::string*> known = {{"color", &options.topics.color},
                                                      {"depth", &options.topics.depth},
                                                      {"info", &options.topics.info},
+                                                     {"depth_info", &options.topics.depth_info},
                                                      {"calibration", &options.calibration_file}};
   for (const auto& [key, value] : uri.parameters) {
-    const auto found = known.find(key);
-    if (found == known.end()) {
+    if (const auto found = known.find(key); found != known.end()) {
+      *found->second = value;
+    } else if (key == "registered") {
+      options.registered = parse_flag(uri.text, key, value);
+    } else if (key == "tolerance_ms") {
+      options.tolerance_ns = parse_tolerance_ns(uri.text, value);
+    } else {
       throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; " + uri.scheme +
-                        ": knows color, depth, info, calibration");
+                        ": knows color, depth, info, calibration, depth_info, registered, tolerance_ms");
     }
-    *found->second = value;
   }
   return options;
 }

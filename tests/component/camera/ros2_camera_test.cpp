@@ -28,10 +28,15 @@ constexpr const char* kSource = "ros2:/cam/color/image_raw,/cam/aligned_depth_to
 class Driver {
  public:
   Driver(const bus::BusOptions& options, bool reliable, const std::string& depth_encoding = "16UC1")
-      : bus_(bus::connect_raw(options)), depth_encoding_(depth_encoding) {
+      : Driver(options, reliable, depth_encoding, "camera_color_optical_frame") {}
+  Driver(const bus::BusOptions& options, bool reliable, const std::string& depth_encoding,
+         const std::string& depth_frame)
+      : bus_(bus::connect_raw(options)), depth_encoding_(depth_encoding), depth_frame_(depth_frame) {
     color_ = writer("rt/cam/color/image_raw", "Image", reliable);
     depth_ = writer("rt/cam/aligned_depth_to_color/image_raw", "Image", reliable);
+    unaligned_ = writer("rt/cam/depth/image_rect_raw", "Image", reliable);
     info_ = writer("rt/cam/color/camera_info", "CameraInfo", reliable);
+    depth_info_ = writer("rt/cam/depth/camera_info", "CameraInfo", reliable);
     thread_ = std::thread([this] { run(); });
   }
   ~Driver() {
@@ -51,9 +56,10 @@ class Driver {
     const std::vector<std::uint8_t> cdr = ros::encode<ros::Wire::kCdr>(message);
     writer.write(std::as_bytes(std::span(cdr)));
   }
-  static msg::Image image(const char* encoding, std::uint32_t pixel_bytes, std::uint8_t value) {
+  static msg::Image image(const char* encoding, std::uint32_t pixel_bytes, std::uint8_t value,
+                          const std::string& frame = "camera_color_optical_frame") {
     msg::Image image;
-    image.header = {msg::to_time(stamp_ns_), "camera_color_optical_frame"};
+    image.header = {msg::to_time(stamp_ns_), frame};
     image.width = kWidth, image.height = kHeight;
     image.encoding = encoding;
     image.step = kWidth * pixel_bytes;
@@ -67,19 +73,41 @@ class Driver {
       info.width = kWidth, info.height = kHeight;
       info.distortion_model = "plumb_bob";
       info.k = {60, 0, 31.5, 0, 60, 23.5, 0, 0, 1};
-      send(*info_, info);
+      send(*info_, info), send(*depth_info_, info);
       send(*color_, image("rgb8", 3, 77));
       send(*depth_, image(depth_encoding_.c_str(), 2, 1));  // 257 mm
+      send(*unaligned_, image(depth_encoding_.c_str(), 2, 1, depth_frame_));
       std::this_thread::sleep_for(33ms);
     }
   }
 
   std::shared_ptr<bus::RawBus> bus_;
-  const std::string depth_encoding_;
-  std::unique_ptr<bus::RawWriter> color_, depth_, info_;
+  const std::string depth_encoding_, depth_frame_;
+  std::unique_ptr<bus::RawWriter> color_, depth_, unaligned_, info_, depth_info_;
   inline static std::int64_t stamp_ns_ = 1'000'000'000;
   std::atomic<bool> ended_{false};
   std::thread thread_;
+};
+
+/// Publishes once, latched, that the depth camera is 0.1 m in front of the colour camera.
+class Mounting {
+ public:
+  explicit Mounting(const bus::BusOptions& options) : bus_(bus::connect_raw(options)) {
+    bus::RawWriterOptions latched;
+    latched.qos.durability = bus::RawQos::Durability::kTransientLocal;
+    latched.qos.depth = 1;
+    writer_ = bus_->writer({"rt/tf_static", "tf2_msgs::msg::dds_::TFMessage_"}, latched);
+    msg::TransformStamped transform;
+    transform.header.frame_id = "camera_color_optical_frame";
+    transform.child_frame_id = "camera_depth_optical_frame";
+    transform.transform.translation.z = 0.1;
+    const std::vector<std::uint8_t> cdr = ros::encode<ros::Wire::kCdr>(msg::TFMessage{{transform}});
+    writer_->write(std::as_bytes(std::span(cdr)));
+  }
+
+ private:
+  std::shared_ptr<bus::RawBus> bus_;
+  std::unique_ptr<bus::RawWriter> writer_;
 };
 
 class Ros2Camera : public ::testing::TestWithParam<std::string> {
@@ -157,6 +185,27 @@ TEST_P(Ros2Camera, ends_with_a_reason_for_an_encoding_that_it_cannot_read) {
   const Driver driver(options_, true, "YUV422");
   EXPECT_EQ(run(), service::kRunFailed);
   EXPECT_TRUE(said(msg::ServiceState::kFailed, "'YUV422'"));
+}
+
+TEST_P(Ros2Camera, registers_depth_by_tf_static) {
+  config_.source = "ros2:/cam/color/image_raw,/cam/depth/image_rect_raw";
+  const Driver driver(options_, false, "16UC1", "camera_depth_optical_frame");
+  auto running = start();
+  EXPECT_TRUE(said(msg::ServiceState::kStarting, "not registered to colour"));
+  const Mounting mounting(options_);
+  EXPECT_TRUE(frames_come());
+  stop_.request_stop();
+  EXPECT_EQ(running.get(), service::kOk);
+  const auto frame = frames_.all().back();
+  EXPECT_EQ(frame->depth[kWidth * kHeight / 2 + kWidth / 2], 357);
+  EXPECT_EQ(frame->depth[0], 0) << "the colour camera sees more than the depth camera";
+}
+
+TEST_P(Ros2Camera, refuses_unregistered_depth_with_the_reason) {
+  config_.source = "ros2:/cam/color/image_raw,/cam/depth/image_rect_raw";
+  const Driver driver(options_, true, "16UC1", "camera_depth_optical_frame");
+  EXPECT_EQ(run(), service::kRunFailed);
+  EXPECT_TRUE(said(msg::ServiceState::kFailed, "'camera_depth_optical_frame' to 'camera_color_optical_frame'"));
 }
 
 TEST_P(Ros2Camera, gives_up_in_time_and_stops_while_it_waits) {

@@ -6,14 +6,17 @@
 
 #include <deque>
 #include <limits>
+#include <set>
 
 #include "services/camera/core/source_factory.hpp"
 #include "tests/unit/camera/image_bag.hpp"
+#include "tests/unit/camera/two_cameras.hpp"
 
 namespace rtd::camera {
 namespace {
 
 using test::ImageBag;
+using test::TwoCameras;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -27,6 +30,7 @@ class PlayedFeed : public LiveFeed {
   struct Script {
     std::deque<RecordedMessage> messages;
     std::uint64_t dropped = 0;
+    std::set<std::string> published;
     bool clears = false;  ///< as the real one; a test of one stream leaves it off
   };
   explicit PlayedFeed(Script& script) : script_(script) {}
@@ -51,6 +55,7 @@ class PlayedFeed : public LiveFeed {
   std::uint64_t dropped() const override { return script_.dropped; }
   std::int64_t now_ns() const override { return now_ns_; }
   std::string state_of(const std::string& topic) const override { return "state of " + topic; }
+  bool is_published(const std::string& topic) const override { return script_.published.contains(topic); }
 
  private:
   Script& script_;
@@ -160,7 +165,7 @@ TEST_F(LiveSourceTest, refuses_encodings_sizes_and_byte_orders_by_name) {
   };
   refusal([&] { info(), color(1, ImageBag::color(), "bayer_rggb8"), depth(1); }, "'bayer_rggb8'");
   refusal([&] { info(), color(1), depth(1, ImageBag::depth(), "8UC1"); }, "'8UC1'");
-  refusal([&] { info(), color(1), depth(1, cv::Mat(12, 16, CV_16UC1, cv::Scalar(1))); }, "depth 16 x 12");
+  refusal([&] { info(), color(1), depth(1, cv::Mat(12, 16, CV_16UC1, cv::Scalar(1))); }, "/d has 16 x 12 px");
   refusal([&] { info(ImageBag::camera_info(0)); }, "not calibrated");
   refusal(
       [&] {
@@ -233,6 +238,80 @@ TEST_F(LiveSourceTest, broken_messages_and_drops_are_counted) {
   EXPECT_EQ(played.counters().of(SkipReason::kOverrun), 2U);
 }
 
+class UnregisteredDepth : public LiveSourceTest {
+ protected:
+  static constexpr const char* kTopics = "ros2:/c,/d,/i?depth_info=/di";
+  void pair(double stamp_s) {
+    add("/c", "sensor_msgs/Image", cameras_.color_image(stamp_s));
+    add("/d", "sensor_msgs/Image", cameras_.depth_image(stamp_s));
+  }
+  void depth_info() { add("/di", "sensor_msgs/CameraInfo", TwoCameras::info(cameras_.depth)); }
+  void transforms(const char* topic) { add(topic, "tf2_msgs/TFMessage", cameras_.transforms()); }
+  TwoCameras cameras_;
+};
+
+TEST_F(UnregisteredDepth, is_registered_by_both_camera_infos_and_tf_whatever_comes_first) {
+  for (const char* topic : {"/tf_static", "/tf"}) {
+    script_.messages.clear();
+    info(TwoCameras::info(cameras_.color)), pair(1.0), depth_info(), pair(1.1), transforms(topic), pair(1.2), pair(1.3);
+    LiveSource played = source(kTopics);
+    ASSERT_TRUE(played.open()) << topic;
+    const SourceFrame frame = played.next().value();
+    EXPECT_EQ(frame.image.stamp_ns, 1'300'000'000);
+    cameras_.expect_registered(frame.image);
+  }
+}
+
+TEST_F(UnregisteredDepth, is_refused_with_the_reason) {
+  const auto refusal = [&](const auto& put, const auto& words) {
+    script_.messages.clear();
+    info(TwoCameras::info(cameras_.color));
+    for (int i = 0; i < 3; ++i) pair(1.0 + 0.1 * i);
+    put();
+    LiveSource played = source(kTopics);
+    EXPECT_THAT([&] { played.open(); }, ThrowsMessage<SourceError>(words));
+  };
+  refusal([] {}, AllOf(HasSubstr("80 x 60"), HasSubstr("CameraInfo of depth on /di (state of /di"),
+                       HasSubstr("?registered=1")));
+  refusal([&] { depth_info(), pair(1.5); },
+          AllOf(HasSubstr("from 'camera_depth_optical_frame' to 'camera_color_optical_frame' on /tf_static"),
+                HasSubstr("?registered=1")));
+  EXPECT_THAT(reported_.back(), HasSubstr("not registered to colour"));
+}
+
+TEST_F(UnregisteredDepth, of_one_size_in_another_frame_is_taken_as_it_is_only_on_request) {
+  info(), color(1.0), color(1.1);
+  msg::Image elsewhere = ImageBag::image(ImageBag::depth(), "16UC1", 1.0);
+  elsewhere.header.frame_id = "elsewhere";
+  add("/d", "sensor_msgs/Image", elsewhere);
+  elsewhere.header.stamp = msg::to_time(1'100'000'000);
+  add("/d", "sensor_msgs/Image", elsewhere);
+  const auto messages = script_.messages;
+  LiveSource refused = source();
+  EXPECT_THAT([&] { refused.open(); }, ThrowsMessage<SourceError>(HasSubstr("'elsewhere'")));
+  script_.messages = messages;
+  LiveSource taken = source(std::string(kUri) + "?registered=1");
+  EXPECT_EQ(only_frame(taken).image.depth.at<std::uint16_t>(3, 3), 1500);
+}
+
+TEST_F(UnregisteredDepth, whose_camera_is_known_late_ends_the_source) {
+  info(), color(1.0), depth(1.0), color(1.1), depth(1.1);
+  add("/di", "sensor_msgs/CameraInfo", ImageBag::camera_info(40));
+  color(1.2), depth(1.2);
+  LiveSource played = source(kTopics);
+  only_frame(played);
+  EXPECT_THAT([&] { played.next(); }, ThrowsMessage<SourceError>(AllOf(HasSubstr("fx 40"), HasSubstr("again"))));
+}
+
+TEST_F(UnregisteredDepth, waits_for_a_camera_info_that_is_published) {
+  script_.published = {"/di"};
+  info(), color(1.0), depth(1.0);
+  add("/di", "sensor_msgs/CameraInfo", ImageBag::camera_info());
+  color(1.1), depth(1.1), color(1.2), depth(1.2);
+  LiveSource played = source(kTopics);
+  EXPECT_EQ(only_frame(played).image.stamp_ns, 1'200'000'000);
+}
+
 TEST_F(LiveSourceTest, what_came_while_it_opened_is_old) {
   script_.clears = true;
   info(), color(1.0), depth(1.0), color(1.1), depth(1.1);
@@ -248,6 +327,9 @@ TEST(LiveOptionsTest, name_their_topics) {
   EXPECT_EQ(options.topics.info, "/cam/color/camera_info");
   EXPECT_EQ(options.tolerance_ns, 5'000'000);
   EXPECT_EQ(parse_live_options("ros2:/a/x,/b,/c").topics.info, "/c");
+  EXPECT_EQ(parse_live_options("ros2:/a/x,/b/depth/compressedDepth").topics.depth_info, "/b/camera_info");
+  EXPECT_EQ(parse_live_options("ros2:/a/x,/b/y?depth_info=e").topics.depth_info, "/e");
+  EXPECT_TRUE(parse_live_options("ros2:/a,/b?registered=1").registered);
   for (const char* uri : {"ros2:", "ros2:/a", "ros2:/a,/b,/c,/d", "ros2:/a,,/c", "ros2:/a,/a"}) {
     EXPECT_THAT([&] { parse_live_options(uri); }, ThrowsMessage<SourceError>(HasSubstr("ros2:COLOR_TOPIC,DEPTH_TOPIC")))
         << uri;

@@ -135,7 +135,9 @@ TEST(McapSource, wants_depth_registered_to_colour) {
   const std::string uri = file.uri();
   EXPECT_THAT([&] { make_source(uri); },
               ThrowsMessage<SourceError>(AllOf(HasSubstr("registered to colour"), HasSubstr("camera_depth_optical"))));
-  EXPECT_THAT(play_all(uri + "?depth=/camera/depth/image_rect_raw").frames, SizeIs(1));
+  const std::string named = uri + "?depth=/camera/depth/image_rect_raw";
+  EXPECT_THAT([&] { make_source(named); }, ThrowsMessage<SourceError>(HasSubstr("?registered=1")));
+  EXPECT_THAT(play_all(named + "&registered=1").frames, SizeIs(1));
 }
 
 TEST(McapSource, plays_frames_of_our_own_first) {

@@ -19,37 +19,46 @@
 namespace rtd::camera {
 namespace {
 
-constexpr const char* kForm = "ros2:COLOR_TOPIC,DEPTH_TOPIC[,INFO_TOPIC][?calibration=FILE&tolerance_ms=20]";
+constexpr const char* kForm =
+    "ros2:COLOR_TOPIC,DEPTH_TOPIC[,INFO_TOPIC]"
+    "[?calibration=FILE&depth_info=TOPIC&registered=1&tolerance_ms=20]";
+
+std::string absolute(std::string topic) {
+  if (!topic.empty() && topic.front() != '/') topic.insert(topic.begin(), '/');
+  return topic;
+}
 
 std::vector<std::string> split_topics(const std::string& list) {
   std::vector<std::string> topics;
   std::istringstream names(list);
   for (std::string topic; std::getline(names, topic, ',');) {
-    if (!topic.empty() && topic.front() != '/') topic.insert(topic.begin(), '/');
-    topics.push_back(topic);
+    topics.push_back(absolute(topic));
   }
   return topics;
 }
 
 /// "camera_info" beside the image, as image_transport has it.
-std::string info_beside(std::string color) {
-  constexpr const char* kTransport = "/compressed";
-  if (color.ends_with(kTransport)) color.resize(color.size() - std::string(kTransport).size());
-  return color.substr(0, color.rfind('/')) + "/camera_info";
+std::string info_beside(std::string image) {
+  for (const std::string transport : {"/compressed", "/compressedDepth"}) {
+    if (image.ends_with(transport)) image.resize(image.size() - transport.size());
+  }
+  return image.substr(0, image.rfind('/')) + "/camera_info";
 }
 
-std::int64_t parse_tolerance_ns(const std::string& text, const std::string& value) {
-  constexpr double kMaxMs = 1000;
-  const std::optional<double> ms = io::parse_number(value);
-  if (!ms || !(*ms > 0) || *ms > kMaxMs) {
-    throw SourceError("source '" + text + "': tolerance_ms is '" + value + "', allowed: more than 0, at most 1000");
+/// Empty when the info describes none: it may still do to be left unused.
+std::optional<geometry::CameraModel> usable_camera(const msg::CameraInfo& info, const std::string& image_topic,
+                                                   const std::string& origin) {
+  try {
+    return to_camera_model(info, image_topic, origin);
+  } catch (const SourceError&) {
+    return std::nullopt;
   }
-  return static_cast<std::int64_t>(*ms * 1e6);
 }
 
 constexpr std::chrono::milliseconds kLook{100};          // between two looks at what is missing
 constexpr std::int64_t kQuietNs = 1'000'000'000;         // without a frame: worth a report
 constexpr std::int64_t kReportPeriodNs = 1'000'000'000;  // while it lasts
+constexpr std::int64_t kAlignmentNs = 5'000'000'000;     // for what registers depth, once the images are there
 constexpr std::uint64_t kSteppedImages = 30;             // in a row with a stamp before that of the last frame
 
 }  // namespace
@@ -65,16 +74,21 @@ LiveOptions parse_live_options(const std::string& text) {
   for (const std::string& topic : topics) complete = complete && topic.size() > 1;
   if (!complete) throw SourceError("source '" + text + "' does not name its topics: " + kForm);
   LiveOptions options;
-  options.topics = {topics[0], topics[1], topics.size() == 3 ? topics[2] : info_beside(topics[0])};
+  options.topics = {topics[0], topics[1], topics.size() == 3 ? topics[2] : info_beside(topics[0]),
+                    info_beside(topics[1])};
   if (topics[0] == topics[1]) throw SourceError("source '" + text + "': colour and depth are one topic: " + kForm);
   for (const auto& [key, value] : uri.parameters) {
     if (key == "calibration") {
       options.calibration_file = value;
     } else if (key == "tolerance_ms") {
       options.tolerance_ns = parse_tolerance_ns(text, value);
+    } else if (key == "registered") {
+      options.registered = parse_flag(text, key, value);
+    } else if (key == "depth_info") {
+      options.topics.depth_info = absolute(value);
     } else {
       throw SourceError("source '" + text + "': unknown parameter '" + key +
-                        "'; ros2: knows calibration, tolerance_ms");
+                        "'; ros2: knows calibration, depth_info, registered, tolerance_ms");
     }
   }
   return options;
@@ -98,14 +112,16 @@ bool LiveSource::open() {
     std::optional<RecordedMessage> message = feed_->next(kLook);
     if (message && try_to_open(std::move(*message))) {
       report_frames();
+      feed_->end_transforms();
       feed_->clear();
       dropped_ = feed_->dropped();
-      return true;
+      return opened_ = true;
     }
     if (feed_->now_ns() - begin_ns > options_.open_timeout_ns) {
       throw SourceError(
           fmt::format("no frame within {:g} s: {}", static_cast<double>(options_.open_timeout_ns) * 1e-9, missing()));
     }
+    give_up_aligning();
     report_wait();
   }
   return false;
@@ -113,44 +129,95 @@ bool LiveSource::open() {
 
 /// True when a whole frame could be made of what has come.
 bool LiveSource::try_to_open(RecordedMessage message) {
-  if (message.topic == options_.topics.info) {
-    take_calibration(message);
-  } else {
-    take(std::move(message));
-  }
+  take(std::move(message));
   const std::optional<FramePairer::Pair> pair = pairer_.next(skips_);
   if (!pair || !calibrated_) return false;
   check_first(*pair);
-  return decode(*pair).has_value();
+  return align_depth() && decode(*pair).has_value();
 }
 
-void LiveSource::take_calibration(const RecordedMessage& message) {
-  if (calibrated_) return;
-  try {
-    const auto info = ros::decode<msg::CameraInfo>(message.wire, message.bytes);
-    info_.camera = to_camera_model(info, options_.topics.color, "topic " + options_.topics.info);
-    check_frame_size(info.width, info.height, "topic " + options_.topics.info);
-    calibrated_ = true;
-  } catch (const ros::WireError& error) {
-    skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
+void LiveSource::take_calibration(const msg::CameraInfo& info) {
+  if (color_origin_.camera) return;
+  const std::string topic = "topic " + options_.topics.info;
+  if (calibrated_) {  // by a file; to compare the two images their own intrinsics are needed all the same
+    color_origin_.camera = usable_camera(info, options_.topics.color, topic);
+    return check_after_opening();
   }
+  color_origin_.camera = info_.camera = to_camera_model(info, options_.topics.color, topic);
+  check_frame_size(info.width, info.height, topic);
+  calibrated_ = true;
+}
+
+void LiveSource::take_depth_camera(const msg::CameraInfo& info) {
+  if (depth_origin_.camera) return;
+  depth_origin_.camera = usable_camera(info, options_.topics.depth, "topic " + options_.topics.depth_info);
+  check_after_opening();
+}
+
+/// Frames may have been accepted before the camera of depth was known.
+void LiveSource::check_after_opening() const {
+  if (!opened_ || options_.registered || registration_) return;
+  const std::string cause = why_unregistered(color_origin_, depth_origin_);
+  if (!cause.empty()) throw unregistered(info_.uri, cause, "start the camera again, now that it is known");
+}
+
+void LiveSource::take_transforms(const RecordedMessage& message) {
+  const auto transforms = ros::decode<msg::TFMessage>(message.wire, message.bytes);
+  (message.topic == kLastingTransforms ? lasting_transforms_ : transforms_).add(transforms);
+}
+
+std::optional<Eigen::Isometry3d> LiveSource::extrinsics() const {
+  if (same_place(color_origin_, depth_origin_)) return Eigen::Isometry3d::Identity();
+  const std::string &color = color_origin_.frame_id, &depth = depth_origin_.frame_id;
+  if (!names_a_place(color) || !names_a_place(depth)) return std::nullopt;
+  if (auto T_color_depth = lasting_transforms_.between(color, depth)) return T_color_depth;
+  return transforms_.between(color, depth);
 }
 
 /// What would make every frame unusable is an error, not a skipped frame.
 void LiveSource::check_first(const FramePairer::Pair& pair) try {
-  const RecordedMessage& depth = pair.depth.message;
+  const RecordedMessage &color = pair.color.message, &depth = pair.depth.message;
   const double unit_m = depth_unit_m(depth, kFloatDepthUnitM);
   if (options_.calibration_file.empty()) info_.depth_scale_m = unit_m;
-  const ImageRead color_image = decode_color(pair.color.message);
-  const ImageRead depth_image = decode_depth(depth, kFloatDepthUnitM);
+  const ImageRead color_image = decode_color(color), depth_image = decode_depth(depth, kFloatDepthUnitM);
+  color_origin_.topic = options_.topics.color, depth_origin_.topic = options_.topics.depth;
+  color_origin_.frame_id = ros::decode<msg::Header>(color.wire, color.bytes).frame_id;
+  depth_origin_.frame_id = ros::decode<msg::Header>(depth.wire, depth.bytes).frame_id;
+  color_origin_.size_px = color_image.image.size(), depth_origin_.size_px = depth_image.image.size();
   if (color_image.problem || depth_image.problem) return;
-  const auto mismatch = size_mismatch(options_.topics.color, color_image.image, depth_image.image, info_.camera);
-  if (!mismatch) return;
-  throw SourceError(mismatch->detail +
-                    "; the depth must be registered to the colour image (RealSense: align_depth.enable, topic "
-                    "aligned_depth_to_color)");
+  const cv::Mat& fitting = options_.registered ? depth_image.image : color_image.image;
+  const auto mismatch = size_mismatch(options_.topics.color, color_image.image, fitting, info_.camera);
+  if (mismatch) throw SourceError(mismatch->detail);
 } catch (const ros::WireError&) {
   // decode() counts it
+}
+
+bool LiveSource::align_depth() {
+  lacking_.clear();
+  if (options_.registered) return true;
+  if (!first_lack_ns_) first_lack_ns_ = feed_->now_ns();
+  unregistered_ = why_unregistered(color_origin_, depth_origin_);
+  const bool may_come = !depth_origin_.camera && feed_->is_published(options_.topics.depth_info) &&
+                        feed_->now_ns() - *first_lack_ns_ < kQuietNs;
+  if (unregistered_.empty() && !may_come) return true;
+  const std::optional<Eigen::Isometry3d> T_color_depth = extrinsics();
+  if (!depth_origin_.camera) {
+    lacking_ = fmt::format("a sensor_msgs/CameraInfo of depth on {} ({}; name another: ?depth_info=)",
+                           options_.topics.depth_info, feed_->state_of(options_.topics.depth_info));
+  } else if (!T_color_depth) {
+    lacking_ =
+        fmt::format("the transform from '{}' to '{}' on {} ({}) or {}", depth_origin_.frame_id, color_origin_.frame_id,
+                    kLastingTransforms, feed_->state_of(kLastingTransforms), kTransforms);
+  }
+  if (!lacking_.empty()) return false;
+  registration_.emplace(info_.camera, *depth_origin_.camera, *T_color_depth, info_.depth_scale_m);
+  return true;
+}
+
+/// CameraInfos come with the images and lasting transforms at once: what is not there soon is not there.
+void LiveSource::give_up_aligning() const {
+  const bool over = !unregistered_.empty() && !lacking_.empty() && feed_->now_ns() - *first_lack_ns_ > kAlignmentNs;
+  if (over) throw SourceError(missing());
 }
 
 std::optional<SourceFrame> LiveSource::next() {
@@ -176,24 +243,35 @@ std::optional<FramePairer::Pair> LiveSource::next_pair() {
   return std::nullopt;
 }
 
-void LiveSource::take(RecordedMessage message) {
+void LiveSource::take(RecordedMessage message) try {
+  const std::string& topic = message.topic;
+  if (topic == kLastingTransforms || topic == kTransforms) {
+    if (!opened_) take_transforms(message);
+  } else if (topic == options_.topics.info || topic == options_.topics.depth_info) {
+    const auto info = ros::decode<msg::CameraInfo>(message.wire, message.bytes);
+    if (topic == options_.topics.info) take_calibration(info);
+    if (topic == options_.topics.depth_info) take_depth_camera(info);
+  } else {
+    take_image(std::move(message));
+  }
+} catch (const ros::WireError& error) {
+  skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
+}
+
+void LiveSource::take_image(RecordedMessage&& message) {
   const bool is_color = message.topic == options_.topics.color;
   if (!is_color && message.topic != options_.topics.depth) return;
-  try {
-    const msg::Header header = ros::decode<msg::Header>(message.wire, message.bytes);
-    StampedMessage stamped{msg::to_ns(header.stamp), std::move(message)};
-    Images& images = is_color ? color_ : depth_;
-    images.any = true;
-    images.stamp_ns = stamped.stamp_ns;
-    images.arrived_ns = feed_->now_ns();
-    is_color ? pairer_.add_color(std::move(stamped), skips_) : pairer_.add_depth(std::move(stamped));
-  } catch (const ros::WireError& error) {
-    skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
-  }
+  const msg::Header header = ros::decode<msg::Header>(message.wire, message.bytes);
+  StampedMessage stamped{msg::to_ns(header.stamp), std::move(message)};
+  Images& images = is_color ? color_ : depth_;
+  images.any = true;
+  images.stamp_ns = stamped.stamp_ns;
+  images.arrived_ns = feed_->now_ns();
+  is_color ? pairer_.add_color(std::move(stamped), skips_) : pairer_.add_depth(std::move(stamped));
 }
 
 std::optional<SourceFrame> LiveSource::decode(const FramePairer::Pair& pair) {
-  return decode_pair(pair, kFloatDepthUnitM, info_, skips_);
+  return decode_pair(pair, kFloatDepthUnitM, info_, registration_, skips_);
 }
 
 /// A restarted driver or simulation gives stamps of the past, and no frame would ever follow.
@@ -228,6 +306,10 @@ std::string LiveSource::missing() const {
   const auto no = [this](const char* what, const std::string& topic) {
     return fmt::format("no {} on {}: {}", what, topic, feed_->state_of(topic));
   };
+  if (!lacking_.empty()) {
+    if (unregistered_.empty()) return "no " + lacking_;
+    return unregistered(options_.topics.depth, unregistered_, "there must be " + lacking_).what();
+  }
   if (silent(color_)) return no("colour image", options_.topics.color);
   if (silent(depth_)) return no("depth image", options_.topics.depth);
   if (!calibrated_) return no("sensor_msgs/CameraInfo", options_.topics.info);

@@ -9,16 +9,21 @@
 #include <optional>
 #include <string>
 
+#include "common/vision/depth_registration.hpp"
+#include "services/camera/core/depth_alignment.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/recording/frame_pairer.hpp"
 #include "services/camera/core/recording/recording.hpp"
+#include "services/camera/core/transform_log.hpp"
 
 namespace rtd::camera {
 
-/// The topics of a camera that runs now, by their ROS names.
+/// The topics of a camera that runs now, by their ROS names. Transforms come on /tf_static and /tf.
 struct LiveTopics {
-  std::string color, depth, info;
+  std::string color, depth, info, depth_info;
 };
+inline constexpr const char* kLastingTransforms = "/tf_static";
+inline constexpr const char* kTransforms = "/tf";
 
 /// Where the messages of a running camera come from: topic is the ROS name, recorded_ns when it came. next() belongs to
 /// one thread, the rest is thread-safe.
@@ -29,6 +34,8 @@ class LiveFeed {
   virtual std::optional<RecordedMessage> next(std::chrono::milliseconds timeout) = 0;
   /// Drops the waiting messages: they are old by now.
   virtual void clear() = 0;
+  /// From now on transforms are left out: they can be many.
+  virtual void end_transforms() {}
   /// Ends it and wakes next().
   virtual void close() = 0;
   virtual bool closed() const = 0;
@@ -36,12 +43,15 @@ class LiveFeed {
   virtual std::int64_t now_ns() const = 0;    ///< clock of recorded_ns
   /// Who publishes a topic, for messages: "it has no publisher in DDS domain 0".
   virtual std::string state_of(const std::string& topic) const = 0;
+  /// Whether a publisher of its type is known.
+  virtual bool is_published(const std::string& topic) const = 0;
 };
 
-/// The parameters of `ros2:COLOR,DEPTH[,INFO][?calibration=FILE&tolerance_ms=20]`.
+/// The parameters of `ros2:COLOR,DEPTH[,INFO][?calibration=FILE&depth_info=TOPIC&registered=1&tolerance_ms=20]`.
 struct LiveOptions {
   LiveTopics topics;
   std::string calibration_file;  ///< replaces the driver's calibration and depth unit
+  bool registered = false;       ///< depth is registered to colour, whatever it looks like
   std::int64_t tolerance_ns = kPairingToleranceNs;
   std::int64_t open_timeout_ns = 30'000'000'000;  ///< until the first frame
   /// Receives what the source waits for, about once a second, and an empty text when frames arrive (again).
@@ -51,17 +61,20 @@ struct LiveOptions {
 /// Whether the URI is that of a running camera.
 bool is_live(const std::string& uri);
 
-/// Topics and parameters of such a URI; INFO is `camera_info` beside COLOR when not named. Throws SourceError.
+/// Topics and parameters of such a URI; INFO is `camera_info` beside COLOR when not named, depth_info that beside
+/// DEPTH. Throws SourceError.
 LiveOptions parse_live_options(const std::string& uri);
 
-/// Frames of a running ROS camera: colour and depth paired by their stamps, as soon as both are there. It ends only
+/// Frames of a running ROS camera: colour and depth paired by their stamps, as soon as both are there; depth that is
+/// not registered to colour is registered by both CameraInfos and the transform between the two frames. It ends only
 /// when it is stopped; without frames it waits and reports what is missing.
 class LiveSource final : public FrameSource {
  public:
   LiveSource(std::string uri, std::unique_ptr<LiveFeed> feed, LiveOptions options);
 
-  /// Waits for calibration and a first usable pair, whose frame is not given out. Throws SourceError: encoding,
-  /// calibration, sizes; and when nothing comes in time, with who publishes what.
+  /// Waits for calibration, a first usable pair, whose frame is not given out, and what its depth needs to be
+  /// registered. Throws SourceError: encoding, calibration, sizes; and when nothing comes in time, with who publishes
+  /// what.
   bool open() override;
   std::optional<SourceFrame> next() override;
   std::uint64_t pass_over(std::int64_t) override { return 0; }  // what is late has been dropped by the feed
@@ -79,9 +92,17 @@ class LiveSource final : public FrameSource {
   };
 
   bool try_to_open(RecordedMessage message);
-  void take_calibration(const RecordedMessage& message);
+  void take_calibration(const msg::CameraInfo& info);
+  void take_depth_camera(const msg::CameraInfo& info);
+  void take_transforms(const RecordedMessage& message);
+  std::optional<Eigen::Isometry3d> extrinsics() const;
   void check_first(const FramePairer::Pair& pair);
+  /// Sees to it that depth is registered to colour; false while something is missing (lacking_).
+  bool align_depth();
+  void give_up_aligning() const;
+  void check_after_opening() const;
   void take(RecordedMessage message);
+  void take_image(RecordedMessage&& message);
   std::optional<FramePairer::Pair> next_pair();
   std::optional<SourceFrame> decode(const FramePairer::Pair& pair);
   void refuse_stepped_clock();
@@ -97,9 +118,14 @@ class LiveSource final : public FrameSource {
   SourceInfo info_;
   SkipLog skips_;
   FramePairer pairer_;
-  bool calibrated_ = false, waiting_ = false;
+  bool calibrated_ = false, waiting_ = false, opened_ = false;
+  ImageOrigin color_origin_, depth_origin_;
+  std::string unregistered_, lacking_;  ///< why depth must be registered, and what that lacks
+  TransformLog lasting_transforms_, transforms_;
+  std::optional<vision::DepthRegistration> registration_;
   Images color_, depth_;
   std::int64_t last_pair_ns_ = 0, reported_ns_ = 0;
+  std::optional<std::int64_t> first_lack_ns_;  ///< when a pair came that could not be aligned
   std::uint64_t backwards_at_last_pair_ = 0, dropped_ = 0;
 };
 

@@ -77,15 +77,16 @@ std::optional<FramePairer::Pair> FramePairer::next(SkipLog& skips) {
 }
 
 std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, double float_unit_m, const SourceInfo& info,
-                                       SkipLog& skips) {
+                                       const std::optional<vision::DepthRegistration>& registration, SkipLog& skips) {
   ImageRead color = decode_color(pair.color.message);
   if (color.problem) return skips.add(*color.problem), std::nullopt;
   ImageRead depth = decode_depth(pair.depth.message, float_unit_m);
   if (depth.problem) return skips.add(*depth.problem), std::nullopt;
+  if (registration && depth.image.size() == registration->depth_size()) depth.image = (*registration)(depth.image);
   const auto mismatch = size_mismatch(name_of(pair.color.message), color.image, depth.image, info.camera);
   if (mismatch) return skips.add(*mismatch), std::nullopt;
   SourceFrame frame = to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info);
-  frame.image.depth_offset_s = depth_offset_s(pair.color.stamp_ns, pair.depth.stamp_ns, info);
+  set_depth_stamp(frame, pair.depth.stamp_ns, info);
   return frame;
 }
 

@@ -5,6 +5,7 @@
 #include <deque>
 #include <optional>
 
+#include "common/vision/depth_registration.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/recording/recording.hpp"
 
@@ -17,7 +18,7 @@ struct StampedMessage {
 };
 
 /// Pairs colour with depth images of a stream as the lists of a TUM folder are paired (geometry::associate()): closest
-/// first, within 0.02 s, each depth image once. It decides on a colour image when everything recorded within
+/// first, within the tolerance, each depth image once. It decides on a colour image when everything recorded within
 /// kLookaheadNs after it has been seen, and so holds a few frames only; of a running camera, whose images come in
 /// order, already when a depth image as new as the colour image has come.
 class FramePairer {
@@ -56,9 +57,9 @@ class FramePairer {
   bool finished_ = false;
 };
 
-/// The frame that a pair makes, depth in floats rounded to float_unit_m; empty, and counted, when it cannot be decoded
-/// or its sizes differ.
+/// The frame that a pair makes, depth in floats rounded to float_unit_m, then registered unless it is already; empty,
+/// and counted, when it cannot be decoded or its sizes do not fit.
 std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, double float_unit_m, const SourceInfo& info,
-                                       SkipLog& skips);
+                                       const std::optional<vision::DepthRegistration>& registration, SkipLog& skips);
 
 }  // namespace rtd::camera

@@ -95,14 +95,23 @@ std::string choose_image(const Recording& recording, const std::string& key, Fit
   return only(recording, key, candidates);
 }
 
-/// The calibration topic lies next to the image topic: /camera/rgb/image_color, /camera/rgb/camera_info.
-std::string choose_info(const Recording& recording, std::string color) {
-  const Topics candidates = fitting(recording, is_info);
-  for (std::size_t slash = color.rfind('/'); slash != std::string::npos; slash = color.rfind('/')) {
-    color.resize(slash);
-    if (contains(candidates, color + "/camera_info")) return color + "/camera_info";
+/// The calibration topic lies next to the image topic: /camera/rgb/image_color, /camera/rgb/camera_info; in bags of the
+/// RealSense SDK .../Color_0/image/data, .../Color_0/info/camera_info. Empty when there is none.
+std::string info_beside(const Topics& infos, std::string image) {
+  for (std::size_t slash = image.rfind('/'); slash != std::string::npos; slash = image.rfind('/')) {
+    image.resize(slash);
+    for (const char* name : {"/camera_info", "/info/camera_info"}) {
+      if (contains(infos, image + name)) return image + name;
+    }
   }
-  return candidates.size() == 1 ? candidates.front().name : std::string();
+  return {};
+}
+
+/// The one beside the image, else the only one.
+std::string choose_info(const Recording& recording, const std::string& color) {
+  const Topics infos = fitting(recording, is_info);
+  const std::string beside = info_beside(infos, color);
+  return beside.empty() && infos.size() == 1 ? infos.front().name : beside;
 }
 
 }  // namespace
@@ -131,11 +140,9 @@ ImageTopics choose_topics(const Recording& recording, const ImageTopics& named) 
                                      : check_named(recording, "depth", named.depth, is_image);
   topics.info =
       named.info.empty() ? choose_info(recording, topics.color) : check_named(recording, "info", named.info, is_info);
+  topics.depth_info = named.depth_info.empty() ? info_beside(fitting(recording, is_info), topics.depth)
+                                               : check_named(recording, "depth_info", named.depth_info, is_info);
   return topics;
-}
-
-bool named_as_registered(const std::string& depth_topic) {
-  return std::ranges::any_of(kDepthNames, [&](const char* name) { return depth_topic.ends_with(name); });
 }
 
 const RecordedTopic* topic_named(const Recording& recording, const std::string& name) {

@@ -70,17 +70,14 @@ RecordedMessage first_of(Recording& recording, const std::string& topic);
 
 /// The topics that make RGB-D frames. As options: what the user named, else empty.
 struct ImageTopics {
-  std::string color, depth, info;
+  std::string color, depth, info, depth_info;
 };
 
 /// Completes what the user named: by the names that TUM, the OpenNI and RealSense drivers and we ourselves give, else
-/// the only topic of a fitting type; the calibration is the one beside the colour image. `info` stays empty when there
-/// is none. Throws SourceError for a topic that is absent, of another type or ambiguous, listing the
+/// the only topic of a fitting type; the calibrations are those beside the images. `info` and `depth_info` stay empty
+/// when there is none. Throws SourceError for a topic that is absent, of another type or ambiguous, listing the
 /// topics there are.
 ImageTopics choose_topics(const Recording& recording, const ImageTopics& named);
-
-/// Whether the name is one that drivers give to depth registered to colour only.
-bool named_as_registered(const std::string& depth_topic);
 
 /// Null when there is none of this name.
 const RecordedTopic* topic_named(const Recording& recording, const std::string& name);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "services/camera/core/frame_source.hpp"
@@ -12,7 +13,9 @@ namespace rtd::camera {
 /// The user's parameters for a recording.
 struct RecordingOptions {
   ImageTopics topics;
-  std::string calibration_file;  ///< replaces the recording's calibration and depth unit
+  std::string calibration_file;                     ///< replaces the recording's calibration and depth unit
+  bool registered = false;                          ///< depth is registered to colour, whatever it looks like
+  std::int64_t tolerance_ns = kPairingToleranceNs;  ///< between the stamps of colour and depth
 };
 
 /// Plays a recording: the frames that our own recorder took from rtd/frame, unless topics are named, else frames from

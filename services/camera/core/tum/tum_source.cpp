@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/tum/tum_source.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
@@ -133,7 +135,7 @@ geometry::Trajectory read_groundtruth(const std::filesystem::path& folder, const
 
 }  // namespace
 
-PairList read_pairs(const fs::path& folder) {
+PairList read_pairs(const fs::path& folder, std::int64_t tolerance_ns) {
   check_folder(folder);
   PairList list;
   if (const fs::path file = folder / "associations.txt"; fs::exists(file)) {
@@ -144,13 +146,15 @@ PairList read_pairs(const fs::path& folder) {
   std::vector<StampedFile> depth = read_list(folder / "depth.txt", list.skipped);
   sort_unique(depth);
   const std::vector<geometry::StampPair> found =
-      geometry::associate(geometry::stamps_of(color), geometry::stamps_of(depth), kPairingToleranceNs);
+      geometry::associate(geometry::stamps_of(color), geometry::stamps_of(depth), tolerance_ns);
   auto pair = found.begin();
   for (std::size_t i = 0; i < color.size(); ++i) {
     if (pair != found.end() && pair->first == i) {
       list.pairs.push_back({color[i], depth[(pair++)->second]});
     } else {
-      list.skipped.push_back({SkipReason::kNoDepthPartner, color[i].file + " has no depth image within 0.02 s"});
+      list.skipped.push_back(
+          {SkipReason::kNoDepthPartner, fmt::format("{} has no depth image within {:g} s", color[i].file,
+                                                    static_cast<double>(tolerance_ns) * 1e-9)});
     }
   }
   return list;
@@ -158,7 +162,7 @@ PairList read_pairs(const fs::path& folder) {
 
 TumSource::TumSource(std::string uri, std::filesystem::path folder, Options options)
     : folder_(std::move(folder)), options_(options) {
-  PairList list = read_pairs(folder_);
+  PairList list = read_pairs(folder_, options_.tolerance_ns);
   const Calibration calibration = load_calibration(folder_);
   pairs_ = std::move(list.pairs);
   for (SkippedInput& input : list.skipped) skips_.add(std::move(input));
@@ -184,7 +188,7 @@ std::optional<SourceFrame> TumSource::decode() {
   if (depth.problem) return skips_.add(*depth.problem), std::nullopt;
   if (const auto problem = check_sizes(pair, color.image, depth.image)) return skips_.add(*problem), std::nullopt;
   SourceFrame frame = to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info_);
-  frame.image.depth_offset_s = depth_offset_s(pair.color.stamp_ns, pair.depth.stamp_ns, info_);
+  set_depth_stamp(frame, pair.depth.stamp_ns, info_);
   if (options_.masks) frame.dynamic_mask = read_mask(pair);
   return frame;
 }

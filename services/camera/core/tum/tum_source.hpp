@@ -31,13 +31,14 @@ struct PairList {
 /// The pairs of a TUM folder: associations.txt unchanged when there is one (a depth image may occur twice there),
 /// else rgb.txt and depth.txt associated. Throws SourceError for a missing folder or list and for stamps that are not
 /// finite.
-PairList read_pairs(const std::filesystem::path& folder);
+PairList read_pairs(const std::filesystem::path& folder, std::int64_t tolerance_ns = kPairingToleranceNs);
 
 /// A folder in TUM's layout. Opening reads the lists, the calibration, the ground truth and the first good frame.
 class TumSource final : public PlayedSource {
  public:
   struct Options {
     bool masks = false;  ///< also read mask/<colour file name>.png: pixels of moving objects
+    std::int64_t tolerance_ns = kPairingToleranceNs;  ///< between the stamps of colour and depth
   };
   /// Throws SourceError: no sequence there, no calibration, no good frame, frames larger than the frame type.
   TumSource(std::string uri, std::filesystem::path folder, Options options);

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/transform_log.hpp"
+
+#include <cmath>
+#include <iterator>
+
+namespace rtd::camera {
+namespace {
+
+constexpr const char* kWorld = "world";
+
+}  // namespace
+
+std::string bare_frame(const std::string& frame) {
+  return frame.substr(frame.starts_with('/') ? 1 : 0);
+}
+
+std::optional<Eigen::Isometry3d> to_isometry(const msg::RosTransform& transform) {
+  const auto& [t, q] = transform;
+  const Eigen::Quaterniond rotation(q.w, q.x, q.y, q.z);
+  const Eigen::Vector3d translation(t.x, t.y, t.z);
+  if (!translation.allFinite() || !(std::abs(rotation.norm() - 1.0) < 0.05)) return std::nullopt;
+  Eigen::Isometry3d T_parent_child = Eigen::Isometry3d::Identity();
+  T_parent_child.linear() = rotation.normalized().toRotationMatrix();
+  T_parent_child.translation() = translation;
+  return T_parent_child;
+}
+
+void TransformLog::add(const msg::TFMessage& message) {
+  for (const msg::TransformStamped& transform : message.transforms) {
+    const std::optional<Eigen::Isometry3d> T_parent_child = to_isometry(transform.transform);
+    if (!T_parent_child) continue;
+    Link& link = links_[bare_frame(transform.child_frame_id)];
+    link.parent = bare_frame(transform.header.frame_id);
+    link.T_parent_child.insert_or_assign(msg::to_ns(transform.header.stamp), *T_parent_child);
+  }
+}
+
+Eigen::Isometry3d TransformLog::Link::at(std::int64_t stamp_ns) const {
+  const auto after = T_parent_child.lower_bound(stamp_ns);
+  if (after == T_parent_child.begin()) return after->second;
+  const auto before = std::prev(after);
+  const bool later = after != T_parent_child.end() && after->first - stamp_ns < stamp_ns - before->first;
+  return later ? after->second : before->second;
+}
+
+geometry::Trajectory TransformLog::world_poses(const std::string& camera_frame) const {
+  std::vector<const Link*> chain;  // from the camera up
+  for (auto link = links_.find(bare_frame(camera_frame)); link != links_.end();
+       link = links_.find(link->second.parent)) {
+    chain.push_back(&link->second);
+    if (link->second.parent == kWorld || chain.size() > links_.size()) break;  // a ring has no end
+  }
+  if (chain.empty() || chain.back()->parent != kWorld) return {};
+  geometry::Trajectory poses;
+  for (const auto& [stamp_ns, T_world_child] : chain.back()->T_parent_child) {
+    Eigen::Isometry3d T_child_camera = Eigen::Isometry3d::Identity();
+    for (std::size_t i = 0; i + 1 < chain.size(); ++i) T_child_camera = chain[i]->at(stamp_ns) * T_child_camera;
+    poses.push_back({stamp_ns, T_world_child * T_child_camera});
+  }
+  return poses;
+}
+
+std::vector<TransformLog::Above> TransformLog::chain_from(const std::string& frame) const {
+  std::vector<Above> chain{{bare_frame(frame), Eigen::Isometry3d::Identity()}};
+  while (chain.size() <= links_.size()) {  // a ring has no end
+    const auto link = links_.find(chain.back().frame);
+    if (link == links_.end()) break;
+    const Eigen::Isometry3d& T_parent_child = link->second.T_parent_child.rbegin()->second;
+    chain.push_back({link->second.parent, T_parent_child * chain.back().T_frame_start});
+  }
+  return chain;
+}
+
+std::optional<Eigen::Isometry3d> TransformLog::between(const std::string& target, const std::string& source) const {
+  const std::vector<Above> above_target = chain_from(target);
+  for (const Above& of_source : chain_from(source)) {
+    for (const Above& of_target : above_target) {
+      if (of_target.frame == of_source.frame) return of_target.T_frame_start.inverse() * of_source.T_frame_start;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace rtd::camera
