@@ -19,7 +19,7 @@ struct SourceUri {
 /// Throws SourceError naming the malformed part and the form expected.
 SourceUri parse_source_uri(const std::string& text);
 
-/// Adds the scheme that a path leaves out: a folder is a TUM sequence, FILE.bag and FILE.mcap are recordings.
+/// Adds the scheme that a path leaves out: a folder is a TUM sequence, FILE.bag, FILE.mcap and FILE.oni are recordings.
 /// Everything else stays as it is.
 std::string complete_uri(const std::string& source);
 
@@ -29,8 +29,9 @@ std::string complete_uri(const std::string& source);
 ///   mcap:FILE[?...]   the same of an MCAP file; frames that we recorded ourselves come first
 ///   synthetic:SCENE[?seed=1&frames=300&fps=30&noise=1&people=N&boxes=N&width=640&height=480]   frames=0: endless;
 ///   more keys, and the faults of the sensor (sensor=kinect&holes=0.2&...): services/camera/README.md
-/// A running camera (ros2:) is opened by the service, which has a bus (services/camera/ros2_feed.hpp).
-/// Throws SourceError for an unknown scheme or parameter (with those known) and for what the source itself refuses.
+/// A running camera (ros2:, openni2:, v4l2:, realsense-dds:) is opened by the service
+/// (services/camera/live_camera.hpp). Throws SourceError for an unknown scheme or parameter (with those known) and for
+/// what the source itself refuses.
 std::unique_ptr<FrameSource> make_source(const std::string& uri);
 
 }  // namespace rtd::camera

@@ -13,6 +13,7 @@
 #include "common/ros_codec/wire.hpp"
 #include "services/camera/core/calibration.hpp"
 #include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/live/device_uri.hpp"
 #include "services/camera/core/recording/ros_images.hpp"
 #include "services/camera/core/source_factory.hpp"
 
@@ -38,15 +39,6 @@ std::string info_beside(std::string color) {
   return color.substr(0, color.rfind('/')) + "/camera_info";
 }
 
-std::int64_t parse_tolerance_ns(const std::string& text, const std::string& value) {
-  constexpr double kMaxMs = 1000;
-  const std::optional<double> ms = io::parse_number(value);
-  if (!ms || !(*ms > 0) || *ms > kMaxMs) {
-    throw SourceError("source '" + text + "': tolerance_ms is '" + value + "', allowed: more than 0, at most 1000");
-  }
-  return static_cast<std::int64_t>(*ms * 1e6);
-}
-
 constexpr std::chrono::milliseconds kLook{100};          // between two looks at what is missing
 constexpr std::int64_t kQuietNs = 1'000'000'000;         // without a frame: worth a report
 constexpr std::int64_t kReportPeriodNs = 1'000'000'000;  // while it lasts
@@ -55,7 +47,11 @@ constexpr std::uint64_t kSteppedImages = 30;             // in a row with a stam
 }  // namespace
 
 bool is_live(const std::string& uri) {
-  return uri.starts_with("ros2:");
+  return uri.starts_with("ros2:") || is_device(uri);
+}
+
+void check_live_uri(const std::string& uri) {
+  is_device(uri) ? static_cast<void>(parse_device_uri(uri)) : static_cast<void>(parse_live_options(uri));
 }
 
 LiveOptions parse_live_options(const std::string& text) {
