@@ -32,7 +32,7 @@ DeviceSource::DeviceSource(std::unique_ptr<LiveDevice> device, std::unique_ptr<D
                            DeviceOptions options)
     : options_(std::move(options)), device_(std::move(device)), clock_(std::move(clock)), back_off_(kFirstBackOff) {
   info_.uri = options_.uri.text;
-  info_.live = true;
+  info_.live = !options_.uri.recorded;
   if (!options_.uri.calibration_file.empty()) apply(read_calibration(options_.uri.calibration_file), info_);
 }
 
@@ -43,7 +43,8 @@ DeviceSource::~DeviceSource() {
 bool DeviceSource::open() {
   const std::int64_t begin_ns = clock_->now_ns();
   while (!clock_->closed()) {
-    if (step()) {
+    first_ = step();
+    if (first_) {
       opened_ = true;
       return true;
     }
@@ -56,9 +57,9 @@ bool DeviceSource::open() {
 }
 
 std::optional<SourceFrame> DeviceSource::next() {
-  if (std::exchange(opened_, false)) drop_waiting();
+  if (std::exchange(opened_, false) && info_.live) drop_waiting();
   while (!clock_->closed() && !ended_) {
-    std::optional<SourceFrame> frame = step();
+    std::optional<SourceFrame> frame = first_ ? std::exchange(first_, std::nullopt) : step();
     if (!frame) continue;
     skips_.number(*frame);
     return frame;
@@ -165,7 +166,7 @@ void DeviceSource::take(DeviceImage image) {
   const std::int64_t now_ns = clock_->now_ns();
   Images& images = is_color ? color_ : depth_;
   images = {true, image.stamp_ns, now_ns};
-  if (is_color) {
+  if (is_color && info_.live) {
     health_.note_color(now_ns, image.bytes);
     follow_clock(image.stamp_ns, now_ns);
   }
@@ -198,14 +199,16 @@ std::optional<SourceFrame> DeviceSource::make_frame(const FramePairer::Pair& pai
   if (depth.problem) return skips_.add(*depth.problem), std::nullopt;
   const auto mismatch = size_mismatch(name_of(color_message), color.image, depth.image, info_.camera);
   if (mismatch) return skips_.add(*mismatch), std::nullopt;
-  const std::int64_t stamp_ns = timeline_.host_ns(pair.color.stamp_ns) + options_.epoch_ns;
+  const std::int64_t color_ns = pair.color.stamp_ns;
+  const std::int64_t stamp_ns = info_.live ? timeline_.host_ns(color_ns) + options_.epoch_ns : color_ns;
   SourceFrame frame = to_frame(stamp_ns, std::move(color.image), std::move(depth.image), info_);
-  frame.image.depth_offset_s = depth_offset_s(pair.color.stamp_ns, pair.depth.stamp_ns, info_);
+  frame.image.depth_offset_s = depth_offset_s(color_ns, pair.depth.stamp_ns, info_);
   health_.note_frame(last_pair_ns_, frame.has_depth);
   return frame;
 }
 
 void DeviceSource::restart_if_silent() {
+  if (!info_.live) return;
   const std::int64_t now_ns = clock_->now_ns();
   const bool stopped = color_.any && depth_.any && (silent(color_) || silent(depth_));
   if (!stopped && now_ns - last_pair_ns_ < kPatienceNs) return;
@@ -223,6 +226,7 @@ void DeviceSource::lose(const DeviceError& error) {
 }
 
 void DeviceSource::drop_waiting() {
+  first_.reset();
   if (!running_) return;
   try {
     for (int i = 0; i < kMostWaiting && device_->read(std::chrono::milliseconds(0)); ++i) {
@@ -251,6 +255,7 @@ void DeviceSource::report_now(const std::string& what) {
 
 std::string DeviceSource::cause() const {
   if (!running_) return problem_;
+  if (!info_.live) return {};
   const std::int64_t now_ns = clock_->now_ns();
   return now_ns - last_pair_ns_ >= kSilentNs ? silence() : health_.fault(now_ns);
 }

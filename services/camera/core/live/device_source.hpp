@@ -29,14 +29,14 @@ struct DeviceOptions {
 
 /// Frames of a device on this host or network: colour and depth paired by the device's stamps, which are put on the
 /// host's clock. A device that is unplugged, silent or without pairs is closed and opened again, with a back-off, until
-/// the source is stopped; its frames go on with the same calibration.
+/// the source is stopped; its frames go on with the same calibration. A recording is played once, with its own stamps.
 class DeviceSource final : public FrameSource {
  public:
   DeviceSource(std::unique_ptr<LiveDevice> device, std::unique_ptr<DeviceClock> clock, DeviceOptions options);
   ~DeviceSource() override;
 
-  /// Waits for a first frame, which is not given out. Throws SourceError: nothing comes in time; busy, no permission,
-  /// no such mode, no calibration.
+  /// Waits for a first frame; only that of a recording is given out, a camera's is old by then. Throws SourceError:
+  /// nothing comes in time; busy, no permission, no such mode, no calibration.
   bool open() override;
   std::optional<SourceFrame> next() override;
   std::uint64_t pass_over(std::int64_t) override { return 0; }
@@ -87,7 +87,8 @@ class DeviceSource final : public FrameSource {
   DeviceSetup setup_;
   Images color_, depth_;
   bool known_ = false, running_ = false, opened_ = false, ended_ = false, reported_fault_ = false;
-  std::string problem_;  ///< why it does not run
+  std::optional<SourceFrame> first_;  ///< of open()
+  std::string problem_;               ///< why it does not run
   std::chrono::milliseconds back_off_;
   std::int64_t started_ns_ = 0, last_pair_ns_ = 0, reported_ns_ = 0;
 };

@@ -57,7 +57,8 @@ std::int64_t parse_tolerance_ns(const std::string& uri, const std::string& value
 
 DeviceUri parse_device_uri(const std::string& text) {
   const SourceUri parsed = parse_source_uri(text);
-  DeviceUri uri{text, parsed.scheme, parsed.path, {}, {}, kPairingToleranceNs};
+  DeviceUri uri{text, parsed.scheme, parsed.path, {}, {}, kPairingToleranceNs, false};
+  uri.recorded = uri.scheme == "openni2" && uri.device.ends_with(".oni");
   for (const auto& [key, value] : parsed.parameters) take_parameter(uri, key, value);
   if (uri.scheme == "v4l2" && uri.device.empty()) {
     throw SourceError("source '" + text +

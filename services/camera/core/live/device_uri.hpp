@@ -18,6 +18,7 @@ struct DeviceUri {
   ModeRequest mode;
   std::string calibration_file;  ///< replaces the device's own calibration and depth unit
   std::int64_t tolerance_ns = 0;
+  bool recorded = false;  ///< an .oni file: played by its stamps, from its first frame to its last
 };
 
 /// Whether the URI is that of a device of this host or network.
