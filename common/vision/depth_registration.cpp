@@ -41,8 +41,8 @@ Eigen::Vector3d ray_of(const geometry::CameraModel& camera, int column, int row)
   return camera.unproject(camera.undistort(Eigen::Vector2d(column, row)), 1.0);
 }
 
-/// The squared distance from the axis, normalised, at which the lens model turns back (infinite when it does not): where
-/// its image stops to move outward.
+/// The squared distance from the axis, normalised, at which the lens model turns back (infinite when it does not):
+/// where its image stops to move outward.
 double turn_squared(geometry::CameraModel::Parameters lens) {
   constexpr double kStep = 1e-3, kFar = 10;
   lens.fx = lens.fy = 1, lens.cx = lens.cy = 0;
@@ -339,8 +339,7 @@ DepthRegistration::DepthRegistration(const geometry::CameraModel& color, const g
   if (!(depth_scale_m > 0)) throw std::invalid_argument("depth registration: the depth unit is not positive");
   const auto& d = depth.parameters();
   const Eigen::Matrix3d R = T_color_depth.linear();
-  farthest_squared_ =
-      static_cast<float>(std::min(kFieldMargin * field_squared(color), turn_squared(color_)));
+  farthest_squared_ = static_cast<float>(std::min(kFieldMargin * field_squared(color), turn_squared(color_)));
   slope_ = std::min(kSteepest / static_cast<float>(std::min(d.fx, d.fy)), kLargestStep);
   right_px_ = (Eigen::Vector2d(color_.fx * R(0, 0), color_.fy * R(1, 0)) / d.fx).cast<float>();
   down_px_ = (Eigen::Vector2d(color_.fx * R(0, 1), color_.fy * R(1, 1)) / d.fy).cast<float>();

@@ -14,7 +14,7 @@
 #include "common/service/config.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/live/live_source.hpp"
-#include "services/camera/ros2_feed.hpp"
+#include "services/camera/live_camera.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -36,11 +36,7 @@ std::shared_ptr<FrameSource> open_source(const ServiceConfig& config, const bus:
                                          std::function<void(const std::string&)> on_wait) {
   try {
     if (!is_live(config.source)) return make_source(config.source);
-    LiveOptions options = parse_live_options(config.source);
-    options.open_timeout_ns = seconds_to_ns(config.start_timeout_s);
-    options.on_wait = std::move(on_wait);
-    auto feed = std::make_unique<Ros2Feed>(bus, options.topics);
-    return std::make_shared<LiveSource>(config.source, std::move(feed), std::move(options));
+    return make_live_source(config.source, bus, seconds_to_ns(config.start_timeout_s), std::move(on_wait));
   } catch (const SourceError& error) {
     throw service::ConfigError(error.what());
   }
@@ -67,9 +63,9 @@ int readers_of(const std::string& service) {
 }  // namespace
 
 void CameraService::add_options(CLI::App& app, Config& config) {
-  app.add_option(
-      "--source", config.source,
-      "tum:FOLDER, bag:FILE, mcap:FILE, ros2:COLOR,DEPTH[,INFO] or synthetic:SCENE[?key=value&...] (camera.source)");
+  app.add_option("--source", config.source,
+                 "tum:FOLDER, bag:FILE, mcap:FILE, ros2:COLOR,DEPTH[,INFO], openni2:[URI], v4l2:DEVICE[,DEPTH] or "
+                 "synthetic:SCENE[?key=value&...] (camera.source)");
   app.add_option("--frames", config.frames, "Play at most N frames, 0 = all (camera.frames)")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--wait-for", config.wait_for,
@@ -325,6 +321,7 @@ void CameraService::report_counters() {
   set("frames_skipped", counters_.skipped_total());
   set("frames_without_depth", counters_.frames_without_depth);
   set("frames_refused", refused_);
+  set("reconnects", counters_.reconnects);
   set("jpegs_dropped", publisher_.jpegs().dropped());
   set("resends", pacer_.resends());
   if (const auto offset_ms = depth_offsets_.median_ms()) runtime_.heartbeat.set_metric("depth_offset_ms", *offset_ms);

@@ -12,8 +12,9 @@ namespace rtd::camera {
 
 const char* to_string(SkipReason reason) {
   static constexpr std::array<const char*, kSkipReasons> kNames = {
-      "malformed_line",   "no_depth_partner", "stamp_backwards", "stamp_doubled",  "color_unreadable",
-      "depth_unreadable", "depth_not_16_bit", "size_mismatch",   "damaged_record", "overrun"};
+      "malformed_line",   "no_depth_partner", "stamp_backwards",  "stamp_doubled",
+      "color_unreadable", "depth_unreadable", "depth_not_16_bit", "size_mismatch",
+      "damaged_record",   "overrun",          "color_frozen"};
   return kNames.at(static_cast<std::size_t>(reason));
 }
 

@@ -35,8 +35,9 @@ enum class SkipReason {
   kSizeMismatch,     ///< colour, depth and calibration do not have one size
   kDamagedRecord,    ///< a piece of a recording that cannot be read
   kOverrun,          ///< running camera: the message came before earlier ones were processed
+  kColorFrozen,      ///< running camera: the colour image has not changed for a second
 };
-inline constexpr std::size_t kSkipReasons = 10;
+inline constexpr std::size_t kSkipReasons = 11;
 
 /// "color_unreadable": for counters and logs.
 const char* to_string(SkipReason reason);
@@ -52,6 +53,7 @@ struct SourceCounters {
   std::uint64_t frames = 0;                           ///< handed out or passed over
   std::array<std::uint64_t, kSkipReasons> skipped{};  ///< by SkipReason
   std::uint64_t frames_without_depth = 0;             ///< handed out although no pixel has a measurement
+  std::uint64_t reconnects = 0;                       ///< running camera: it was opened again
   std::uint64_t skipped_total() const;
   std::uint64_t of(SkipReason reason) const { return skipped[static_cast<std::size_t>(reason)]; }
 };

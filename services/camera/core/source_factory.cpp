@@ -20,7 +20,8 @@ SourceUri parse_source_uri(const std::string& text) {
   if (colon == std::string::npos || colon == 0) {
     throw SourceError(
         "source '" + text +
-        "' has no scheme; write tum:FOLDER, bag:FILE, mcap:FILE, ros2:TOPICS or synthetic:NAME[?key=value&...]");
+        "' has no scheme; write tum:FOLDER, bag:FILE, mcap:FILE, ros2:TOPICS, openni2:[URI], v4l2:DEVICE or "
+        "synthetic:NAME[?key=value&...]");
   }
   SourceUri uri{text, text.substr(0, colon), text.substr(colon + 1), {}};
   const std::size_t question = uri.path.find('?');
@@ -60,6 +61,7 @@ std::string complete_uri(const std::string& source) {
   const std::filesystem::path path = source;
   if (std::filesystem::is_directory(path)) return "tum:" + source;
   if (path.extension() == ".bag") return "bag:" + source;
+  if (path.extension() == ".oni") return "openni2:" + source;
   return path.extension() == ".mcap" ? "mcap:" + source : source;
 }
 
@@ -122,7 +124,7 @@ std::unique_ptr<FrameSource> make_source(const std::string& text) {
         "' is a running camera: only `rtd run` and rtd-camera play it; record it first (rtd record) and use mcap:FILE");
   }
   throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme +
-                    "'; known: bag, mcap, ros2, synthetic, tum");
+                    "'; known: bag, mcap, openni2, realsense-dds, ros2, synthetic, tum, v4l2");
 }
 
 }  // namespace rtd::camera

@@ -25,7 +25,7 @@ std::int64_t parse_tolerance_ns(const std::string& uri, const std::string& value
 /// The value of a parameter that is 0 or 1. Throws SourceError naming URI and key.
 bool parse_flag(const std::string& uri, const std::string& key, const std::string& value);
 
-/// Adds the scheme that a path leaves out: a folder is a TUM sequence, FILE.bag and FILE.mcap are recordings.
+/// Adds the scheme that a path leaves out: a folder is a TUM sequence, FILE.bag, FILE.mcap and FILE.oni are recordings.
 /// Everything else stays as it is.
 std::string complete_uri(const std::string& source);
 
@@ -36,8 +36,9 @@ std::string complete_uri(const std::string& source);
 ///   mcap:FILE[?...]   the same of an MCAP file; frames that we recorded ourselves come first
 ///   synthetic:SCENE[?seed=1&frames=300&fps=30&noise=1&people=N&boxes=N&width=640&height=480]   frames=0: endless;
 ///   more keys, and the faults of the sensor (sensor=kinect&holes=0.2&...): services/camera/README.md
-/// A running camera (ros2:) is opened by the service, which has a bus (services/camera/ros2_feed.hpp).
-/// Throws SourceError for an unknown scheme or parameter (with those known) and for what the source itself refuses.
+/// A running camera (ros2:, openni2:, v4l2:, realsense-dds:) is opened by the service
+/// (services/camera/live_camera.hpp). Throws SourceError for an unknown scheme or parameter (with those known) and for
+/// what the source itself refuses.
 std::unique_ptr<FrameSource> make_source(const std::string& uri);
 
 }  // namespace rtd::camera

@@ -96,7 +96,7 @@ std::string choose_filter_mode(const RunOptions& options) {
 
 std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
   if (camera::is_live(uri)) {
-    camera::parse_live_options(uri);
+    camera::check_live_uri(uri);
     return limit;
   }
   const std::uint64_t frames = camera::make_source(uri)->info().frames;

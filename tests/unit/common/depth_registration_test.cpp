@@ -59,9 +59,22 @@ Rig upside_down() {
           CameraModel({400, 400, 320, 240, {}, 640, 480}), mounted({0.02, 0, 0}, {0, 0, std::numbers::pi}), 1};
 }
 
+Rig rational_and_fisheye() {
+  return {"rational_and_fisheye",
+          CameraModel({500, 500, 320, 240, {0.6, -0.7, 0.0004, -0.0002, 0.2, 0.48, -0.5, 0.1}, 640, 480}),
+          CameraModel({500, 500, 322, 238, {-0.007, 0.04, -0.04, 0.007}, 640, 480, rtd::geometry::Lens::kFisheye}),
+          mounted({-0.02, 0, 0}, {0, 0.01, 0}), 1};
+}
+Rig fisheye_and_pinhole() {
+  return {"fisheye_and_pinhole",
+          CameraModel({400, 400, 320, 240, {-0.007, 0.04, -0.04, 0.007}, 640, 480, rtd::geometry::Lens::kFisheye}),
+          CameraModel({400, 400, 320, 240, {}, 640, 480}), mounted({0.02, 0, 0}, {0, 0, 0.01}), 1};
+}
+
 class Rigs : public testing::TestWithParam<Rig> {};
 INSTANTIATE_TEST_SUITE_P(All, Rigs,
-                         testing::Values(same_size(), twice_as_large(), smaller(), quarter_turn(), upside_down()),
+                         testing::Values(same_size(), twice_as_large(), smaller(), quarter_turn(), upside_down(),
+                                         rational_and_fisheye(), fisheye_and_pinhole()),
                          [](const auto& rig) { return rig.param.name; });
 
 /// Pixels of the colour image that see a point which the depth camera sees too, and how far the registered depth is

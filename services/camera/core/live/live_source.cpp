@@ -13,6 +13,7 @@
 #include "common/ros_codec/wire.hpp"
 #include "services/camera/core/calibration.hpp"
 #include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/live/device_uri.hpp"
 #include "services/camera/core/recording/ros_images.hpp"
 #include "services/camera/core/source_factory.hpp"
 
@@ -64,7 +65,11 @@ constexpr std::uint64_t kSteppedImages = 30;             // in a row with a stam
 }  // namespace
 
 bool is_live(const std::string& uri) {
-  return uri.starts_with("ros2:");
+  return uri.starts_with("ros2:") || is_device(uri);
+}
+
+void check_live_uri(const std::string& uri) {
+  is_device(uri) ? static_cast<void>(parse_device_uri(uri)) : static_cast<void>(parse_live_options(uri));
 }
 
 LiveOptions parse_live_options(const std::string& text) {

@@ -58,8 +58,11 @@ struct LiveOptions {
   std::function<void(const std::string&)> on_wait = [](const std::string&) {};
 };
 
-/// Whether the URI is that of a running camera.
+/// Whether the URI is that of a running camera: ROS 2 topics or a device.
 bool is_live(const std::string& uri);
+
+/// Throws SourceError when the URI of a running camera is malformed; opens nothing.
+void check_live_uri(const std::string& uri);
 
 /// Topics and parameters of such a URI; INFO is `camera_info` beside COLOR when not named, depth_info that beside
 /// DEPTH. Throws SourceError.

@@ -1,0 +1,281 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/live/device_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "services/camera/core/calibration.hpp"
+#include "services/camera/core/live/pixel_format.hpp"
+#include "services/camera/core/recording/ros_images.hpp"
+
+namespace rtd::camera {
+namespace {
+
+constexpr std::chrono::milliseconds kLookAtDevice{100};  // between two looks at what is missing
+constexpr std::chrono::milliseconds kFirstBackOff{100}, kLongestBackOff{500};
+constexpr std::int64_t kSilentNs = 1'000'000'000;              // without an image of a stream
+constexpr std::int64_t kPatienceNs = 3'000'000'000;            // for the first images, and for a pair
+constexpr std::int64_t kDeviceReportPeriodNs = 1'000'000'000;  // while a fault lasts
+constexpr int kMostWaiting = 64;                               // images in a device's queue
+
+double seconds(std::int64_t time_ns) {
+  return static_cast<double>(time_ns) * 1e-9;
+}
+
+}  // namespace
+
+DeviceSource::DeviceSource(std::unique_ptr<LiveDevice> device, std::unique_ptr<DeviceClock> clock,
+                           DeviceOptions options)
+    : options_(std::move(options)), device_(std::move(device)), clock_(std::move(clock)), back_off_(kFirstBackOff) {
+  info_.uri = options_.uri.text;
+  info_.live = !options_.uri.recorded;
+  if (!options_.uri.calibration_file.empty()) apply(read_calibration(options_.uri.calibration_file), info_);
+}
+
+DeviceSource::~DeviceSource() {
+  device_->close();
+}
+
+bool DeviceSource::open() {
+  const std::int64_t begin_ns = clock_->now_ns();
+  while (!clock_->closed()) {
+    first_ = step();
+    if (first_) {
+      opened_ = true;
+      return true;
+    }
+    if (ended_) throw SourceError(device_->name() + " ended before its first frame" + skips_.summary());
+    if (clock_->now_ns() - begin_ns > options_.open_timeout_ns) {
+      throw SourceError(fmt::format("no frame within {:g} s: {}", seconds(options_.open_timeout_ns), cause()));
+    }
+  }
+  return false;
+}
+
+std::optional<SourceFrame> DeviceSource::next() {
+  if (std::exchange(opened_, false) && info_.live) drop_waiting();
+  while (!clock_->closed() && !ended_) {
+    std::optional<SourceFrame> frame = first_ ? std::exchange(first_, std::nullopt) : step();
+    if (!frame) continue;
+    skips_.number(*frame);
+    return frame;
+  }
+  return std::nullopt;
+}
+
+std::optional<SourceFrame> DeviceSource::step() {
+  if (!running_) {
+    try_to_start();
+    return std::nullopt;
+  }
+  try {
+    std::optional<SourceFrame> frame = read();
+    if (frame) back_off_ = kFirstBackOff;
+    restart_if_silent();
+    const std::string fault = cause();
+    if (frame || !fault.empty()) report(fault);
+    return frame;
+  } catch (const DeviceError& error) {
+    lose(error);
+  }
+  return std::nullopt;
+}
+
+void DeviceSource::try_to_start() {
+  try {
+    start();
+  } catch (const DeviceError& error) {
+    device_->close();
+    if (!known_ && error.problem() != DeviceProblem::kAbsent) throw SourceError(error.what());
+    problem_ = error.what();
+    report(problem_);
+    back_off();
+  }
+}
+
+void DeviceSource::back_off() {
+  clock_->wait(back_off_);
+  back_off_ = std::min(2 * back_off_, kLongestBackOff);
+}
+
+void DeviceSource::start() {
+  device_->open();
+  use(device_->start(options_.uri.mode));
+  pairer_.emplace(FramePairer::Options{.tolerance_ns = options_.uri.tolerance_ns, .at_once = true});
+  timeline_.restart();
+  color_ = depth_ = {};
+  started_ns_ = last_pair_ns_ = clock_->now_ns();
+  health_.restart(started_ns_, setup_.color.fps);
+  running_ = true;
+}
+
+void DeviceSource::use(const DeviceSetup& setup) {
+  if (known_) {
+    const bool same = setup.color.size_px == setup_.color.size_px && setup.depth.size_px == setup_.depth.size_px;
+    if (!same) {
+      throw DeviceError(DeviceProblem::kUnsupportedMode,
+                        fmt::format("{} came back with images of {} px, not {} as before: plug in the camera that the "
+                                    "run began with, or start again",
+                                    device_->name(), size_text(setup.color.size_px), size_text(setup_.color.size_px)));
+    }
+    ++skips_.counters().reconnects;
+  } else {
+    calibrate(setup);
+  }
+  setup_ = setup;
+  known_ = true;
+}
+
+/// What would make every frame unusable is an error, not a skipped frame.
+void DeviceSource::calibrate(const DeviceSetup& setup) {
+  const std::string name = device_->name();
+  if (options_.uri.calibration_file.empty()) {
+    if (!setup.camera) {
+      throw SourceError(name +
+                        " does not know its lens: write a file with 'key: value' lines (width height fx fy cx cy, "
+                        "k1 k2 p1 p2 k3, depth_factor) and give it with ?calibration=FILE");
+    }
+    info_.camera = *setup.camera;
+    info_.depth_scale_m = setup.depth_scale_m;
+  }
+  info_.fps = setup.color.fps;
+  check_frame_size(setup.color.size_px.width, setup.color.size_px.height, name);
+  const auto& camera = info_.camera.parameters();
+  const cv::Size calibrated(camera.width, camera.height);
+  if (calibrated == setup.color.size_px && setup.depth.size_px == calibrated) return;
+  throw SourceError(
+      fmt::format("{}: colour {}, depth {}, calibration {} px differ: choose one size with ?width=&height= "
+                  "and give a calibration of that size",
+                  name, size_text(setup.color.size_px), size_text(setup.depth.size_px), size_text(calibrated)));
+}
+
+std::optional<SourceFrame> DeviceSource::read() {
+  if (std::optional<DeviceImage> image = device_->read(kLookAtDevice)) take(std::move(*image));
+  while (const std::optional<FramePairer::Pair> pair = pairer_->next(skips_)) {
+    if (std::optional<SourceFrame> frame = make_frame(*pair)) return frame;
+  }
+  return std::nullopt;
+}
+
+void DeviceSource::take(DeviceImage image) {
+  const bool is_color = image.stream == Stream::kColor;
+  const std::int64_t now_ns = clock_->now_ns();
+  Images& images = is_color ? color_ : depth_;
+  images = {true, image.stamp_ns, now_ns};
+  if (is_color && info_.live) {
+    health_.note_color(now_ns, image.bytes);
+    follow_clock(image.stamp_ns, now_ns);
+  }
+  RecordedMessage message;
+  message.topic = fmt::format("{} of {}", to_string(image.stream), device_->name());
+  message.recorded_ns = now_ns;
+  message.bytes = std::move(image.bytes);
+  StampedMessage stamped{image.stamp_ns, std::move(message)};
+  is_color ? pairer_->add_color(std::move(stamped), skips_) : pairer_->add_depth(std::move(stamped));
+}
+
+void DeviceSource::follow_clock(std::int64_t stamp_ns, std::int64_t now_ns) {
+  const std::int64_t jump_ns = timeline_.note(stamp_ns, now_ns);
+  if (jump_ns == 0) return;
+  pairer_.emplace(FramePairer::Options{.tolerance_ns = options_.uri.tolerance_ns, .at_once = true});
+  report_now(fmt::format("the stamps of {} jumped by {:.3f} s: frames go on with the time of this host",
+                         device_->name(), seconds(jump_ns)));
+}
+
+std::optional<SourceFrame> DeviceSource::make_frame(const FramePairer::Pair& pair) {
+  last_pair_ns_ = clock_->now_ns();
+  const RecordedMessage& color_message = pair.color.message;
+  if (health_.frozen(last_pair_ns_)) {
+    skips_.add({SkipReason::kColorFrozen, name_of(color_message) + ": the same bytes as for the last second"});
+    return std::nullopt;
+  }
+  ImageRead color = decode_image(setup_.color, color_message.bytes, name_of(color_message));
+  if (color.problem) return skips_.add(*color.problem), std::nullopt;
+  ImageRead depth = decode_image(setup_.depth, pair.depth.message.bytes, name_of(pair.depth.message));
+  if (depth.problem) return skips_.add(*depth.problem), std::nullopt;
+  const auto mismatch = size_mismatch(name_of(color_message), color.image, depth.image, info_.camera);
+  if (mismatch) return skips_.add(*mismatch), std::nullopt;
+  const std::int64_t color_ns = pair.color.stamp_ns;
+  const std::int64_t stamp_ns = info_.live ? timeline_.host_ns(color_ns) + options_.epoch_ns : color_ns;
+  SourceFrame frame = to_frame(stamp_ns, std::move(color.image), std::move(depth.image), info_);
+  frame.image.depth_offset_s = depth_offset_s(color_ns, pair.depth.stamp_ns, info_);
+  health_.note_frame(last_pair_ns_, frame.has_depth);
+  return frame;
+}
+
+void DeviceSource::restart_if_silent() {
+  if (!info_.live) return;
+  const std::int64_t now_ns = clock_->now_ns();
+  const bool stopped = color_.any && depth_.any && (silent(color_) || silent(depth_));
+  if (!stopped && now_ns - last_pair_ns_ < kPatienceNs) return;
+  throw DeviceError(DeviceProblem::kAbsent, silence() + "; it is started again");
+}
+
+void DeviceSource::lose(const DeviceError& error) {
+  device_->close();
+  running_ = false;
+  ended_ = error.problem() == DeviceProblem::kEnded;
+  problem_ = error.what();
+  if (ended_) return;
+  report_now(problem_);
+  back_off();
+}
+
+void DeviceSource::drop_waiting() {
+  first_.reset();
+  if (!running_) return;
+  try {
+    for (int i = 0; i < kMostWaiting && device_->read(std::chrono::milliseconds(0)); ++i) {
+    }
+  } catch (const DeviceError& error) {
+    return lose(error);
+  }
+  pairer_.emplace(FramePairer::Options{.tolerance_ns = options_.uri.tolerance_ns, .at_once = true});
+  last_pair_ns_ = color_.arrived_ns = depth_.arrived_ns = clock_->now_ns();
+  health_.restart(last_pair_ns_, setup_.color.fps);
+}
+
+void DeviceSource::report(const std::string& what) {
+  if (what.empty()) {
+    if (std::exchange(reported_fault_, false)) options_.on_wait({});
+    return;
+  }
+  if (!reported_fault_ || clock_->now_ns() - reported_ns_ >= kDeviceReportPeriodNs) report_now(what);
+}
+
+void DeviceSource::report_now(const std::string& what) {
+  reported_fault_ = true;
+  reported_ns_ = clock_->now_ns();
+  options_.on_wait(what);
+}
+
+std::string DeviceSource::cause() const {
+  if (!running_) return problem_;
+  if (!info_.live) return {};
+  const std::int64_t now_ns = clock_->now_ns();
+  return now_ns - last_pair_ns_ >= kSilentNs ? silence() : health_.fault(now_ns);
+}
+
+std::string DeviceSource::silence() const {
+  const auto none_of = [this](Stream stream, const Images& images) {
+    const std::int64_t since_ns = images.any ? images.arrived_ns : started_ns_;
+    return fmt::format("no {} image from {} for {:.1f} s", to_string(stream), device_->name(),
+                       seconds(clock_->now_ns() - since_ns));
+  };
+  if (silent(color_)) return none_of(Stream::kColor, color_);
+  if (silent(depth_)) return none_of(Stream::kDepth, depth_);
+  return fmt::format(
+      "no pair of colour and depth from {}: the newest stamps are {:.1f} ms apart, allowed are {:g} (?tolerance_ms=)",
+      device_->name(), seconds(std::abs(color_.stamp_ns - depth_.stamp_ns)) * 1e3,
+      seconds(options_.uri.tolerance_ns) * 1e3);
+}
+
+bool DeviceSource::silent(const Images& images) const {
+  return !images.any || clock_->now_ns() - images.arrived_ns >= kSilentNs;
+}
+
+}  // namespace rtd::camera
