@@ -19,13 +19,14 @@ struct SourceUri {
 /// Throws SourceError naming the malformed part and the form expected.
 SourceUri parse_source_uri(const std::string& text);
 
-/// Adds the scheme that a path leaves out: a folder is a TUM sequence, FILE.bag and FILE.mcap are recordings.
+/// Adds the scheme that a path leaves out: a folder is a TUM sequence, FILE.bag, FILE.db3 and FILE.mcap are recordings.
 /// Everything else stays as it is.
 std::string complete_uri(const std::string& source);
 
 /// Opens a source by its URI:
 ///   tum:FOLDER[?masks=1]
 ///   bag:FILE[?color=TOPIC&depth=TOPIC&info=TOPIC&calibration=FILE]   ROS 1 bag
+///   db3:FILE[?...]   the same of a rosbag2 file in sqlite3 format
 ///   mcap:FILE[?...]   the same of an MCAP file; frames that we recorded ourselves come first
 ///   synthetic:SCENE[?seed=1&frames=300&fps=30&noise=1&people=N&boxes=N&width=640&height=480]   frames=0: endless;
 ///   more keys, and the faults of the sensor (sensor=kinect&holes=0.2&...): services/camera/README.md
