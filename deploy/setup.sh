@@ -29,7 +29,7 @@ packages=(
   cyclonedds-dev
   libopencv-dev libeigen3-dev libceres-dev
   libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libtinyxml2-dev
-  zlib1g-dev libdeflate-dev libbz2-dev liblz4-dev libzstd-dev libssl-dev
+  zlib1g-dev libdeflate-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libssl-dev
   libopenni2-dev
   python3 python3-numpy python3-onnx
   curl ca-certificates

@@ -18,6 +18,7 @@ find_package(OpenSSL REQUIRED)
 find_library(RTD_DEFLATE_LIBRARY deflate REQUIRED)  # Debian's packages of these two have no CMake file
 find_library(RTD_LZ4_LIBRARY lz4 REQUIRED)
 find_package(BZip2 REQUIRED)
+find_package(SQLite3 REQUIRED)
 if(RTD_BUILD_TESTS)
   find_package(GTest REQUIRED)
 endif()

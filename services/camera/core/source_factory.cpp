@@ -20,7 +20,7 @@ SourceUri parse_source_uri(const std::string& text) {
   if (colon == std::string::npos || colon == 0) {
     throw SourceError(
         "source '" + text +
-        "' has no scheme; write tum:FOLDER, bag:FILE, mcap:FILE, ros2:TOPICS, openni2:[URI], v4l2:DEVICE or "
+        "' has no scheme; write tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE, ros2:TOPICS, openni2:[URI], v4l2:DEVICE or "
         "synthetic:NAME[?key=value&...]");
   }
   SourceUri uri{text, text.substr(0, colon), text.substr(colon + 1), {}};
@@ -62,6 +62,7 @@ std::string complete_uri(const std::string& source) {
   if (std::filesystem::is_directory(path)) return "tum:" + source;
   if (path.extension() == ".bag") return "bag:" + source;
   if (path.extension() == ".oni") return "openni2:" + source;
+  if (path.extension() == ".db3") return "db3:" + source;
   return path.extension() == ".mcap" ? "mcap:" + source : source;
 }
 
@@ -105,10 +106,14 @@ RecordingOptions recording_options(const SourceUri& uri) {
   return options;
 }
 
+std::unique_ptr<Recording> open_file(const SourceUri& uri) {
+  if (uri.scheme == "bag") return open_bag(uri.path);
+  return uri.scheme == "db3" ? open_db3(uri.path) : open_mcap(uri.path);
+}
+
 std::unique_ptr<FrameSource> make_recording_source(const SourceUri& uri) {
   const RecordingOptions options = recording_options(uri);
-  auto recording = uri.scheme == "bag" ? open_bag(uri.path) : open_mcap(uri.path);
-  return open_recording(uri.text, std::move(recording), options);
+  return open_recording(uri.text, open_file(uri), options);
 }
 
 }  // namespace
@@ -117,14 +122,14 @@ std::unique_ptr<FrameSource> make_source(const std::string& text) {
   const SourceUri uri = parse_source_uri(text);
   if (uri.scheme == "tum") return make_tum_source(uri);
   if (uri.scheme == "synthetic") return std::make_unique<SyntheticSource>(uri.text, parse_synthetic_options(uri));
-  if (uri.scheme == "bag" || uri.scheme == "mcap") return make_recording_source(uri);
+  if (uri.scheme == "bag" || uri.scheme == "db3" || uri.scheme == "mcap") return make_recording_source(uri);
   if (is_live(text)) {
     throw SourceError(
         "source '" + text +
         "' is a running camera: only `rtd run` and rtd-camera play it; record it first (rtd record) and use mcap:FILE");
   }
   throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme +
-                    "'; known: bag, mcap, openni2, realsense-dds, ros2, synthetic, tum, v4l2");
+                    "'; known: bag, db3, mcap, openni2, ros2, synthetic, tum, v4l2");
 }
 
 }  // namespace rtd::camera

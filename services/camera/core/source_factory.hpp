@@ -25,14 +25,15 @@ std::int64_t parse_tolerance_ns(const std::string& uri, const std::string& value
 /// The value of a parameter that is 0 or 1. Throws SourceError naming URI and key.
 bool parse_flag(const std::string& uri, const std::string& key, const std::string& value);
 
-/// Adds the scheme that a path leaves out: a folder is a TUM sequence, FILE.bag, FILE.mcap and FILE.oni are recordings.
-/// Everything else stays as it is.
+/// Adds the scheme that a path leaves out: a folder is a TUM sequence, FILE.bag, FILE.db3, FILE.mcap and FILE.oni are
+/// recordings. Everything else stays as it is.
 std::string complete_uri(const std::string& source);
 
 /// Opens a source by its URI:
 ///   tum:FOLDER[?masks=1&tolerance_ms=20]
 ///   bag:FILE[?color=TOPIC&depth=TOPIC&info=TOPIC&depth_info=TOPIC&calibration=FILE&registered=1&tolerance_ms=20]
 ///     ROS 1 bag
+///   db3:FILE[?...]   the same of a rosbag2 file in sqlite3 format
 ///   mcap:FILE[?...]   the same of an MCAP file; frames that we recorded ourselves come first
 ///   synthetic:SCENE[?seed=1&frames=300&fps=30&noise=1&people=N&boxes=N&width=640&height=480]   frames=0: endless;
 ///   more keys, and the faults of the sensor (sensor=kinect&holes=0.2&...): services/camera/README.md

@@ -61,6 +61,9 @@ class Recording {
 /// Opens a ROS 1 bag. Throws SourceError.
 std::unique_ptr<Recording> open_bag(const std::filesystem::path& file);
 
+/// Opens a rosbag2 file of the storage plugin sqlite3 (.db3). Throws SourceError.
+std::unique_ptr<Recording> open_db3(const std::filesystem::path& file);
+
 /// Opens an MCAP file, or the one in a folder that rosbag2 made. Messages in CDR (ROS 2, ours) and in ROS 1's encoding.
 /// Throws SourceError.
 std::unique_ptr<Recording> open_mcap(const std::filesystem::path& file);

@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/rosbag2/db3_reader.hpp"
+
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <set>
+
+namespace rtd::rosbag2 {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMostMessageBytes = 256ULL << 20;
+constexpr std::int64_t kMostHeapBytes = 1LL << 30;  // SQLite's own, of the whole process
+constexpr std::size_t kMostTopics = 10'000;
+constexpr int kStepInstructions = 1000;  // of SQLite's machine between two calls of the progress handler
+
+std::uint64_t size_of(const fs::path& path) {
+  std::error_code none;
+  const auto size = fs::file_size(path, none);
+  return none ? 0 : size;
+}
+
+fs::path beside(const fs::path& path, const char* suffix) {
+  return path.string() + suffix;
+}
+
+/// Without a log beside it the file is complete in itself: "immutable" reads it without locks, so also in a folder that
+/// is read-only.
+std::string uri_of(const fs::path& path) {
+  std::string uri = "file:";
+  for (const char c : fs::absolute(path).string()) {
+    if (c == '%' || c == '?' || c == '#') {
+      uri += c == '%' ? "%25" : c == '?' ? "%3f" : "%23";
+    } else {
+      uri += c;
+    }
+  }
+  const bool complete = size_of(beside(path, "-wal")) == 0 && size_of(beside(path, "-journal")) == 0;
+  return uri + (complete ? "?mode=ro&immutable=1" : "?mode=ro");
+}
+
+class Statement {
+ public:
+  /// Null inside when SQLite refuses the text.
+  Statement(sqlite3* database, const char* sql) { sqlite3_prepare_v2(database, sql, -1, &statement_, nullptr); }
+  ~Statement() { sqlite3_finalize(statement_); }
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  bool usable() const { return statement_ != nullptr; }
+  void bind(int index, std::int64_t value) { sqlite3_bind_int64(statement_, index, value); }
+  int step() { return sqlite3_step(statement_); }
+  std::int64_t integer(int column) const { return sqlite3_column_int64(statement_, column); }
+  int type(int column) const { return sqlite3_column_type(statement_, column); }
+  std::vector<std::uint8_t> bytes(int column) const {
+    const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(statement_, column));
+    const int size = sqlite3_column_bytes(statement_, column);
+    return data == nullptr ? std::vector<std::uint8_t>{} : std::vector<std::uint8_t>(data, data + size);
+  }
+  std::string text(int column) const {
+    const std::vector<std::uint8_t> content = bytes(column);
+    return {content.begin(), content.end()};
+  }
+
+ private:
+  sqlite3_stmt* statement_ = nullptr;
+};
+
+/// The SQLite progress handler: ends a query that a crafted file keeps busy.
+int count_step(void* steps_left) {
+  auto& left = *static_cast<std::uint64_t*>(steps_left);
+  if (left == 0) return 1;
+  --left;
+  return 0;
+}
+
+}  // namespace
+
+void Db3Reader::Close::operator()(sqlite3* database) const {
+  sqlite3_close_v2(database);
+}
+
+Db3Reader::Db3Reader(const fs::path& path) : path_(path) {
+  open();
+  bound();
+  require_tables();
+  read_topics();
+  read_places();
+}
+
+void Db3Reader::fail(const std::string& what) const {
+  throw Db3Error(path_.string() + ": " + what);
+}
+
+void Db3Reader::open() {
+  if (!fs::is_regular_file(path_)) fail("no such file");
+  bytes_ = size_of(path_) + size_of(beside(path_, "-wal"));
+  if (bytes_ == 0) fail("the file is empty");
+  sqlite3* database = nullptr;
+  const int opened = sqlite3_open_v2(uri_of(path_).c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
+  database_.reset(database);
+  if (opened != SQLITE_OK) fail(std::string("cannot be opened: ") + sqlite3_errstr(opened));
+}
+
+void Db3Reader::bound() {
+  sqlite3* database = database_.get();
+  sqlite3_hard_heap_limit64(kMostHeapBytes);
+  const std::uint64_t longest = std::clamp<std::uint64_t>(bytes_, 1U << 20, kMostMessageBytes);
+  sqlite3_limit(database, SQLITE_LIMIT_LENGTH, static_cast<int>(longest));
+  sqlite3_limit(database, SQLITE_LIMIT_ATTACHED, 0);
+  sqlite3_limit(database, SQLITE_LIMIT_TRIGGER_DEPTH, 0);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_WRITABLE_SCHEMA, 1, nullptr);  // else a cut file is refused whole
+  sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+  sqlite3_exec(database, "PRAGMA query_only=1; PRAGMA cell_size_check=1; PRAGMA mmap_size=0", nullptr, nullptr,
+               nullptr);
+  steps_left_ = 10'000 + bytes_ / 10;  // a row takes 20 instructions and at least 8 bytes
+  sqlite3_progress_handler(database, kStepInstructions, count_step, &steps_left_);
+}
+
+void Db3Reader::require_tables() {
+  Statement tables(database_.get(),
+                   "SELECT count(*) FROM sqlite_schema WHERE name IN ('topics', 'messages') AND type = 'table' AND "
+                   "sql LIKE 'CREATE TABLE%'");
+  if (!tables.usable() || tables.step() != SQLITE_ROW)
+    fail(std::string("no readable SQLite file: ") + sqlite3_errmsg(database_.get()));
+  if (tables.integer(0) != 2)
+    fail("an SQLite file, but no rosbag2 recording: it lacks the table 'topics' or 'messages'");
+}
+
+void Db3Reader::read_topics() {
+  Statement rows(database_.get(), "SELECT id, name, type, serialization_format FROM topics NOT INDEXED");
+  if (!rows.usable()) fail(std::string("no rosbag2 recording: ") + sqlite3_errmsg(database_.get()));
+  int result = rows.step();
+  for (; result == SQLITE_ROW && topics_.size() < kMostTopics; result = rows.step())
+    topics_[rows.integer(0)] = {rows.text(1), rows.text(2), rows.text(3), 0};
+  if (result == SQLITE_ROW) fail("has more than " + std::to_string(kMostTopics) + " topics");
+  if (result != SQLITE_DONE) fail(std::string("its topics cannot be read: ") + sqlite3_errmsg(database_.get()));
+}
+
+// The index on `timestamp` is not used: older versions lack it, and a damaged one would hide messages.
+void Db3Reader::read_places() {
+  Statement rows(database_.get(), "SELECT timestamp, topic_id, rowid FROM messages NOT INDEXED");
+  if (!rows.usable()) fail(std::string("no rosbag2 recording: ") + sqlite3_errmsg(database_.get()));
+  std::uint64_t strays = 0;
+  int result = rows.step();
+  for (; result == SQLITE_ROW; result = rows.step()) {
+    const auto topic = topics_.find(rows.integer(1));
+    if (topic == topics_.end()) {
+      ++strays;
+      continue;
+    }
+    ++topic->second.messages;
+    places_.push_back({rows.integer(0), topic->first, rows.integer(2)});
+  }
+  if (result != SQLITE_DONE) {
+    damages_.push_back(path_.string() + ": damaged after " + std::to_string(places_.size()) +
+                       " messages: " + sqlite3_errmsg(database_.get()) + "; what follows is lost");
+  }
+  if (strays != 0)
+    damages_.push_back(path_.string() + ": " + std::to_string(strays) + " messages belong to no topic of the file");
+  std::ranges::stable_sort(places_, {}, &Db3Place::time_ns);
+}
+
+std::vector<Db3Place> Db3Reader::messages(const std::vector<std::string>& topics) const {
+  std::set<std::int64_t> wanted;
+  for (const auto& [id, topic] : topics_) {
+    if (std::ranges::count(topics, topic.name) != 0) wanted.insert(id);
+  }
+  std::vector<Db3Place> found;
+  std::ranges::copy_if(places_, std::back_inserter(found), [&](const auto& p) { return wanted.contains(p.topic); });
+  return found;
+}
+
+std::vector<std::uint8_t> Db3Reader::read(const Db3Place& place) {
+  steps_left_ = 10'000;
+  Statement row(database_.get(), "SELECT data FROM messages WHERE rowid = ?");
+  row.bind(1, place.row);
+  if (row.step() != SQLITE_ROW || row.type(0) != SQLITE_BLOB) {
+    fail("message " + std::to_string(place.row) + " of " + topics_.at(place.topic).name +
+         " is damaged: " + sqlite3_errmsg(database_.get()));
+  }
+  return row.bytes(0);
+}
+
+}  // namespace rtd::rosbag2

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+struct sqlite3;
+
+namespace rtd::rosbag2 {
+
+/// A file cannot be read; what() names it and the cause.
+class Db3Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Db3Topic {
+  std::string name, type, serialization_format;
+  std::uint64_t messages = 0;
+};
+
+/// One message in the file.
+struct Db3Place {
+  std::int64_t time_ns = 0;  ///< when it was recorded
+  std::int64_t topic = 0, row = 0;
+};
+
+/// Reads a rosbag2 file of the storage plugin sqlite3, all versions of its schema: of the tables `topics` and
+/// `messages` only the columns that they share are used. The file is never written; a file that was not closed is read
+/// with the -wal beside it. Memory and time are bounded by the size of the file. Not thread-safe.
+class Db3Reader {
+ public:
+  /// Throws Db3Error: unreadable, no SQLite file, without these tables. Damage further on is listed by damages().
+  explicit Db3Reader(const std::filesystem::path& path);
+
+  /// By the id that Db3Place gives.
+  const std::map<std::int64_t, Db3Topic>& topics() const { return topics_; }
+  /// The messages of these topics, oldest first; at one time in the order of the file.
+  std::vector<Db3Place> messages(const std::vector<std::string>& topics) const;
+  /// Throws Db3Error when the message is damaged.
+  std::vector<std::uint8_t> read(const Db3Place& place);
+  /// What could not be used, one line each; empty for a sound file.
+  const std::vector<std::string>& damages() const { return damages_; }
+
+ private:
+  struct Close {
+    void operator()(sqlite3* database) const;
+  };
+
+  void open();
+  void bound();
+  void require_tables();
+  void read_topics();
+  void read_places();
+  [[noreturn]] void fail(const std::string& what) const;
+
+  const std::filesystem::path path_;
+  std::uint64_t bytes_ = 0;       ///< of the file and its -wal
+  std::uint64_t steps_left_ = 0;  ///< of the progress handler
+  std::unique_ptr<sqlite3, Close> database_;
+  std::map<std::int64_t, Db3Topic> topics_;
+  std::vector<Db3Place> places_;
+  std::vector<std::string> damages_;
+};
+
+}  // namespace rtd::rosbag2

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/rosbag2/db3_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <random>
+
+#include "services/camera/core/recording/recording.hpp"
+#include "services/camera/core/source_factory.hpp"
+
+namespace rtd::rosbag2 {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using ::testing::ThrowsMessage;
+
+constexpr char kHumble[] =
+    "CREATE TABLE topics(id INTEGER PRIMARY KEY,name TEXT NOT NULL,type TEXT NOT NULL,serialization_format TEXT NOT "
+    "NULL,offered_qos_profiles TEXT NOT NULL);"
+    "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id INTEGER NOT NULL,timestamp INTEGER NOT NULL, data BLOB NOT "
+    "NULL);"
+    "CREATE INDEX timestamp_idx ON messages (timestamp ASC);"
+    "INSERT INTO topics VALUES(1,'/a','std_msgs/msg/A','cdr',''),(2,'/b','std_msgs/msg/B','cdr','');";
+constexpr char kJazzy[] =
+    "CREATE TABLE schema(schema_version INTEGER PRIMARY KEY,ros_distro TEXT NOT NULL);"
+    "CREATE TABLE metadata(id INTEGER PRIMARY KEY,metadata_version INTEGER NOT NULL,metadata TEXT NOT NULL);"
+    "CREATE TABLE topics(id INTEGER PRIMARY KEY,name TEXT NOT NULL,type TEXT NOT NULL,serialization_format TEXT NOT "
+    "NULL,offered_qos_profiles TEXT NOT NULL,type_description_hash TEXT NOT NULL);"
+    "CREATE TABLE message_definitions(id INTEGER PRIMARY KEY,topic_type TEXT NOT NULL,encoding TEXT NOT "
+    "NULL,encoded_message_definition TEXT NOT NULL,type_description_hash TEXT NOT NULL);"
+    "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id INTEGER NOT NULL,timestamp INTEGER NOT NULL, data BLOB NOT "
+    "NULL);"
+    "CREATE INDEX timestamp_idx ON messages (timestamp ASC);"
+    "INSERT INTO schema VALUES(4,'jazzy');"
+    "INSERT INTO topics VALUES(1,'/a','std_msgs/msg/A','cdr','','RIHS01_0'),(2,'/b','std_msgs/msg/B','cdr','','');";
+/// Recorded as 3, 1, 2; 20 kB messages use overflow pages.
+constexpr char kMessages[] =
+    "INSERT INTO messages(topic_id,timestamp,data) VALUES(1,3000000000,zeroblob(20000)),(2,1000000000,x'00010203'),"
+    "(1,2000000000,x'07');";
+
+std::string content_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class Db3ReaderTest : public ::testing::Test {
+ protected:
+  Db3ReaderTest() : folder_(fs::temp_directory_path() / ("rtd_db3_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~Db3ReaderTest() override { fs::remove_all(folder_); }
+
+  static sqlite3* make(const fs::path& path, const std::string& sql) {
+    sqlite3* database = nullptr;
+    EXPECT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+    EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
+    return database;
+  }
+  fs::path closed(const std::string& sql) const {
+    fs::path path = folder_ / "a?b%c#d.db3";
+    sqlite3_close(make(path, sql));
+    return path;
+  }
+  fs::path written(const std::string& content) const {
+    fs::path path = folder_ / "raw.db3";
+    std::ofstream(path, std::ios::binary) << content;
+    return path;
+  }
+
+  const fs::path folder_;
+};
+
+void expect_three_messages(Db3Reader reader) {
+  EXPECT_THAT(reader.damages(), IsEmpty());
+  EXPECT_EQ(reader.topics().at(1).messages, 2U);
+  EXPECT_EQ(reader.topics().at(2).type, "std_msgs/msg/B");
+  const auto places = reader.messages({"/a", "/b"});
+  ASSERT_THAT(places, SizeIs(3));
+  EXPECT_THAT(reader.read(places[0]), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(reader.read(places[1]), ElementsAre(7));
+  EXPECT_EQ(reader.read(places[2]), std::vector<std::uint8_t>(20000));
+  EXPECT_THAT(reader.messages({"/b"}), SizeIs(1));
+}
+
+TEST_F(Db3ReaderTest, reads_all_messages_in_order_of_time) {
+  expect_three_messages(Db3Reader(closed(std::string(kHumble) + kMessages)));
+}
+
+TEST_F(Db3ReaderTest, reads_the_schema_of_jazzy) {
+  expect_three_messages(Db3Reader(closed(std::string(kJazzy) + kMessages)));
+}
+
+TEST_F(Db3ReaderTest, reads_a_file_that_was_never_closed_and_leaves_it_as_it_is) {
+  const fs::path open = folder_ / "open.db3", left = folder_ / "left.db3";
+  sqlite3* writer = make(open, std::string("PRAGMA journal_mode=WAL;") + kHumble + kMessages);
+  fs::copy_file(open, left);
+  fs::copy_file(open.string() + "-wal", left.string() + "-wal");
+  sqlite3_close(writer);
+  const std::string file = content_of(left), log = content_of(left.string() + "-wal");
+  ASSERT_FALSE(log.empty());
+  expect_three_messages(Db3Reader(left));
+  EXPECT_EQ(content_of(left), file);
+  EXPECT_EQ(content_of(left.string() + "-wal"), log);
+}
+
+TEST_F(Db3ReaderTest, refuses_files_that_are_no_recording) {
+  const auto open = [](const fs::path& path) { return [path] { Db3Reader{path}; }; };
+  EXPECT_THAT(open(folder_ / "none.db3"), ThrowsMessage<Db3Error>(HasSubstr("no such file")));
+  EXPECT_THAT(open(written("")), ThrowsMessage<Db3Error>(HasSubstr("empty")));
+  EXPECT_THAT(open(written(std::string(5000, 'x'))), ThrowsMessage<Db3Error>(HasSubstr("not a database")));
+  EXPECT_THAT(open(closed("CREATE TABLE t(a)")), ThrowsMessage<Db3Error>(HasSubstr("lacks the table")));
+}
+
+TEST_F(Db3ReaderTest, refuses_a_view_in_place_of_the_messages) {
+  const fs::path path = closed(
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY,name,type,serialization_format);"
+      "CREATE VIEW messages AS WITH RECURSIVE r(x) AS (SELECT 1 UNION ALL SELECT x+1 FROM r) SELECT 1 AS topic_id, x "
+      "AS timestamp, x AS rowid FROM r");
+  EXPECT_THAT([&] { Db3Reader{path}; }, ThrowsMessage<Db3Error>(HasSubstr("lacks the table")));
+}
+
+TEST_F(Db3ReaderTest, cut_file_gives_what_is_left_and_reports_the_loss) {
+  std::string many = kHumble;
+  for (int i = 0; i < 200; ++i) many += "INSERT INTO messages VALUES(NULL,1," + std::to_string(i) + ",zeroblob(1000));";
+  const std::string whole = content_of(closed(many));
+  Db3Reader reader(written(whole.substr(0, whole.size() / 2)));
+  EXPECT_THAT(reader.damages(), SizeIs(1));
+  EXPECT_GT(reader.messages({"/a"}).size(), 20U);
+  EXPECT_LT(reader.messages({"/a"}).size(), 200U);
+}
+
+TEST_F(Db3ReaderTest, survives_flipped_bytes) {
+  const std::string sound = content_of(closed(std::string(kJazzy) + kMessages));
+  std::mt19937 random(7);
+  int refused = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    std::string damaged = sound;
+    for (int i = 0; i < 8; ++i) damaged[random() % damaged.size()] = static_cast<char>(random());
+    try {
+      Db3Reader reader(written(damaged));
+      for (const Db3Place& place : reader.messages({"/a", "/b"})) EXPECT_LE(reader.read(place).size(), 1U << 20);
+    } catch (const Db3Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
+TEST_F(Db3ReaderTest, camera_plays_the_messages_as_cdr) {
+  const auto recording = camera::open_db3(closed(std::string(kJazzy) + kMessages));
+  ASSERT_THAT(recording->topics(), SizeIs(2));
+  EXPECT_EQ(recording->topics()[0].type, "std_msgs/A");
+  recording->play({"/a"});
+  const auto first = recording->next();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->recorded_ns, 2'000'000'000);
+  EXPECT_EQ(first->wire, ros::Wire::kCdr);
+  EXPECT_THAT(first->bytes, ElementsAre(7));
+  EXPECT_TRUE(recording->next());
+  EXPECT_FALSE(recording->next());
+  EXPECT_EQ(camera::complete_uri("x/y.db3"), "db3:x/y.db3");
+}
+
+}  // namespace
+}  // namespace rtd::rosbag2
