@@ -283,7 +283,6 @@ TEST(DeviceUriTest, names_device_mode_and_calibration) {
   EXPECT_EQ(uri.mode.fps, 60);
   EXPECT_EQ(uri.tolerance_ns, 5'000'000);
   EXPECT_EQ(uri.calibration_file, "/c.yaml");
-  EXPECT_EQ(parse_device_uri("realsense-dds:").device, "");
   EXPECT_EQ(complete_uri("walk.oni"), "openni2:walk.oni");
   EXPECT_TRUE(is_live("openni2:"));
   for (const char* bad : {"v4l2:", "openni2:?width=x", "openni2:?fps=0", "openni2:?tolerance_ms=0", "v4l2:/d?speed=1"})

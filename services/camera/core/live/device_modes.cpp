@@ -21,8 +21,9 @@ constexpr int kUsualWidth = 640, kUsualHeight = 480;
 constexpr double kUsualFps = 30;
 
 bool fits_frame(cv::Size size_px) {
-  return size_px.width <= static_cast<int>(msg::kMaxFrameWidth) &&
-         size_px.height <= static_cast<int>(msg::kMaxFrameHeight);
+  return size_px.width > 0 && size_px.height > 0 &&
+         msg::fits(static_cast<std::uint64_t>(size_px.width), static_cast<std::uint64_t>(size_px.height),
+                   msg::kMaxFramePixels);
 }
 
 bool fits(const DeviceMode& mode, const ModeRequest& request) {
@@ -78,11 +79,11 @@ DeviceMode choose_mode(const std::vector<DeviceMode>& modes, Stream stream, cons
     if (!best || rank(mode) < rank(*best)) best = mode;
   }
   if (best) return *best;
-  throw DeviceError(DeviceProblem::kUnsupportedMode,
-                    fmt::format("{} has no {} mode{} that can be used (readable: {}; at most {} x {} px); it has: {}. "
-                                "Choose one with ?width=&height=&fps=",
-                                device, to_string(stream), wish(request), readable_formats(stream), msg::kMaxFrameWidth,
-                                msg::kMaxFrameHeight, list_modes(modes, stream)));
+  throw DeviceError(
+      DeviceProblem::kUnsupportedMode,
+      fmt::format("{} has no {} mode{} that can be used (readable: {}; at most 1920 x 1200 px); it has: {}. "
+                  "Choose one with ?width=&height=&fps=",
+                  device, to_string(stream), wish(request), readable_formats(stream), list_modes(modes, stream)));
 }
 
 }  // namespace rtd::camera

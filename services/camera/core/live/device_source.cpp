@@ -202,7 +202,7 @@ std::optional<SourceFrame> DeviceSource::make_frame(const FramePairer::Pair& pai
   const std::int64_t color_ns = pair.color.stamp_ns;
   const std::int64_t stamp_ns = info_.live ? timeline_.host_ns(color_ns) + options_.epoch_ns : color_ns;
   SourceFrame frame = to_frame(stamp_ns, std::move(color.image), std::move(depth.image), info_);
-  frame.image.depth_offset_s = depth_offset_s(color_ns, pair.depth.stamp_ns, info_);
+  set_depth_stamp(frame, stamp_ns + pair.depth.stamp_ns - color_ns, info_);
   health_.note_frame(last_pair_ns_, frame.has_depth);
   return frame;
 }
