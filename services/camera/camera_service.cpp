@@ -74,6 +74,8 @@ void CameraService::add_options(CLI::App& app, Config& config) {
   app.add_option("--groundtruth-out", config.groundtruth_out,
                  "Write the ground truth to this file (camera.groundtruth_out)");
   app.add_option("--export", config.export_folder, "Write the source to a new folder in TUM's layout and end");
+  app.add_flag("--preview", config.preview,
+               "Print what the source delivers, write a picture and end (--preview --help)");
 }
 
 CameraService::CameraService(const Config& config, service::Runtime& runtime)

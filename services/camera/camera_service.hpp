@@ -38,6 +38,7 @@ struct ServiceConfig {
   std::vector<std::string> wait_for = {"filter", "slam"};
   std::string groundtruth_out;
   std::string export_folder;  ///< only for the help of --export, which runs no service
+  bool preview = false;       ///< the same of --preview
 
   void bind(auto& binder) {
     binder.field("source", source,

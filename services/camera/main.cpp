@@ -11,6 +11,7 @@
 #include "services/camera/camera_service.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/camera/core/tum/tum_export.hpp"
+#include "services/camera/preview_command.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -50,5 +51,6 @@ int run_export(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   if (rtd::camera::wants_export(argc, argv)) return rtd::camera::run_export(argc, argv);
+  if (rtd::camera::wants_preview(argc, argv)) return rtd::camera::run_preview(argc, argv);
   return rtd::service::run_service<rtd::camera::CameraService>(argc, argv);
 }

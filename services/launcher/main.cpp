@@ -115,7 +115,8 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   CLI::App* command = app.add_subcommand("run", "Run camera, detector, filter and slam on a source and report");
   command
       ->add_option("--source", options.source,
-                   "tum:FOLDER, bag:FILE, mcap:FILE, ros2:COLOR,DEPTH[,INFO] or synthetic:NAME[?seed=..&frames=..]")
+                   "tum:FOLDER, bag:FILE, mcap:FILE, ros2:COLOR,DEPTH[,INFO], openni2:[URI], v4l2:DEVICE[,DEPTH] or "
+                   "synthetic:NAME[?seed=..&frames=..]")
       ->required();
   command->add_option("--out", options.out_dir, "Folder for trajectory, map, logs and report")->required();
   command->add_option("--pace", options.pace, "realtime, asap or lockstep")
@@ -164,7 +165,8 @@ void add_demo_command(CLI::App& app, DemoOptions& options) {
 
 void add_doctor_command(CLI::App& app, DoctorOptions& options) {
   CLI::App* command = app.add_subcommand(
-      "doctor", "Check this host for a run with these options: services, memory, network, keys, weights, data");
+      "doctor",
+      "Check this host for a run with these options: services, memory, network, keys, weights, data, cameras");
   command->add_flag("--clean", options.clean, "Remove what killed processes left in /dev/shm");
   service::add_bus_options(*command, options.bus);
   command->add_option("--config", options.config.file, "YAML file with a section per service")

@@ -158,6 +158,7 @@ int check_all(const DoctorOptions& options, std::ostream& out) {
   check_bus(bus, findings);
   check_weights(findings);
   check_data(findings);
+  describe_cameras(camera::find_cameras(), findings);
   bool failed = false;
   for (const Finding& finding : findings) {
     out << kVerdicts.at(static_cast<std::size_t>(finding.verdict)) << finding.text << '\n';

@@ -9,6 +9,7 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/service/bus_config.hpp"
+#include "services/camera/devices/device_factory.hpp"
 
 namespace rtd::launcher {
 
@@ -38,5 +39,8 @@ std::string check_keystore(const bus::BusOptions& options, std::int64_t now_s, F
 /// Checks what the network settings need on this host: interfaces that are up, peers that resolve and are reachable,
 /// free UDP ports.
 void check_network(const bus::BusOptions& options, Findings& findings);
+
+/// A line for each camera with its modes, or what keeps it from being used; one line when there is none.
+void describe_cameras(const std::vector<camera::FoundCamera>& cameras, Findings& findings);
 
 }  // namespace rtd::launcher

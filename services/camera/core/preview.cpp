@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/preview.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+namespace rtd::camera {
+namespace {
+
+constexpr double kEdgeStep = 1.08;                // of depth from a pixel to the next
+constexpr std::uint64_t kFewestEdgePixels = 500;  // in all frames
+constexpr double kClearPeak = 1.15;               // times the mean score
+constexpr std::uint64_t kCompareEvery = 5;        // frames
+
+bool is_edge(double near_units, double far_units) {
+  return near_units > 0 && far_units > kEdgeStep * near_units;
+}
+
+/// The near side of depth edges, at least `margin` away from the border.
+std::vector<cv::Point> depth_edges(const cv::Mat& depth, cv::Size margin_px) {
+  std::vector<cv::Point> edges;
+  for (int y = margin_px.height + 1; y < depth.rows - margin_px.height - 1; ++y) {
+    for (int x = margin_px.width + 1; x < depth.cols - margin_px.width - 1; ++x) {
+      const double here = depth.at<std::uint16_t>(y, x);
+      if (is_edge(here, depth.at<std::uint16_t>(y, x + 1)) || is_edge(here, depth.at<std::uint16_t>(y, x - 1)) ||
+          is_edge(here, depth.at<std::uint16_t>(y + 1, x)) || is_edge(here, depth.at<std::uint16_t>(y - 1, x)))
+        edges.emplace_back(x, y);
+    }
+  }
+  return edges;
+}
+
+cv::Mat color_edges(const cv::Mat& color_bgr) {
+  cv::Mat grey, right, down, strength;
+  cv::cvtColor(color_bgr, grey, cv::COLOR_BGR2GRAY);
+  cv::GaussianBlur(grey, grey, {5, 5}, 1.0);
+  cv::Sobel(grey, right, CV_32F, 1, 0);
+  cv::Sobel(grey, down, CV_32F, 0, 1);
+  cv::magnitude(right, down, strength);
+  return cv::min(strength, 150.0);  // a few strong edges must not outvote the rest
+}
+
+/// Where the parabola through three values has its top, relative to the middle one.
+double top_of(double before, double middle, double after) {
+  const double bend = before - 2 * middle + after;
+  return bend < 0 ? 0.5 * (before - after) / bend : 0;
+}
+
+}  // namespace
+
+void Preview::add(const SourceFrame& frame) {
+  if (frames_ == 0) first_ns_ = frame.image.stamp_ns;
+  newest_ns_ = frame.image.stamp_ns;
+  color_ = frame.image.color_bgr;
+  depth_ = frame.image.depth;
+  holes_ += 1 - static_cast<double>(cv::countNonZero(depth_)) / static_cast<double>(depth_.total());
+  offsets_s_ += frame.image.depth_offset_s;
+  if (frames_++ % kCompareEvery == 0) compare_edges(color_, depth_);
+}
+
+void Preview::compare_edges(const cv::Mat& color_bgr, const cv::Mat& depth) {
+  const std::vector<cv::Point> edges = depth_edges(depth, {kReachX, kReachY});
+  const cv::Mat strength = color_edges(color_bgr);
+  edge_pixels_ += edges.size();
+  for (int dy = -kReachY; dy <= kReachY; ++dy) {
+    for (int dx = -kReachX; dx <= kReachX; ++dx) {
+      double sum = 0;
+      for (const cv::Point& edge : edges) sum += static_cast<double>(strength.at<float>(edge.y + dy, edge.x + dx));
+      scores_.at<double>(dy + kReachY, dx + kReachX) += sum;
+    }
+  }
+}
+
+std::optional<cv::Point2d> Preview::registration_px() const {
+  if (edge_pixels_ < kFewestEdgePixels) return std::nullopt;
+  double best = 0;
+  cv::Point at;
+  cv::minMaxLoc(scores_, nullptr, &best, nullptr, &at);
+  const bool inside = at.x > 0 && at.y > 0 && at.x < scores_.cols - 1 && at.y < scores_.rows - 1;
+  if (!inside || best < kClearPeak * cv::mean(scores_)[0]) return std::nullopt;
+  const auto score = [&](int x, int y) { return scores_.at<double>(y, x); };
+  const double x = at.x - kReachX + top_of(score(at.x - 1, at.y), best, score(at.x + 1, at.y));
+  const double y = at.y - kReachY + top_of(score(at.x, at.y - 1), best, score(at.x, at.y + 1));
+  return cv::Point2d(-x, -y);
+}
+
+double Preview::rate_hz() const {
+  if (newest_ns_ <= first_ns_) return 0;
+  return static_cast<double>(frames_ - 1) * 1e9 / static_cast<double>(newest_ns_ - first_ns_);
+}
+
+double Preview::hole_share() const {
+  return frames_ == 0 ? 0 : holes_ / static_cast<double>(frames_);
+}
+
+cv::Mat Preview::picture() const {
+  if (frames_ == 0) return {};
+  double nearest = 0, farthest = 0;
+  const cv::Mat measured = depth_ > 0;
+  cv::minMaxLoc(depth_, &nearest, &farthest, nullptr, nullptr, measured);
+  const double range = std::max(1.0, farthest - nearest);
+  cv::Mat grey, colors, both;
+  depth_.convertTo(grey, CV_8UC1, -255 / range, 255 * farthest / range);
+  cv::applyColorMap(grey, colors, cv::COLORMAP_JET);
+  colors.setTo(cv::Scalar::all(0), depth_ == 0);
+  cv::hconcat(color_, colors, both);
+  return both;
+}
+
+std::string Preview::text(const SourceInfo& info, const SourceCounters& counters) const {
+  const auto& camera = info.camera.parameters();
+  const std::optional<cv::Point2d> shift = registration_px();
+  std::string text = fmt::format("source        {}\nframes        {}, {:.1f} per second, nominal {:g}\n", info.uri,
+                                 frames_, rate_hz(), info.fps);
+  text += fmt::format("size          {} px, fx {:.1f} fy {:.1f} cx {:.1f} cy {:.1f}\n", size_text(color_.size()),
+                      camera.fx, camera.fy, camera.cx, camera.cy);
+  text += fmt::format("depth unit    {:g} m\nholes         {:.1f} % of the depth image\n", info.depth_scale_m,
+                      100 * hole_share());
+  text += fmt::format("depth - color {:.1f} ms by the stamps\n", 1e3 * depth_offset_s());
+  text += shift ? fmt::format("              {:.1f} px to the right, {:.1f} px down by the edges\n", shift->x, shift->y)
+                : std::string("              not measured in px: point the camera at objects in front of a wall\n");
+  return text + fmt::format("left out      {} frames, without depth {}, reconnected {} times\n",
+                            counters.skipped_total(), counters.frames_without_depth, counters.reconnects);
+}
+
+}  // namespace rtd::camera

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/preview_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+
+#include "common/service/bus_config.hpp"
+#include "common/service/command_line.hpp"
+#include "common/service/exit_code.hpp"
+#include "services/camera/core/live/live_source.hpp"
+#include "services/camera/core/preview.hpp"
+#include "services/camera/core/source_factory.hpp"
+#include "services/camera/live_camera.hpp"
+
+namespace rtd::camera {
+namespace {
+
+struct PreviewOptions {
+  std::string source, picture = "preview.png";
+  double seconds = 3;
+  service::BusArguments bus;
+};
+
+std::unique_ptr<FrameSource> open_for_preview(const PreviewOptions& options) {
+  constexpr std::int64_t kOpenTimeoutNs = 10'000'000'000;
+  const std::string uri = complete_uri(options.source);
+  if (!is_live(uri)) return make_source(uri);
+  const bus::BusOptions bus = service::load_bus_options(options.bus, {}, "rtd-camera-preview");
+  return make_live_source(uri, bus, kOpenTimeoutNs, [](const std::string& what) {
+    if (!what.empty()) std::cerr << "rtd-camera: " << what << '\n';
+  });
+}
+
+/// Frames of so many seconds by their stamps.
+Preview play(FrameSource& source, double seconds) {
+  Preview preview;
+  std::optional<std::int64_t> until_ns;
+  while (const std::optional<SourceFrame> frame = source.next()) {
+    const std::int64_t stamp_ns = frame->image.stamp_ns;
+    if (!until_ns) until_ns = stamp_ns + static_cast<std::int64_t>(seconds * 1e9);
+    if (stamp_ns > *until_ns) break;
+    preview.add(*frame);
+  }
+  return preview;
+}
+
+int preview(const PreviewOptions& options) {
+  const std::unique_ptr<FrameSource> source = open_for_preview(options);
+  source->open();
+  const Preview measured = play(*source, options.seconds);
+  if (measured.frames() == 0) {
+    std::cerr << "rtd-camera: " << options.source << " gives no frame\n";
+    return service::kRunFailed;
+  }
+  std::cout << measured.text(source->info(), source->counters());
+  if (!cv::imwrite(options.picture, measured.picture())) {
+    std::cerr << "rtd-camera: " << options.picture << " cannot be written: choose another file with --picture\n";
+    return service::kRunFailed;
+  }
+  std::cout << "picture       " << options.picture << '\n';
+  return service::kOk;
+}
+
+}  // namespace
+
+bool wants_preview(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc, [](const std::string& argument) { return argument == "--preview"; });
+}
+
+int run_preview(int argc, char** argv) {
+  PreviewOptions options;
+  bool asked = false;
+  CLI::App app{"Measure what a source delivers and write a picture of it", "rtd-camera"};
+  app.add_flag("--preview", asked, "Print rate, size, share of holes and offset of depth against colour");
+  app.add_option("--source", options.source, "The camera, as for a run (`rtd doctor` lists cameras)")->required();
+  app.add_option("--seconds", options.seconds, "Of the source to measure")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  app.add_option("--picture", options.picture, "PNG or JPEG file: colour beside depth")->capture_default_str();
+  service::add_bus_options(app, options.bus);
+  return service::run_command(app, argc, argv, [&]() -> int {
+    try {
+      return preview(options);
+    } catch (const SourceError& error) {
+      std::cerr << "rtd-camera: " << error.what() << '\n';
+      return is_live(complete_uri(options.source)) ? service::kRunFailed : service::kUsageOrConfig;
+    } catch (const service::ConfigError& error) {
+      std::cerr << "rtd-camera: " << error.what() << '\n';
+      return service::kUsageOrConfig;
+    } catch (const std::exception& error) {
+      std::cerr << "rtd-camera: " << error.what() << '\n';
+      return service::kRunFailed;
+    }
+  });
+}
+
+}  // namespace rtd::camera

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "services/launcher/doctor/doctor_command.hpp"
+
+namespace rtd::launcher {
+namespace {
+
+using camera::DeviceMode;
+using camera::Stream;
+using ::testing::HasSubstr;
+
+TEST(CameraCheckTest, lists_cameras_with_their_modes_and_what_keeps_them_from_being_used) {
+  const std::vector<DeviceMode> modes = {{Stream::kColor, {640, 480}, 30, "RGB8"},
+                                         {Stream::kDepth, {640, 480}, 30, "Z16"}};
+  Findings findings;
+  describe_cameras({{"openni2:1d27/0609@1/5", "PrimeSense", modes, ""},
+                    {"v4l2:/dev/video0", "Webcam", {modes[0]}, "it gives no depth"},
+                    {"v4l2:/dev/video1", "/dev/video1", {}, "no permission"}},
+                   findings);
+  ASSERT_EQ(findings.size(), 3U);
+  EXPECT_EQ(findings[0].verdict, Verdict::kOk);
+  EXPECT_EQ(
+      findings[0].text,
+      "camera: --source openni2:1d27/0609@1/5 (PrimeSense): colour 640 x 480 RGB8 30 Hz; depth 640 x 480 Z16 30 Hz");
+  EXPECT_EQ(findings[1].verdict, Verdict::kOk) << "a webcam is no fault";
+  EXPECT_THAT(findings[1].text, HasSubstr("it gives no depth"));
+  EXPECT_EQ(findings[2].verdict, Verdict::kWarn);
+}
+
+TEST(CameraCheckTest, says_what_the_build_supports_when_there_is_none) {
+  Findings findings;
+  describe_cameras({}, findings);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_THAT(findings[0].text, HasSubstr("openni2"));
+}
+
+}  // namespace
+}  // namespace rtd::launcher
