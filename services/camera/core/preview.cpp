@@ -11,24 +11,34 @@
 namespace rtd::camera {
 namespace {
 
-constexpr double kEdgeStep = 1.08;                // of depth from a pixel to the next
+constexpr double kEdgeStep = 1.08;                // of depth from one surface to the next
 constexpr std::uint64_t kFewestEdgePixels = 500;  // in all frames
 constexpr double kClearPeak = 1.15;               // times the mean score
 constexpr std::uint64_t kCompareEvery = 5;        // frames
+constexpr int kGapReach = 4;                      // px, from a pixel across a gap
 
-bool is_edge(double near_units, double far_units) {
-  return near_units > 0 && far_units > kEdgeStep * near_units;
+/// Where the surface at a pixel ends if what is next measured in this direction lies behind: in the middle of the gap
+/// that sensors leave at many edges.
+std::optional<cv::Point> end_towards(const cv::Mat& depth, cv::Point at, cv::Point direction) {
+  const double here = depth.at<std::uint16_t>(at);
+  for (int k = 1; k <= kGapReach; ++k) {
+    const double next = depth.at<std::uint16_t>(at + k * direction);
+    if (next > kEdgeStep * here) return at + k / 2 * direction;
+    if (next > 0) break;
+  }
+  return std::nullopt;
 }
 
-/// The near side of depth edges, at least `margin` away from the border.
+/// Depth edges, found from pixels at least `margin` away from the border.
 std::vector<cv::Point> depth_edges(const cv::Mat& depth, cv::Size margin_px) {
   std::vector<cv::Point> edges;
-  for (int y = margin_px.height + 1; y < depth.rows - margin_px.height - 1; ++y) {
-    for (int x = margin_px.width + 1; x < depth.cols - margin_px.width - 1; ++x) {
-      const double here = depth.at<std::uint16_t>(y, x);
-      if (is_edge(here, depth.at<std::uint16_t>(y, x + 1)) || is_edge(here, depth.at<std::uint16_t>(y, x - 1)) ||
-          is_edge(here, depth.at<std::uint16_t>(y + 1, x)) || is_edge(here, depth.at<std::uint16_t>(y - 1, x)))
-        edges.emplace_back(x, y);
+  for (int y = margin_px.height; y < depth.rows - margin_px.height; ++y) {
+    for (int x = margin_px.width; x < depth.cols - margin_px.width; ++x) {
+      if (depth.at<std::uint16_t>(y, x) == 0) continue;
+      for (const cv::Point direction : {cv::Point(1, 0), cv::Point(-1, 0), cv::Point(0, 1), cv::Point(0, -1)}) {
+        const std::optional<cv::Point> end = end_towards(depth, {x, y}, direction);
+        if (end) edges.push_back(*end);
+      }
     }
   }
   return edges;
@@ -63,7 +73,7 @@ void Preview::add(const SourceFrame& frame) {
 }
 
 void Preview::compare_edges(const cv::Mat& color_bgr, const cv::Mat& depth) {
-  const std::vector<cv::Point> edges = depth_edges(depth, {kReachX, kReachY});
+  const std::vector<cv::Point> edges = depth_edges(depth, {kReachX + kGapReach, kReachY + kGapReach});
   const cv::Mat strength = color_edges(color_bgr);
   edge_pixels_ += edges.size();
   for (int dy = -kReachY; dy <= kReachY; ++dy) {
