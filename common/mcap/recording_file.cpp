@@ -26,7 +26,10 @@ constexpr std::array kOtherFormats = {
         "a ROS 1 bag: MCAP's own tool makes a recording with all its topics ('mcap convert FILE.bag FILE.mcap'); "
         "of its colour and depth images alone, 'rtd convert bag:FILE NEW.mcap' makes one and --source bag:FILE "
         "plays them"},
-    KnownFormat{"SQLite format 3", "a rosbag2 database: make an MCAP of it with 'ros2 bag convert'"},
+    KnownFormat{
+        "SQLite format 3",
+        "a rosbag2 database: 'rtd info' shows what it contains, --source db3:FILE plays it, and 'ros2 bag convert' "
+        "makes an MCAP of it"},
     KnownFormat{"\x28\xb5\x2f\xfd", "compressed with zstd: unpack it first ('zstd -d')"},
     KnownFormat{"\x04\x22\x4d\x18", "compressed with LZ4: unpack it first ('lz4 -d')"},
     KnownFormat{"version https://git-lfs", "a pointer of Git LFS: fetch the file itself with 'git lfs pull'"},

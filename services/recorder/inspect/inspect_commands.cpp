@@ -10,6 +10,8 @@
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
+#include "services/camera/core/frame_source.hpp"
+#include "services/recorder/inspect/foreign_report.hpp"
 #include "services/recorder/inspect/recording_diff.hpp"
 #include "services/recorder/inspect/recording_report.hpp"
 
@@ -114,8 +116,8 @@ int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
 }
 
 CLI::App* add_info_command(CLI::App& parent, InfoOptions& options) {
-  CLI::App* command =
-      parent.add_subcommand("info", "Show what a recording (MCAP) contains: topics, rates, gaps, losses, damage");
+  CLI::App* command = parent.add_subcommand(
+      "info", "Show what a recording (MCAP, ROS 1 bag, rosbag2 .db3) contains: topics, rates, gaps, losses, damage");
   command->add_option("file", options.file, "Recording")->required();
   command->add_flag("--json", options.json, "Print JSON instead of text");
   command->add_flag("--check", options.check,
@@ -124,7 +126,12 @@ CLI::App* add_info_command(CLI::App& parent, InfoOptions& options) {
 }
 
 int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
-  return service::report_errors<mcap::RecordingFileError>("rtd info", err, [&] {
+  return service::report_errors<mcap::RecordingFileError, camera::SourceError>("rtd info", err, [&] {
+    const auto print_report = [&](const RecordingReport& report) {
+      out << (options.json ? service::json_text(to_json(report, options.file)) + '\n' : to_text(report, options.file));
+      return report.damaged() ? service::kPartialLoss : service::kOk;
+    };
+    if (const auto foreign = report_on_foreign(options.file)) return print_report(*foreign);
     const io::FileSource source = mcap::open_recording(options.file);
     service::Progress progress(err, "reading", source.size());
     ReportOptions how;
@@ -132,8 +139,7 @@ int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
     how.on_progress = [&](std::uint64_t bytes) { progress.reach(bytes); };
     RecordingReport report = report_on(source, how);
     report.being_written = source.being_written();
-    out << (options.json ? service::json_text(to_json(report, options.file)) + '\n' : to_text(report, options.file));
-    return report.damaged() ? service::kPartialLoss : service::kOk;
+    return print_report(report);
   });
 }
 

@@ -70,6 +70,7 @@ struct ChunkReport {
 };
 
 struct RecordingReport {
+  std::string format = "MCAP";  ///< or that of another program, whose files have neither summary nor checksums
   mcap::Header header;
   std::uint64_t file_bytes = 0;
   bool being_written = false;
