@@ -31,8 +31,9 @@ std::unique_ptr<FrameSource> open_for_preview(const PreviewOptions& options) {
   const std::string uri = complete_uri(options.source);
   if (!is_live(uri)) return make_source(uri);
   const bus::BusOptions bus = service::load_bus_options(options.bus, {}, "rtd-camera-preview");
-  return make_live_source(uri, bus, kOpenTimeoutNs, [](const std::string& what) {
-    if (!what.empty()) std::cerr << "rtd-camera: " << what << '\n';
+  return make_live_source(uri, bus, kOpenTimeoutNs, [said = std::string()](const std::string& what) mutable {
+    if (!what.empty() && what != said) std::cerr << "rtd-camera: " << what << '\n';
+    said = what;
   });
 }
 

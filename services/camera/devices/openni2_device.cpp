@@ -194,7 +194,7 @@ DeviceError OpenNi2Device::refusal() const {
   if (uri_.ends_with(".oni")) return {DeviceProblem::kUnsupportedMode, "there is no file " + uri_};
   if (found.getSize() > 0)
     return {DeviceProblem::kAbsent, fmt::format("openni2:{} is not plugged in; cameras found:{}", uri_, uris)};
-  return {DeviceProblem::kAbsent, fmt::format("openni2:{}: no OpenNI2 camera is plugged in", uri_)};
+  return {DeviceProblem::kAbsent, fmt::format("no OpenNI2 camera{}{} is plugged in", uri_.empty() ? "" : " ", uri_)};
 }
 
 std::vector<DeviceMode> OpenNi2Device::modes() {
