@@ -21,7 +21,8 @@ namespace rtd::bus::interop {
 template <class Visitor>
 void for_each_topic(Visitor visit) {
   using namespace topics;
-  visit(kFrame), visit(kFeatures), visit(kKeyframes), visit(kTracking), visit(kStatus), visit(kColorJpeg);
+  visit(kFrame), visit(kFrame848), visit(kFrame1280), visit(kFrame1920), visit(kFeatures), visit(kKeyframes),
+      visit(kTracking), visit(kStatus), visit(kColorJpeg);
   visit(kCameraInfo), visit(kDetections), visit(kDynamicMask), visit(kOdometry), visit(kPose), visit(kTf);
   visit(kPath), visit(kMapPoints), visit(kDensePoints), visit(kDiagnostics);
 }
