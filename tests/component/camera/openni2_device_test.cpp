@@ -101,7 +101,7 @@ TEST_F(OpenNi2DeviceTest, other_files_and_absent_cameras_are_named) {
   std::filesystem::remove(file_);
   EXPECT_THAT([&] { source()->open(); }, ThrowsMessage<SourceError>(HasSubstr("there is no file")));
   const auto absent = make_live_source("openni2:1d27/0609@1/99", {}, 300'000'000, [](const std::string&) {});
-  EXPECT_THAT([&] { absent->open(); }, ThrowsMessage<SourceError>(HasSubstr("openni2:1d27/0609@1/99")));
+  EXPECT_THAT([&] { absent->open(); }, ThrowsMessage<SourceError>(HasSubstr("no OpenNI2 camera 1d27/0609@1/99")));
 }
 
 TEST_F(OpenNi2DeviceTest, opened_and_closed_often_it_leaks_no_descriptor) {
