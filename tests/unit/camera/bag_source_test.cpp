@@ -149,11 +149,11 @@ TEST(BagSource, asks_which_when_several_topics_fit) {
 }
 
 TEST(BagSource, names_an_encoding_that_cannot_be_read) {
-  ImageBag bayer;
-  bayer.add_info();
-  bayer.add_color(1, cv::Mat(ImageBag::kHeight, ImageBag::kWidth, CV_8UC1), "bayer_grbg8");
-  bayer.add_depth(1);
-  EXPECT_TRUE(refuses(bayer.uri(), {"'bayer_grbg8'", "rgb8, bgr8", ImageBag::kColor}));
+  ImageBag planar;
+  planar.add_info();
+  planar.add_color(1, cv::Mat(ImageBag::kHeight, ImageBag::kWidth, CV_8UC1), "nv21");
+  planar.add_depth(1);
+  EXPECT_TRUE(refuses(planar.uri(), {"'nv21'", "rgb8, bgr8", "yuv422", "bayer_grbg16", "JPEG", ImageBag::kColor}));
   ImageBag bag;
   bag.add_info();
   bag.add_color(1);

@@ -163,7 +163,7 @@ TEST_F(LiveSourceTest, refuses_encodings_sizes_and_byte_orders_by_name) {
     LiveSource played = source();
     EXPECT_THAT([&] { played.open(); }, ThrowsMessage<SourceError>(HasSubstr(text)));
   };
-  refusal([&] { info(), color(1, ImageBag::color(), "bayer_rggb8"), depth(1); }, "'bayer_rggb8'");
+  refusal([&] { info(), color(1, ImageBag::color(), "nv21"), depth(1); }, "'nv21'");
   refusal([&] { info(), color(1), depth(1, ImageBag::depth(), "8UC1"); }, "'8UC1'");
   refusal([&] { info(), color(1), depth(1, cv::Mat(12, 16, CV_16UC1, cv::Scalar(1))); }, "/d has 16 x 12 px");
   refusal([&] { info(ImageBag::camera_info(0)); }, "not calibrated");

@@ -3,19 +3,22 @@
 #include "services/camera/core/recording/ros_images.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <span>
+#include <string_view>
 
 #include "common/ros_codec/byte_cursor.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/recording/color_encodings.hpp"
+#include "services/camera/core/recording/rvl.hpp"
 
 namespace rtd::camera {
 namespace {
 
+constexpr const char* kDepthTransport = "compressedDepth";
 constexpr double kMaxUnits = 65534;  // 65535 is TUM's "saturated"
 
 /// depth = a / (pixel - b), 0 = no measurement.
@@ -44,31 +47,31 @@ cv::Mat quantize_depth(const cv::Mat& depth_m, double unit_m) {
   return depth;
 }
 
-/// From ROS's compressed_depth_image_transport: 12 bytes (a format, quantisation parameters a and b), then a 16-bit
-/// PNG; of floats the PNG holds a / depth + b (inverse depth). Throws SourceError for its other compression, RVL.
-ImageRead decode_compressed_depth(const msg::CompressedImage& image, const std::string& name, double float_unit_m) {
-  if (image.format.find("rvl") != std::string::npos || image.format.find("RVL") != std::string::npos) {
-    throw SourceError(name + " is encoded as '" + image.format + "', readable: compressedDepth with PNG");
+constexpr const char* kDepthCodecs = "compressedDepth (PNG, RVL)";
+
+/// The 16-bit image behind the header of compressedDepth. A format that names no codec is PNG, as in ROS 1.
+ImageRead decode_depth_codec(const std::string& format, ros::Bytes bytes, const std::string& name) {
+  const std::string codec = format.substr(format.find(kDepthTransport) + std::string_view(kDepthTransport).size());
+  if (codec.find("rvl") != std::string::npos || codec.find("RVL") != std::string::npos) return {decode_rvl(bytes), {}};
+  if (codec.find_first_not_of(' ') == std::string::npos || codec.find("png") != std::string::npos) {
+    return decode_depth(bytes, name);
   }
+  throw SourceError(name + " is encoded as '" + format + "', which cannot be read; readable: " + kDepthCodecs);
+}
+
+/// From ROS's compressed_depth_image_transport: 12 bytes (a code of the format, quantisation parameters a and b), then
+/// a 16-bit image; of floats it holds a / depth + b (inverse depth). Throws SourceError for an unknown codec.
+ImageRead decode_compressed_depth(const msg::CompressedImage& image, const std::string& name, double float_unit_m) {
   ros::ByteCursor cursor(image.data);
   cursor.read<std::int32_t>();  // the driver's own code of the format; the text says more
   const auto a = cursor.read<float>(), b = cursor.read<float>();
-  ImageRead result = decode_depth(cursor.take(cursor.remaining()), name);
-  if (!result.problem && image.format.starts_with("32FC1")) {
-    result.image = quantize_depth(from_inverse(result.image, a, b), float_unit_m);
-  }
+  ImageRead result = decode_depth_codec(image.format, cursor.take(cursor.remaining()), name);
+  if (result.problem) return result;
+  if (image.format.starts_with("32FC1")) result.image = quantize_depth(from_inverse(result.image, a, b), float_unit_m);
+  drop_saturated(result.image);
   return result;
 }
 
-/// How an encoding arranges its bytes.
-struct PixelLayout {
-  int type;                        ///< OpenCV's
-  std::array<int, 3> bgr_channel;  ///< positions of blue, green and red
-};
-const std::map<std::string, PixelLayout> kColorLayouts = {
-    {"bgr8", {CV_8UC3, {0, 1, 2}}},  {"8UC3", {CV_8UC3, {0, 1, 2}}},  {"rgb8", {CV_8UC3, {2, 1, 0}}},
-    {"bgra8", {CV_8UC4, {0, 1, 2}}}, {"rgba8", {CV_8UC4, {2, 1, 0}}}, {"mono8", {CV_8UC1, {0, 0, 0}}},
-    {"8UC1", {CV_8UC1, {0, 0, 0}}}};
 const std::map<std::string, int> kDepthTypes = {{"16UC1", CV_16UC1}, {"mono16", CV_16UC1}, {"32FC1", CV_32FC1}};
 
 constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
@@ -95,22 +98,23 @@ cv::Mat view_of(msg::Image& image, int type) {
 
 ImageRead raw_color(const RecordedMessage& message) {
   auto image = ros::decode<msg::Image>(message.wire, message.bytes);
-  const auto layout = kColorLayouts.find(image.encoding);
-  if (layout == kColorLayouts.end()) {
-    throw unsupported(message, image.encoding, "rgb8, bgr8, rgba8, bgra8, mono8, JPEG, PNG");
+  const ColorEncoding* const encoding = find_color_encoding(image.encoding);
+  if (encoding == nullptr) throw unsupported(message, image.encoding, known_color_encodings() + ", JPEG, PNG");
+  if (image.is_bigendian != 0 && CV_MAT_DEPTH(encoding->type) != CV_8U) {
+    throw unsupported(message, image.encoding + ", big endian", "little endian");
   }
-  const cv::Mat pixels = view_of(image, layout->second.type);
-  ImageRead result{cv::Mat(pixels.size(), CV_8UC3), {}};
-  const auto& channel = layout->second.bgr_channel;
-  const std::array<int, 6> from_to = {channel[0], 0, channel[1], 1, channel[2], 2};
-  cv::mixChannels(&pixels, 1, &result.image, 1, from_to.data(), 3);
-  return result;
+  const cv::Mat pixels = view_of(image, encoding->type);
+  if (const std::string defect = size_defect(*encoding, pixels.size()); !defect.empty()) {
+    throw ros::WireError("an image of " + size_text(pixels.size()) + " px in " + image.encoding + ": " + defect);
+  }
+  return {to_bgr(*encoding, pixels), {}};
 }
 
 int depth_type(const RecordedMessage& message, const msg::Image& image) {
   const auto type = kDepthTypes.find(image.encoding);
   if (type == kDepthTypes.end()) {
-    throw unsupported(message, image.encoding, "16UC1 (mm), mono16, 32FC1 (m), 16-bit PNG, compressedDepth (PNG)");
+    throw unsupported(message, image.encoding,
+                      std::string("16UC1 (mm), mono16 (mm), 32FC1 (m), 16-bit PNG, ") + kDepthCodecs);
   }
   if (image.is_bigendian != 0) throw unsupported(message, image.encoding + ", big endian", "little endian");
   return type->second;
@@ -127,7 +131,7 @@ ImageRead raw_depth(const RecordedMessage& message, double float_unit_m) {
 
 ImageRead compressed_depth(const RecordedMessage& message, double float_unit_m) {
   const auto image = ros::decode<msg::CompressedImage>(message.wire, message.bytes);
-  if (image.format.find("compressedDepth") == std::string::npos) return decode_depth(image.data, name_of(message));
+  if (image.format.find(kDepthTransport) == std::string::npos) return decode_depth(image.data, name_of(message));
   return decode_compressed_depth(image, name_of(message), float_unit_m);
 }
 
