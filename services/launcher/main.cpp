@@ -115,8 +115,8 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   CLI::App* command = app.add_subcommand("run", "Run camera, detector, filter and slam on a source and report");
   command
       ->add_option("--source", options.source,
-                   "tum:FOLDER, bag:FILE, mcap:FILE, ros2:COLOR,DEPTH[,INFO], openni2:[URI], v4l2:DEVICE[,DEPTH] or "
-                   "synthetic:NAME[?seed=..&frames=..]")
+                   "tum:FOLDER, bag:FILE, mcap:FILE, db3:FILE [?color=TOPIC&depth=TOPIC&calibration=FILE], "
+                   "ros2:COLOR,DEPTH[,INFO], openni2:[URI], v4l2:DEVICE[,DEPTH] or synthetic:NAME[?seed=..&frames=..]")
       ->required();
   command->add_option("--out", options.out_dir, "Folder for trajectory, map, logs and report")->required();
   command->add_option("--pace", options.pace, "realtime, asap or lockstep")

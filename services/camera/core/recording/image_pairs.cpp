@@ -3,10 +3,12 @@
 #include <utility>
 
 #include "common/io/text.hpp"
+#include "common/ros_codec/byte_cursor.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "services/camera/core/calibration.hpp"
 #include "services/camera/core/depth_alignment.hpp"
 #include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/recording/driver_topics.hpp"
 #include "services/camera/core/recording/frame_pairer.hpp"
 #include "services/camera/core/recording/recorded_extrinsics.hpp"
 #include "services/camera/core/recording/recording_source.hpp"
@@ -20,6 +22,20 @@ double float_unit_of(const RecordedTopic& depth) {
   const auto factor = depth.metadata.find(kDepthFactor);
   const std::optional<double> value = factor == depth.metadata.end() ? std::nullopt : io::parse_number(factor->second);
   return value && *value >= 1 && *value <= 1e6 ? 1.0 / *value : kFloatDepthUnitM;
+}
+
+/// The unit of 16-bit depth that the RealSense SDK recorded beside it; empty when there is none. Throws SourceError.
+std::optional<double> sdk_depth_unit_m(Recording& recording, const std::string& depth) {
+  const std::string topic = sdk_depth_unit_topic(depth);
+  if (topic.empty() || topic_named(recording, topic) == nullptr) return std::nullopt;
+  constexpr float kMin_m = 1e-6F, kMax_m = 0.1F;
+  const RecordedMessage message = first_of(recording, topic);
+  ros::ByteCursor cursor(message.bytes);
+  if (message.wire == ros::Wire::kCdr) cursor.take(4);  // header
+  const auto unit_m = cursor.read<float>();
+  if (unit_m >= kMin_m && unit_m <= kMax_m) return static_cast<double>(unit_m);  // NaN compares false
+  throw SourceError(recording.name() + ", topic " + topic + ": the depth unit is " + std::to_string(unit_m) +
+                    " m, allowed is 0.000001 to 0.1; give another with depth_factor in ?calibration=FILE");
 }
 
 class ImagePairs final : public RecordingSource {
@@ -79,7 +95,8 @@ void ImagePairs::look_at_first_images() {
             ros::decode<msg::Header>(depth.wire, depth.bytes).frame_id,
             decode_depth(depth, float_unit_m_).image.size(),
             {}};
-  info_.depth_scale_m = depth_unit_m(depth, float_unit_m_);
+  const auto sdk_unit_m = sdk_depth_unit_m(*recording_, topics_.depth);
+  info_.depth_scale_m = sdk_unit_m ? *sdk_unit_m : depth_unit_m(depth, float_unit_m_);
 }
 
 /// The camera of a CameraInfo; empty when the recording has none.

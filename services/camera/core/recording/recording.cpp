@@ -3,10 +3,10 @@
 #include "services/camera/core/recording/recording.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/recording/driver_topics.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -19,34 +19,14 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
 using Topics = std::vector<RecordedTopic>;
 using Fits = bool (*)(const RecordedTopic&);
 
-/// How known drivers name them, behind the camera's own name. Raw images before compressed ones; depth must be
-/// registered to the colour image.
-constexpr std::array kColorNames = {"/rgb/image_color",
-                                    "/rgb/image_rect_color",
-                                    "/color/image_raw",
-                                    "/rgb/image_raw",
-                                    "/color/image_raw/compressed",
-                                    "/rgb/image_color/compressed",
-                                    "/rgb/image_rect_color/compressed",
-                                    "/rgb/image_raw/compressed"};
-constexpr std::array kDepthNames = {"/aligned_depth_to_color/image_raw",
-                                    "/depth_registered/hw_registered/image_rect_raw",
-                                    "/depth_registered/image",
-                                    "/depth_registered/image_raw",
-                                    "/depth/image",
-                                    "/aligned_depth_to_color/image_raw/compressedDepth",
-                                    "/depth_registered/image_raw/compressedDepth",
-                                    "/depth/image/compressedDepth"};
-
 bool is_image(const RecordedTopic& topic) {
   return topic.type == "sensor_msgs/Image" || topic.type == "sensor_msgs/CompressedImage";
 }
 bool is_depth(const RecordedTopic& topic) {
-  return is_image(topic) && topic.name.find("depth") != std::string::npos;
+  return is_image(topic) && named_as_depth(topic.name);
 }
 bool is_color(const RecordedTopic& topic) {
-  const auto has = [&topic](const char* part) { return topic.name.find(part) != std::string::npos; };
-  return is_image(topic) && !has("depth") && !has("/ir") && !has("infra") && !has("mask");
+  return is_image(topic) && !named_as_other_than_color(topic.name);
 }
 bool is_info(const RecordedTopic& topic) {
   return topic.type == "sensor_msgs/CameraInfo";
@@ -76,23 +56,43 @@ std::string check_named(const Recording& recording, const std::string& key, cons
   return name;
 }
 
-/// The one candidate; the user must choose among several.
-std::string only(const Recording& recording, const std::string& key, const Topics& candidates) {
-  if (candidates.size() == 1) return candidates.front().name;
-  const std::string fix = "name it: ?" + key + "=TOPIC";
-  if (candidates.empty()) throw error(recording, "has no " + key + " images that can be recognised by name; " + fix);
-  throw error(recording, "has several topics that could be " + key + "; " + fix);
+constexpr const char* kNameThem = "name them: ?color=TOPIC&depth=TOPIC";
+
+SourceError several(const Recording& recording, const std::string& what, const std::vector<std::string>& candidates) {
+  std::string text = "has several topics that could be " + what + ": ";
+  for (const std::string& candidate : candidates) text += candidate + (&candidate == &candidates.back() ? "" : ", ");
+  return error(recording, text + "; " + kNameThem);
 }
 
-template <class Names>
-std::string choose_image(const Recording& recording, const std::string& key, Fits fits, const Names& names) {
-  const Topics candidates = fitting(recording, fits);
-  for (const char* name : names) {
-    Topics known = candidates;
-    std::erase_if(known, [name](const RecordedTopic& topic) { return !topic.name.ends_with(name); });
-    if (!known.empty()) return only(recording, key, known);
-  }
-  return only(recording, key, candidates);
+std::vector<std::string> names_of(const Topics& topics) {
+  std::vector<std::string> names;
+  for (const RecordedTopic& topic : topics) names.push_back(topic.name);
+  return names;
+}
+
+/// The one named, else all that fit.
+std::vector<std::string> image_candidates(const Recording& recording, const std::string& key, const std::string& named,
+                                          Fits fits) {
+  if (named.empty()) return names_of(fitting(recording, fits));
+  return {check_named(recording, key, named, is_image)};
+}
+
+/// The one candidate; the user must choose among several.
+std::string only(const Recording& recording, const std::string& key, const std::vector<std::string>& candidates) {
+  if (candidates.size() == 1) return candidates.front();
+  if (!candidates.empty()) throw several(recording, key, candidates);
+  throw error(recording, "has no " + key + " images that can be recognised by name; " + kNameThem);
+}
+
+TopicPair choose_images(const Recording& recording, const ImageTopics& named) {
+  const auto color = image_candidates(recording, "color", named.color, is_color);
+  const auto depth = image_candidates(recording, "depth", named.depth, is_depth);
+  const std::vector<TopicPair> known = driver_pairs(color, depth);
+  if (known.size() == 1) return known.front();
+  if (known.empty()) return {only(recording, "color", color), only(recording, "depth", depth)};
+  std::vector<std::string> pairs;
+  for (const TopicPair& pair : known) pairs.push_back("?color=" + pair.color + "&depth=" + pair.depth);
+  throw several(recording, "color and depth", pairs);
 }
 
 /// The calibration topic lies next to the image topic: /camera/rgb/image_color, /camera/rgb/camera_info; in bags of the
@@ -134,10 +134,8 @@ RecordedMessage first_of(Recording& recording, const std::string& topic) {
 
 ImageTopics choose_topics(const Recording& recording, const ImageTopics& named) {
   ImageTopics topics;
-  topics.color = named.color.empty() ? choose_image(recording, "color", is_color, kColorNames)
-                                     : check_named(recording, "color", named.color, is_image);
-  topics.depth = named.depth.empty() ? choose_image(recording, "depth", is_depth, kDepthNames)
-                                     : check_named(recording, "depth", named.depth, is_image);
+  const TopicPair images = choose_images(recording, named);
+  topics.color = images.color, topics.depth = images.depth;
   topics.info =
       named.info.empty() ? choose_info(recording, topics.color) : check_named(recording, "info", named.info, is_info);
   topics.depth_info = named.depth_info.empty() ? info_beside(fitting(recording, is_info), topics.depth)

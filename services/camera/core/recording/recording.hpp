@@ -76,8 +76,8 @@ struct ImageTopics {
   std::string color, depth, info, depth_info;
 };
 
-/// Completes what the user named: by the names that TUM, the OpenNI and RealSense drivers and we ourselves give, else
-/// the only topic of a fitting type; the calibrations are those beside the images. `info` and `depth_info` stay empty
+/// Completes what the user named: by the names that known drivers give (driver_topics.hpp), else the only topic of a
+/// fitting type; the calibrations are those beside the images. `info` and `depth_info` stay empty
 /// when there is none. Throws SourceError for a topic that is absent, of another type or ambiguous, listing the
 /// topics there are.
 ImageTopics choose_topics(const Recording& recording, const ImageTopics& named);

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/core/recording/driver_topics.hpp"
+
+#include <gmock/gmock.h>
+
+#include "common/ros_codec/wire.hpp"
+#include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/recording/recording.hpp"
+#include "services/camera/core/source_factory.hpp"
+#include "tests/unit/camera/image_bag.hpp"
+
+namespace rtd::camera {
+namespace {
+
+using test::ImageBag;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+/// A recording of which only the topics matter.
+class ImageTopicsOnly final : public Recording {
+ public:
+  explicit ImageTopicsOnly(const std::vector<std::string>& images) : Recording("x.bag") {
+    for (const std::string& name : images) topics_.push_back({name, "sensor_msgs/Image", 1, {}});
+  }
+  std::optional<RecordedMessage> first(const std::string&) override { return std::nullopt; }
+  std::vector<std::int64_t> first_times_ns(const std::string&, std::size_t) override { return {}; }
+  void play(const std::vector<std::string>&) override {}
+  std::optional<RecordedMessage> next() override { return std::nullopt; }
+  std::vector<std::string> take_damages() override { return {}; }
+};
+
+ImageTopics chosen(const std::vector<std::string>& images, const ImageTopics& named = {}) {
+  return choose_topics(ImageTopicsOnly(images), named);
+}
+
+TEST(DriverTopics, are_found_by_themselves_behind_any_namespace) {
+  const std::vector<TopicPair> cameras = {
+      {"/camera/color/image_raw", "/camera/aligned_depth_to_color/image_raw"},
+      {"/camera/camera/color/image_raw", "/camera/camera/aligned_depth_to_color/image_raw"},
+      {"/rgb/image_raw", "/depth_to_rgb/image_raw"},
+      {"/kinect2/qhd/image_color_rect", "/kinect2/qhd/image_depth_rect"},
+      {"/kinect2/hd/image_color", "/kinect2/hd/image_depth_rect"},
+      {"/zed/zed_node/rgb/image_rect_color", "/zed/zed_node/depth/depth_registered"},
+      {"/oak/rgb/image_raw", "/oak/stereo/image_raw"},
+      {"/color/image", "/stereo/depth"},
+      {"/camera/color/image_raw", "/camera/depth/image_raw"},
+      {"/camera/rgb/image_color", "/camera/depth/image"},
+      {"/device_0/sensor_1/Color_0/image/data", "/device_0/sensor_0/Depth_0/image/data"}};
+  for (const auto& [color, depth] : cameras) {
+    for (const std::string prefix : {"", "/robot/head"}) {
+      if (!prefix.empty() && color.starts_with("/device_")) continue;  // the SDK knows no namespaces
+      const ImageTopics topics =
+          chosen({prefix + depth, "/left/infra1/image_rect_raw", "/map/image", prefix + color, "/other/depth"});
+      EXPECT_EQ(topics.color, prefix + color);
+      EXPECT_EQ(topics.depth, prefix + depth);
+    }
+  }
+}
+
+TEST(DriverTopics, registered_depth_and_raw_images_come_first) {
+  const ImageTopics topics =
+      chosen({"/camera/depth/image_rect_raw", "/camera/color/image_raw/compressed", "/camera/color/image_raw",
+              "/camera/aligned_depth_to_color/image_raw/compressedDepth", "/camera/aligned_depth_to_color/image_raw"});
+  EXPECT_EQ(topics.color, "/camera/color/image_raw");
+  EXPECT_EQ(topics.depth, "/camera/aligned_depth_to_color/image_raw");
+}
+
+TEST(DriverTopics, images_of_one_resolution_belong_together) {
+  const ImageTopics topics =
+      chosen({"/kinect2/hd/image_color_rect", "/kinect2/qhd/image_depth_rect", "/kinect2/hd/image_depth_rect"});
+  EXPECT_EQ(topics.depth, "/kinect2/hd/image_depth_rect");
+}
+
+TEST(DriverTopics, of_two_cameras_both_are_listed_and_one_can_be_named) {
+  const std::vector<std::string> images = {"/a/color/image_raw", "/a/aligned_depth_to_color/image_raw",
+                                           "/b/color/image_raw", "/b/aligned_depth_to_color/image_raw"};
+  EXPECT_THAT([&] { chosen(images); },
+              ThrowsMessage<SourceError>(
+                  AllOf(HasSubstr("?color=/a/color/image_raw&depth=/a/aligned_depth_to_color/image_raw"),
+                        HasSubstr("?color=/b/color/image_raw&depth=/b/"), HasSubstr("?color=TOPIC&depth=TOPIC"))));
+  EXPECT_EQ(chosen(images, {.color = "/b/color/image_raw", .depth = {}, .info = {}, .depth_info = {}}).depth,
+            images[3]);
+}
+
+/// As the RealSense SDK records: all in frame "0", the unit in an option of the sensor.
+std::string sdk_bag(ImageBag& bag, float unit_m) {
+  const std::string color = "/device_0/sensor_1/Color_0", depth = "/device_0/sensor_0/Depth_0";
+  msg::Image color_image = ImageBag::image(ImageBag::color(), "rgb8", 1);
+  msg::Image depth_image = ImageBag::image(ImageBag::depth(), "mono16", 1);
+  color_image.header.frame_id = depth_image.header.frame_id = "0";
+  for (const std::string& stream : {color, depth}) {
+    bag.add(stream + "/info/camera_info", "sensor_msgs/CameraInfo", ImageBag::camera_info(), 0.5);
+    bag.add(stream + "/tf/0", "geometry_msgs/Transform", msg::RosTransform{{0, 0, 0}, {0, 0, 0, 1}}, 0.5);
+  }
+  bag.add("/device_0/sensor_0/option/Depth_Units/value", "std_msgs/Float32", std::array<float, 1>{unit_m}, 0.5);
+  bag.add(color + "/image/data", "sensor_msgs/Image", color_image, 1);
+  bag.add(depth + "/image/data", "sensor_msgs/Image", depth_image, 1);
+  return bag.uri();
+}
+
+TEST(RealSenseSdkBag, topics_calibration_and_depth_unit_are_found) {
+  ImageBag bag;
+  const auto source = make_source(sdk_bag(bag, 0.00025F));
+  EXPECT_NEAR(source->info().depth_scale_m, 0.00025, 1e-9);
+  EXPECT_DOUBLE_EQ(source->info().camera.parameters().fx, 30);
+  EXPECT_TRUE(source->next());
+}
+
+TEST(RealSenseSdkBag, a_unit_that_cannot_be_is_refused) {
+  for (const float unit_m : {0.0F, -1.0F, 7.0F, NAN}) {
+    ImageBag bag;
+    const std::string uri = sdk_bag(bag, unit_m);
+    EXPECT_THAT([&] { make_source(uri); },
+                ThrowsMessage<SourceError>(AllOf(HasSubstr("Depth_Units"), HasSubstr("depth_factor"))));
+  }
+}
+
+}  // namespace
+}  // namespace rtd::camera
