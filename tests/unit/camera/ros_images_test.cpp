@@ -77,7 +77,7 @@ TEST(RosColor, reads_both_orders_of_yuv_422) {
     }
   }
   for (const char* encoding : {"yuv422", "uyvy"}) expect_color(encoding, uyvy, {0, 0, 255}, 2);
-  for (const char* encoding : {"yuv422_yuy2", "yuy2", "yuyv"}) expect_color(encoding, yuyv, {0, 0, 255}, 2);
+  for (const char* encoding : {"yuv422_yuy2", "yuy2", "yuyv", "YUYV"}) expect_color(encoding, yuyv, {0, 0, 255}, 2);
 }
 
 TEST(RosColor, reads_grey_and_colours_of_8_and_16_bits) {

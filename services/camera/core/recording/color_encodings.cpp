@@ -30,6 +30,7 @@ constexpr std::array kEncodings = {ColorEncoding{"rgb8", CV_8UC3, cv::COLOR_RGB2
                                    ColorEncoding{"yuv422_yuy2", CV_8UC2, cv::COLOR_YUV2BGR_YUYV},
                                    ColorEncoding{"yuy2", CV_8UC2, cv::COLOR_YUV2BGR_YUYV},
                                    ColorEncoding{"yuyv", CV_8UC2, cv::COLOR_YUV2BGR_YUYV},
+                                   ColorEncoding{"YUYV", CV_8UC2, cv::COLOR_YUV2BGR_YUYV},  // RealSense SDK
                                    ColorEncoding{"bayer_rggb8", CV_8UC1, cv::COLOR_BayerRGGB2BGR},
                                    ColorEncoding{"bayer_bggr8", CV_8UC1, cv::COLOR_BayerBGGR2BGR},
                                    ColorEncoding{"bayer_gbrg8", CV_8UC1, cv::COLOR_BayerGBRG2BGR},
