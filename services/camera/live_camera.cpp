@@ -11,6 +11,7 @@
 #include "services/camera/core/live/device_source.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/devices/device_factory.hpp"
+#include "services/camera/realsense_device.hpp"
 #include "services/camera/ros2_feed.hpp"
 
 namespace rtd::camera {
@@ -53,7 +54,9 @@ std::unique_ptr<FrameSource> make_live_source(const std::string& uri, const bus:
                                               std::function<void(const std::string&)> on_wait) {
   if (is_device(uri)) {
     DeviceOptions options{parse_device_uri(uri), open_timeout_ns, epoch_ns(), std::move(on_wait)};
-    std::unique_ptr<LiveDevice> device = make_device(options.uri);
+    const bool on_bus = options.uri.scheme == "realsense-dds";
+    std::unique_ptr<LiveDevice> device =
+        on_bus ? make_realsense_device(bus, options.uri.device) : make_device(options.uri);
     return std::make_unique<DeviceSource>(std::move(device), std::make_unique<HostClock>(), std::move(options));
   }
   LiveOptions options = parse_live_options(uri);

@@ -19,7 +19,7 @@ struct FoundCamera {
   std::string problem;  ///< why it cannot be used now; empty when it can
 };
 
-/// The device of an openni2: or v4l2: URI, not opened. Throws SourceError when this build has no support for it, naming
+/// The device of an openni2: or v4l2: URI (realsense-dds: needs a bus, realsense_device.hpp), not opened. Throws SourceError when this build has no support for it, naming
 /// the package.
 std::unique_ptr<LiveDevice> make_device(const DeviceUri& uri);
 

@@ -2,23 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // rtd-camera with a ROS 2 camera driver: writers of other participants with the QoS and messages that drivers have.
-#include <gmock/gmock.h>
-#include <unistd.h>
-
 #include <atomic>
-#include <future>
 #include <thread>
 
 #include "common/bus/raw_bus.hpp"
 #include "common/ros_codec/wire.hpp"
-#include "services/camera/camera_service.hpp"
-#include "tests/support/inbox.hpp"
+#include "tests/component/camera/camera_on_bus.hpp"
 
 namespace rtd::camera {
 namespace {
 
 using namespace std::chrono_literals;
-using test_support::Inbox;
 using ::testing::HasSubstr;
 
 constexpr int kWidth = 64, kHeight = 48;
@@ -110,48 +104,9 @@ class Mounting {
   std::unique_ptr<bus::RawWriter> writer_;
 };
 
-class Ros2Camera : public ::testing::TestWithParam<std::string> {
+class Ros2Camera : public test::CameraOnBus {
  protected:
-  Ros2Camera() {
-    static std::uint32_t domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
-    options_.vendor = GetParam();
-    options_.domain = domain++;
-    bus_ = bus::connect(options_);
-    frames_reader_ = bus_->reader<msg::RgbdFrame>(bus::topics::kFrame, [this](auto frame) { frames_.take(frame); });
-    statuses_reader_ = bus_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](auto status) {
-      if (status->service == "camera") statuses_.take(status);
-    });
-    config_.source = kSource;
-    config_.wait_for = {};
-  }
-  service::ExitCode run() {
-    service::Heartbeat heartbeat(*bus_, "camera", stop_);
-    service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kRealtime, options_};
-    return CameraService(config_, runtime).run();
-  }
-  std::future<service::ExitCode> start() {
-    return std::async(std::launch::async, [this] { return run(); });
-  }
-  bool said(msg::ServiceState state, const std::string& text) {
-    return statuses_.wait([&](const auto& all) {
-      return std::any_of(all.begin(), all.end(), [&](const auto& status) {
-        return status->state == state && status->message.find(text) != std::string::npos;
-      });
-    });
-  }
-  bool frames_come(std::size_t more = 5) {
-    const std::size_t before = frames_.all().size();
-    return frames_.wait([&](const auto& all) { return all.size() >= before + more; });
-  }
-
-  bus::BusOptions options_;
-  std::shared_ptr<bus::Bus> bus_;
-  service::StopToken stop_;
-  ServiceConfig config_;
-  Inbox<msg::RgbdFrame> frames_;
-  Inbox<msg::ServiceStatus> statuses_;
-  bus::Reader<msg::RgbdFrame> frames_reader_;
-  bus::Reader<msg::ServiceStatus> statuses_reader_;
+  Ros2Camera() : CameraOnBus(kSource) {}
 };
 
 TEST_P(Ros2Camera, plays_a_driver_that_sends_best_effort) {
@@ -219,13 +174,7 @@ TEST_P(Ros2Camera, gives_up_in_time_and_stops_while_it_waits) {
   EXPECT_EQ(running.get(), service::kOk);
 }
 
-std::vector<std::string> networked_vendors() {
-  std::vector<std::string> vendors = bus::available_vendors();
-  std::erase(vendors, "inprocess");
-  return vendors;
-}
-
-INSTANTIATE_TEST_SUITE_P(EachVendor, Ros2Camera, ::testing::ValuesIn(networked_vendors()),
+INSTANTIATE_TEST_SUITE_P(EachVendor, Ros2Camera, ::testing::ValuesIn(test::networked_vendors()),
                          [](const auto& vendor) { return vendor.param; });
 
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Ros2Camera);

@@ -146,11 +146,18 @@ void DeviceSource::calibrate(const DeviceSetup& setup) {
   check_frame_size(setup.color.size_px.width, setup.color.size_px.height, name);
   const auto& camera = info_.camera.parameters();
   const cv::Size calibrated(camera.width, camera.height);
-  if (calibrated == setup.color.size_px && setup.depth.size_px == calibrated) return;
+  const cv::Size depth_px = setup.depth_camera ? calibrated : setup.depth.size_px;
+  if (calibrated == setup.color.size_px && depth_px == calibrated) return register_depth(setup);
   throw SourceError(
       fmt::format("{}: colour {}, depth {}, calibration {} px differ: choose one size with ?width=&height= "
                   "and give a calibration of that size",
                   name, size_text(setup.color.size_px), size_text(setup.depth.size_px), size_text(calibrated)));
+}
+
+void DeviceSource::register_depth(const DeviceSetup& setup) {
+  if (!setup.depth_camera) return;
+  const auto& [camera, T_color_depth] = *setup.depth_camera;
+  registration_.emplace(info_.camera, camera, T_color_depth, info_.depth_scale_m);
 }
 
 std::optional<SourceFrame> DeviceSource::read() {
@@ -197,6 +204,7 @@ std::optional<SourceFrame> DeviceSource::make_frame(const FramePairer::Pair& pai
   if (color.problem) return skips_.add(*color.problem), std::nullopt;
   ImageRead depth = decode_image(setup_.depth, pair.depth.message.bytes, name_of(pair.depth.message));
   if (depth.problem) return skips_.add(*depth.problem), std::nullopt;
+  if (registration_) depth.image = (*registration_)(depth.image);
   const auto mismatch = size_mismatch(name_of(color_message), color.image, depth.image, info_.camera);
   if (mismatch) return skips_.add(*mismatch), std::nullopt;
   const std::int64_t color_ns = pair.color.stamp_ns;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "common/vision/depth_registration.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/live/device_health.hpp"
 #include "services/camera/core/live/device_timeline.hpp"
@@ -28,8 +29,9 @@ struct DeviceOptions {
 };
 
 /// Frames of a device on this host or network: colour and depth paired by the device's stamps, which are put on the
-/// host's clock. A device that is unplugged, silent or without pairs is closed and opened again, with a back-off, until
-/// the source is stopped; its frames go on with the same calibration. A recording is played once, with its own stamps.
+/// host's clock; depth of a camera of its own is registered to colour. A device that is unplugged, silent or without
+/// pairs is closed and opened again, with a back-off, until the source is stopped; its frames go on with the same
+/// calibration. A recording is played once, with its own stamps.
 class DeviceSource final : public FrameSource {
  public:
   DeviceSource(std::unique_ptr<LiveDevice> device, std::unique_ptr<DeviceClock> clock, DeviceOptions options);
@@ -59,6 +61,7 @@ class DeviceSource final : public FrameSource {
   void start();
   void use(const DeviceSetup& setup);
   void calibrate(const DeviceSetup& setup);
+  void register_depth(const DeviceSetup& setup);
   std::optional<SourceFrame> read();
   void take(DeviceImage image);
   void follow_clock(std::int64_t stamp_ns, std::int64_t now_ns);
@@ -80,6 +83,7 @@ class DeviceSource final : public FrameSource {
   const std::unique_ptr<LiveDevice> device_;
   const std::unique_ptr<DeviceClock> clock_;
   SourceInfo info_;
+  std::optional<vision::DepthRegistration> registration_;
   SkipLog skips_;
   std::optional<FramePairer> pairer_;
   DeviceTimeline timeline_;

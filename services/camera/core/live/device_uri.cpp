@@ -14,7 +14,7 @@
 namespace rtd::camera {
 namespace {
 
-constexpr std::array kSchemes = {"openni2", "v4l2"};
+constexpr std::array kSchemes = {"openni2", "v4l2", "realsense-dds"};
 
 double parse_mode_value(const std::string& uri, const std::string& key, const std::string& value, double most) {
   const std::optional<double> number = io::parse_number(value);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
 #include <chrono>
 #include <cstdint>
 #include <opencv2/core.hpp>
@@ -35,12 +36,19 @@ class DeviceError : public std::runtime_error {
   DeviceProblem problem_;
 };
 
+/// The camera that takes the depth images, when they are not registered to colour.
+struct DepthCamera {
+  geometry::CameraModel camera;
+  Eigen::Isometry3d T_color_depth = Eigen::Isometry3d::Identity();  ///< p_color = T_color_depth * p_depth, m
+};
+
 /// What a started device delivers.
 struct DeviceSetup {
   DeviceMode color, depth;
   double depth_scale_m = 0.001;  ///< metres of one depth unit
   /// Of the colour image; empty when the device does not know its own lens.
   std::optional<geometry::CameraModel> camera;
+  std::optional<DepthCamera> depth_camera;  ///< empty when depth is registered to colour
 };
 
 /// An image as the device gives it, not yet decoded (pixel_format.hpp).

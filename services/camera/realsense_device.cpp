@@ -1,0 +1,440 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/realsense_device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "common/bus/raw_bus.hpp"
+#include "common/concurrency/bounded_queue.hpp"
+#include "common/ros2/names.hpp"
+#include "common/ros_codec/wire.hpp"
+#include "common/service/log.hpp"
+#include "services/camera/core/live/pixel_format.hpp"
+#include "services/camera/core/live/realsense_protocol.hpp"
+
+namespace rtd::camera {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+using namespace realsense;
+
+constexpr std::size_t kEvents = 64;
+constexpr int kStreamDepth = 8;
+constexpr milliseconds kSearch{1000};       // for a device and its description; DeviceSource tries again
+constexpr milliseconds kOtherDevices{300};  // after the first: whether there are others
+constexpr milliseconds kAnswer{1000};       // to a request
+constexpr milliseconds kFirstImages{2000};
+constexpr const char* kDdsImage = "sensor_msgs::msg::dds_::Image_";
+
+/// What the bus brings: a sample, or without bytes the news that writers or readers have come or gone.
+struct Event {
+  std::string topic;
+  bus::WriterId writer{};
+  std::shared_ptr<const bus::ByteBlock> bytes;
+  ros::Bytes cdr() const { return {reinterpret_cast<const std::uint8_t*>(bytes->view().data()), bytes->view().size()}; }
+};
+
+/// Cyclone DDS refuses topics with '-' in their names, and these cameras use Fast DDS themselves.
+std::shared_ptr<bus::RawBus> connect_to_cameras(bus::BusOptions options) {
+  constexpr const char* kVendor = "fastdds";
+  const std::vector<std::string> vendors = bus::available_vendors();
+  if (std::ranges::find(vendors, kVendor) == vendors.end()) {
+    throw bus::BusError("realsense-dds: needs Fast DDS, which this build does not have: configure and build with it");
+  }
+  options.vendor = kVendor;
+  return bus::connect_raw(options);
+}
+
+/// Subscriptions to topics whose writers come and go, read from one thread.
+class Subscriptions {
+ public:
+  explicit Subscriptions(const bus::BusOptions& options)
+      : queue_(kEvents, concurrency::Overflow::kDropOldest), bus_(connect_to_cameras(options)) {
+    bus_->watch([this](const bus::TopicWriter&, bus::WriterChange) { queue_.push(Event{}); });
+  }
+  ~Subscriptions() {
+    bus_->watch(nullptr);
+    lines_.clear();
+  }
+
+  void add(const std::string& topic) {
+    lines_.try_emplace(topic);
+    follow_writers();
+  }
+  void remove(const std::string& topic) { lines_.erase(topic); }
+  bool published(const std::string& topic) const { return !lines_.at(topic).writers.empty(); }
+  bool writes(const std::string& topic, const bus::WriterId& writer) const {
+    const auto line = lines_.find(topic);
+    return line != lines_.end() && line->second.writers.contains(writer);
+  }
+  std::unique_ptr<bus::RawWriter> writer(const bus::RawTopic& topic) {
+    bus::StatusCallbacks callbacks;
+    callbacks.on_matched = [this](int) { queue_.push(Event{}); };
+    return bus_->writer(topic, {}, std::move(callbacks));
+  }
+
+  /// The next event; empty when none came in time.
+  std::optional<Event> next(Clock::time_point until) {
+    const auto left = std::chrono::duration_cast<milliseconds>(until - Clock::now());
+    std::optional<Event> event = queue_.pop_for(std::max(left, milliseconds(0)));
+    if (event && !event->bytes) follow_writers();
+    return event;
+  }
+
+ private:
+  struct Line {
+    std::set<bus::WriterId> writers;
+    std::unique_ptr<bus::TopicListener> listener;
+  };
+
+  void follow_writers() {
+    std::map<std::string, std::set<bus::WriterId>> there;
+    for (const bus::TopicWriter& writer : bus_->writers()) {
+      const auto line = lines_.find(writer.topic.name);
+      if (line == lines_.end() || writer.own) continue;
+      there[line->first].insert(writer.id);
+      if (!line->second.writers.contains(writer.id)) listen(line->first, line->second, writer);
+    }
+    for (auto& [topic, line] : lines_) line.writers = there[topic];
+  }
+  void listen(const std::string& topic, Line& line, const bus::TopicWriter& writer) try {
+    if (!line.listener) {
+      bus::RawHandlers handlers;
+      handlers.on_sample = [this, topic](const bus::RawSample& sample) {
+        queue_.push(Event{topic, sample.writer, sample.bytes});
+      };
+      line.listener = std::make_unique<bus::TopicListener>(*bus_, std::move(handlers), false, kStreamDepth);
+    }
+    line.listener->add(writer);
+  } catch (const bus::BusError& error) {
+    SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", topic, error.what());
+  }
+
+  concurrency::BoundedQueue<Event> queue_;
+  std::shared_ptr<bus::RawBus> bus_;
+  std::map<std::string, Line> lines_;
+};
+
+/// The devices that announce themselves, each with its description as far as it has come.
+class Devices {
+ public:
+  struct Device {
+    DeviceInfo info;
+    bus::WriterId announcer{};
+    Description description;
+    std::optional<nlohmann::json> reply;  ///< to the last open-streams
+  };
+
+  explicit Devices(const bus::BusOptions& options) : subscriptions_(options) { subscriptions_.add(kDeviceInfoTopic); }
+
+  Subscriptions& subscriptions() { return subscriptions_; }
+  std::map<std::string, Device>& all() { return devices_; }  ///< by topic root
+
+  /// The next sample of a topic that is not the devices' own.
+  std::optional<Event> next(Clock::time_point until) {
+    while (std::optional<Event> event = subscriptions_.next(until)) {
+      if (!take(*event)) return event;
+    }
+    return std::nullopt;
+  }
+  /// Waits until the condition holds.
+  template <class Condition>
+  bool wait(milliseconds time, Condition&& holds) {
+    const Clock::time_point until = Clock::now() + time;
+    while (!holds()) {
+      const std::optional<Event> event = subscriptions_.next(until);
+      if (!event) return holds();
+      take(*event);
+    }
+    return true;
+  }
+
+ private:
+  /// Whether it is of the devices' own topics, or news.
+  bool take(const Event& event) try {
+    if (!event.bytes) return forget_silent(), true;
+    if (event.topic == kDeviceInfoTopic) return take_info(event), true;
+    for (auto& [root, device] : devices_) {
+      if (event.topic == notifications_of(root)) return take_notification(device, event), true;
+    }
+    return false;
+  } catch (const ros::WireError& error) {
+    SPDLOG_WARN("event=message_refused topic={} cause=\"{}\"", event.topic, error.what());
+    return true;
+  }
+  void take_info(const Event& event) {
+    const std::optional<DeviceInfo> info = parse_device_info(read_flexible(event.cdr()));
+    if (!info) return forget(event.writer);
+    Device& device = devices_[info->topic_root];
+    device.info = *info;
+    device.announcer = event.writer;
+    subscriptions_.add(notifications_of(info->topic_root));
+  }
+  static void take_notification(Device& device, const Event& event) {
+    nlohmann::json message = read_flexible(event.cdr());
+    device.description.take(message);
+    if (message.is_object() && message.value("id", "") == "open-streams") device.reply = std::move(message);
+  }
+  void forget(const bus::WriterId& announcer) {
+    std::erase_if(devices_, [&](const auto& item) {
+      if (item.second.announcer != announcer) return false;
+      subscriptions_.remove(notifications_of(item.first));
+      return true;
+    });
+  }
+  void forget_silent() {
+    std::set<bus::WriterId> gone;
+    for (const auto& [root, device] : devices_) {
+      if (!subscriptions_.writes(kDeviceInfoTopic, device.announcer)) gone.insert(device.announcer);
+    }
+    for (const bus::WriterId& announcer : gone) forget(announcer);
+  }
+  static std::string notifications_of(const std::string& root) { return root + "/notification"; }
+
+  Subscriptions subscriptions_;
+  std::map<std::string, Device> devices_;
+};
+
+std::string label(const DeviceInfo& info) {
+  return fmt::format("{} (serial {})", info.name, info.serial.empty() ? "unknown" : info.serial);
+}
+
+/// The bytes of an image without those between its rows. Throws ros::WireError.
+std::vector<std::uint8_t> packed_rows(msg::Image& image) {
+  if (image.height == 0 || image.data.size() % image.height != 0) throw ros::WireError("an image whose rows are cut");
+  const std::size_t step = image.data.size() / image.height;
+  const std::string format = pixel_format_of(image.encoding);
+  const std::size_t pixel_bytes = format == "GREY" ? 1 : (format == "RGB8" || format == "BGR8") ? 3 : 2;
+  const std::size_t row = pixel_bytes * image.width;
+  if (step == row) return std::move(image.data);
+  if (step < row) throw ros::WireError("an image whose rows are too short");
+  std::vector<std::uint8_t> packed;
+  packed.reserve(row * image.height);
+  for (std::size_t y = 0; y < image.height; ++y) {
+    const auto begin = image.data.begin() + static_cast<std::ptrdiff_t>(y * step);
+    packed.insert(packed.end(), begin, begin + static_cast<std::ptrdiff_t>(row));
+  }
+  return packed;
+}
+
+class RealsenseDevice final : public LiveDevice {
+ public:
+  RealsenseDevice(const bus::BusOptions& options, std::string serial)
+      : serial_(std::move(serial)),
+        domain_(options.domain),
+        loopback_only_(options.network.loopback_only),
+        devices_(options) {}
+  ~RealsenseDevice() override { close(); }
+
+  std::string name() const override { return "realsense-dds:" + serial_; }
+  void open() override;
+  std::vector<DeviceMode> modes() override { return device().description.modes(); }
+  DeviceSetup start(const ModeRequest& request) override;
+  std::optional<DeviceImage> read(milliseconds timeout) override;
+  void close() noexcept override;
+
+ private:
+  /// The one that open() has found. Throws kAbsent when it has gone.
+  Devices::Device& device();
+  bool wanted(const DeviceInfo& info) const { return serial_.empty() || info.serial == serial_; }
+  std::string choose() const;
+  std::string whereabouts() const;
+  void request(const DeviceMode& color, const DeviceMode& depth);
+  /// The mode in which a stream really comes, by its first image.
+  DeviceMode first_image(Stream stream, const DeviceMode& asked);
+  std::optional<DeviceImage> take(const Event& event);
+  DepthCamera depth_camera(const DeviceMode& depth);
+
+  const std::string serial_;
+  const std::uint32_t domain_;
+  const bool loopback_only_;
+  mutable Devices devices_;
+  std::string root_, color_topic_, depth_topic_;
+  std::map<Stream, DeviceMode> coming_;  ///< as the images are
+  std::string refused_;                  ///< why the modes asked for are not those that come
+};
+
+std::string RealsenseDevice::whereabouts() const {
+  std::string others;
+  for (const auto& [root, device] : devices_.all())
+    others += (others.empty() ? "; there is " : ", ") + label(device.info);
+  return fmt::format("no RealSense device{} announces itself on {} in DDS domain {}{}{}",
+                     serial_.empty() ? "" : " of serial " + serial_, kDeviceInfoTopic, domain_,
+                     loopback_only_ ? " on this host (--profile lan: also on the network)" : "", others);
+}
+
+std::string RealsenseDevice::choose() const {
+  std::string chosen, list;
+  int matches = 0;
+  for (const auto& [root, device] : devices_.all()) {
+    if (!wanted(device.info)) continue;
+    chosen = root;
+    list += (++matches == 1 ? "" : ", ") + label(device.info);
+  }
+  if (matches > 1) {
+    throw DeviceError(DeviceProblem::kUnsupportedMode,
+                      fmt::format("{} RealSense devices are in DDS domain {}: {}; name one, realsense-dds:SERIAL",
+                                  matches, domain_, list));
+  }
+  if (matches == 0) throw DeviceError(DeviceProblem::kAbsent, whereabouts());
+  return chosen;
+}
+
+void RealsenseDevice::open() {
+  const auto found = [this] {
+    return std::ranges::any_of(devices_.all(), [this](const auto& item) { return wanted(item.second.info); });
+  };
+  if (devices_.wait(kSearch, found) && serial_.empty()) devices_.wait(kOtherDevices, [] { return false; });
+  root_ = choose();
+  const auto described = [this] { return !devices_.all().contains(root_) || device().description.complete(); };
+  if (devices_.wait(kSearch, described)) return static_cast<void>(device());
+  throw DeviceError(DeviceProblem::kAbsent,
+                    fmt::format("{} does not describe its streams on {}/notification", label(device().info), root_));
+}
+
+Devices::Device& RealsenseDevice::device() {
+  const auto found = devices_.all().find(root_);
+  if (found == devices_.all().end()) throw DeviceError(DeviceProblem::kAbsent, name() + " was unplugged");
+  return found->second;
+}
+
+DeviceSetup RealsenseDevice::start(const ModeRequest& request_) {
+  const std::vector<DeviceMode> all = modes();
+  const DeviceMode color = choose_mode(all, Stream::kColor, request_, name());
+  DeviceMode depth;
+  try {
+    depth = choose_mode(all, Stream::kDepth, {color.size_px.width, color.size_px.height, color.fps}, name());
+  } catch (const DeviceError&) {
+    depth = choose_mode(all, Stream::kDepth, {0, 0, color.fps}, name());  // registered, so any size will do
+  }
+  request(color, depth);
+  coming_.clear();
+  color_topic_ = stream_topic(device().info, device().description.color().name);
+  depth_topic_ = stream_topic(device().info, device().description.depth().name);
+  devices_.subscriptions().add(color_topic_), devices_.subscriptions().add(depth_topic_);
+  DeviceSetup setup;
+  setup.color = first_image(Stream::kColor, color), setup.depth = first_image(Stream::kDepth, depth);
+  setup.depth_scale_m = device().description.depth().unit_m;
+  setup.camera = device().description.color().camera(setup.color.size_px);
+  setup.depth_camera = depth_camera(setup.depth);
+  return setup;
+}
+
+void RealsenseDevice::request(const DeviceMode& color, const DeviceMode& depth) {
+  const auto control = devices_.subscriptions().writer({root_ + "/control", kFlexibleType});
+  const auto matched = [&] { return control->matched() > 0; };
+  devices_.wait(kAnswer, matched);
+  device().reply.reset();
+  refused_.clear();
+  const std::vector<std::uint8_t> message = write_flexible(open_streams(device().description, color, depth));
+  if (matched()) control->write(std::as_bytes(std::span(message)));
+  if (!matched() || !devices_.wait(kAnswer, [this] { return device().reply.has_value(); })) {
+    SPDLOG_WARN("event=no_reply device=\"{}\" request=open-streams: it streams what it is set to", name());
+    return;
+  }
+  const nlohmann::json& reply = *device().reply;
+  if (!reply.contains("status") || reply["status"] == "ok") return;
+  refused_ = reply.value("explanation", reply["status"].dump());
+}
+
+DeviceMode RealsenseDevice::first_image(Stream stream, const DeviceMode& asked) {
+  const Clock::time_point until = Clock::now() + kFirstImages;
+  while (!coming_.contains(stream)) {
+    const std::optional<Event> event = devices_.next(until);
+    if (event) static_cast<void>(take(*event));
+    if (event) continue;
+    const std::string& topic = stream == Stream::kColor ? color_topic_ : depth_topic_;
+    throw DeviceError(DeviceProblem::kAbsent,
+                      fmt::format("{} sends no {} image on {}{}", name(), to_string(stream), topic,
+                                  devices_.subscriptions().published(topic) ? "" : ": it does not publish it"));
+  }
+  DeviceMode mode = coming_[stream];
+  mode.fps = asked.fps;
+  const bool as_asked = mode.size_px == asked.size_px && mode.format == asked.format;
+  if (!as_asked) {
+    SPDLOG_WARN("event=other_mode device=\"{}\" stream={} asked=\"{}x{} {}\" gives=\"{}x{} {}\" cause=\"{}\"", name(),
+                to_string(stream), asked.size_px.width, asked.size_px.height, asked.format, mode.size_px.width,
+                mode.size_px.height, mode.format, refused_);
+  }
+  if (readable(mode.format, stream)) return mode;
+  throw DeviceError(DeviceProblem::kUnsupportedMode,
+                    fmt::format("{} sends {} images as {}, readable are {}: another program may have chosen it", name(),
+                                to_string(stream), mode.format, readable_formats(stream)));
+}
+
+DepthCamera RealsenseDevice::depth_camera(const DeviceMode& depth) {
+  const Description& description = device().description;
+  const auto camera = description.depth().camera(depth.size_px);
+  const auto T_color_depth = description.T_color_depth();
+  if (camera && T_color_depth) return {*camera, *T_color_depth};
+  throw DeviceError(DeviceProblem::kUnsupportedMode,
+                    fmt::format("{} does not say {}: its depth cannot be registered to colour", name(),
+                                camera ? "where its depth camera is" : "the intrinsics of its depth camera"));
+}
+
+std::optional<DeviceImage> RealsenseDevice::read(milliseconds timeout) {
+  const Clock::time_point until = Clock::now() + timeout;
+  while (true) {
+    const std::optional<Event> event = devices_.next(until);
+    static_cast<void>(device());
+    for (const std::string& topic : {color_topic_, depth_topic_}) {
+      if (!devices_.subscriptions().published(topic)) {
+        throw DeviceError(DeviceProblem::kAbsent, fmt::format("{} was unplugged: {} is gone", name(), topic));
+      }
+    }
+    if (!event) return std::nullopt;
+    if (std::optional<DeviceImage> image = take(*event)) return image;
+  }
+}
+
+std::optional<DeviceImage> RealsenseDevice::take(const Event& event) try {
+  if (event.topic != color_topic_ && event.topic != depth_topic_) return std::nullopt;
+  const Stream stream = event.topic == color_topic_ ? Stream::kColor : Stream::kDepth;
+  auto image = ros::decode<msg::Image>(ros::Wire::kCdr, event.cdr());
+  const cv::Size size_px(static_cast<int>(image.width), static_cast<int>(image.height));
+  const DeviceMode mode{stream, size_px, 0, pixel_format_of(image.encoding)};
+  const auto [known, first] = coming_.try_emplace(stream, mode);
+  if (!first && (known->second.size_px != size_px || known->second.format != mode.format)) {
+    throw DeviceError(DeviceProblem::kAbsent,
+                      fmt::format("{} changed the mode of its {} images to {} x {} {}; it is "
+                                  "started again",
+                                  name(), to_string(stream), size_px.width, size_px.height, mode.format));
+  }
+  return DeviceImage{stream, msg::to_ns(image.header.stamp), packed_rows(image)};
+} catch (const ros::WireError& error) {
+  SPDLOG_WARN("event=image_refused topic={} cause=\"{}\"", event.topic, error.what());
+  return std::nullopt;
+}
+
+void RealsenseDevice::close() noexcept {
+  devices_.subscriptions().remove(color_topic_), devices_.subscriptions().remove(depth_topic_);
+}
+
+}  // namespace
+
+std::unique_ptr<LiveDevice> make_realsense_device(const bus::BusOptions& options, const std::string& serial) {
+  return std::make_unique<RealsenseDevice>(options, serial);
+}
+
+std::vector<FoundCamera> find_realsense_cameras(const bus::BusOptions& options) {
+  Devices devices(options);
+  devices.wait(kSearch, [] { return false; });
+  std::vector<FoundCamera> cameras;
+  for (const auto& [root, device] : devices.all()) {
+    FoundCamera camera{"realsense-dds:" + device.info.serial, device.info.name, device.description.modes(), {}};
+    if (!device.description.complete())
+      camera.problem = "it does not describe its streams on " + root + "/notification";
+    cameras.push_back(std::move(camera));
+  }
+  return cameras;
+}
+
+}  // namespace rtd::camera
