@@ -207,15 +207,12 @@ std::string label(const DeviceInfo& info) {
   return fmt::format("{} (serial {})", info.name, info.serial.empty() ? "unknown" : info.serial);
 }
 
-/// The bytes of an image without those between its rows. Throws ros::WireError.
+/// The bytes of an image without those between its rows; unchanged when they are not those of its size.
 std::vector<std::uint8_t> packed_rows(msg::Image& image) {
-  if (image.height == 0 || image.data.size() % image.height != 0) throw ros::WireError("an image whose rows are cut");
-  const std::size_t step = image.data.size() / image.height;
   const std::string format = pixel_format_of(image.encoding);
   const std::size_t pixel_bytes = format == "GREY" ? 1 : (format == "RGB8" || format == "BGR8") ? 3 : 2;
-  const std::size_t row = pixel_bytes * image.width;
-  if (step == row) return std::move(image.data);
-  if (step < row) throw ros::WireError("an image whose rows are too short");
+  const std::size_t row = pixel_bytes * image.width, step = image.height == 0 ? 0 : image.data.size() / image.height;
+  if (step <= row || step * image.height != image.data.size()) return std::move(image.data);
   std::vector<std::uint8_t> packed;
   packed.reserve(row * image.height);
   for (std::size_t y = 0; y < image.height; ++y) {

@@ -20,7 +20,8 @@ SourceUri parse_source_uri(const std::string& text) {
   if (colon == std::string::npos || colon == 0) {
     throw SourceError(
         "source '" + text +
-        "' has no scheme; write tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE, ros2:TOPICS, openni2:[URI], v4l2:DEVICE or "
+        "' has no scheme; write tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE, ros2:TOPICS, openni2:[URI], v4l2:DEVICE, "
+        "realsense-dds:[SERIAL] or "
         "synthetic:NAME[?key=value&...]");
   }
   SourceUri uri{text, text.substr(0, colon), text.substr(colon + 1), {}};
@@ -129,7 +130,7 @@ std::unique_ptr<FrameSource> make_source(const std::string& text) {
         "' is a running camera: only `rtd run` and rtd-camera play it; record it first (rtd record) and use mcap:FILE");
   }
   throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme +
-                    "'; known: bag, db3, mcap, openni2, ros2, synthetic, tum, v4l2");
+                    "'; known: bag, db3, mcap, openni2, realsense-dds, ros2, synthetic, tum, v4l2");
 }
 
 }  // namespace rtd::camera

@@ -18,6 +18,7 @@
 #include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/model_locator.hpp"
+#include "services/camera/realsense_device.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/process/executable.hpp"
 
@@ -140,6 +141,17 @@ void check_data(Findings& findings) {
                                           "room; 'rtd demo --dataset fr3_walking_xyz' downloads a real sequence"});
 }
 
+/// Those of this host, and those that announce themselves in the domain where that can be read.
+std::vector<camera::FoundCamera> all_cameras(const bus::BusOptions& bus) {
+  std::vector<camera::FoundCamera> cameras = camera::find_cameras();
+  try {
+    for (camera::FoundCamera& found : camera::find_realsense_cameras(bus)) cameras.push_back(std::move(found));
+  } catch (const bus::BusError&) {
+    // check_bus() says why the domain cannot be joined
+  }
+  return cameras;
+}
+
 int clean(std::ostream& out) {
   const bus::CleanReport report = bus::remove_shm_leftovers();
   for (const bus::ShmFile& file : report.removed) out << "removed  " << file.name << "  " << mib(file.bytes) << '\n';
@@ -158,7 +170,7 @@ int check_all(const DoctorOptions& options, std::ostream& out) {
   check_bus(bus, findings);
   check_weights(findings);
   check_data(findings);
-  describe_cameras(camera::find_cameras(), findings);
+  describe_cameras(all_cameras(bus), findings);
   bool failed = false;
   for (const Finding& finding : findings) {
     out << kVerdicts.at(static_cast<std::size_t>(finding.verdict)) << finding.text << '\n';

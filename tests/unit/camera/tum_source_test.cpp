@@ -220,7 +220,8 @@ TEST(TumSource, refuses_broken_groundtruth_by_line) {
 TEST(MakeSource, names_the_schemes_it_knows) {
   EXPECT_THAT([] { make_source("folder"); }, ThrowsMessage<SourceError>(HasSubstr("tum:FOLDER")));
   EXPECT_THAT([] { make_source("rosbag:x"); },
-              ThrowsMessage<SourceError>(HasSubstr("known: bag, db3, mcap, openni2, ros2, synthetic, tum, v4l2")));
+              ThrowsMessage<SourceError>(
+                  HasSubstr("known: bag, db3, mcap, openni2, realsense-dds, ros2, synthetic, tum, v4l2")));
   EXPECT_THAT([] { make_source("tum:"); }, ThrowsMessage<SourceError>(HasSubstr("needs a folder")));
   EXPECT_THAT([] { make_source("tum:x?mask=1"); }, ThrowsMessage<SourceError>(HasSubstr("unknown parameter 'mask'")));
   EXPECT_THAT([] { make_source("tum:x?masks"); }, ThrowsMessage<SourceError>(HasSubstr("not key=value")));
