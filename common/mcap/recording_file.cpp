@@ -23,13 +23,12 @@ struct KnownFormat {
 constexpr std::array kOtherFormats = {
     KnownFormat{
         "#ROSBAG V2.0",
-        "a ROS 1 bag: MCAP's own tool makes a recording with all its topics ('mcap convert FILE.bag FILE.mcap'); "
-        "of its colour and depth images alone, 'rtd convert bag:FILE NEW.mcap' makes one and --source bag:FILE "
-        "plays them"},
+        "a ROS 1 bag: 'rtd info' shows what it contains, --source bag:FILE plays it, and 'rtd convert FILE.bag "
+        "NEW.mcap' makes an MCAP file of it"},
     KnownFormat{
         "SQLite format 3",
-        "a rosbag2 database: 'rtd info' shows what it contains, --source db3:FILE plays it, and 'ros2 bag convert' "
-        "makes an MCAP of it"},
+        "a rosbag2 database: 'rtd info' shows what it contains, --source db3:FILE plays it, and 'rtd convert FILE.db3 "
+        "NEW.mcap' makes an MCAP file of it"},
     KnownFormat{"\x28\xb5\x2f\xfd", "compressed with zstd: unpack it first ('zstd -d')"},
     KnownFormat{"\x04\x22\x4d\x18", "compressed with LZ4: unpack it first ('lz4 -d')"},
     KnownFormat{"version https://git-lfs", "a pointer of Git LFS: fetch the file itself with 'git lfs pull'"},

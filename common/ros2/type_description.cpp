@@ -104,34 +104,25 @@ std::string type_text(const MessageField& field, const std::string& package) {
 }
 
 /// The .msg file of a type.
-std::string msg_text(const std::string& type) {
+std::string msg_text(const std::string& type, const MessageFields& types) {
   const std::string package = type.substr(0, type.find('/'));
   std::string text = constants_of(type);
-  for (const MessageField& field : *fields_of(type)) {
+  for (const MessageField& field : types.at(type)) {
     text += type_text(field, package) + ' ' + field.name + default_of(type, field) + '\n';
   }
   return text;
 }
 
 /// The types that one is made of, each once, the type itself first.
-std::vector<std::string> closure(const std::string& type) {
+std::vector<std::string> closure(const std::string& type, const MessageFields& types) {
   std::vector<std::string> all{type};
   for (std::size_t i = 0; i < all.size(); ++i) {
-    for (const MessageField& field : *fields_of(all[i])) {
+    for (const MessageField& field : types.at(all[i])) {
       const bool known = std::find(all.begin(), all.end(), field.type) != all.end();
       if (field.is_message() && !known) all.push_back(field.type);
     }
   }
   return all;
-}
-
-std::string ros2msg_text(const std::string& type) {
-  std::string text;
-  for (const std::string& part : closure(type)) {
-    if (!text.empty()) text += kSeparator + "\nMSG: " + part + '\n';
-    text += msg_text(part);
-  }
-  return text;
 }
 
 /// Without preprocessor lines, which readers of schemas do not know.
@@ -208,7 +199,16 @@ TypeDefinition definition_of(const std::string& dds_type) {
   const std::string type = short_type(dds_type);
   if (fields_of(type) == nullptr) return {ros_type(dds_type), {}, {}};
   if (type.starts_with("rtd_msgs/")) return {ros2::dds_type(ros_type(dds_type)), "omgidl", idl_text()};
-  return {ros_type(dds_type), "ros2msg", ros2msg_text(type)};
+  return {ros_type(dds_type), "ros2msg", ros2msg_text(type, message_fields())};
+}
+
+std::string ros2msg_text(const std::string& type, const MessageFields& types) {
+  std::string text;
+  for (const std::string& part : closure(type, types)) {
+    if (!text.empty()) text += kSeparator + "\nMSG: " + part + '\n';
+    text += msg_text(part, types);
+  }
+  return text;
 }
 
 std::string type_hash(const std::string& type, const MessageFields& types) {

@@ -88,6 +88,7 @@ Db3Reader::Db3Reader(const fs::path& path) : path_(path) {
   bound();
   require_tables();
   read_topics();
+  read_extras();
   read_places();
 }
 
@@ -136,9 +137,28 @@ void Db3Reader::read_topics() {
   if (!rows.usable()) fail(std::string("no rosbag2 recording: ") + sqlite3_errmsg(database_.get()));
   int result = rows.step();
   for (; result == SQLITE_ROW && topics_.size() < kMostTopics; result = rows.step())
-    topics_[rows.integer(0)] = {rows.text(1), rows.text(2), rows.text(3), 0};
+    topics_[rows.integer(0)] = {rows.text(1), rows.text(2), rows.text(3), 0, {}, {}, {}};
   if (result == SQLITE_ROW) fail("has more than " + std::to_string(kMostTopics) + " topics");
   if (result != SQLITE_DONE) fail(std::string("its topics cannot be read: ") + sqlite3_errmsg(database_.get()));
+}
+
+/// Of columns and tables that not every version has: a query that one lacks is not usable.
+void Db3Reader::read_extras() {
+  Statement qos(database_.get(), "SELECT id, offered_qos_profiles FROM topics NOT INDEXED");
+  while (qos.usable() && qos.step() == SQLITE_ROW) {
+    if (const auto topic = topics_.find(qos.integer(0)); topic != topics_.end())
+      topic->second.offered_qos = qos.text(1);
+  }
+  Statement types(database_.get(),
+                  "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions NOT INDEXED");
+  while (types.usable() && types.step() == SQLITE_ROW) {
+    const std::string type = types.text(0), encoding = types.text(1), definition = types.text(2);
+    for (auto& [id, topic] : topics_) {
+      if (topic.type != type) continue;
+      topic.definition_encoding = encoding;
+      topic.definition = definition;
+    }
+  }
 }
 
 // The index on `timestamp` is not used: older versions lack it, and a damaged one would hide messages.

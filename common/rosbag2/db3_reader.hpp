@@ -23,6 +23,8 @@ class Db3Error : public std::runtime_error {
 struct Db3Topic {
   std::string name, type, serialization_format;
   std::uint64_t messages = 0;
+  std::string offered_qos;                      ///< YAML of its writers; empty where the version has none
+  std::string definition_encoding, definition;  ///< of its type, "ros2msg" or "ros2idl"; empty before version 4
 };
 
 /// One message in the file.
@@ -32,8 +34,8 @@ struct Db3Place {
 };
 
 /// Reads a rosbag2 file of the storage plugin sqlite3, all versions of its schema: of the tables `topics` and
-/// `messages` only the columns that they share are used. The file is never written; a file that was not closed is read
-/// with the -wal beside it. Memory and time are bounded by the size of the file. Not thread-safe.
+/// `messages` only the columns that they share are required. The file is never written; a file that was not closed is
+/// read with the -wal beside it. Memory and time are bounded by the size of the file. Not thread-safe.
 class Db3Reader {
  public:
   /// Throws Db3Error: unreadable, no SQLite file, without these tables. Damage further on is listed by damages().
@@ -57,6 +59,7 @@ class Db3Reader {
   void bound();
   void require_tables();
   void read_topics();
+  void read_extras();
   void read_places();
   [[noreturn]] void fail(const std::string& what) const;
 

@@ -1,12 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common/mcap/recording_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/json_text.hpp"
+#include "services/camera/core/recording/recording.hpp"
 #include "services/camera/core/source_factory.hpp"
+#include "services/recorder/copy_recording.hpp"
 #include "services/recorder/inspect/inspect_commands.hpp"
 #include "services/recorder/mcap_export.hpp"
 
@@ -62,6 +66,42 @@ std::uint64_t write(camera::FrameSource& source, const ConvertOptions& options, 
   return export_mcap(source, destination.path, compression.value(), options.frames, on_frame);
 }
 
+/// A recording that becomes an MCAP file whole: frames are not looked at.
+bool copies_recording(const ConvertOptions& options, const std::string& uri) {
+  const bool recording = uri.starts_with("bag:") || uri.starts_with("db3:") || uri.starts_with("mcap:");
+  return recording && uri.find('?') == std::string::npos && options.frames == 0 &&
+         parse_destination(options.destination).format == Format::kMcap;
+}
+
+service::ExitCode copy(const ConvertOptions& options, const std::string& path, std::ostream& out, std::ostream& err) {
+  const Destination destination = parse_destination(options.destination);
+  const auto compression = mcap::compression_of(options.compression == "none" ? "" : options.compression);
+  if (std::filesystem::exists(destination.path))
+    throw SourceError(destination.path + " exists; name a new file or remove it");
+  service::Progress opening(err, "opening", recordings::size_of(path));
+  const recordings::Opened source = recordings::open(path, [&](std::uint64_t bytes) { opening.reach(bytes); });
+  service::Progress progress(err, "bytes", source.source->size());
+  const CopiedRecording copied = copy_recording(source, destination.path, compression.value(),
+                                                [&](std::uint64_t bytes) { progress.reach(bytes); });
+  for (const std::string& damage : copied.damages) err << "rtd convert: " << damage << '\n';
+  if (options.json) {
+    out << service::json_text(nlohmann::json{{"source", options.source},
+                                             {"destination", options.destination},
+                                             {"messages", copied.messages},
+                                             {"topics", copied.topics},
+                                             {"from_ros1", copied.from_ros1},
+                                             {"left_out", copied.left_out},
+                                             {"damages", copied.damages}})
+        << '\n';
+  } else {
+    out << copied.messages << " messages of " << copied.topics << " topics written to " << options.destination;
+    if (copied.from_ros1 > 0) out << ", " << copied.from_ros1 << " of them turned from ROS 1 into CDR";
+    out << '\n';
+    for (const auto& [topic, cause] : copied.left_out) out << "left out: " << topic << ": " << cause << '\n';
+  }
+  return copied.damages.empty() && copied.left_out.empty() ? service::kOk : service::kPartialLoss;
+}
+
 nlohmann::json to_json(const ConvertOptions& options, std::uint64_t frames, const camera::SourceCounters& counters) {
   nlohmann::json left_out = nlohmann::json::object();
   for (std::size_t i = 0; i < camera::kSkipReasons; ++i) {
@@ -91,9 +131,12 @@ void print(const ConvertOptions& options, std::uint64_t frames, camera::FrameSou
 }
 
 void add_convert_command(CLI::App& app, ConvertOptions& options) {
-  CLI::App* command =
-      app.add_subcommand("convert", "Convert a bag, an MCAP file, a TUM folder or any other source to TUM or MCAP");
-  command->add_option("source", options.source, "bag:FILE, mcap:FILE, tum:FOLDER or any other source; FILE.bag")
+  CLI::App* command = app.add_subcommand(
+      "convert", "Convert a recording with all its topics to MCAP, or the frames of any source to TUM or MCAP");
+  command
+      ->add_option(
+          "source", options.source,
+          "FILE.bag, FILE.db3, FILE.mcap, packed with zstd or a folder of rosbag2; tum:FOLDER or any other source")
       ->required();
   command->add_option("destination", options.destination, "New tum:FOLDER or FILE.mcap; nothing is overwritten")
       ->required();
@@ -109,10 +152,17 @@ void add_convert_command(CLI::App& app, ConvertOptions& options) {
 
 /// Writes a source as a TUM folder or an MCAP file. Returns the exit code: 3 when part of the source was damaged.
 int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& err) {
-  return service::report_errors<SourceError>("rtd convert", err, [&] {
-    const auto source = camera::make_source(camera::complete_uri(options.source));
+  return service::report_errors<SourceError, mcap::RecordingFileError>("rtd convert", err, [&] {
+    const std::string uri = camera::complete_uri(options.source);
+    if (copies_recording(options, uri)) return copy(options, uri.substr(uri.find(':') + 1), out, err);
+    const auto source = camera::make_source(uri);
     const std::uint64_t frames = write(*source, options, err);
     print(options, frames, *source, out, err);
+    for (const camera::RecordedTopic& topic : camera::topics_beside_frames(uri)) {
+      err << "rtd convert: left out: " << topic.name << " (" << topic.type << ", " << topic.messages
+          << " messages): only frames and ground truth are written here; 'rtd convert " << options.source
+          << " NEW.mcap' carries all topics\n";
+    }
     return lost(source->counters()) > 0 ? service::kPartialLoss : service::kOk;
   });
 }

@@ -126,15 +126,16 @@ ReplayService::ReplayService(const Config& config, service::Runtime& runtime)
   if (window_ > 0 && config_.lockstep.empty()) config_.lockstep = kTrackingTopic;
   try {
     open();
-  } catch (const io::IoError& error) {
+  } catch (const mcap::RecordingFileError& error) {
     throw ConfigError(error.what());
   }
   runtime_.stop.on_stop([inbox = inbox_] { inbox->post(Command::kStop); });
 }
 
 void ReplayService::open() {
-  source_ = std::make_unique<io::FileSource>(mcap::recording_path(config_.file));
-  reader_ = std::make_unique<mcap::IndexedReader>(*source_);
+  recording_ = recordings::open(config_.file);
+  if (!recording_.imported.empty()) SPDLOG_INFO("event=recording_imported file={} as=\"{}\"", config_.file, recording_.imported);
+  reader_ = std::make_unique<mcap::IndexedReader>(*recording_.source);
   for (const mcap::Problem& problem : reader_->problems().listed())
     if (problem.kind == mcap::ProblemKind::kNotMcap && problem.data_lost)
       throw ConfigError(config_.file + ": this is not an MCAP file; 'rtd info' says more");
@@ -218,7 +219,7 @@ service::ExitCode ReplayService::run() {
   SPDLOG_INFO("event=recording_opened file={} topics={} messages={} duration_s={:.3f} summary={}", config_.file,
               channels_.size(), reader_->summary().statistics->message_count,
               static_cast<double>(end_ns_ - start_ns_) * 1e-9, !reader_->summary().scanned);
-  if (source_->being_written()) SPDLOG_WARN("event=being_written cause=\"only what is in the file now is played\"");
+  if (recording_.source->being_written()) SPDLOG_WARN("event=being_written cause=\"only what is in the file now is played\"");
   for (const std::string& service : config_.stand_in) {
     stand_ins_.push_back(std::make_unique<service::Heartbeat>(runtime_.bus, service, runtime_.stop));
     stand_ins_.back()->set_state(msg::ServiceState::kRunning, "played by rtd-replay");
@@ -312,12 +313,15 @@ service::ExitCode ReplayService::finish(const Player& player, PlayOutcome outcom
     if (!mcap::is_damage(problem)) continue;
     SPDLOG_WARN("event=recording_damaged kind={} cause=\"{}\"", mcap::name_of(problem.kind), mcap::to_string(problem));
   }
+  for (const std::string& damage : recording_.damages) {
+    SPDLOG_WARN("event=recording_damaged kind=damaged_record cause=\"{}\"", damage);
+  }
   if (outcome == PlayOutcome::kUnanswered)
     return fail(fmt::format("no message of {} for number {} of {} within {:g} s: are its publishers alive?",
                             config_.lockstep, player.unanswered_seq(), paced_->topic.name, config_.result_timeout_s));
   runtime_.heartbeat.set_state(msg::ServiceState::kFinished);
   if (outcome == PlayOutcome::kEnded) runtime_.stop.wait_for(kFarewell);
-  return reader_->problems().data_lost() ? service::kPartialLoss : service::kOk;
+  return reader_->problems().data_lost() || !recording_.damages.empty() ? service::kPartialLoss : service::kOk;
 }
 
 service::ExitCode ReplayService::fail(const std::string& message) {

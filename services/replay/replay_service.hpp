@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/io/byte_source.hpp"
+#include "common/recordings/open.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/runtime.hpp"
 #include "services/replay/input.hpp"
@@ -105,7 +105,7 @@ class ReplayService final : public PlayerHost {
   Config config_;
   service::Runtime& runtime_;
   int window_;
-  std::unique_ptr<io::FileSource> source_;
+  recordings::Opened recording_;
   std::unique_ptr<mcap::IndexedReader> reader_;
   std::vector<const mcap::Channel*> channels_;  ///< the ones played
   std::vector<const mcap::Channel*> left_out_;  ///< wanted, but not in CDR

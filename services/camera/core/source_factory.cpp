@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/core/source_factory.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 
 #include "common/io/text.hpp"
+#include "common/recordings/parts.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/core/recording/recording.hpp"
@@ -60,11 +62,12 @@ bool parse_flag(const std::string& uri, const std::string& key, const std::strin
 std::string complete_uri(const std::string& source) {
   if (source.find(':') != std::string::npos) return source;
   const std::filesystem::path path = source;
-  if (std::filesystem::is_directory(path)) return "tum:" + source;
+  if (std::filesystem::is_directory(path)) return (recordings::holds_recording(path) ? "mcap:" : "tum:") + source;
   if (path.extension() == ".bag") return "bag:" + source;
   if (path.extension() == ".oni") return "openni2:" + source;
   if (path.extension() == ".db3") return "db3:" + source;
-  return path.extension() == ".mcap" ? "mcap:" + source : source;
+  const bool packed = path.extension() == ".zstd" || path.extension() == ".zst";
+  return path.extension() == ".mcap" || packed ? "mcap:" + source : source;
 }
 
 namespace {
@@ -107,9 +110,12 @@ RecordingOptions recording_options(const SourceUri& uri) {
   return options;
 }
 
+/// Bags and databases are read where they lie; all else, also folders and packed ones of these, as MCAP.
 std::unique_ptr<Recording> open_file(const SourceUri& uri) {
-  if (uri.scheme == "bag") return open_bag(uri.path);
-  return uri.scheme == "db3" ? open_db3(uri.path) : open_mcap(uri.path);
+  const std::filesystem::path extension = std::filesystem::path(uri.path).extension();
+  const bool lies_there = !std::filesystem::is_directory(uri.path) && extension != ".zstd" && extension != ".zst";
+  if (lies_there && uri.scheme == "bag") return open_bag(uri.path);
+  return lies_there && uri.scheme == "db3" ? open_db3(uri.path) : open_mcap(uri.path);
 }
 
 std::unique_ptr<FrameSource> make_recording_source(const SourceUri& uri) {
@@ -117,13 +123,33 @@ std::unique_ptr<FrameSource> make_recording_source(const SourceUri& uri) {
   return open_recording(uri.text, open_file(uri), options);
 }
 
+bool is_recording(const SourceUri& uri) {
+  return uri.scheme == "bag" || uri.scheme == "db3" || uri.scheme == "mcap";
+}
+
 }  // namespace
+
+std::vector<RecordedTopic> topics_beside_frames(const std::string& text) {
+  const SourceUri uri = parse_source_uri(text);
+  if (!is_recording(uri)) return {};
+  const std::unique_ptr<Recording> recording = open_file(uri);
+  std::vector<RecordedTopic> beside = recording->topics();
+  std::vector<std::string> names = transform_topics(*recording);
+  if (const std::string own = own_frames_topic(*recording); !own.empty()) {
+    names.push_back(own);
+  } else {
+    const ImageTopics used = choose_topics(*recording, recording_options(uri).topics);
+    names.insert(names.end(), {used.color, used.depth, used.info, used.depth_info});
+  }
+  std::erase_if(beside, [&](const auto& topic) { return std::ranges::find(names, topic.name) != names.end(); });
+  return beside;
+}
 
 std::unique_ptr<FrameSource> make_source(const std::string& text) {
   const SourceUri uri = parse_source_uri(text);
   if (uri.scheme == "tum") return make_tum_source(uri);
   if (uri.scheme == "synthetic") return std::make_unique<SyntheticSource>(uri.text, parse_synthetic_options(uri));
-  if (uri.scheme == "bag" || uri.scheme == "db3" || uri.scheme == "mcap") return make_recording_source(uri);
+  if (is_recording(uri)) return make_recording_source(uri);
   if (is_live(text)) {
     throw SourceError(
         "source '" + text +

@@ -6,8 +6,10 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/recording/recording.hpp"
 
 namespace rtd::camera {
 
@@ -19,6 +21,10 @@ struct SourceUri {
 
 /// Throws SourceError naming the malformed part and the form expected.
 SourceUri parse_source_uri(const std::string& text);
+
+/// The topics of a recording that its frames, their calibration and ground truth are not made of; none for other
+/// sources. Throws SourceError.
+std::vector<RecordedTopic> topics_beside_frames(const std::string& uri);
 
 /// The value of `tolerance_ms`, ns: more than 0, at most 1000 ms. Throws SourceError naming the URI.
 std::int64_t parse_tolerance_ns(const std::string& uri, const std::string& value);

@@ -12,6 +12,7 @@
 #include "common/bus/topics.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
+#include "common/recordings/open.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/config.hpp"
 
@@ -25,8 +26,8 @@ constexpr std::string_view kScheme = "mcap:";
 /// Messages by DDS name of the topic.
 std::map<std::string, std::uint64_t> counts_of(const std::string& file) {
   try {
-    const io::FileSource source = mcap::open_recording(file);
-    const mcap::IndexedReader reader(source);
+    const recordings::Opened recording = recordings::open(file);
+    const mcap::IndexedReader reader(*recording.source);
     std::map<std::string, std::uint64_t> counts;
     for (const auto& [id, channel] : reader.summary().channels) {
       std::uint64_t messages = 0;

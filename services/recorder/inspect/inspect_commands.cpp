@@ -7,6 +7,7 @@
 #include <ostream>
 
 #include "common/mcap/recording_file.hpp"
+#include "common/recordings/open.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
@@ -18,9 +19,19 @@
 namespace rtd::recording {
 namespace {
 
-Contents read(const io::FileSource& source, const std::string& path, std::ostream& err) {
-  service::Progress progress(err, "reading " + path, source.size());
-  return contents_of(source, [&](std::uint64_t bytes) { progress.reach(bytes); });
+recordings::Opened open(const std::string& path, std::ostream& err) {
+  service::Progress progress(err, "opening " + path, recordings::size_of(path));
+  return recordings::open(path, [&](std::uint64_t bytes) { progress.reach(bytes); });
+}
+
+Contents read(const recordings::Opened& opened, const std::string& path, std::ostream& err) {
+  service::Progress progress(err, "reading " + path, opened.source->size());
+  Contents contents = contents_of(*opened.source, [&](std::uint64_t bytes) { progress.reach(bytes); });
+  for (const std::string& damage : opened.damages) {
+    contents.data_lost = true;
+    contents.problems.push_back({mcap::ProblemKind::kDamagedRecord, 0, damage, "it is left out", true});
+  }
+  return contents;
 }
 
 void warn(const Contents& contents, const std::string& path, std::ostream& err) {
@@ -36,12 +47,12 @@ void print(const Diff& diff, bool json, std::ostream& out) {
 }
 
 int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream& err) {
-  const io::FileSource a = mcap::open_recording(request.a), b = mcap::open_recording(request.b);
+  const recordings::Opened a = open(request.a, err), b = open(request.b, err);
   const Contents in_a = read(a, request.a, err), in_b = read(b, request.b, err);
   const auto ignored = [&](const char* what) { return std::ranges::count(request.ignore, what) > 0; };
   RecordingDiff difference =
       diff(in_a, in_b, {.ignore_run_fields = ignored("run"), .ignore_stamps = ignored("stamps")});
-  explain(difference, a, b);
+  explain(difference, *a.source, *b.source);
   warn(in_a, request.a, err);
   warn(in_b, request.b, err);
   print(difference, request.json, out);
@@ -49,7 +60,7 @@ int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream&
   return in_a.data_lost || in_b.data_lost ? service::kPartialLoss : service::kOk;
 }
 
-constexpr char kCompared[] = "'rtd diff' compares two MCAP recordings, or two trajectories in TUM format";
+constexpr char kCompared[] = "'rtd diff' compares two recordings (MCAP, rosbag2, ROS 1 bag), or two trajectories in TUM format";
 
 eval::Trajectory read_trajectory(const std::string& path) {
   try {
@@ -70,10 +81,18 @@ void refuse_other_format(const std::string& path) {
     throw mcap::RecordingFileError(path + " is " + other + "; " + kCompared);
 }
 
+void add_damages(RecordingReport& report, const std::vector<std::string>& damages) {
+  for (const std::string& damage : damages) {
+    ++report.problem_count;
+    report.data_lost = true;
+    report.problems.push_back({mcap::ProblemKind::kDamagedRecord, 0, damage, "it is left out", true});
+  }
+}
+
 }  // namespace
 
 CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
-  CLI::App* command = parent.add_subcommand("diff", "Compare two recordings (MCAP) or two trajectories (TUM format)");
+  CLI::App* command = parent.add_subcommand("diff", "Compare two recordings (MCAP, rosbag2, ROS 1 bag) or two trajectories (TUM format)");
   command->add_option("a", request.a, "Recording or trajectory")->required();
   command->add_option("b", request.b, "Another of the same kind")->required();
   command->add_flag("--json", request.json, "Print JSON instead of text");
@@ -105,7 +124,7 @@ CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
 
 int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
   return service::report_errors<mcap::RecordingFileError, eval::TrajectoryError>("rtd diff", err, [&] {
-    const bool a = mcap::looks_like_recording(request.a), b = mcap::looks_like_recording(request.b);
+    const bool a = recordings::is_recording(request.a), b = recordings::is_recording(request.b);
     if (!a) refuse_other_format(request.a);
     if (!b) refuse_other_format(request.b);
     if (a != b)
@@ -117,8 +136,8 @@ int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
 
 CLI::App* add_info_command(CLI::App& parent, InfoOptions& options) {
   CLI::App* command = parent.add_subcommand(
-      "info", "Show what a recording (MCAP, ROS 1 bag, rosbag2 .db3) contains: topics, rates, gaps, losses, damage");
-  command->add_option("file", options.file, "Recording")->required();
+      "info", "Show what a recording (MCAP, ROS 1 bag, rosbag2 file or folder) contains: topics, rates, gaps, losses, damage");
+  command->add_option("file", options.file, "Recording, or a folder with one")->required();
   command->add_flag("--json", options.json, "Print JSON instead of text");
   command->add_flag("--check", options.check,
                     "Read everything and compare all checksums (always done for files up to 64 MB)");
@@ -132,13 +151,19 @@ int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
       return report.damaged() ? service::kPartialLoss : service::kOk;
     };
     if (const auto foreign = report_on_foreign(options.file)) return print_report(*foreign);
-    const io::FileSource source = mcap::open_recording(options.file);
+    const recordings::Opened opened = open(options.file, err);
+    const io::FileSource& source = *opened.source;
     service::Progress progress(err, "reading", source.size());
     ReportOptions how;
     how.check = options.check;
     how.on_progress = [&](std::uint64_t bytes) { progress.reach(bytes); };
     RecordingReport report = report_on(source, how);
     report.being_written = source.being_written();
+    if (!opened.imported.empty()) {
+      report.format = opened.imported;
+      report.file_bytes = recordings::size_of(options.file);
+    }
+    add_damages(report, opened.damages);
     return print_report(report);
   });
 }

@@ -47,6 +47,15 @@ TEST_F(ConvertTest, goes_to_mcap_and_back) {
   EXPECT_THAT(text_of(folder + "/groundtruth.txt"), HasSubstr("\n"));
 }
 
+TEST_F(ConvertTest, carries_every_topic_of_a_recording) {
+  const std::string file = scratch_ / "x.mcap", copy = scratch_ / "y.mcap";
+  EXPECT_EQ(convert({kScene, file}), 0);
+  EXPECT_EQ(convert({file, copy, "--compress", "none"}), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr("16 messages of 4 topics written to " + copy));
+  EXPECT_EQ(convert({file, copy}), 2);
+  EXPECT_THAT(output_, HasSubstr(copy + " exists"));
+}
+
 TEST_F(ConvertTest, overwrites_nothing) {
   const std::string file = scratch_ / "x.mcap", folder = scratch_ / "tum";
   EXPECT_EQ(convert({kScene, file}), 0);
@@ -75,7 +84,7 @@ TEST_F(ConvertTest, wrong_usage_is_exit_code_2) {
   EXPECT_EQ(convert({kScene, scratch_ / "x.bag"}), 2);
   EXPECT_THAT(output_, HasSubstr("bags are read, not written"));
   EXPECT_EQ(convert({"bag:" + (scratch_ / "none.bag"), scratch_ / "x.mcap"}), 2);
-  EXPECT_THAT(output_, HasSubstr("none.bag cannot be read"));
+  EXPECT_THAT(output_, HasSubstr("none.bag: cannot read: No such file"));
   EXPECT_EQ(convert({"synthetic:box?frames=0", scratch_ / "x.mcap"}), 2);
   EXPECT_THAT(output_, HasSubstr("is endless"));
   EXPECT_FALSE(fs::exists(scratch_ / "x.mcap"));

@@ -203,7 +203,9 @@ TEST(McapSource, refuses_frames_of_a_former_version_and_says_so) {
   McapFile file;
   file.add_own(*own_frame(1, 1, 1), 1, 4 + sizeof(msg::RgbdFrame) - 2 * sizeof(double));
   EXPECT_THAT([&] { make_source(file.uri()); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr(std::to_string(4 + sizeof(msg::RgbdFrame) - 2 * sizeof(double)) + " bytes"), HasSubstr("another version of RTD-SLAM"))));
+              ThrowsMessage<SourceError>(
+                  AllOf(HasSubstr(std::to_string(4 + sizeof(msg::RgbdFrame) - 2 * sizeof(double)) + " bytes"),
+                        HasSubstr("another version of RTD-SLAM"))));
 }
 
 TEST(McapSource, plays_the_intact_part_of_a_cut_file_and_reports_the_loss) {
@@ -237,8 +239,22 @@ TEST(McapSource, finds_the_file_in_a_folder_of_rosbag2) {
   std::filesystem::create_directory(bag);
   recording::export_mcap(*make_source(folder.uri()), bag / "bag_0.mcap", mcap::Compression::kNone, 0);
   EXPECT_THAT(play_all("mcap:" + bag.string()).frames, SizeIs(3));
-  std::filesystem::copy_file(bag / "bag_0.mcap", bag / "bag_1.mcap");
-  EXPECT_THAT([&] { make_source("mcap:" + bag.string()); }, ThrowsMessage<SourceError>(HasSubstr("2 .mcap files")));
+  std::filesystem::copy_file(bag / "bag_0.mcap", bag / "other.mcap");
+  EXPECT_THAT([&] { make_source("mcap:" + bag.string()); }, ThrowsMessage<SourceError>(HasSubstr("2 recordings of")));
+}
+
+TEST(McapSource, names_the_topics_that_its_frames_are_not_made_of) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  const auto frames = folder.path() / "frames.mcap";
+  recording::export_mcap(*make_source(folder.uri()), frames, mcap::Compression::kNone, 0);
+  EXPECT_THAT(topics_beside_frames("mcap:" + frames.string()), ::testing::IsEmpty());
+  McapFile own;
+  own.add_own(*test::own_frame(1'000'000'000, 100, 5000), 1);
+  own.add("/imu", "sensor_msgs/msg/Imu", "cdr", {0, 1, 0, 0}, 1);
+  const std::vector<RecordedTopic> beside = topics_beside_frames(own.uri());
+  ASSERT_THAT(beside, SizeIs(1));
+  EXPECT_EQ(beside[0].name, "/imu");
 }
 
 TEST(PlainType, is_the_same_for_every_way_to_name_a_type) {

@@ -6,10 +6,9 @@
 #include <iterator>
 #include <utility>
 
-#include "common/io/byte_sink.hpp"
-#include "common/io/byte_source.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
+#include "common/recordings/open.hpp"
 #include "services/camera/core/frame_source.hpp"
 
 namespace rtd::camera {
@@ -25,7 +24,8 @@ std::optional<ros::Wire> wire_of(const mcap::Channel& channel) {
 
 class McapRecording final : public Recording {
  public:
-  explicit McapRecording(const fs::path& file) : Recording(file.string()), source_(file), reader_(source_) {
+  McapRecording(const fs::path& file, recordings::Opened opened)
+      : Recording(file.string()), opened_(std::move(opened)), reader_(*opened_.source) {
     const mcap::Summary& summary = reader_.summary();
     if (summary.channels.empty()) throw SourceError(name_ + " has no messages" + first_problem());
     const auto counts = message_counts();
@@ -64,7 +64,7 @@ class McapRecording final : public Recording {
   }
 
   std::vector<std::string> take_damages() override {
-    std::vector<std::string> damages;
+    std::vector<std::string> damages = std::exchange(opened_.damages, {});
     const auto& problems = reader_.problems().listed();
     for (; reported_ < problems.size(); ++reported_) {
       const mcap::Problem& problem = problems[reported_];
@@ -114,7 +114,7 @@ class McapRecording final : public Recording {
     return problems.empty() ? std::string() : ": " + mcap::to_string(problems.front());
   }
 
-  io::FileSource source_;
+  recordings::Opened opened_;
   mcap::IndexedReader reader_;
   std::optional<mcap::MessageCursor> playing_;
   std::size_t reported_ = 0;
@@ -123,8 +123,8 @@ class McapRecording final : public Recording {
 }  // namespace
 
 std::unique_ptr<Recording> open_mcap(const fs::path& file) try {
-  return std::make_unique<McapRecording>(mcap::recording_path(file));
-} catch (const io::IoError& error) {
+  return std::make_unique<McapRecording>(file, recordings::open(file.string()));
+} catch (const mcap::RecordingFileError& error) {
   throw SourceError(error.what());
 }
 

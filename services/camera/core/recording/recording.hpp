@@ -64,8 +64,8 @@ std::unique_ptr<Recording> open_bag(const std::filesystem::path& file);
 /// Opens a rosbag2 file of the storage plugin sqlite3 (.db3). Throws SourceError.
 std::unique_ptr<Recording> open_db3(const std::filesystem::path& file);
 
-/// Opens an MCAP file, or the one in a folder that rosbag2 made. Messages in CDR (ROS 2, ours) and in ROS 1's encoding.
-/// Throws SourceError.
+/// Opens a recording of any form (recordings::open()) as MCAP: also folders of rosbag2, and files packed with zstd.
+/// Messages in CDR (ROS 2, ours) and in ROS 1's encoding. Throws SourceError.
 std::unique_ptr<Recording> open_mcap(const std::filesystem::path& file);
 
 /// The first message of a topic. Throws SourceError when there is none that can be read.

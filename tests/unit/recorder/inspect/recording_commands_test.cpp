@@ -71,11 +71,11 @@ TEST_F(RecordingCommandsTest, what_is_no_recording_is_named_with_a_way_out) {
 
 TEST_F(RecordingCommandsTest, a_folder_stands_for_the_only_recording_in_it) {
   EXPECT_EQ(info(folder_.string()), 2);
-  EXPECT_THAT(err_.str(), HasSubstr("holds no .mcap file: name a recording or a folder with one\n"));
+  EXPECT_THAT(err_.str(), HasSubstr("holds no recording (metadata.yaml, .mcap, .db3): name a recording or a folder with one\n"));
   file("a_0.mcap", recording_of(regular_messages("/pose", 5)));
   EXPECT_EQ(info(folder_.string()), 0);
   EXPECT_EQ(diff(folder_.string(), folder_.string()), 0);
-  file("a_1.mcap", recording_of(regular_messages("/pose", 5)));
+  file("b_0.mcap", recording_of(regular_messages("/pose", 5)));
   EXPECT_EQ(info(folder_.string()), 2);
   EXPECT_THAT(err_.str(), testing::AllOf(HasSubstr("name one of them"), testing::Not(HasSubstr("Is a directory"))));
 }
@@ -102,10 +102,10 @@ TEST_F(RecordingCommandsTest, diff_of_a_damaged_recording_is_no_clean_bill) {
 }
 
 TEST_F(RecordingCommandsTest, diff_names_what_it_compares_and_how_to_convert) {
-  const std::string bag = file("a.bag", std::string("#ROSBAG V2.0\nxxx"));
-  EXPECT_EQ(diff(bag, bag), 2);
-  EXPECT_THAT(err_.str(), testing::AllOf(HasSubstr("a.bag is a ROS 1 bag"), HasSubstr("mcap convert"),
-                                         HasSubstr("compares two MCAP recordings, or two trajectories")));
+  const std::string packed = file("a.gz", std::string("\x1f\x8b\x08"));
+  EXPECT_EQ(diff(packed, packed), 2);
+  EXPECT_THAT(err_.str(), testing::AllOf(HasSubstr("a.gz is compressed with gzip: unpack it first"),
+                                         HasSubstr("compares two recordings (MCAP, rosbag2, ROS 1 bag), or two")));
   const std::string table = file("a.csv", std::string("1 2 3 4\n"));
   EXPECT_EQ(diff(table, table), 2);
   EXPECT_THAT(err_.str(), HasSubstr("4 columns instead of 8 (stamp tx ty tz qx qy qz qw); 'rtd diff' compares"));

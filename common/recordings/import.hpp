@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "common/mcap/writer.hpp"
+
+namespace rtd::recordings {
+
+/// Called now and then with the share of a file that has been read, 0 to 1.
+using Share = std::function<void(double share)>;
+
+/// Copies recordings of several formats into one MCAP file: messages byte for byte with their times; channels that are
+/// the same in several files as one. ROS 1 messages keep their encoding ("ros1").
+class Import {
+ public:
+  /// `sink` is empty and outlives this. `packed_messages`: each message is a zstd frame.
+  Import(io::ByteSink& sink, bool packed_messages);
+
+  /// Adds a file: MCAP, rosbag2 database or ROS 1 bag by its first bytes; `name` is for messages. Throws
+  /// mcap::RecordingFileError when it is none of them or cannot be used at all, io::IoError when the sink fails.
+  void add(const std::filesystem::path& file, const std::string& name, const Share& progress);
+  /// Ends the MCAP file.
+  void close() { writer_.close(); }
+  /// What could not be copied, one line each.
+  const std::vector<std::string>& damages() const { return damages_; }
+  void note(const std::string& damage) { damages_.push_back(damage); }
+
+ private:
+  using Definition = std::tuple<std::string, std::string, std::string>;  ///< name, encoding, text
+
+  void add_mcap(const std::filesystem::path& file, const std::string& name, const Share& progress);
+  void add_db3(const std::filesystem::path& file, const std::string& name, const Share& progress);
+  void add_bag(const std::filesystem::path& file, const std::string& name, const Share& progress);
+  mcap::ChannelId channel(const mcap::Schema& schema, mcap::Channel channel);
+  void write(mcap::Message message, const std::string& topic);
+
+  mcap::Writer writer_;
+  const bool packed_messages_;
+  std::map<Definition, mcap::SchemaId> schemas_;
+  std::map<std::tuple<std::string, mcap::SchemaId, std::string, std::map<std::string, std::string>>, mcap::ChannelId>
+      channels_;
+  mcap::Bytes unpacked_;
+  std::vector<std::string> damages_;
+};
+
+}  // namespace rtd::recordings

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/recordings/open.hpp"
+
+#include <array>
+#include <numeric>
+#include <utility>
+
+#include "common/mcap/copy.hpp"
+#include "common/mcap/recording_file.hpp"
+#include "common/recordings/import.hpp"
+#include "common/recordings/parts.hpp"
+
+namespace rtd::recordings {
+namespace fs = std::filesystem;
+namespace {
+
+using mcap::RecordingFileError;
+
+/// A file of the recording as it lies there, or unpacked.
+struct Plain {
+  std::unique_ptr<TemporaryFile> unpacked;
+  fs::path path;
+};
+
+bool is_mcap(const fs::path& file) {
+  return mcap::looks_like_recording(io::FileSource(file));
+}
+
+/// Maps the two passes over the files, unpacking and importing, to bytes of them all.
+class Passes {
+ public:
+  Passes(const Parts& parts, const Progress& progress) : progress_(progress) {
+    for (const fs::path& file : parts.files) {
+      packed_ = packed_ || is_packed(io::FileSource(file));
+      sizes_.push_back(fs::file_size(file));
+    }
+  }
+  bool packed() const { return packed_; }
+  void unpacked(std::size_t file, std::uint64_t bytes) const { progress_((before(file) + bytes) / 2); }
+  void imported(std::size_t file, double share) const {
+    const std::uint64_t done = before(file) + static_cast<std::uint64_t>(share * static_cast<double>(sizes_[file]));
+    progress_(packed_ ? (before(sizes_.size()) + done) / 2 : done);
+  }
+
+ private:
+  std::uint64_t before(std::size_t file) const {
+    return std::accumulate(sizes_.begin(), sizes_.begin() + static_cast<std::ptrdiff_t>(file), std::uint64_t{0});
+  }
+
+  const Progress& progress_;
+  std::vector<std::uint64_t> sizes_;
+  bool packed_ = false;
+};
+
+Plain plain_file(const fs::path& file, Opened& opened, const Progress& progress) {
+  const io::FileSource source(file);
+  if (!is_packed(source)) return {nullptr, file};
+  Plain plain{std::make_unique<TemporaryFile>(), {}};
+  plain.path = plain.unpacked->path();
+  io::FileSink sink(plain.path, io::IfExists::kReplace);
+  const std::string damage = unpack(source, sink, progress);
+  if (!damage.empty()) opened.damages.push_back(file.string() + ": " + damage);
+  return plain;
+}
+
+std::string description_of(const Parts& parts, bool packed) {
+  std::string text = parts.files.size() == 1 ? "1 file" : std::to_string(parts.files.size()) + " files";
+  text += " copied into MCAP";
+  return packed || parts.packed_messages ? text + ", unpacked from zstd" : text;
+}
+
+/// Attachments and metadata stay, which import() would leave out.
+void join(const std::vector<Plain>& files, io::ByteSink& sink, Opened& opened) {
+  std::vector<std::unique_ptr<io::FileSource>> sources;
+  std::vector<const io::ByteSource*> parts;
+  for (const Plain& file : files) {
+    parts.push_back(sources.emplace_back(std::make_unique<io::FileSource>(file.path)).get());
+  }
+  const mcap::JoinReport report = mcap::join(parts, sink);
+  for (const mcap::Problem& problem : report.problems) {
+    if (mcap::is_damage(problem)) opened.damages.push_back(mcap::to_string(problem));
+  }
+}
+
+void import(const Parts& parts, const std::vector<Plain>& files, io::ByteSink& sink, Opened& opened,
+            const Passes& passes) {
+  Import importing(sink, parts.packed_messages);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    importing.add(files[i].path, parts.files[i].string(), [&](double share) { passes.imported(i, share); });
+  }
+  importing.close();
+  for (const std::string& damage : importing.damages()) opened.damages.push_back(damage);
+}
+
+Opened open_parts(const Parts& parts, const Progress& progress) {
+  Opened opened;
+  for (const std::string& missing : parts.missing) opened.damages.push_back(missing + " is missing; it is left out");
+  const Passes passes(parts, progress);
+  std::vector<Plain> files;
+  bool all_mcap = true;
+  for (std::size_t i = 0; i < parts.files.size(); ++i) {
+    files.push_back(plain_file(parts.files[i], opened, [&](std::uint64_t bytes) { passes.unpacked(i, bytes); }));
+    all_mcap = all_mcap && is_mcap(files.back().path);
+  }
+  opened.imported = description_of(parts, passes.packed());
+  if (all_mcap && files.size() == 1 && !parts.packed_messages) {
+    if (!passes.packed()) opened.imported.clear();
+    opened.source = std::make_unique<io::FileSource>(files.front().path);
+    return opened;
+  }
+  const TemporaryFile copy;
+  io::FileSink sink(copy.path(), io::IfExists::kReplace);
+  if (all_mcap && !parts.packed_messages) {
+    join(files, sink, opened);
+  } else {
+    import(parts, files, sink, opened, passes);
+  }
+  opened.source = std::make_unique<io::FileSource>(copy.path());
+  return opened;
+}
+
+}  // namespace
+
+std::uint64_t size_of(const std::string& path) {
+  std::uint64_t bytes = 0;
+  for (const fs::path& file : parts_of(path).files) {
+    std::error_code none;
+    const std::uint64_t size = fs::file_size(file, none);
+    bytes += none ? 0 : size;
+  }
+  return bytes;
+}
+
+Opened open(const std::string& path, const Progress& progress) {
+  const Parts parts = parts_of(path);
+  try {
+    return open_parts(parts, progress);
+  } catch (const io::IoError& error) {
+    if (error.code().value() != ENOSPC) throw RecordingFileError(error.what());
+    throw RecordingFileError(path + ": no room to copy it into an MCAP file in " + fs::temp_directory_path().string() +
+                             ": let TMPDIR name a folder with more");
+  }
+}
+
+bool is_recording(const std::string& path) {
+  if (std::error_code error; fs::is_directory(path, error)) return true;
+  try {
+    const io::FileSource source(path);
+    if (is_packed(source) || mcap::looks_like_recording(source)) return true;
+    std::array<std::byte, 16> begin{};
+    const std::size_t count = source.read(0, begin);
+    const std::string_view text(reinterpret_cast<const char*>(begin.data()), count);
+    return text.starts_with("SQLite format 3") || text.starts_with("#ROSBAG V2.0");
+  } catch (const io::IoError& error) {
+    throw RecordingFileError(error.what());
+  }
+}
+
+}  // namespace rtd::recordings

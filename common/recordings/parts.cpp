@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/recordings/parts.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+#include "common/mcap/recording_file.hpp"
+
+namespace rtd::recordings {
+namespace fs = std::filesystem;
+namespace {
+
+using mcap::RecordingFileError;
+
+constexpr const char* kMetadata = "metadata.yaml";
+constexpr std::array kPacked = {".zstd", ".zst"};
+constexpr std::array kRecordings = {".mcap", ".db3"};
+
+bool is_one_of(const auto& extensions, const fs::path& extension) {
+  return std::ranges::find(extensions, extension.string(), [](const char* text) { return std::string(text); }) !=
+         extensions.end();
+}
+
+bool has_recording_name(const fs::path& file) {
+  const fs::path name = is_one_of(kPacked, file.extension()) ? file.stem() : file.filename();
+  return is_one_of(kRecordings, name.extension());
+}
+
+/// Runs of digits count as numbers: "walk_10" comes after "walk_9".
+std::string order_of(const fs::path& path) {
+  constexpr std::size_t kDigits = 12;
+  std::string order, digits;
+  for (const char c : path.filename().string() + '\0') {
+    if (std::isdigit(static_cast<unsigned char>(c)) != 0) {
+      digits += c;
+      continue;
+    }
+    if (!digits.empty()) order += std::string(kDigits - std::min(kDigits, digits.size()), '0') + digits;
+    digits.clear();
+    order += c;
+  }
+  return order;
+}
+
+/// "walk_10.db3.zstd" -> "walk_": the same for all parts of a split recording.
+std::string name_without_number(const fs::path& file) {
+  std::string name = file.filename().string();
+  name.resize(std::min(name.find('.'), name.size()));
+  name.erase(name.find_last_not_of("0123456789") + 1);
+  return name;
+}
+
+std::vector<fs::path> recordings_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (has_recording_name(entry.path())) files.push_back(entry.path());
+  }
+  std::ranges::sort(files, {}, order_of);
+  return files;
+}
+
+/// rosbag2 before Humble wrote names relative to the folder above, too.
+fs::path place_of(const fs::path& folder, const std::string& name) {
+  const fs::path beside = folder / name;
+  return fs::exists(beside) ? beside : folder / fs::path(name).filename();
+}
+
+Parts parts_by_metadata(const fs::path& folder) try {
+  const YAML::Node bag = YAML::LoadFile((folder / kMetadata).string())["rosbag2_bagfile_information"];
+  if (!bag) throw RecordingFileError((folder / kMetadata).string() + " describes no recording of rosbag2");
+  Parts parts;
+  const auto format = bag["compression_format"].as<std::string>("");
+  parts.packed_messages = bag["compression_mode"].as<std::string>("") == "MESSAGE";
+  if (!format.empty() && format != "zstd") {
+    throw RecordingFileError(folder.string() + ": its files are compressed with '" + format + "': only zstd is known");
+  }
+  for (const YAML::Node& name : bag["relative_file_paths"]) {
+    const fs::path file = place_of(folder, name.as<std::string>());
+    fs::exists(file) ? parts.files.push_back(file) : parts.missing.push_back(name.as<std::string>());
+  }
+  if (parts.files.empty()) {
+    throw RecordingFileError(folder.string() + ": none of the files that " + kMetadata + " names is in it" +
+                             (parts.missing.empty() ? "" : ", e.g. " + parts.missing.front()));
+  }
+  return parts;
+} catch (const YAML::Exception& error) {
+  throw RecordingFileError((folder / kMetadata).string() + " cannot be read: " + error.what() +
+                           "; name the files themselves, or remove it to take them by their names");
+}
+
+}  // namespace
+
+Parts parts_of(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return {{path}, {}, false};
+  if (fs::exists(path / kMetadata)) return parts_by_metadata(path);
+  Parts parts{recordings_in(path), {}, false};
+  if (parts.files.empty()) {
+    throw RecordingFileError(path.string() +
+                             ": this folder holds no recording (metadata.yaml, .mcap, .db3): name a "
+                             "recording or a folder with one");
+  }
+  const auto differs = [&](const fs::path& file) {
+    return name_without_number(file) != name_without_number(parts.files.front());
+  };
+  if (std::ranges::any_of(parts.files, differs)) {
+    throw RecordingFileError(path.string() + ": this folder holds " + std::to_string(parts.files.size()) +
+                             " recordings of different names and no metadata.yaml: name one of them, e.g. " +
+                             parts.files.front().string());
+  }
+  return parts;
+}
+
+bool holds_recording(const fs::path& folder) {
+  return fs::exists(folder / kMetadata) || !recordings_in(folder).empty();
+}
+
+}  // namespace rtd::recordings

@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/recorder/copy_recording.hpp"
+
+#include <cerrno>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "common/io/byte_sink.hpp"
+#include "common/mcap/indexed_reader.hpp"
+#include "common/mcap/writer.hpp"
+#include "common/ros2/names.hpp"
+#include "common/ros2/ros1_to_cdr.hpp"
+#include "common/ros2/type_description.hpp"
+
+namespace rtd::recording {
+namespace {
+
+constexpr std::size_t kMostDamages = 100;
+
+/// What becomes of the messages of a channel.
+struct Output {
+  mcap::ChannelId id = 0;
+  std::optional<ros2::Ros1ToCdr> to_cdr;  ///< empty: as they are
+};
+
+/// ROS 1's older name of what ROS 2 calls tf2_msgs/msg/TFMessage.
+std::string ros2_name(const std::string& type) {
+  if (type == "tf/tfMessage") return "tf2_msgs/msg/TFMessage";
+  const std::size_t slash = type.find('/');
+  return slash == std::string::npos || type.find("/msg/") != std::string::npos
+             ? type
+             : type.substr(0, slash) + "/msg" + type.substr(slash);
+}
+
+class Copy {
+ public:
+  Copy(const io::ByteSource& source, io::ByteSink& sink, mcap::Compression compression, CopiedRecording& result)
+      : reader_(source), writer_(sink, options(compression)), result_(result) {}
+
+  void run(const std::function<void(std::uint64_t)>& progress) {
+    mcap::MessageCursor cursor = reader_.messages();
+    while (const mcap::Message* const message = cursor.next()) {
+      if (const Output* const output = output_of(cursor.channel())) copy(*message, *output, cursor.channel().topic);
+      progress(bytes_ += message->data.size());
+    }
+    copy_rest();
+    writer_.close();
+    result_.topics = topics_.size();
+    for (const mcap::Problem& problem : reader_.problems().listed()) {
+      if (mcap::is_damage(problem)) note(mcap::to_string(problem));
+    }
+  }
+
+ private:
+  static mcap::WriterOptions options(mcap::Compression compression) {
+    mcap::WriterOptions options;
+    options.profile = "ros2";
+    options.compression = compression;
+    return options;
+  }
+
+  void copy(const mcap::Message& message, const Output& output, const std::string& topic) try {
+    mcap::Message copy = message;
+    copy.channel_id = output.id;
+    std::vector<std::uint8_t> cdr;
+    if (output.to_cdr) {
+      cdr = (*output.to_cdr)({reinterpret_cast<const std::uint8_t*>(message.data.data()), message.data.size()});
+      copy.data = std::as_bytes(std::span(cdr));
+      ++result_.from_ros1;
+    }
+    writer_.write(copy);
+    ++result_.messages;
+    topics_.insert(topic);
+  } catch (const ros::WireError& error) {
+    note("a message of " + topic + " is left out: " + error.what());
+  }
+
+  /// Null for a channel that is left out.
+  const Output* output_of(const mcap::Channel& channel) {
+    const auto [known, first] = outputs_.try_emplace(channel.id);
+    if (first) known->second = make_output(channel);
+    return known->second ? &*known->second : nullptr;
+  }
+  std::optional<Output> make_output(const mcap::Channel& channel) try {
+    const auto found = reader_.summary().schemas.find(channel.schema_id);
+    mcap::Schema schema = found == reader_.summary().schemas.end() ? mcap::Schema{} : found->second;
+    mcap::Channel copy = channel;
+    std::optional<ros2::Ros1ToCdr> to_cdr;
+    if (channel.message_encoding == "ros1") {
+      to_cdr = from_ros1(schema);
+      copy.message_encoding = "cdr";
+      copy.metadata.erase("md5sum");
+    } else if (schema.data.empty()) {
+      describe(schema);
+    }
+    copy.schema_id = schema.name.empty() ? mcap::SchemaId{0} : id_of(schema);
+    return Output{writer_.add(std::move(copy)), std::move(to_cdr)};
+  } catch (const ros::DefinitionError& error) {
+    result_.left_out[channel.topic] = error.what();
+    return std::nullopt;
+  }
+  static ros2::Ros1ToCdr from_ros1(mcap::Schema& schema) {
+    const std::string type = schema.name;
+    ros::MessageFields types = ros::parse_definition(type, schema.data);
+    const std::string text = ros2::ros2msg_text(type, ros2::as_ros2(types));
+    schema = {0, ros2_name(type), "ros2msg", text};
+    return {type, std::move(types)};
+  }
+  /// Older databases have no definitions: those of the types that are known here.
+  static void describe(mcap::Schema& schema) {
+    const ros2::TypeDefinition definition = ros2::definition_of(ros2::dds_type(schema.name));
+    if (definition.known()) schema = {0, definition.name, definition.encoding, definition.text};
+  }
+  mcap::SchemaId id_of(const mcap::Schema& schema) {
+    const auto [known, first] = schemas_.try_emplace({schema.name, schema.encoding, schema.data}, mcap::SchemaId{0});
+    if (first) known->second = writer_.add(schema);
+    return known->second;
+  }
+  void copy_rest() {
+    for (const mcap::AttachmentIndex& index : reader_.summary().attachment_indexes) {
+      if (const auto attachment = reader_.attachment(index)) writer_.write(*attachment);
+    }
+    for (const mcap::MetadataIndex& index : reader_.summary().metadata_indexes) {
+      if (const auto metadata = reader_.metadata(index)) writer_.write(*metadata);
+    }
+  }
+  void note(const std::string& damage) {
+    if (result_.damages.size() < kMostDamages) result_.damages.push_back(damage);
+  }
+
+  mcap::IndexedReader reader_;
+  mcap::Writer writer_;
+  CopiedRecording& result_;
+  std::map<mcap::ChannelId, std::optional<Output>> outputs_;
+  std::map<std::tuple<std::string, std::string, std::string>, mcap::SchemaId> schemas_;
+  std::set<std::string> topics_;
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace
+
+CopiedRecording copy_recording(const recordings::Opened& source, const std::filesystem::path& file,
+                               mcap::Compression compression, const std::function<void(std::uint64_t)>& progress) {
+  if (std::filesystem::exists(file)) throw io::IoError(EEXIST, file.string());
+  CopiedRecording result;
+  result.damages = source.damages;
+  io::FileSink sink(file.string() + ".partial", io::IfExists::kReplace);
+  Copy(*source.source, sink, compression, result).run(progress);
+  sink.replace(file);
+  return result;
+}
+
+}  // namespace rtd::recording

@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/recordings/open.hpp"
+
+#include <random>
+
+#include "common/mcap/recording_file.hpp"
+#include "common/recordings/parts.hpp"
+#include "services/camera/core/source_factory.hpp"
+#include "services/recorder/inspect/inspect_commands.hpp"
+#include "tests/support/rosbag1/bag_writer.hpp"
+#include "tests/unit/recordings/sample_files.hpp"
+
+namespace rtd::recordings {
+namespace {
+
+namespace fs = std::filesystem;
+using test::messages_of;
+using test::packed;
+using test::Sample;
+using test::samples;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+
+class OpenTest : public ::testing::Test {
+ protected:
+  /// Checks that the path holds exactly these messages and nothing is lost.
+  void holds(const std::string& path, const std::vector<Sample>& expected) {
+    const Opened opened = open(path);
+    EXPECT_THAT(opened.damages, IsEmpty());
+    EXPECT_EQ(messages_of(*opened.source), expected);
+    EXPECT_TRUE(is_recording(path));
+  }
+  int info(const std::string& path) {
+    out_.str({}), err_.str({});
+    return run_info({.file = path}, out_, err_);
+  }
+  static int run_info(const recording::InfoOptions& options, std::ostream& out, std::ostream& err) {
+    return recording::run_info(options, out, err);
+  }
+
+  test::Folder folder_;
+  std::ostringstream out_, err_;
+};
+
+TEST_F(OpenTest, an_mcap_file_is_opened_where_it_lies) {
+  const std::string path = folder_.mcap("a.mcap", samples(0, 6));
+  holds(path, samples(0, 6));
+  EXPECT_EQ(open(path).imported, "");
+}
+
+TEST_F(OpenTest, a_database_keeps_times_types_definitions_and_qos) {
+  const std::string path = folder_.db3("a.db3", samples(0, 6));
+  holds(path, samples(0, 6));
+  const Opened opened = open(path);
+  const mcap::IndexedReader reader(*opened.source);
+  std::map<std::string, std::string> definitions;
+  for (const auto& [id, channel] : reader.summary().channels) {
+    const mcap::Schema& schema = reader.summary().schemas.at(channel.schema_id);
+    definitions[channel.topic] = schema.name + ' ' + schema.data;
+    EXPECT_EQ(channel.message_encoding, "cdr");
+    EXPECT_EQ(channel.metadata.contains("offered_qos_profiles"), channel.topic == "/imu");
+  }
+  EXPECT_EQ(definitions["/odom"], "my_msgs/msg/Odd int8 odd");
+  EXPECT_EQ(definitions["/imu"], "std_msgs/msg/String ");
+}
+
+TEST_F(OpenTest, a_ros1_bag_keeps_its_encoding) {
+  rtd::test::BagWriter bag;
+  const std::uint32_t imu = bag.connection("/imu", "sensor_msgs/Imu");
+  const std::vector<std::uint8_t> bytes = {'x', 'y'};
+  bag.message(imu, 5'000'000, bytes);
+  const std::string path = folder_.file("a.bag", bag.closed());
+  holds(path, {{"/imu", 5'000'000, "xy"}});
+  const Opened opened = open(path);
+  const mcap::IndexedReader reader(*opened.source);
+  EXPECT_EQ(reader.summary().channels.begin()->second.message_encoding, "ros1");
+}
+
+TEST_F(OpenTest, split_folders_of_either_storage_are_one_recording) {
+  folder_.db3("bag/bag_0.db3", samples(0, 4)), folder_.db3("bag/bag_1.db3", samples(4, 4));
+  folder_.file("bag/metadata.yaml",
+               "rosbag2_bagfile_information:\n  relative_file_paths: [bag_0.db3, bag_1.db3]\n  compression_mode: ''\n");
+  holds(folder_ / "bag", samples(0, 8));
+  EXPECT_THAT(open(folder_ / "bag").imported, HasSubstr("2 files"));
+  folder_.mcap("split/s_9.mcap", samples(0, 4)), folder_.mcap("split/s_10.mcap", samples(4, 4));
+  holds(folder_ / "split", samples(0, 8));
+  EXPECT_THAT(parts_of(folder_ / "split").files.front().string(), HasSubstr("s_9")) << "without metadata, by number";
+}
+
+TEST_F(OpenTest, files_packed_with_zstd_are_unpacked) {
+  folder_.mcap("a.mcap", samples(0, 6));
+  holds(folder_.file("a.mcap.zst", packed(folder_.content("a.mcap"))), samples(0, 6));
+  folder_.db3("a.db3", samples(0, 6));
+  const std::string part = folder_.file("bag/a.db3.zstd", packed(folder_.content("a.db3")));
+  holds(part, samples(0, 6));
+  folder_.file("bag/metadata.yaml",
+               "rosbag2_bagfile_information: {relative_file_paths: [a.db3.zstd], compression_format: zstd, "
+               "compression_mode: FILE}");
+  holds(folder_ / "bag", samples(0, 6));
+}
+
+TEST_F(OpenTest, messages_packed_one_by_one_are_unpacked) {
+  std::vector<Sample> messages = samples(0, 6);
+  for (Sample& message : messages) message.data = packed(message.data);
+  folder_.db3("bag/a.db3", messages);
+  const char* metadata =
+      "rosbag2_bagfile_information: {relative_file_paths: [%], compression_format: zstd, "
+      "compression_mode: MESSAGE}";
+  const auto write_metadata = [&](const std::string& name) {
+    std::string text = metadata;
+    text.replace(text.find('%'), 1, name);
+    folder_.file("bag/metadata.yaml", text);
+  };
+  write_metadata("a.db3");
+  holds(folder_ / "bag", samples(0, 6));
+  folder_.mcap("bag/b.mcap", messages);
+  write_metadata("b.mcap");
+  holds(folder_ / "bag", samples(0, 6));
+  messages[2].data[5] ^= 0x55, messages[3].data = "no zstd";
+  folder_.mcap("bag/b.mcap", messages);
+  const Opened opened = open(folder_ / "bag");
+  EXPECT_GE(opened.damages.size(), 1U);
+  EXPECT_THAT(opened.damages.back(), HasSubstr("cannot be unpacked"));
+  EXPECT_LT(messages_of(*opened.source).size(), 6U);
+}
+
+TEST_F(OpenTest, what_is_missing_or_damaged_is_named_and_the_rest_is_there) {
+  folder_.db3("bag_0.db3", samples(0, 4));
+  folder_.metadata({"bag_0.db3", "bag_1.db3"});
+  const Opened opened = open(folder_.path());
+  EXPECT_THAT(opened.damages, ElementsAre(HasSubstr("bag_1.db3 is missing")));
+  EXPECT_EQ(messages_of(*opened.source), samples(0, 4));
+  EXPECT_EQ(info(folder_.path()), 3);
+  EXPECT_THAT(out_.str(), HasSubstr("bag_1.db3 is missing"));
+
+  std::vector<Sample> many = samples(0, 1000);
+  std::mt19937 random(1);
+  for (Sample& message : many) {
+    for (int i = 0; i < 4000; ++i) message.data += static_cast<char>(random());
+  }
+  folder_.mcap("a.mcap", many);
+  const std::string whole = packed(folder_.content("a.mcap"));
+  const Opened cut = open(folder_.file("cut.mcap.zst", whole.substr(0, whole.size() - 20)));
+  EXPECT_THAT(cut.damages, ElementsAre(HasSubstr("cut.mcap.zst")));
+  EXPECT_GT(messages_of(*cut.source).size(), 100U) << "what was unpacked before is there";
+}
+
+TEST_F(OpenTest, what_is_no_recording_is_refused_with_the_reason) {
+  const auto refuses = [](const std::string& path, const std::string& text) {
+    EXPECT_THAT([&] { open(path); }, ThrowsMessage<mcap::RecordingFileError>(HasSubstr(text))) << path;
+  };
+  refuses(folder_ / "none.mcap", "none.mcap");
+  refuses(folder_.path(), "holds no recording");
+  folder_.mcap("two/a_0.mcap", samples(0, 2)), folder_.mcap("two/b_0.mcap", samples(0, 2));
+  refuses(folder_ / "two", "2 recordings of different names");
+  refuses(folder_.file("a.txt", "hello"), "not an MCAP file");
+  refuses(folder_.file("a.zst", packed("hello")), "not an MCAP file");
+  refuses(folder_.file("a.db3", "SQLite format 3 and nothing"), "a.db3");
+  folder_.file("m/metadata.yaml", "rosbag2_bagfile_information: [");
+  refuses(folder_ / "m", "metadata.yaml cannot be read");
+  folder_.file("m/metadata.yaml", "other: 1");
+  refuses(folder_ / "m", "describes no recording");
+  folder_.file("m/metadata.yaml", "rosbag2_bagfile_information: {relative_file_paths: [x.db3]}");
+  refuses(folder_ / "m", "none of the files");
+  folder_.file("m/metadata.yaml",
+               "rosbag2_bagfile_information: {relative_file_paths: [x.db3], compression_format: lz4}");
+  refuses(folder_ / "m", "'lz4': only zstd is known");
+}
+
+TEST_F(OpenTest, nothing_stays_behind_in_the_folder_for_temporary_files) {
+  const fs::path temporary = folder_.path() + "/tmp";
+  fs::create_directory(temporary);
+  ASSERT_EQ(setenv("TMPDIR", temporary.c_str(), 1), 0);
+  folder_.db3("a.db3", samples(0, 6));
+  {
+    const Opened opened = open(folder_.file("a.db3.zst", packed(folder_.content("a.db3"))));
+    EXPECT_TRUE(fs::is_empty(temporary)) << "already while it is read";
+    EXPECT_EQ(messages_of(*opened.source).size(), 6U);
+  }
+  unsetenv("TMPDIR");
+}
+
+TEST_F(OpenTest, info_and_diff_take_every_form) {
+  folder_.db3("bag/bag_0.db3", samples(0, 4)), folder_.db3("bag/bag_1.db3", samples(4, 4));
+  const std::string whole = folder_.db3("whole.db3", samples(0, 8));
+  EXPECT_EQ(info(folder_ / "bag"), 0) << err_.str();
+  EXPECT_THAT(out_.str(),
+              AllOf(HasSubstr("2 files copied into MCAP"), HasSubstr("/odom"), HasSubstr("my_msgs/msg/Odd")));
+  recording::DiffRequest request;
+  request.a = folder_ / "bag", request.b = whole;
+  EXPECT_EQ(recording::run_diff(request, out_, err_), 0) << out_.str() << err_.str();
+  request.b = folder_.db3("other.db3", samples(0, 7));
+  EXPECT_EQ(recording::run_diff(request, out_, err_), 1);
+}
+
+TEST_F(OpenTest, bare_paths_become_sources) {
+  folder_.db3("bag/bag_0.db3", samples(0, 4));
+  fs::create_directory(folder_ / "tum");
+  EXPECT_EQ(camera::complete_uri(folder_ / "bag"), "mcap:" + folder_ / "bag");
+  EXPECT_EQ(camera::complete_uri(folder_ / "tum"), "tum:" + folder_ / "tum");
+  EXPECT_EQ(camera::complete_uri("x.mcap.zst"), "mcap:x.mcap.zst");
+}
+
+}  // namespace
+}  // namespace rtd::recordings
