@@ -10,6 +10,7 @@
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/live/device_source.hpp"
 #include "services/camera/core/live/live_source.hpp"
+#include "services/camera/core/oni/oni_file.hpp"
 #include "services/camera/devices/device_factory.hpp"
 #include "services/camera/ros2_feed.hpp"
 
@@ -46,6 +47,11 @@ std::int64_t epoch_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(unix_time).count() - service::monotonic_ns();
 }
 
+/// Before OpenNI2's library reads a file.
+void check_recorded(const DeviceUri& uri) try { require_oni_file(uri.device); } catch (const OniFileError& error) {
+  throw SourceError(error.what());
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> make_live_source(const std::string& uri, const bus::BusOptions& bus,
@@ -53,6 +59,7 @@ std::unique_ptr<FrameSource> make_live_source(const std::string& uri, const bus:
                                               std::function<void(const std::string&)> on_wait) {
   if (is_device(uri)) {
     DeviceOptions options{parse_device_uri(uri), open_timeout_ns, epoch_ns(), std::move(on_wait)};
+    if (options.uri.scheme == "openni2") check_recorded(options.uri);
     std::unique_ptr<LiveDevice> device = make_device(options.uri);
     return std::make_unique<DeviceSource>(std::move(device), std::make_unique<HostClock>(), std::move(options));
   }

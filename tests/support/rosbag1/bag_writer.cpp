@@ -60,9 +60,10 @@ std::string bag_record(const Fields& header, const std::string& data) {
   return number(fields.size()) + fields + number(data.size()) + data;
 }
 
-std::uint32_t BagWriter::connection(const std::string& topic, const std::string& type) {
+std::uint32_t BagWriter::connection(const std::string& topic, const std::string& type, const std::string& definition) {
   const auto id = static_cast<std::uint32_t>(connections_.size());
-  const std::string data = fields_text({{"topic", topic}, {"type", type}, {"md5sum", "*"}, {"message_definition", ""}});
+  const std::string data =
+      fields_text({{"topic", topic}, {"type", type}, {"md5sum", "*"}, {"message_definition", definition}});
   connections_[id] = bag_record({{"op", op(7)}, {"conn", number(id)}, {"topic", topic}}, data);
   return id;
 }

@@ -23,7 +23,7 @@ class BagWriter {
  public:
   explicit BagWriter(std::string compression = "none") : compression_(std::move(compression)) {}
 
-  std::uint32_t connection(const std::string& topic, const std::string& type);
+  std::uint32_t connection(const std::string& topic, const std::string& type, const std::string& definition = "");
   void message(std::uint32_t connection, std::int64_t time_ns, std::span<const std::uint8_t> bytes);
   /// Closes the chunk; the next message begins another.
   void end_chunk();
