@@ -17,6 +17,7 @@ namespace rtd::geometry {
 namespace {
 
 constexpr std::size_t kColumns = 8;
+constexpr double kMostQuaternionError = 0.05;  // of the length; TUM's own ground truth comes near it
 
 [[noreturn]] void fail(const std::string& name, int line, const std::string& cause) {
   throw TrajectoryError(name + ":" + std::to_string(line) + ": " + cause);
@@ -39,10 +40,7 @@ Eigen::Isometry3d parse_pose(const std::vector<std::string>& columns, double qua
     throw std::invalid_argument("quaternion has length " + std::to_string(rotation.norm()) +
                                 " instead of 1 (columns are: stamp tx ty tz qx qy qz qw)");
   }
-  Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();
-  T_world_body.linear() = rotation.normalized().toRotationMatrix();
-  T_world_body.translation() << v[0], v[1], v[2];
-  return T_world_body;
+  return make_pose({v[0], v[1], v[2]}, rotation);
 }
 
 StampedPose parse_row(const std::vector<std::string>& columns, TumRows rows) {
@@ -50,14 +48,6 @@ StampedPose parse_row(const std::vector<std::string>& columns, TumRows rows) {
     throw std::invalid_argument(std::to_string(columns.size()) + " columns instead of 8 (stamp tx ty tz qx qy qz qw)");
   }
   return {io::parse_stamp_ns(columns[0]), parse_pose(columns, rows == TumRows::kAsWritten ? 0.05 : 0.01)};
-}
-
-void append_in_order(Trajectory& trajectory, const StampedPose& pose) {
-  if (!trajectory.empty() && pose.stamp_ns < trajectory.back().stamp_ns) {
-    throw std::invalid_argument("stamp is earlier than the one before it; sort the file by its first column");
-  }
-  if (!trajectory.empty() && pose.stamp_ns == trajectory.back().stamp_ns) trajectory.pop_back();
-  trajectory.push_back(pose);
 }
 
 std::vector<io::TextLine> lines_of(std::istream& input) {
@@ -83,6 +73,27 @@ std::string rounded_stamp(std::int64_t stamp_ns) {
 }
 
 }  // namespace
+
+Eigen::Isometry3d make_pose(const Eigen::Vector3d& translation, const Eigen::Quaterniond& rotation) {
+  if (!translation.allFinite() || !rotation.coeffs().allFinite()) {
+    throw std::invalid_argument("the pose has a value that is not finite");
+  }
+  if (std::abs(rotation.norm() - 1) > kMostQuaternionError) {
+    throw std::invalid_argument("quaternion has length " + std::to_string(rotation.norm()) + " instead of 1");
+  }
+  Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();
+  T_world_body.linear() = rotation.normalized().toRotationMatrix();
+  T_world_body.translation() = translation;
+  return T_world_body;
+}
+
+void append_in_order(Trajectory& trajectory, const StampedPose& pose) {
+  if (!trajectory.empty() && pose.stamp_ns < trajectory.back().stamp_ns) {
+    throw std::invalid_argument("stamp is earlier than the one before it; sort the file by its first column");
+  }
+  if (!trajectory.empty() && pose.stamp_ns == trajectory.back().stamp_ns) trajectory.pop_back();
+  trajectory.push_back(pose);
+}
 
 std::vector<StampPair> associate(const std::vector<std::int64_t>& first_ns, const std::vector<std::int64_t>& second_ns,
                                  std::int64_t max_difference_ns) {

@@ -46,6 +46,14 @@ class TrajectoryError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A pose of what a file says. Throws std::invalid_argument: a value that is not finite, a quaternion more than 5 % too
+/// long or short (else it is normalised).
+Eigen::Isometry3d make_pose(const Eigen::Vector3d& translation, const Eigen::Quaterniond& rotation);
+
+/// Appends a pose of a file; one with the stamp of the last replaces it. Throws std::invalid_argument for a stamp that
+/// goes back.
+void append_in_order(Trajectory& trajectory, const StampedPose& pose);
+
 /// What a reader makes of the rows of a trajectory.
 enum class TumRows {
   kIncreasing,  ///< a repeated stamp replaces the row before it, as in TUM's tools; going back or no row is an error

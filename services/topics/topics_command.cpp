@@ -12,7 +12,9 @@
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/json_text.hpp"
+#include "services/camera/core/frame_source.hpp"
 #include "services/topics/core/topic_report.hpp"
+#include "services/topics/recording_echo.hpp"
 #include "services/topics/topics_session.hpp"
 
 namespace rtd::topics {
@@ -21,6 +23,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double kMaxSeconds = 1e6;
+const std::string kOneTopic =
+    "echo prints one topic of a running system, or any of a recording, whose file comes first; no such file: ";
 
 CLI::App* add_action(CLI::App& app, TopicsRequest& request, const char* name, const char* description) {
   CLI::App* action = app.add_subcommand(name, description);
@@ -45,10 +49,13 @@ void add_topics_commands(CLI::App& app, TopicsRequest& request) {
       ->check(CLI::Range(0.1, kMaxSeconds));
   hz->add_option("--count", request.count, "End when each topic has had this many messages");
   CLI::App* echo = add_action(app, request, "echo", "Messages of a topic, field by field");
-  echo->add_option("topic", request.topics, "Topic by ROS or DDS name")->required()->expected(1);
+  echo->add_option("topic", request.topics,
+                   "Topic by ROS or DDS name; or a recording (MCAP, .db3, .bag) and topics in it (default: all)")
+      ->required();
   echo->add_flag("--once", request.once, "End after one message");
   echo->add_option("--count", request.count, "End after this many messages");
-  echo->add_option("--duration", request.duration_s, "End after this time, s (default: at Ctrl-C)")
+  echo->add_option("--duration", request.duration_s,
+                   "End after this time, s (default: at Ctrl-C); of a recording: its first S seconds")
       ->check(CLI::Range(0.0, kMaxSeconds));
   echo->add_option("--max-array", request.max_array, "Values shown per array, 0 = all")->capture_default_str();
 }
@@ -77,7 +84,11 @@ int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostre
 }
 
 int run_topics(const TopicsRequest& request, std::ostream& out, std::ostream& err) {
-  return service::report_errors<service::ConfigError, bus::BusError>("rtd topics", err, [&] {
+  return service::report_errors<service::ConfigError, bus::BusError, camera::SourceError>("rtd topics", err, [&] {
+    if (request.action == "echo") {
+      if (is_recording(request.topics.front())) return echo_recording(request, out, err);
+      if (request.topics.size() > 1) throw service::ConfigError(kOneTopic + request.topics.front());
+    }
     TopicsSession session(request.bus);
     if (request.action == "list") return list_topics(request, session, out, err);
     if (request.action == "hz") return measure_topics(request, session, out, err);

@@ -15,9 +15,9 @@ namespace rtd::topics {
 struct TopicsRequest {
   std::string action;  ///< list, hz, echo
   service::BusArguments bus;
-  std::vector<std::string> topics;  ///< hz: empty = all; echo: one. ROS or DDS names
+  std::vector<std::string> topics;  ///< hz: empty = all; echo: one, or a recording and its topics. ROS or DDS names
   double wait_s = 6;                ///< list: longest search
-  double duration_s = -1;           ///< hz: 5; echo: 0 = until Ctrl-C
+  double duration_s = -1;           ///< hz: 5; echo: 0 = until Ctrl-C or the end of the recording
   std::uint64_t count = 0;          ///< messages (of each topic), 0 = any number
   std::uint64_t max_array = 36;     ///< echo: values shown of an array, 0 = all
   bool once = false, json = false;

@@ -67,10 +67,17 @@ std::string alignment_rows(const Alignment& alignment) {
 struct Inputs {
   Trajectory estimate, groundtruth;
   std::optional<std::vector<std::int64_t>> frames_ns;
+  std::vector<std::string> damages;
 };
 
 Inputs read_inputs(const EvalOptions& options) {
-  Inputs inputs{read_tum_trajectory(options.estimate), read_tum_trajectory(options.groundtruth), {}};
+  PoseFile estimate = read_pose_file(options.estimate, options.stamps);
+  PoseFile groundtruth = read_pose_file(options.groundtruth, options.stamps);
+  const bool given = options.stamps.rate_hz > 0 || !options.stamps.times_file.empty();
+  if (given && !estimate.took_stamps && !groundtruth.took_stamps)
+    throw service::ConfigError("--rate and --times are for KITTI's format, but both files have stamps; leave them out");
+  Inputs inputs{std::move(estimate.poses), std::move(groundtruth.poses), {}, std::move(estimate.damages)};
+  std::ranges::move(groundtruth.damages, std::back_inserter(inputs.damages));
   if (!options.frames.empty()) inputs.frames_ns = read_frame_stamps(options.frames);
   return inputs;
 }
@@ -126,10 +133,18 @@ std::string explain_no_pairs(const Trajectory& estimate, const Trajectory& groun
 }  // namespace
 
 CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options) {
-  CLI::App* command =
-      parent.add_subcommand("trajectory", "Compare a trajectory with its ground truth (both in TUM format)");
-  command->add_option("estimate", options.estimate, "Trajectory to judge: stamp tx ty tz qx qy qz qw")->required();
-  command->add_option("groundtruth", options.groundtruth, "Ground truth in the same format")->required();
+  CLI::App* command = parent.add_subcommand(
+      "trajectory", "Compare a trajectory with its ground truth (TUM, KITTI, EuRoC, or poses in a recording)");
+  command
+      ->add_option("estimate", options.estimate,
+                   "Trajectory to judge: TUM (stamp tx ty tz qx qy qz qw), KITTI, EuRoC csv, or "
+                   "a recording: FILE[?topic=/x[&child=FRAME]]")
+      ->required();
+  command->add_option("groundtruth", options.groundtruth, "Ground truth, in any of these formats")->required();
+  auto* rate = command->add_option("--rate", options.stamps.rate_hz, "Poses per second of a file in KITTI's format");
+  rate->check(CLI::PositiveNumber);
+  command->add_option("--times", options.stamps.times_file, "Stamps of a file in KITTI's format: seconds, one a line")
+      ->excludes(rate);
   command->add_flag("--json", options.json, "Print JSON instead of a table");
   command->add_option("--plot", options.plot, "Write an SVG: both trajectories, error by colour and over time");
   command->add_flag("--scale", options.scale, "Also fit a scale (Sim(3), for monocular trajectories)");
@@ -152,7 +167,8 @@ int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
     }
     if (!options.plot.empty()) write_plot(evaluation, inputs, options);
     out << (options.json ? service::json_text(to_json(evaluation)) + "\n" : evaluation_table(evaluation, options));
-    return service::kOk;
+    for (const std::string& damage : inputs.damages) err << "rtd eval: left out: " << damage << '\n';
+    return inputs.damages.empty() ? service::kOk : service::kPartialLoss;
   });
 }
 

@@ -56,6 +56,20 @@ class EvalCommand : public testing::Test {
   std::string truth_, estimate_;
 };
 
+TEST_F(EvalCommand, reads_kitti_with_a_rate_and_names_the_options_without) {
+  std::string rows;
+  for (int i = 0; i < 20; ++i) rows += "1 0 0 " + std::to_string(i * i) + " 0 1 0 " + std::to_string(i) + " 0 0 1 0\n";
+  const std::string file = folder_.write("00.txt", rows);
+  const Outcome outcome = run({file, file, "--rate", "10"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("(20 poses)"));
+  EXPECT_EQ(run({file, file}).code, 2);
+  EXPECT_THAT(run({file, file}).err, AllOf(HasSubstr("00.txt"), HasSubstr("--rate HZ")));
+  const Outcome needless = run({estimate_, truth_, "--rate", "10"});
+  EXPECT_EQ(needless.code, 2);
+  EXPECT_THAT(needless.err, HasSubstr("both files have stamps"));
+}
+
 TEST_F(EvalCommand, prints_a_table_with_all_errors_and_units) {
   const Outcome outcome = run({estimate_, truth_});
   EXPECT_EQ(outcome.code, 0);

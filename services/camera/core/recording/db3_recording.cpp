@@ -12,7 +12,8 @@ class Db3Recording final : public IndexedRecording<rosbag2::Db3Reader, rosbag2::
   explicit Db3Recording(const std::filesystem::path& file) : IndexedRecording(file) {
     for (const auto& [id, topic] : reader_.topics()) {
       if (topic.serialization_format == "cdr")
-        topics_.push_back({topic.name, plain_type(topic.type), topic.messages, {}});
+        topics_.push_back(
+            {topic.name, plain_type(topic.type), topic.messages, {}, topic.definition_encoding, topic.definition});
     }
   }
 

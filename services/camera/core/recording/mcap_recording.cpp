@@ -33,7 +33,7 @@ class McapRecording final : public Recording {
       const auto schema = summary.schemas.find(channel.schema_id);
       if (!wire_of(channel) || schema == summary.schemas.end()) continue;
       add_topic({channel.topic, plain_type(schema->second.name), counts.count(id) != 0 ? counts.at(id) : 0,
-                 channel.metadata});
+                 channel.metadata, schema->second.encoding, schema->second.data});
     }
   }
 

@@ -20,6 +20,8 @@ struct RecordedTopic {
   std::string name, type;  ///< plain_type()
   std::uint64_t messages = 0;
   std::map<std::string, std::string> metadata;  ///< MCAP: of the channel
+  /// How the file defines the type: "ros1msg", "ros2msg", "omgidl", ... and the text; empty when it does not.
+  std::string schema_encoding = {}, schema_text = {};
 };
 
 /// "sensor_msgs/msg/Image" (ROS 2), "sensor_msgs::msg::dds_::Image_" (DDS) -> "sensor_msgs/Image" (ROS 1).
@@ -67,6 +69,10 @@ std::unique_ptr<Recording> open_db3(const std::filesystem::path& file);
 /// Opens a recording of any form (recordings::open()) as MCAP: also folders of rosbag2, and files packed with zstd.
 /// Messages in CDR (ROS 2, ours) and in ROS 1's encoding. Throws SourceError.
 std::unique_ptr<Recording> open_mcap(const std::filesystem::path& file);
+
+/// Opens a recording of any form by its first bytes: bags and databases where they lie, all else with open_mcap().
+/// Throws SourceError.
+std::unique_ptr<Recording> open_any(const std::filesystem::path& path);
 
 /// The first message of a topic. Throws SourceError when there is none that can be read.
 RecordedMessage first_of(Recording& recording, const std::string& topic);

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/geometry/trajectory.hpp"
+
+namespace rtd::eval {
+
+/// The stamps of files that have none (KITTI). At most one of the two.
+struct MissingStamps {
+  double rate_hz = 0;      ///< pose i is of i / rate; 0: not given
+  std::string times_file;  ///< stamps in seconds, one a line; empty: not given
+};
+
+/// A trajectory of a file.
+struct PoseFile {
+  geometry::Trajectory poses;
+  bool took_stamps = false;          ///< from MissingStamps
+  std::vector<std::string> damages;  ///< of a recording, one line each
+};
+
+/// Reads a trajectory in TUM's, KITTI's or EuRoC's format or from a recording (ROS 1 bag, MCAP, .db3), which it tells
+/// apart by their content. `argument` is FILE, and for a recording FILE?topic=/x&child=FRAME. Throws
+/// geometry::TrajectoryError or camera::SourceError, which name the file, the line or topic and what is expected.
+PoseFile read_pose_file(const std::string& argument, const MissingStamps& stamps);
+
+}  // namespace rtd::eval
