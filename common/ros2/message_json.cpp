@@ -100,8 +100,9 @@ class Walk {
   template <class T>
   static Json real(Walk& walk) {
     const T value = walk.number<T>();
-    if (std::isfinite(value)) return std::stod(fmt::format("{}", value));  // 0.1F is 0.1, not 0.10000000149
-    return std::isnan(value) ? "nan" : (value > 0 ? "inf" : "-inf");
+    if (!std::isfinite(value)) return std::isnan(value) ? "nan" : (value > 0 ? "inf" : "-inf");
+    if constexpr (std::is_same_v<T, double>) return value;
+    return std::stod(fmt::format("{}", value));  // 0.1F is 0.1, not 0.10000000149
   }
   template <class Seconds, class Nanoseconds>
   static Json time(Walk& walk) {

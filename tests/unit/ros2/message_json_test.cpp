@@ -23,6 +23,15 @@ Json read(const std::string& dds_type, const Message& message, std::size_t most_
   return message_json(dds_type, ros::encode<ros::Wire::kCdr>(message), most_values);
 }
 
+TEST(MessageJson, has_the_smallest_numbers_that_there_are) {
+  msg::PoseStamped pose;
+  pose.pose.position = {std::numeric_limits<double>::denorm_min(), -1e-310, 1e308};
+  const Json json = read("geometry_msgs::msg::dds_::PoseStamped_", pose)["pose"]["position"];
+  EXPECT_EQ(json["x"], std::numeric_limits<double>::denorm_min());
+  EXPECT_EQ(json["y"], -1e-310);
+  EXPECT_EQ(json["z"], 1e308);
+}
+
 TEST(MessageJson, has_every_field_of_a_standard_message_by_its_name) {
   msg::Odometry odometry;
   odometry.header = {{12, 34}, "map"};
