@@ -105,7 +105,7 @@ Opened open_parts(const Parts& parts, const Progress& progress) {
   }
   opened.imported = description_of(parts, passes.packed());
   if (all_mcap && files.size() == 1 && !parts.packed_messages) {
-    if (!passes.packed()) opened.imported.clear();
+    opened.imported = passes.packed() ? "unpacked from zstd" : "";
     opened.source = std::make_unique<io::FileSource>(files.front().path);
     return opened;
   }

@@ -29,7 +29,8 @@ int run_export(int argc, char** argv) {
   std::uint64_t frames = 0;
   CLI::App app{"Write a source to a new folder in TUM's layout", "rtd-camera"};
   app.add_option("--export", folder, "New folder")->required();
-  app.add_option("--source", uri, "tum:FOLDER, bag:FILE, mcap:FILE or synthetic:SCENE[?key=value&...]")->required();
+  app.add_option("--source", uri, "tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE or synthetic:SCENE[?key=value&...]")
+      ->required();
   app.add_option("--frames", frames, "At most this many frames, 0 = all");
   return service::run_command(app, argc, argv, [&]() -> int {
     try {

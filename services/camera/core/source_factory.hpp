@@ -40,7 +40,7 @@ std::string complete_uri(const std::string& source);
 ///   bag:FILE[?color=TOPIC&depth=TOPIC&info=TOPIC&depth_info=TOPIC&calibration=FILE&registered=1&tolerance_ms=20]
 ///     ROS 1 bag
 ///   db3:FILE[?...]   the same of a rosbag2 file in sqlite3 format
-///   mcap:FILE[?...]   the same of an MCAP file; frames that we recorded ourselves come first
+///   mcap:FILE[?...]   the same of a recording of any form; frames that we recorded ourselves come first
 ///   synthetic:SCENE[?seed=1&frames=300&fps=30&noise=1&people=N&boxes=N&width=640&height=480]   frames=0: endless;
 ///   more keys, and the faults of the sensor (sensor=kinect&holes=0.2&...): services/camera/README.md
 /// A running camera (ros2:, openni2:, v4l2:) is opened by the service

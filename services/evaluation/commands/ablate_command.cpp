@@ -274,7 +274,7 @@ void add_ablate_command(CLI::App& app, AblateOptions& options) {
   CLI::App* command = app.add_subcommand("ablate", "Every filter mode, and rtd without each technique, compared");
   command
       ->add_option("--source", options.sources,
-                   "tum:FOLDER, bag:FILE, mcap:FILE or synthetic:NAME[?...], with ground truth (repeatable)")
+                   "tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE or synthetic:NAME[?...], with ground truth (repeatable)")
       ->required();
   command->add_option("--runs", options.runs, "Runs of each")->check(CLI::Range(1, 1000))->capture_default_str();
   command->add_option("--pace", options.pace, "realtime, asap or lockstep")

@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Measure single parts beside a reference in the same run", "rtd bench"};
   app.require_subcommand(1);
   CLI::App* features = app.add_subcommand("features", "Our ORB extractor beside cv::ORB on the same frames");
-  features->add_option("--source", options.source, "tum:FOLDER, bag:FILE, mcap:FILE or synthetic:SCENE")
+  features->add_option("--source", options.source, "tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE or synthetic:SCENE")
       ->capture_default_str();
   features->add_option("--features", options.features.features, "Features wanted per frame")
       ->check(CLI::Range(100, 1300))

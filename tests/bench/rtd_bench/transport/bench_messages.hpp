@@ -35,7 +35,8 @@ inline Tag tag_of(const msg::Header& header) {
   return Tag::unpack(std::stoull(header.frame_id), header.stamp.sec * kNsPerS + header.stamp.nanosec);
 }
 
-inline void put(const Tag& tag, msg::RgbdFrame& frame) {
+template <std::uint32_t kWidth, std::uint32_t kHeight>
+void put(const Tag& tag, msg::SizedFrame<kWidth, kHeight>& frame) {
   frame.seq = tag.packed();
   frame.published_ns = tag.sent_ns;
 }
@@ -50,7 +51,8 @@ inline void put(const Tag& tag, msg::PoseStamped& pose) {
   pose.header = header_of(tag);
 }
 
-inline Tag tag_of(const msg::RgbdFrame& frame) {
+template <std::uint32_t kWidth, std::uint32_t kHeight>
+Tag tag_of(const msg::SizedFrame<kWidth, kHeight>& frame) {
   return Tag::unpack(frame.seq, frame.published_ns);
 }
 inline Tag tag_of(const msg::FeatureFrame& features) {
@@ -64,9 +66,10 @@ inline Tag tag_of(const msg::PoseStamped& pose) {
 }
 
 /// New content for every message, as a producer writes it.
-inline void fill(msg::RgbdFrame& frame, std::uint64_t number) {
-  frame.width = 640;
-  frame.height = 480;
+template <std::uint32_t kWidth, std::uint32_t kHeight>
+void fill(msg::SizedFrame<kWidth, kHeight>& frame, std::uint64_t number) {
+  frame.width = kWidth;
+  frame.height = kHeight;
   std::memset(frame.color_bgr.data(), static_cast<int>(number), sizeof(frame.color_bgr));
   std::memset(frame.depth.data(), static_cast<int>(number), sizeof(frame.depth));
 }
@@ -99,6 +102,12 @@ auto with_topic(const TransportCase& what, const Use& use) {
   switch (what.payload) {
     case Payload::kFrame:
       return use(bus::Topic<msg::RgbdFrame>{"rtd/bench/frame", fixed});
+    case Payload::kFrame848:
+      return use(bus::Topic<msg::RgbdFrame848>{"rtd/bench/frame_848x480", fixed});
+    case Payload::kFrame1280:
+      return use(bus::Topic<msg::RgbdFrame1280>{"rtd/bench/frame_1280x720", fixed});
+    case Payload::kFrame1920:
+      return use(bus::Topic<msg::RgbdFrame1920>{"rtd/bench/frame_1920x1200", fixed});
     case Payload::kJpeg:
       return use(bus::Topic<msg::CompressedImage>{"rtd/bench/jpeg", bus::QosProfile::kNetworkFrame});
     case Payload::kFeatures:

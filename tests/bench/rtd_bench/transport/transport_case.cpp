@@ -22,8 +22,11 @@ struct PayloadName {
   bool fixed_size;
 };
 constexpr PayloadName kPayloads[] = {{Payload::kFrame, "frame", "raw frame, 1.5 MB", true},
+                                     {Payload::kFrame848, "frame-848x480", "raw frame, 2.0 MB", true},
+                                     {Payload::kFrame1280, "frame-1280x720", "raw frame, 4.6 MB", true},
+                                     {Payload::kFrame1920, "frame-1920x1200", "raw frame, 11.5 MB", true},
                                      {Payload::kJpeg, "jpeg", "JPEG, 300 kB", false},
-                                     {Payload::kFeatures, "features", "features, 131 kB", true},
+                                     {Payload::kFeatures, "features", "features, 262 kB", true},
                                      {Payload::kPose, "pose", "pose, 0.1 kB", false}};
 
 const PayloadName& entry(Payload payload) {

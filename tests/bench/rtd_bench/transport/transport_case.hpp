@@ -13,7 +13,7 @@
 namespace rtd::bench {
 
 /// What is sent. Raw frame and features are of fixed size, a JPEG and a pose are not.
-enum class Payload { kFrame, kJpeg, kFeatures, kPose };
+enum class Payload { kFrame, kFrame848, kFrame1280, kFrame1920, kJpeg, kFeatures, kPose };
 /// The way that it takes on one host.
 enum class Path {
   kSharing,       ///< Fast DDS data sharing: stays in the writer's memory, fixed sizes only

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <memory>
 #include <chrono>
 #include <stdexcept>
 #include <thread>
@@ -46,10 +47,10 @@ class MemcpyReference {
 template <class T>
 class Sender {
  public:
-  Sender(bus::Bus& bus, const bus::Topic<T>& topic) : writer_(bus.writer(topic)) { fill(message_, 0); }
+  Sender(bus::Bus& bus, const bus::Topic<T>& topic) : writer_(bus.writer(topic)) { fill(*message_, 0); }
 
   bool ready() const { return writer_.matched() > 0; }
-  std::size_t bytes() const { return payload_bytes(message_); }
+  std::size_t bytes() const { return payload_bytes(*message_); }
   /// `fresh`: with new content, which is not part of the latency.
   void send(Phase phase, std::uint64_t number, bool fresh) {
     Tag tag{phase, number, 0};
@@ -60,16 +61,16 @@ class Sender {
       put(tag, *loan);
       writer_.write(std::move(loan));
     } else {
-      if (fresh) fill(message_, number);
+      if (fresh) fill(*message_, number);
       tag.sent_ns = monotonic_ns();
-      put(tag, message_);
-      writer_.write(message_);
+      put(tag, *message_);
+      writer_.write(*message_);
     }
   }
 
  private:
   bus::Writer<T> writer_;
-  T message_{};
+  std::unique_ptr<T> message_ = std::make_unique<T>();  // up to 11.5 MB
 };
 
 /// Until messages are answered: then both directions stand.
