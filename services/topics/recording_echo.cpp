@@ -71,6 +71,11 @@ class RecordingPrinter {
   std::uint64_t printed_ = 0, unreadable_ = 0;
 };
 
+/// A bag where it lies; a database through MCAP, which keeps its definitions of types.
+std::unique_ptr<camera::Recording> open(const fs::path& path) {
+  return path.extension() == ".db3" ? camera::open_mcap(path) : camera::open_any(path);
+}
+
 std::string readable_topics(const Types& types) {
   std::vector<std::string> names;
   for (const auto& [name, type] : types) {
@@ -138,7 +143,7 @@ bool is_recording(const std::string& argument) {
 }
 
 int echo_recording(const TopicsRequest& request, std::ostream& out, std::ostream& err) {
-  const std::unique_ptr<camera::Recording> recording = camera::open_any(request.topics.front());
+  const std::unique_ptr<camera::Recording> recording = open(request.topics.front());
   const Types types = types_of(*recording);
   const std::vector<std::string> chosen =
       request.topics.size() > 1 ? named_topics(request, types, err) : all_topics(types, err);

@@ -230,6 +230,25 @@ TEST(RecordingEcho, reads_a_db3_without_schemas_by_the_types_known_here) {
   EXPECT_THAT(result.out, HasSubstr("position:\n    x: 1\n    y: 2\n"));
 }
 
+TEST(RecordingEcho, reads_any_type_of_a_db3_that_defines_it) {
+  const TemporaryFile file("x.db3", "");
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(file.path().c_str(), &database), SQLITE_OK);
+  constexpr char kSql[] =
+      "CREATE TABLE schema(schema_version INTEGER PRIMARY KEY,ros_distro TEXT NOT NULL);"
+      "INSERT INTO schema VALUES(4,'jazzy');"
+      "CREATE TABLE message_definitions(id INTEGER PRIMARY KEY,topic_type,encoding,encoded_message_definition,"
+      "type_description_hash);"
+      "INSERT INTO message_definitions VALUES(1,'my_msgs/msg/Odd','ros2msg','int8 odd','');"
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY,name,type,serialization_format,offered_qos_profiles);"
+      "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id,timestamp,data);"
+      "INSERT INTO topics VALUES(1,'/odd','my_msgs/msg/Odd','cdr','');"
+      "INSERT INTO messages VALUES(1,1,5,x'0001000007');";
+  ASSERT_EQ(sqlite3_exec(database, kSql, nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(database);
+  EXPECT_EQ(echo(file, {"/odd"}).out, "odd: 7\n---\n");
+}
+
 TEST(RecordingEcho, other_files_and_topics_without_messages_are_named) {
   const TemporaryFile text("x.mcap", "no recording");
   EXPECT_EQ(echo(text).code, 2);
