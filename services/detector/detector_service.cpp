@@ -51,23 +51,34 @@ RollConfig roll_config(const ServiceConfig& config) {
           config.derotate_min_deg * kRadPerDeg};
 }
 
-Detector load_detector(const ServiceConfig& config) {
-  const service::ModelSearch model = service::find_model(config.model, service::process_environment());
+/// Compiling for a GPU takes minutes the first time; OpenCL keeps what it has compiled.
+std::string kernel_cache(const service::EnvironmentReader& environment) {
+  if (const auto cache = environment("XDG_CACHE_HOME"); cache && !cache->empty()) return *cache + "/rtd-slam/opencl";
+  const auto home = environment("HOME");
+  return home && !home->empty() ? *home + "/.cache/rtd-slam/opencl" : std::string();
+}
+
+std::unique_ptr<EngineGuard> load_detector(const ServiceConfig& config) {
+  const service::EnvironmentReader environment = service::process_environment();
+  const service::ModelSearch model = service::find_model(config.model, environment);
   if (!model) throw service::ConfigError(model.message);
   try {
     DetectorConfig core = config.core;
     core.model_path = model.path;
-    return Detector(std::move(core));
+    core.kernel_cache = kernel_cache(environment);
+    return std::make_unique<EngineGuard>(std::move(core), config.verify_engine);
   } catch (const ModelError& error) {
     throw service::ConfigError(error.what());
+  } catch (const EngineError& error) {
+    throw service::ConfigError(std::string("detector.engine: ") + error.what());
   }
 }
 
 /// Of its own for each worker: a network holds the memory of its layers. Only pace asap has several images to work on.
-std::vector<std::unique_ptr<Detector>> load_detectors(const ServiceConfig& config, service::Pace pace) {
-  std::vector<std::unique_ptr<Detector>> detectors;
+std::vector<std::unique_ptr<EngineGuard>> load_detectors(const ServiceConfig& config, service::Pace pace) {
+  std::vector<std::unique_ptr<EngineGuard>> detectors;
   const int count = pace == service::Pace::kAsap ? config.workers : 1;
-  for (int i = 0; i < count; ++i) detectors.push_back(std::make_unique<Detector>(load_detector(config)));
+  for (int i = 0; i < count; ++i) detectors.push_back(load_detector(config));
   return detectors;
 }
 
@@ -77,6 +88,10 @@ void DetectorService::add_options(CLI::App& app, Config& config) {
   app.add_option("--model", config.model, "ONNX file (detector.model)");
   app.add_option("--input", config.input, "auto, frame or jpeg (detector.input)")
       ->check(CLI::IsMember({"auto", "frame", "jpeg"}));
+  app.add_option("--engine", config.core.engine,
+                 "What computes the network: cpu, opencl, opencl:DEVICE, or auto: opencl on a GPU (detector.engine)");
+  app.add_flag("--verify-engine", config.verify_engine,
+               "Compare the first ten images with the CPU, and go on with the CPU if they differ");
   app.add_option("--max-rate", config.max_rate_hz, "Realtime pace: at most this many detections a second, 0 = no limit")
       ->check(CLI::Range(0.0, 1000.0));
   app.footer("rtd-detector --image FILE...  prints what it finds in image files and ends.");
@@ -101,9 +116,11 @@ DetectorService::DetectorService(const Config& config, service::Runtime& runtime
           roll->put(result->stamp_ns, pose_of(*result));
         });
   }
-  const Detector& detector = *detectors_.front();
-  SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} workers={}", detector.config().model_path,
-              detector.input_size().width_px, detector.input_size().height_px, config_.core.threads, detectors_.size());
+  const Detector& detector = detectors_.front()->detector();
+  SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} workers={} device=\"{}\"",
+              detector.config().model_path, detector.input_size().width_px, detector.input_size().height_px,
+              config_.core.threads, detectors_.size(), detector.device());
+  report_engine(*detectors_.front());
 }
 
 /// A reader waits for its running callback, which may be blocked on the full queue.
@@ -123,7 +140,7 @@ service::ExitCode DetectorService::run() {
 }
 
 /// Detects until the end. Several workers share the queue; their detections are published in the order of the images.
-void DetectorService::work(Detector& detector) {
+void DetectorService::work(EngineGuard& detector) {
   while (!runtime_.stop.stop_requested()) {
     runtime_.heartbeat.tick();
     report_state();
@@ -162,12 +179,13 @@ std::optional<cv::Mat> DetectorService::image_of(const Arrival& arrival) {
 }
 
 /// Empty for an image that cannot be used, which is counted and logged.
-std::optional<msg::Detection2DArray> DetectorService::detect(Detector& detector, const Arrival& arrival) {
+std::optional<msg::Detection2DArray> DetectorService::detect(EngineGuard& detector, const Arrival& arrival) {
   const std::int64_t started_ns = service::monotonic_ns();
   try {
     if (const std::optional<cv::Mat> image = image_of(arrival)) {
       msg::Detection2DArray detections =
           to_message(detector.detect_upright(*image, roll_for(arrival)), arrival.stamp_ns);
+      report_engine(detector);
       count(static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs);
       return detections;
     }
@@ -192,6 +210,20 @@ double DetectorService::roll_for(const Arrival& arrival) {
     }
   }
   return roll_->roll_rad();
+}
+
+/// What computes the boxes, in the status; logged when it changes.
+void DetectorService::report_engine(const EngineGuard& detector) {
+  const std::lock_guard lock(counters_mutex_);
+  if (detector.verified() == EngineGuard::kVerifiedImages && !std::exchange(verified_, true))
+    SPDLOG_INFO("event=engine_verified images={} device=\"{}\"", detector.verified(), detector.detector().device());
+  std::string text = "computes on " + detector.detector().device();
+  if (!detector.fallback().empty()) text += " in place of " + config_.core.engine + ": " + detector.fallback();
+  if (text == engine_) return;
+  engine_ = text;
+  if (!detector.fallback().empty())
+    SPDLOG_WARN("event=engine_fallback asked={} device=\"{}\" cause=\"{}\"", config_.core.engine,
+                detector.detector().device(), detector.fallback());
 }
 
 void DetectorService::skip(const Arrival& arrival, const std::string& cause) {
@@ -223,7 +255,8 @@ void DetectorService::report_state() {
   if (!peers_matched()) {
     runtime_.heartbeat.set_state(msg::ServiceState::kStarting, "waits for a camera and a filter");
   } else {
-    runtime_.heartbeat.set_state(detected_ > 0 ? msg::ServiceState::kRunning : msg::ServiceState::kReady);
+    const std::lock_guard lock(counters_mutex_);
+    runtime_.heartbeat.set_state(detected_ > 0 ? msg::ServiceState::kRunning : msg::ServiceState::kReady, engine_);
   }
 }
 

@@ -19,7 +19,7 @@
 #include "common/service/runtime.hpp"
 #include "common/vision/detection.hpp"
 #include "services/detector/core/camera_roll.hpp"
-#include "services/detector/core/detector.hpp"
+#include "services/detector/core/engine_guard.hpp"
 #include "services/detector/image_input.hpp"
 
 namespace CLI {
@@ -39,6 +39,7 @@ struct ServiceConfig {
   std::string model;
   std::string input = "auto";
   DetectorConfig core;
+  bool verify_engine = false;
   int workers = 2;
   double max_rate_hz = 0;
   std::string derotate = "off";
@@ -51,6 +52,7 @@ struct ServiceConfig {
     binder.choice("input", input, {"auto", "frame", "jpeg"},
                   "raw frames of this host, JPEG images of the network, or auto: where the camera is");
     core.bind(binder);
+    binder.field("verify_engine", verify_engine, "compare the first ten images with the CPU");
     binder.field("workers", workers, {1, 16}, "pace asap: images worked on side by side, each with its own network");
     binder.field("max_rate_hz", max_rate_hz, {0.0, 1000.0}, "realtime pace: detect at most this often, 0 = no limit");
     binder.choice("derotate", derotate, {"off", "on"},
@@ -89,10 +91,11 @@ class DetectorService {
   using Arrivals = concurrency::BoundedQueue<Arrival>;
 
   static std::optional<cv::Mat> image_of(const Arrival& arrival);
-  void work(Detector& detector);
+  void work(EngineGuard& detector);
   std::optional<Taken> take();
-  std::optional<msg::Detection2DArray> detect(Detector& detector, const Arrival& arrival);
+  std::optional<msg::Detection2DArray> detect(EngineGuard& detector, const Arrival& arrival);
   void publish_in_turn(std::uint64_t turn, const std::optional<msg::Detection2DArray>& detections);
+  void report_engine(const EngineGuard& detector);
   void skip(const Arrival& arrival, const std::string& cause);
   void count(double detect_ms);
   bool peers_matched() const;
@@ -102,7 +105,7 @@ class DetectorService {
 
   const Config config_;
   service::Runtime& runtime_;
-  std::vector<std::unique_ptr<Detector>> detectors_;  ///< one for each worker
+  std::vector<std::unique_ptr<EngineGuard>> detectors_;  ///< one for each worker
   std::shared_ptr<Arrivals> arrivals_;
   bus::Writer<msg::Detection2DArray> detections_;
   std::unique_ptr<ImageInput> input_;
@@ -117,6 +120,8 @@ class DetectorService {
   std::mutex counters_mutex_;
   std::atomic<std::uint64_t> detected_{0};
   std::uint64_t broken_ = 0;
+  std::string engine_;  ///< what computes the boxes, for people
+  bool verified_ = false;
   double total_detect_ms_ = 0, max_detect_ms_ = 0;
   service::RateLimit broken_log_{std::chrono::seconds(1)}, roll_log_{std::chrono::seconds(1)};
 };

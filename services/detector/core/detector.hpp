@@ -12,11 +12,12 @@
 
 namespace rtd::detector {
 
-/// YOLOv5 / YOLOv5-Lite on the CPU through OpenCV's DNN module. Not thread-safe; one instance per thread.
+/// YOLOv5 / YOLOv5-Lite on one of the engines (engine.hpp). Not thread-safe; one instance per thread.
 class Detector {
  public:
   /// Loads the network and runs it once, so that the first detect() is as fast as the others.
-  /// Throws ModelError when the file is missing, broken, or no network of the configured shape.
+  /// Throws ModelError when the file is missing, broken, or no network of the configured shape; EngineError when the
+  /// engine or its device is not there.
   explicit Detector(DetectorConfig config);
 
   /// Objects of one image, best score first; boxes in pixels of the image, clipped to it. 8-bit BGR, BGRA or grey of
@@ -27,6 +28,8 @@ class Detector {
   std::vector<vision::Detection> detect_upright(const cv::Mat& color_bgr, double roll_rad);
 
   InputSize input_size() const { return network_->input(); }
+  /// What computes the network, for people.
+  const std::string& device() const { return network_->device(); }
   /// The configuration in force, with class names and heads filled in.
   const DetectorConfig& config() const { return network_->config(); }
 

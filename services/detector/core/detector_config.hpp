@@ -41,6 +41,8 @@ struct DetectorConfig {
   int input_width_px = 640, input_height_px = 480;
   DecodeConfig decode;
   int threads = 1;
+  std::string engine = "cpu";  ///< parse_engine()
+  std::string kernel_cache;    ///< folder for what an OpenCL driver compiles; empty: none
   std::vector<std::string> class_names;
   std::vector<HeadLayout> heads;  ///< empty: those in the file, else those of YOLOv5 as published
 
@@ -49,6 +51,7 @@ struct DetectorConfig {
     binder.field("input_height_px", input_height_px, {32, 4096}, "network input, when the file does not fix it");
     decode.bind(binder);
     binder.field("threads", threads, {1, 64}, "CPU threads of the network (OpenCV's, for the whole process)");
+    binder.field("engine", engine, "what computes the network: cpu, opencl, opencl:DEVICE, or auto: opencl on a GPU");
     binder.field("class_names", class_names,
                  "names in the order of the network's classes; empty: those in the file, else COCO's");
   }

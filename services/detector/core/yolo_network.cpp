@@ -2,21 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/detector/core/yolo_network.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <opencv2/core/utils/logger.hpp>
-#include <opencv2/dnn/all_layers.hpp>
 #include <utility>
 
 #include "services/detector/core/detector_config.hpp"
-#include "services/detector/core/fast_sigmoid.hpp"
 
 namespace rtd::detector {
 namespace {
-
-constexpr std::size_t kObjectnessPlane = 4;
 
 /// Strides and anchors of YOLOv5 and YOLOv5-Lite as published.
 std::vector<HeadLayout> default_heads() {
@@ -53,16 +48,6 @@ class QuietOpenCv {
   cv::utils::logging::LogLevel saved_;
 };
 
-/// A 1x1 convolution of step 1 over all channels, with float weights.
-bool is_pointwise(const cv::dnn::ConvolutionLayer& convolution) {
-  const auto all_one = [](const std::vector<std::size_t>& sizes) {
-    return std::ranges::all_of(sizes, [](std::size_t size) { return size == 1; });
-  };
-  const cv::Mat& weights = convolution.blobs[0];
-  const bool floats = weights.type() == CV_32F && convolution.blobs[1].type() == CV_32F && weights.isContinuous();
-  return all_one(convolution.kernel_size) && all_one(convolution.strides) && weights.dims == 4 && floats;
-}
-
 std::string join_shape(std::initializer_list<int> sizes) {
   std::string text;
   for (const int size : sizes) {
@@ -70,6 +55,12 @@ std::string join_shape(std::initializer_list<int> sizes) {
     text += std::to_string(size);
   }
   return text;
+}
+
+/// "1x255x60x80"; everything but logits of one image is "unsupported".
+std::string shape_of(const RawHead& head) {
+  if (head.logits == nullptr || head.images != 1) return "unsupported";
+  return join_shape({1, head.planes, head.rows, head.cols});
 }
 
 }  // namespace
@@ -91,65 +82,7 @@ const std::vector<std::string>& coco_class_names() {
   return names;
 }
 
-PointwiseHead::PointwiseHead(const float* weights, std::vector<float> bias, std::size_t channels,
-                             std::size_t planes_per_anchor)
-    : channels_(channels),
-      planes_per_anchor_(planes_per_anchor),
-      bias_(std::move(bias)),
-      weights_(bias_.size() * channels) {
-  for (std::size_t plane = 0; plane < bias_.size(); ++plane) {
-    const std::size_t anchor = plane / planes_per_anchor, within = plane % planes_per_anchor;
-    for (std::size_t c = 0; c < channels; ++c) {
-      weights_[(anchor * channels + c) * planes_per_anchor + within] = weights[plane * channels + c];
-    }
-  }
-}
-
-void PointwiseHead::evaluate(const float* features, std::size_t cells, float min_objectness_logit,
-                             float* logits) const {
-  evaluate_objectness(features, cells, logits);
-  for (std::size_t anchor = 0; anchor * planes_per_anchor_ < planes(); ++anchor) {
-    float* const anchor_logits = logits + anchor * planes_per_anchor_ * cells;
-    const float* const objectness = anchor_logits + kObjectnessPlane * cells;
-    for (std::size_t i = 0; i < cells; ++i) {
-      if (objectness[i] >= min_objectness_logit) evaluate_cell(features + i, cells, anchor, anchor_logits + i);
-    }
-  }
-}
-
-void PointwiseHead::evaluate_objectness(const float* features, std::size_t cells, float* logits) const {
-  for (std::size_t anchor = 0; anchor * planes_per_anchor_ < planes(); ++anchor) {
-    const std::size_t plane = anchor * planes_per_anchor_ + kObjectnessPlane;
-    float* const objectness = logits + plane * cells;
-    std::fill_n(objectness, cells, bias_[plane]);
-    for (std::size_t c = 0; c < channels_; ++c) {
-      const float weight = weights_[(anchor * channels_ + c) * planes_per_anchor_ + kObjectnessPlane];
-      const float* const channel = features + c * cells;
-      for (std::size_t i = 0; i < cells; ++i) objectness[i] += weight * channel[i];
-    }
-  }
-}
-
-/// All planes but the objectness of one cell; `features` and `cell_logits` point at its first channel and plane.
-void PointwiseHead::evaluate_cell(const float* features, std::size_t cells, std::size_t anchor,
-                                  float* cell_logits) const {
-  const auto first_bias = bias_.begin() + static_cast<std::ptrdiff_t>(anchor * planes_per_anchor_);
-  std::vector<float> sums(first_bias, first_bias + static_cast<std::ptrdiff_t>(planes_per_anchor_));
-  for (std::size_t c = 0; c < channels_; ++c) {
-    const float feature = features[c * cells];
-    const float* const weights = weights_.data() + (anchor * channels_ + c) * planes_per_anchor_;
-    for (std::size_t plane = 0; plane < planes_per_anchor_; ++plane) sums[plane] += weights[plane] * feature;
-  }
-  for (std::size_t plane = 0; plane < planes_per_anchor_; ++plane) {
-    if (plane != kObjectnessPlane) cell_logits[plane * cells] = sums[plane];
-  }
-}
-
-struct YoloNetwork::Graph {
-  cv::dnn::Net net;
-};
-
-YoloNetwork::YoloNetwork(DetectorConfig config) : config_(std::move(config)), graph_(std::make_unique<Graph>()) {
+YoloNetwork::YoloNetwork(DetectorConfig config) : config_(std::move(config)) {
   const QuietOpenCv quiet;
   try {
     load();
@@ -159,24 +92,22 @@ YoloNetwork::YoloNetwork(DetectorConfig config) : config_(std::move(config)), gr
   }
 }
 
-YoloNetwork::~YoloNetwork() = default;
-
 void YoloNetwork::load() {
   const std::vector<std::uint8_t> bytes = read_bytes(config_.model_path);
   const OnnxFile file = read_onnx_file(bytes.data(), bytes.size());
   if (!file.has_graph) fail(config_.model_path, "is not an ONNX model, or is cut off");
   complete_config(file);
   input_ = file.input.value_or(InputSize{config_.input_width_px, config_.input_height_px});
-  const FastSigmoidScope fast_sigmoid;
-  graph_->net = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  graph_->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-  graph_->net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
-  for (const cv::String& name : graph_->net.getUnconnectedOutLayersNames()) branches_.push_back(branch_of(name));
-  if (branches_.size() != config_.heads.size()) {
-    fail(config_.model_path, "has " + std::to_string(branches_.size()) + " outputs, expected " +
+  const int planes = static_cast<int>(HeadLayout{}.anchors.size()) * planes_per_anchor();
+  engine_ = make_engine(parse_engine(config_.engine), {.onnx = bytes,
+                                                       .planes = planes,
+                                                       .planes_per_anchor = planes_per_anchor(),
+                                                       .min_objectness_logit = objectness_gate(config_.decode),
+                                                       .kernel_cache = config_.kernel_cache});
+  if (engine_->outputs() != config_.heads.size()) {
+    fail(config_.model_path, "has " + std::to_string(engine_->outputs()) + " outputs, expected " +
                                  std::to_string(config_.heads.size()) + " (one per stride)");
   }
-  for (const Branch& branch : branches_) layer_names_.push_back(branch.layer);
 }
 
 /// What is not configured comes from the file's metadata, else from the family's defaults.
@@ -191,60 +122,28 @@ void YoloNetwork::complete_config(const OnnxFile& file) {
   if (config_.heads.empty()) config_.heads = default_heads();
 }
 
-/// Looks behind the output for a 1x1 convolution of the right number of planes; OpenCV then stops before it.
-YoloNetwork::Branch YoloNetwork::branch_of(const std::string& output_name) {
-  Branch branch{output_name, std::nullopt, {}, {}};
-  cv::Ptr<cv::dnn::Layer> layer = graph_->net.getLayer(graph_->net.getLayerId(output_name));
-  std::vector<cv::Ptr<cv::dnn::Layer>> inputs = graph_->net.getLayerInputs(graph_->net.getLayerId(layer->name));
-  while (layer->type == "Identity" && inputs.size() == 1) {
-    layer = inputs[0];
-    inputs = graph_->net.getLayerInputs(graph_->net.getLayerId(layer->name));
-  }
-  const auto convolution = layer.dynamicCast<cv::dnn::ConvolutionLayer>();
-  if (!convolution || inputs.size() != 1 || convolution->blobs.size() != 2 || inputs[0]->type == "Input") return branch;
-  const cv::Mat& weights = convolution->blobs[0];
-  const cv::Mat& bias = convolution->blobs[1];
-  const int planes = static_cast<int>(HeadLayout{}.anchors.size()) * planes_per_anchor();
-  if (!is_pointwise(*convolution) || weights.size[0] != planes || static_cast<int>(bias.total()) != planes)
-    return branch;
-  branch.layer = inputs[0]->name;
-  branch.head.emplace(weights.ptr<float>(), std::vector<float>(bias.begin<float>(), bias.end<float>()),
-                      static_cast<std::size_t>(weights.size[1]), static_cast<std::size_t>(planes_per_anchor()));
-  return branch;
-}
-
 const std::vector<HeadLogits>& YoloNetwork::infer(const cv::Mat& blob) {
-  graph_->net.setInput(blob);
-  graph_->net.forward(outputs_, layer_names_);
-  if (heads_.empty()) assign_layouts();
+  const std::vector<RawHead>& raw = engine_->infer(blob);
+  if (layouts_.empty()) assign_layouts(raw);
   heads_.clear();
-  const float gate = objectness_gate(config_.decode);
-  for (std::size_t i = 0; i < branches_.size(); ++i) {
-    Branch& branch = branches_[i];
-    const cv::Mat& output = outputs_[i];
-    const std::size_t cells = output.total(2);
-    const float* logits = output.ptr<float>();
-    if (branch.head) {
-      branch.logits.resize(branch.head->planes() * cells);
-      branch.head->evaluate(logits, cells, gate, branch.logits.data());
-      logits = branch.logits.data();
-    }
-    heads_.push_back({logits, output.size[2], output.size[3], branch.layout});
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    heads_.push_back({raw[i].logits, raw[i].rows, raw[i].cols, layouts_[i]});
   }
   return heads_;
 }
 
 /// Gives every output the layout whose stride fits its cells, whatever the order of the outputs.
-void YoloNetwork::assign_layouts() {
+void YoloNetwork::assign_layouts(const std::vector<RawHead>& raw) {
   std::string shapes;
-  for (std::size_t i = 0; i < branches_.size(); ++i) shapes += ' ' + shape_of(i);
+  for (const RawHead& head : raw) shapes += ' ' + shape_of(head);
+  layouts_.resize(raw.size());
   for (const HeadLayout& layout : config_.heads) {
     const std::string wanted = join_shape({1, static_cast<int>(layout.anchors.size()) * planes_per_anchor(),
                                            input_.height_px / layout.stride_px, input_.width_px / layout.stride_px});
     bool found = false;
-    for (std::size_t i = 0; i < branches_.size(); ++i) {
-      if (shape_of(i) != wanted) continue;
-      branches_[i].layout = layout;
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      if (shape_of(raw[i]) != wanted) continue;
+      layouts_[i] = layout;
       found = true;
     }
     if (!found) {
@@ -253,16 +152,6 @@ void YoloNetwork::assign_layouts() {
                                    std::to_string(config_.class_names.size()) + " classes)");
     }
   }
-}
-
-/// "1x255x60x80"; everything but a float tensor of four dimensions and one image is "unsupported".
-std::string YoloNetwork::shape_of(std::size_t index) const {
-  const cv::Mat& output = outputs_[index];
-  if (output.dims != 4 || output.size[0] != 1 || output.type() != CV_32F || !output.isContinuous())
-    return "unsupported";
-  const std::optional<PointwiseHead>& head = branches_[index].head;
-  if (head && static_cast<std::size_t>(output.size[1]) != head->channels()) return "unsupported";
-  return join_shape({1, head ? static_cast<int>(head->planes()) : output.size[1], output.size[2], output.size[3]});
 }
 
 }  // namespace rtd::detector

@@ -19,6 +19,7 @@
 #include "common/service/command_line.hpp"
 #include "common/service/model_locator.hpp"
 #include "services/camera/realsense_device.hpp"
+#include "services/detector/core/engine.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/process/executable.hpp"
 
@@ -133,6 +134,12 @@ void check_weights(Findings& findings) {
             : Finding{Verdict::kWarn, "weights: " + model.message + "; until then runs use geometry only"});
 }
 
+void check_engines(Findings& findings) {
+  std::string text = "detector engines: cpu";
+  for (const std::string& device : detector::opencl_devices()) text += ", opencl:" + device;
+  findings.push_back({Verdict::kOk, text});
+}
+
 void check_data(Findings& findings) {
   const std::string folder = demo_data_folder();
   findings.push_back({Verdict::kOk, !folder.empty()
@@ -169,6 +176,7 @@ int check_all(const DoctorOptions& options, std::ostream& out) {
   check_leftovers(findings);
   check_bus(bus, findings);
   check_weights(findings);
+  check_engines(findings);
   check_data(findings);
   describe_cameras(all_cameras(bus), findings);
   bool failed = false;

@@ -192,6 +192,12 @@ std::vector<std::string> slam_arguments(const RunSetup& setup) {
   return arguments;
 }
 
+std::vector<std::string> detector_arguments(const RunSetup& setup) {
+  std::vector<std::string> arguments = {"--set", "detector.model=" + setup.model_path};
+  if (!setup.engine.empty()) arguments.insert(arguments.end(), {"--engine", setup.engine});
+  return arguments;
+}
+
 std::vector<std::string> filter_arguments(const RunSetup& setup) {
   std::vector<std::string> arguments = {"--set", "filter.mode=" + setup.filter_mode};
   if (setup.model_path.empty() && !setup.replay.detections && !setup.remote_detector)
@@ -249,8 +255,7 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
     plans.push_back(plan(setup, "record", ServiceRole::kOptional, {"-o", setup.record, "--beside"}));
     plans.back().ends_last = true;
   }
-  if (detector)
-    plans.push_back(plan(setup, "detector", ServiceRole::kOptional, {"--set", "detector.model=" + setup.model_path}));
+  if (detector) plans.push_back(plan(setup, "detector", ServiceRole::kOptional, detector_arguments(setup)));
   if (filter) plans.push_back(plan(setup, "filter", ServiceRole::kEssential, filter_arguments(setup)));
   plans.push_back(plan(setup, "slam", ServiceRole::kEssential, slam_arguments(setup)));
   plans.back().when_restarted = load_checkpoint(setup.save_map);

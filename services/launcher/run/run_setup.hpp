@@ -63,6 +63,7 @@ struct RunOptions {
   std::vector<std::string> overrides;  ///< "key=value" for any service
   std::string detector = "auto";  ///< "auto": when weights are found and the filter mode needs them; "off"; "remote"
   std::string model;              ///< ONNX file; empty: search
+  std::string engine;             ///< of the detector; empty: as configured
   std::string out_dir;
   std::string map;                         ///< map file to continue; empty: a new map
   std::string save_map;                    ///< map file to write; empty: map.rtdmap in out_dir

@@ -113,6 +113,24 @@ TEST_F(DetectorServiceTest, sends_boxes_and_empty_arrays) {
   EXPECT_THAT(answers[1]->detections, SizeIs(0));
 }
 
+TEST_F(DetectorServiceTest, goes_on_with_the_cpu_and_names_the_device_in_its_status) {
+  config_.core.engine = "opencl:no such device";
+  start(service::Pace::kLockstep);
+  EXPECT_TRUE(wait_state(msg::ServiceState::kReady, "computes on CPU (OpenCV DNN) in place of opencl:no such device"));
+  send_frame(1, true);
+  ASSERT_TRUE(answer_box_.wait_count(1));
+  EXPECT_THAT(answer_box_.all()[0]->detections, SizeIs(1));
+  EXPECT_TRUE(wait_state(msg::ServiceState::kRunning, "computes on CPU"));
+}
+
+TEST_F(DetectorServiceTest, refuses_an_engine_that_does_not_exist) {
+  config_.core.engine = "cuda";
+  service::Heartbeat heartbeat(*bus_, "detector", stop_);
+  service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kRealtime, bus_options_};
+  EXPECT_THAT([&] { DetectorService(config_, runtime); },
+              ThrowsMessage<service::ConfigError>(HasSubstr("detector.engine: 'cuda' is not an engine")));
+}
+
 TEST_F(DetectorServiceTest, takes_the_newest_frame_in_realtime_and_counts_the_others) {
   config_.max_rate_hz = 1.0;  // after the first answer it rests for a second, in which all others arrive
   start(service::Pace::kRealtime);

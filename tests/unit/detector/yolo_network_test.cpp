@@ -11,6 +11,7 @@
 
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/fast_sigmoid.hpp"
+#include "services/detector/core/pointwise_head.hpp"
 
 namespace rtd::detector {
 namespace {

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/vision/detection.hpp"
+
+namespace rtd::detector {
+
+/// How far the boxes of two engines may differ.
+struct AgreementLimits {
+  double box_px = 0.5, score = 1e-3;
+};
+
+/// Why two engines do not agree on an image: a box that only one of them has, or whose place or score differs. Empty
+/// when they agree. Boxes within `limits.score` of the confidence threshold may be missing from one.
+std::string disagreement(const std::vector<vision::Detection>& expected, const std::vector<vision::Detection>& actual,
+                         double confidence_threshold, const AgreementLimits& limits = {});
+
+}  // namespace rtd::detector

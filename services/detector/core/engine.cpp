@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/detector/core/engine.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <opencv2/core/ocl.hpp>
+#include <optional>
+
+#include "services/detector/core/opencv_engine.hpp"
+
+namespace rtd::detector {
+namespace {
+
+using Kind = EngineChoice::Kind;
+
+constexpr const char* kOpenClPrefix = "opencl:";
+
+struct FoundDevice {
+  std::string name;
+  cv::ocl::Device device;
+  bool gpu = false;
+};
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::vector<FoundDevice> find_devices() {
+  std::vector<FoundDevice> found;
+  std::vector<cv::ocl::PlatformInfo> platforms;
+  if (!cv::ocl::haveOpenCL()) return found;
+  cv::ocl::getPlatfomsInfo(platforms);
+  for (const cv::ocl::PlatformInfo& platform : platforms) {
+    for (int i = 0; i < platform.deviceNumber(); ++i) {
+      cv::ocl::Device device;
+      platform.getDevice(device, i);
+      const bool gpu = (device.type() & cv::ocl::Device::TYPE_GPU) != 0;
+      found.push_back({device.name(), device, gpu});
+    }
+  }
+  return found;
+}
+
+/// The first device whose name holds what is asked for; GPUs first.
+std::optional<FoundDevice> choose_device(const std::string& wanted, bool gpu_only) {
+  std::vector<FoundDevice> devices = find_devices();
+  std::ranges::stable_partition(devices, &FoundDevice::gpu);
+  for (const FoundDevice& device : devices) {
+    const bool named = lower(device.name).find(lower(wanted)) != std::string::npos;
+    if (named && (device.gpu || !gpu_only)) return device;
+  }
+  return std::nullopt;
+}
+
+std::string names_of(const std::vector<std::string>& devices) {
+  std::string text;
+  for (const std::string& device : devices) text += (text.empty() ? "" : ", ") + device;
+  return text;
+}
+
+/// Compiling and tuning for a device takes minutes. OpenCV reads these before it first compiles.
+void keep_kernels(const std::string& folder) {
+  if (folder.empty()) return;
+  std::error_code ignored;
+  std::filesystem::create_directories(folder, ignored);
+  setenv("OPENCV_OCL4DNN_CONFIG_PATH", folder.c_str(), 0);
+  setenv("OPENCV_OPENCL_CACHE_DIR", folder.c_str(), 0);
+}
+
+std::unique_ptr<Engine> make_opencl(const FoundDevice& found, const EngineModel& model) {
+  const auto refuse = [&](const std::string& cause) {
+    return EngineError("OpenCL device " + found.name + " cannot be used: " + cause);
+  };
+  if (!found.device.isIntel() && std::getenv(kAllowAllDevices) == nullptr)
+    throw refuse(std::string("set ") + kAllowAllDevices + "=1 before the program starts");
+  keep_kernels(model.kernel_cache);
+  cv::ocl::OpenCLExecutionContext opencl;
+  try {
+    const cv::ocl::Context context = cv::ocl::Context::fromDevice(found.device);
+    opencl = cv::ocl::OpenCLExecutionContext::create(context, context.device(0));
+  } catch (const cv::Exception& error) {
+    throw refuse(error.err);
+  }
+  const cv::ocl::OpenCLExecutionContextScope scope(opencl);
+  if (!cv::ocl::useOpenCL()) throw refuse("OpenCV does not use it");
+  return make_opencv_engine(model, found.name + " (OpenCL, OpenCV DNN)", opencl);
+}
+
+}  // namespace
+
+EngineChoice parse_engine(const std::string& text) {
+  if (text == "auto") return {Kind::kAuto, {}};
+  if (text == "cpu") return {Kind::kCpu, {}};
+  if (text == "opencl") return {Kind::kOpenCl, {}};
+  if (text.starts_with(kOpenClPrefix)) return {Kind::kOpenCl, text.substr(std::string(kOpenClPrefix).size())};
+  throw EngineError("'" + text + "' is not an engine: use auto, cpu, opencl or opencl:DEVICE");
+}
+
+std::unique_ptr<Engine> make_engine(const EngineChoice& choice, const EngineModel& model) {
+  if (choice.kind != Kind::kCpu) {
+    if (const auto device = choose_device(choice.device, choice.kind == Kind::kAuto))
+      return make_opencl(*device, model);
+    if (choice.kind == Kind::kOpenCl) {
+      const std::vector<std::string> there = opencl_devices();
+      const std::string which = choice.device.empty() ? "" : " '" + choice.device + "'";
+      throw EngineError("there is no OpenCL device" + which +
+                        (there.empty() ? ": install the OpenCL driver of the GPU (`clinfo` lists devices)"
+                                       : "; there are: " + names_of(there)));
+    }
+  }
+  return make_opencv_engine(model, "CPU (OpenCV DNN)", std::nullopt);
+}
+
+std::vector<std::string> opencl_devices() {
+  std::vector<std::string> names;
+  for (const FoundDevice& device : find_devices()) names.push_back(device.name + (device.gpu ? " (GPU)" : " (CPU)"));
+  return names;
+}
+
+}  // namespace rtd::detector

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+/// What computes a network. Knows neither DDS nor classes nor boxes.
+namespace rtd::detector {
+
+/// OpenCV's DNN module takes only Intel's GPUs unless this variable is 1 in the environment that the program starts
+/// with: its library reads it when it is loaded.
+inline constexpr const char* kAllowAllDevices = "OPENCV_DNN_OPENCL_ALLOW_ALL_DEVICES";
+
+/// An engine or its device is not there; what() says why and what would help.
+class EngineError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Which engine is asked for.
+struct EngineChoice {
+  enum class Kind {
+    kAuto,    ///< OpenCL where a GPU has a driver for it, else the CPU
+    kCpu,     ///< OpenCV DNN
+    kOpenCl,  ///< OpenCV DNN, any OpenCL device
+  };
+  Kind kind = Kind::kCpu;
+  std::string device;  ///< part of the device's name; empty: the first one
+};
+
+/// "auto", "cpu", "opencl" or "opencl:DEVICE". Throws EngineError naming these.
+EngineChoice parse_engine(const std::string& text);
+
+/// A network as an engine takes it.
+struct EngineModel {
+  std::span<const std::uint8_t> onnx;
+  int planes = 0, planes_per_anchor = 0;  ///< of each head's output
+  /// The planes of cells whose objectness does not reach it need not be computed but for the objectness.
+  float min_objectness_logit = 0;
+  std::string kernel_cache;  ///< folder where OpenCL keeps what it has compiled and tuned; empty: none
+};
+
+/// One output for all images: images x planes x rows x cols logits.
+struct RawHead {
+  const float* logits = nullptr;
+  int images = 0, planes = 0, rows = 0, cols = 0;
+  const float* of(int image) const { return logits + static_cast<std::ptrdiff_t>(image) * planes * rows * cols; }
+};
+
+/// A loaded network. Not thread-safe.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  /// "CPU (OpenCV DNN)", "pthread-cpu (OpenCL, OpenCV DNN)": for people.
+  virtual const std::string& device() const = 0;
+  /// Outputs of the network, in the order of the file.
+  virtual std::size_t outputs() const = 0;
+  /// Runs the network on a blob (CV_32F, N x 3 x H x W, RGB / 255). Outputs that are no float tensor of four dimensions
+  /// have no logits. Valid until the next call. Throws cv::Exception for a network that cannot be run.
+  virtual const std::vector<RawHead>& infer(const cv::Mat& blob) = 0;
+};
+
+/// Loads a network. Throws EngineError when the engine or its device is not there, cv::Exception for a network that is
+/// not understood.
+std::unique_ptr<Engine> make_engine(const EngineChoice& choice, const EngineModel& model);
+
+/// The OpenCL devices of this host, with what they are: "NVIDIA H200 (GPU)"; empty without a driver.
+std::vector<std::string> opencl_devices();
+
+}  // namespace rtd::detector

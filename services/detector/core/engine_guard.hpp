@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "services/detector/core/detector.hpp"
+
+namespace rtd::detector {
+
+/// A detector that goes on with the CPU when the engine asked for is not there or, where it is verified, computes
+/// something else. Not thread-safe.
+class EngineGuard {
+ public:
+  /// `verify`: the first kVerifiedImages are computed on the CPU too and compared (disagreement()). Throws ModelError;
+  /// EngineError only for an engine whose name is wrong.
+  EngineGuard(DetectorConfig config, bool verify);
+
+  /// As Detector::detect_upright(), which loads the network anew when a disagreement is found.
+  std::vector<vision::Detection> detect_upright(const cv::Mat& color_bgr, double roll_rad);
+
+  const Detector& detector() const { return *detector_; }
+  /// Why the CPU is used in place of the engine asked for; empty while it is not.
+  const std::string& fallback() const { return fallback_; }
+  /// Images on which both have agreed.
+  int verified() const { return verified_; }
+
+  static constexpr int kVerifiedImages = 10;
+
+ private:
+  void fall_back(const std::string& cause);
+
+  DetectorConfig on_cpu_;
+  std::unique_ptr<Detector> detector_, reference_;  ///< reference_: null when nothing (more) is verified
+  std::string fallback_;
+  int verified_ = 0;
+};
+
+}  // namespace rtd::detector
