@@ -30,7 +30,8 @@ constexpr std::size_t kEvents = 64;
 constexpr int kStreamDepth = 8;
 constexpr milliseconds kSearch{1000};       // for a device and its description; DeviceSource tries again
 constexpr milliseconds kOtherDevices{300};  // after the first: whether there are others
-constexpr milliseconds kAnswer{1000};       // to a request
+constexpr milliseconds kAnswer{400};        // to a request, which is sent up to kRequests times
+constexpr int kRequests = 3;
 constexpr milliseconds kFirstImages{2000};
 constexpr const char* kDdsImage = "sensor_msgs::msg::dds_::Image_";
 
@@ -328,12 +329,16 @@ DeviceSetup RealsenseDevice::start(const ModeRequest& request_) {
 void RealsenseDevice::request(const DeviceMode& color, const DeviceMode& depth) {
   const auto control = devices_.subscriptions().writer({root_ + "/control", kFlexibleType});
   const auto matched = [&] { return control->matched() > 0; };
-  devices_.wait(kAnswer, matched);
+  devices_.wait(kSearch, matched);
   device().reply.reset();
   refused_.clear();
   const std::vector<std::uint8_t> message = write_flexible(open_streams(device().description, color, depth));
-  if (matched()) control->write(std::as_bytes(std::span(message)));
-  if (!matched() || !devices_.wait(kAnswer, [this] { return device().reply.has_value(); })) {
+  const auto replied = [this] { return device().reply.has_value(); };
+  for (int i = 0; i < kRequests && matched() && !replied(); ++i) {  // a device that is just found may miss the first
+    control->write(std::as_bytes(std::span(message)));
+    devices_.wait(kAnswer, replied);
+  }
+  if (!replied()) {
     SPDLOG_WARN("event=no_reply device=\"{}\" request=open-streams: it streams what it is set to", name());
     return;
   }

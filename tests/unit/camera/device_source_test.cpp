@@ -192,6 +192,16 @@ TEST_F(DeviceSourceTest, waits_for_a_camera_that_is_not_there_and_refuses_one_th
   EXPECT_EQ(script_.open_now, 0);
 }
 
+TEST_F(DeviceSourceTest, another_size_before_the_first_frame_is_taken_over) {
+  script_.gives_color = false;
+  time_.after(4, [this] {
+    script_.gives_color = true;
+    script_.size_px = {16, 12};
+  });
+  EXPECT_EQ(opened()->info().camera.parameters().width, 16);
+  EXPECT_GE(script_.opened, 2);
+}
+
 TEST_F(DeviceSourceTest, a_camera_that_is_busy_when_it_comes_back_is_waited_for) {
   const auto played = opened();
   script_.plugged = false;

@@ -127,7 +127,6 @@ void DeviceSource::use(const DeviceSetup& setup) {
     calibrate(setup);
   }
   setup_ = setup;
-  known_ = true;
 }
 
 /// What would make every frame unusable is an error, not a skipped frame.
@@ -212,6 +211,7 @@ std::optional<SourceFrame> DeviceSource::make_frame(const FramePairer::Pair& pai
   SourceFrame frame = to_frame(stamp_ns, std::move(color.image), std::move(depth.image), info_);
   set_depth_stamp(frame, stamp_ns + pair.depth.stamp_ns - color_ns, info_);
   health_.note_frame(last_pair_ns_, frame.has_depth);
+  known_ = true;
   return frame;
 }
 

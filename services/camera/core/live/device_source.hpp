@@ -90,7 +90,8 @@ class DeviceSource final : public FrameSource {
   DeviceHealth health_;
   DeviceSetup setup_;
   Images color_, depth_;
-  bool known_ = false, running_ = false, opened_ = false, ended_ = false, reported_fault_ = false;
+  bool known_ = false;  ///< a frame was made: from now on sizes and calibration stay
+  bool running_ = false, opened_ = false, ended_ = false, reported_fault_ = false;
   std::optional<SourceFrame> first_;  ///< of open()
   std::string problem_;               ///< why it does not run
   std::chrono::milliseconds back_off_;
