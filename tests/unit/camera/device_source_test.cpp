@@ -193,11 +193,9 @@ TEST_F(DeviceSourceTest, waits_for_a_camera_that_is_not_there_and_refuses_one_th
 }
 
 TEST_F(DeviceSourceTest, another_size_before_the_first_frame_is_taken_over) {
-  script_.gives_color = false;
-  time_.after(4, [this] {
-    script_.gives_color = true;
-    script_.size_px = {16, 12};
-  });
+  script_.gives_color = script_.gives_depth = false;
+  time_.after(2, [this] { script_.size_px = {16, 12}; });  // it is started again after 3 s
+  time_.after(4, [this] { script_.gives_color = script_.gives_depth = true; });
   EXPECT_EQ(opened()->info().camera.parameters().width, 16);
   EXPECT_GE(script_.opened, 2);
 }
