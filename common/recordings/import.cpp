@@ -50,16 +50,10 @@ class Steps {
   std::uint64_t done_ = 0;
 };
 
-mcap::WriterOptions writer_options() {
-  mcap::WriterOptions options;
-  options.profile = "ros2";
-  return options;
-}
-
 }  // namespace
 
 Import::Import(io::ByteSink& sink, bool packed_messages)
-    : writer_(sink, writer_options()), packed_messages_(packed_messages) {}
+    : writer_(sink, {.profile = "ros2"}), packed_messages_(packed_messages) {}
 
 void Import::add(const fs::path& file, const std::string& name, const Share& progress) {
   const std::string begin = first_bytes(file);

@@ -38,7 +38,7 @@ std::string ros2_name(const std::string& type) {
 class Copy {
  public:
   Copy(const io::ByteSource& source, io::ByteSink& sink, mcap::Compression compression, CopiedRecording& result)
-      : reader_(source), writer_(sink, options(compression)), result_(result) {}
+      : reader_(source), writer_(sink, {.profile = "ros2", .compression = compression}), result_(result) {}
 
   void run(const std::function<void(std::uint64_t)>& progress) {
     mcap::MessageCursor cursor = reader_.messages();
@@ -55,13 +55,6 @@ class Copy {
   }
 
  private:
-  static mcap::WriterOptions options(mcap::Compression compression) {
-    mcap::WriterOptions options;
-    options.profile = "ros2";
-    options.compression = compression;
-    return options;
-  }
-
   void copy(const mcap::Message& message, const Output& output, const std::string& topic) try {
     mcap::Message copy = message;
     copy.channel_id = output.id;

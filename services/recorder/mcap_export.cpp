@@ -65,7 +65,7 @@ msg::TFMessage truth_message(const geometry::StampedPose& pose) {
 class Recorder {
  public:
   Recorder(const fs::path& file, mcap::Compression compression, double depth_scale_m)
-      : sink_(file, io::IfExists::kReplace), writer_(sink_, options(compression)) {
+      : sink_(file, io::IfExists::kReplace), writer_(sink_, {.profile = "ros2", .compression = compression}) {
     const mcap::SchemaId image = schema("sensor_msgs/msg/Image");
     color_ = channel("/camera/color/image_raw", image);
     depth_ = channel("/camera/aligned_depth_to_color/image_raw", image,
@@ -90,12 +90,6 @@ class Recorder {
   }
 
  private:
-  static mcap::WriterOptions options(mcap::Compression compression) {
-    mcap::WriterOptions options;
-    options.profile = "ros2";
-    options.compression = compression;
-    return options;
-  }
   mcap::SchemaId schema(const std::string& type) {
     const ros2::TypeDefinition definition = ros2::definition_of(ros2::dds_type(type));
     return writer_.add(mcap::Schema{0, definition.name, definition.encoding, definition.text});
