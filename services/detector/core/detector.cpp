@@ -65,12 +65,44 @@ std::vector<vision::Detection> Detector::detect_upright(const cv::Mat& color_bgr
   return find_in_blob([&](const Candidate& candidate) { return box_in_frame(candidate, view); });
 }
 
+std::vector<std::vector<vision::Detection>> Detector::detect_batch(std::span<const cv::Mat> images) {
+  if (images.size() > 1 && !network_->free_batch()) {
+    throw std::invalid_argument(
+        "detector model '" + config().model_path +
+        "' takes one image at a time: `yolov5_to_onnx.py --free-batch OLD.onnx NEW.onnx` frees it");
+  }
+  const InputSize input = input_size();
+  batch_.create(std::vector<int>{static_cast<int>(images.size()), 3, input.height_px, input.width_px}, CV_32F);
+  std::vector<Letterbox> letterboxes;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (images[i].empty()) throw std::invalid_argument("detector: an image of the batch is empty");
+    letterboxes.push_back(fit_letterbox(images[i].size(), input));
+    cv::Mat blob(std::vector<int>{1, 3, input.height_px, input.width_px}, CV_32F, batch_.ptr(static_cast<int>(i)));
+    fill_blob(to_bgr(images[i]), letterboxes.back(), input, blob);
+  }
+  std::vector<std::vector<vision::Detection>> found;
+  if (images.empty()) return found;
+  network_->infer(batch_);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const auto box_of = [&](const Candidate& candidate) {
+      return box_in_frame(candidate, letterboxes[i], images[i].size());
+    };
+    found.push_back(boxes_of(network_->heads_of(static_cast<int>(i)), box_of));
+  }
+  return found;
+}
+
 std::vector<vision::Detection> Detector::find_in_blob(const BoxInFrame& box_of) {
+  return boxes_of(network_->infer(blob_), box_of);
+}
+
+std::vector<vision::Detection> Detector::boxes_of(const std::vector<HeadLogits>& heads,
+                                                  const BoxInFrame& box_of) const {
   const DetectorConfig& config = network_->config();
   const int class_count = static_cast<int>(config.class_names.size());
   std::vector<vision::Detection> detections;
   for (const Candidate& candidate :
-       suppress_non_maxima(decode_heads(network_->infer(blob_), class_count, config.decode), config.decode)) {
+       suppress_non_maxima(decode_heads(heads, class_count, config.decode), config.decode)) {
     const cv::Rect2f box = box_of(candidate);
     if (box.empty()) continue;
     const std::string& name = config.class_names[static_cast<std::size_t>(candidate.class_index)];

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <span>
 #include <vector>
 
 #include "common/vision/detection.hpp"
@@ -27,6 +28,10 @@ class Detector {
   /// was given (UprightView). A roll of 0 is detect().
   std::vector<vision::Detection> detect_upright(const cv::Mat& color_bgr, double roll_rad);
 
+  /// The boxes of several images at once, in their order; the same as detect() of each. More than one image needs a
+  /// network whose batch is free: throws std::invalid_argument that names the tool which frees it.
+  std::vector<std::vector<vision::Detection>> detect_batch(std::span<const cv::Mat> images);
+
   InputSize input_size() const { return network_->input(); }
   /// What computes the network, for people.
   const std::string& device() const { return network_->device(); }
@@ -36,9 +41,10 @@ class Detector {
  private:
   using BoxInFrame = std::function<cv::Rect2f(const Candidate&)>;
   std::vector<vision::Detection> find_in_blob(const BoxInFrame& box_of);
+  std::vector<vision::Detection> boxes_of(const std::vector<HeadLogits>& heads, const BoxInFrame& box_of) const;
 
   std::unique_ptr<YoloNetwork> network_;
-  cv::Mat blob_;
+  cv::Mat blob_, batch_;
 };
 
 }  // namespace rtd::detector

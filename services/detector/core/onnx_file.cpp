@@ -87,17 +87,18 @@ std::vector<std::uint64_t> read_dimensions(Span value_info) {
   return dimensions;
 }
 
-std::optional<InputSize> read_input_size(Span graph) {
+void read_image_input(Span graph, OnnxFile& file) {
   constexpr std::uint64_t kMaxSide = 8192;
   while (const std::optional<Field> field = take_field(graph)) {
     if (field->number != kInputOfGraph || field->bytes.data() == nullptr) continue;
     const std::vector<std::uint64_t> dimensions = read_dimensions(field->bytes);
     if (dimensions.size() != 4 || dimensions[1] != 3) continue;
     const std::uint64_t height = dimensions[2], width = dimensions[3];
-    if (height == 0 || width == 0 || height > kMaxSide || width > kMaxSide) return std::nullopt;
-    return InputSize{static_cast<int>(width), static_cast<int>(height)};
+    file.free_batch = dimensions[0] == 0;
+    if (height == 0 || width == 0 || height > kMaxSide || width > kMaxSide) return;
+    file.input = InputSize{static_cast<int>(width), static_cast<int>(height)};
+    return;
   }
-  return std::nullopt;
 }
 
 /// Elements of a TensorProto of floats, 0 for other types. `dims` may be packed or not.
@@ -139,7 +140,7 @@ OnnxFile read_onnx_file(const std::uint8_t* bytes, std::size_t size) {
     if (field->bytes.data() == nullptr) continue;
     if (field->number == kGraphOfModel) {
       file.has_graph = true;
-      file.input = read_input_size(field->bytes);
+      read_image_input(field->bytes, file);
       file.parameters = count_parameters(field->bytes);
     } else if (field->number == kMetadataOfModel) {
       file.metadata[text_of(find_message(field->bytes, kKeyOfEntry))] =

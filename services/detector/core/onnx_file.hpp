@@ -21,7 +21,8 @@ struct InputSize {
 /// Metadata of an ONNX file. OpenCV 4.6 gives no access to it.
 struct OnnxFile {
   bool has_graph = false;          ///< false: these bytes are not an ONNX model, or only the beginning of one
-  std::optional<InputSize> input;  ///< of the first 1x3xHxW input, when H and W are fixed
+  std::optional<InputSize> input;  ///< of the first Nx3xHxW input, when H and W are fixed
+  bool free_batch = false;         ///< its N is not fixed: it takes several images at once
   std::map<std::string, std::string> metadata;  ///< ModelProto.metadata_props
   std::uint64_t parameters = 0;                 ///< numbers in the float tensors of the graph
 };

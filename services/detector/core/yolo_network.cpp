@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <opencv2/core/utils/logger.hpp>
+#include <stdexcept>
 #include <utility>
 
 #include "services/detector/core/detector_config.hpp"
@@ -97,6 +98,7 @@ void YoloNetwork::load() {
   const OnnxFile file = read_onnx_file(bytes.data(), bytes.size());
   if (!file.has_graph) fail(config_.model_path, "is not an ONNX model, or is cut off");
   complete_config(file);
+  free_batch_ = file.free_batch;
   input_ = file.input.value_or(InputSize{config_.input_width_px, config_.input_height_px});
   const int planes = static_cast<int>(HeadLayout{}.anchors.size()) * planes_per_anchor();
   engine_ = make_engine(parse_engine(config_.engine), {.onnx = bytes,
@@ -123,11 +125,17 @@ void YoloNetwork::complete_config(const OnnxFile& file) {
 }
 
 const std::vector<HeadLogits>& YoloNetwork::infer(const cv::Mat& blob) {
-  const std::vector<RawHead>& raw = engine_->infer(blob);
-  if (layouts_.empty()) assign_layouts(raw);
+  raw_ = &engine_->infer(blob);
+  if (layouts_.empty()) assign_layouts(*raw_);
+  return heads_of(0);
+}
+
+const std::vector<HeadLogits>& YoloNetwork::heads_of(int image) {
   heads_.clear();
-  for (std::size_t i = 0; i < raw.size(); ++i) {
-    heads_.push_back({raw[i].logits, raw[i].rows, raw[i].cols, layouts_[i]});
+  for (std::size_t i = 0; i < raw_->size(); ++i) {
+    const RawHead& head = (*raw_)[i];
+    if (image >= head.images) throw std::out_of_range("the network has no image " + std::to_string(image));
+    heads_.push_back({head.of(image), head.rows, head.cols, layouts_[i]});
   }
   return heads_;
 }

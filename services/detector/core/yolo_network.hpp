@@ -20,9 +20,14 @@ class YoloNetwork {
   /// Loads config.model_path into config.engine and runs it once. Throws ModelError, EngineError.
   explicit YoloNetwork(DetectorConfig config);
 
-  /// Runs the network on a blob (CV_32F, 1x3xHxW, RGB / 255). The logits of cells whose objectness does not pass
-  /// objectness_gate() are undefined except for the objectness. Valid until the next call.
+  /// Runs the network on a blob (CV_32F, Nx3xHxW, RGB / 255); N > 1 needs free_batch(). The logits of the first image:
+  /// those of cells whose objectness does not pass objectness_gate() are undefined except for the objectness. Valid
+  /// until the next call.
   const std::vector<HeadLogits>& infer(const cv::Mat& blob);
+  /// Of another image of the last infer(), 0 to N - 1.
+  const std::vector<HeadLogits>& heads_of(int image);
+  /// Whether it takes several images at once.
+  bool free_batch() const { return free_batch_; }
 
   InputSize input() const { return input_; }
   /// What computes it, for people.
@@ -38,8 +43,10 @@ class YoloNetwork {
 
   DetectorConfig config_;
   InputSize input_;
+  bool free_batch_ = false;
   std::unique_ptr<Engine> engine_;
-  std::vector<HeadLayout> layouts_;  ///< of the engine's outputs
+  const std::vector<RawHead>* raw_ = nullptr;  ///< the engine's, of the last infer()
+  std::vector<HeadLayout> layouts_;            ///< of the engine's outputs
   std::vector<HeadLogits> heads_;
 };
 

@@ -101,18 +101,18 @@ std::vector<Convolution> head_convolutions(const TinyNetwork& network, int strid
 }  // namespace
 
 std::string tiny_network_onnx(const TinyNetwork& network) {
-  const int channels = 3 * (5 + network.class_count);
+  const int channels = 3 * (5 + network.class_count), batch = network.free_batch ? 0 : 1;
   std::string nodes, initializers, outputs;
   for (const int stride : network.strides) {
     for (const Convolution& convolution : head_convolutions(network, stride)) {
       nodes += bytes_field(1, node_of(convolution));
       initializers += weights_of(convolution, network.spoil);
     }
-    const std::vector<int> shape = {1, channels, network.height_px / stride, network.width_px / stride};
+    const std::vector<int> shape = {batch, channels, network.height_px / stride, network.width_px / stride};
     outputs += bytes_field(12, value_info("p" + std::to_string(stride), shape));
   }
-  const std::vector<int> size =
-      network.fixed_size ? std::vector<int>{1, 3, network.height_px, network.width_px} : std::vector<int>{1, 3, 0, 0};
+  const bool fixed = network.fixed_size;
+  const std::vector<int> size = {batch, 3, fixed ? network.height_px : 0, fixed ? network.width_px : 0};
   std::string graph = nodes + bytes_field(2, "tiny") + initializers;
   graph += bytes_field(11, value_info("images", size)) + outputs;
   std::string model = number_field(1, 6) + bytes_field(7, graph);

@@ -63,6 +63,14 @@ TEST(OnnxFile, reads_inside_random_bytes_only) {  // the address sanitizer is th
   }
 }
 
+TEST(OnnxFile, says_whether_several_images_fit) {
+  EXPECT_FALSE(read(test::tiny_network_onnx({})).free_batch);
+  const OnnxFile file = read(test::tiny_network_onnx({.free_batch = true}));
+  EXPECT_TRUE(file.free_batch);
+  ASSERT_TRUE(file.input);
+  EXPECT_EQ(file.input->width_px, 64);
+}
+
 TEST(OnnxFile, reads_the_metadata) {
   const OnnxFile file = read(test::tiny_network_onnx({.metadata = {{"rtd.heads", "8: 1,2 3,4 5,6"}, {"empty", ""}}}));
   EXPECT_THAT(file.metadata, ElementsAre(Pair("empty", ""), Pair("rtd.heads", "8: 1,2 3,4 5,6")));

@@ -9,6 +9,7 @@ from .errors import ConversionError
 
 OPSET = 11  # what OpenCV 4.6 reads best
 IR_VERSION = 6
+BATCH = "batch"  # the free dimension
 
 
 class Graph:
@@ -55,8 +56,8 @@ class Graph:
         graph = helper.make_graph(
             self._nodes,
             "yolov5",
-            [helper.make_tensor_value_info(self.input_name, TensorProto.FLOAT, self.shape(self.input_name))],
-            [helper.make_tensor_value_info(name, TensorProto.FLOAT, self.shape(t)) for t, name in outputs.items()],
+            [self._image_tensor(self.input_name, self.input_name)],
+            [self._image_tensor(tensor, name) for tensor, name in outputs.items()],
             self._constants,
         )
         model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", OPSET)], producer_name="rtd-slam")
@@ -64,6 +65,10 @@ class Graph:
         helper.set_model_props(model, metadata)
         checker.check_model(model, full_check=True)
         return model
+
+    def _image_tensor(self, tensor, name):
+        """An input or output of the graph: any number of images."""
+        return helper.make_tensor_value_info(name, TensorProto.FLOAT, (BATCH,) + self.shape(tensor)[1:])
 
     def _new_name(self, prefix):
         self._count += 1

@@ -147,13 +147,14 @@ def shuffle_block(graph, tensor, layer):
         tensor = concat(graph, branches)
     batch, channels, height, width = graph.shape(tensor)
     half, cells = channels // 2, height * width
-    tensor = reshape(graph, tensor, (batch, 2, half, cells))
+    tensor = reshape_images(graph, tensor, (batch, 2, half, cells))
     tensor = graph.add("Transpose", [tensor], (batch, half, 2, cells), perm=[0, 2, 1, 3])
-    return reshape(graph, tensor, (batch, channels, height, width))
+    return reshape_images(graph, tensor, (batch, channels, height, width))
 
 
-def reshape(graph, tensor, shape):
-    return graph.add("Reshape", [tensor, graph.constant(np.array(shape, np.int64))], shape)
+def reshape_images(graph, tensor, shape):
+    """Reshapes each image of the batch; the number of images stays free (0 copies the dimension)."""
+    return graph.add("Reshape", [tensor, graph.constant(np.array((0,) + shape[1:], np.int64))], shape)
 
 
 def depthwise_block(graph, tensor, layer):

@@ -120,6 +120,73 @@ class PublishedCheckpoints(ConverterTest):
         self.check("v5lite-e", "320x320")
 
 
+class Batches(ConverterTest):
+    """Each image of a batch gets what it gets alone."""
+
+    def assert_batch_is_free(self, path, size, counts, alone=None):
+        images = np.random.RandomState(1).rand(max(counts), 3, *size)
+        single = [run_network(alone or path, images[i : i + 1]) for i in range(len(images))]
+        for count in counts:
+            for head, together in enumerate(run_network(path, images[:count])):
+                self.assertEqual(together.shape[0], count)
+                for i in range(count):
+                    np.testing.assert_allclose(together[i], single[i][head][0], atol=1e-5)
+
+    def nail(self, path):
+        """Writes the batch of 1 into the file, as published files have it."""
+        model = onnx.load(str(path))
+        shapes = {node.input[1] for node in model.graph.node if node.op_type == "Reshape"}
+        for tensor in model.graph.initializer:
+            if tensor.name in shapes:
+                shape = onnx.numpy_helper.to_array(tensor).copy()
+                shape[0] = 1
+                tensor.CopyFrom(onnx.numpy_helper.from_array(shape, tensor.name))
+        for value in list(model.graph.input) + list(model.graph.output):
+            value.type.tensor_type.shape.dim[0].dim_value = 1
+        nailed = self.folder / "nailed.onnx"
+        onnx.save(model, str(nailed))
+        return nailed, len(shapes)
+
+    def test_of_a_converted_network(self):
+        self.save_tiny()
+        self.assertEqual(self.run_cli(self.checkpoint, self.output, "--size", "64x96"), (0, ""))
+        self.assert_batch_is_free(self.output, (64, 96), range(1, 17))
+
+    def test_of_a_file_that_is_freed(self):
+        folder = pathlib.Path(os.environ.get("RTD_MODEL_DIR", "/nowhere"))
+        known = folder / "v5lite-e-raw-320x320.onnx"
+        if not known.is_file():
+            self.skipTest(f"no {known} (RTD_MODEL_DIR)")
+        self.assertEqual(self.run_cli("--free-batch", known, self.output), (0, ""))
+        self.assert_batch_is_free(self.output, (320, 320), (1, 3), alone=known)
+
+    def test_freeing_undoes_nailing(self):
+        self.save_tiny()
+        self.run_cli(self.checkpoint, self.output, "--size", "64x96")
+        nailed, reshapes = self.nail(self.output)
+        self.assertGreater(reshapes, 0)
+        freed = self.folder / "freed.onnx"
+        self.assertEqual(self.run_cli("--free-batch", nailed, freed), (0, ""))
+        self.assert_batch_is_free(freed, (64, 96), (1, 4))
+
+    def test_what_cannot_be_freed_is_refused(self):
+        broken = self.folder / "broken"
+        broken.write_bytes(b"no network")
+        self.assert_refused("not an ONNX file", "--free-batch", broken, self.output)
+        self.assert_refused("No such file", "--free-batch", self.folder / "none", self.output)
+        make = onnx.helper.make_tensor_value_info
+        for shape, text in (([2, 8], "keep images apart"), ([-1, 8], "keep images apart")):
+            graph = onnx.helper.make_graph(
+                [onnx.helper.make_node("Reshape", ["x", "shape"], ["y"])],
+                "g",
+                [make("x", 1, (1, 16))],
+                [make("y", 1, None)],
+                [onnx.numpy_helper.from_array(np.array(shape, np.int64), "shape")],
+            )
+            broken.write_bytes(onnx.helper.make_model(graph).SerializeToString())
+            self.assert_refused(text, "--free-batch", broken, self.output)
+
+
 class Refusals(ConverterTest):
     def test_missing_file(self):
         self.assert_refused("tiny.pt: No such file")
