@@ -10,6 +10,7 @@
 #include <ostream>
 #include <set>
 
+#include "common/recordings/parts.hpp"
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/exit_code.hpp"
@@ -70,11 +71,6 @@ class RecordingPrinter {
   std::ostream &out_, &err_;
   std::uint64_t printed_ = 0, unreadable_ = 0;
 };
-
-/// A bag where it lies; a database through MCAP, which keeps its definitions of types.
-std::unique_ptr<camera::Recording> open(const fs::path& path) {
-  return path.extension() == ".db3" ? camera::open_mcap(path) : camera::open_any(path);
-}
 
 std::string readable_topics(const Types& types) {
   std::vector<std::string> names;
@@ -137,13 +133,11 @@ void print_all(const TopicsRequest& request, camera::Recording& recording, Recor
 bool is_recording(const std::string& argument) {
   std::error_code none;
   if (fs::is_regular_file(argument, none) || ends_as_recording(argument)) return true;
-  if (!fs::is_directory(argument, none)) return false;
-  return std::ranges::any_of(fs::directory_iterator(argument, none),
-                             [](const fs::directory_entry& entry) { return ends_as_recording(entry.path()); });
+  return fs::is_directory(argument, none) && recordings::holds_recording(argument);
 }
 
 int echo_recording(const TopicsRequest& request, std::ostream& out, std::ostream& err) {
-  const std::unique_ptr<camera::Recording> recording = open(request.topics.front());
+  const std::unique_ptr<camera::Recording> recording = camera::open_any(request.topics.front());
   const Types types = types_of(*recording);
   const std::vector<std::string> chosen =
       request.topics.size() > 1 ? named_topics(request, types, err) : all_topics(types, err);

@@ -2,14 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/core/trajectory/pose_file.hpp"
 
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <string_view>
 
 #include "common/io/text.hpp"
+#include "common/mcap/recording_file.hpp"
+#include "common/recordings/open.hpp"
+#include "common/recordings/parts.hpp"
 #include "services/evaluation/core/trajectory/pose_text.hpp"
 #include "services/evaluation/core/trajectory/recorded_poses.hpp"
 
@@ -43,20 +44,12 @@ PoseArgument parse(const std::string& text) {
   return argument;
 }
 
-bool is_recording(const fs::path& file) {
-  if (fs::is_directory(file)) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(file)) {
-      if (entry.path().extension() == ".mcap" || entry.path().extension() == ".db3") return true;
-    }
-    return false;
-  }
-  constexpr std::array<std::string_view, 3> kBegins = {"#ROSBAG V", "SQLite format 3", "\x89MCAP"};
-  std::string begin(16, '\0');
-  std::ifstream(file, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  for (const std::string_view known : kBegins) {
-    if (begin.starts_with(known)) return true;
-  }
-  return file.extension() == ".bag" || file.extension() == ".mcap" || file.extension() == ".db3";
+bool is_recording(const fs::path& file) try {
+  if (fs::is_directory(file)) return recordings::holds_recording(file);
+  return recordings::is_recording(file.string()) || file.extension() == ".bag" || file.extension() == ".mcap" ||
+         file.extension() == ".db3";
+} catch (const mcap::RecordingFileError&) {
+  return false;  // read_text_file() says why it cannot be read
 }
 
 std::vector<std::int64_t> stamps_for(const std::string& name, std::size_t poses, const MissingStamps& given) {
