@@ -23,6 +23,7 @@ inline void fill_frame(msg::RgbdFrame& frame, std::uint64_t seq) {
   frame.depth_offset_s = -0.01;
   frame.width = 640;
   frame.height = 480;
+  frame.lens = frame.reserved = 0;
   frame.source_id = ~seq;
   std::memset(frame.color_bgr.data(), static_cast<int>(seq % 251), frame.color_bgr.size());
   std::memset(frame.depth.data(), static_cast<int>(seq % 241), frame.depth.size() * sizeof(frame.depth[0]));
