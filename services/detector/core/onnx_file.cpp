@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/detector/core/onnx_file.hpp"
 
+#include <algorithm>
+#include <set>
 #include <span>
 #include <sstream>
 
@@ -10,8 +12,10 @@ namespace {
 
 constexpr int kGraphOfModel = 7, kMetadataOfModel = 14, kKeyOfEntry = 1, kValueOfEntry = 2, kInputOfGraph = 11,
               kTypeOfValueInfo = 2, kTensorOfType = 1, kShapeOfTensor = 2, kDimOfShape = 1, kValueOfDim = 1,
-              kInitializerOfGraph = 5, kDimsOfTensor = 1, kDataTypeOfTensor = 2;
-constexpr std::uint64_t kFloat = 1;
+              kInitializerOfGraph = 5, kDimsOfTensor = 1, kDataTypeOfTensor = 2, kIntsOfTensor = 7, kNameOfTensor = 8,
+              kRawOfTensor = 9, kNodeOfGraph = 1, kInputOfNode = 1, kOutputOfNode = 2, kOperatorOfNode = 4,
+              kAttributeOfNode = 5, kTensorOfAttribute = 5;
+constexpr std::uint64_t kFloat = 1, kInt64 = 7;
 enum WireType : int { kVarint = 0, kFixed64 = 1, kLengthDelimited = 2, kFixed32 = 5 };
 
 using Span = std::span<const std::uint8_t>;
@@ -131,6 +135,61 @@ std::string text_of(const std::optional<Span>& span) {
   return span ? std::string(span->begin(), span->end()) : std::string();
 }
 
+/// Whether a TensorProto of 64-bit integers begins with 0. They are raw, packed, or one varint each.
+bool begins_with_zero(Span tensor) {
+  std::uint64_t type = 0;
+  std::optional<bool> zero;
+  while (const std::optional<Field> field = take_field(tensor)) {
+    if (field->number == kDataTypeOfTensor) type = field->varint;
+    if (zero) continue;
+    Span values = field->bytes;
+    if (field->number == kRawOfTensor && values.size() >= sizeof(std::uint64_t)) {
+      zero = std::ranges::all_of(values.first(sizeof(std::uint64_t)), [](std::uint8_t byte) { return byte == 0; });
+    } else if (field->number == kIntsOfTensor) {
+      zero = (values.data() == nullptr ? std::optional(field->varint) : take_varint(values)) == std::uint64_t{0};
+    }
+  }
+  return type == kInt64 && zero.value_or(false);
+}
+
+/// The names of the constants, initializers or outputs of Constant nodes, that begin with 0.
+std::set<std::string> shapes_that_copy_the_batch(Span graph) {
+  std::set<std::string> names;
+  while (const std::optional<Field> field = take_field(graph)) {
+    if (field->bytes.data() == nullptr) continue;
+    std::optional<Span> tensor, name;
+    if (field->number == kInitializerOfGraph) {
+      tensor = field->bytes;
+      name = find_message(field->bytes, kNameOfTensor);
+    } else if (field->number == kNodeOfGraph && text_of(find_message(field->bytes, kOperatorOfNode)) == "Constant") {
+      const std::optional<Span> attribute = find_message(field->bytes, kAttributeOfNode);
+      if (attribute) tensor = find_message(*attribute, kTensorOfAttribute);
+      name = find_message(field->bytes, kOutputOfNode);
+    }
+    if (tensor && begins_with_zero(*tensor)) names.insert(text_of(name));
+  }
+  return names;
+}
+
+/// The second input of a Reshape.
+std::string shape_of_reshape(Span node) {
+  std::vector<std::string> inputs;
+  while (const std::optional<Field> field = take_field(node)) {
+    if (field->number == kInputOfNode) inputs.push_back(text_of(field->bytes));
+  }
+  return inputs.size() > 1 ? inputs[1] : std::string();
+}
+
+bool reshapes_copy_the_batch(Span graph) {
+  const std::set<std::string> copying = shapes_that_copy_the_batch(graph);
+  while (const std::optional<Field> field = take_field(graph)) {
+    if (field->number != kNodeOfGraph || field->bytes.data() == nullptr) continue;
+    if (text_of(find_message(field->bytes, kOperatorOfNode)) != "Reshape") continue;
+    if (!copying.contains(shape_of_reshape(field->bytes))) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 OnnxFile read_onnx_file(const std::uint8_t* bytes, std::size_t size) {
@@ -141,6 +200,7 @@ OnnxFile read_onnx_file(const std::uint8_t* bytes, std::size_t size) {
     if (field->number == kGraphOfModel) {
       file.has_graph = true;
       read_image_input(field->bytes, file);
+      file.free_batch = file.free_batch && reshapes_copy_the_batch(field->bytes);
       file.parameters = count_parameters(field->bytes);
     } else if (field->number == kMetadataOfModel) {
       file.metadata[text_of(find_message(field->bytes, kKeyOfEntry))] =

@@ -22,7 +22,7 @@ struct InputSize {
 struct OnnxFile {
   bool has_graph = false;          ///< false: these bytes are not an ONNX model, or only the beginning of one
   std::optional<InputSize> input;  ///< of the first Nx3xHxW input, when H and W are fixed
-  bool free_batch = false;         ///< its N is not fixed: it takes several images at once
+  bool free_batch = false;  ///< its N is not fixed, and every Reshape has a constant shape that copies it (0 first)
   std::map<std::string, std::string> metadata;  ///< ModelProto.metadata_props
   std::uint64_t parameters = 0;                 ///< numbers in the float tensors of the graph
 };

@@ -44,6 +44,24 @@ std::string tensor(const std::string& name, const std::vector<int>& dimensions, 
   return bytes + number_field(2, 1) + bytes_field(8, name) + bytes_field(9, raw);
 }
 
+/// TensorProto of 64-bit integers.
+std::string shape_tensor(const std::vector<int>& values) {
+  std::string packed;
+  for (const int value : values) packed += varint(static_cast<std::uint64_t>(std::int64_t{value}));
+  return number_field(1, static_cast<std::int64_t>(values.size())) + number_field(2, 7) + bytes_field(7, packed) +
+         bytes_field(8, "shape");
+}
+
+/// The nodes and initializers of TinyNetwork::reshape.
+std::string reshape_fields(const TinyNetwork& network) {
+  const std::string tensor = shape_tensor(network.reshape);
+  const std::string value = bytes_field(1, "value") + bytes_field(5, tensor) + number_field(20, 4);
+  const std::string constant = bytes_field(2, "shape") + bytes_field(4, "Constant") + bytes_field(5, value);
+  const std::string node =
+      bytes_field(1, "images") + bytes_field(1, "shape") + bytes_field(2, "reshaped") + bytes_field(4, "Reshape");
+  return (network.reshape_by_node ? bytes_field(1, constant) : bytes_field(5, tensor)) + bytes_field(1, node);
+}
+
 /// AttributeProto of type INTS.
 std::string ints(const std::string& name, const std::vector<int>& values) {
   std::string bytes = bytes_field(1, name);
@@ -115,6 +133,7 @@ std::string tiny_network_onnx(const TinyNetwork& network) {
   const std::vector<int> size = {batch, 3, fixed ? network.height_px : 0, fixed ? network.width_px : 0};
   std::string graph = nodes + bytes_field(2, "tiny") + initializers;
   graph += bytes_field(11, value_info("images", size)) + outputs;
+  if (!network.reshape.empty()) graph += reshape_fields(network);
   std::string model = number_field(1, 6) + bytes_field(7, graph);
   for (const auto& [key, value] : network.metadata)
     model += bytes_field(14, bytes_field(1, key) + bytes_field(2, value));

@@ -13,8 +13,10 @@ namespace rtd::test {
 struct TinyNetwork {
   int width_px = 64, height_px = 64;
   int class_count = 2;
-  bool fixed_size = true;  ///< false: height and width are free dimensions
-  bool free_batch = false;  ///< takes several images at once
+  bool fixed_size = true;         ///< false: height and width are free dimensions
+  bool free_batch = false;        ///< takes several images at once
+  std::vector<int> reshape = {};  ///< if any: a Reshape of the images to this shape, whose output has no use
+  bool reshape_by_node = false;   ///< the shape is the output of a Constant node, not an initializer
   std::vector<int> strides = {8, 16, 32};
   std::map<std::string, std::string> metadata = {};
   bool pointwise_heads = false;            ///< as in the real networks: features first, then a 1x1 convolution

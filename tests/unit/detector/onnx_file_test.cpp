@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <random>
 #include <string>
 
@@ -56,7 +59,13 @@ TEST(OnnxFile, finds_no_graph_in_any_beginning_of_a_model) {
 TEST(OnnxFile, reads_inside_random_bytes_only) {  // the address sanitizer is the judge
   std::mt19937_64 random(3);
   for (int i = 0; i < 2000; ++i) {
-    std::string bytes = test::tiny_network_onnx({.width_px = 32, .height_px = 32, .class_count = 1, .strides = {32}});
+    std::string bytes = test::tiny_network_onnx({.width_px = 32,
+                                                 .height_px = 32,
+                                                 .class_count = 1,
+                                                 .free_batch = true,
+                                                 .reshape = {0, 3, 1024},
+                                                 .reshape_by_node = i % 2 == 0,
+                                                 .strides = {32}});
     for (int k = 0; k < 8; ++k) bytes[random() % bytes.size()] = static_cast<char>(random());
     bytes.resize(random() % bytes.size());
     (void)read(bytes);
@@ -69,6 +78,32 @@ TEST(OnnxFile, says_whether_several_images_fit) {
   EXPECT_TRUE(file.free_batch);
   ASSERT_TRUE(file.input);
   EXPECT_EQ(file.input->width_px, 64);
+}
+
+TEST(OnnxFile, a_reshape_that_names_the_batch_fixes_it) {
+  for (const bool by_node : {false, true}) {
+    const auto free_with = [by_node](const std::vector<int>& shape) {
+      return read(test::tiny_network_onnx({.free_batch = true, .reshape = shape, .reshape_by_node = by_node}))
+          .free_batch;
+    };
+    EXPECT_TRUE(free_with({0, 3, 4096})) << by_node;
+    EXPECT_FALSE(free_with({1, 3, 4096})) << by_node;
+    EXPECT_FALSE(free_with({-1, 4096})) << by_node;  // could mix images
+  }
+}
+
+TEST(OnnxFile, copying_reshapes_do_not_free_a_fixed_input) {
+  EXPECT_FALSE(read(test::tiny_network_onnx({.reshape = {0, 3, 4096}})).free_batch);
+}
+
+TEST(OnnxFile, the_published_files_take_one_image) {  // their shapes are raw bytes
+  const char* const folder = std::getenv("RTD_MODEL_DIR");
+  const std::string path = std::string(folder == nullptr ? "/nowhere" : folder) + "/v5lite-e-raw-320x320.onnx";
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) GTEST_SKIP() << "no " << path << " (RTD_MODEL_DIR)";
+  const OnnxFile file = read({std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()});
+  EXPECT_TRUE(file.has_graph);
+  EXPECT_FALSE(file.free_batch);
 }
 
 TEST(OnnxFile, reads_the_metadata) {

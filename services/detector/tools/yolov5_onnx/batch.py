@@ -14,11 +14,25 @@ def free_batch(model):
     how many Reshapes were changed. Raises ConversionError for a Reshape that mixes images with each other."""
     shapes = _reshape_shapes(model.graph)
     changed = sum(_free_shape(tensor) for tensor in shapes.values())
+    weights = {tensor.name for tensor in model.graph.initializer}  # old files list them among the inputs
     for value in list(model.graph.input) + list(model.graph.output):
-        value.type.tensor_type.shape.dim[0].dim_param = BATCH
+        if value.name not in weights:
+            _free_dimension(value)
     del model.graph.value_info[:]  # shapes between the layers, with the batch of before
-    onnx.checker.check_model(model, full_check=True)
+    try:
+        onnx.checker.check_model(model, full_check=True)
+    except onnx.shape_inference.InferenceError as error:
+        raise ConversionError(f"the shapes do not fit each other: {error}") from error
     return changed
+
+
+def _free_dimension(value):
+    dimensions = value.type.tensor_type.shape.dim
+    if not dimensions:  # a scalar, or a shape that is not given
+        return
+    if dimensions[0].HasField("dim_value") and dimensions[0].dim_value != 1:
+        raise ConversionError(f"'{value.name}' has {dimensions[0].dim_value} images: only batch 1 is freed")
+    dimensions[0].dim_param = BATCH
 
 
 def _reshape_shapes(graph):

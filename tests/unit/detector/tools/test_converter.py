@@ -152,13 +152,51 @@ class Batches(ConverterTest):
         self.assertEqual(self.run_cli(self.checkpoint, self.output, "--size", "64x96"), (0, ""))
         self.assert_batch_is_free(self.output, (64, 96), range(1, 17))
 
-    def test_of_a_file_that_is_freed(self):
-        folder = pathlib.Path(os.environ.get("RTD_MODEL_DIR", "/nowhere"))
-        known = folder / "v5lite-e-raw-320x320.onnx"
+    def check_published(self, name, size, counts):
+        known = pathlib.Path(os.environ.get("RTD_MODEL_DIR", "/nowhere")) / name
         if not known.is_file():
             self.skipTest(f"no {known} (RTD_MODEL_DIR)")
         self.assertEqual(self.run_cli("--free-batch", known, self.output), (0, ""))
-        self.assert_batch_is_free(self.output, (320, 320), (1, 3), alone=known)
+        self.assert_batch_is_free(self.output, size, counts, alone=known)
+
+    def test_of_yolov5_lite_e_when_freed(self):
+        self.check_published("v5lite-e-raw-320x320.onnx", (320, 320), (1, 2, 16))
+
+    def test_of_yolov5_lite_s_when_freed(self):
+        self.check_published("v5lite-s-raw-480x640.onnx", (480, 640), (1, 2))
+
+    def free(self, nodes, inputs, outputs, constants=()):
+        """Writes a network of these parts, frees it; exit code and errors."""
+        make = onnx.helper.make_tensor_value_info
+        values = [[make(name, 1, shape) for name, shape in side.items()] for side in (inputs, outputs)]
+        arrays = [onnx.numpy_helper.from_array(np.array(a), name) for name, a in dict(constants).items()]
+        model = onnx.helper.make_model(
+            onnx.helper.make_graph([onnx.helper.make_node(*n) for n in nodes], "g", *values, arrays),
+            opset_imports=[onnx.helper.make_opsetid("", 11)],
+        )
+        source = self.folder / "source"
+        source.write_bytes(model.SerializeToString())
+        return self.run_cli("--free-batch", source, self.output)
+
+    def test_only_images_are_freed(self):
+        nodes = [("Conv", ["x", "w"], ["c"]), ("Mul", ["c", "scalar"], ["y"])]
+        inputs = {"x": (1, 3, 4, 4), "w": (4, 3, 1, 1), "scalar": ()}
+        weights = {"w": np.ones((4, 3, 1, 1), np.float32)}
+        self.assertEqual(self.free(nodes, inputs, {"y": (1, 4, 4, 4)}, weights), (0, ""))
+        sizes = [[d.dim_value for d in v.type.tensor_type.shape.dim] for v in onnx.load(str(self.output)).graph.input]
+        self.assertEqual(sizes, [[0, 3, 4, 4], [4, 3, 1, 1], []])
+
+    def test_networks_whose_shapes_do_not_fit_are_refused(self):
+        nodes = [("Reshape", ["x", "s"], ["r"]), ("Add", ["r", "c"], ["y"])]
+        constants = {"s": np.array([1, 3, 16]), "c": np.ones((1, 3, 17), np.float32)}
+        for inputs, nodes, constants, cause in (
+            ({"x": (1, 3, 4, 4)}, nodes, constants, "shapes do not fit"),
+            ({"x": (4, 3, 16)}, [("Relu", ["x"], ["y"])], {}, "'x' has 4 images: only batch 1"),
+        ):
+            code, errors = self.free(nodes, inputs, {"y": ("batch", "channels", "cells")}, constants)
+            self.assertEqual(code, 1)
+            self.assertIn(cause, errors)
+            self.assertFalse(self.output.exists())
 
     def test_freeing_undoes_nailing(self):
         self.save_tiny()
