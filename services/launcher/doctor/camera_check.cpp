@@ -22,7 +22,7 @@ void describe_cameras(const std::vector<camera::FoundCamera>& cameras, Findings&
   }
   if (cameras.empty()) {
     findings.push_back({Verdict::kOk, "cameras: none is plugged in; this build supports " +
-                                          camera::supported_devices() + " and ROS 2 topics"});
+                                          camera::supported_devices() + ", realsense-dds and ROS 2 topics"});
   }
 }
 
