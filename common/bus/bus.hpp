@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "common/bus/backend.hpp"
+#include "common/bus/robot.hpp"
 #include "common/bus/topics.hpp"
 
 namespace rtd::bus {
@@ -110,12 +111,14 @@ class TopicCounters {
 /// Throws BusError with cause and fix when the backend cannot start. Thread-safe.
 class Bus {
  public:
-  explicit Bus(std::shared_ptr<BusBackend> backend) : backend_(std::move(backend)) {}
+  explicit Bus(std::shared_ptr<BusBackend> backend, std::string robot = {})
+      : backend_(std::move(backend)), robot_(std::move(robot)) {}
 
   template <class T>
   Writer<T> writer(const Topic<T>& topic, StatusCallbacks callbacks = {}) {
-    return Writer<T>(backend_->create_writer(MessageTraits<T>::kId, topic.name, topic.profile,
-                                             counters_.count(topic.name, std::move(callbacks))));
+    const std::string name = topic_of_robot(topic.name, robot_);
+    return Writer<T>(backend_->create_writer(MessageTraits<T>::kId, name, topic.profile,
+                                             counters_.count(name, std::move(callbacks))));
   }
 
   template <class T>
@@ -125,17 +128,23 @@ class Bus {
     auto erased = [on_message = std::move(on_message)](std::shared_ptr<const void> message) {
       on_message(std::static_pointer_cast<const T>(std::move(message)));
     };
-    return Reader<T>(backend_->create_reader(MessageTraits<T>::kId, topic.name, topic.profile, std::move(erased),
-                                             counters_.count(topic.name, std::move(callbacks))));
+    const std::string name = topic_of_robot(topic.name, robot_);
+    return Reader<T>(backend_->create_reader(MessageTraits<T>::kId, name, topic.profile, std::move(erased),
+                                             counters_.count(name, std::move(callbacks))));
   }
 
   const std::string& vendor() const { return backend_->vendor(); }
+  /// Whose topics writers and readers get; "" for a robot without a name.
+  const std::string& robot() const { return robot_; }
+  /// The same connection for the topics of another robot. Counts its troubles for itself.
+  std::shared_ptr<Bus> of_robot(const std::string& robot) const { return std::make_shared<Bus>(backend_, robot); }
   /// Topics on which samples were lost or rejected or peers refused since the connection began.
   std::map<std::string, TopicTrouble> troubles() const { return counters_.troubles(); }
 
  private:
   TopicCounters counters_;
   std::shared_ptr<BusBackend> backend_;
+  const std::string robot_;
 };
 
 }  // namespace rtd::bus

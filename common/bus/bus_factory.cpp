@@ -41,6 +41,7 @@ std::string join_names(const std::vector<std::string>& names) {
 
 /// Throws BusError: no such vendor, a domain out of range, a network that cannot be, no port free.
 const Vendor& vendor_of(const BusOptions& options) {
+  require_robot_name(options.robot);
   if (options.domain > kMaxDomain) {
     throw BusError("domain " + std::to_string(options.domain) + " is out of range, allowed: 0.." +
                    std::to_string(kMaxDomain) + " (--domain, ROS_DOMAIN_ID)");
@@ -84,9 +85,9 @@ std::vector<std::string> dds_vendors() {
 
 std::shared_ptr<Bus> connect(const BusOptions& options) {
   const Vendor& vendor = vendor_of(options);
-  if (!options.security.enabled()) return std::make_shared<Bus>(vendor.create(options));
+  if (!options.security.enabled()) return std::make_shared<Bus>(vendor.create(options), options.robot);
   security::Enclave enclave = require_enclave(options);
-  return std::make_shared<Bus>(guard(vendor.create(options), std::move(enclave)));
+  return std::make_shared<Bus>(guard(vendor.create(options), std::move(enclave)), options.robot);
 }
 
 std::shared_ptr<RawBus> connect_raw(const BusOptions& options) {

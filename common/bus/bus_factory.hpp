@@ -45,6 +45,7 @@ std::string default_vendor();
 struct BusOptions {
   std::string vendor = default_vendor();  ///< one of available_vendors()
   std::uint32_t domain = 0;
+  std::string robot;             ///< its topics and frames, "": names as ever (common/bus/robot.hpp)
   std::string participant_name;  ///< shown by DDS tools, e.g. "rtd-filter"
   bool shared_memory = true;     ///< false where /dev/shm is tiny
   std::uint32_t shm_segment_mib = 16;
@@ -59,6 +60,7 @@ struct BusOptions {
   void bind(auto& binder) {
     binder.field("vendor", vendor, "DDS implementation (--dds, RTD_DDS)");
     binder.field("domain", domain, {0, 232}, "DDS domain (--domain, ROS_DOMAIN_ID)");
+    binder.field("robot", robot, "name of the robot: its topics are below it, its frames too (--robot)");
     binder.field("shared_memory", shared_memory, "false: Fast DDS sends over UDP on one host too");
     binder.field("shm_segment_mib", shm_segment_mib, {8, 1024}, "shared-memory segment of each process");
     binder.field("socket_buffer_kib", socket_buffer_kib, {64, 65536}, "wanted UDP buffers, capped by the kernel");

@@ -8,6 +8,7 @@
 #include <netdb.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
@@ -15,7 +16,8 @@
 #include <memory>
 
 #include "common/bus/backend.hpp"
-#include "common/bus/topics.hpp"
+#include "common/bus/frame_topics.hpp"
+#include "common/bus/robot.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -102,7 +104,10 @@ std::vector<std::string> interface_addresses(const NetworkOptions& network) {
 }
 
 bool stays_on_host(std::string_view topic) {
-  return topic == topics::kFrame.name || topic == topics::kFeatures.name;
+  const std::string name = split_robot(topic).topic;
+  const auto frames = frame_topics();
+  return name == topics::kFeatures.name ||
+         std::ranges::any_of(frames, [&](const FrameTopic& frame) { return name == frame.name; });
 }
 
 /// From the kernel's start and the device of /dev/shm: containers share memory or not, whatever their network.

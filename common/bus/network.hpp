@@ -31,7 +31,7 @@ HostAddress resolve_host(const std::string& text, const std::string& option);
 /// containers and virtual machines). Empty with loopback_only. Throws BusError: no such interface, none is up.
 std::vector<std::string> interface_addresses(const NetworkOptions& network);
 
-/// Topics that no other host gets: raw frames and features, 1.5 and 0.1 MB thirty times a second. Their writers on a
+/// Topics of any robot that no other host gets: raw frames and features, 1.5 and 0.1 MB thirty times a second. Their writers on a
 /// network are in the partition host_partition() only, our readers ask for it and for the default one.
 bool stays_on_host(std::string_view topic);
 

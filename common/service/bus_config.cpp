@@ -83,6 +83,8 @@ void add_bus_options(CLI::App& app, BusArguments& arguments) {
                  fmt::format("DDS implementation: {} (RTD_DDS; default: {})", fmt::join(bus::dds_vendors(), " or "),
                              bus::default_vendor()));
   app.add_option("--domain", arguments.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
+  app.add_option("--robot", arguments.robot,
+                 "Name of the robot, where several share a domain: its topics and frames are below it (bus.robot)");
   app.add_flag("--secure", arguments.secure,
                "DDS-Security: only processes with keys of the keystore take part (bus.security.enabled)");
   app.add_option("--keystore", arguments.keystore,
@@ -101,6 +103,7 @@ void load_config(ConfigBinder& binder, const BusArguments& arguments, const Conf
     binder.set("bus.network.discovery_server", "\"" + arguments.discovery_server + "\"", "--discovery-server");
   if (!arguments.vendor.empty()) binder.set("bus.vendor", arguments.vendor, "--dds");
   if (arguments.domain >= 0) binder.set("bus.domain", std::to_string(arguments.domain), "--domain");
+  if (!arguments.robot.empty()) binder.set("bus.robot", "\"" + arguments.robot + "\"", "--robot");
   if (!arguments.keystore.empty()) binder.set("bus.security.keystore", "\"" + arguments.keystore + "\"", "--keystore");
   if (arguments.secure || !arguments.keystore.empty()) binder.set("bus.security.enabled", "true", "--secure");
 }
@@ -116,6 +119,7 @@ std::vector<std::string> to_command_line(const BusArguments& arguments) {
   add("--discovery-server", arguments.discovery_server);
   add("--dds", arguments.vendor);
   if (arguments.domain >= 0) add("--domain", std::to_string(arguments.domain));
+  add("--robot", arguments.robot);
   if (arguments.secure) line.emplace_back("--secure");
   add("--keystore", arguments.keystore);
   return line;

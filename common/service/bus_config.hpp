@@ -56,6 +56,7 @@ struct BusArguments {
   std::string discovery_server;
   std::string vendor;
   int domain = -1;
+  std::string robot;
   bool secure = false;
   std::string keystore;  ///< names the keystore and means --secure
 };

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "common/bus/backend.hpp"
+#include "common/bus/frame_topics.hpp"
 #include "common/bus/topics.hpp"
 
 namespace rtd::bus {
@@ -70,7 +71,7 @@ TEST(Network, a_discovery_server_is_for_fast_dds_and_has_a_port) {
 }
 
 TEST(Network, raw_frames_and_features_stay_on_the_host) {
-  EXPECT_TRUE(stays_on_host(topics::kFrame.name));
+  for (const FrameTopic& frame : frame_topics()) EXPECT_TRUE(stays_on_host(frame.name)) << frame.name;
   EXPECT_TRUE(stays_on_host(topics::kFeatures.name));
   EXPECT_FALSE(stays_on_host(topics::kColorJpeg.name));
   EXPECT_FALSE(stays_on_host(topics::kDetections.name));

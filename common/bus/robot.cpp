@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/robot.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "common/bus/backend.hpp"
+
+namespace rtd::bus {
+namespace {
+
+constexpr std::string_view kOwn = "rtd/", kRos = "rt/";
+
+/// First parts of the names below "rt/" that belong to one robot.
+constexpr std::array<std::string_view, 5> kNodes = {"camera/", "detector/", "filter/", "slam/", "dense/"};
+
+bool of_node(std::string_view name) {
+  return std::ranges::any_of(kNodes, [name](std::string_view node) { return name.starts_with(node); });
+}
+
+/// The prefix of a topic that belongs to one robot; "" for others.
+std::string_view prefix_of(std::string_view topic) {
+  if (topic.starts_with(kOwn)) return kOwn;
+  return topic.starts_with(kRos) && of_node(topic.substr(kRos.size())) ? kRos : "";
+}
+
+}  // namespace
+
+bool is_robot_name(std::string_view name) {
+  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  return !name.empty() && name.size() <= kLongestRobotName && std::isalpha(static_cast<unsigned char>(name[0])) != 0 &&
+         std::ranges::all_of(name, fits) && name.find("__") == std::string_view::npos;
+}
+
+void require_robot_name(const std::string& name) {
+  if (name.empty() || is_robot_name(name)) return;
+  throw BusError("'" + name +
+                 "' cannot be a robot's name: use letters, digits and single underscores, a letter first, "
+                 "at most " +
+                 std::to_string(kLongestRobotName) + " (--robot)");
+}
+
+std::string topic_of_robot(std::string_view topic, std::string_view robot) {
+  const std::string_view prefix = prefix_of(topic);
+  if (robot.empty() || prefix.empty()) return std::string(topic);
+  return std::string(prefix).append(robot).append("/").append(topic.substr(prefix.size()));
+}
+
+RobotTopic split_robot(std::string_view wire_name) {
+  const RobotTopic unnamed{{}, std::string(wire_name)};
+  const std::string_view prefix = wire_name.starts_with(kOwn) ? kOwn : wire_name.starts_with(kRos) ? kRos : "";
+  const std::string_view name = wire_name.substr(prefix.size());
+  const std::size_t slash = name.find('/');
+  if (prefix.empty() || slash == std::string_view::npos) return unnamed;
+  const std::string_view robot = name.substr(0, slash), rest = name.substr(slash + 1);
+  if (!is_robot_name(robot) || rest.empty() || (prefix == kRos && !of_node(rest))) return unnamed;
+  return {std::string(robot), std::string(prefix).append(rest)};
+}
+
+std::string frame_of_robot(const std::string& frame, std::string_view robot) {
+  return robot.empty() ? frame : std::string(robot) + "/" + frame;
+}
+
+}  // namespace rtd::bus

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+/// Several robots in one domain: a robot with a name has its own topics and tf frames. Without a name ("") both are as
+/// written in topics.hpp and the configuration.
+namespace rtd::bus {
+
+inline constexpr std::size_t kLongestRobotName = 32;
+
+/// What ROS 2 takes as one part of a topic's name: letters, digits and single underscores, a letter first, at most
+/// kLongestRobotName. "" is no name.
+bool is_robot_name(std::string_view name);
+
+/// Throws BusError for a text that is neither "" nor a robot's name.
+void require_robot_name(const std::string& name);
+
+/// "rt/slam/odometry" of robot "anna": "rt/anna/slam/odometry". What all robots share keeps its name: "rt/tf",
+/// "rt/diagnostics" and the topics of ROS 2 itself.
+std::string topic_of_robot(std::string_view topic, std::string_view robot);
+
+/// A name on the wire, divided.
+struct RobotTopic {
+  std::string robot;  ///< "": of a robot without a name, or shared by all
+  std::string topic;  ///< as in topics.hpp
+  bool operator==(const RobotTopic&) const = default;
+};
+/// The inverse of topic_of_robot() for the topics of topics.hpp and those beside them in the same ROS namespaces
+/// ("rt/slam/..."); other names belong to no robot.
+RobotTopic split_robot(std::string_view wire_name);
+
+/// "odom" of robot "anna": "anna/odom".
+std::string frame_of_robot(const std::string& frame, std::string_view robot);
+
+}  // namespace rtd::bus
