@@ -14,9 +14,9 @@ namespace rtd::detector {
 
 /// How images of several robots become batches.
 struct FleetQueueConfig {
-  std::size_t batch = 8;                  ///< images taken at once, at most
-  std::int64_t gather_ns = 2'000'000;     ///< longest wait for a fuller batch
-  std::int64_t active_ns = 500'000'000;   ///< a robot without an image for longer is not waited for
+  std::size_t batch = 8;                 ///< images taken at once, at most
+  std::int64_t gather_ns = 2'000'000;    ///< longest wait for a fuller batch
+  std::int64_t active_ns = 500'000'000;  ///< a robot without an image for longer is not waited for
 };
 
 /// One mailbox per robot, of one image: the newest wins. Images are taken in turns, at most one per robot and batch, so

@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/detector/fleet_service.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <opencv2/imgcodecs.hpp>
+#include <thread>
+#include <utility>
+
+#include "common/bus/robot.hpp"
+#include "common/service/config.hpp"
+#include "common/service/log.hpp"
+#include "common/service/monotonic_clock.hpp"
+#include "services/detector/core/engine.hpp"
+#include "services/detector/detector_service.hpp"
+#include "services/detector/fleet/batch_detector.hpp"
+
+namespace rtd::detector {
+namespace {
+
+constexpr std::chrono::milliseconds kLookAfter{50};  ///< robots come and go, others take over
+constexpr std::chrono::milliseconds kStuckAfter{1500}, kStuckAfterPerImage{250};
+constexpr unsigned kUsualDecoders = 4;
+constexpr const char* kAll = "all";
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+/// Empty when they are broken.
+cv::Mat pixels_of(const msg::CompressedImage& jpeg) {
+  if (jpeg.data.empty()) return {};
+  try {
+    return cv::imdecode(jpeg.data, cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {  // data from outside never ends the process
+    return {};
+  }
+}
+
+void require_combinable(const ServiceConfig& config, const service::Runtime& runtime) {
+  const auto refuse = [](bool wrong, const char* what) {
+    if (wrong) throw service::ConfigError(std::string("detector.robots (--robots): ") + what);
+  };
+  refuse(runtime.pace != service::Pace::kRealtime,
+         "several robots are served at pace realtime; run one detector for each robot at asap or lockstep");
+  refuse(config.derotate == "on", "detector.derotate follows the poses of one robot: leave it off");
+  refuse(config.input == "frame", "raw frames never leave their host: leave detector.input at auto or jpeg");
+  refuse(config.max_rate_hz > 0, "detector.max_rate_hz (--max-rate) is for one robot: leave it at 0");
+  refuse(config.verify_engine, "--verify-engine is for one robot: check the engine with a run of its own first");
+  refuse(!runtime.bus.robot().empty(), "--robot names the one robot of a detector: leave one of the two out");
+}
+
+}  // namespace
+
+FleetConfig fleet_config(const ServiceConfig& config, const service::Runtime& runtime) {
+  require_combinable(config, runtime);
+  FleetConfig fleet;
+  fleet.robots = {config.robots.begin(), config.robots.end()};
+  if (fleet.robots.erase(kAll) > 0 && !fleet.robots.empty())
+    throw service::ConfigError("detector.robots (--robots): 'all' stands alone, beside it are names");
+  for (const std::string& robot : fleet.robots) {
+    if (bus::is_robot_name(robot)) continue;
+    throw service::ConfigError(fmt::format(
+        "detector.robots (--robots): '{}' cannot be a robot's name: use letters, digits and single underscores, a "
+        "letter first; 'all' also serves a robot without a name",
+        robot));
+  }
+  fleet.queue.batch = static_cast<std::size_t>(config.batch);
+  const int cores = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kUsualDecoders));
+  fleet.decoders = config.decoders > 0 ? config.decoders : cores;
+  fleet.stuck_after = kStuckAfter + config.batch * kStuckAfterPerImage;
+  return fleet;
+}
+
+Inference load_inference(const ServiceConfig& config) {
+  try {
+    const auto detector = std::make_shared<BatchDetector>(core_config(config), config.batch);
+    const InputSize input = detector->detector().input_size();
+    SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} device=\"{}\"",
+                detector->detector().config().model_path, input.width_px, input.height_px, config.core.threads,
+                detector->detector().device());
+    if (!detector->fallback().empty())
+      SPDLOG_WARN("event=engine_fallback asked={} device=\"{}\" cause=\"{}\"", config.core.engine,
+                  detector->detector().device(), detector->fallback());
+    if (!detector->no_batch().empty()) SPDLOG_WARN("event=no_batch cause=\"{}\"", detector->no_batch());
+    return {[detector](std::span<const cv::Mat> images) { return detector->detect(images); },
+            "computes on " + detector->device()};
+  } catch (const ModelError& error) {
+    throw service::ConfigError(error.what());
+  } catch (const EngineError& error) {
+    throw service::ConfigError(std::string("detector.engine: ") + error.what());
+  }
+}
+
+FleetService::FleetService(const FleetConfig& config, service::Runtime& runtime, Inference inference)
+    : config_(config),
+      runtime_(runtime),
+      inference_(std::move(inference)),
+      lane_options_{host_name(), config.stuck_after},
+      arrivals_(std::make_shared<FleetArrivals>(config.queue)),
+      handover_(std::make_shared<Handover<Batch>>()),
+      decoders_(config.decoders),
+      finder_(runtime.bus_options) {
+  runtime.heartbeat.watch_progress(config.stuck_after);
+  runtime.stop.on_stop([arrivals = arrivals_, handover = handover_] {
+    arrivals->close();
+    handover->close();
+  });
+}
+
+FleetService::~FleetService() {
+  close_lanes();
+}
+
+service::ExitCode FleetService::run() {
+  {
+    const std::jthread robots([this] { look_after_robots(); }), decoding([this] { prepare_batches(); });
+    detect_until_stopped();
+  }
+  close_lanes();
+  SPDLOG_INFO("event=summary images={} batches={}", images_, batches_);
+  return service::kOk;
+}
+
+/// The first stage: takes the newest images and decodes them when the network is about to be free.
+void FleetService::prepare_batches() {
+  std::size_t before = 0;  // images of the batch that the network has now
+  while (const auto began = handover_->wait_free()) {
+    handover_->wait_wanted(decode_at(*began, before));
+    const auto taken = arrivals_->take();
+    if (taken.empty()) return;
+    const std::int64_t started_ns = service::monotonic_ns();
+    Batch batch = decode(taken);
+    {
+      const std::lock_guard lock(timing_mutex_);
+      timing_.decoded(service::monotonic_ns() - started_ns);
+    }
+    if (batch.images.empty()) continue;
+    before = batch.images.size();
+    handover_->put(std::move(batch));
+  }
+}
+
+FleetService::Clock::time_point FleetService::decode_at(Clock::time_point began, std::size_t images) {
+  const std::lock_guard lock(timing_mutex_);
+  return began + timing_.delay(images);
+}
+
+FleetService::Batch FleetService::decode(const std::vector<FleetArrivals::Queue::Taken>& taken) {
+  std::vector<cv::Mat> decoded(taken.size());
+  decoders_.for_each(taken.size(), [&](std::size_t i) { decoded[i] = pixels_of(*taken[i].image); });
+  Batch batch;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (decoded[i].empty()) {
+      if (const auto broken = lane(taken[i].robot)) broken->count_broken("not an image");
+      continue;
+    }
+    batch.images.push_back({taken[i].robot, msg::to_ns(taken[i].image->header.stamp), taken[i].arrived_ns});
+    batch.pixels.push_back(std::move(decoded[i]));
+  }
+  return batch;
+}
+
+/// The second stage.
+void FleetService::detect_until_stopped() {
+  while (!runtime_.stop.stop_requested()) {
+    runtime_.heartbeat.tick();
+    for (const auto& [robot, lane] : lanes()) lane->tick();
+    if (const std::optional<Batch> batch = handover_->take_for(kLookAfter)) detect(*batch);
+  }
+}
+
+void FleetService::detect(const Batch& batch) {
+  const std::int64_t started_ns = service::monotonic_ns();
+  std::vector<std::vector<vision::Detection>> found;
+  std::string failure;
+  try {
+    found = inference_.detect(batch.pixels);
+  } catch (const std::exception& error) {  // an engine may fail for once; the next images come
+    failure = error.what();
+    if (failure_log_.pass())
+      SPDLOG_ERROR("event=inference_failed images={} cause=\"{}\"", batch.images.size(), failure);
+  }
+  {
+    const std::lock_guard lock(timing_mutex_);
+    timing_.inferred(batch.images.size(), service::monotonic_ns() - started_ns);
+  }
+  ++batches_;
+  images_ += batch.images.size();
+  for (std::size_t i = 0; i < batch.images.size(); ++i) {
+    const Image& image = batch.images[i];
+    const auto served = lane(image.robot);
+    if (!served) continue;
+    if (i < found.size()) {
+      served->publish({image.stamp_ns, image.arrived_ns, batch.images.size(), std::move(found[i])});
+    } else {
+      served->count_broken(failure);
+    }
+  }
+}
+
+/// Beside the stages: opening and closing topics takes time.
+void FleetService::look_after_robots() {
+  for (const std::string& robot : config_.robots) open_lane(robot);
+  do {
+    update_lanes();
+  } while (!runtime_.stop.wait_for(kLookAfter));
+}
+
+void FleetService::update_lanes() {
+  const std::set<std::string> found = finder_.robots();
+  if (config_.robots.empty())
+    for (const std::string& robot : found) open_lane(robot);
+  const Lanes all = lanes();
+  const auto served = std::ranges::count_if(all, [](const auto& entry) { return entry.second->reading(); });
+  const std::string work = fmt::format("{}, {} robot{}", inference_.device, served, served == 1 ? "" : "s");
+  for (const auto& [robot, lane] : all) {
+    const bool was_reading = lane->reading();
+    lane->update({found.contains(robot), arrivals_->dropped(robot), work});
+    if (was_reading && !lane->reading()) arrivals_->remove(robot);
+  }
+  report(all);
+}
+
+/// A lane stays when its robot leaves: the status says so, and the robot may come back.
+void FleetService::open_lane(const std::string& robot) {
+  if (lane(robot)) return;
+  if (lanes().size() >= kMostRobots) {
+    if (refused_.size() < kMostRobots && refused_.insert(robot).second)
+      SPDLOG_ERROR("event=robot_refused robot=\"{}\" cause=\"one detector serves {} robots at most\"", robot,
+                   kMostRobots);
+    return;
+  }
+  SPDLOG_INFO("event=robot_found robot=\"{}\"", robot);
+  auto opened =
+      std::make_shared<RobotLane>(runtime_.bus, robot, lane_options_,
+                                  [arrivals = arrivals_, robot](std::shared_ptr<const msg::CompressedImage> jpeg) {
+                                    arrivals->put(robot, std::move(jpeg));
+                                  });
+  const std::lock_guard lock(lanes_mutex_);
+  lanes_[robot] = std::move(opened);
+}
+
+void FleetService::report(const Lanes& lanes) {
+  std::vector<std::string> parts;
+  double serving = 0, reading = 0;
+  for (const auto& [robot, lane] : lanes) {
+    parts.push_back(lane->description());
+    serving += lane->serving() ? 1 : 0;
+    reading += lane->reading() ? 1 : 0;
+  }
+  runtime_.heartbeat.set_metric("robots", static_cast<double>(lanes.size()));
+  runtime_.heartbeat.set_metric("robots_served", serving);
+  runtime_.heartbeat.set_metric("robots_read", reading);
+  runtime_.heartbeat.set_state(reading > 0 ? msg::ServiceState::kRunning : msg::ServiceState::kReady,
+                               parts.empty() ? "no robot found" : fmt::format("{}", fmt::join(parts, "; ")));
+}
+
+FleetService::Lanes FleetService::lanes() const {
+  const std::lock_guard lock(lanes_mutex_);
+  return lanes_;
+}
+
+std::shared_ptr<RobotLane> FleetService::lane(const std::string& robot) const {
+  const std::lock_guard lock(lanes_mutex_);
+  const auto found = lanes_.find(robot);
+  return found == lanes_.end() ? nullptr : found->second;
+}
+
+/// Side by side: each waits for its end to be heard, by which another detector takes over.
+void FleetService::close_lanes() {
+  Lanes closing;
+  {
+    const std::lock_guard lock(lanes_mutex_);
+    closing.swap(lanes_);
+  }
+  std::vector<std::jthread> threads;
+  for (auto& [robot, lane] : closing) threads.emplace_back([&lane] { lane.reset(); });
+}
+
+}  // namespace rtd::detector
