@@ -120,14 +120,14 @@ void RobotDouble::receive(const msg::Detection2DArray& answer) {
                      std::abs(answer.detections[0].bbox.center.position.x - 5 - number) < 0.5 &&
                      answer.header.frame_id == bus::frame_of_robot("camera_color_optical_frame", robot_.name);
   ++figures_.answered;
+  if (answered_ns_ > 0)
+    figures_.longest_gap_ms = std::max(figures_.longest_gap_ms, (now_ns - answered_ns_) / 1'000'000);
+  answered_ns_ = now_ns;
   if (!right) {
     ++figures_.wrong;
     return;
   }
   figures_.latencies_ms.push_back(static_cast<double>(now_ns - sent->second) / 1e6);
-  if (answered_ns_ > 0)
-    figures_.longest_gap_ms = std::max(figures_.longest_gap_ms, (now_ns - answered_ns_) / 1'000'000);
-  answered_ns_ = now_ns;
   sent_ns_.erase(sent);
 }
 

@@ -10,6 +10,7 @@ namespace rtd::detector {
 namespace {
 
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
+constexpr double kLeastWindowS = 1;  // the first answers alone make no rate
 
 /// The value below which the share lies; `values` is not empty and is reordered.
 double quantile(std::vector<double>& values, double share) {
@@ -38,7 +39,7 @@ AnswerSummary AnswerStats::summary(std::int64_t now_ns) {
   const auto count = static_cast<double>(answers_.size());
   const bool cut = answers_.size() == kMostAnswers;  // then the window is shorter
   const std::int64_t from_ns = std::max(cut ? answers_.front().answered_ns : now_ns - kWindowNs, first_ns_);
-  const double window_s = std::max(static_cast<double>(now_ns - from_ns) / kNsPerS, 1e-3);
+  const double window_s = std::max(static_cast<double>(now_ns - from_ns) / kNsPerS, kLeastWindowS);
   return {count / window_s, quantile(latencies_ms, 0.5), quantile(latencies_ms, 0.99), images / count};
 }
 

@@ -34,6 +34,13 @@ TEST(AnswerStats, the_rate_of_a_robot_that_has_just_come_counts_from_its_first_a
   EXPECT_NEAR(stats.summary(2000 * kStatsMs).rate_hz, 20, 1.1);
 }
 
+TEST(AnswerStats, the_first_answers_make_no_high_rate) {
+  AnswerStats stats;
+  stats.add(0, 1000 * kStatsMs, 1);
+  stats.add(0, 1001 * kStatsMs, 1);
+  EXPECT_NEAR(stats.summary(1002 * kStatsMs).rate_hz, 2, 0.1);
+}
+
 TEST(AnswerStats, a_robot_that_gets_no_answers_any_more_has_rate_zero) {
   AnswerStats stats;
   stats.add(0, 1000 * kStatsMs, 1);
