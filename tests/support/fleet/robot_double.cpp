@@ -123,10 +123,8 @@ void RobotDouble::receive(const msg::Detection2DArray& answer) {
   if (answered_ns_ > 0)
     figures_.longest_gap_ms = std::max(figures_.longest_gap_ms, (now_ns - answered_ns_) / 1'000'000);
   answered_ns_ = now_ns;
-  if (!right) {
-    ++figures_.wrong;
-    return;
-  }
+  if (!right) ++figures_.wrong;
+  if (sent == sent_ns_.end()) return;
   figures_.latencies_ms.push_back(static_cast<double>(now_ns - sent->second) / 1e6);
   sent_ns_.erase(sent);
 }
