@@ -17,6 +17,7 @@
 #include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/vision/jpeg_size.hpp"
 #include "services/detector/core/engine.hpp"
 #include "services/detector/detector_service.hpp"
 #include "services/detector/fleet/batch_detector.hpp"
@@ -28,15 +29,17 @@ constexpr std::chrono::milliseconds kLookAfter{50};  ///< robots come and go, ot
 constexpr std::chrono::milliseconds kStuckAfter{1500}, kStuckAfterPerImage{250};
 constexpr unsigned kUsualDecoders = 4;
 constexpr const char* kAll = "all";
+constexpr int kMostPixels = 3840 * 2160;
 
 std::string host_name() {
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
-/// Empty when they are broken.
+/// Empty when they are broken, or so many that decoding them would cost the other robots time and memory.
 cv::Mat pixels_of(const msg::CompressedImage& jpeg) {
-  if (jpeg.data.empty()) return {};
+  const cv::Size size = vision::jpeg_size(jpeg.data);
+  if (size.empty() || size.area() > kMostPixels) return {};
   try {
     return cv::imdecode(jpeg.data, cv::IMREAD_COLOR);
   } catch (const cv::Exception&) {  // data from outside never ends the process
@@ -159,7 +162,7 @@ FleetService::Batch FleetService::decode(const std::vector<FleetArrivals::Queue:
   Batch batch;
   for (std::size_t i = 0; i < taken.size(); ++i) {
     if (decoded[i].empty()) {
-      if (const auto broken = lane(taken[i].robot)) broken->count_broken("not an image");
+      if (const auto broken = lane(taken[i].robot)) broken->count_broken("not a JPEG image of at most 3840x2160 px");
       continue;
     }
     batch.images.push_back({taken[i].robot, msg::to_ns(taken[i].image->header.stamp), taken[i].arrived_ns});

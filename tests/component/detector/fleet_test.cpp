@@ -10,6 +10,7 @@
 #include <chrono>
 #include <future>
 #include <memory>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <thread>
 #include <vector>
@@ -218,6 +219,24 @@ TEST(Fleet, broken_jpegs_are_counted_and_cost_the_others_nothing) {
       EXPECT_GE(static_cast<double>(figures.answered), 0.95 * static_cast<double>(figures.sent) - 1);
     }
   }
+}
+
+TEST(Fleet, an_image_of_enormous_size_is_not_decoded) {
+  const auto anna = robot({"anna", 1});
+  const auto bus = bus::connect(loopback());
+  auto huge = bus->of_robot("huge")->writer(bus::topics::kColorJpeg);
+  Box box({}, stand_in(1ms));
+  ASSERT_TRUE(anna->wait_answers(3));
+  anna->take_figures();
+  ASSERT_TRUE(eventually([&] { return huge.matched() == 1; }));
+  std::vector<std::uint8_t> jpeg;  // takes a third of a second to decode
+  cv::imencode(".jpg", cv::Mat(7000, 7000, CV_8UC3, cv::Scalar::all(90)), jpeg);
+  for (int i = 1; i <= 30; ++i) {
+    huge.write({{msg::to_time(i), "camera"}, "jpeg", jpeg});
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_TRUE(anna->wait_answers(30));
+  EXPECT_LE(anna->figures().longest_gap_ms, test_support::kSanitized ? 2000 : 200);
 }
 
 TEST(Fleet, finds_robots_that_join_late_and_drops_those_that_leave) {
