@@ -17,9 +17,10 @@
 
 namespace rtd::detector {
 
-msg::Detection2DArray to_message(const std::vector<vision::Detection>& detections, std::int64_t stamp_ns) {
+msg::Detection2DArray to_message(const std::vector<vision::Detection>& detections, std::int64_t stamp_ns,
+                                 const std::string& camera_frame) {
   msg::Detection2DArray message;
-  message.header = {msg::to_time(stamp_ns), kCameraFrame};
+  message.header = {msg::to_time(stamp_ns), camera_frame};
   for (const vision::Detection& detection : detections) {
     msg::ObjectHypothesisWithPose result;
     result.hypothesis = {detection.class_name, detection.score};
@@ -183,8 +184,8 @@ std::optional<msg::Detection2DArray> DetectorService::detect(EngineGuard& detect
   const std::int64_t started_ns = service::monotonic_ns();
   try {
     if (const std::optional<cv::Mat> image = image_of(arrival)) {
-      msg::Detection2DArray detections =
-          to_message(detector.detect_upright(*image, roll_for(arrival)), arrival.stamp_ns);
+      msg::Detection2DArray detections = to_message(detector.detect_upright(*image, roll_for(arrival)),
+                                                    arrival.stamp_ns, runtime_.bus.frame(kCameraFrame));
       report_engine(detector);
       count(static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs);
       return detections;

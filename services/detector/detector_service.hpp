@@ -32,7 +32,8 @@ namespace rtd::detector {
 inline constexpr const char* kCameraFrame = "camera_color_optical_frame";
 
 /// vision_msgs: box centre and size in px, class_id = class name, header.stamp = stamp of the image.
-msg::Detection2DArray to_message(const std::vector<vision::Detection>& detections, std::int64_t stamp_ns);
+msg::Detection2DArray to_message(const std::vector<vision::Detection>& detections, std::int64_t stamp_ns,
+                                 const std::string& camera_frame = kCameraFrame);
 
 /// Section `detector` of the configuration.
 struct ServiceConfig {
