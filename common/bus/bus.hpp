@@ -136,6 +136,8 @@ class Bus {
   const std::string& vendor() const { return backend_->vendor(); }
   /// Whose topics writers and readers get; "" for a robot without a name.
   const std::string& robot() const { return robot_; }
+  /// A tf frame of this robot.
+  std::string frame(const std::string& name) const { return frame_of_robot(name, robot_); }
   /// The same connection for the topics of another robot. Counts its troubles for itself.
   std::shared_ptr<Bus> of_robot(const std::string& robot) const { return std::make_shared<Bus>(backend_, robot); }
   /// Topics on which samples were lost or rejected or peers refused since the connection began.

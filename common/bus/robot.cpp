@@ -59,8 +59,24 @@ RobotTopic split_robot(std::string_view wire_name) {
   return {std::string(robot), std::string(prefix).append(rest)};
 }
 
+bool concerns_robot(std::string_view wire_name, std::string_view robot) {
+  const std::string owner = split_robot(wire_name).robot;
+  return owner.empty() || owner == robot;
+}
+
+std::set<std::string> robots_in(const std::vector<std::string>& wire_names) {
+  std::set<std::string> robots;
+  for (const std::string& name : wire_names) robots.insert(split_robot(name).robot);
+  robots.erase("");
+  return robots;
+}
+
 std::string frame_of_robot(const std::string& frame, std::string_view robot) {
   return robot.empty() ? frame : std::string(robot) + "/" + frame;
+}
+
+std::string enclave_of_robot(const std::string& role, std::string_view robot) {
+  return "/rtd/" + frame_of_robot(role, robot);
 }
 
 }  // namespace rtd::bus

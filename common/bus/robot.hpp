@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 /// Several robots in one domain: a robot with a name has its own topics and tf frames. Without a name ("") both are as
 /// written in topics.hpp and the configuration.
@@ -32,7 +34,16 @@ struct RobotTopic {
 /// ("rt/slam/..."); other names belong to no robot.
 RobotTopic split_robot(std::string_view wire_name);
 
+/// Whether a robot may take a topic as its own or as shared by all: all but those of other robots.
+bool concerns_robot(std::string_view wire_name, std::string_view robot);
+
+/// The named robots that have topics among these.
+std::set<std::string> robots_in(const std::vector<std::string>& wire_names);
+
 /// "odom" of robot "anna": "anna/odom".
 std::string frame_of_robot(const std::string& frame, std::string_view robot);
+
+/// Whose keys a role ("slam") of a robot uses: "/rtd/slam", "/rtd/anna/slam".
+std::string enclave_of_robot(const std::string& role, std::string_view robot);
 
 }  // namespace rtd::bus

@@ -51,13 +51,15 @@ void apply_environment(ConfigBinder& binder) {
     binder.set("bus.security.enabled", "true", "environment ROS_SECURITY_ENABLE");
 }
 
-/// "rtd-slam" is the enclave /rtd/slam, the launcher "rtd" with its commands is /rtd/launcher.
-bus::SecurityOptions security_options(const SecurityConfig& config, const std::string& participant_name) {
+/// "rtd-slam" is the enclave /rtd/slam, of a robot with a name /rtd/NAME/slam; the launcher "rtd" with its commands is
+/// /rtd/launcher.
+bus::SecurityOptions security_options(const SecurityConfig& config, const std::string& participant_name,
+                                      const std::string& robot) {
   if (!config.enabled) return {};
   const bool own = participant_name.starts_with("rtd-") && participant_name != "rtd-doctor";
   const std::string role = own ? participant_name.substr(4) : "launcher";
   return {config.keystore.empty() ? security::default_keystore() : config.keystore,
-          config.enclave.empty() ? "/rtd/" + role : config.enclave};
+          config.enclave.empty() ? bus::enclave_of_robot(role, robot) : config.enclave};
 }
 
 }  // namespace
@@ -65,7 +67,7 @@ bus::SecurityOptions security_options(const SecurityConfig& config, const std::s
 bus::BusOptions to_bus_options(const BusConfig& config, const std::string& participant_name) {
   bus::BusOptions options = config.options;
   options.participant_name = participant_name;
-  options.security = security_options(config.security, participant_name);
+  options.security = security_options(config.security, participant_name, options.robot);
   return options;
 }
 

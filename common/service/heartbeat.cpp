@@ -53,6 +53,18 @@ std::int64_t realtime_ns() {
       .count();
 }
 
+std::string duplicate_text(const msg::ServiceStatus& older, const std::string& robot) {
+  if (robot.empty()) {
+    return fmt::format(
+        "another {} (pid {}) already runs in this DDS domain: stop it first or choose another domain with --domain",
+        older.service, older.pid);
+  }
+  return fmt::format(
+      "robot '{}' already has a {} (pid {}) in this DDS domain: stop it first or give this robot another name with "
+      "--robot",
+      robot, older.service, older.pid);
+}
+
 }  // namespace
 
 Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, Twins twins)
@@ -134,9 +146,7 @@ void Heartbeat::receive(const msg::ServiceStatus& status) {
       const bool again = older && twin_ == std::pair(status.pid, status.started_ns);
       if (older) twin_ = {status.pid, status.started_ns};
       if (again) {
-        duplicate_ = fmt::format(
-            "another {} (pid {}) already runs in this DDS domain: stop it first or choose another domain with --domain",
-            status.service, status.pid);
+        duplicate_ = duplicate_text(status, bus_.robot());
         refused = true;
       }
     } else if (peers_.size() < kMostPeers || peers_.contains(status.service)) {

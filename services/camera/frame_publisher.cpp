@@ -34,14 +34,19 @@ std::uint64_t random_id() {
 
 bus::StatusCallbacks on_match(const std::function<void()>& notify) {
   bus::StatusCallbacks callbacks;
-  callbacks.on_matched = [notify](int) { notify(); };
+  if (notify) callbacks.on_matched = [notify](int) { notify(); };
   return callbacks;
 }
 
 }  // namespace
 
-JpegPublisher::JpegPublisher(bus::Writer<msg::CompressedImage> writer, int quality, concurrency::Overflow overflow)
-    : writer_(std::move(writer)), quality_(quality), waiting_(kMaxWaiting, overflow), thread_([this] {
+JpegPublisher::JpegPublisher(bus::Bus& bus, int quality, concurrency::Overflow overflow,
+                             const std::function<void()>& on_matched)
+    : frame_id_(bus.frame(kCameraFrame)),
+      writer_(bus.writer(bus::topics::kColorJpeg, on_match(on_matched))),
+      quality_(quality),
+      waiting_(kMaxWaiting, overflow),
+      thread_([this] {
         yield_to_poses();
         while (const auto image = waiting_.pop()) publish(*image);
       }) {}
@@ -57,7 +62,7 @@ void JpegPublisher::offer(const cv::Mat& color_bgr, std::int64_t stamp_ns) {
 
 void JpegPublisher::publish(const Waiting& image) {
   msg::CompressedImage message;
-  message.header = {msg::to_time(image.stamp_ns), kCameraFrame};
+  message.header = {msg::to_time(image.stamp_ns), frame_id_};
   message.format = "bgr8; jpeg compressed bgr8";
   if (!cv::imencode(".jpg", image.color_bgr, message.data, {cv::IMWRITE_JPEG_QUALITY, quality_})) return;
   ++encoded_;
@@ -76,7 +81,7 @@ FramePublisher::FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Ove
       on_matched_(std::move(on_matched)),
       source_id_(random_id()),
       infos_(bus.writer(bus::topics::kCameraInfo)),
-      jpegs_(bus.writer(bus::topics::kColorJpeg, on_match(on_matched_)), jpeg_quality, jpeg_overflow) {}
+      jpegs_(bus, jpeg_quality, jpeg_overflow, on_matched_) {}
 
 void FramePublisher::open(cv::Size size_px) {
   frames_ = bus::FrameWriter(bus_, static_cast<std::uint32_t>(size_px.width),
@@ -87,7 +92,7 @@ bool FramePublisher::publish(const vision::RgbdImage& image) {
   const bool taken = frames_.write([&](auto& frame) { fill_frame(image, source_id_, service::monotonic_ns(), frame); });
   jpegs_.offer(image.color_bgr, image.stamp_ns);
   if (!std::exchange(info_sent_, true) || infos_.matched() > 0) {
-    infos_.write(to_camera_info(image.camera, image.stamp_ns));
+    infos_.write(to_camera_info(image.camera, image.stamp_ns, bus_.frame(kCameraFrame)));
   }
   return taken;
 }

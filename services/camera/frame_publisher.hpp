@@ -18,8 +18,9 @@ namespace rtd::camera {
 /// that a reader of the JPEG topic delays no pose. offer(): one thread.
 class JpegPublisher {
  public:
-  /// `overflow`: what happens to an image while two others wait to be encoded.
-  JpegPublisher(bus::Writer<msg::CompressedImage> writer, int quality, concurrency::Overflow overflow);
+  /// `overflow`: what happens to an image while two others wait to be encoded. `on_matched`: as FramePublisher's.
+  JpegPublisher(bus::Bus& bus, int quality, concurrency::Overflow overflow,
+                const std::function<void()>& on_matched = {});
   /// Publishes what still waits.
   ~JpegPublisher();
   JpegPublisher(const JpegPublisher&) = delete;
@@ -39,6 +40,7 @@ class JpegPublisher {
   };
   void publish(const Waiting& image);
 
+  const std::string frame_id_;
   bus::Writer<msg::CompressedImage> writer_;
   int quality_;
   std::atomic<std::uint64_t> encoded_{0};

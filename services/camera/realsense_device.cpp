@@ -6,18 +6,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 
-#include "common/bus/raw_bus.hpp"
-#include "common/concurrency/bounded_queue.hpp"
-#include "common/ros2/names.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/log.hpp"
 #include "services/camera/core/live/pixel_format.hpp"
-#include "services/camera/core/live/realsense_protocol.hpp"
+#include "services/camera/realsense_bus.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -26,183 +20,11 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using namespace realsense;
 
-constexpr std::size_t kEvents = 64;
-constexpr int kStreamDepth = 8;
 constexpr milliseconds kSearch{1000};       // for a device and its description; DeviceSource tries again
 constexpr milliseconds kOtherDevices{300};  // after the first: whether there are others
 constexpr milliseconds kAnswer{400};        // to a request, which is sent up to kRequests times
 constexpr int kRequests = 3;
 constexpr milliseconds kFirstImages{2000};
-constexpr const char* kDdsImage = "sensor_msgs::msg::dds_::Image_";
-
-/// What the bus brings: a sample, or without bytes the news that writers or readers have come or gone.
-struct Event {
-  std::string topic;
-  bus::WriterId writer{};
-  std::shared_ptr<const bus::ByteBlock> bytes;
-  ros::Bytes cdr() const { return {reinterpret_cast<const std::uint8_t*>(bytes->view().data()), bytes->view().size()}; }
-};
-
-/// Cyclone DDS refuses topics with '-' in their names, and these cameras use Fast DDS themselves.
-std::shared_ptr<bus::RawBus> connect_to_cameras(bus::BusOptions options) {
-  constexpr const char* kVendor = "fastdds";
-  const std::vector<std::string> vendors = bus::available_vendors();
-  if (std::ranges::find(vendors, kVendor) == vendors.end()) {
-    throw bus::BusError("realsense-dds: needs Fast DDS, which this build does not have: configure and build with it");
-  }
-  options.vendor = kVendor;
-  return bus::connect_raw(options);
-}
-
-/// Subscriptions to topics whose writers come and go, read from one thread.
-class Subscriptions {
- public:
-  explicit Subscriptions(const bus::BusOptions& options)
-      : queue_(kEvents, concurrency::Overflow::kDropOldest), bus_(connect_to_cameras(options)) {
-    bus_->watch([this](const bus::TopicWriter&, bus::WriterChange) { queue_.push(Event{}); });
-  }
-  ~Subscriptions() {
-    bus_->watch(nullptr);
-    lines_.clear();
-  }
-
-  void add(const std::string& topic) {
-    lines_.try_emplace(topic);
-    follow_writers();
-  }
-  void remove(const std::string& topic) { lines_.erase(topic); }
-  bool published(const std::string& topic) const { return !lines_.at(topic).writers.empty(); }
-  bool writes(const std::string& topic, const bus::WriterId& writer) const {
-    const auto line = lines_.find(topic);
-    return line != lines_.end() && line->second.writers.contains(writer);
-  }
-  std::unique_ptr<bus::RawWriter> writer(const bus::RawTopic& topic) {
-    bus::StatusCallbacks callbacks;
-    callbacks.on_matched = [this](int) { queue_.push(Event{}); };
-    return bus_->writer(topic, {}, std::move(callbacks));
-  }
-
-  /// The next event; empty when none came in time.
-  std::optional<Event> next(Clock::time_point until) {
-    const auto left = std::chrono::duration_cast<milliseconds>(until - Clock::now());
-    std::optional<Event> event = queue_.pop_for(std::max(left, milliseconds(0)));
-    if (event && !event->bytes) follow_writers();
-    return event;
-  }
-
- private:
-  struct Line {
-    std::set<bus::WriterId> writers;
-    std::unique_ptr<bus::TopicListener> listener;
-  };
-
-  void follow_writers() {
-    std::map<std::string, std::set<bus::WriterId>> there;
-    for (const bus::TopicWriter& writer : bus_->writers()) {
-      const auto line = lines_.find(writer.topic.name);
-      if (line == lines_.end() || writer.own) continue;
-      there[line->first].insert(writer.id);
-      if (!line->second.writers.contains(writer.id)) listen(line->first, line->second, writer);
-    }
-    for (auto& [topic, line] : lines_) line.writers = there[topic];
-  }
-  void listen(const std::string& topic, Line& line, const bus::TopicWriter& writer) try {
-    if (!line.listener) {
-      bus::RawHandlers handlers;
-      handlers.on_sample = [this, topic](const bus::RawSample& sample) {
-        queue_.push(Event{topic, sample.writer, sample.bytes});
-      };
-      line.listener = std::make_unique<bus::TopicListener>(*bus_, std::move(handlers), false, kStreamDepth);
-    }
-    line.listener->add(writer);
-  } catch (const bus::BusError& error) {
-    SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", topic, error.what());
-  }
-
-  concurrency::BoundedQueue<Event> queue_;
-  std::shared_ptr<bus::RawBus> bus_;
-  std::map<std::string, Line> lines_;
-};
-
-/// The devices that announce themselves, each with its description as far as it has come.
-class Devices {
- public:
-  struct Device {
-    DeviceInfo info;
-    bus::WriterId announcer{};
-    Description description;
-    std::optional<nlohmann::json> reply;  ///< to the last open-streams
-  };
-
-  explicit Devices(const bus::BusOptions& options) : subscriptions_(options) { subscriptions_.add(kDeviceInfoTopic); }
-
-  Subscriptions& subscriptions() { return subscriptions_; }
-  std::map<std::string, Device>& all() { return devices_; }  ///< by topic root
-
-  /// The next sample of a topic that is not the devices' own.
-  std::optional<Event> next(Clock::time_point until) {
-    while (std::optional<Event> event = subscriptions_.next(until)) {
-      if (!take(*event)) return event;
-    }
-    return std::nullopt;
-  }
-  /// Waits until the condition holds.
-  template <class Condition>
-  bool wait(milliseconds time, Condition&& holds) {
-    const Clock::time_point until = Clock::now() + time;
-    while (!holds()) {
-      const std::optional<Event> event = subscriptions_.next(until);
-      if (!event) return holds();
-      take(*event);
-    }
-    return true;
-  }
-
- private:
-  /// Whether it is of the devices' own topics, or news.
-  bool take(const Event& event) try {
-    if (!event.bytes) return forget_silent(), true;
-    if (event.topic == kDeviceInfoTopic) return take_info(event), true;
-    for (auto& [root, device] : devices_) {
-      if (event.topic == notifications_of(root)) return take_notification(device, event), true;
-    }
-    return false;
-  } catch (const ros::WireError& error) {
-    SPDLOG_WARN("event=message_refused topic={} cause=\"{}\"", event.topic, error.what());
-    return true;
-  }
-  void take_info(const Event& event) {
-    const std::optional<DeviceInfo> info = parse_device_info(read_flexible(event.cdr()));
-    if (!info) return forget(event.writer);
-    Device& device = devices_[info->topic_root];
-    device.info = *info;
-    device.announcer = event.writer;
-    subscriptions_.add(notifications_of(info->topic_root));
-  }
-  static void take_notification(Device& device, const Event& event) {
-    nlohmann::json message = read_flexible(event.cdr());
-    device.description.take(message);
-    if (message.is_object() && message.value("id", "") == "open-streams") device.reply = std::move(message);
-  }
-  void forget(const bus::WriterId& announcer) {
-    std::erase_if(devices_, [&](const auto& item) {
-      if (item.second.announcer != announcer) return false;
-      subscriptions_.remove(notifications_of(item.first));
-      return true;
-    });
-  }
-  void forget_silent() {
-    std::set<bus::WriterId> gone;
-    for (const auto& [root, device] : devices_) {
-      if (!subscriptions_.writes(kDeviceInfoTopic, device.announcer)) gone.insert(device.announcer);
-    }
-    for (const bus::WriterId& announcer : gone) forget(announcer);
-  }
-  static std::string notifications_of(const std::string& root) { return root + "/notification"; }
-
-  Subscriptions subscriptions_;
-  std::map<std::string, Device> devices_;
-};
 
 std::string label(const DeviceInfo& info) {
   return fmt::format("{} (serial {})", info.name, info.serial.empty() ? "unknown" : info.serial);
@@ -235,7 +57,7 @@ class RealsenseDevice final : public LiveDevice {
   std::string name() const override { return "realsense-dds:" + serial_; }
   void open() override;
   std::vector<DeviceMode> modes() override { return device().description.modes(); }
-  DeviceSetup start(const ModeRequest& request) override;
+  DeviceSetup start(const ModeRequest& asked) override;
   std::optional<DeviceImage> read(milliseconds timeout) override;
   void close() noexcept override;
 
@@ -304,9 +126,9 @@ Devices::Device& RealsenseDevice::device() {
   return found->second;
 }
 
-DeviceSetup RealsenseDevice::start(const ModeRequest& request_) {
+DeviceSetup RealsenseDevice::start(const ModeRequest& asked) {
   const std::vector<DeviceMode> all = modes();
-  const DeviceMode color = choose_mode(all, Stream::kColor, request_, name());
+  const DeviceMode color = choose_mode(all, Stream::kColor, asked, name());
   DeviceMode depth;
   try {
     depth = choose_mode(all, Stream::kDepth, {color.size_px.width, color.size_px.height, color.fps}, name());

@@ -124,7 +124,7 @@ void DenseService::publish_cloud() {
   if (!due || totals_.frames == 0 || cloud_writer_.matched() == 0) return;
   published_ns_ = now_ns;
   const auto points = map_.cloud(static_cast<std::size_t>(config_.publish_max_points));
-  cloud_writer_.write(make_cloud(points, newest_stamp_ns_, config_.map_frame));
+  cloud_writer_.write(make_cloud(points, newest_stamp_ns_, runtime_.bus.frame(config_.map_frame)));
 }
 
 /// What has come is worked off, and slam's last corrections are followed.

@@ -196,8 +196,8 @@ std::optional<msg::Detection2DArray> DetectorService::detect(EngineGuard& detect
   const std::int64_t started_ns = service::monotonic_ns();
   try {
     if (const std::optional<cv::Mat> image = image_of(arrival)) {
-      msg::Detection2DArray detections =
-          to_message(detector.detect_upright(*image, roll_for(arrival)), arrival.stamp_ns);
+      msg::Detection2DArray detections = to_message(detector.detect_upright(*image, roll_for(arrival)),
+                                                    arrival.stamp_ns, runtime_.bus.frame(kCameraFrame));
       report_engine(detector);
       count(static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs);
       return detections;

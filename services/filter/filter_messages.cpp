@@ -76,13 +76,13 @@ void fill_message(const msg::FrameView& frame, const FilterResult& result, msg::
   }
 }
 
-msg::Image make_mask(const msg::FrameView& frame, const FilterResult& result) {
+msg::Image make_mask(const msg::FrameView& frame, const FilterResult& result, const std::string& camera_frame) {
   const auto side_px =
       static_cast<std::uint32_t>(cell_side_px(static_cast<int>(frame.width), static_cast<int>(frame.height)));
   const auto cells = [&](std::uint32_t px) { return std::max(1U, px / side_px); };
   const bool judged = !result.motion.empty();
   msg::Image mask;
-  mask.header = {msg::to_time(frame.stamp_ns), "camera_color_optical_frame"};
+  mask.header = {msg::to_time(frame.stamp_ns), camera_frame};
   mask.width = judged ? static_cast<std::uint32_t>(result.cells.columns) : cells(frame.width);
   mask.height = judged ? static_cast<std::uint32_t>(result.cells.rows) : cells(frame.height);
   mask.encoding = "mono8";

@@ -24,8 +24,12 @@ SlamKeyframe to_slam_keyframe(const msg::KeyframeEvent& event);
 void fill_message(const msg::FrameView& frame, const FilterResult& result, msg::DetectionUse use,
                   msg::FeatureFrame& message);
 
+/// The optical frame of the colour camera (docs/frames.md).
+inline constexpr const char* kCameraFrame = "camera_color_optical_frame";
+
 /// What moves, as a grey image of grid cells (4x4 undistorted pixels each) with the values of CellMotion and the stamp
 /// of the frame. Mode off takes everything to be static: all its cells are.
-msg::Image make_mask(const msg::FrameView& frame, const FilterResult& result);
+msg::Image make_mask(const msg::FrameView& frame, const FilterResult& result,
+                     const std::string& camera_frame = kCameraFrame);
 
 }  // namespace rtd::filter

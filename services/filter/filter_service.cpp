@@ -93,7 +93,7 @@ void FilterService::process(const msg::FrameView& frame) {
   fill_message(frame, result, use_of(detector, result, frame.stamp_ns), *message_);
   writer_.write(*message_);
   // After the features: slam's pose waits for them, not for the mask. Costs nothing without a subscriber.
-  if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result));
+  if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result, runtime_.bus.frame(kCameraFrame)));
   ++published_;
   count(result);
 }

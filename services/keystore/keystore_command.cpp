@@ -11,6 +11,7 @@
 #include <ostream>
 
 #include "common/bus/frame_topics.hpp"
+#include "common/bus/robot.hpp"
 #include "common/bus/topic_roles.hpp"
 #include "common/bus/topics.hpp"
 #include "common/security/enclave.hpp"
@@ -63,6 +64,7 @@ bool print_info(const std::string& folder, std::int64_t now_s, std::ostream& out
 constexpr std::int64_t kDay_s = 24 * 3600;
 constexpr std::int64_t kClockMargin_s = 3600;  // the clocks of two hosts may differ
 constexpr int kCaDays = 3650;
+constexpr const char* kSharedRole = "detector";  // one may serve several robots
 
 security::Validity from_now(std::int64_t now_s, int days) {
   return {now_s - kClockMargin_s, now_s + days * kDay_s};
@@ -77,9 +79,36 @@ std::string folder_of(const KeystoreRequest& request) {
   return request.folder.empty() ? security::default_keystore() : request.folder;
 }
 
-security::EnclaveRequest enclave_of(const std::string& role) {
-  const bus::RoleTopics topics = bus::topics_of(role);
-  return {"/rtd/" + role, {topics.writes, topics.reads}};
+security::EnclaveRequest enclave_of(const std::string& role, const std::string& robot = {}) {
+  bus::RoleTopics topics = bus::topics_of(role);
+  for (std::string& topic : topics.writes) topic = bus::topic_of_robot(topic, robot);
+  for (std::string& topic : topics.reads) topic = bus::topic_of_robot(topic, robot);
+  return {bus::enclave_of_robot(role, robot), {topics.writes, topics.reads}};
+}
+
+void append(std::vector<std::string>& topics, const std::vector<std::string>& more) {
+  topics.insert(topics.end(), more.begin(), more.end());
+}
+
+/// What the detector that serves these robots may do besides.
+security::TopicGrant served_topics(const std::vector<std::string>& robots) {
+  security::TopicGrant grant;
+  for (const std::string& robot : robots) {
+    const security::TopicGrant own = enclave_of(kSharedRole, robot).topics;
+    append(grant.publish, own.publish);
+    append(grant.subscribe, own.subscribe);
+  }
+  return grant;
+}
+
+/// An enclave for each role of each robot.
+std::vector<security::EnclaveRequest> enclaves_of(const std::vector<std::string>& robots) {
+  std::vector<security::EnclaveRequest> enclaves;
+  for (const std::string& robot : robots) {
+    if (!bus::is_robot_name(robot)) throw security::SecurityError("--robot " + robot + " cannot be a robot's name");
+    for (const std::string& role : bus::roles()) enclaves.push_back(enclave_of(role, robot));
+  }
+  return enclaves;
 }
 
 void create(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out) {
@@ -87,11 +116,21 @@ void create(const KeystoreRequest& request, std::int64_t now_s, std::ostream& ou
   security::KeystoreOptions options{
       from_now(now_s, request.days), from_now(now_s, std::max(kCaDays, request.days)), {domains_of(request), {}}};
   if (!request.encrypt_frames) {
-    for (const bus::FrameTopic& topic : bus::frame_topics()) options.governance.access_only.emplace_back(topic.name);
+    for (const bus::FrameTopic& topic : bus::frame_topics()) {
+      options.governance.access_only.emplace_back(topic.name);
+      options.governance.access_only.push_back(bus::topic_of_robot(topic.name, "*"));
+    }
   }
   security::create_keystore(folder, options);
   std::vector<security::EnclaveRequest> enclaves;
-  for (const std::string& role : bus::roles()) enclaves.push_back(enclave_of(role));
+  for (const std::string& role : bus::roles()) {
+    enclaves.push_back(enclave_of(role));
+    if (role != kSharedRole) continue;
+    const auto [publish, subscribe] = served_topics(request.robots);
+    append(enclaves.back().topics.publish, publish);
+    append(enclaves.back().topics.subscribe, subscribe);
+  }
+  for (security::EnclaveRequest& enclave : enclaves_of(request.robots)) enclaves.push_back(std::move(enclave));
   security::add_enclaves(folder, enclaves, options.validity, options.governance.domains);
   out << fmt::format(
       "{}: CA, governance and {} enclaves, valid until {}\nUse it with --secure --keystore {}; other hosts need "
@@ -99,13 +138,27 @@ void create(const KeystoreRequest& request, std::int64_t now_s, std::ostream& ou
       folder, enclaves.size(), security::to_utc(options.validity.not_after_s).substr(0, 10), folder);
 }
 
+/// Their enclaves, and theirs to be served by the detector that they share.
+void add_robots(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out) {
+  const std::string folder = folder_of(request);
+  const std::vector<security::EnclaveRequest> enclaves = enclaves_of(request.robots);
+  const security::Validity validity = from_now(now_s, request.days);
+  security::add_enclaves(folder, enclaves, validity, domains_of(request));
+  security::renew_enclave(folder, bus::enclave_of_robot(kSharedRole, ""), validity, served_topics(request.robots));
+  out << fmt::format("{}: {} enclaves for {}; /rtd/{} may serve them\n", folder, enclaves.size(),
+                     fmt::join(request.robots, ", "), kSharedRole);
+}
+
 void add(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out) {
+  if (request.enclaves.empty() && !request.robots.empty()) return add_robots(request, now_s, out);
+  if (request.enclaves.empty() || !request.robots.empty())
+    throw security::SecurityError("name one enclave to add, or robots with --robot");
   security::EnclaveRequest enclave;
   if (!request.like.empty()) enclave = enclave_of(request.like);
   enclave.name = request.enclaves.front();
   auto& [publish, subscribe] = enclave.topics;
-  publish.insert(publish.end(), request.publish.begin(), request.publish.end());
-  subscribe.insert(subscribe.end(), request.subscribe.begin(), request.subscribe.end());
+  append(publish, request.publish);
+  append(subscribe, request.subscribe);
   if (publish.empty() && subscribe.empty())
     throw security::SecurityError("enclave " + enclave.name +
                                   ": give its topics with --like, --publish or --subscribe");
@@ -144,6 +197,11 @@ void add_domain(CLI::App& sub, KeystoreRequest& request) {
   sub.add_option("--domain", request.domain, "Only this DDS domain (default: all)")->check(CLI::Range(0, 230));
 }
 
+void add_robots_option(CLI::App& sub, KeystoreRequest& request) {
+  sub.add_option("--robot", request.robots,
+                 "Enclaves /rtd/NAME/... for a robot of this name, which /rtd/detector may serve (repeatable)");
+}
+
 void add_topics(CLI::App& sub, KeystoreRequest& request) {
   sub.add_option("--publish", request.publish, "More DDS topics or patterns to publish, e.g. 'rt/my/*'");
   sub.add_option("--subscribe", request.subscribe, "More DDS topics or patterns to subscribe to");
@@ -158,11 +216,13 @@ void add_keystore_commands(CLI::App& app, KeystoreRequest& request) {
       add_action(app, request, Action::kCreate, "create", "Create a CA and an enclave for each service");
   add_days(*create, request);
   add_domain(*create, request);
+  add_robots_option(*create, request);
   create->add_flag("--encrypt-frames", request.encrypt_frames,
                    "Encrypt raw frames too: they then leave shared memory (docs/security.md has the cost)");
-  CLI::App* const add = add_action(app, request, Action::kAdd, "add", "Add an enclave");
+  CLI::App* const add = add_action(app, request, Action::kAdd, "add", "Add an enclave, or those of a robot");
   add->get_option("dir")->required();
-  add->add_option("enclave", request.enclaves, "Its name, e.g. /rtd/observer2")->required()->expected(1);
+  add->add_option("enclave", request.enclaves, "Its name, e.g. /rtd/observer2")->expected(1);
+  add_robots_option(*add, request);
   add->add_option("--like", request.like, "Give it the topics of this role")->check(CLI::IsMember(bus::roles()));
   add_topics(*add, request);
   add_days(*add, request);

@@ -20,9 +20,10 @@ struct KeystoreRequest {
   std::string folder;                 ///< empty: the default
   std::vector<std::string> enclaves;  ///< to add or renew
   int days = 365;
-  int domain = -1;              ///< the only one; -1 = all
-  bool encrypt_frames = false;  ///< also data that otherwise stays in shared memory
-  std::string like;             ///< role whose topics a new enclave gets
+  int domain = -1;                  ///< the only one; -1 = all
+  bool encrypt_frames = false;      ///< also data that otherwise stays in shared memory
+  std::vector<std::string> robots;  ///< that get enclaves of their own
+  std::string like;                 ///< role whose topics a new enclave gets
   std::vector<std::string> publish, subscribe;
 };
 

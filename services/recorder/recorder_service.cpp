@@ -184,7 +184,7 @@ service::ExitCode RecorderService::run() {
   bus::BusOptions options = runtime_.bus_options;
   options.participant_name = "rtd-record-topics";
   bus_ = bus::connect_raw(options);
-  readers_.emplace(*bus_, TopicFilter(config_.topics), config_.in_place, book_, queue_);
+  readers_.emplace(*bus_, TopicFilter(config_.topics, runtime_.bus.robot()), config_.in_place, book_, queue_);
   record();
   return conclude();
 }

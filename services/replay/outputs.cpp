@@ -123,7 +123,9 @@ void Outputs::publish_schemas(const std::vector<const mcap::Channel*>& channels,
 Output Outputs::make_output(const mcap::Channel& channel, const mcap::Summary& summary) const {
   Output output;
   output.topic.name = ros2::dds_topic(channel.topic);
-  if (const auto renamed = options_.remaps.find(output.topic.name); renamed != options_.remaps.end())
+  if (!options_.robot.empty())
+    output.topic.name = bus::topic_of_robot(bus::split_robot(output.topic.name).topic, options_.robot);
+  if (const auto renamed = options_.remaps.find(ros2::dds_topic(channel.topic)); renamed != options_.remaps.end())
     output.topic.name = renamed->second;
   output.topic.type = type_of(channel, summary);
   output.options.qos = qos_of(channel);

@@ -17,6 +17,7 @@ namespace rtd::replay {
 
 struct OutputOptions {
   std::map<std::string, std::string> remaps;  ///< by DDS name
+  std::string robot;                          ///< whose the topics become; "": names as recorded
   bool restamp = false;                       ///< published_ns of our frames and features becomes now
   bool wait_for_readers = false;              ///< never overtake a reliable reader: nothing else paces the messages
   bool frames_apart =

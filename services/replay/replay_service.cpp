@@ -14,6 +14,7 @@
 #include <set>
 
 #include "common/bus/frame_topics.hpp"
+#include "common/bus/robot.hpp"
 #include "common/io/byte_sink.hpp"
 #include "common/mcap/codec.hpp"
 #include "common/mcap/recording_file.hpp"
@@ -134,7 +135,8 @@ ReplayService::ReplayService(const Config& config, service::Runtime& runtime)
 
 void ReplayService::open() {
   recording_ = recordings::open(config_.file);
-  if (!recording_.imported.empty()) SPDLOG_INFO("event=recording_imported file={} as=\"{}\"", config_.file, recording_.imported);
+  if (!recording_.imported.empty())
+    SPDLOG_INFO("event=recording_imported file={} as=\"{}\"", config_.file, recording_.imported);
   reader_ = std::make_unique<mcap::IndexedReader>(*recording_.source);
   for (const mcap::Problem& problem : reader_->problems().listed())
     if (problem.kind == mcap::ProblemKind::kNotMcap && problem.data_lost)
@@ -147,6 +149,7 @@ void ReplayService::open() {
   const bool by_time = window_ == 0 && config_.rate > 0;
   outputs_ = std::make_unique<Outputs>(*bus_, channels_, reader_->summary(),
                                        OutputOptions{.remaps = parse_remaps(config_.remap),
+                                                     .robot = runtime_.bus.robot(),
                                                      .restamp = config_.restamp,
                                                      .wait_for_readers = window_ == 0 && !by_time,
                                                      .frames_apart = by_time});
@@ -162,9 +165,11 @@ void ReplayService::choose_topics() {
   if (!config_.lockstep.empty()) exclude.push_back(config_.lockstep);  // it would answer itself
   const TopicChoice choice(config_.topics, exclude);
   std::vector<std::string> known;
+  for (const auto& [id, channel] : reader_->summary().channels) known.push_back(channel.topic);
+  const std::string robot = recorded_robot(known);
   for (const auto& [id, channel] : reader_->summary().channels) {
-    known.push_back(channel.topic);
-    if (!choice.wants(channel.topic)) continue;
+    if (!choice.wants(channel.topic) || (!robot.empty() && !bus::concerns_robot(ros2::dds_topic(channel.topic), robot)))
+      continue;
     if (is_cdr(channel)) {
       channels_.push_back(&channel);
     } else {
@@ -182,6 +187,18 @@ void ReplayService::choose_topics() {
         "event=channel_left_out topic={} channel={} encoding={} cause=\"DDS carries only messages in CDR\" "
         "fix=\"record it in ROS 2 or DDS, or use --exclude {}\"",
         channel->topic, channel->id, encoding_of(*channel), channel->topic);
+}
+
+/// Whose topics are played as those of --robot: of several robots, that of this name; "": all that were recorded.
+std::string ReplayService::recorded_robot(const std::vector<std::string>& topics) const {
+  const std::string& robot = runtime_.bus.robot();
+  std::vector<std::string> names;
+  for (const std::string& topic : topics) names.push_back(ros2::dds_topic(topic));
+  const std::set<std::string> recorded = bus::robots_in(names);
+  if (robot.empty() || recorded.size() < 2) return {};
+  if (recorded.contains(robot)) return robot;
+  throw ConfigError(fmt::format("--robot {}: {} has several robots, but not this one: choose {}", robot, config_.file,
+                                fmt::join(recorded, " or ")));
 }
 
 void ReplayService::choose_span() {
@@ -206,8 +223,8 @@ void ReplayService::choose_paced_topic() {
     candidates.push_back(ros2::dds_topic(config_.paced_topic));
   }
   for (const std::string& candidate : candidates)
-    if (const auto found = outputs_->all().find(candidate); paced_ == nullptr && found != outputs_->all().end())
-      paced_ = &found->second;
+    for (const auto& [name, output] : outputs_->all())
+      if (paced_ == nullptr && (name == candidate || bus::split_robot(name).topic == candidate)) paced_ = &output;
   if (paced_ == nullptr)
     throw ConfigError(
         fmt::format("--lockstep {}: {} is not among the topics that are played; name one with --paced-topic",
@@ -219,7 +236,8 @@ service::ExitCode ReplayService::run() {
   SPDLOG_INFO("event=recording_opened file={} topics={} messages={} duration_s={:.3f} summary={}", config_.file,
               channels_.size(), reader_->summary().statistics->message_count,
               static_cast<double>(end_ns_ - start_ns_) * 1e-9, !reader_->summary().scanned);
-  if (recording_.source->being_written()) SPDLOG_WARN("event=being_written cause=\"only what is in the file now is played\"");
+  if (recording_.source->being_written())
+    SPDLOG_WARN("event=being_written cause=\"only what is in the file now is played\"");
   for (const std::string& service : config_.stand_in) {
     stand_ins_.push_back(std::make_unique<service::Heartbeat>(runtime_.bus, service, runtime_.stop));
     stand_ins_.back()->set_state(msg::ServiceState::kRunning, "played by rtd-replay");
@@ -248,9 +266,16 @@ bool ReplayService::wait_for_services() {
   }
 }
 
+/// Of the robot whose frames are played.
+std::string ReplayService::answers_topic() const {
+  const bus::RobotTopic named = bus::split_robot(ros2::dds_topic(config_.lockstep));
+  return named.robot.empty() ? bus::topic_of_robot(named.topic, bus::split_robot(paced_->topic.name).robot)
+                             : ros2::dds_topic(config_.lockstep);
+}
+
 bool ReplayService::subscribe_to_answers() {
   if (window_ == 0) return true;
-  const std::string topic = ros2::dds_topic(config_.lockstep);
+  const std::string topic = answers_topic();
   const std::int64_t deadline_ns = now_ns() + to_ns(config_.start_timeout_s);
   while (now_ns() <= deadline_ns) {
     for (const bus::TopicWriter& writer : bus_->writers()) {

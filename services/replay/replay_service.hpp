@@ -93,11 +93,13 @@ class ReplayService final : public PlayerHost {
  private:
   void open();
   void choose_topics();
+  std::string recorded_robot(const std::vector<std::string>& topics) const;
   void choose_paced_topic();
   void choose_span();
   bool wait_for_services();
   bool wait_for_readers();
   bool subscribe_to_answers();
+  std::string answers_topic() const;
   service::ExitCode play();
   service::ExitCode finish(const Player& player, PlayOutcome outcome);
   service::ExitCode fail(const std::string& message);

@@ -8,7 +8,8 @@ namespace rtd::slam {
 
 SlamPublisher::SlamPublisher(const ServiceConfig& config, bus::Bus& bus, std::function<std::vector<MapPoint>()> points)
     : config_(config),
-      names_{config.map_frame, config.odom_frame, config.camera_frame},
+      names_{bus.frame(config.map_frame), bus.frame(config.odom_frame), bus.frame(config.camera_frame)},
+      robot_(bus.robot()),
       points_(std::move(points)),
       keyframes_(bus.writer(bus::topics::kKeyframes)),
       tracking_(bus.writer(bus::topics::kTracking)),
@@ -41,6 +42,12 @@ void SlamPublisher::publish(const SlamOutput& output, const msg::TrackingResult&
   tf_.write(make_tf(smooth, output.T_map_odom, names_));
   previous_ = smooth;
   if (measured) publish_pose(result);
+}
+
+/// Its topic is everybody's.
+void SlamPublisher::publish_diagnostics(msg::DiagnosticArray diagnostics) {
+  for (msg::DiagnosticStatus& status : diagnostics.status) status.name = bus::frame_of_robot(status.name, robot_);
+  diagnostics_.write(diagnostics);
 }
 
 void SlamPublisher::publish_pose(const msg::TrackingResult& result) {

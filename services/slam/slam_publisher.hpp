@@ -31,7 +31,7 @@ class SlamPublisher {
   void publish(const SlamOutput& output, const msg::TrackingResult& result);
   /// The result again, for a frame that was sent again.
   void repeat(const msg::TrackingResult& result) { tracking_.write(result); }
-  void publish_diagnostics(const msg::DiagnosticArray& diagnostics) { diagnostics_.write(diagnostics); }
+  void publish_diagnostics(msg::DiagnosticArray diagnostics);
   /// Somebody listens to the results.
   bool matched() const { return tracking_.matched() > 0; }
 
@@ -42,6 +42,7 @@ class SlamPublisher {
 
   const ServiceConfig config_;
   const FrameNames names_;
+  const std::string robot_;
   const std::function<std::vector<MapPoint>()> points_;
   bus::Writer<msg::KeyframeEvent> keyframes_;
   bus::Writer<msg::TrackingResult> tracking_;

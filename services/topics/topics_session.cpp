@@ -9,6 +9,7 @@
 #include <set>
 
 #include "common/bus/host/port_check.hpp"
+#include "common/bus/robot.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/bus_config.hpp"
 
@@ -33,7 +34,10 @@ double TopicsSession::seconds() const {
 
 std::vector<bus::TopicWriter> TopicsSession::writers() const {
   std::vector<bus::TopicWriter> writers = bus_->writers();
-  std::erase_if(writers, [](const bus::TopicWriter& writer) { return writer.own; });
+  std::erase_if(writers, [this](const bus::TopicWriter& writer) {
+    const bool hidden = !options_.robot.empty() && !bus::concerns_robot(writer.topic.name, options_.robot);
+    return writer.own || hidden;
+  });
   return writers;
 }
 

@@ -31,7 +31,7 @@ class TopicsSession {
   /// Waits a moment for a signal; false from the first signal on.
   bool goes_on(std::chrono::milliseconds moment);
   double seconds() const;  ///< since the start
-  /// The writers of other participants.
+  /// The writers of other participants; with --robot without the topics of other robots.
   std::vector<bus::TopicWriter> writers() const;
   /// "DDS domain 0 (fastdds, this host only; --profile lan: also the network)".
   std::string place() const;

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "common/bus/frame_topics.hpp"
+#include "common/bus/robot.hpp"
 #include "common/bus/topics.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
@@ -23,19 +25,33 @@ using service::ConfigError;
 
 constexpr std::string_view kScheme = "mcap:";
 
-/// Messages by DDS name of the topic.
-std::map<std::string, std::uint64_t> counts_of(const std::string& file) {
+/// The robot of a recording, which the run then is: the one asked for, or the only one with a name.
+std::string choose_robot(const std::set<std::string>& recorded, const std::string& asked, const std::string& file) {
+  if (asked.empty() && recorded.size() == 1) return *recorded.begin();
+  if (recorded.size() < 2 || recorded.contains(asked)) return asked;
+  throw ConfigError(fmt::format("{} has the topics of several robots: choose one with --robot {}", file,
+                                fmt::join(recorded, " or ")));
+}
+
+/// Messages by DDS name of the topic, without that of the robot, whose name is chosen.
+std::map<std::string, std::uint64_t> counts_of(const std::string& file, std::string& robot) {
   try {
     const recordings::Opened recording = recordings::open(file);
     const mcap::IndexedReader reader(*recording.source);
+    std::vector<std::string> topics;
+    for (const auto& [id, channel] : reader.summary().channels) topics.push_back(ros2::dds_topic(channel.topic));
+    const std::set<std::string> recorded = bus::robots_in(topics);
+    robot = choose_robot(recorded, robot, file);
     std::map<std::string, std::uint64_t> counts;
     for (const auto& [id, channel] : reader.summary().channels) {
+      const bus::RobotTopic topic = bus::split_robot(ros2::dds_topic(channel.topic));
+      if (recorded.size() > 1 && !topic.robot.empty() && topic.robot != robot) continue;
       std::uint64_t messages = 0;
       if (const auto& statistics = reader.summary().statistics)
         if (const auto found = statistics->channel_message_counts.find(id);
             found != statistics->channel_message_counts.end())
           messages = found->second;
-      counts[ros2::dds_topic(channel.topic)] += messages;
+      counts[topic.topic] += messages;
     }
     return counts;
   } catch (const mcap::RecordingFileError& error) {
@@ -75,7 +91,7 @@ std::vector<std::string> ReplaySetup::arguments(const std::vector<std::string>& 
   return arguments;
 }
 
-ReplaySetup choose_replay(const RunOptions& options) {
+ReplaySetup choose_replay(const RunOptions& options, const std::string& robot) {
   ReplaySetup replay;
   if (options.replay_topics.empty()) return replay;
   const auto asked = [&](const char* what) { return std::ranges::count(options.replay_topics, what) > 0; };
@@ -88,7 +104,8 @@ ReplaySetup choose_replay(const RunOptions& options) {
   if (options.dense && replay.features)
     throw ConfigError("--dense cannot be combined with --replay-topics features: its masks come from a running filter");
   replay.file = options.source.substr(kScheme.size());
-  choose_topics(replay, counts_of(replay.file));
+  replay.robot = robot;
+  choose_topics(replay, counts_of(replay.file, replay.robot));
   return replay;
 }
 

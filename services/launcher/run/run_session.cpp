@@ -82,8 +82,14 @@ void RunSession::require_none_active(const Tolerated& tolerated) const {
         ", which plays topics of a run: leave them out (rtd replay --exclude 'rtd/*' '/slam/*' '/detector/*' "
         "'/filter/*' '/dense/*'), stop it";
   }
-  throw service::ConfigError("DDS domain " + std::to_string(setup_.bus_options.domain) + " is taken by " + others +
-                             fix + ", or choose another domain with --domain");
+  const std::string& robot = setup_.bus_options.robot;
+  const std::string place = "DDS domain " + std::to_string(setup_.bus_options.domain);
+  if (robot.empty()) {
+    throw service::ConfigError(place + " is taken by " + others + fix +
+                               ", choose another domain with --domain, or give each robot a name with --robot");
+  }
+  throw service::ConfigError("robot '" + robot + "' in " + place + " has " + others + " already" + fix +
+                             ", or choose another name with --robot");
 }
 
 void RunSession::supervise(const ServicePlan& camera) {

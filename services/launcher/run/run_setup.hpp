@@ -78,6 +78,7 @@ struct RunOptions {
 /// The part of a recording that replaces services of a run: rtd-replay plays it instead of the camera.
 struct ReplaySetup {
   std::string file;                 ///< empty: nothing is replayed
+  std::string robot;                ///< whose topics are played, and which the run therefore is
   bool detections = false;          ///< the recorded boxes; no detector runs
   bool features = false;            ///< the recorded features; neither detector nor filter runs
   std::uint64_t frames = 0;         ///< of the run
@@ -88,9 +89,10 @@ struct ReplaySetup {
   std::vector<std::string> arguments(const std::vector<std::string>& wait_for) const;
 };
 
-/// From --replay-topics. Throws service::ConfigError: not an MCAP source, a recording without the topic (the
-/// message lists its topics), options that need a camera.
-ReplaySetup choose_replay(const RunOptions& options);
+/// From --replay-topics. `robot`: the one of --robot; without it the only named one of the recording. Throws
+/// service::ConfigError: not an MCAP source, a recording without the topic (the message lists its topics) or of several
+/// robots, options that need a camera.
+ReplaySetup choose_replay(const RunOptions& options, const std::string& robot);
 
 /// A checked run: its options, completed (the source as a URI, the filter mode, the map file that slam writes or none),
 /// and what follows from them.

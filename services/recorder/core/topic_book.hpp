@@ -14,14 +14,16 @@
 namespace rtd::recorder {
 
 /// Which topics are recorded: shell patterns (* ? [a-z], a star also crosses slashes) on the DDS name or the ROS 2
-/// name.
+/// name. For a robot with a name: not those of other robots, and the patterns may leave its name out.
 class TopicFilter {
  public:
-  explicit TopicFilter(std::vector<std::string> patterns) : patterns_(std::move(patterns)) {}
+  explicit TopicFilter(std::vector<std::string> patterns, std::string robot = {})
+      : patterns_(std::move(patterns)), robot_(std::move(robot)) {}
   bool wants(const std::string& dds_topic) const;
 
  private:
   std::vector<std::string> patterns_;
+  std::string robot_;
 };
 
 struct TopicCounts {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "common/bus/robot.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/config.hpp"
 
@@ -16,9 +17,9 @@ namespace {
 constexpr char kHeartbeats[] = "rtd/status";
 
 bool matches(const std::string& pattern, const std::string& topic) {
-  return fnmatch(pattern.c_str(), topic.c_str(), 0) == 0 ||
-         fnmatch(pattern.c_str(), ros2::dds_topic(topic).c_str(), 0) == 0 ||
-         fnmatch(pattern.c_str(), ros2::ros_topic(topic).c_str(), 0) == 0;
+  const std::string dds = ros2::dds_topic(topic), unnamed = bus::split_robot(dds).topic;
+  return std::ranges::any_of(std::array{topic, dds, ros2::ros_topic(topic), unnamed, ros2::ros_topic(unnamed)},
+                             [&](const std::string& name) { return fnmatch(pattern.c_str(), name.c_str(), 0) == 0; });
 }
 
 bool matches_any(const std::vector<std::string>& patterns, const std::string& topic) {
@@ -43,13 +44,14 @@ std::string encoding_of(const mcap::Channel& channel) {
 }
 
 bool is_run_topic(const std::string& dds_topic) {
-  constexpr std::array kOfARun = {"rtd/", "rt/detector/", "rt/filter/", "rt/slam/", "rt/dense/"};
-  return std::ranges::any_of(kOfARun, [&](const char* prefix) { return dds_topic.starts_with(prefix); });
+  constexpr std::array<std::string_view, 5> kOfARun = {"rtd/", "rt/detector/", "rt/filter/", "rt/slam/", "rt/dense/"};
+  const bus::RobotTopic topic = bus::split_robot(dds_topic);
+  return std::ranges::any_of(kOfARun, [&](std::string_view prefix) { return topic.topic.starts_with(prefix); });
 }
 
 bool TopicChoice::wants(const std::string& topic) const {
   if (matches_any(excluded_, topic)) return false;
-  return wanted_.empty() ? topic != kHeartbeats : matches_any(wanted_, topic);
+  return wanted_.empty() ? bus::split_robot(topic).topic != kHeartbeats : matches_any(wanted_, topic);
 }
 
 std::vector<std::string> TopicChoice::unmet(const std::vector<std::string>& topics) const {

@@ -22,7 +22,7 @@ std::string encoding_of(const mcap::Channel& channel);
 bool is_run_topic(const std::string& dds_topic);
 
 /// Which topics of a recording are played. Patterns are those of a shell ("/slam/*") and meet the name in the recording
-/// as well as the DDS name ("/slam/pose", "rt/slam/pose").
+/// as well as the DDS name ("/slam/pose", "rt/slam/pose"), and for a robot with a name also that without it.
 class TopicChoice {
  public:
   /// No pattern in `wanted`: all but those of `excluded` and rtd/status, whose replay would make running services exit

@@ -275,7 +275,7 @@ TEST_F(CameraServiceTest, encodes_every_jpeg_when_nothing_may_be_dropped) {
   const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto&) { ++received; });
   constexpr int kImages = 20;
   {
-    JpegPublisher publisher(bus_->writer(bus::topics::kColorJpeg), 90, concurrency::Overflow::kBlock);
+    JpegPublisher publisher(*bus_, 90, concurrency::Overflow::kBlock);
     for (int i = 0; i < kImages; ++i) publisher.offer(cv::Mat(480, 640, CV_8UC3, cv::Scalar(i, i, i)), i);
   }
   wait_until([&] { return received == kImages; });
@@ -288,7 +288,7 @@ TEST_F(CameraServiceTest, counts_jpegs_replaced_by_newer_ones) {
   constexpr std::uint64_t kImages = 50;
   std::uint64_t dropped = 0;
   {
-    JpegPublisher publisher(bus_->writer(bus::topics::kColorJpeg), 90, concurrency::Overflow::kDropOldest);
+    JpegPublisher publisher(*bus_, 90, concurrency::Overflow::kDropOldest);
     for (std::uint64_t i = 0; i < kImages; ++i) publisher.offer(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(9)), 1);
     dropped = publisher.dropped();
   }

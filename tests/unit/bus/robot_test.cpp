@@ -45,6 +45,14 @@ TEST(Robot, a_name_on_the_wire_is_divided_again) {
   EXPECT_EQ(split_robot("rtd/anna/"), (RobotTopic{"", "rtd/anna/"}));
 }
 
+TEST(Robot, a_robot_is_not_concerned_by_the_topics_of_others) {
+  EXPECT_TRUE(concerns_robot("rt/anna/slam/pose", "anna"));
+  EXPECT_TRUE(concerns_robot("rt/tf", "anna"));
+  EXPECT_FALSE(concerns_robot("rt/bert/slam/pose", "anna"));
+  EXPECT_EQ(robots_in({"rt/anna/slam/pose", "rtd/bert/frame", "rtd/frame", "rt/tf"}),
+            (std::set<std::string>{"anna", "bert"}));
+}
+
 TEST(Robot, names_are_those_of_ros) {
   for (const char* name : {"a", "Anna", "robot_1", "x2"}) EXPECT_TRUE(is_robot_name(name)) << name;
   const std::string long_name(kLongestRobotName + 1, 'a');

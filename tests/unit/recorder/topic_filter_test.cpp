@@ -30,5 +30,16 @@ TEST(TopicFilter, knows_the_other_signs_of_a_shell) {
   EXPECT_FALSE(TopicFilter({}).wants("rt/tf"));
 }
 
+TEST(TopicFilter, of_a_robot_leaves_out_the_topics_of_others) {
+  const TopicFilter all({"*"}, "anna"), pose({"/slam/pose", "rtd/frame"}, "anna");
+  EXPECT_TRUE(all.wants("rt/anna/slam/pose"));
+  EXPECT_TRUE(all.wants("rt/tf"));
+  EXPECT_FALSE(all.wants("rt/bert/slam/pose"));
+  EXPECT_TRUE(TopicFilter({"*"}).wants("rt/bert/slam/pose")) << "without a name: all robots";
+  EXPECT_TRUE(pose.wants("rt/anna/slam/pose"));
+  EXPECT_TRUE(pose.wants("rtd/anna/frame"));
+  EXPECT_FALSE(pose.wants("rtd/bert/frame"));
+}
+
 }  // namespace
 }  // namespace rtd::recorder

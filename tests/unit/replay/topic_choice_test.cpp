@@ -38,6 +38,16 @@ TEST(TopicChoice, names_the_patterns_that_meet_nothing) {
   EXPECT_THAT(TopicChoice({"/slam/*", "rtd/farme"}, {}).unmet({"/slam/pose", "rtd/frame"}), ElementsAre("rtd/farme"));
 }
 
+TEST(TopicChoice, patterns_may_leave_out_the_name_of_a_robot) {
+  const TopicChoice choice({"/slam/*", "rtd/frame"}, {}), all({}, {});
+  EXPECT_TRUE(choice.wants("/anna/slam/pose"));
+  EXPECT_TRUE(choice.wants("rtd/anna/frame"));
+  EXPECT_FALSE(choice.wants("rtd/anna/features"));
+  EXPECT_FALSE(all.wants("rtd/anna/status")) << "heartbeats, as those of a robot without a name";
+  EXPECT_TRUE(is_run_topic("rtd/anna/frame"));
+  EXPECT_TRUE(is_run_topic("rt/anna/slam/pose"));
+}
+
 TEST(Remap, takes_both_spellings) {
   EXPECT_THAT(parse_remaps({"/slam/pose:=/old/pose", "rtd/frame:=rtd/frame2"}),
               ElementsAre(Pair("rt/slam/pose", "rt/old/pose"), Pair("rtd/frame", "rtd/frame2")));

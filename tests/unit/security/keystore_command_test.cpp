@@ -72,6 +72,29 @@ TEST_F(KeystoreCommandTest, adds_an_enclave_like_another_with_further_topics) {
   EXPECT_FALSE(security::matches_any(added.permissions.topics.publish, "rt/slam/pose"));
 }
 
+TEST_F(KeystoreCommandTest, robots_have_enclaves_of_their_own_and_share_the_detector) {
+  const auto grant = [this](const std::string& name) {
+    return security::open_enclave(request_.folder, name, 0, kNow_s).permissions.topics;
+  };
+  request_.robots = {"anna"};
+  ASSERT_EQ(run(Action::kCreate), 0) << err_.str();
+  request_.robots = {"bert"};
+  ASSERT_EQ(run(Action::kAdd), 0) << err_.str();
+  for (const std::string robot : {"anna", "bert"}) {
+    const std::string jpegs = "rt/" + robot + "/camera/color/image_raw/compressed";
+    EXPECT_TRUE(security::matches_any(grant("/rtd/" + robot + "/camera").publish, jpegs));
+    EXPECT_TRUE(security::matches_any(grant("/rtd/" + robot + "/camera").publish, "rtd/" + robot + "/frame"));
+    EXPECT_TRUE(security::matches_any(grant("/rtd/detector").subscribe, jpegs));
+    EXPECT_TRUE(security::matches_any(grant("/rtd/detector").publish, "rt/" + robot + "/detector/detections"));
+  }
+  EXPECT_FALSE(security::matches_any(grant("/rtd/anna/slam").publish, "rt/bert/slam/pose"));
+  EXPECT_FALSE(security::matches_any(grant("/rtd/anna/slam").publish, "rt/slam/pose"));
+  EXPECT_TRUE(security::matches_any(grant("/rtd/detector").publish, "rt/detector/detections")) << "and it alone";
+  request_.robots = {"b/c"};
+  EXPECT_EQ(run(Action::kAdd), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("b/c cannot be a robot's name"));
+}
+
 TEST_F(KeystoreCommandTest, info_of_no_keystore_says_how_to_make_one) {
   EXPECT_EQ(run(Action::kInfo), 2);
   EXPECT_THAT(err_.str(), HasSubstr("rtd keystore create"));

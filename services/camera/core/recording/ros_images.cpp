@@ -190,10 +190,11 @@ double depth_unit_m(const RecordedMessage& message, double float_unit_m) {
   return floats ? float_unit_m : kMillimetre;
 }
 
-msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns) {
+msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns,
+                               const std::string& frame_id) {
   const auto& p = camera.parameters();
   msg::CameraInfo info;
-  info.header = {msg::to_time(stamp_ns), kCameraFrame};
+  info.header = {msg::to_time(stamp_ns), frame_id};
   info.width = static_cast<std::uint32_t>(p.width);
   info.height = static_cast<std::uint32_t>(p.height);
   const auto [model, coefficients] = ros_distortion(p);

@@ -37,7 +37,8 @@ double depth_unit_m(const RecordedMessage& message, double float_unit_m);
 inline constexpr const char* kCameraFrame = "camera_color_optical_frame";  ///< docs/frames.md
 
 /// The camera_info message of a camera, ROS conventions.
-msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns);
+msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns,
+                               const std::string& frame_id = kCameraFrame);
 
 /// The camera that a CameraInfo describes: K and D of the raw image, or P for a rectified one ("image_rect" in the
 /// colour topic's name). Throws SourceError naming `origin`: not calibrated, distortion model other than plumb_bob, not

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/camera/realsense_bus.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/service/log.hpp"
+
+namespace rtd::camera::realsense {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::size_t kEvents = 64;
+constexpr int kStreamDepth = 8;
+
+/// Cyclone DDS refuses topics with '-' in their names, and these cameras use Fast DDS themselves.
+std::shared_ptr<bus::RawBus> connect_to_cameras(bus::BusOptions options) {
+  constexpr const char* kVendor = "fastdds";
+  const std::vector<std::string> vendors = bus::available_vendors();
+  if (std::ranges::find(vendors, kVendor) == vendors.end()) {
+    throw bus::BusError("realsense-dds: needs Fast DDS, which this build does not have: configure and build with it");
+  }
+  options.vendor = kVendor;
+  return bus::connect_raw(options);
+}
+
+std::string notifications_of(const std::string& root) {
+  return root + "/notification";
+}
+
+void take_notification(Devices::Device& device, const Event& event) {
+  nlohmann::json message = read_flexible(event.cdr());
+  device.description.take(message);
+  if (message.is_object() && message.value("id", "") == "open-streams") device.reply = std::move(message);
+}
+
+}  // namespace
+
+Subscriptions::Subscriptions(const bus::BusOptions& options)
+    : queue_(kEvents, concurrency::Overflow::kDropOldest), bus_(connect_to_cameras(options)) {
+  bus_->watch([this](const bus::TopicWriter&, bus::WriterChange) { queue_.push(Event{}); });
+}
+
+Subscriptions::~Subscriptions() {
+  bus_->watch(nullptr);
+  lines_.clear();
+}
+
+void Subscriptions::add(const std::string& topic) {
+  lines_.try_emplace(topic);
+  follow_writers();
+}
+
+bool Subscriptions::writes(const std::string& topic, const bus::WriterId& writer) const {
+  const auto line = lines_.find(topic);
+  return line != lines_.end() && line->second.writers.contains(writer);
+}
+
+std::unique_ptr<bus::RawWriter> Subscriptions::writer(const bus::RawTopic& topic) {
+  bus::StatusCallbacks callbacks;
+  callbacks.on_matched = [this](int) { queue_.push(Event{}); };
+  return bus_->writer(topic, {}, std::move(callbacks));
+}
+
+std::optional<Event> Subscriptions::next(Clock::time_point until) {
+  const auto left = std::chrono::duration_cast<milliseconds>(until - Clock::now());
+  std::optional<Event> event = queue_.pop_for(std::max(left, milliseconds(0)));
+  if (event && !event->bytes) follow_writers();
+  return event;
+}
+
+void Subscriptions::follow_writers() {
+  std::map<std::string, std::set<bus::WriterId>> there;
+  for (const bus::TopicWriter& writer : bus_->writers()) {
+    const auto line = lines_.find(writer.topic.name);
+    if (line == lines_.end() || writer.own) continue;
+    there[line->first].insert(writer.id);
+    if (!line->second.writers.contains(writer.id)) listen(line->first, line->second, writer);
+  }
+  for (auto& [topic, line] : lines_) line.writers = there[topic];
+}
+
+void Subscriptions::listen(const std::string& topic, Line& line, const bus::TopicWriter& writer) try {
+  if (!line.listener) {
+    bus::RawHandlers handlers;
+    handlers.on_sample = [this, topic](const bus::RawSample& sample) {
+      queue_.push(Event{topic, sample.writer, sample.bytes});
+    };
+    line.listener = std::make_unique<bus::TopicListener>(*bus_, std::move(handlers), false, kStreamDepth);
+  }
+  line.listener->add(writer);
+} catch (const bus::BusError& error) {
+  SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", topic, error.what());
+}
+
+Devices::Devices(const bus::BusOptions& options) : subscriptions_(options) {
+  subscriptions_.add(kDeviceInfoTopic);
+}
+
+std::optional<Event> Devices::next(Clock::time_point until) {
+  while (std::optional<Event> event = subscriptions_.next(until)) {
+    if (!take(*event)) return event;
+  }
+  return std::nullopt;
+}
+
+/// Whether it is of the devices' own topics, or news.
+bool Devices::take(const Event& event) try {
+  if (!event.bytes) return forget_silent(), true;
+  if (event.topic == kDeviceInfoTopic) return take_info(event), true;
+  for (auto& [root, device] : devices_) {
+    if (event.topic == notifications_of(root)) return take_notification(device, event), true;
+  }
+  return false;
+} catch (const ros::WireError& error) {
+  SPDLOG_WARN("event=message_refused topic={} cause=\"{}\"", event.topic, error.what());
+  return true;
+}
+
+void Devices::take_info(const Event& event) {
+  const std::optional<DeviceInfo> info = parse_device_info(read_flexible(event.cdr()));
+  if (!info) return forget(event.writer);
+  Device& device = devices_[info->topic_root];
+  device.info = *info;
+  device.announcer = event.writer;
+  subscriptions_.add(notifications_of(info->topic_root));
+}
+
+void Devices::forget(const bus::WriterId& announcer) {
+  std::erase_if(devices_, [&](const auto& item) {
+    if (item.second.announcer != announcer) return false;
+    subscriptions_.remove(notifications_of(item.first));
+    return true;
+  });
+}
+
+void Devices::forget_silent() {
+  std::set<bus::WriterId> gone;
+  for (const auto& [root, device] : devices_) {
+    if (!subscriptions_.writes(kDeviceInfoTopic, device.announcer)) gone.insert(device.announcer);
+  }
+  for (const bus::WriterId& announcer : gone) forget(announcer);
+}
+
+}  // namespace rtd::camera::realsense

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "common/bus/raw_bus.hpp"
+#include "common/concurrency/bounded_queue.hpp"
+#include "common/ros_codec/wire.hpp"
+#include "services/camera/core/live/realsense_protocol.hpp"
+
+/// What RealSense cameras on DDS announce and send. Everything here belongs to one thread.
+namespace rtd::camera::realsense {
+
+/// What the bus brings: a sample, or without bytes the news that writers or readers have come or gone.
+struct Event {
+  std::string topic;
+  bus::WriterId writer{};
+  std::shared_ptr<const bus::ByteBlock> bytes;
+  ros::Bytes cdr() const { return {reinterpret_cast<const std::uint8_t*>(bytes->view().data()), bytes->view().size()}; }
+};
+
+/// Subscriptions to topics whose writers come and go.
+class Subscriptions {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// Joins the domain. Throws BusError, also in a build without Fast DDS.
+  explicit Subscriptions(const bus::BusOptions& options);
+  ~Subscriptions();
+  Subscriptions(const Subscriptions&) = delete;
+  Subscriptions& operator=(const Subscriptions&) = delete;
+
+  void add(const std::string& topic);
+  void remove(const std::string& topic) { lines_.erase(topic); }
+  bool published(const std::string& topic) const { return !lines_.at(topic).writers.empty(); }
+  bool writes(const std::string& topic, const bus::WriterId& writer) const;
+  std::unique_ptr<bus::RawWriter> writer(const bus::RawTopic& topic);
+  /// The next event; empty when none came in time.
+  std::optional<Event> next(Clock::time_point until);
+
+ private:
+  struct Line {
+    std::set<bus::WriterId> writers;
+    std::unique_ptr<bus::TopicListener> listener;
+  };
+
+  void follow_writers();
+  void listen(const std::string& topic, Line& line, const bus::TopicWriter& writer);
+
+  concurrency::BoundedQueue<Event> queue_;
+  std::shared_ptr<bus::RawBus> bus_;
+  std::map<std::string, Line> lines_;
+};
+
+/// The devices that announce themselves, each with its description as far as it has come.
+class Devices {
+ public:
+  using Clock = Subscriptions::Clock;
+  struct Device {
+    DeviceInfo info;
+    bus::WriterId announcer{};
+    Description description;
+    std::optional<nlohmann::json> reply;  ///< to the last open-streams
+  };
+
+  /// Throws as Subscriptions.
+  explicit Devices(const bus::BusOptions& options);
+
+  Subscriptions& subscriptions() { return subscriptions_; }
+  std::map<std::string, Device>& all() { return devices_; }  ///< by topic root
+
+  /// The next sample of a topic that is not the devices' own.
+  std::optional<Event> next(Clock::time_point until);
+  /// Waits until the condition holds.
+  template <class Condition>
+  bool wait(std::chrono::milliseconds time, Condition&& holds) {
+    const Clock::time_point until = Clock::now() + time;
+    while (!holds()) {
+      const std::optional<Event> event = subscriptions_.next(until);
+      if (!event) return holds();
+      take(*event);
+    }
+    return true;
+  }
+
+ private:
+  bool take(const Event& event);
+  void take_info(const Event& event);
+  void forget(const bus::WriterId& announcer);
+  void forget_silent();
+
+  Subscriptions subscriptions_;
+  std::map<std::string, Device> devices_;
+};
+
+}  // namespace rtd::camera::realsense
