@@ -13,23 +13,15 @@
 #include <thread>
 #include <utility>
 
-#include "common/bus/robot.hpp"
-#include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/jpeg_size.hpp"
-#include "services/detector/core/engine.hpp"
-#include "services/detector/detector_service.hpp"
-#include "services/detector/fleet/batch_detector.hpp"
 
 namespace rtd::detector {
 namespace {
 
 constexpr std::chrono::milliseconds kLookAfter{50};  ///< robots come and go, others take over
-constexpr std::chrono::milliseconds kStuckAfter{1500}, kStuckAfterPerImage{250};
-constexpr unsigned kUsualDecoders = 4;
-constexpr const char* kAll = "all";
-constexpr int kMostPixels = 3840 * 2160;
+constexpr std::int64_t kMostPixels = 3840 * 2160;
 
 std::string host_name() {
   std::array<char, 256> name{};
@@ -39,7 +31,7 @@ std::string host_name() {
 /// Empty when they are broken, or so many that decoding them would cost the other robots time and memory.
 cv::Mat pixels_of(const msg::CompressedImage& jpeg) {
   const cv::Size size = vision::jpeg_size(jpeg.data);
-  if (size.empty() || size.area() > kMostPixels) return {};
+  if (size.empty() || std::int64_t{size.width} * size.height > kMostPixels) return {};
   try {
     return cv::imdecode(jpeg.data, cv::IMREAD_COLOR);
   } catch (const cv::Exception&) {  // data from outside never ends the process
@@ -47,60 +39,7 @@ cv::Mat pixels_of(const msg::CompressedImage& jpeg) {
   }
 }
 
-void require_combinable(const ServiceConfig& config, const service::Runtime& runtime) {
-  const auto refuse = [](bool wrong, const char* what) {
-    if (wrong) throw service::ConfigError(std::string("detector.robots (--robots): ") + what);
-  };
-  refuse(runtime.pace != service::Pace::kRealtime,
-         "several robots are served at pace realtime; run one detector for each robot at asap or lockstep");
-  refuse(config.derotate == "on", "detector.derotate follows the poses of one robot: leave it off");
-  refuse(config.input == "frame", "raw frames never leave their host: leave detector.input at auto or jpeg");
-  refuse(config.max_rate_hz > 0, "detector.max_rate_hz (--max-rate) is for one robot: leave it at 0");
-  refuse(config.verify_engine, "--verify-engine is for one robot: check the engine with a run of its own first");
-  refuse(!runtime.bus.robot().empty(), "--robot names the one robot of a detector: leave one of the two out");
-}
-
 }  // namespace
-
-FleetConfig fleet_config(const ServiceConfig& config, const service::Runtime& runtime) {
-  require_combinable(config, runtime);
-  FleetConfig fleet;
-  fleet.robots = {config.robots.begin(), config.robots.end()};
-  if (fleet.robots.erase(kAll) > 0 && !fleet.robots.empty())
-    throw service::ConfigError("detector.robots (--robots): 'all' stands alone, beside it are names");
-  for (const std::string& robot : fleet.robots) {
-    if (bus::is_robot_name(robot)) continue;
-    throw service::ConfigError(fmt::format(
-        "detector.robots (--robots): '{}' cannot be a robot's name: use letters, digits and single underscores, a "
-        "letter first; 'all' also serves a robot without a name",
-        robot));
-  }
-  fleet.queue.batch = static_cast<std::size_t>(config.batch);
-  const int cores = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kUsualDecoders));
-  fleet.decoders = config.decoders > 0 ? config.decoders : cores;
-  fleet.stuck_after = kStuckAfter + config.batch * kStuckAfterPerImage;
-  return fleet;
-}
-
-Inference load_inference(const ServiceConfig& config) {
-  try {
-    const auto detector = std::make_shared<BatchDetector>(core_config(config), config.batch);
-    const InputSize input = detector->detector().input_size();
-    SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} device=\"{}\"",
-                detector->detector().config().model_path, input.width_px, input.height_px, config.core.threads,
-                detector->detector().device());
-    if (!detector->fallback().empty())
-      SPDLOG_WARN("event=engine_fallback asked={} device=\"{}\" cause=\"{}\"", config.core.engine,
-                  detector->detector().device(), detector->fallback());
-    if (!detector->no_batch().empty()) SPDLOG_WARN("event=no_batch cause=\"{}\"", detector->no_batch());
-    return {[detector](std::span<const cv::Mat> images) { return detector->detect(images); },
-            "computes on " + detector->device()};
-  } catch (const ModelError& error) {
-    throw service::ConfigError(error.what());
-  } catch (const EngineError& error) {
-    throw service::ConfigError(std::string("detector.engine: ") + error.what());
-  }
-}
 
 FleetService::FleetService(const FleetConfig& config, service::Runtime& runtime, Inference inference)
     : config_(config),
@@ -181,32 +120,34 @@ void FleetService::detect_until_stopped() {
 }
 
 void FleetService::detect(const Batch& batch) {
-  const std::int64_t started_ns = service::monotonic_ns();
-  std::vector<std::vector<vision::Detection>> found;
-  std::string failure;
-  try {
-    found = inference_.detect(batch.pixels);
-  } catch (const std::exception& error) {  // an engine may fail for once; the next images come
-    failure = error.what();
-    if (failure_log_.pass())
-      SPDLOG_ERROR("event=inference_failed images={} cause=\"{}\"", batch.images.size(), failure);
-  }
-  {
-    const std::lock_guard lock(timing_mutex_);
-    timing_.inferred(batch.images.size(), service::monotonic_ns() - started_ns);
-  }
+  const std::size_t count = batch.images.size();
+  Boxes found = infer(batch.pixels);
   ++batches_;
-  images_ += batch.images.size();
-  for (std::size_t i = 0; i < batch.images.size(); ++i) {
+  images_ += count;
+  for (std::size_t i = 0; i < count; ++i) {
     const Image& image = batch.images[i];
     const auto served = lane(image.robot);
     if (!served) continue;
     if (i < found.size()) {
-      served->publish({image.stamp_ns, image.arrived_ns, batch.images.size(), std::move(found[i])});
+      served->publish({image.stamp_ns, image.arrived_ns, count, std::move(found[i])});
     } else {
-      served->count_broken(failure);
+      served->count_broken("the network failed");
     }
   }
+}
+
+/// Nothing when the engine fails, which may be for once: the next images come.
+FleetService::Boxes FleetService::infer(std::span<const cv::Mat> images) {
+  const std::int64_t started_ns = service::monotonic_ns();
+  Boxes found;
+  try {
+    found = inference_.detect(images);
+  } catch (const std::exception& error) {
+    if (failure_log_.pass()) SPDLOG_ERROR("event=inference_failed images={} cause=\"{}\"", images.size(), error.what());
+  }
+  const std::lock_guard lock(timing_mutex_);
+  timing_.inferred(images.size(), service::monotonic_ns() - started_ns);
+  return found;
 }
 
 /// Beside the stages: opening and closing topics takes time.
@@ -226,7 +167,11 @@ void FleetService::update_lanes() {
   const std::string work = fmt::format("{}, {} robot{}", inference_.device, served, served == 1 ? "" : "s");
   for (const auto& [robot, lane] : all) {
     const bool was_reading = lane->reading();
-    lane->update({found.contains(robot), arrivals_->dropped(robot), work});
+    try {
+      lane->update({found.contains(robot), arrivals_->dropped(robot), work});
+    } catch (const bus::BusError& error) {
+      if (robot_log_.pass()) SPDLOG_ERROR("event=robot_failed robot=\"{}\" cause=\"{}\"", robot, error.what());
+    }
     if (was_reading && !lane->reading()) arrivals_->remove(robot);
   }
   report(all);
@@ -234,21 +179,38 @@ void FleetService::update_lanes() {
 
 /// A lane stays when its robot leaves: the status says so, and the robot may come back.
 void FleetService::open_lane(const std::string& robot) {
-  if (lane(robot)) return;
-  if (lanes().size() >= kMostRobots) {
-    if (refused_.size() < kMostRobots && refused_.insert(robot).second)
-      SPDLOG_ERROR("event=robot_refused robot=\"{}\" cause=\"one detector serves {} robots at most\"", robot,
-                   kMostRobots);
-    return;
+  if (lane(robot) || denied_.contains(robot)) return;
+  if (!make_room()) return log_refusal(robot, fmt::format("{} robots are served already", config_.most_robots));
+  try {
+    auto opened =
+        std::make_shared<RobotLane>(runtime_.bus, robot, lane_options_,
+                                    [arrivals = arrivals_, robot](std::shared_ptr<const msg::CompressedImage> jpeg) {
+                                      arrivals->put(robot, std::move(jpeg));
+                                    });
+    SPDLOG_INFO("event=robot_found robot=\"{}\"", robot);
+    const std::lock_guard lock(lanes_mutex_);
+    lanes_[robot] = std::move(opened);
+  } catch (const bus::BusError& error) {  // keys that do not know this robot
+    denied_.insert(robot);
+    log_refusal(robot, error.what());
   }
-  SPDLOG_INFO("event=robot_found robot=\"{}\"", robot);
-  auto opened =
-      std::make_shared<RobotLane>(runtime_.bus, robot, lane_options_,
-                                  [arrivals = arrivals_, robot](std::shared_ptr<const msg::CompressedImage> jpeg) {
-                                    arrivals->put(robot, std::move(jpeg));
-                                  });
+}
+
+/// The lane of a robot that has left is closed when its place is needed.
+bool FleetService::make_room() {
+  const Lanes all = lanes();
+  if (all.size() < config_.most_robots) return true;
+  const auto unused = std::ranges::find_if(all, [](const auto& entry) { return entry.second->gone(); });
+  if (unused == all.end() || !config_.robots.empty()) return false;
   const std::lock_guard lock(lanes_mutex_);
-  lanes_[robot] = std::move(opened);
+  lanes_.erase(unused->first);
+  return true;
+}
+
+void FleetService::log_refusal(const std::string& robot, const std::string& cause) {
+  constexpr std::size_t kMostLogged = 100;  // others in the domain could make up names without end
+  if (refused_.size() >= kMostLogged || !refused_.insert(robot).second) return;
+  SPDLOG_ERROR("event=robot_refused robot=\"{}\" cause=\"{}\"", robot, cause);
 }
 
 void FleetService::report(const Lanes& lanes) {

@@ -7,7 +7,6 @@
 
 #include <utility>
 
-#include "common/bus/robot.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/peer_clocks.hpp"
 #include "services/detector/detector_service.hpp"
@@ -99,6 +98,7 @@ void RobotLane::step_down() {
 void RobotLane::follow_camera(bool seen, std::int64_t now_ns) {
   if (seen) camera_seen_ns_ = now_ns;
   const bool there = camera_seen_ns_ != 0 && now_ns - camera_seen_ns_ < kGoneAfterNs;
+  gone_ = camera_seen_ns_ != 0 && !there;
   const bool wanted = there && serving();
   if (wanted == static_cast<bool>(jpegs_)) return;
   if (wanted) {
@@ -141,7 +141,7 @@ void RobotLane::tick() {
 
 void RobotLane::publish(const Answer& answer) {
   if (!serving()) return;
-  detections_.write(to_message(answer.detections, answer.stamp_ns, bus::frame_of_robot(kCameraFrame, robot_)));
+  detections_.write(to_message(answer.detections, answer.stamp_ns, bus_->frame(kCameraFrame)));
   const std::lock_guard lock(mutex_);
   stats_.add(answer.arrived_ns, service::monotonic_ns(), answer.batch);
   ++answered_;

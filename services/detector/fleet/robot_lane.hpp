@@ -63,6 +63,8 @@ class RobotLane {
   bool serving() const { return started_ns_ != 0; }
   /// Whether images may come: it serves a robot whose camera is there, or was until a moment ago.
   bool reading() const { return reading_; }
+  /// Whether its camera was there and has left.
+  bool gone() const { return gone_; }
   /// "anna", "standby for anna: gpubox (pid 42) serves it": for people.
   std::string description() const;
 
@@ -85,7 +87,7 @@ class RobotLane {
   mutable std::mutex duty_mutex_;
   Duty duty_;
   std::atomic<std::int64_t> started_ns_{0};  ///< of the own heartbeat; 0: does not serve
-  std::atomic<bool> reading_{false};
+  std::atomic<bool> reading_{false}, gone_{false};
 
   std::mutex mutex_;               ///< guards what follows
   service::StopToken twin_found_;  ///< the heartbeat's; Duty decides

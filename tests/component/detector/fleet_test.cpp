@@ -270,6 +270,20 @@ TEST(Fleet, serves_only_the_robots_on_its_list) {
   EXPECT_EQ(nameless->readers(), 0);
 }
 
+TEST(Fleet, a_robot_beyond_the_limit_is_served_once_another_has_left) {
+  auto anna = robot({"anna", 1});
+  FleetConfig config;
+  config.most_robots = 1;
+  Box box(config, stand_in(1ms));
+  ASSERT_TRUE(anna->wait_answers(3));
+  const auto ben = robot({"ben", 2});
+  EXPECT_TRUE(anna->wait_answers(anna->figures().answered + 60));
+  EXPECT_EQ(ben->readers(), 0);
+  anna.reset();
+  EXPECT_TRUE(ben->wait_answers(30));
+  EXPECT_EQ(ben->figures().wrong, 0u);
+}
+
 TEST(Fleet, an_engine_that_fails_for_once_costs_that_batch_only) {
   const auto anna = robot({"anna", 1});
   auto calls = std::make_shared<std::atomic<int>>(0);
