@@ -21,6 +21,7 @@ namespace rtd::detector {
 namespace {
 
 constexpr std::chrono::milliseconds kLookAfter{50};  ///< robots come and go, others take over
+constexpr int kMostFailures = 20;                    // batches in a row
 constexpr std::int64_t kMostPixels = 3840 * 2160;
 
 std::string host_name() {
@@ -49,6 +50,7 @@ FleetService::FleetService(const FleetConfig& config, service::Runtime& runtime,
       arrivals_(std::make_shared<FleetArrivals>(config.queue)),
       handover_(std::make_shared<Handover<Batch>>()),
       decoders_(config.decoders),
+      device_(inference_.device()),
       finder_(runtime.bus_options) {
   runtime.heartbeat.watch_progress(config.stuck_after);
   runtime.stop.on_stop([arrivals = arrivals_, handover = handover_] {
@@ -68,7 +70,7 @@ service::ExitCode FleetService::run() {
   }
   close_lanes();
   SPDLOG_INFO("event=summary images={} batches={}", images_, batches_);
-  return service::kOk;
+  return failures_ < kMostFailures ? service::kOk : service::kRunFailed;
 }
 
 /// The first stage: takes the newest images and decodes them when the network is about to be free.
@@ -81,7 +83,7 @@ void FleetService::prepare_batches() {
     const std::int64_t started_ns = service::monotonic_ns();
     Batch batch = decode(taken);
     {
-      const std::lock_guard lock(timing_mutex_);
+      const std::lock_guard lock(inference_mutex_);
       timing_.decoded(service::monotonic_ns() - started_ns);
     }
     if (batch.images.empty()) continue;
@@ -91,7 +93,7 @@ void FleetService::prepare_batches() {
 }
 
 FleetService::Clock::time_point FleetService::decode_at(Clock::time_point began, std::size_t images) {
-  const std::lock_guard lock(timing_mutex_);
+  const std::lock_guard lock(inference_mutex_);
   return began + timing_.delay(images);
 }
 
@@ -136,18 +138,27 @@ void FleetService::detect(const Batch& batch) {
   }
 }
 
-/// Nothing when the engine fails, which may be for once: the next images come.
+/// Nothing when the engine fails, which may be for once: the next images come. An engine that fails every time, such as
+/// that of a GPU that is gone, ends the service: another one takes over or, begun again, finds it working.
 FleetService::Boxes FleetService::infer(std::span<const cv::Mat> images) {
   const std::int64_t started_ns = service::monotonic_ns();
   Boxes found;
   try {
     found = inference_.detect(images);
+    failures_ = 0;
   } catch (const std::exception& error) {
     if (failure_log_.pass()) SPDLOG_ERROR("event=inference_failed images={} cause=\"{}\"", images.size(), error.what());
+    if (++failures_ == kMostFailures) runtime_.stop.request_stop();
   }
-  const std::lock_guard lock(timing_mutex_);
+  const std::lock_guard lock(inference_mutex_);
   timing_.inferred(images.size(), service::monotonic_ns() - started_ns);
+  device_ = inference_.device();
   return found;
+}
+
+std::string FleetService::device() const {
+  const std::lock_guard lock(inference_mutex_);
+  return device_;
 }
 
 /// Beside the stages: opening and closing topics takes time.
@@ -164,7 +175,7 @@ void FleetService::update_lanes() {
     for (const std::string& robot : found) open_lane(robot);
   const Lanes all = lanes();
   const auto served = std::ranges::count_if(all, [](const auto& entry) { return entry.second->reading(); });
-  const std::string work = fmt::format("{}, {} robot{}", inference_.device, served, served == 1 ? "" : "s");
+  const std::string work = fmt::format("{}, {} robot{}", device(), served, served == 1 ? "" : "s");
   for (const auto& [robot, lane] : all) {
     const bool was_reading = lane->reading();
     try {

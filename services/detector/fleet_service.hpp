@@ -61,6 +61,7 @@ class FleetService {
   void detect_until_stopped();
   void detect(const Batch& batch);
   Boxes infer(std::span<const cv::Mat> images);
+  std::string device() const;
   void look_after_robots();
   void update_lanes();
   void open_lane(const std::string& robot);
@@ -82,8 +83,10 @@ class FleetService {
   Lanes lanes_;
   std::set<std::string> denied_;   ///< robots whose topics the bus refuses
   std::set<std::string> refused_;  ///< robots that are not served: one log line each
-  std::mutex timing_mutex_;
+  mutable std::mutex inference_mutex_;
   StageTiming timing_;
+  std::string device_;
+  int failures_ = 0;  ///< of the engine, in a row
   std::uint64_t batches_ = 0, images_ = 0;
   service::RateLimit failure_log_{std::chrono::seconds(1)}, robot_log_{std::chrono::seconds(1)};
   RobotFinder finder_;

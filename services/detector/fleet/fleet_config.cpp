@@ -69,7 +69,7 @@ Inference load_inference(const ServiceConfig& config) {
                   detector->detector().device(), detector->fallback());
     if (!detector->no_batch().empty()) SPDLOG_WARN("event=no_batch cause=\"{}\"", detector->no_batch());
     return {[detector](std::span<const cv::Mat> images) { return detector->detect(images); },
-            "computes on " + detector->device()};
+            [detector] { return "computes on " + detector->device(); }};
   } catch (const ModelError& error) {
     throw service::ConfigError(error.what());
   } catch (const EngineError& error) {

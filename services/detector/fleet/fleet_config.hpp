@@ -30,10 +30,10 @@ struct FleetConfig {
 /// Throws ConfigError for what cannot be combined with several robots, and for names that no robot can have.
 FleetConfig fleet_config(const ServiceConfig& config, const service::Runtime& runtime);
 
-/// What computes the boxes of a batch of 8-bit BGR images, of any sizes: one list for each image.
+/// What computes the boxes of a batch of 8-bit BGR images, of any sizes: one list for each image. Used by one thread.
 struct Inference {
   std::function<std::vector<std::vector<vision::Detection>>(std::span<const cv::Mat>)> detect;
-  std::string device;  ///< for people
+  std::function<std::string()> device;  ///< for people; may change with each batch
 };
 
 /// Loads the network. Throws ConfigError when there is none or it is broken.

@@ -65,7 +65,7 @@ int be_box(const Options& options) {
   detector::FleetConfig config;
   config.queue.batch = static_cast<std::size_t>(options.batch);
   config.decoders = static_cast<int>(std::min(4U, std::thread::hardware_concurrency()));
-  detector::FleetService service(config, runtime, {stand_in, "stands in"});
+  detector::FleetService service(config, runtime, {stand_in, [] { return std::string("stands in"); }});
   std::jthread end([&] {
     stop.wait_for(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(options.seconds))),
         stop.request_stop();

@@ -36,13 +36,15 @@ bus::BusOptions loopback() {
   return options;
 }
 
+const auto kStandsIn = [] { return std::string("stands in"); };
+
 /// So long for each batch, and for each image of it.
 Inference stand_in(std::chrono::microseconds per_batch, std::chrono::microseconds per_image = 0us) {
   return {[per_batch, per_image](std::span<const cv::Mat> images) {
             std::this_thread::sleep_for(per_batch + per_image * images.size());
             return test_support::read_all_marks(images);
           },
-          "stands in"};
+          kStandsIn};
 }
 
 /// A process with a detector for several robots, but for the process.
@@ -65,6 +67,8 @@ class Box {
       EXPECT_EQ(running_.get(), service::kOk);
     }
   }
+  /// Its exit code when it ends by itself.
+  service::ExitCode wait_end() { return running_.get(); }
 
  private:
   service::StopToken stop_;
@@ -291,9 +295,19 @@ TEST(Fleet, an_engine_that_fails_for_once_costs_that_batch_only) {
                  if (++*calls == 5) throw std::runtime_error("out of memory");
                  return test_support::read_all_marks(images);
                },
-               "stands in"});
+               kStandsIn});
   EXPECT_TRUE(anna->wait_answers(30));
   EXPECT_TRUE(eventually([&] { return metric(anna->status(), "frames_broken") == 1; }));
+}
+
+TEST(Fleet, an_engine_that_fails_every_time_ends_the_box) {
+  const auto anna = robot({"anna", 1});
+  Box box({}, {[](std::span<const cv::Mat>) -> std::vector<std::vector<vision::Detection>> {
+                 throw std::runtime_error("the GPU has fallen off the bus");
+               },
+               kStandsIn});
+  EXPECT_EQ(box.wait_end(), service::kRunFailed);
+  EXPECT_EQ(anna->figures().answered, 0u);
 }
 
 TEST(Fleet, the_younger_box_stands_by_and_takes_over_when_the_first_stops) {
@@ -328,7 +342,7 @@ TEST(Fleet, the_standby_takes_over_when_the_network_of_the_first_hangs) {
                        while (*hangs) std::this_thread::sleep_for(5ms);
                        return test_support::read_all_marks(images);
                      },
-                     "stands in"});
+                     kStandsIn});
   ASSERT_TRUE(anna->wait_answers(3));
   Box second({}, stand_in(1ms));
   ASSERT_TRUE(watcher.wait_message("standby for anna"));
