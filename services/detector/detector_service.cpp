@@ -52,13 +52,6 @@ RollConfig roll_config(const ServiceConfig& config) {
           config.derotate_min_deg * kRadPerDeg};
 }
 
-/// Compiling for a GPU takes minutes the first time; OpenCL keeps what it has compiled.
-std::string kernel_cache(const service::EnvironmentReader& environment) {
-  if (const auto cache = environment("XDG_CACHE_HOME"); cache && !cache->empty()) return *cache + "/rtd-slam/opencl";
-  const auto home = environment("HOME");
-  return home && !home->empty() ? *home + "/.cache/rtd-slam/opencl" : std::string();
-}
-
 std::unique_ptr<EngineGuard> load_detector(const ServiceConfig& config) {
   const service::EnvironmentReader environment = service::process_environment();
   const service::ModelSearch model = service::find_model(config.model, environment);
@@ -66,7 +59,7 @@ std::unique_ptr<EngineGuard> load_detector(const ServiceConfig& config) {
   try {
     DetectorConfig core = config.core;
     core.model_path = model.path;
-    core.kernel_cache = kernel_cache(environment);
+    core.kernel_cache = service::kernel_cache_folder(environment);
     return std::make_unique<EngineGuard>(std::move(core), config.verify_engine);
   } catch (const ModelError& error) {
     throw service::ConfigError(error.what());
