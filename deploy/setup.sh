@@ -38,7 +38,7 @@ test_packages=(
   fastddsgen default-jre-headless cyclonedds-tools
   libgtest-dev libgmock-dev libbenchmark-dev
   python3-opencv python3-rosbag python3-sensor-msgs
-  pocl-opencl-icd
+  pocl-opencl-icd libtorch-dev
   iproute2 nftables
 )
 

@@ -141,7 +141,8 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--model", options.model,
                       "Detector weights, ONNX (default: RTD_MODEL_DIR, then the user's cache)");
   command->add_option("--engine", options.engine,
-                      "What computes the detector's network: cpu, opencl, opencl:DEVICE, or auto: opencl on a GPU");
+                      "What computes the detector's network: cpu, opencl[:DEVICE], torch[:cuda[/fp16]], or auto: a GPU "
+                      "if there is one");
   command->add_option("--frames", options.frames, "End after this many frames");
   command->add_option("--map", options.map, "Continue the map in this file");
   command->add_option("--save-map", options.save_map, "Map file to write (default: map.rtdmap in the folder of --out)");

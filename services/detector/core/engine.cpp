@@ -10,13 +10,14 @@
 #include <optional>
 
 #include "services/detector/core/opencv_engine.hpp"
+#include "services/detector/core/torch_engine.hpp"
 
 namespace rtd::detector {
 namespace {
 
 using Kind = EngineChoice::Kind;
 
-constexpr const char* kOpenClPrefix = "opencl:";
+constexpr std::string_view kOpenClPrefix = "opencl:", kTorchPrefix = "torch:";
 
 struct FoundDevice {
   std::string name;
@@ -96,11 +97,15 @@ EngineChoice parse_engine(const std::string& text) {
   if (text == "auto") return {Kind::kAuto, {}};
   if (text == "cpu") return {Kind::kCpu, {}};
   if (text == "opencl") return {Kind::kOpenCl, {}};
-  if (text.starts_with(kOpenClPrefix)) return {Kind::kOpenCl, text.substr(std::string(kOpenClPrefix).size())};
-  throw EngineError("'" + text + "' is not an engine: use auto, cpu, opencl or opencl:DEVICE");
+  if (text == "torch") return {Kind::kTorch, "cpu"};
+  if (text.starts_with(kOpenClPrefix)) return {Kind::kOpenCl, text.substr(kOpenClPrefix.size())};
+  if (text.starts_with(kTorchPrefix)) return {Kind::kTorch, text.substr(kTorchPrefix.size())};
+  throw EngineError("'" + text + "' is not an engine: use auto, cpu, opencl, opencl:DEVICE, torch or torch:DEVICE");
 }
 
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice, const EngineModel& model) {
+  if (choice.kind == Kind::kTorch) return halve_when_full(make_torch_engine(model, choice.device));
+  if (choice.kind == Kind::kAuto && torch_sees_gpu()) return halve_when_full(make_torch_engine(model, "cuda"));
   if (choice.kind != Kind::kCpu) {
     if (const auto device = choose_device(choice.device, choice.kind == Kind::kAuto))
       return make_opencl(*device, model);

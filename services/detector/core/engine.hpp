@@ -23,18 +23,26 @@ class EngineError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A batch does not fit into the memory of the device; a smaller one may.
+class OutOfDeviceMemory : public EngineError {
+ public:
+  using EngineError::EngineError;
+};
+
 /// Which engine is asked for.
 struct EngineChoice {
   enum class Kind {
-    kAuto,    ///< OpenCL where a GPU has a driver for it, else the CPU
+    kAuto,    ///< CUDA by libtorch, else OpenCL where a GPU has a driver for it, else the CPU
     kCpu,     ///< OpenCV DNN
     kOpenCl,  ///< OpenCV DNN, any OpenCL device
+    kTorch,   ///< libtorch
   };
   Kind kind = Kind::kCpu;
-  std::string device;  ///< part of the device's name; empty: the first one
+  /// OpenCL: part of the device's name; empty: the first one. libtorch: "cpu", "cuda", "cuda:1", with "/fp16".
+  std::string device;
 };
 
-/// "auto", "cpu", "opencl" or "opencl:DEVICE". Throws EngineError naming these.
+/// "auto", "cpu", "opencl", "opencl:DEVICE", "torch" or "torch:DEVICE". Throws EngineError naming these.
 EngineChoice parse_engine(const std::string& text);
 
 /// A network as an engine takes it.
@@ -43,6 +51,7 @@ struct EngineModel {
   int planes = 0, planes_per_anchor = 0;  ///< of each head's output
   /// The planes of cells whose objectness does not reach it need not be computed but for the objectness.
   float min_objectness_logit = 0;
+  int threads = 1;           ///< of the CPU
   std::string kernel_cache;  ///< folder where OpenCL keeps what it has compiled and tuned; empty: none
 };
 
@@ -59,16 +68,21 @@ class Engine {
   virtual ~Engine() = default;
   /// "CPU (OpenCV DNN)", "pthread-cpu (OpenCL, OpenCV DNN)": for people.
   virtual const std::string& device() const = 0;
-  /// Outputs of the network, in the order of the file.
+  /// Outputs of the network.
   virtual std::size_t outputs() const = 0;
-  /// Runs the network on a blob (CV_32F, N x 3 x H x W, RGB / 255). Outputs that are no float tensor of four dimensions
+  /// Runs the network on a blob (CV_32F, N x 3 x H x W, RGB / 255). The order of the outputs is the engine's own, but
+  /// always the same. Outputs that are no float tensor of four dimensions
   /// have no logits. Valid until the next call. Throws cv::Exception for a network that cannot be run.
   virtual const std::vector<RawHead>& infer(const cv::Mat& blob) = 0;
 };
 
-/// Loads a network. Throws EngineError when the engine or its device is not there, cv::Exception for a network that is
-/// not understood.
+/// Loads a network. Throws EngineError when the engine or its device is not there or the engine lacks an operator,
+/// cv::Exception and OnnxGraphError for a network that is not understood. A batch that is too large for the memory of
+/// the device is computed in parts; device() then says so.
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice, const EngineModel& model);
+
+/// The engine with its batches halved as often as its device needs it (OutOfDeviceMemory).
+std::unique_ptr<Engine> halve_when_full(std::unique_ptr<Engine> engine);
 
 /// The OpenCL devices of this host, with what they are: "NVIDIA H200 (GPU)"; empty without a driver.
 std::vector<std::string> opencl_devices();

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <set>
-#include <span>
 #include <sstream>
+
+#include "services/detector/core/protobuf_wire.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -16,60 +17,9 @@ constexpr int kGraphOfModel = 7, kMetadataOfModel = 14, kKeyOfEntry = 1, kValueO
               kRawOfTensor = 9, kNodeOfGraph = 1, kInputOfNode = 1, kOutputOfNode = 2, kOperatorOfNode = 4,
               kAttributeOfNode = 5, kTensorOfAttribute = 5;
 constexpr std::uint64_t kFloat = 1, kInt64 = 7;
-enum WireType : int { kVarint = 0, kFixed64 = 1, kLengthDelimited = 2, kFixed32 = 5 };
 
-using Span = std::span<const std::uint8_t>;
-
-struct Field {
-  int number = 0;
-  std::uint64_t varint = 0;  ///< wire type kVarint
-  Span bytes;                ///< wire type kLengthDelimited
-};
-
-std::optional<Span> take_bytes(Span& span, std::uint64_t count) {
-  if (count > span.size()) return std::nullopt;
-  const Span taken = span.first(count);
-  span = span.subspan(count);
-  return taken;
-}
-
-std::optional<std::uint64_t> take_varint(Span& span) {
-  std::uint64_t value = 0;
-  for (int shift = 0; shift < 64 && !span.empty(); shift += 7) {
-    const std::uint8_t byte = take_bytes(span, 1)->front();
-    value |= std::uint64_t{byte & 0x7FU} << shift;
-    if ((byte & 0x80U) == 0) return value;
-  }
-  return std::nullopt;
-}
-
-/// The next field of a message; empty at its end or where it is malformed.
-std::optional<Field> take_field(Span& span) {
-  const std::optional<std::uint64_t> key = take_varint(span);
-  if (!key) return std::nullopt;
-  Field field{static_cast<int>(*key >> 3U & 0x1FFFFFFFU), 0, {}};
-  const int wire_type = static_cast<int>(*key & 7U);
-  std::optional<std::uint64_t> number;  // the value of a varint, the length of other fields
-  if (wire_type == kVarint || wire_type == kLengthDelimited) number = take_varint(span);
-  if (wire_type == kFixed64) number = 8;
-  if (wire_type == kFixed32) number = 4;
-  if (!number) return std::nullopt;
-  if (wire_type == kVarint) {
-    field.varint = *number;
-    return field;
-  }
-  const std::optional<Span> body = take_bytes(span, *number);
-  if (!body) return std::nullopt;
-  field.bytes = *body;
-  return field;
-}
-
-std::optional<Span> find_message(Span span, int number) {
-  while (const std::optional<Field> field = take_field(span)) {
-    if (field->number == number && field->bytes.data() != nullptr) return field->bytes;
-  }
-  return std::nullopt;
-}
+using protobuf::Field, protobuf::Span, protobuf::find_message, protobuf::take_field, protobuf::take_varint,
+    protobuf::text_of;
 
 /// Dimensions of a ValueInfoProto; 0 stands for "not fixed".
 std::vector<std::uint64_t> read_dimensions(Span value_info) {
@@ -129,10 +79,6 @@ std::uint64_t count_parameters(Span graph) {
       parameters += count_floats(field->bytes);
   }
   return parameters;
-}
-
-std::string text_of(const std::optional<Span>& span) {
-  return span ? std::string(span->begin(), span->end()) : std::string();
 }
 
 /// Whether a TensorProto of 64-bit integers begins with 0. They are raw, packed, or one varint each.

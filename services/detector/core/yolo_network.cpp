@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "services/detector/core/detector_config.hpp"
+#include "services/detector/core/onnx_graph.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -90,6 +91,8 @@ YoloNetwork::YoloNetwork(DetectorConfig config) : config_(std::move(config)) {
     infer(cv::Mat(std::vector<int>{1, 3, input_.height_px, input_.width_px}, CV_32F, cv::Scalar(0)));
   } catch (const cv::Exception& error) {
     fail(config_.model_path, "is broken or not understood by OpenCV (" + std::string(error.err) + ")");
+  } catch (const OnnxGraphError& error) {
+    fail(config_.model_path, error.what());
   }
 }
 
@@ -105,6 +108,7 @@ void YoloNetwork::load() {
                                                        .planes = planes,
                                                        .planes_per_anchor = planes_per_anchor(),
                                                        .min_objectness_logit = objectness_gate(config_.decode),
+                                                       .threads = config_.threads,
                                                        .kernel_cache = config_.kernel_cache});
   if (engine_->outputs() != config_.heads.size()) {
     fail(config_.model_path, "has " + std::to_string(engine_->outputs()) + " outputs, expected " +

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/agreement.hpp"
 #include "services/detector/core/engine_guard.hpp"
+#include "services/detector/core/torch_engine.hpp"
 #include "services/detector/core/yolo_network.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 
@@ -23,7 +25,12 @@ using ::testing::Not;
 using ::testing::ThrowsMessage;
 using vision::Detection;
 
-constexpr char kNoDevice[] = "needs an OpenCL device: apt-get install pocl-opencl-icd";
+/// Why an engine cannot be tested here; empty when it can.
+std::string absent(const std::string& engine) {
+  if (engine == "opencl" && opencl_devices().empty()) return "needs an OpenCL device: apt-get install pocl-opencl-icd";
+  if (engine == "torch" && torch_devices().empty()) return "needs the torch engine: apt-get install libtorch-dev";
+  return {};
+}
 
 class EngineTest : public ::testing::Test {
  protected:
@@ -31,20 +38,22 @@ class EngineTest : public ::testing::Test {
     std::filesystem::create_directories(folder_);
     config_.model_path = (folder_ / "tiny.onnx").string();
     config_.class_names = {"person", "box"};
-    config_.kernel_cache = (folder_ / "kernels").string();
+    config_.kernel_cache = folder_.string() + "_kernels";  // kept: OpenCV goes on to write there
     std::ofstream(config_.model_path, std::ios::binary) << test::tiny_network_onnx({});
   }
   ~EngineTest() override { std::filesystem::remove_all(folder_); }
 
   /// Largest difference of the logits that decoding looks at, for a blob of noise.
-  static double difference(const DetectorConfig& config) {
+  static double difference(const DetectorConfig& config, const std::string& engine) {
     DetectorConfig other = config;
-    other.engine = "opencl";
-    YoloNetwork cpu(config), opencl(other);
-    EXPECT_THAT(opencl.device(), HasSubstr("OpenCL"));
+    other.engine = engine;
+    YoloNetwork cpu(config), compared(other);
+    EXPECT_THAT(compared.device(), HasSubstr(engine == "torch" ? "libtorch" : "OpenCL"));
     cv::Mat blob(std::vector<int>{1, 3, cpu.input().height_px, cpu.input().width_px}, CV_32F);
     cv::RNG(5).fill(blob, cv::RNG::UNIFORM, 0.0, 1.0);
-    const std::vector<HeadLogits>&a = cpu.infer(blob), &b = opencl.infer(blob);
+    std::vector<HeadLogits> a = cpu.infer(blob), b = compared.infer(blob);
+    const auto by_stride = [](const HeadLogits& head) { return head.layout.stride_px; };
+    for (auto* heads : {&a, &b}) std::ranges::sort(*heads, std::ranges::less(), by_stride);  // each has its own order
     const std::size_t planes = 5 + cpu.config().class_names.size();
     double largest = 0;
     for (std::size_t head = 0; head < a.size(); ++head) {
@@ -65,8 +74,25 @@ class EngineTest : public ::testing::Test {
 TEST_F(EngineTest, names_are_read_and_wrong_ones_refused) {
   EXPECT_EQ(parse_engine("auto").kind, EngineChoice::Kind::kAuto);
   EXPECT_EQ(parse_engine("opencl:H200").device, "H200");
+  EXPECT_EQ(parse_engine("torch").device, "cpu");
+  EXPECT_EQ(parse_engine("torch:cuda:1/fp16").device, "cuda:1/fp16");
   EXPECT_THAT([] { parse_engine("cuda"); },
-              ThrowsMessage<EngineError>(HasSubstr("'cuda' is not an engine: use auto, cpu, opencl or opencl:DEVICE")));
+              ThrowsMessage<EngineError>(HasSubstr("'cuda' is not an engine: use auto, cpu, opencl, ")));
+}
+
+TEST_F(EngineTest, a_torch_library_that_does_not_fit_is_refused) {
+  const auto refusal = [this](const std::string& folder) -> std::string {
+    setenv(kEngineFolder, folder.c_str(), 1);
+    config_.engine = "torch";
+    const EngineGuard guard(config_, false);
+    unsetenv(kEngineFolder);
+    EXPECT_EQ(guard.detector().device(), "CPU (OpenCV DNN)");
+    return guard.fallback();
+  };
+  EXPECT_THAT(refusal(folder_.string()), HasSubstr("there is no torch engine"));
+  std::ofstream(folder_ / "librtd_engine_torch.so") << "no library";
+  EXPECT_THAT(refusal(folder_.string()), HasSubstr("cannot be loaded"));
+  EXPECT_THAT(refusal(OLD_ENGINE_FOLDER), HasSubstr("is of another version (0, needed is "));
 }
 
 TEST_F(EngineTest, a_device_that_is_not_there_is_an_error_that_says_which_are) {
@@ -97,23 +123,68 @@ TEST_F(EngineTest, auto_takes_the_cpu_where_there_is_no_gpu) {
   EXPECT_THAT(guard.fallback(), IsEmpty());
 }
 
-TEST_F(EngineTest, opencl_computes_what_the_cpu_computes) {
-  if (opencl_devices().empty()) GTEST_SKIP() << kNoDevice;
-  EXPECT_LT(difference(config_), 1e-4);
+class EachEngine : public EngineTest, public ::testing::WithParamInterface<const char*> {
+ protected:
+  void SetUp() override {
+    if (const std::string why = absent(GetParam()); !why.empty()) GTEST_SKIP() << why;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Engines, EachEngine, ::testing::Values("opencl", "torch"),
+                         [](const auto& engine) { return std::string(engine.param); });
+
+TEST_P(EachEngine, computes_what_the_cpu_computes) {
+  EXPECT_LT(difference(config_, GetParam()), 1e-4);
 }
 
-TEST_F(EngineTest, opencl_computes_the_real_network) {
-  const service::ModelSearch model = service::find_model("v5lite-e-raw-320x320.onnx", service::process_environment());
-  if (!model) GTEST_SKIP() << model.message;
-  if (opencl_devices().empty()) GTEST_SKIP() << kNoDevice;
-  DetectorConfig config;
-  config.model_path = model.path;
-  EXPECT_LT(difference(config), 1e-4);
+TEST_P(EachEngine, computes_the_real_networks) {
+  for (const std::string name : {"v5lite-e-raw-320x320.onnx", "v5lite-s-raw-480x640.onnx"}) {
+    if (name.starts_with("v5lite-s") && GetParam() == std::string("opencl")) continue;  // minutes to compile on a CPU
+    const service::ModelSearch model = service::find_model(name, service::process_environment());
+    if (!model) GTEST_SKIP() << model.message;
+    DetectorConfig config;
+    config.model_path = model.path;
+    EXPECT_LT(difference(config, GetParam()), 1e-4) << name;
+  }
 }
 
-TEST_F(EngineTest, the_guard_verifies_ten_images) {
-  if (opencl_devices().empty()) GTEST_SKIP() << kNoDevice;
-  config_.engine = "opencl";
+TEST_P(EachEngine, batches_hold_what_single_images_hold) {
+  std::ofstream(config_.model_path, std::ios::binary) << test::tiny_network_onnx({.free_batch = true});
+  config_.engine = GetParam();
+  Detector detector(config_);
+  std::vector<cv::Mat> images;
+  std::vector<std::vector<Detection>> alone;
+  for (int i = 0; i < 16; ++i) {
+    images.push_back(cv::Mat::zeros(64, 64, CV_8UC3));
+    images.back()(cv::Rect(8 * (i % 4), 8 * (i / 4), 8, 8)).setTo(cv::Scalar::all(255));
+    alone.push_back(detector.detect(images.back()));
+    EXPECT_THAT(alone.back(), Not(IsEmpty()));
+  }
+  const auto together = detector.detect_batch(images);
+  for (std::size_t i = 0; i < images.size(); ++i) EXPECT_EQ(disagreement(alone[i], together[i], 0.25), "") << i;
+}
+
+TEST_F(EngineTest, torch_names_an_operator_that_it_does_not_know) {
+  if (const std::string why = absent("torch"); !why.empty()) GTEST_SKIP() << why;
+  std::string onnx = test::tiny_network_onnx({});
+  for (std::size_t at = onnx.find("Conv"); at != std::string::npos; at = onnx.find("Conv", at))
+    onnx.replace(at, 4, "Cunv");
+  std::ofstream(config_.model_path, std::ios::binary) << onnx;
+  config_.engine = "torch";
+  EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<EngineError>(HasSubstr("the operator Cunv")));
+}
+
+TEST_F(EngineTest, torch_names_a_device_that_is_not_there) {
+  if (const std::string why = absent("torch"); !why.empty()) GTEST_SKIP() << why;
+  config_.engine = "torch:tpu";
+  EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<EngineError>(HasSubstr("use cpu, cuda or cuda:N")));
+  config_.engine = "torch:cpu/fp16";
+  EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<EngineError>(HasSubstr("needs a GPU")));
+  config_.engine = "torch:cuda:7";
+  EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<EngineError>(HasSubstr("CUDA")));
+}
+
+TEST_P(EachEngine, is_verified_with_ten_images) {
+  config_.engine = GetParam();
   EngineGuard guard(config_, true);
   cv::Mat image = cv::Mat::zeros(64, 64, CV_8UC3);
   image(cv::Rect(40, 24, 8, 8)).setTo(cv::Scalar::all(255));

@@ -19,6 +19,7 @@
 #include "services/detector/core/engine.hpp"
 #include "services/detector/core/evaluation/average_precision.hpp"
 #include "services/detector/core/evaluation/mask_recall.hpp"
+#include "services/detector/core/torch_engine.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -165,11 +166,13 @@ class EngineQuality : public DetectorQuality, public ::testing::WithParamInterfa
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Engines, EngineQuality,
-                         ::testing::Values(EngineTrial{"opencl", "v5lite-e-raw-320x320.onnx",
-                                                       [] { return !opencl_devices().empty(); },
-                                                       "needs an OpenCL device: apt-get install pocl-opencl-icd"}),
-                         [](const auto& trial) { return std::string(trial.param.engine); });
+INSTANTIATE_TEST_SUITE_P(
+    Engines, EngineQuality,
+    ::testing::Values(EngineTrial{"opencl", "v5lite-e-raw-320x320.onnx", [] { return !opencl_devices().empty(); },
+                                  "needs an OpenCL device: apt-get install pocl-opencl-icd"},
+                      EngineTrial{"torch", "v5lite-s-raw-480x640.onnx", [] { return !torch_devices().empty(); },
+                                  "needs the torch engine: apt-get install libtorch-dev"}),
+    [](const auto& trial) { return std::string(trial.param.engine); });
 
 TEST_P(EngineQuality, finds_on_coco_what_the_cpu_finds) {
   Detector cpu(config_);
