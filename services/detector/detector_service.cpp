@@ -52,13 +52,6 @@ RollConfig roll_config(const ServiceConfig& config) {
           config.derotate_min_deg * kRadPerDeg};
 }
 
-/// Compiling for a GPU takes minutes the first time; OpenCL keeps what it has compiled.
-std::string kernel_cache(const service::EnvironmentReader& environment) {
-  if (const auto cache = environment("XDG_CACHE_HOME"); cache && !cache->empty()) return *cache + "/rtd-slam/opencl";
-  const auto home = environment("HOME");
-  return home && !home->empty() ? *home + "/.cache/rtd-slam/opencl" : std::string();
-}
-
 std::unique_ptr<EngineGuard> load_detector(const ServiceConfig& config) {
   try {
     return std::make_unique<EngineGuard>(core_config(config), config.verify_engine);
@@ -85,7 +78,7 @@ DetectorConfig core_config(const ServiceConfig& config) {
   if (!model) throw service::ConfigError(model.message);
   DetectorConfig core = config.core;
   core.model_path = model.path;
-  core.kernel_cache = kernel_cache(environment);
+  core.kernel_cache = service::kernel_cache_folder(environment);
   return core;
 }
 
