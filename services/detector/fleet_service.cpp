@@ -8,36 +8,19 @@
 
 #include <algorithm>
 #include <array>
-#include <exception>
-#include <opencv2/imgcodecs.hpp>
 #include <thread>
 #include <utility>
 
 #include "common/service/log.hpp"
-#include "common/service/monotonic_clock.hpp"
-#include "common/vision/jpeg_size.hpp"
 
 namespace rtd::detector {
 namespace {
 
 constexpr std::chrono::milliseconds kLookAfter{50};  ///< robots come and go, others take over
-constexpr int kMostFailures = 20;                    // batches in a row
-constexpr std::int64_t kMostPixels = 3840 * 2160;
 
 std::string host_name() {
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
-
-/// Empty when they are broken, or so many that decoding them would cost the other robots time and memory.
-cv::Mat pixels_of(const msg::CompressedImage& jpeg) {
-  const cv::Size size = vision::jpeg_size(jpeg.data);
-  if (size.empty() || std::int64_t{size.width} * size.height > kMostPixels) return {};
-  try {
-    return cv::imdecode(jpeg.data, cv::IMREAD_COLOR);
-  } catch (const std::exception&) {  // data from outside never ends the process
-    return {};
-  }
 }
 
 }  // namespace
@@ -45,123 +28,44 @@ cv::Mat pixels_of(const msg::CompressedImage& jpeg) {
 FleetService::FleetService(const FleetConfig& config, service::Runtime& runtime, Inference inference)
     : config_(config),
       runtime_(runtime),
-      inference_(std::move(inference)),
       lane_options_{host_name(), config.stuck_after},
-      arrivals_(std::make_shared<FleetArrivals>(config.queue)),
-      handover_(std::make_shared<Handover<Batch>>()),
-      decoders_(config.decoders),
-      device_(inference_.device()),
+      pipeline_(std::make_shared<FleetPipeline>(config, std::move(inference), outputs())),
       finder_(runtime.bus_options) {
   runtime.heartbeat.watch_progress(config.stuck_after);
-  runtime.stop.on_stop([arrivals = arrivals_, handover = handover_] {
-    arrivals->close();
-    handover->close();
-  });
+  runtime.stop.on_stop([pipeline = pipeline_] { pipeline->close(); });
 }
 
 FleetService::~FleetService() {
   close_lanes();
 }
 
+FleetPipeline::Outputs FleetService::outputs() {
+  return {[this](const std::string& robot, const Answer& answer) {
+            if (const auto served = lane(robot)) served->publish(answer);
+          },
+          [this](const std::string& robot, const std::string& cause) {
+            if (const auto served = lane(robot)) served->count_broken(cause);
+          },
+          [this] {
+            runtime_.heartbeat.tick();
+            for (const auto& [robot, lane] : lanes()) lane->tick();
+          }};
+}
+
+/// An engine that fails every time ends the service: another one takes over or, begun again, finds it working.
 service::ExitCode FleetService::run() {
+  FleetPipeline::End end = FleetPipeline::End::kClosed;
   {
-    const std::jthread robots([this] { look_after_robots(); }), decoding([this] { prepare_batches(); });
-    detect_until_stopped();
+    const std::jthread robots([this] { look_after_robots(); });
+    end = pipeline_->run();
+    runtime_.stop.request_stop();
   }
   close_lanes();
-  SPDLOG_INFO("event=summary images={} batches={}", images_, batches_);
-  return failures_ < kMostFailures ? service::kOk : service::kRunFailed;
+  SPDLOG_INFO("event=summary images={} batches={}", pipeline_->images(), pipeline_->batches());
+  return end == FleetPipeline::End::kClosed ? service::kOk : service::kRunFailed;
 }
 
-/// The first stage: takes the newest images and decodes them when the network is about to be free.
-void FleetService::prepare_batches() {
-  std::size_t before = 0;  // images of the batch that the network has now
-  while (const auto began = handover_->wait_free()) {
-    handover_->wait_wanted(decode_at(*began, before));
-    const auto taken = arrivals_->take();
-    if (taken.empty()) return;
-    const std::int64_t started_ns = service::monotonic_ns();
-    Batch batch = decode(taken);
-    {
-      const std::lock_guard lock(inference_mutex_);
-      timing_.decoded(service::monotonic_ns() - started_ns);
-    }
-    if (batch.images.empty()) continue;
-    before = batch.images.size();
-    handover_->put(std::move(batch));
-  }
-}
-
-FleetService::Clock::time_point FleetService::decode_at(Clock::time_point began, std::size_t images) {
-  const std::lock_guard lock(inference_mutex_);
-  return began + timing_.delay(images);
-}
-
-FleetService::Batch FleetService::decode(const std::vector<FleetArrivals::Queue::Taken>& taken) {
-  std::vector<cv::Mat> decoded(taken.size());
-  decoders_.for_each(taken.size(), [&](std::size_t i) { decoded[i] = pixels_of(*taken[i].image); });
-  Batch batch;
-  for (std::size_t i = 0; i < taken.size(); ++i) {
-    if (decoded[i].empty()) {
-      if (const auto broken = lane(taken[i].robot)) broken->count_broken("not a JPEG image of at most 3840x2160 px");
-      continue;
-    }
-    batch.images.push_back({taken[i].robot, msg::to_ns(taken[i].image->header.stamp), taken[i].arrived_ns});
-    batch.pixels.push_back(std::move(decoded[i]));
-  }
-  return batch;
-}
-
-/// The second stage.
-void FleetService::detect_until_stopped() {
-  while (!runtime_.stop.stop_requested()) {
-    runtime_.heartbeat.tick();
-    for (const auto& [robot, lane] : lanes()) lane->tick();
-    if (const std::optional<Batch> batch = handover_->take_for(kLookAfter)) detect(*batch);
-  }
-}
-
-void FleetService::detect(const Batch& batch) {
-  const std::size_t count = batch.images.size();
-  Boxes found = infer(batch.pixels);
-  ++batches_;
-  images_ += count;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Image& image = batch.images[i];
-    const auto served = lane(image.robot);
-    if (!served) continue;
-    if (i < found.size()) {
-      served->publish({image.stamp_ns, image.arrived_ns, count, std::move(found[i])});
-    } else {
-      served->count_broken("the network failed");
-    }
-  }
-}
-
-/// Nothing when the engine fails, which may be for once: the next images come. An engine that fails every time, such as
-/// that of a GPU that is gone, ends the service: another one takes over or, begun again, finds it working.
-FleetService::Boxes FleetService::infer(std::span<const cv::Mat> images) {
-  const std::int64_t started_ns = service::monotonic_ns();
-  Boxes found;
-  try {
-    found = inference_.detect(images);
-    failures_ = 0;
-  } catch (const std::exception& error) {
-    if (failure_log_.pass()) SPDLOG_ERROR("event=inference_failed images={} cause=\"{}\"", images.size(), error.what());
-    if (++failures_ == kMostFailures) runtime_.stop.request_stop();
-  }
-  const std::lock_guard lock(inference_mutex_);
-  timing_.inferred(images.size(), service::monotonic_ns() - started_ns);
-  device_ = inference_.device();
-  return found;
-}
-
-std::string FleetService::device() const {
-  const std::lock_guard lock(inference_mutex_);
-  return device_;
-}
-
-/// Beside the stages: opening and closing topics takes time.
+/// Beside the pipeline: opening and closing topics takes time.
 void FleetService::look_after_robots() {
   for (const std::string& robot : config_.robots) open_lane(robot);
   do {
@@ -175,15 +79,15 @@ void FleetService::update_lanes() {
     for (const std::string& robot : found) open_lane(robot);
   const Lanes all = lanes();
   const auto served = std::ranges::count_if(all, [](const auto& entry) { return entry.second->reading(); });
-  const std::string work = fmt::format("{}, {} robot{}", device(), served, served == 1 ? "" : "s");
+  const std::string work = fmt::format("{}, {} robot{}", pipeline_->device(), served, served == 1 ? "" : "s");
   for (const auto& [robot, lane] : all) {
     const bool was_reading = lane->reading();
     try {
-      lane->update({found.contains(robot), arrivals_->dropped(robot), work});
+      lane->update({found.contains(robot), pipeline_->dropped(robot), work});
     } catch (const bus::BusError& error) {
       if (robot_log_.pass()) SPDLOG_ERROR("event=robot_failed robot=\"{}\" cause=\"{}\"", robot, error.what());
     }
-    if (was_reading && !lane->reading()) arrivals_->remove(robot);
+    if (was_reading && !lane->reading()) pipeline_->remove(robot);
   }
   report(all);
 }
@@ -195,8 +99,8 @@ void FleetService::open_lane(const std::string& robot) {
   try {
     auto opened =
         std::make_shared<RobotLane>(runtime_.bus, robot, lane_options_,
-                                    [arrivals = arrivals_, robot](std::shared_ptr<const msg::CompressedImage> jpeg) {
-                                      arrivals->put(robot, std::move(jpeg));
+                                    [pipeline = pipeline_, robot](std::shared_ptr<const msg::CompressedImage> jpeg) {
+                                      pipeline->put(robot, std::move(jpeg));
                                     });
     SPDLOG_INFO("event=robot_found robot=\"{}\"", robot);
     const std::lock_guard lock(lanes_mutex_);

@@ -9,24 +9,15 @@
 #include <memory>
 #include <mutex>
 #include <string>
-#include <vector>
 
 #include "common/msg/ros.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
-#include "common/vision/detection.hpp"
 #include "services/detector/core/fleet/answer_stats.hpp"
 #include "services/detector/core/fleet/duty.hpp"
+#include "services/detector/fleet/answer.hpp"
 
 namespace rtd::detector {
-
-/// An answer and what it was computed from.
-struct Answer {
-  std::int64_t stamp_ns = 0;    ///< of the image
-  std::int64_t arrived_ns = 0;  ///< CLOCK_MONOTONIC
-  std::size_t batch = 0;        ///< images computed together
-  std::vector<vision::Detection> detections;
-};
 
 /// One robot of several: its JPEG images in, its detections out, and its heartbeat of a service "detector", which says
 /// how it is served. While another detector serves the robot, it reads no images and sends no heartbeat (Duty).
