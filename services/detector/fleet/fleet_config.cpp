@@ -37,6 +37,10 @@ void require_combinable(const ServiceConfig& config, const service::Runtime& run
 
 }  // namespace
 
+int usual_decoders() {
+  return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kUsualDecoders));
+}
+
 FleetConfig fleet_config(const ServiceConfig& config, const service::Runtime& runtime) {
   require_combinable(config, runtime);
   FleetConfig fleet;
@@ -51,8 +55,7 @@ FleetConfig fleet_config(const ServiceConfig& config, const service::Runtime& ru
         robot));
   }
   fleet.queue.batch = static_cast<std::size_t>(config.batch);
-  const int cores = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kUsualDecoders));
-  fleet.decoders = config.decoders > 0 ? config.decoders : cores;
+  fleet.decoders = config.decoders > 0 ? config.decoders : usual_decoders();
   fleet.stuck_after = kStuckAfter + config.batch * kStuckAfterPerImage;
   return fleet;
 }

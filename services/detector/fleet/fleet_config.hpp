@@ -27,6 +27,9 @@ struct FleetConfig {
   std::chrono::milliseconds stuck_after{1500};  ///< no progress for longer: other detectors take over
 };
 
+/// Threads that decode, where nothing else is configured: one for each core, up to four.
+int usual_decoders();
+
 /// Throws ConfigError for what cannot be combined with several robots, and for names that no robot can have.
 FleetConfig fleet_config(const ServiceConfig& config, const service::Runtime& runtime);
 

@@ -149,5 +149,30 @@ TEST_F(DetectorBench, the_drawing_is_complete_also_without_figures) {
   EXPECT_THAT(detector_svg({}), HasSubstr("</svg>"));
 }
 
+TEST_F(DetectorBench, serves_robots_with_every_engine_and_batch) {
+  cv::imwrite((folder_ / "images/a.png").string(), images_[0]);
+  const Outcome done = run({"--images", (folder_ / "images").string(), "--robots", "3", "--batch", "1,4", "--rate",
+                            "20", "--seconds", "0.5", "--json", (folder_ / "robots.json").string()});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("robots that send 20 JPEG images a second each"));
+  std::ifstream file(folder_ / "robots.json");
+  const auto cases = nlohmann::json::parse(file)["robots"];
+  ASSERT_THAT(cases, SizeIs(2));
+  for (const auto& result : cases) {
+    EXPECT_EQ(result["robots"], 3);
+    EXPECT_NEAR(result["answered_hz"]["least"].get<double>(), 20, 6);
+    EXPECT_GT(result["latency_ms"]["p50"].get<double>(), 0);
+  }
+  EXPECT_EQ(cases[1]["batch"], 4);
+}
+
+TEST_F(DetectorBench, says_which_engines_serve_no_robots) {
+  options_.engines = {"opencl:no such device"};
+  const std::vector<FleetResult> results = bench_fleet(images_, options_, {.robots = {1}}, [] {});
+  ASSERT_THAT(results, SizeIs(2));
+  EXPECT_THAT(results[0].failure, HasSubstr("no such device"));
+  EXPECT_THAT(fleet_table(results, {}), HasSubstr("no such device"));
+}
+
 }  // namespace
 }  // namespace rtd::bench

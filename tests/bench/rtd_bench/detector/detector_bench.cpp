@@ -26,15 +26,6 @@ std::size_t rounds_of(std::size_t images, int batch) {
   return std::max(kFewestBatches, (images + size - 1) / size);
 }
 
-detector::DetectorConfig config_of(const DetectorOptions& options, const std::string& engine) {
-  detector::DetectorConfig config;
-  config.model_path = options.model_path;
-  config.engine = engine;
-  config.threads = options.threads;
-  config.kernel_cache = options.kernel_cache;
-  return config;
-}
-
 /// What the others are compared with.
 struct Reference {
   std::span<const cv::Mat> images;
@@ -119,6 +110,15 @@ void contest(const Reference& reference, const DetectorOptions& options, int bat
 
 }  // namespace
 
+detector::DetectorConfig config_of(const DetectorOptions& options, const std::string& engine) {
+  detector::DetectorConfig config;
+  config.model_path = options.model_path;
+  config.engine = engine;
+  config.threads = options.threads;
+  config.kernel_cache = options.kernel_cache;
+  return config;
+}
+
 double DetectorResult::ms_per_image() const {
   return percentile(batch_ms, 50) / what.batch;
 }
@@ -145,6 +145,8 @@ DetectorComparison bench_detector(std::span<const cv::Mat> images, const Detecto
                                 cpu.input_size(),
                                 images.size(),
                                 options.threads,
+                                {},
+                                {},
                                 {}};
   for (const int batch : options.batches) contest(reference, options, batch, on_batch, comparison.cases);
   return comparison;

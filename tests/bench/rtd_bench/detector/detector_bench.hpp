@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "services/detector/core/agreement.hpp"
+#include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/onnx_file.hpp"
+#include "tests/bench/rtd_bench/detector/fleet_bench.hpp"
 
 namespace rtd::bench {
 
@@ -26,6 +28,9 @@ struct DetectorOptions {
   int threads = 1;           ///< of engines that compute on the CPU
   std::string kernel_cache;  ///< folder for what OpenCL compiles; empty: none
 };
+
+/// For one of the engines.
+detector::DetectorConfig config_of(const DetectorOptions& options, const std::string& engine);
 
 /// What one engine did with batches of one size, each from the images to their boxes.
 struct DetectorResult {
@@ -48,6 +53,8 @@ struct DetectorComparison {
   std::size_t images = 0;
   int threads = 1;
   std::vector<DetectorResult> cases;
+  FleetLoad load;
+  std::vector<FleetResult> fleet;  ///< with several robots
 };
 
 /// Each engine with batches of each size. The engines take turns, batch by batch, so that all of them meet the same

@@ -64,6 +64,13 @@ void write_to(const std::string& file, const std::string& text, const std::strin
     throw service::ConfigError(option + " " + file + ": cannot be written; check that its folder exists");
 }
 
+void serve_robots(std::span<const cv::Mat> images, const DetectorOptions& options, const FleetLoad& load,
+                  DetectorComparison& comparison, std::ostream& err) {
+  service::Progress progress(err, "cases with robots", cases_of(options, load));
+  comparison.load = load;
+  comparison.fleet = bench_fleet(images, options, load, [&] { progress.advance(); });
+}
+
 int compare_engines(DetectorRequest& request, std::ostream& out, std::ostream& err) {
   const DetectorOptions options = complete(request);
   write_to(request.json_file, "", "--json");  // before the long work, so that a wrong path does not waste it
@@ -71,12 +78,15 @@ int compare_engines(DetectorRequest& request, std::ostream& out, std::ostream& e
   const std::vector<cv::Mat> images =
       request.image_folder.empty() ? render_images(request.frames) : read_folder(request.image_folder, request.frames);
   service::Progress progress(err, "batches", batches_of(images.size(), options));
-  const DetectorComparison comparison = bench_detector(images, options, [&] { progress.advance(); });
-  out << detector_table(comparison);
+  DetectorComparison comparison = bench_detector(images, options, [&] { progress.advance(); });
+  serve_robots(images, options, request.load, comparison, err);
+  out << detector_table(comparison) << fleet_table(comparison.fleet, comparison.load);
   write_to(request.json_file, detector_json(comparison), "--json");
   write_to(request.svg_file, detector_svg(comparison), "--svg");
-  const bool failed = std::ranges::any_of(comparison.cases, [](const auto& result) { return !result.failure.empty(); });
-  return failed ? service::kRunFailed : service::kOk;
+  const auto failed = [](const auto& result) { return !result.failure.empty(); };
+  return std::ranges::any_of(comparison.cases, failed) || std::ranges::any_of(comparison.fleet, failed)
+             ? service::kRunFailed
+             : service::kOk;
 }
 
 }  // namespace
@@ -98,6 +108,15 @@ void add_detector_command(CLI::App& app, DetectorRequest& request) {
       ->capture_default_str();
   bench->add_option("--threads", options.threads, "Threads of engines that compute on the CPU")
       ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  bench->add_option("--robots", request.load.robots, "Then also serve so many robots by their JPEG images, e.g. 1,8,30")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1000));
+  bench->add_option("--rate", request.load.rate_hz, "Images a second of each robot")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  bench->add_option("--seconds", request.load.seconds, "Time of each case with robots")
+      ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   bench->add_option("--json", request.json_file, "Also write all figures into this file");
   bench->add_option("--svg", request.svg_file, "Also draw a picture into this file");

@@ -17,6 +17,7 @@ struct DetectorRequest {
   std::string model;         ///< file, or a name that service::find_model() looks for; empty: the usual one
   std::string image_folder;  ///< empty: the rendered office
   std::size_t frames = 32;   ///< images at most
+  FleetLoad load;            ///< robots to be served
   std::string json_file, svg_file;
 };
 

@@ -43,6 +43,20 @@ nlohmann::json case_json(const DetectorResult& result) {
   return json;
 }
 
+nlohmann::json fleet_json(const FleetResult& result, const FleetLoad& load) {
+  nlohmann::json json{{"engine", result.engine}, {"batch", result.batch}, {"robots", result.robots}};
+  if (!result.failure.empty()) {
+    json["failure"] = result.failure;
+    return json;
+  }
+  json["device"] = result.device;
+  json["sent_hz"] = load.rate_hz;
+  json["answered_hz"] = {{"mean", result.mean_hz}, {"least", result.least_hz}};
+  json["latency_ms"] = {{"p50", result.latency_p50_ms}, {"p99", result.latency_p99_ms}};
+  json["batch_mean"] = result.batch_mean;
+  return json;
+}
+
 }  // namespace
 
 std::string detector_table(const DetectorComparison& comparison) {
@@ -69,6 +83,7 @@ std::string detector_json(const DetectorComparison& comparison) {
                       {"threads", comparison.threads},
                       {"cases", nlohmann::json::array()}};
   for (const DetectorResult& result : comparison.cases) json["cases"].push_back(case_json(result));
+  for (const FleetResult& result : comparison.fleet) json["robots"].push_back(fleet_json(result, comparison.load));
   return service::json_text(json) + '\n';
 }
 
