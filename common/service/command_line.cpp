@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdlib>
 #include <ctime>
 #include <iostream>
 #include <utility>
@@ -32,6 +33,12 @@ int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>
     return app.exit(error) == 0 ? kOk : kUsageOrConfig;
   }
   return work();
+}
+
+void restart_with(const char* variable, const char* value, char** argv) {
+  if (std::getenv(variable) != nullptr) return;
+  setenv(variable, value, 0);
+  execv("/proc/self/exe", argv);
 }
 
 InterruptSignals::InterruptSignals() {

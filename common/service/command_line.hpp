@@ -24,6 +24,10 @@ namespace rtd::service {
 /// code of `work`; 0 after --help, 2 for a wrong command line.
 int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work);
 
+/// Starts this program again with an environment variable that a library reads while it is loaded, before main(). Does
+/// nothing when the variable is set. Returns without it when the program cannot be started again.
+void restart_with(const char* variable, const char* value, char** argv);
+
 /// Returns the exit code of `work`. What it throws becomes a line on `err` and exit code 2 for an error of one of the
 /// types `Usage`, else 1.
 template <class... Usage>

@@ -48,6 +48,12 @@ ModelSearch find_model(const std::string& configured, const EnvironmentReader& e
   return {{}, "no detector weights: looked for " + name + " in " + looked + "; " + kAdvice};
 }
 
+std::string kernel_cache_folder(const EnvironmentReader& environment) {
+  if (const auto cache = environment("XDG_CACHE_HOME"); cache && !cache->empty()) return *cache + "/rtd-slam/opencl";
+  const auto home = environment("HOME");
+  return home && !home->empty() ? *home + "/.cache/rtd-slam/opencl" : std::string();
+}
+
 EnvironmentReader process_environment() {
   return [](const std::string& name) -> std::optional<std::string> {
     const char* const value = std::getenv(name.c_str());

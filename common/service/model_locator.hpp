@@ -26,6 +26,9 @@ struct ModelSearch {
 /// ($XDG_CACHE_HOME or $HOME/.cache)/rtd-slam.
 ModelSearch find_model(const std::string& configured, const EnvironmentReader& environment);
 
+/// The folder of the user's cache for what OpenCL compiles for a device; empty without XDG_CACHE_HOME and HOME.
+std::string kernel_cache_folder(const EnvironmentReader& environment);
+
 /// The environment of this process.
 EnvironmentReader process_environment();
 

@@ -1,23 +1,35 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
-#include <cstdlib>
-
+#include "common/service/command_line.hpp"
 #include "common/service/run_service.hpp"
 #include "services/detector/core/engine.hpp"
 #include "services/detector/detector_service.hpp"
+#include "services/detector/fleet_service.hpp"
 #include "services/detector/image_table.hpp"
 
-/// OpenCV reads the variable while it is loaded, before main(): so once more, with it.
-void allow_all_devices(char** argv) {
-  if (std::getenv(rtd::detector::kAllowAllDevices) != nullptr) return;
-  setenv(rtd::detector::kAllowAllDevices, "1", 0);
-  execv("/proc/self/exe", argv);  // returns only when it fails: then without OpenCL
+namespace {
+
+/// One robot or several, as configured.
+int run_detector(int argc, char** argv) {
+  using namespace rtd::detector;
+  ServiceConfig config;
+  const auto run = [&config](rtd::service::Runtime& runtime) {
+    if (config.robots.empty()) return DetectorService(config, runtime).run();
+    const FleetConfig fleet = fleet_config(config, runtime);
+    return FleetService(fleet, runtime, load_inference(config)).run();
+  };
+  return rtd::service::run_service(
+      {DetectorService::kName, DetectorService::kDescription,
+       [&config](CLI::App& app) { DetectorService::add_options(app, config); },
+       [&config](rtd::service::ConfigBinder& binder) { binder.section(DetectorService::kName, config); }, run,
+       [&config] { return config.robots.empty() ? std::string() : FleetService::kHeartbeatName; }},
+      argc, argv);
 }
 
+}  // namespace
+
 int main(int argc, char** argv) {
-  allow_all_devices(argv);
+  rtd::service::restart_with(rtd::detector::kAllowAllDevices, "1", argv);
   if (rtd::detector::asks_for_image_table(argc, argv)) return rtd::detector::print_image_table(argc, argv);
-  return rtd::service::run_service<rtd::detector::DetectorService>(argc, argv);
+  return run_detector(argc, argv);
 }

@@ -49,7 +49,7 @@ constexpr std::array kCommands = {
     ExternalCommand{"topics", "rtd-topics",
                     "List the topics of a DDS domain, measure rates, print messages, also of a recording", kTools},
     ExternalCommand{"keystore", "rtd-keystore", "Create and renew the keys for --secure", kTools},
-    ExternalCommand{"bench", "rtd-bench", "Measure feature extraction and transport beside a reference", kTools},
+    ExternalCommand{"bench", "rtd-bench", "Measure feature extraction, transport and detector engines", kTools},
     ExternalCommand{"camera", "rtd-camera", "Publish the frames of a source"},
     ExternalCommand{"detector", "rtd-detector", "Detect people and objects in images"},
     ExternalCommand{"filter", "rtd-filter", "Extract features and find those on moving objects"},

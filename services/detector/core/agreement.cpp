@@ -51,4 +51,10 @@ std::string disagreement(const std::vector<Detection>& expected, const std::vect
   return {};
 }
 
+void AgreementCount::add(const std::string& difference) {
+  ++images;
+  if (difference.empty()) ++agreeing;
+  if (first_difference.empty()) first_difference = difference;
+}
+
 }  // namespace rtd::detector

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,14 @@ struct AgreementLimits {
 /// when they agree. Boxes within `limits.score` of the confidence threshold may be missing from one.
 std::string disagreement(const std::vector<vision::Detection>& expected, const std::vector<vision::Detection>& actual,
                          double confidence_threshold, const AgreementLimits& limits = {});
+
+/// On how many images two engines agree.
+struct AgreementCount {
+  std::size_t images = 0, agreeing = 0;
+  std::string first_difference;  ///< of the first image on which they do not agree
+
+  /// Counts one image with what disagreement() says of it.
+  void add(const std::string& difference);
+};
 
 }  // namespace rtd::detector

@@ -28,11 +28,17 @@ json input_json(const InputReport& input) {
 
 json model_json(const ModelFacts& model) {
   return {{"name", model.name},
+          {"engine", model.engine},
+          {"device", model.device},
           {"size_mb", model.size_mb},
           {"parameters_m", model.parameters_m},
           {"input_width_px", model.input_width_px},
           {"input_height_px", model.input_height_px},
           {"median_ms", model.median_ms > 0 ? json(model.median_ms) : json()}};
+}
+
+json agreement_json(const detector::AgreementCount& count) {
+  return {{"images", count.images}, {"agreeing", count.agreeing}, {"first_difference", count.first_difference}};
 }
 
 json point_json(const std::optional<detector::OperatingPoint>& point) {
@@ -79,11 +85,11 @@ constexpr std::size_t kShownProblems = 10;
 
 std::string model_rows(const LabelledResults& results) {
   std::string text =
-      fmt::format("{:<28} {:>9} {:>7} {:>9} {:>7} {:>7} {:>9} {:>12} {:>9} {:>9} {:>9}\n", "model", "input", "MB",
+      fmt::format("{:<36} {:>9} {:>7} {:>9} {:>7} {:>7} {:>9} {:>12} {:>9} {:>9} {:>9}\n", "model", "input", "MB",
                   "params M", "ms", "AP50", "AP50:95", "person AP50", "high", "medium", "low");
   for (const LabelledResult& result : results.models) {
     const ModelFacts& model = result.model;
-    text += fmt::format("{:<28} {:>9} {:>7.2f} {:>9.3f} {:>7.1f} {:>7.3f} {:>9.3f} {:>12.3f}", model.name,
+    text += fmt::format("{:<36} {:>9} {:>7.2f} {:>9.3f} {:>7.1f} {:>7.3f} {:>9.3f} {:>12.3f}", model.title(),
                         fmt::format("{}x{}", model.input_width_px, model.input_height_px), model.size_mb,
                         model.parameters_m, model.median_ms, result.accuracy.ap50, result.accuracy.ap50_95,
                         result.accuracy.person.ap50());
@@ -95,7 +101,7 @@ std::string model_rows(const LabelledResults& results) {
     text += '\n';
   }
   return text +
-         "ms: median CPU time of one image on one thread; high, medium, low: AP50 of all classes of a motion level "
+         "ms: median CPU time of one image, all threads; high, medium, low: AP50 of all classes of a motion level "
          "taken as one\n";
 }
 
@@ -107,18 +113,35 @@ std::string point_text(const std::optional<detector::OperatingPoint>& point) {
 
 std::string threshold_rows(const LabelledResults& results) {
   const std::string wanted = fmt::format("recall {:.2f}", results.wanted_recall);
-  std::string text = fmt::format("\nconfidence threshold, high level\n{:<28} {:<36} {:<36} {}\n", "model", "best F1",
+  std::string text = fmt::format("\nconfidence threshold, high level\n{:<36} {:<36} {:<36} {}\n", "model", "best F1",
                                  wanted, "default");
   const double usual = detector::DecodeConfig{}.confidence_threshold;
   for (const LabelledResult& result : results.models) {
     const auto high = result.accuracy.groups.find("high");
     if (high == result.accuracy.groups.end()) continue;
     const auto& curve = high->second.curve;
-    text += fmt::format("{:<28} {:<36} {:<36} {}\n", result.model.name, point_text(best_f1(curve)),
+    text += fmt::format("{:<36} {:<36} {:<36} {}\n", result.model.title(), point_text(best_f1(curve)),
                         point_text(highest_threshold_with_recall(curve, results.wanted_recall)),
                         point_text(at_threshold(curve, usual)));
   }
   return text;
+}
+
+/// What the other engines find beside the CPU; nothing when only the CPU was asked for.
+std::string agreement_rows(const LabelledResults& results) {
+  std::string rows;
+  for (const LabelledResult& result : results.models) {
+    if (!result.agreement) continue;
+    const detector::AgreementCount& count = *result.agreement;
+    rows += fmt::format("{:<36} {} of {} images on {}{}\n", result.model.title(), count.agreeing, count.images,
+                        result.model.device,
+                        count.first_difference.empty() ? "" : "; first difference: " + count.first_difference);
+  }
+  if (rows.empty()) return rows;
+  const detector::AgreementLimits limits;
+  return fmt::format("\nsame boxes as the CPU: score {:g} or more, within {:g} px and {:g}\n",
+                     detector::DecodeConfig{}.confidence_threshold, limits.box_px, limits.score) +
+         rows;
 }
 
 std::string recall_row(const std::string& name, double roll_deg, double threshold, const detector::MaskRecall& recall) {
@@ -164,7 +187,7 @@ template <class Results>
 void draw_model_legend(Svg& svg, const Results& results) {
   std::vector<plot::LegendEntry> entries;
   for (std::size_t i = 0; i < results.models.size(); ++i)
-    entries.push_back({results.models[i].model.name, colour_of(i)});
+    entries.push_back({results.models[i].model.title(), colour_of(i)});
   plot::draw_legend(svg, {kArea.x, 28}, entries);
 }
 
@@ -193,6 +216,7 @@ json to_json(const LabelledResults& results) {
     json entry = model_json(result.model);
     entry["ap50"] = result.accuracy.ap50;
     entry["ap50_95"] = result.accuracy.ap50_95;
+    if (result.agreement) entry["agreement"] = agreement_json(*result.agreement);
     for (const auto& [name, accuracy] : result.accuracy.classes) entry["classes"][name] = boxes_json(accuracy);
     for (const auto& [name, accuracy] : result.accuracy.groups) {
       entry["levels"][name] = group_json(accuracy, results.wanted_recall);
@@ -214,15 +238,15 @@ json to_json(const MaskResults& results) {
 }
 
 std::string to_table(const LabelledResults& results) {
-  return model_rows(results) + threshold_rows(results);
+  return model_rows(results) + threshold_rows(results) + agreement_rows(results);
 }
 
 std::string to_table(const MaskResults& results) {
   std::string text = fmt::format("{:<36} {:>6} {:>10} {:>12} {:>14} {:>9} {:>8} {:>8}\n", "model", "roll", "confidence",
                                  "pixel recall", "images complete", "people", "boxes", "beside");
   for (const MaskResult& result : results.models) {
-    text += recall_rows(result.model.name, result.as_seen);
-    text += recall_rows(result.model.name + " upright", result.upright);
+    text += recall_rows(result.model.title(), result.as_seen);
+    text += recall_rows(result.model.title() + " upright", result.upright);
   }
   return text +
          "images complete: every marked area (400 px or more) has half of its pixels in boxes; beside: boxes on "

@@ -80,6 +80,11 @@ CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& optio
       ->capture_default_str();
   command->add_option("--names", options.names_file, "Class names, one per line (default: those of the model)");
   command->add_option("--model", options.models, "ONNX files, compared side by side (default: the usual model)");
+  command
+      ->add_option("--engine", options.engines,
+                   "cpu, opencl[:DEVICE], torch[:DEVICE] or auto; several: compared side by side")
+      ->delimiter(',')
+      ->capture_default_str();
   command->add_option("--recall", options.wanted_recall, "Wanted recall of the high motion level")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();

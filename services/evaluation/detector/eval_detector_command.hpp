@@ -21,17 +21,18 @@ struct RollRange {
 
 /// The command line of `rtd eval-detector`.
 struct EvalDetectorOptions {
-  std::string images;                 ///< folder
-  std::string labels;                 ///< folder: average precision
-  std::string masks;                  ///< folder: recall on masks
-  std::string label_format = "auto";  ///< auto, yolo, voc
-  std::string names_file;             ///< class names, one per line; empty: those of the model
-  std::vector<std::string> models;    ///< files or names; empty: the default model
-  std::string json, out_dir;          ///< empty = none
-  double wanted_recall = 0.6;         ///< of objects of the high motion level
-  int step = 1;                       ///< every n-th image
-  std::string class_name = "person";  ///< what the masks show
-  bool dark_masks = false;            ///< objects are black in the masks
+  std::string images;                          ///< folder
+  std::string labels;                          ///< folder: average precision
+  std::string masks;                           ///< folder: recall on masks
+  std::string label_format = "auto";           ///< auto, yolo, voc
+  std::string names_file;                      ///< class names, one per line; empty: those of the model
+  std::vector<std::string> models;             ///< files or names; empty: the default model
+  std::vector<std::string> engines = {"cpu"};  ///< each model with each of them (detector::parse_engine)
+  std::string json, out_dir;                   ///< empty = none
+  double wanted_recall = 0.6;                  ///< of objects of the high motion level
+  int step = 1;                                ///< every n-th image
+  std::string class_name = "person";           ///< what the masks show
+  bool dark_masks = false;                     ///< objects are black in the masks
   std::vector<double> thresholds = {detector::DecodeConfig{}.confidence_threshold};  ///< for the masks
   RollRange roll;
   bool derotate = false;  ///< masks: also with the image turned upright by the true roll
@@ -41,7 +42,8 @@ struct EvalDetectorOptions {
 CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& options);
 
 /// Evaluates. Writes tables to `out`, progress and problems with the input to `err`. Returns the exit code: 0; 2 for
-/// wrong usage, folders or models that are missing or contain nothing to evaluate, and files that cannot be written.
+/// wrong usage, folders, models, engines or devices that are missing, nothing to evaluate, and files that cannot be
+/// written.
 int run_eval_detector(const EvalDetectorOptions& options, std::ostream& out, std::ostream& err);
 
 }  // namespace rtd::eval

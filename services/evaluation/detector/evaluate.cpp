@@ -121,6 +121,27 @@ std::string level_of(const std::string& class_name) {
   return *level == vision::MotionLevel::kHigh ? "high" : *level == vision::MotionLevel::kMedium ? "medium" : "low";
 }
 
+/// The position of the same model on the CPU; its own when there is none.
+std::size_t reference_of(const std::vector<ModelUnderTest>& models, std::size_t index) {
+  for (std::size_t i = 0; i < models.size(); ++i)
+    if (models[i].engine() == "cpu" && models[i].path() == models[index].path()) return i;
+  return index;
+}
+
+/// How far a model on another engine finds the boxes of the same model on the CPU.
+std::optional<detector::AgreementCount> compare_engines(
+    const std::vector<ModelUnderTest>& models, const std::vector<std::vector<detector::EvaluatedImage>>& evaluated,
+    std::size_t index) {
+  const std::size_t reference = reference_of(models, index);
+  if (reference == index) return std::nullopt;
+  detector::AgreementCount count;
+  for (std::size_t i = 0; i < evaluated[index].size(); ++i) {
+    count.add(detector::disagreement(evaluated[reference][i].detections, evaluated[index][i].detections,
+                                     detector::DecodeConfig{}.confidence_threshold));
+  }
+  return count;
+}
+
 /// Runs every model on one image.
 void evaluate_image(const cv::Mat& image, const fs::path& path, const LabelFolder& labels,
                     std::vector<ModelUnderTest>& models, std::vector<std::vector<detector::EvaluatedImage>>& evaluated,
@@ -229,7 +250,8 @@ LabelledResults evaluate_labels(const EvalDetectorOptions& options, std::ostream
   }
   require_objects(options, results.input, evaluated.front());
   for (std::size_t m = 0; m < models.size(); ++m) {
-    results.models.push_back({models[m].facts(), detector::evaluate_detector(evaluated[m], level_of)});
+    results.models.push_back({models[m].facts(), detector::evaluate_detector(evaluated[m], level_of),
+                              compare_engines(models, evaluated, m)});
   }
   return results;
 }

@@ -5,10 +5,12 @@
 #include <cstddef>
 #include <iosfwd>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "services/detector/core/agreement.hpp"
 #include "services/detector/core/evaluation/average_precision.hpp"
 #include "services/detector/core/evaluation/mask_recall.hpp"
 #include "services/evaluation/detector/model_under_test.hpp"
@@ -27,6 +29,8 @@ struct InputReport {
 struct LabelledResult {
   ModelFacts model;
   detector::AccuracyReport accuracy;
+  /// Boxes of the usual confidence against those of the same model on the CPU, where that is compared too.
+  std::optional<detector::AgreementCount> agreement = {};
 };
 struct LabelledResults {
   InputReport input;

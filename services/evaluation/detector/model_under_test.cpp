@@ -15,9 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-double thread_cpu_ms() {
+/// All threads: OpenCL and libtorch compute in threads of their own.
+double process_cpu_ms() {
   timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
 }
 
@@ -30,29 +31,33 @@ std::string locate(const std::string& name) {
   return model.path;
 }
 
-detector::DetectorConfig config_of(const std::string& path, const std::vector<std::string>& class_names) {
-  detector::DetectorConfig config;
-  config.model_path = path;
-  config.class_names = class_names;
-  return config;
-}
-
 detector::DetectorConfig keep_from(detector::DetectorConfig config, double least_score) {
   config.decode.confidence_threshold = config.decode.objectness_threshold = least_score;
   return config;
 }
 
+ModelUnderTest load_model(const detector::DetectorConfig& config, double least_score) {
+  try {
+    return ModelUnderTest(config, least_score);
+  } catch (const detector::ModelError& error) {
+    throw service::ConfigError(error.what());
+  } catch (const detector::EngineError& error) {
+    throw service::ConfigError(std::string("--engine: ") + error.what());
+  }
+}
+
 }  // namespace
 
-ModelUnderTest::ModelUnderTest(const std::string& path, double least_score, const std::vector<std::string>& class_names)
-    : facts_{.name = fs::path(path).filename().string()},
-      detector_(keep_from(config_of(path, class_names), least_score)),
-      timed_(config_of(path, class_names)) {
-  const std::string bytes = io::read_text(path).value_or("");
+ModelUnderTest::ModelUnderTest(const detector::DetectorConfig& config, double least_score)
+    : facts_{.name = fs::path(config.model_path).filename().string(), .engine = config.engine},
+      detector_(keep_from(config, least_score)),
+      timed_(config) {
+  const std::string bytes = io::read_text(config.model_path).value_or("");
   const detector::OnnxFile file =
       detector::read_onnx_file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   facts_.size_mb = static_cast<double>(bytes.size()) * 1e-6;
   facts_.parameters_m = static_cast<double>(file.parameters) * 1e-6;
+  facts_.device = detector_.device();
   facts_.input_width_px = detector_.input_size().width_px;
   facts_.input_height_px = detector_.input_size().height_px;
 }
@@ -62,9 +67,9 @@ std::vector<vision::Detection> ModelUnderTest::detect(const cv::Mat& image, doub
 }
 
 void ModelUnderTest::take_time(const cv::Mat& image) {
-  const double started_ms = thread_cpu_ms();
+  const double started_ms = process_cpu_ms();
   timed_.detect(image);
-  ms_.push_back(thread_cpu_ms() - started_ms);
+  ms_.push_back(process_cpu_ms() - started_ms);
 }
 
 ModelFacts ModelUnderTest::facts() const {
@@ -78,17 +83,19 @@ ModelFacts ModelUnderTest::facts() const {
 }
 
 std::vector<ModelUnderTest> load_models(const EvalDetectorOptions& options, double least_score) {
-  std::vector<std::string> class_names;
+  detector::DetectorConfig config;
+  config.kernel_cache = service::kernel_cache_folder(service::process_environment());
   if (!options.names_file.empty()) {
-    class_names = detector::split_lines(io::read_text(options.names_file).value_or(""));
-    if (class_names.empty()) throw service::ConfigError("--names " + options.names_file + ": is missing or empty");
+    config.class_names = detector::split_lines(io::read_text(options.names_file).value_or(""));
+    if (config.class_names.empty())
+      throw service::ConfigError("--names " + options.names_file + ": is missing or empty");
   }
   std::vector<ModelUnderTest> models;
   for (const std::string& name : options.models.empty() ? std::vector<std::string>{""} : options.models) {
-    try {
-      models.emplace_back(locate(name), least_score, class_names);
-    } catch (const detector::ModelError& error) {
-      throw service::ConfigError(error.what());
+    config.model_path = locate(name);
+    for (const std::string& engine : options.engines) {
+      config.engine = engine;
+      models.push_back(load_model(config, least_score));
     }
   }
   return models;

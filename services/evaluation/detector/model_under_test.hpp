@@ -12,27 +12,34 @@
 
 namespace rtd::eval {
 
-/// Properties of a model file.
+/// Properties of a model file and of the engine that computes it.
 struct ModelFacts {
-  std::string name;  ///< file name
+  std::string name;    ///< file name
+  std::string engine;  ///< as asked for
+  std::string device;  ///< that the engine computes on
   double size_mb = 0;
   double parameters_m = 0;
   int input_width_px = 0, input_height_px = 0;
-  double median_ms = 0;  ///< CPU time of one image on one thread, independent of the load
+  double median_ms = 0;  ///< CPU time of one image, all threads of this process
+
+  /// The name, with the engine unless it is the CPU.
+  std::string title() const { return engine == "cpu" ? name : name + ", " + engine; }
 };
 
-/// One of the compared models.
+/// One of the compared models on one of the compared engines.
 class ModelUnderTest {
  public:
-  /// Keeps detections with a score of at least `least_score`. Without class names, those of the file are used. Throws
-  /// ModelError when the file is missing or broken.
-  ModelUnderTest(const std::string& path, double least_score, const std::vector<std::string>& class_names);
+  /// Loads the file that `config` names. Keeps detections with a score of at least `least_score`. Throws ModelError
+  /// when the file is missing or broken, EngineError when the engine or its device is not there.
+  ModelUnderTest(const detector::DetectorConfig& config, double least_score);
 
   std::vector<vision::Detection> detect(const cv::Mat& image, double roll_rad = 0);
   /// Measures the time of one image with the thresholds of rtd-detector.
   void take_time(const cv::Mat& image);
 
   ModelFacts facts() const;
+  const std::string& path() const { return detector_.config().model_path; }
+  const std::string& engine() const { return facts_.engine; }
   const std::vector<std::string>& class_names() const { return detector_.config().class_names; }
 
  private:
@@ -41,7 +48,8 @@ class ModelUnderTest {
   std::vector<double> ms_;
 };
 
-/// All models of the options, or the default one. Throws service::ConfigError when one is missing or broken.
+/// All models of the options, or the default one, on each engine. Throws service::ConfigError when a model is missing
+/// or broken, or an engine or its device is not there.
 std::vector<ModelUnderTest> load_models(const EvalDetectorOptions& options, double least_score);
 
 }  // namespace rtd::eval

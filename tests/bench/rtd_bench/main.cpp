@@ -3,10 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
+#include <string_view>
 
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/camera/core/source_factory.hpp"
+#include "services/detector/core/engine.hpp"
+#include "tests/bench/rtd_bench/detector/detector_command.hpp"
 #include "tests/bench/rtd_bench/features_bench.hpp"
 #include "tests/bench/rtd_bench/transport/transport_command.hpp"
 
@@ -19,6 +22,7 @@ struct Options {
   bench::FeaturesOptions features;
   bool json = false;
   bench::TransportRequest transport;
+  bench::DetectorRequest detector;
 };
 
 int run_features(const Options& options) {
@@ -40,6 +44,8 @@ int run_features(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const bool detects = argc > 1 && std::string_view(argv[1]) == "detector";
+  if (detects) service::restart_with(detector::kAllowAllDevices, "1", argv);
   Options options;
   CLI::App app{"Measure single parts beside a reference in the same run", "rtd bench"};
   app.require_subcommand(1);
@@ -55,10 +61,13 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 2000))
       ->capture_default_str();
   features->add_flag("--json", options.json, "Report as JSON");
+  bench::add_detector_command(app, options.detector);
   bench::add_transport_commands(app, options.transport);
-  app.footer("Exit codes: 0 done, 1 a case gave no figures, 2 the source cannot be read or the options are wrong");
+  app.footer(
+      "Exit codes: 0 done, 1 a case gave no figures, 2 a source or model cannot be read or the options are wrong");
   return service::run_command(app, argc, argv, [&] {
     if (const auto code = bench::run_transport(app, options.transport)) return *code;
+    if (const auto code = bench::run_detector(app, options.detector, std::cout, std::cerr)) return *code;
     return run_features(options);
   });
 }

@@ -193,6 +193,14 @@ TEST_P(EachEngine, is_verified_with_ten_images) {
   EXPECT_THAT(guard.fallback(), IsEmpty());
 }
 
+TEST(Disagreement, is_counted_by_image) {
+  AgreementCount count;
+  for (const char* difference : {"", "it finds a dog", "it finds a cat"}) count.add(difference);
+  EXPECT_EQ(count.images, 3U);
+  EXPECT_EQ(count.agreeing, 1U);
+  EXPECT_EQ(count.first_difference, "it finds a dog");
+}
+
 TEST(Disagreement, is_found_in_place_score_class_and_number) {
   const std::vector<Detection> boxes = {{"person", 0.8F, 10, 20, 30, 40}, {"chair", 0.5F, 100, 20, 30, 40}};
   const auto changed = [&](auto&& change) {

@@ -12,11 +12,14 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/service/model_locator.hpp"
+#include "services/detector/core/agreement.hpp"
 #include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/detector_config.hpp"
+#include "services/detector/core/engine.hpp"
 #include "services/detector/core/evaluation/average_precision.hpp"
 #include "services/detector/core/evaluation/mask_recall.hpp"
+#include "services/detector/core/torch_engine.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -25,6 +28,8 @@ namespace fs = std::filesystem;
 
 /// Confidence at which a person is found in every image of the target domain and little else is.
 constexpr double kPersonConfidence = 0.4;
+/// Of boxes that are published, and AP that is the same to three digits.
+constexpr double kPublishedConfidence = 0.25, kSameAp = 5e-4;
 
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -76,6 +81,25 @@ class DetectorQuality : public ::testing::Test {
     return recall;
   }
 
+  /// The images of coco_val128 with their labels and all boxes of each detector, down to the least score.
+  std::vector<std::vector<EvaluatedImage>> detect_on_coco(const std::vector<Detector*>& detectors) {
+    const fs::path folder = data_ / "coco_val128";
+    std::vector<std::vector<EvaluatedImage>> evaluated(detectors.size());
+    for (const fs::path& path : files_in(folder / "images")) {
+      const cv::Mat image = cv::imread(path.string());
+      std::ifstream file(folder / "labels" / path.stem().concat(".txt"));
+      const ImageLabels labels = parse_yolo_labels({path.stem(), {std::istreambuf_iterator<char>(file), {}}},
+                                                   {image.cols, image.rows}, coco_class_names());
+      EXPECT_TRUE(labels.problems.empty()) << labels.problems.front();
+      for (std::size_t i = 0; i < detectors.size(); ++i)
+        evaluated[i].push_back({labels.boxes, detectors[i]->detect(image)});
+    }
+    return evaluated;
+  }
+  static AccuracyReport accuracy_of(const std::vector<EvaluatedImage>& images) {
+    return evaluate_detector(images, [](const std::string&) { return ""; });
+  }
+
   fs::path data_;
   DetectorConfig config_;
 };
@@ -109,25 +133,62 @@ TEST_F(DetectorQuality, finds_people_at_any_roll_when_it_is_told) {
 }
 
 TEST_F(DetectorQuality, reaches_its_average_precision_on_coco) {
-  const fs::path folder = data_ / "coco_val128";
-  if (!fs::is_directory(folder / "images")) GTEST_SKIP() << "no coco_val128 in RTD_DATA_DIR";
+  if (!fs::is_directory(data_ / "coco_val128/images")) GTEST_SKIP() << "no coco_val128 in RTD_DATA_DIR";
   config_.decode.confidence_threshold = config_.decode.objectness_threshold = 0.001;
   Detector detector(config_);
-  std::vector<EvaluatedImage> images;
-  for (const fs::path& path : files_in(folder / "images")) {
-    const cv::Mat image = cv::imread(path.string());
-    std::ifstream file(folder / "labels" / path.stem().concat(".txt"));
-    const ImageLabels labels = parse_yolo_labels({path.stem(), {std::istreambuf_iterator<char>(file), {}}},
-                                                 {image.cols, image.rows}, coco_class_names());
-    EXPECT_TRUE(labels.problems.empty()) << labels.problems.front();
-    images.push_back({labels.boxes, detector.detect(image)});
-  }
-  const AccuracyReport report = evaluate_detector(images, [](const std::string&) { return ""; });
+  const AccuracyReport report = accuracy_of(detect_on_coco({&detector}).front());
   std::cout << "AP50 " << report.ap50 << ", AP50:95 " << report.ap50_95 << " over " << report.classes.size()
             << " classes, person AP50 " << report.person.ap50() << '\n';
   EXPECT_GE(report.ap50, 0.50);  // measured: 0.523, 0.341, person 0.671
   EXPECT_GE(report.ap50_95, 0.32);
   EXPECT_GE(report.person.ap50(), 0.65);
+}
+
+/// An engine, and the network that it computes here in a minute: pocl takes minutes for the default one.
+struct EngineTrial {
+  const char* engine;
+  const char* model;
+  bool (*available)();
+  const char* needs;
+};
+
+class EngineQuality : public DetectorQuality, public ::testing::WithParamInterface<EngineTrial> {
+ protected:
+  void SetUp() override {
+    DetectorQuality::SetUp();
+    if (IsSkipped()) return;
+    if (!fs::is_directory(data_ / "coco_val128/images")) GTEST_SKIP() << "no coco_val128 in RTD_DATA_DIR";
+    if (!GetParam().available()) GTEST_SKIP() << GetParam().needs;
+    const service::ModelSearch model = service::find_model(GetParam().model, service::process_environment());
+    if (!model) GTEST_SKIP() << model.message;
+    config_.model_path = model.path;
+    config_.decode.confidence_threshold = config_.decode.objectness_threshold = 0.001;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(
+    Engines, EngineQuality,
+    ::testing::Values(EngineTrial{"opencl", "v5lite-e-raw-320x320.onnx", [] { return !opencl_devices().empty(); },
+                                  "needs an OpenCL device: apt-get install pocl-opencl-icd"},
+                      EngineTrial{"torch", "v5lite-s-raw-480x640.onnx", [] { return !torch_devices().empty(); },
+                                  "needs the torch engine: apt-get install libtorch-dev"}),
+    [](const auto& trial) { return std::string(trial.param.engine); });
+
+TEST_P(EngineQuality, finds_on_coco_what_the_cpu_finds) {
+  Detector cpu(config_);
+  config_.engine = GetParam().engine;
+  Detector compared(config_);
+  ASSERT_NE(compared.device(), cpu.device());
+  const auto evaluated = detect_on_coco({&cpu, &compared});
+  AgreementCount count;
+  for (std::size_t i = 0; i < evaluated[0].size(); ++i)
+    count.add(disagreement(evaluated[0][i].detections, evaluated[1][i].detections, kPublishedConfidence));
+  EXPECT_EQ(count.agreeing, count.images) << count.first_difference;
+  const AccuracyReport expected = accuracy_of(evaluated[0]), actual = accuracy_of(evaluated[1]);
+  std::cout << compared.device() << ": AP50 " << actual.ap50 << ", AP50:95 " << actual.ap50_95 << "; CPU "
+            << expected.ap50 << ", " << expected.ap50_95 << '\n';
+  EXPECT_NEAR(actual.ap50, expected.ap50, kSameAp);
+  EXPECT_NEAR(actual.ap50_95, expected.ap50_95, kSameAp);
 }
 
 }  // namespace

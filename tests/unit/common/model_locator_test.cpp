@@ -94,5 +94,20 @@ TEST_F(ModelLocator, works_without_any_environment) {
   EXPECT_THAT(find_model("", environment({})).message, HasSubstr("deploy/setup.sh --models"));
 }
 
+TEST(KernelCache, lies_in_the_cache_of_the_user) {
+  std::map<std::string, std::string> variables;
+  const auto folder = [&] {
+    return kernel_cache_folder([&](const std::string& name) -> std::optional<std::string> {
+      const auto found = variables.find(name);
+      return found == variables.end() ? std::nullopt : std::optional(found->second);
+    });
+  };
+  EXPECT_EQ(folder(), "");
+  variables["HOME"] = "/home/anna";
+  EXPECT_EQ(folder(), "/home/anna/.cache/rtd-slam/opencl");
+  variables["XDG_CACHE_HOME"] = "/cache";
+  EXPECT_EQ(folder(), "/cache/rtd-slam/opencl");
+}
+
 }  // namespace
 }  // namespace rtd::service

@@ -98,6 +98,31 @@ TEST_F(EvalDetectorCommand, compares_models) {
   EXPECT_EQ(json()["models"][1]["ap50"], json()["models"][0]["ap50"]);  // both by the given names
 }
 
+TEST_F(EvalDetectorCommand, compares_engines) {
+  const DetectorOutcome outcome = run_on_labels({"--engine", "cpu,auto"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("tiny.onnx, auto"), HasSubstr("2 of 2 images")));
+  const auto models = json()["models"];
+  ASSERT_EQ(models.size(), 2U);
+  EXPECT_EQ(models[0]["device"], "CPU (OpenCV DNN)");
+  EXPECT_FALSE(models[0].contains("agreement"));
+  EXPECT_EQ(models[1]["engine"], "auto");
+  EXPECT_EQ(models[1]["agreement"]["agreeing"], 2);
+  EXPECT_NEAR(models[1]["ap50"], models[0]["ap50"], 1e-3);
+}
+
+TEST_F(EvalDetectorCommand, says_nothing_of_other_engines_when_only_the_cpu_is_asked_for) {
+  EXPECT_THAT(run_on_labels().out, AllOf(Not(HasSubstr("same boxes")), Not(HasSubstr("tiny.onnx,"))));
+}
+
+TEST_F(EvalDetectorCommand, refuses_engines_that_are_not_there) {
+  const DetectorOutcome wrong = run_on_labels({"--engine", "gpu"}), absent = run_on_labels({"--engine", "opencl:none"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("--engine: 'gpu' is not an engine: use "));
+  EXPECT_EQ(absent.code, 2);
+  EXPECT_THAT(absent.err, HasSubstr("--engine: there is no OpenCL device 'none'"));
+}
+
 TEST_F(EvalDetectorCommand, reads_voc_labels_by_itself) {
   std::filesystem::remove_all(folder_.path() / "labels");
   std::filesystem::create_directory(folder_.path() / "labels");

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
-#include <memory>
 #include <chrono>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 
 #include "common/concurrency/bounded_queue.hpp"
-#include "tests/bench/rtd_bench/transport/bench_clock.hpp"
+#include "tests/bench/rtd_bench/bench_clock.hpp"
 #include "tests/bench/rtd_bench/transport/bench_messages.hpp"
 #include "tests/bench/rtd_bench/transport/transport_worker.hpp"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <csignal>
 
-#include "tests/bench/rtd_bench/transport/bench_clock.hpp"
+#include "tests/bench/rtd_bench/bench_clock.hpp"
 #include "tests/bench/rtd_bench/transport/bench_messages.hpp"
 #include "tests/bench/rtd_bench/transport/transport_worker.hpp"
 
