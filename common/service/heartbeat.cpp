@@ -67,12 +67,16 @@ std::string duplicate_text(const msg::ServiceStatus& older, const std::string& r
 
 }  // namespace
 
-Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop)
-    : bus_(bus), stop_(stop), clocks_(service_name, PeerClocks::this_host_id()) {
+Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, Twins twins)
+    : bus_(bus),
+      stop_(stop),
+      twins_(twins),
+      started_ns_(realtime_ns()),
+      clocks_(service_name, PeerClocks::this_host_id()) {
   own_.service = std::move(service_name);
   own_.metrics.push_back({"host_id", PeerClocks::this_host_id()});
   own_.pid = getpid();
-  own_.started_ns = realtime_ns();
+  own_.started_ns = started_ns_;
   writer_ = bus.writer(bus::topics::kStatus);
   reader_ = bus.reader<msg::ServiceStatus>(
       bus::topics::kStatus, [this](const std::shared_ptr<const msg::ServiceStatus>& status) { receive(*status); });
@@ -136,7 +140,7 @@ void Heartbeat::receive(const msg::ServiceStatus& status) {
       const bool self = status.pid == own_.pid && status.started_ns == own_.started_ns;
       // Heartbeats are volatile: their sender is alive. The older instance stays, the younger one ends.
       // One heartbeat is not enough: any program may have sent it.
-      const bool newcomer = arrival_ns - own_.started_ns < kNewcomerForNs;
+      const bool newcomer = twins_ == Twins::kRefused && arrival_ns - own_.started_ns < kNewcomerForNs;
       const bool older =
           newcomer && !self && status.state != msg::ServiceState::kFinished && status.started_ns < own_.started_ns;
       const bool again = older && twin_ == std::pair(status.pid, status.started_ns);

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -125,12 +126,18 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   ExitCode code = kOk;
   std::string duplicate;
   {
-    Heartbeat heartbeat(*bus, definition.name, stop);
+    const std::string shared = definition.shared_name ? definition.shared_name() : std::string();
+    using Twins = Heartbeat::Twins;
+    Heartbeat heartbeat(*bus, shared.empty() ? definition.name : shared, stop,
+                        shared.empty() ? Twins::kRefused : Twins::kAllowed);
     problems.count_in(&heartbeat);
     const std::shared_ptr<void> at_end(nullptr, [&problems](void*) { problems.count_in(nullptr); });
     heartbeat.watch_progress(pace == Pace::kRealtime ? kStuckAfter : kStuckAfterOffline);
-    const NoPeersWarning warning(heartbeat, options,
-                                 [](const std::string& cause) { SPDLOG_WARN("event=no_peers cause=\"{}\"", cause); });
+    std::optional<NoPeersWarning> warning;
+    if (shared.empty()) {
+      warning.emplace(heartbeat, options,
+                      [](const std::string& cause) { SPDLOG_WARN("event=no_peers cause=\"{}\"", cause); });
+    }
     Runtime runtime{*bus, heartbeat, stop, pace, options};
     SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), options.domain, to_string(pace),
                 getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");

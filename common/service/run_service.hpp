@@ -24,6 +24,9 @@ struct ServiceDefinition {
   std::function<void(CLI::App&)> add_options;
   std::function<void(ConfigBinder&)> bind;
   std::function<ExitCode(Runtime&)> run;  ///< returns when stop is requested or the work is done
+  /// Called once the configuration is loaded. The name of its heartbeat where several processes of it may run in one
+  /// domain; "": the usual one, `name`, which belongs to one process.
+  std::function<std::string()> shared_name = {};
 };
 
 /// Parses the command line, loads the configuration, joins the bus, installs the signal handlers, runs the service.

@@ -24,7 +24,12 @@ namespace rtd::service {
 /// Thread-safe.
 class Heartbeat {
  public:
-  Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop);
+  /// What happens when an older process of the same name is found.
+  enum class Twins {
+    kRefused,  ///< this one asks for its stop
+    kAllowed,
+  };
+  Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, Twins twins = Twins::kRefused);
   ~Heartbeat();
 
   void set_state(msg::ServiceState state, const std::string& message = {});
@@ -45,6 +50,8 @@ class Heartbeat {
   void on_status(std::function<void(const msg::ServiceStatus&)> callback);
   /// Message when an older instance of the same service runs in this domain; empty otherwise.
   std::string duplicate() const;
+  /// What its heartbeats carry as ServiceStatus::started_ns.
+  std::int64_t started_ns() const { return started_ns_; }
 
  private:
   struct Peer {
@@ -65,6 +72,8 @@ class Heartbeat {
 
   bus::Bus& bus_;
   StopToken& stop_;
+  const Twins twins_;
+  const std::int64_t started_ns_;
   mutable std::mutex mutex_;
   PeerClocks clocks_;
   msg::ServiceStatus own_;

@@ -53,14 +53,8 @@ RollConfig roll_config(const ServiceConfig& config) {
 }
 
 std::unique_ptr<EngineGuard> load_detector(const ServiceConfig& config) {
-  const service::EnvironmentReader environment = service::process_environment();
-  const service::ModelSearch model = service::find_model(config.model, environment);
-  if (!model) throw service::ConfigError(model.message);
   try {
-    DetectorConfig core = config.core;
-    core.model_path = model.path;
-    core.kernel_cache = service::kernel_cache_folder(environment);
-    return std::make_unique<EngineGuard>(std::move(core), config.verify_engine);
+    return std::make_unique<EngineGuard>(core_config(config), config.verify_engine);
   } catch (const ModelError& error) {
     throw service::ConfigError(error.what());
   } catch (const EngineError& error) {
@@ -78,6 +72,16 @@ std::vector<std::unique_ptr<EngineGuard>> load_detectors(const ServiceConfig& co
 
 }  // namespace
 
+DetectorConfig core_config(const ServiceConfig& config) {
+  const service::EnvironmentReader environment = service::process_environment();
+  const service::ModelSearch model = service::find_model(config.model, environment);
+  if (!model) throw service::ConfigError(model.message);
+  DetectorConfig core = config.core;
+  core.model_path = model.path;
+  core.kernel_cache = service::kernel_cache_folder(environment);
+  return core;
+}
+
 void DetectorService::add_options(CLI::App& app, Config& config) {
   app.add_option("--model", config.model, "ONNX file (detector.model)");
   app.add_option("--input", config.input, "auto, frame or jpeg (detector.input)")
@@ -89,6 +93,14 @@ void DetectorService::add_options(CLI::App& app, Config& config) {
                "Compare the first ten images with the CPU, and go on with the CPU if they differ");
   app.add_option("--max-rate", config.max_rate_hz, "Realtime pace: at most this many detections a second, 0 = no limit")
       ->check(CLI::Range(0.0, 1000.0));
+  app.add_option("--robots", config.robots,
+                 "Serve several robots by their JPEG images: all, or names such as anna,ben (detector.robots)")
+      ->delimiter(',');
+  app.add_option("--batch", config.batch, "With --robots: images computed at once, at most (detector.batch)")
+      ->check(CLI::Range(1, 64));
+  app.add_option("--decoders", config.decoders,
+                 "With --robots: threads that decode JPEGs, 0 = up to four cores (detector.decoders)")
+      ->check(CLI::Range(0, 64));
   app.footer("rtd-detector --image FILE...  prints what it finds in image files and ends.");
 }
 

@@ -39,6 +39,9 @@ msg::Detection2DArray to_message(const std::vector<vision::Detection>& detection
 struct ServiceConfig {
   std::string model;
   std::string input = "auto";
+  std::vector<std::string> robots;
+  int batch = 8;
+  int decoders = 0;
   DetectorConfig core;
   bool verify_engine = false;
   int workers = 2;
@@ -52,6 +55,9 @@ struct ServiceConfig {
     binder.field("model", model, "ONNX file: a path, or a name looked for in RTD_MODEL_DIR and the user's cache");
     binder.choice("input", input, {"auto", "frame", "jpeg"},
                   "raw frames of this host, JPEG images of the network, or auto: where the camera is");
+    binder.field("robots", robots, "serve several robots by their JPEG images: [all], or names; []: one robot");
+    binder.field("batch", batch, {1, 64}, "several robots: images computed at once, at most");
+    binder.field("decoders", decoders, {0, 64}, "several robots: threads that decode JPEGs, 0 = up to four cores");
     core.bind(binder);
     binder.field("verify_engine", verify_engine, "compare the first ten images with the CPU");
     binder.field("workers", workers, {1, 16}, "pace asap: images worked on side by side, each with its own network");
@@ -66,6 +72,10 @@ struct ServiceConfig {
     binder.field("first_pitch_deg", first_pitch_deg, {-60.0, 60.0}, "how far the first camera looked down");
   }
 };
+
+/// The part of the configuration for the network, with the file found and the folder for compiled kernels. Throws
+/// ConfigError without weights.
+DetectorConfig core_config(const ServiceConfig& config);
 
 /// Images in, boxes out. Realtime pace: the newest image wins, what came meanwhile is dropped and counted. Asap and
 /// lockstep: every image gets its detections, in order, an empty array where nothing was found.

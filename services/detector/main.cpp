@@ -4,10 +4,32 @@
 #include "common/service/run_service.hpp"
 #include "services/detector/core/engine.hpp"
 #include "services/detector/detector_service.hpp"
+#include "services/detector/fleet_service.hpp"
 #include "services/detector/image_table.hpp"
+
+namespace {
+
+/// One robot or several, as configured.
+int run_detector(int argc, char** argv) {
+  using namespace rtd::detector;
+  ServiceConfig config;
+  const auto run = [&config](rtd::service::Runtime& runtime) {
+    if (config.robots.empty()) return DetectorService(config, runtime).run();
+    const FleetConfig fleet = fleet_config(config, runtime);
+    return FleetService(fleet, runtime, load_inference(config)).run();
+  };
+  return rtd::service::run_service(
+      {DetectorService::kName, DetectorService::kDescription,
+       [&config](CLI::App& app) { DetectorService::add_options(app, config); },
+       [&config](rtd::service::ConfigBinder& binder) { binder.section(DetectorService::kName, config); }, run,
+       [&config] { return config.robots.empty() ? std::string() : FleetService::kHeartbeatName; }},
+      argc, argv);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   rtd::service::restart_with(rtd::detector::kAllowAllDevices, "1", argv);
   if (rtd::detector::asks_for_image_table(argc, argv)) return rtd::detector::print_image_table(argc, argv);
-  return rtd::service::run_service<rtd::detector::DetectorService>(argc, argv);
+  return run_detector(argc, argv);
 }

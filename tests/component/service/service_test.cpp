@@ -61,6 +61,16 @@ TEST(Heartbeat, the_younger_of_two_equal_services_ends) {
   EXPECT_FALSE(stop_first.stop_requested());
 }
 
+TEST(Heartbeat, several_of_one_name_go_on_where_that_is_allowed) {
+  const auto bus = bus::connect(domain(12));
+  StopToken stop_first, stop_second;
+  Heartbeat first(*bus, "detector_box", stop_first, Heartbeat::Twins::kAllowed);
+  Heartbeat second(*bus, "detector_box", stop_second, Heartbeat::Twins::kAllowed);
+  EXPECT_LT(first.started_ns(), second.started_ns());
+  EXPECT_FALSE(stop_second.wait_for(600ms)) << second.duplicate();
+  EXPECT_FALSE(stop_first.stop_requested());
+}
+
 /// Malformed or malicious heartbeats end no service at work.
 TEST(Heartbeat, a_service_that_has_run_for_a_while_does_not_end_for_a_duplicate) {
   const auto bus = bus::connect(domain(11));

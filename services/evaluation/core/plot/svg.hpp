@@ -84,10 +84,4 @@ class Svg {
   std::string label_, body_;
 };
 
-/// Width and height from the header of a JPEG, {0, 0} when it is not one.
-struct PictureSize {
-  int width = 0, height = 0;
-};
-PictureSize jpeg_size(const std::vector<unsigned char>& bytes);
-
 }  // namespace rtd::plot

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/vision/jpeg_size.hpp"
 #include "services/evaluation/core/plot/chart.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 
@@ -225,7 +226,7 @@ std::string stage_chart(const RunSummary& summary) {
 }
 
 std::string sample_picture(const SampleFrame& sample) {
-  const auto [width, height] = plot::jpeg_size(sample.jpeg);
+  const auto [width, height] = vision::jpeg_size(sample.jpeg);
   if (width <= 0 || height <= 0) return "";
   plot::Svg svg(width, height, fmt::format("Frame {} with its features", sample.seq));
   svg.jpeg({0, 0, static_cast<double>(width), static_cast<double>(height)}, sample.jpeg);

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace rtd::detector {
+
+/// Which of several detectors serves a robot: since when (by its own clock), and who it is.
+struct Claim {
+  std::int64_t started_ns = 0;
+  double host_id = 0;
+  std::int64_t pid = 0;
+  auto operator<=>(const Claim&) const = default;
+};
+
+/// Decides whether this detector serves one robot, by the heartbeats of other detectors of that robot. A detector that
+/// serves goes on; a newcomer listens first and then stands by while another one serves. Two that serve at once, for
+/// example after their network was divided, agree: the greater claim steps down. Times are given. Not thread-safe.
+class Duty {
+ public:
+  enum class Role {
+    kListening,  ///< too early to know whether another one serves
+    kStandby,    ///< another one serves
+    kServing,
+  };
+
+  static constexpr std::int64_t kListenNs = 1'000'000'000;  ///< discovery of the other one, and its heartbeats
+  static constexpr std::int64_t kSilentNs = 800'000'000;    ///< four heartbeats missed: the other one is gone
+
+  explicit Duty(std::int64_t now_ns) : began_ns_(now_ns) {}
+
+  /// A heartbeat of another detector. `serves`: false when it ends or is hung.
+  void heard(const Claim& other, const std::string& name, bool serves, std::int64_t now_ns);
+  /// The role from now on. `own` is the claim of this detector once it serves; it counts only while it does.
+  Role update(const Claim& own, std::int64_t now_ns);
+
+  Role role() const { return role_; }
+  /// Who serves, for people: "gpubox (pid 42)"; empty unless in standby.
+  const std::string& other() const { return other_; }
+
+ private:
+  struct Other {
+    std::string name;
+    std::int64_t heard_ns = 0;
+    int times = 0;
+  };
+  bool must_yield(const Claim& own) const;
+
+  static constexpr std::size_t kMostOthers = 16;  // a writer could make up claims without end
+  /// Any program may have sent a single heartbeat.
+  static constexpr int kBelievedAfter = 2;
+
+  const std::int64_t began_ns_;
+  Role role_ = Role::kListening;
+  std::map<Claim, Other> others_;
+  std::string other_;
+};
+
+}  // namespace rtd::detector

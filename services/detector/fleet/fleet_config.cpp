@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/detector/fleet/fleet_config.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include "common/bus/robot.hpp"
+#include "common/service/config.hpp"
+#include "common/service/log.hpp"
+#include "services/detector/core/engine.hpp"
+#include "services/detector/detector_service.hpp"
+#include "services/detector/fleet/batch_detector.hpp"
+
+namespace rtd::detector {
+namespace {
+
+constexpr std::chrono::milliseconds kStuckAfter{1500}, kStuckAfterPerImage{250};
+constexpr unsigned kUsualDecoders = 4;
+constexpr const char* kAll = "all";
+
+void require_combinable(const ServiceConfig& config, const service::Runtime& runtime) {
+  const auto refuse = [](bool wrong, const char* what) {
+    if (wrong) throw service::ConfigError(std::string("detector.robots (--robots): ") + what);
+  };
+  refuse(runtime.pace != service::Pace::kRealtime,
+         "several robots are served at pace realtime; run one detector for each robot at asap or lockstep");
+  refuse(config.derotate == "on", "detector.derotate follows the poses of one robot: leave it off");
+  refuse(config.input == "frame", "raw frames never leave their host: leave detector.input at auto or jpeg");
+  refuse(config.max_rate_hz > 0, "detector.max_rate_hz (--max-rate) is for one robot: leave it at 0");
+  refuse(config.verify_engine, "--verify-engine is for one robot: check the engine with a run of its own first");
+  refuse(!runtime.bus.robot().empty(), "--robot names the one robot of a detector: leave one of the two out");
+}
+
+}  // namespace
+
+FleetConfig fleet_config(const ServiceConfig& config, const service::Runtime& runtime) {
+  require_combinable(config, runtime);
+  FleetConfig fleet;
+  fleet.robots = {config.robots.begin(), config.robots.end()};
+  if (fleet.robots.erase(kAll) > 0 && !fleet.robots.empty())
+    throw service::ConfigError("detector.robots (--robots): 'all' stands alone, beside it are names");
+  for (const std::string& robot : fleet.robots) {
+    if (bus::is_robot_name(robot)) continue;
+    throw service::ConfigError(fmt::format(
+        "detector.robots (--robots): '{}' cannot be a robot's name: use letters, digits and single underscores, a "
+        "letter first; 'all' also serves a robot without a name",
+        robot));
+  }
+  fleet.queue.batch = static_cast<std::size_t>(config.batch);
+  const int cores = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kUsualDecoders));
+  fleet.decoders = config.decoders > 0 ? config.decoders : cores;
+  fleet.stuck_after = kStuckAfter + config.batch * kStuckAfterPerImage;
+  return fleet;
+}
+
+Inference load_inference(const ServiceConfig& config) {
+  try {
+    const auto detector = std::make_shared<BatchDetector>(core_config(config), config.batch);
+    const InputSize input = detector->detector().input_size();
+    SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} device=\"{}\"",
+                detector->detector().config().model_path, input.width_px, input.height_px, config.core.threads,
+                detector->detector().device());
+    if (!detector->fallback().empty())
+      SPDLOG_WARN("event=engine_fallback asked={} device=\"{}\" cause=\"{}\"", config.core.engine,
+                  detector->detector().device(), detector->fallback());
+    if (!detector->no_batch().empty()) SPDLOG_WARN("event=no_batch cause=\"{}\"", detector->no_batch());
+    return {[detector](std::span<const cv::Mat> images) { return detector->detect(images); },
+            [detector] { return "computes on " + detector->device(); }};
+  } catch (const ModelError& error) {
+    throw service::ConfigError(error.what());
+  } catch (const EngineError& error) {
+    throw service::ConfigError(std::string("detector.engine: ") + error.what());
+  }
+}
+
+}  // namespace rtd::detector

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "common/msg/ros.hpp"
+#include "common/service/log.hpp"
+#include "common/service/runtime.hpp"
+#include "common/vision/detection.hpp"
+#include "services/detector/core/fleet/answer_stats.hpp"
+#include "services/detector/core/fleet/duty.hpp"
+
+namespace rtd::detector {
+
+/// An answer and what it was computed from.
+struct Answer {
+  std::int64_t stamp_ns = 0;    ///< of the image
+  std::int64_t arrived_ns = 0;  ///< CLOCK_MONOTONIC
+  std::size_t batch = 0;        ///< images computed together
+  std::vector<vision::Detection> detections;
+};
+
+/// One robot of several: its JPEG images in, its detections out, and its heartbeat of a service "detector", which says
+/// how it is served. While another detector serves the robot, it reads no images and sends no heartbeat (Duty).
+/// Thread-safe, but for update(), which belongs to one thread.
+class RobotLane {
+ public:
+  using OnImage = std::function<void(std::shared_ptr<const msg::CompressedImage>)>;
+  struct Options {
+    std::string host;                       ///< name of this host, for other detectors and people
+    std::chrono::milliseconds stuck_after;  ///< tick() missing for longer: the heartbeat says "hung"
+  };
+  /// What the lane is told at each update().
+  struct View {
+    bool camera_seen = false;   ///< a camera of this robot is in the domain
+    std::uint64_t dropped = 0;  ///< images that newer ones have replaced
+    std::string work;           ///< what computes the boxes and for how many robots, for people
+  };
+
+  /// `on_image` runs on a thread of the bus.
+  RobotLane(const bus::Bus& bus, std::string robot, Options options, OnImage on_image);
+  ~RobotLane();
+  RobotLane(const RobotLane&) = delete;
+  RobotLane& operator=(const RobotLane&) = delete;
+
+  /// Takes over, stands by, opens or closes the reader of images, and reports. To be called often.
+  void update(const View& view);
+  /// The thread that computes the boxes goes on.
+  void tick();
+  /// Publishes, if the lane still serves the robot.
+  void publish(const Answer& answer);
+  /// An image could not be used.
+  void count_broken(const std::string& cause);
+
+  bool serving() const { return started_ns_ != 0; }
+  /// Whether images may come: it serves a robot whose camera is there, or was until a moment ago.
+  bool reading() const { return reading_; }
+  /// Whether its camera was there and has left.
+  bool gone() const { return gone_; }
+  /// "anna", "standby for anna: gpubox (pid 42) serves it": for people.
+  std::string description() const;
+
+  static constexpr std::int64_t kGoneAfterNs = 5'000'000'000;  ///< without a camera for so long: images are not read
+
+ private:
+  void receive(const msg::ServiceStatus& status);
+  void take_over();
+  void step_down();
+  void follow_camera(bool seen, std::int64_t now_ns);
+  void report(const View& view, std::int64_t now_ns);
+  std::string name() const;
+
+  const std::string robot_;
+  const Options options_;
+  const OnImage on_image_;
+  const std::shared_ptr<bus::Bus> bus_;
+  bus::Writer<msg::Detection2DArray> detections_;
+
+  mutable std::mutex duty_mutex_;
+  Duty duty_;
+  std::atomic<std::int64_t> started_ns_{0};  ///< of the own heartbeat; 0: does not serve
+  std::atomic<bool> reading_{false}, gone_{false};
+
+  std::mutex mutex_;               ///< guards what follows
+  service::StopToken twin_found_;  ///< the heartbeat's; Duty decides
+  std::unique_ptr<service::Heartbeat> heartbeat_;
+  AnswerStats stats_;
+  std::uint64_t answered_ = 0, broken_ = 0;
+  service::RateLimit broken_log_{std::chrono::seconds(1)};
+
+  bus::Reader<msg::CompressedImage> jpegs_;  ///< of update()
+  std::int64_t camera_seen_ns_ = 0;          ///< last time; 0: never
+  bus::Reader<msg::ServiceStatus> statuses_;
+};
+
+}  // namespace rtd::detector

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/detector/fleet/batch_detector.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "services/detector/core/engine.hpp"
+#include "tests/support/detector/tiny_network.hpp"
+
+namespace rtd::detector {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+class BatchDetectorTest : public ::testing::Test {
+ protected:
+  ~BatchDetectorTest() override { std::filesystem::remove(model_); }
+
+  DetectorConfig config(const test::TinyNetwork& network) const {
+    std::ofstream(model_, std::ios::binary) << test::tiny_network_onnx(network);
+    DetectorConfig config;
+    config.model_path = model_;
+    config.class_names = {"person", "box"};
+    return config;
+  }
+  /// Two images of different sizes; only the second one has something to find.
+  static void expect_both_answered(BatchDetector& detector) {
+    std::vector<cv::Mat> images = {cv::Mat::zeros(64, 64, CV_8UC3), cv::Mat::zeros(128, 128, CV_8UC3)};
+    images[1](cv::Rect(80, 48, 16, 16)).setTo(cv::Scalar::all(255));
+    const auto found = detector.detect(images);
+    ASSERT_THAT(found, SizeIs(2));
+    EXPECT_THAT(found[0], IsEmpty());
+    EXPECT_THAT(found[1], SizeIs(1));
+  }
+
+  const std::string model_ =
+      (std::filesystem::temp_directory_path() /
+       (std::string("rtd_batch_detector_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".onnx"))
+          .string();
+};
+
+TEST_F(BatchDetectorTest, computes_images_of_different_sizes_at_once) {
+  BatchDetector detector(config({.free_batch = true}), 4);
+  EXPECT_EQ(detector.no_batch(), "");
+  EXPECT_EQ(detector.device(), "CPU (OpenCV DNN)");
+  expect_both_answered(detector);
+}
+
+TEST_F(BatchDetectorTest, computes_one_by_one_with_a_network_of_one_image) {
+  BatchDetector detector(config({}), 4);
+  EXPECT_THAT(detector.no_batch(), HasSubstr("--free-batch"));
+  EXPECT_THAT(detector.device(), HasSubstr("one image at a time"));
+  expect_both_answered(detector);
+}
+
+TEST_F(BatchDetectorTest, continues_on_the_cpu_without_the_engine_asked_for) {
+  DetectorConfig without = config({.free_batch = true});
+  without.engine = "opencl:no such device";
+  BatchDetector detector(without, 4);
+  EXPECT_THAT(detector.fallback(), Not(IsEmpty()));
+  EXPECT_THAT(detector.device(), HasSubstr("CPU (OpenCV DNN) in place of the engine asked for: "));
+  expect_both_answered(detector);
+  without.engine = "abacus";
+  EXPECT_THROW(BatchDetector(without, 4), EngineError);
+}
+
+}  // namespace
+}  // namespace rtd::detector
