@@ -11,10 +11,10 @@ namespace {
 
 using Roles = std::vector<std::string_view>;
 
-const Roles kServices = {"camera", "detector", "filter", "slam", "dense", "record", "replay", "viewer"};
+const Roles kServices = {"camera", "detector", "filter", "slam", "dense", "record", "replay", "viewer", "link"};
 const Roles kFrameReaders = {"filter", "detector", "dense", "launcher", "viewer"};
-/// They read the results.
-const Roles kOnlookers = {"viewer", "observer"};
+/// They read the results; a link also writes them, in the domain of the fleet.
+const Roles kOnlookers = {"viewer", "observer", "link"};
 
 Roles operator+(Roles roles, const Roles& further) {
   roles.insert(roles.end(), further.begin(), further.end());
@@ -34,17 +34,17 @@ const std::vector<TopicRoles>& topic_roles() {
       {kFrame848.name, {"camera"}, kFrameReaders},
       {kFrame1280.name, {"camera"}, kFrameReaders},
       {kFrame1920.name, {"camera"}, kFrameReaders},
-      {kColorJpeg.name, {"camera"}, Roles{"detector"} + kOnlookers},
-      {kCameraInfo.name, {"camera"}, kOnlookers},
-      {kDetections.name, {"detector"}, Roles{"filter"} + kOnlookers},
+      {kColorJpeg.name, {"camera", "link"}, Roles{"detector"} + kOnlookers},
+      {kCameraInfo.name, {"camera", "link"}, kOnlookers},
+      {kDetections.name, {"detector", "link"}, Roles{"filter"} + kOnlookers},
       {kDynamicMask.name, {"filter"}, Roles{"dense"} + kOnlookers},
       {kFeatures.name, {"filter"}, {"slam", "launcher", "viewer"}},
       {kKeyframes.name, {"slam"}, {"filter", "dense", "viewer"}},
       {kTracking.name, {"slam"}, {"camera", "filter", "dense", "detector", "launcher", "viewer"}},
       {kStatus.name, kServices, kServices + Roles{"launcher", "observer"}},
-      {kOdometry.name, {"slam"}, kOnlookers},
-      {kPose.name, {"slam"}, kOnlookers},
-      {kTf.name, {"slam"}, kOnlookers},
+      {kOdometry.name, {"slam", "link"}, kOnlookers},
+      {kPose.name, {"slam", "link"}, kOnlookers},
+      {kTf.name, {"slam", "link"}, kOnlookers},
       {kPath.name, {"slam"}, kOnlookers},
       {kMapPoints.name, {"slam"}, kOnlookers},
       {kDensePoints.name, {"dense"}, kOnlookers},
@@ -63,8 +63,8 @@ const std::vector<TopicRoles>& topic_roles() {
 }
 
 const std::vector<std::string>& roles() {
-  static const std::vector<std::string> kRoles = {"camera", "detector", "filter", "slam",   "dense",   "record",
-                                                  "replay", "launcher", "topics", "viewer", "observer"};
+  static const std::vector<std::string> kRoles = {"camera", "detector", "filter", "slam",   "dense",    "record",
+                                                  "replay", "launcher", "topics", "viewer", "observer", "link"};
   return kRoles;
 }
 

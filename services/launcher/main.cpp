@@ -57,6 +57,7 @@ constexpr std::array kCommands = {
     ExternalCommand{"dense", "rtd-dense", "Fuse a dense static map"},
     ExternalCommand{"record", "rtd-record", "Record topics to MCAP files; recover and join recordings"},
     ExternalCommand{"replay", "rtd-replay", "Replay a recording"},
+    ExternalCommand{"link", "rtd-link", "Pass a robot's poses, images and detections to and from a fleet's domain"},
 };
 
 /// The names of installed executables rtd-NAME that the table does not have.

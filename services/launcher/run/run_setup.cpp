@@ -118,9 +118,11 @@ void choose_detector(RunSetup& setup) {
     return;
   }
   if (setup.detector == "remote") {
-    if (setup.bus_options.network.loopback_only)
+    // A link brings the boxes to a robot whose own domain is limited to its host.
+    if (setup.bus_options.network.loopback_only && setup.bus_options.robot.empty())
       throw ConfigError(
-          "--detector remote: the bus is limited to this host, add --profile lan or wifi (docs/two-hosts.md)");
+          "--detector remote: the bus is limited to this host, add --profile lan or wifi (docs/two-hosts.md), or use "
+          "rtd link and --robot NAME (docs/gpu-box.md)");
     setup.remote_detector = true;
     setup.detector_note = "on another host";
     return;

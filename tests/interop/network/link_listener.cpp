@@ -4,7 +4,7 @@
 // link_listener DOMAIN VENDOR FILE [PROFILE]: listens on the first host until SIGINT, then writes what came into FILE,
 // a line each: `detection STAMP_NS MONOTONIC_NS`, `pose SEQ MONOTONIC_NS LATENCY_NS`, `frame SEQ MONOTONIC_NS`. Says on
 // stdout when it listens and when the first detections came. PROFILE `remote`: as on another host, raw frames and
-// features only.
+// features only. PROFILE `robot=NAME`: topics of that robot, in a domain that is limited to its host.
 #include <signal.h>
 
 #include <cstdio>
@@ -13,6 +13,7 @@
 #include <mutex>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include "common/bus/bus_factory.hpp"
 #include "common/service/monotonic_clock.hpp"
@@ -91,6 +92,11 @@ int main(int argc, char** argv) try {
   const bool elsewhere = argc > 4 && std::string(argv[4]) == "remote";
   rtd::bus::BusOptions options = rtd::bus::network_options(argv);
   if (elsewhere) options.network.peers = {"10.99.0.1"};
+  constexpr std::string_view kRobot = "robot=";
+  if (argc > 4 && std::string_view(argv[4]).starts_with(kRobot)) {
+    options.robot = argv[4] + kRobot.size();
+    options.network = {};
+  }
   {
     const auto bus = rtd::bus::connect(options);
     elsewhere ? rtd::bus::listen_elsewhere(*bus, book, ends) : rtd::bus::listen_on_first_host(*bus, book, ends);

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/link/core/link_rules.hpp"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "common/bus/message_cdr.hpp"
+#include "common/bus/network.hpp"
+#include "common/bus/robot.hpp"
+#include "common/bus/topics.hpp"
+#include "common/msg/status.hpp"
+#include "common/ros2/names.hpp"
+
+namespace rtd::link {
+namespace {
+
+constexpr std::string_view kIn = "in:";
+
+bool matches(const std::vector<std::string>& patterns, const std::string& dds_topic) {
+  const std::string unnamed = bus::split_robot(dds_topic).topic;
+  const std::array names = {dds_topic, ros2::ros_topic(dds_topic), unnamed, ros2::ros_topic(unnamed)};
+  return std::ranges::any_of(patterns, [&](const std::string& pattern) {
+    return std::ranges::any_of(names,
+                               [&](const std::string& name) { return fnmatch(pattern.c_str(), name.c_str(), 0) == 0; });
+  });
+}
+
+}  // namespace
+
+const std::vector<std::string>& default_rules() {
+  static const std::vector<std::string> kRules = {
+      bus::topics::kColorJpeg.name, bus::topics::kCameraInfo.name, bus::topics::kPose.name,
+      bus::topics::kOdometry.name,  bus::topics::kTf.name,         std::string(kIn) + bus::topics::kDetections.name};
+  return kRules;
+}
+
+LinkRules::LinkRules(std::string robot, const std::vector<std::string>& rules)
+    : robot_(std::move(robot)), heartbeats_(bus::topic_of_robot(bus::topics::kStatus.name, robot_)) {
+  for (const std::string& rule : rules) {
+    const bool in = rule.starts_with(kIn);
+    const std::string pattern = in ? rule.substr(kIn.size()) : rule;
+    if (pattern.empty()) throw RuleError("--topics '" + rule + "': name a topic, e.g. /slam/pose or in:/goal");
+    if (bus::stays_on_host(ros2::dds_topic(pattern)))
+      throw RuleError("--topics " + rule + ": raw frames and features never leave their host; images pass as JPEG: " +
+                      bus::topics::kColorJpeg.name);
+    (in ? in_ : out_).push_back(pattern);
+  }
+}
+
+bool LinkRules::allows(Direction direction, const std::string& dds_topic) const {
+  if (is_heartbeat(dds_topic)) return true;
+  if (bus::stays_on_host(dds_topic) || !bus::concerns_robot(dds_topic, robot_)) return false;
+  return matches(direction == Direction::kToFleet ? out_ : in_, dds_topic);
+}
+
+bool LinkRules::passes(Direction direction, const std::string& dds_topic, std::span<const std::byte> cdr) const {
+  if (direction == Direction::kToFleet || !is_heartbeat(dds_topic)) return true;
+  msg::ServiceStatus status;
+  const ros::Bytes bytes{reinterpret_cast<const std::uint8_t*>(cdr.data()), cdr.size()};
+  return bus::read_cdr(bytes, status) && (status.service == "detector" || status.service == "link");
+}
+
+}  // namespace rtd::link
