@@ -17,7 +17,7 @@ namespace {
 
 using service::ConfigError;
 
-constexpr std::chrono::milliseconds kTick{100};
+constexpr std::chrono::milliseconds kTick{20};  // a robot whose box has just come waits for two of them
 constexpr std::int64_t kReportPeriodNs = 5'000'000'000, kPatienceNs = 5'000'000'000;
 
 LinkRules rules_of(const ServiceConfig& config, const service::Runtime& runtime) {

@@ -36,7 +36,7 @@ class OneWay {
   OneWay(const OneWay&) = delete;
   OneWay& operator=(const OneWay&) = delete;
 
-  /// Opens and closes readers as the other side wants them. To be called a few times a second, by one thread.
+  /// Opens and closes readers as the other side wants them. To be called often, by one thread.
   void tick();
   std::vector<Passed> passed() const;
 

@@ -28,8 +28,10 @@ class Duty {
     kServing,
   };
 
-  static constexpr std::int64_t kListenNs = 1'000'000'000;  ///< discovery of the other one, and its heartbeats
-  static constexpr std::int64_t kSilentNs = 800'000'000;    ///< four heartbeats missed: the other one is gone
+  /// Discovery of the other one, and two of its heartbeats. Where that takes longer, both answer until the younger one
+  /// hears of the older.
+  static constexpr std::int64_t kListenNs = 600'000'000;
+  static constexpr std::int64_t kSilentNs = 800'000'000;  ///< four heartbeats missed: the other one is gone
 
   explicit Duty(std::int64_t now_ns) : began_ns_(now_ns) {}
 

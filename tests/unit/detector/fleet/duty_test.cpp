@@ -24,8 +24,8 @@ void hear(Duty& duty, const Claim& other, std::int64_t from_ms, std::int64_t to_
 
 TEST(Duty, serves_when_no_other_is_heard) {
   Duty duty(0);
-  EXPECT_EQ(duty.update(kOwn, 999 * kDutyMs), Role::kListening);
-  EXPECT_EQ(duty.update(kOwn, 1000 * kDutyMs), Role::kServing);
+  EXPECT_EQ(duty.update(kOwn, Duty::kListenNs - 1), Role::kListening);
+  EXPECT_EQ(duty.update(kOwn, Duty::kListenNs), Role::kServing);
   EXPECT_EQ(duty.other(), "");
 }
 
