@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/ros2/names.hpp"
 
+#include <fnmatch.h>
+
 #include <regex>
 
 namespace rtd::ros2 {
@@ -12,6 +14,11 @@ std::string ros_topic(const std::string& dds_topic) {
 
 std::string dds_topic(const std::string& ros_topic) {
   return ros_topic.starts_with('/') ? "rt" + ros_topic : ros_topic;
+}
+
+bool matches_topic(const std::string& pattern, const std::string& topic) {
+  const std::string dds = dds_topic(topic), ros = ros_topic(dds);
+  return fnmatch(pattern.c_str(), dds.c_str(), 0) == 0 || fnmatch(pattern.c_str(), ros.c_str(), 0) == 0;
 }
 
 std::string ros_type(const std::string& dds_type) {

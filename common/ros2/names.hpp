@@ -16,6 +16,9 @@ std::string dds_topic(const std::string& ros_topic);
 std::string ros_type(const std::string& dds_type);
 std::string dds_type(const std::string& ros_type);
 
+/// Whether a shell pattern (* ? [a-z], a star also crosses slashes) fits a topic in either spelling.
+bool matches_topic(const std::string& pattern, const std::string& topic);
+
 /// "nav_msgs::msg::dds_::Odometry_" -> "nav_msgs/Odometry"; empty for a name that is not a ROS 2 message type.
 std::string short_type(const std::string& dds_type);
 

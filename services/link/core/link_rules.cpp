@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/link/core/link_rules.hpp"
 
-#include <fnmatch.h>
-
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "common/bus/message_cdr.hpp"
@@ -22,10 +19,8 @@ constexpr std::string_view kIn = "in:";
 
 bool matches(const std::vector<std::string>& patterns, const std::string& dds_topic) {
   const std::string unnamed = bus::split_robot(dds_topic).topic;
-  const std::array names = {dds_topic, ros2::ros_topic(dds_topic), unnamed, ros2::ros_topic(unnamed)};
   return std::ranges::any_of(patterns, [&](const std::string& pattern) {
-    return std::ranges::any_of(names,
-                               [&](const std::string& name) { return fnmatch(pattern.c_str(), name.c_str(), 0) == 0; });
+    return ros2::matches_topic(pattern, dds_topic) || ros2::matches_topic(pattern, unnamed);
   });
 }
 

@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/recorder/core/topic_book.hpp"
 
-#include <fnmatch.h>
-
 #include <algorithm>
-#include <array>
 
 #include "common/bus/robot.hpp"
 #include "common/ros2/names.hpp"
@@ -15,10 +12,8 @@ namespace rtd::recorder {
 bool TopicFilter::wants(const std::string& dds_topic) const {
   if (!robot_.empty() && !bus::concerns_robot(dds_topic, robot_)) return false;
   const std::string unnamed = robot_.empty() ? dds_topic : bus::split_robot(dds_topic).topic;
-  const std::array names = {dds_topic, ros2::ros_topic(dds_topic), unnamed, ros2::ros_topic(unnamed)};
   return std::ranges::any_of(patterns_, [&](const std::string& pattern) {
-    return std::ranges::any_of(names,
-                               [&](const std::string& name) { return fnmatch(pattern.c_str(), name.c_str(), 0) == 0; });
+    return ros2::matches_topic(pattern, dds_topic) || ros2::matches_topic(pattern, unnamed);
   });
 }
 

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/replay/core/topic_choice.hpp"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <array>
 
@@ -17,9 +15,8 @@ namespace {
 constexpr char kHeartbeats[] = "rtd/status";
 
 bool matches(const std::string& pattern, const std::string& topic) {
-  const std::string dds = ros2::dds_topic(topic), unnamed = bus::split_robot(dds).topic;
-  return std::ranges::any_of(std::array{topic, dds, ros2::ros_topic(topic), unnamed, ros2::ros_topic(unnamed)},
-                             [&](const std::string& name) { return fnmatch(pattern.c_str(), name.c_str(), 0) == 0; });
+  return ros2::matches_topic(pattern, topic) ||
+         ros2::matches_topic(pattern, bus::split_robot(ros2::dds_topic(topic)).topic);
 }
 
 bool matches_any(const std::vector<std::string>& patterns, const std::string& topic) {

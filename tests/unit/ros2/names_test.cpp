@@ -25,5 +25,13 @@ TEST(Ros2Names, types_go_there_and_back) {
   }
 }
 
+TEST(Names, patterns_fit_either_spelling_of_a_topic) {
+  for (const char* topic : {"/slam/pose", "rt/slam/pose"}) {
+    for (const char* pattern : {"/slam/*", "rt/slam/pose", "rt/*", "*"}) EXPECT_TRUE(matches_topic(pattern, topic));
+    for (const char* pattern : {"slam/pose", "/slam", "rtd/*"}) EXPECT_FALSE(matches_topic(pattern, topic));
+  }
+  EXPECT_TRUE(matches_topic("rtd/*", "rtd/anna/frame"));
+}
+
 }  // namespace
 }  // namespace rtd::ros2
