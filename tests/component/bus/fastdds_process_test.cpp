@@ -33,6 +33,7 @@ std::set<std::string> shm_files_of(pid_t pid, const std::string& except) {
   std::ifstream maps("/proc/" + std::to_string(pid) + "/maps");
   for (std::string line; std::getline(maps, line);) {
     const std::size_t name = line.find("/dev/shm/");
+    if (line.ends_with(" (deleted)")) continue;  // while a semaphore is made, its file has another name
     if (name != std::string::npos && except.find(line.substr(name)) == std::string::npos)
       files.insert(line.substr(name));
   }
