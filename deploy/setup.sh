@@ -28,9 +28,10 @@ packages=(
   libfastrtps-dev libfastcdr-dev fastdds-tools
   cyclonedds-dev
   libopencv-dev libeigen3-dev libceres-dev
-  libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libtinyxml2-dev
+  libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev libsystemd-dev nlohmann-json3-dev libtinyxml2-dev
   zlib1g-dev libdeflate-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libssl-dev
   libopenni2-dev
+  libboost-dev libjs-three
   python3 python3-numpy python3-onnx
   curl ca-certificates
 )
@@ -39,6 +40,7 @@ test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev
   python3-opencv python3-rosbag python3-sensor-msgs
   pocl-opencl-icd libtorch-dev
+  python3-websockets
   iproute2 nftables
 )
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "common/bus/calls.hpp"
 #include "common/bus/message_types.hpp"
 #include "common/bus/qos.hpp"
 
@@ -62,10 +63,9 @@ class ReaderBackend {
 
 using ErasedCallback = std::function<void(std::shared_ptr<const void>)>;
 
-class BusBackend {
+class BusBackend : public CallBackend {
  public:
   explicit BusBackend(std::string vendor) : vendor_(std::move(vendor)) {}
-  virtual ~BusBackend() = default;
   const std::string& vendor() const { return vendor_; }
   virtual std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                        StatusCallbacks callbacks) = 0;

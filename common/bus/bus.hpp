@@ -133,6 +133,11 @@ class Bus {
                                              counters_.count(name, std::move(callbacks))));
   }
 
+  /// One end of a ROS 2 service by its names on the wire (common/bus/commands.hpp offers and calls them).
+  std::unique_ptr<CallEndpoint> calls(const CallTopics& topics, CallRole role, OnCall on_call) {
+    return backend_->create_calls(topics, role, std::move(on_call));
+  }
+
   const std::string& vendor() const { return backend_->vendor(); }
   /// Whose topics writers and readers get; "" for a robot without a name.
   const std::string& robot() const { return robot_; }

@@ -37,14 +37,26 @@ void TopicTypes::gone(const std::string& endpoint) {
   endpoints_.erase(endpoint);
 }
 
-std::vector<TopicWriter> WriterRegistry::writers() const {
+std::vector<TopicWriter> EndpointRegistry::writers() const {
   const std::lock_guard lock(mutex_);
   std::vector<TopicWriter> all;
   for (const auto& [id, writer] : writers_) all.push_back(writer);
   return all;
 }
 
-void WriterRegistry::watch(RawBus::Watcher watcher) {
+std::vector<TopicReader> EndpointRegistry::readers() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<TopicReader> all;
+  for (const auto& [id, reader] : readers_) all.push_back(reader);
+  return all;
+}
+
+std::map<ParticipantId, std::string> EndpointRegistry::participants() const {
+  const std::lock_guard lock(mutex_);
+  return participants_;
+}
+
+void EndpointRegistry::watch(RawBus::Watcher watcher) {
   {
     const std::lock_guard lock(mutex_);
     watcher_ = nullptr;  // nothing more is posted
@@ -57,7 +69,7 @@ void WriterRegistry::watch(RawBus::Watcher watcher) {
   for (const auto& [id, writer] : writers_) report(writer, WriterChange::kAppeared);
 }
 
-void WriterRegistry::note(const TopicWriter& writer) {
+void EndpointRegistry::note(const TopicWriter& writer) {
   const std::lock_guard lock(mutex_);
   const auto [known, is_new] = writers_.try_emplace(writer.id, writer);
   if (is_new) return report(writer, WriterChange::kAppeared);
@@ -66,12 +78,28 @@ void WriterRegistry::note(const TopicWriter& writer) {
   report(writer, WriterChange::kChanged);
 }
 
-void WriterRegistry::note_gone(const WriterId& id) {
+void EndpointRegistry::note(const TopicReader& reader) {
   const std::lock_guard lock(mutex_);
+  readers_.insert_or_assign(reader.id, reader);
+}
+
+void EndpointRegistry::note_gone(const WriterId& id) {
+  const std::lock_guard lock(mutex_);
+  readers_.erase(id);
   if (const auto gone = writers_.extract(id); !gone.empty()) report(gone.mapped(), WriterChange::kGone);
 }
 
-void WriterRegistry::report(const TopicWriter& writer, WriterChange change) {
+void EndpointRegistry::note(const ParticipantId& participant, const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  if (!name.empty()) participants_.insert_or_assign(participant, name);
+}
+
+void EndpointRegistry::note_gone(const ParticipantId& participant) {
+  const std::lock_guard lock(mutex_);
+  participants_.erase(participant);
+}
+
+void EndpointRegistry::report(const TopicWriter& writer, WriterChange change) {
   if (watcher_) thread_->post([watcher = watcher_, writer, change] { watcher(writer, change); });
 }
 

@@ -49,34 +49,43 @@ class TopicTypes {
   std::list<const Watch*> watches_;
 };
 
-/// The writers of a domain, as a vendor's discovery finds them. Discovery threads only take notes; the watcher
-/// has a thread of its own, so that it may create readers. Thread-safe.
-class WriterRegistry {
+/// The endpoints of a domain, as a vendor's discovery finds them. Discovery threads only take notes; the watcher of
+/// writers has a thread of its own, so that it may create readers. Thread-safe.
+class EndpointRegistry {
  public:
   std::vector<TopicWriter> writers() const;
+  std::vector<TopicReader> readers() const;
+  std::map<ParticipantId, std::string> participants() const;
   void watch(RawBus::Watcher watcher);
 
   void note(const TopicWriter& writer);
+  void note(const TopicReader& reader);
   void note_gone(const WriterId& id);
+  void note(const ParticipantId& participant, const std::string& name);
+  void note_gone(const ParticipantId& participant);
 
  private:
   void report(const TopicWriter& writer, WriterChange change);
 
   mutable std::mutex mutex_;
   std::map<WriterId, TopicWriter> writers_;
+  std::map<WriterId, TopicReader> readers_;
+  std::map<ParticipantId, std::string> participants_;
   RawBus::Watcher watcher_;
   std::optional<CallbackThread> thread_;
 };
 
-/// A raw bus whose vendor notes the writers in a registry.
+/// A raw bus whose vendor notes the endpoints in a registry.
 class RegistryRawBus : public RawBus {
  public:
   using RawBus::RawBus;
   std::vector<TopicWriter> writers() const override { return registry_.writers(); }
+  std::vector<TopicReader> readers() const override { return registry_.readers(); }
+  std::map<ParticipantId, std::string> participants() const override { return registry_.participants(); }
   void watch(Watcher watcher) override { registry_.watch(std::move(watcher)); }
 
  protected:
-  WriterRegistry registry_;
+  EndpointRegistry registry_;
 };
 
 }  // namespace rtd::bus

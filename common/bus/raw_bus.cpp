@@ -6,6 +6,12 @@
 
 namespace rtd::bus {
 
+ParticipantId participant_of(const WriterId& endpoint) {
+  ParticipantId id{};
+  std::copy_n(endpoint.begin(), id.size(), id.begin());
+  return id;
+}
+
 std::string to_string(const WriterId& id) {
   constexpr char kDigits[] = "0123456789abcdef";
   std::string text;

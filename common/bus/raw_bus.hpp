@@ -54,7 +54,7 @@ class ByteBlock {
 
 static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= 16, "ByteBlock aligns by what new gives");
 
-/// Identity of a writer in the domain (its GUID).
+/// Identity of a writer in the domain (its GUID); readers have such ids too.
 using WriterId = std::array<std::uint8_t, 16>;
 std::string to_string(const WriterId& id);  ///< hexadecimal, e.g. "010f5b2a..."
 
@@ -90,6 +90,16 @@ struct TopicWriter {
   std::string
       user_data;  ///< what it announces beside; ROS 2: "typehash=RIHS01_...;" (common/ros2/type_description.hpp)
 };
+
+struct TopicReader {
+  WriterId id{};
+  RawTopic topic;
+  bool own = false;  ///< belongs to this connection
+};
+
+/// Identity of a connection in the domain: the first bytes of its endpoints' ids.
+using ParticipantId = std::array<std::uint8_t, 12>;
+ParticipantId participant_of(const WriterId& endpoint);
 
 enum class WriterChange { kAppeared, kChanged, kGone };
 
@@ -160,15 +170,18 @@ class RawWriter {
 };
 
 /// One connection of a process to the bytes of a domain. Readers and writers must not outlive it. Thread-safe.
-class RawBus {
+class RawBus : public CallBackend {
  public:
   using Watcher = std::function<void(const TopicWriter&, WriterChange)>;
 
   explicit RawBus(std::string vendor) : vendor_(std::move(vendor)) {}
-  virtual ~RawBus() = default;
   const std::string& vendor() const { return vendor_; }
   /// Writers known now. A writer is known before its first sample is delivered.
   virtual std::vector<TopicWriter> writers() const = 0;
+  /// Readers known now.
+  virtual std::vector<TopicReader> readers() const = 0;
+  /// Names of the connections known now, as BusOptions::participant_name; those that do not announce one are missing.
+  virtual std::map<ParticipantId, std::string> participants() const = 0;
   /// Calls the watcher for each writer known now, then for each change. One watcher, on a thread of the bus that may
   /// create and destroy readers and writers. Empty ends it: afterwards it does not run.
   virtual void watch(Watcher watcher) = 0;

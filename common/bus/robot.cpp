@@ -11,19 +11,36 @@
 namespace rtd::bus {
 namespace {
 
-constexpr std::string_view kOwn = "rtd/", kRos = "rt/";
+constexpr std::string_view kOwn = "rtd/", kRos = "rt/", kRequest = "rq/", kReply = "rr/";
 
 /// First parts of the names below "rt/" that belong to one robot.
 constexpr std::array<std::string_view, 5> kNodes = {"camera/", "detector/", "filter/", "slam/", "dense/"};
 
-bool of_node(std::string_view name) {
-  return std::ranges::any_of(kNodes, [name](std::string_view node) { return name.starts_with(node); });
+/// Those that only commands have.
+constexpr std::array<std::string_view, 2> kCommandNodes = {"recorder/", "replay/"};
+
+bool begins_with_one(std::string_view name, const auto& nodes) {
+  return std::ranges::any_of(nodes, [name](std::string_view node) { return name.starts_with(node); });
+}
+
+/// The part of DDS names that this one begins with; "" for others.
+std::string_view kind_of(std::string_view topic) {
+  for (const std::string_view kind : {kOwn, kRos, kRequest, kReply}) {
+    if (topic.starts_with(kind)) return kind;
+  }
+  return "";
+}
+
+/// Whether a robot has its own topic of that kind and name.
+bool is_own(std::string_view kind, std::string_view name) {
+  if (kind == kOwn) return true;
+  return begins_with_one(name, kNodes) || (kind != kRos && begins_with_one(name, kCommandNodes));
 }
 
 /// The prefix of a topic that belongs to one robot; "" for others.
 std::string_view prefix_of(std::string_view topic) {
-  if (topic.starts_with(kOwn)) return kOwn;
-  return topic.starts_with(kRos) && of_node(topic.substr(kRos.size())) ? kRos : "";
+  const std::string_view kind = kind_of(topic);
+  return !kind.empty() && is_own(kind, topic.substr(kind.size())) ? kind : "";
 }
 
 }  // namespace
@@ -48,14 +65,25 @@ std::string topic_of_robot(std::string_view topic, std::string_view robot) {
   return std::string(prefix).append(robot).append("/").append(topic.substr(prefix.size()));
 }
 
+bool is_service_topic(std::string_view wire_name) {
+  return wire_name.starts_with(kRequest) || wire_name.starts_with(kReply);
+}
+
+std::string_view service_of_reply(std::string_view wire_name) {
+  constexpr std::string_view kEnd = "Reply";
+  if (!wire_name.starts_with(kReply) || !wire_name.ends_with(kEnd) || wire_name.size() <= kReply.size() + kEnd.size())
+    return {};
+  return wire_name.substr(kReply.size(), wire_name.size() - kReply.size() - kEnd.size());
+}
+
 RobotTopic split_robot(std::string_view wire_name) {
   const RobotTopic unnamed{{}, std::string(wire_name)};
-  const std::string_view prefix = wire_name.starts_with(kOwn) ? kOwn : wire_name.starts_with(kRos) ? kRos : "";
+  const std::string_view prefix = kind_of(wire_name);
   const std::string_view name = wire_name.substr(prefix.size());
   const std::size_t slash = name.find('/');
   if (prefix.empty() || slash == std::string_view::npos) return unnamed;
   const std::string_view robot = name.substr(0, slash), rest = name.substr(slash + 1);
-  if (!is_robot_name(robot) || rest.empty() || (prefix == kRos && !of_node(rest))) return unnamed;
+  if (!is_robot_name(robot) || rest.empty() || !is_own(prefix, rest)) return unnamed;
   return {std::string(robot), std::string(prefix).append(rest)};
 }
 

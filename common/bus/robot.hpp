@@ -30,6 +30,11 @@ struct RobotTopic {
   std::string topic;  ///< as in topics.hpp
   bool operator==(const RobotTopic&) const = default;
 };
+/// Whether a topic is one of the two of a ROS 2 service ("rq/...", "rr/...").
+bool is_service_topic(std::string_view wire_name);
+/// The service that answers on this topic: "anna/slam/reset" of "rr/anna/slam/resetReply"; "" for other topics.
+std::string_view service_of_reply(std::string_view wire_name);
+
 /// The inverse of topic_of_robot() for the topics of topics.hpp and those beside them in the same ROS namespaces
 /// ("rt/slam/..."); other names belong to no robot.
 RobotTopic split_robot(std::string_view wire_name);

@@ -5,6 +5,8 @@
 #include <ctime>
 #include <utility>
 
+#include "common/bus/prefixed_calls.hpp"
+
 namespace rtd::bus {
 namespace {
 
@@ -16,6 +18,10 @@ class Guard {
   }
   void require_subscribe(const std::string& topic) const {
     if (!security::matches_any(enclave_.permissions.topics.subscribe, topic)) refuse("subscribe", topic);
+  }
+  void require_calls(const CallTopics& topics, CallRole role) const {
+    require_subscribe(received_topic(topics, role).name);
+    require_publish(sent_topic(topics, role).name);
   }
 
  private:
@@ -41,6 +47,10 @@ class GuardedBus : public BusBackend {
     guard_.require_subscribe(topic);
     return bus_->create_reader(id, topic, profile, std::move(on_message), std::move(callbacks));
   }
+  std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {
+    guard_.require_calls(topics, role);
+    return bus_->create_calls(topics, role, std::move(on_call));
+  }
 
  private:
   const std::shared_ptr<BusBackend> bus_;
@@ -52,6 +62,8 @@ class GuardedRawBus : public RawBus {
   GuardedRawBus(std::shared_ptr<RawBus> bus, security::Enclave enclave)
       : RawBus(bus->vendor()), bus_(std::move(bus)), guard_(std::move(enclave)) {}
   std::vector<TopicWriter> writers() const override { return bus_->writers(); }
+  std::vector<TopicReader> readers() const override { return bus_->readers(); }
+  std::map<ParticipantId, std::string> participants() const override { return bus_->participants(); }
   void watch(Watcher watcher) override { bus_->watch(std::move(watcher)); }
   std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
                                     RawHandlers handlers) override {
@@ -62,6 +74,10 @@ class GuardedRawBus : public RawBus {
                                     StatusCallbacks callbacks) override {
     guard_.require_publish(topic.name);
     return bus_->writer(topic, options, std::move(callbacks));
+  }
+  std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {
+    guard_.require_calls(topics, role);
+    return bus_->create_calls(topics, role, std::move(on_call));
   }
 
  private:

@@ -15,6 +15,10 @@ const Roles kServices = {"camera", "detector", "filter", "slam", "dense", "recor
 const Roles kFrameReaders = {"filter", "detector", "dense", "launcher", "viewer"};
 /// They read the results; a link also writes them, in the domain of the fleet.
 const Roles kOnlookers = {"viewer", "observer", "link"};
+/// They may call commands.
+const Roles kCallers = {"viewer", "call"};
+/// They may be ROS 2 nodes, with what every node opens beside its own topics.
+const Roles kRosNodes = {"observer", "call"};
 
 Roles operator+(Roles roles, const Roles& further) {
   roles.insert(roles.end(), further.begin(), further.end());
@@ -25,22 +29,49 @@ bool has(const Roles& listed, const std::string& role) {
   return std::find(listed.begin(), listed.end(), role) != listed.end();
 }
 
+/// A ROS 2 service by its name, or a pattern of names.
+void add_service(std::vector<TopicRoles>& roles, const std::string& name, const Roles& servers, const Roles& callers) {
+  roles.push_back({"rq/" + name + "Request", callers, servers});
+  roles.push_back({"rr/" + name + "Reply", servers, callers});
+}
+
+/// With the commands, and with the services of every ROS 2 node, which only it itself calls.
+std::vector<TopicRoles> with_services(std::vector<TopicRoles> roles) {
+  struct Command {
+    const char* name;
+    const char* server;
+  };
+  constexpr Command kCommands[] = {
+      {"slam/reset", "slam"},         {"slam/save_map", "slam"},     {"slam/load_map", "slam"},
+      {"slam/localize_only", "slam"}, {"filter/set_mode", "filter"}, {"recorder/start", "record"},
+      {"recorder/stop", "record"},    {"replay/pause", "replay"},    {"replay/step", "replay"},
+      {"replay/seek", "replay"},      {"replay/speed", "replay"}};
+  for (const Command& command : kCommands) add_service(roles, command.name, {command.server}, kCallers);
+  for (const char* name : {"describe_parameters", "get_parameter_types", "get_parameters", "list_parameters",
+                           "set_parameters", "set_parameters_atomically", "get_type_description"})
+    add_service(roles, std::string("*/") + name, kRosNodes, {});
+  return roles;
+}
+
 }  // namespace
 
 const std::vector<TopicRoles>& topic_roles() {
   using namespace topics;
-  static const std::vector<TopicRoles> kRoles = {
+  static const std::vector<TopicRoles> kRoles = with_services({
       {kFrame.name, {"camera"}, kFrameReaders},
       {kFrame848.name, {"camera"}, kFrameReaders},
       {kFrame1280.name, {"camera"}, kFrameReaders},
       {kFrame1920.name, {"camera"}, kFrameReaders},
       {kColorJpeg.name, {"camera", "link"}, Roles{"detector"} + kOnlookers},
       {kCameraInfo.name, {"camera", "link"}, kOnlookers},
+      {kGroundTruth.name, {"camera"}, kOnlookers},
       {kDetections.name, {"detector", "link"}, Roles{"filter"} + kOnlookers},
       {kDynamicMask.name, {"filter"}, Roles{"dense"} + kOnlookers},
       {kFeatures.name, {"filter"}, {"slam", "launcher", "viewer"}},
       {kKeyframes.name, {"slam"}, {"filter", "dense", "viewer"}},
       {kTracking.name, {"slam"}, {"camera", "filter", "dense", "detector", "launcher", "viewer"}},
+      {kMap.name, {"slam"}, {"viewer"}},
+      {kMovers.name, {"filter"}, {"viewer"}},
       {kStatus.name, kServices, kServices + Roles{"launcher", "observer"}},
       {kOdometry.name, {"slam", "link"}, kOnlookers},
       {kPose.name, {"slam", "link"}, kOnlookers},
@@ -53,18 +84,17 @@ const std::vector<TopicRoles>& topic_roles() {
       {"rtd/*", {"replay"}, {"record", "replay", "topics"}},
       {"rt/*", {"replay"}, {"record", "replay", "topics"}},
       // What every ROS 2 node opens beside its own topics.
-      {"ros_discovery_info", {"observer"}, {"observer"}},
-      {"rt/rosout", {"observer"}, {}},
-      {"rt/parameter_events", {"observer"}, {"observer"}},
-      {"rq/*/*Request", {}, {"observer"}},
-      {"rr/*/*Reply", {"observer"}, {}},
-  };
+      {"ros_discovery_info", kRosNodes, kRosNodes},
+      {"rt/rosout", kRosNodes, {}},
+      {"rt/parameter_events", kRosNodes, kRosNodes},
+  });
   return kRoles;
 }
 
 const std::vector<std::string>& roles() {
-  static const std::vector<std::string> kRoles = {"camera", "detector", "filter", "slam",   "dense",    "record",
-                                                  "replay", "launcher", "topics", "viewer", "observer", "link"};
+  static const std::vector<std::string> kRoles = {"camera",   "detector", "filter",   "slam",   "dense",
+                                                  "record",   "replay",   "launcher", "topics", "viewer",
+                                                  "observer", "link",     "call"};
   return kRoles;
 }
 

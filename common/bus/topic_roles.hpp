@@ -16,7 +16,7 @@ struct TopicRoles {
 };
 const std::vector<TopicRoles>& topic_roles();
 
-/// All roles: services, launcher, `rtd topics`, observer (ROS 2 and other programs that read poses).
+/// All roles: services, launcher, `rtd topics`, `rtd call`, observer (ROS 2 and other programs that read poses).
 const std::vector<std::string>& roles();
 
 /// The topics of one role.

@@ -23,10 +23,13 @@ inline constexpr Topic<msg::RgbdFrame1920> kFrame1920{"rtd/frame_1920x1200", Qos
 inline constexpr Topic<msg::FeatureFrame> kFeatures{"rtd/features", QosProfile::kFeatures};
 inline constexpr Topic<msg::KeyframeEvent> kKeyframes{"rtd/keyframes", QosProfile::kKeyframes};
 inline constexpr Topic<msg::TrackingResult> kTracking{"rtd/tracking", QosProfile::kTracking};
+inline constexpr Topic<msg::MapUpdate> kMap{"rtd/map", QosProfile::kTracking};
+inline constexpr Topic<msg::Movers> kMovers{"rtd/movers", QosProfile::kDetections};
 inline constexpr Topic<msg::ServiceStatus> kStatus{"rtd/status", QosProfile::kHeartbeat};
 inline constexpr Topic<msg::CompressedImage> kColorJpeg{"rt/camera/color/image_raw/compressed",
                                                         QosProfile::kNetworkFrame};
 inline constexpr Topic<msg::CameraInfo> kCameraInfo{"rt/camera/color/camera_info", QosProfile::kLatched};
+inline constexpr Topic<msg::PoseStamped> kGroundTruth{"rt/camera/ground_truth", QosProfile::kPose};
 inline constexpr Topic<msg::Detection2DArray> kDetections{"rt/detector/detections", QosProfile::kDetections};
 inline constexpr Topic<msg::Image> kDynamicMask{"rt/filter/dynamic_mask", QosProfile::kDetections};
 inline constexpr Topic<msg::Odometry> kOdometry{"rt/slam/odometry", QosProfile::kPose};

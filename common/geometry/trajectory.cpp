@@ -95,6 +95,24 @@ void append_in_order(Trajectory& trajectory, const StampedPose& pose) {
   trajectory.push_back(pose);
 }
 
+std::optional<Eigen::Isometry3d> pose_at(const Trajectory& trajectory, std::int64_t stamp_ns, std::int64_t max_gap_ns) {
+  const auto after = std::ranges::lower_bound(trajectory, stamp_ns, {}, &StampedPose::stamp_ns);
+  if (after == trajectory.end()) return std::nullopt;
+  if (after->stamp_ns == stamp_ns) return after->T_world_body;
+  if (after == trajectory.begin()) return std::nullopt;
+  const StampedPose& before = *std::prev(after);
+  if (stamp_ns - before.stamp_ns > max_gap_ns || after->stamp_ns - stamp_ns > max_gap_ns) return std::nullopt;
+  const double share =
+      static_cast<double>(stamp_ns - before.stamp_ns) / static_cast<double>(after->stamp_ns - before.stamp_ns);
+  const Eigen::Isometry3d& a = before.T_world_body;
+  const Eigen::Isometry3d& b = after->T_world_body;
+  Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();
+  T_world_body.linear() =
+      Eigen::Quaterniond(a.linear()).slerp(share, Eigen::Quaterniond(b.linear())).toRotationMatrix();
+  T_world_body.translation() = (1 - share) * a.translation() + share * b.translation();
+  return T_world_body;
+}
+
 std::vector<StampPair> associate(const std::vector<std::int64_t>& first_ns, const std::vector<std::int64_t>& second_ns,
                                  std::int64_t max_difference_ns) {
   std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;  // |difference|, first, second

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <iosfwd>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -39,6 +40,10 @@ struct StampPair {
 /// result is in order of the first stamps.
 std::vector<StampPair> associate(const std::vector<std::int64_t>& first_ns, const std::vector<std::int64_t>& second_ns,
                                  std::int64_t max_difference_ns);
+
+/// The pose at a stamp between two of a trajectory in increasing order: the motion between them is taken to be even.
+/// Empty unless both, or one of that very stamp, are within `max_gap_ns`.
+std::optional<Eigen::Isometry3d> pose_at(const Trajectory& trajectory, std::int64_t stamp_ns, std::int64_t max_gap_ns);
 
 /// A trajectory or frame list cannot be used; what() names file, line, cause and fix.
 class TrajectoryError : public std::runtime_error {

@@ -137,8 +137,8 @@ bus::BusOptions load_bus_options(const BusArguments& arguments, const ConfigSour
 }
 
 const std::vector<std::string>& config_sections() {
-  static const std::vector<std::string> kSections = {"bus",   "camera", "detector", "filter",   "slam",
-                                                     "dense", "record", "replay",   "launcher", "link"};
+  static const std::vector<std::string> kSections = {"bus",    "camera", "detector", "filter", "slam",  "dense",
+                                                     "record", "replay", "launcher", "link",   "viewer"};
   return kSections;
 }
 

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <utility>
 
+#include "common/service/host_name.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/runtime.hpp"
@@ -47,12 +48,6 @@ void log_refusals(const std::string& topic, const bus::TopicTrouble& before, con
   }
 }
 
-/// CLOCK_REALTIME in ns: what heartbeats are stamped with.
-std::int64_t realtime_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 std::string duplicate_text(const msg::ServiceStatus& older, const std::string& robot) {
   if (robot.empty()) {
     return fmt::format(
@@ -75,6 +70,7 @@ Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, T
       clocks_(service_name, PeerClocks::this_host_id()) {
   own_.service = std::move(service_name);
   own_.metrics.push_back({"host_id", PeerClocks::this_host_id()});
+  own_.metrics.push_back({kHostNameMetric + host_name(), 1});
   own_.pid = getpid();
   own_.started_ns = started_ns_;
   writer_ = bus.writer(bus::topics::kStatus);
@@ -175,6 +171,14 @@ bool Heartbeat::alone() const {
   return peers_.empty();
 }
 
+std::optional<double> Heartbeat::metric_on_this_host(const std::string& service, const std::string& metric) const {
+  if (!alive(service)) return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  const msg::ServiceStatus& status = peers_.at(service).status;
+  if (find_metric(status, "host_id") != find_metric(own_, "host_id")) return std::nullopt;
+  return find_metric(status, metric);
+}
+
 bool Heartbeat::ready(const std::string& service) const {
   if (!alive(service)) return false;
   const std::lock_guard lock(mutex_);
@@ -196,6 +200,7 @@ std::string Heartbeat::duplicate() const {
 void Heartbeat::tick() {
   const std::lock_guard lock(mutex_);
   progress_.tick(monotonic_ns());
+  begun_ = true;
 }
 
 void Heartbeat::idle() {
@@ -206,6 +211,12 @@ void Heartbeat::idle() {
 void Heartbeat::watch_progress(std::chrono::milliseconds limit) {
   const std::lock_guard lock(mutex_);
   progress_.set_limit(std::chrono::nanoseconds(limit).count());
+}
+
+Heartbeat::Work Heartbeat::work() const {
+  const std::lock_guard lock(mutex_);
+  if (!begun_) return Work::kNotBegun;
+  return stuck_ ? Work::kStuck : Work::kGoesOn;
 }
 
 /// True when the health of one has changed.

@@ -13,4 +13,10 @@ inline std::int64_t monotonic_ns() {
       .count();
 }
 
+/// CLOCK_REALTIME, ns since 1970. Adapters only.
+inline std::int64_t realtime_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
 }  // namespace rtd::service

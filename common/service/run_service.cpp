@@ -21,6 +21,7 @@
 #include "common/bus/host/shm_leftovers.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/log.hpp"
+#include "common/service/systemd_link.hpp"
 
 namespace rtd::service {
 namespace {
@@ -138,6 +139,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
       warning.emplace(heartbeat, options,
                       [](const std::string& cause) { SPDLOG_WARN("event=no_peers cause=\"{}\"", cause); });
     }
+    const SystemdLink systemd([&heartbeat] { return heartbeat.work(); });
     Runtime runtime{*bus, heartbeat, stop, pace, options};
     SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), options.domain, to_string(pace),
                 getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");

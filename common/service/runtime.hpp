@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -41,10 +42,15 @@ class Heartbeat {
   void idle();
   /// 0, the default: a worker never counts as stuck.
   void watch_progress(std::chrono::milliseconds limit);
+  /// How the worker is, as the heartbeat sees it.
+  enum class Work { kNotBegun, kGoesOn, kStuck };
+  Work work() const;
   /// False for a service that is dead, hung, or sent no heartbeat for 0.7 s.
   bool alive(const std::string& service) const;
   bool ready(const std::string& service) const;  ///< alive and in state kReady, kRunning or kDegraded
   bool alone() const;                            ///< no other service has sent a heartbeat yet
+  /// A metric of another service that is alive and runs on this host.
+  std::optional<double> metric_on_this_host(const std::string& service, const std::string& metric) const;
   /// `callback` runs on a bus thread for every heartbeat of another service. Waits for a running call: afterwards the
   /// earlier callback is not used any more. Not to be called from the callback itself.
   void on_status(std::function<void(const msg::ServiceStatus&)> callback);
@@ -82,7 +88,7 @@ class Heartbeat {
   std::function<void(const msg::ServiceStatus&)> callback_;
   std::string duplicate_;
   ProgressWatch progress_;
-  bool stuck_ = false;
+  bool begun_ = false, stuck_ = false;
   std::map<std::string, bus::TopicTrouble> troubles_;
   std::pair<std::int64_t, std::int64_t> twin_{};  ///< pid and start of an older instance that was seen once
   std::mutex publish_mutex_;

@@ -11,7 +11,9 @@
 #include <opencv2/core/utility.hpp>
 #include <utility>
 
+#include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
+#include "common/service/load_step.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/live_camera.hpp"
@@ -91,6 +93,7 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
       publisher_(runtime.bus, config.jpeg_quality,
                  realtime_ ? concurrency::Overflow::kDropOldest : concurrency::Overflow::kBlock,
                  [changes = changes_] { changes->push(true); }),
+      truth_(runtime.bus.writer(bus::topics::kGroundTruth)),
       tracking_(runtime.bus.reader<msg::TrackingResult>(
           bus::topics::kTracking, [results = results_](const auto& result) { results->push(result->seq); })) {
   cv::setNumThreads(1);
@@ -209,6 +212,7 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
     if (decision.action == service::PaceAction::kSend) {
       runtime_.heartbeat.tick();
       send(frame.image);
+      send_truth(frame);
       runtime_.heartbeat.idle();  // until the next frame, whenever it comes
       last_seq_ = frame.image.seq;
       if (realtime_) return Outcome::kDone;
@@ -274,9 +278,18 @@ void CameraService::note(std::uint64_t seq) {
 
 void CameraService::send(const vision::RgbdImage& image) {
   ++published_;
+  if (realtime_) publisher_.jpegs().limit_rate(service::asked_load_step(runtime_.heartbeat).max_jpeg_hz);
   if (publisher_.publish(image)) return;
   ++refused_;
   if (refused_log_.pass()) SPDLOG_WARN("event=frame_refused frame={} total={}", image.seq, refused_);
+}
+
+/// For those who compare. Costs nothing without them.
+void CameraService::send_truth(const SourceFrame& frame) {
+  if (!frame.T_world_camera || truth_.matched() == 0) return;
+  const auto [t, q] = msg::to_message(*frame.T_world_camera);
+  truth_.write({{msg::to_time(frame.image.stamp_ns), runtime_.bus.frame("world")},
+                {{t[0], t[1], t[2]}, {q[0], q[1], q[2], q[3]}}});
 }
 
 void CameraService::resend() {

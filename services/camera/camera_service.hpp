@@ -95,6 +95,7 @@ class CameraService {
   void take_results();
   void note(std::uint64_t seq);
   void send(const vision::RgbdImage& image);
+  void send_truth(const SourceFrame& frame);
   void resend();
   void log_skipped(const ReadItem& item);
   void log_timeline(const service::PaceDecision& decision, const SourceFrame& frame);
@@ -113,6 +114,7 @@ class CameraService {
   std::shared_ptr<Results> results_;                          ///< seq of every TrackingResult
   std::shared_ptr<concurrency::BoundedQueue<bool>> changes_;  ///< a service became ready or a reader matched
   FramePublisher publisher_;
+  bus::Writer<msg::PoseStamped> truth_;
   bus::Reader<msg::TrackingResult> tracking_;
   std::deque<vision::RgbdImage> in_flight_;  ///< kept for sending again; empty at pace realtime
   SourceCounters counters_;

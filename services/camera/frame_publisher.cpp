@@ -57,7 +57,13 @@ JpegPublisher::~JpegPublisher() {
 }
 
 void JpegPublisher::offer(const cv::Mat& color_bgr, std::int64_t stamp_ns) {
-  if (writer_.matched() > 0) waiting_.push({color_bgr, stamp_ns});
+  if (writer_.matched() == 0) return;
+  constexpr double kEarly = 0.9;  // of the period: stamps jitter
+  const bool too_soon =
+      max_hz_ > 0 && stamp_ns > offered_ns_ && static_cast<double>(stamp_ns - offered_ns_) < kEarly * 1e9 / max_hz_;
+  if (too_soon) return;
+  offered_ns_ = stamp_ns;
+  waiting_.push({color_bgr, stamp_ns});
 }
 
 void JpegPublisher::publish(const Waiting& image) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <opencv2/core/mat.hpp>
 #include <thread>
 
@@ -28,10 +29,13 @@ class JpegPublisher {
 
   /// Takes an image (8-bit BGR, shared: not to be changed any more) if the topic has readers.
   void offer(const cv::Mat& color_bgr, std::int64_t stamp_ns);
+  /// Images beyond this rate, by their stamps, are left out from now on; 0 = no limit. The thread of offer().
+  void limit_rate(double max_hz) { max_hz_ = max_hz; }
   int readers() const { return writer_.matched(); }
   std::uint64_t encoded() const { return encoded_; }
   /// Images that a newer one has replaced.
   std::uint64_t dropped() const { return waiting_.dropped(); }
+  std::size_t waiting() const { return waiting_.size(); }
 
  private:
   struct Waiting {
@@ -43,6 +47,9 @@ class JpegPublisher {
   const std::string frame_id_;
   bus::Writer<msg::CompressedImage> writer_;
   int quality_;
+  double max_hz_ = 0;
+  std::int64_t offered_ns_ =
+      std::numeric_limits<std::int64_t>::min() / 2;  ///< stamp of the last image that was not left out
   std::atomic<std::uint64_t> encoded_{0};
   concurrency::BoundedQueue<Waiting> waiting_;
   std::thread thread_;
@@ -91,6 +98,7 @@ class FramePublisher {
   int frame_readers() const { return frames_.matched(); }
   int jpeg_readers() const { return jpegs_.readers(); }
   const JpegPublisher& jpegs() const { return jpegs_; }
+  JpegPublisher& jpegs() { return jpegs_; }
 
  private:
   bus::Bus& bus_;

@@ -5,12 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
+#include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <thread>
 #include <utility>
 
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
+#include "common/service/load_step.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/rgbd_image.hpp"
@@ -267,11 +269,14 @@ void DetectorService::report_state() {
   }
 }
 
-/// Realtime pace with a rate limit: sleeps until the next detection is due; newer images replace the queued one
-/// meanwhile.
+/// Realtime pace with a rate limit, of the configuration or of a busy computer: sleeps until the next detection is due;
+/// newer images replace the queued one meanwhile.
 void DetectorService::keep_rate(std::int64_t started_ns) const {
-  if (runtime_.pace != service::Pace::kRealtime || config_.max_rate_hz <= 0) return;
-  const auto period_ns = static_cast<std::int64_t>(kNsPerS / config_.max_rate_hz);
+  if (runtime_.pace != service::Pace::kRealtime) return;
+  double rate_hz = config_.max_rate_hz > 0 ? config_.max_rate_hz : std::numeric_limits<double>::infinity();
+  if (const double busy_hz = service::asked_load_step(runtime_.heartbeat).max_detections_hz; busy_hz > 0)
+    rate_hz = std::min(rate_hz, busy_hz);
+  const auto period_ns = static_cast<std::int64_t>(kNsPerS / rate_hz);  // 0 without a limit
   const std::int64_t left_ns = started_ns + period_ns - service::monotonic_ns();
   if (left_ns <= 0) return;
   runtime_.heartbeat.idle();

@@ -4,10 +4,8 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <thread>
 #include <utility>
 
@@ -18,17 +16,11 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookAfter{50};  ///< robots come and go, others take over
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
-
 }  // namespace
 
 FleetService::FleetService(const FleetConfig& config, service::Runtime& runtime, Inference inference)
     : config_(config),
       runtime_(runtime),
-      lane_options_{host_name(), config.stuck_after},
       pipeline_(std::make_shared<FleetPipeline>(config, std::move(inference), outputs())),
       finder_(runtime.bus_options) {
   runtime.heartbeat.watch_progress(config.stuck_after);
@@ -98,7 +90,7 @@ void FleetService::open_lane(const std::string& robot) {
   if (!make_room()) return log_refusal(robot, fmt::format("{} robots are served already", config_.most_robots));
   try {
     auto opened =
-        std::make_shared<RobotLane>(runtime_.bus, robot, lane_options_,
+        std::make_shared<RobotLane>(runtime_.bus, robot, config_.stuck_after,
                                     [pipeline = pipeline_, robot](std::shared_ptr<const msg::CompressedImage> jpeg) {
                                       pipeline->put(robot, std::move(jpeg));
                                     });

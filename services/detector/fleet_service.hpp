@@ -49,7 +49,6 @@ class FleetService {
 
   const FleetConfig config_;
   service::Runtime& runtime_;
-  const RobotLane::Options lane_options_;
   const std::shared_ptr<FleetPipeline> pipeline_;
   mutable std::mutex lanes_mutex_;
   Lanes lanes_;

@@ -20,6 +20,7 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
                "asap, lockstep: longest wait for the boxes of one frame");
   binder.field("feedback_timeout_ms", feedback_timeout_ms, {1, 600000},
                "lockstep: longest wait for slam's result of the previous frame");
+  binder.field("shed_load", shed_load, "realtime: do less, in steps, while poses come late; false: never");
   core.bind(binder);
 }
 

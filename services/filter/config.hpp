@@ -20,6 +20,7 @@ struct ServiceConfig {
   std::string detector = "auto";
   int detections_timeout_ms = 5000;
   int feedback_timeout_ms = 3000;
+  bool shed_load = true;
 
   void bind(service::ConfigBinder& binder);
   /// `core` with the mode as its enum. Throws service::ConfigError for an unknown motion level.

@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/filter_service.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <opencv2/core/utility.hpp>
 
+#include "common/service/load_step.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/rgbd_image.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
@@ -29,14 +33,16 @@ void FilterService::add_options(CLI::App& app, Config& config) {
 FilterService::FilterService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
-      mode_(config.core_config().mode),
       filter_(config.core_config(), service::monotonic_ns),
+      movers_(runtime.bus),
       frames_(runtime.pace == service::Pace::kRealtime
                   ? std::make_shared<Frames>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
-                  : std::make_shared<Frames>(kEveryFrameQueue, concurrency::Overflow::kBlock)) {
+                  : std::make_shared<Frames>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
+      load_(LoadLimits{}, static_cast<int>(service::kLoadSteps.size()) - 1) {
   cv::setNumThreads(1);
-  runtime.stop.on_stop([frames = frames_, detections = detections_, feedback = feedback_] {
+  runtime.stop.on_stop([frames = frames_, prepared = prepared_, detections = detections_, feedback = feedback_] {
     frames->close();
+    prepared->close();
     detections->close();
     feedback->close();
   });
@@ -63,37 +69,68 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
 /// A reader waits for its running callback, which may be blocked on the full queue.
 FilterService::~FilterService() {
   frames_->close();
+  prepared_->close();
+  if (preparing_.joinable()) preparing_.join();
   runtime_.heartbeat.on_status({});
 }
 
 service::ExitCode FilterService::run() {
+  if (runtime_.pace == service::Pace::kRealtime) preparing_ = std::thread([this] { prepare_frames(); });
+  commands_.emplace(runtime_.bus);
+  commands_->offer("filter/set_mode", bus::CommandKind::kText,
+                   [this](const bus::CommandRequest& asked) { return set_mode(asked.argument); });
   while (!runtime_.stop.stop_requested()) {
     runtime_.heartbeat.tick();
     report_state();
-    const auto frame = frames_->pop_for(kStatePeriod);
+    commands_->serve();
+    std::optional<Work> work = next_frame();
     watch_detector();
-    if (frame && accept(**frame)) process(**frame);
+    if (work && accept(*work->frame)) process(std::move(*work));
   }
+  commands_->close();
   SPDLOG_INFO("event=summary frames={} dropped={} defective={} foreign={} without_detections={}", published_,
               frames_->dropped(), defective_, from_others_, unpaired_);
   return service::kOk;
 }
 
+/// Realtime: finds the features of the next frame while the one before is judged. Two threads get more of a busy
+/// computer than one, and two cores halve the time between frames.
+void FilterService::prepare_frames() {
+  while (const auto frame = frames_->pop()) {
+    Work work{*frame, std::nullopt, nullptr};
+    try {
+      if (vision::defect(**frame).empty()) work.extraction = filter_.extract(vision::view_image(**frame));
+    } catch (...) {
+      work.failure = std::current_exception();
+    }
+    if (!prepared_->push(std::move(work))) return;
+  }
+}
+
+std::optional<FilterService::Work> FilterService::next_frame() {
+  if (runtime_.pace == service::Pace::kRealtime) return prepared_->pop_for(kStatePeriod);
+  auto frame = frames_->pop_for(kStatePeriod);
+  return frame ? std::optional(Work{std::move(*frame), std::nullopt, nullptr}) : std::nullopt;
+}
+
 /// One frame: features while the detector still works on it, then its boxes, then the judgement.
-void FilterService::process(const msg::FrameView& frame) {
+void FilterService::process(Work work) {
+  if (work.failure) std::rethrow_exception(work.failure);
+  const msg::FrameView& frame = *work.frame;
   const vision::RgbdImage image = vision::view_image(frame);
-  std::vector<msg::Feature> features = filter_.extract(image);
+  Extraction extraction = work.extraction ? std::move(*work.extraction) : filter_.extract(image);
   const std::int64_t waiting_since_ns = service::monotonic_ns();
   const DetectorUpdate detector = collect_detections(frame);
   apply_slam_feedback();
   const std::int64_t waited_ns = service::monotonic_ns() - waiting_since_ns;
 
-  FilterResult result = filter_.judge(image, std::move(features), detector);
+  FilterResult result = filter_.judge(image, std::move(extraction), detector);
   result.stage_ms[msg::kStageWaitDetections] = static_cast<float>(static_cast<double>(waited_ns) * 1e-6);
   fill_message(frame, result, use_of(detector, result, frame.stamp_ns), *message_);
   writer_.write(*message_);
   // After the features: slam's pose waits for them, not for the mask. Costs nothing without a subscriber.
   if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result, runtime_.bus.frame(kCameraFrame)));
+  if (movers_.wanted()) movers_.add(frame.seq, frame.stamp_ns, filter_.sight_objects(result));
   ++published_;
   count(result);
 }
@@ -124,6 +161,7 @@ void FilterService::forget_views(const msg::FrameView& frame, const char* cause)
   SPDLOG_WARN("event=views_forgotten frame={} stamp_ns={} last_stamp_ns={} cause=\"{}\"", frame.seq, frame.stamp_ns,
               message_->stamp_ns, cause);
   filter_.reset();
+  movers_.clear();
   detections_->clear();
 }
 
@@ -150,6 +188,7 @@ bool FilterService::from_other_camera(const msg::FrameView& frame) {
   if (other) {
     SPDLOG_INFO("event=camera_changed source={:x}", frame.source_id);
     filter_.reset();
+    movers_.clear();
   }
   source_id_ = frame.source_id;
   source_heard_ns_ = now_ns;
@@ -169,12 +208,32 @@ void FilterService::apply_slam_feedback() {
   for (const msg::KeyframeEvent& event : update.events) filter_.on_keyframe(to_slam_keyframe(event));
   for (const msg::TrackingResult& result : update.results) {
     if (const auto pose = to_slam_pose(result)) filter_.on_pose(*pose);
+    movers_.on_result(result);
+    watch_load(result);
+  }
+}
+
+/// Only at pace realtime is a late pose a sign of too much work, and never a matter of results that must be repeatable.
+void FilterService::watch_load(const msg::TrackingResult& result) {
+  if (runtime_.pace != service::Pace::kRealtime || !config_.shed_load) return;
+  const int before = load_.step();
+  const double latency_ms = static_cast<double>(result.finished_ns - result.published_ns) * 1e-6;
+  if (!load_.add(result.seq, latency_ms, service::monotonic_ns())) return;
+  const service::LoadStep& step = service::kLoadSteps[static_cast<std::size_t>(load_.step())];
+  filter_.set_effort({step.feature_share, step.coarse_depth_check});
+  runtime_.heartbeat.set_metric(service::kLoadStepMetric, load_.step());
+  if (load_.step() > before) {
+    SPDLOG_WARN("event=load_shed step={} effect=\"{}\" cause=\"{} of {} frames late or missing\"", load_.step(),
+                step.name, load_.burdened(), load_.window());
+  } else {
+    SPDLOG_INFO("event=load_taken_back step={} effect=\"{}\"", load_.step(),
+                load_.step() > 0 ? step.name : "everything as configured");
   }
 }
 
 /// Realtime: what has arrived so far. Asap and lockstep: waits for the detections of exactly this frame.
 DetectorUpdate FilterService::collect_detections(const msg::FrameView& frame) {
-  if (!looks_at_boxes(mode_) || config_.detector == "off") return {};
+  if (!looks_at_boxes(filter_.mode()) || config_.detector == "off") return {};
   if (runtime_.pace != service::Pace::kRealtime) wait_for_detections(frame);
   return {detector_seen_ && !detector_gone_, detections_->take_until(frame.stamp_ns)};
 }
@@ -227,6 +286,7 @@ void FilterService::count(const FilterResult& result) {
   heartbeat.set_metric("features_removed", result.removed);
   heartbeat.set_metric("objects", static_cast<double>(result.objects.size()));
   heartbeat.set_metric("dynamic_clusters", result.dynamic_clusters);
+  heartbeat.set_metric("mode", static_cast<double>(filter_.mode()));
   static constexpr std::array<const char*, 7> kNames{"wait_ms",        "extract_ms", "masks_ms", "ego_motion_ms",
                                                      "depth_check_ms", "fuse_ms",    "filter_ms"};
   for (std::size_t stage = 0; stage < kNames.size(); ++stage) {  // means so far
@@ -243,11 +303,27 @@ void FilterService::report_state() {
                                  ready ? "" : "waiting for a camera and slam");
     return;
   }
-  if (detector_gone_) {
-    runtime_.heartbeat.set_state(msg::ServiceState::kDegraded, "detector gone: geometry only");
-  } else {
-    runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
-  }
+  std::vector<std::string> remarks;
+  if (detector_gone_) remarks.emplace_back("detector gone: geometry only");
+  if (load_.step() > 0)
+    remarks.push_back(
+        fmt::format("computer too slow or busy: {}", service::kLoadSteps[static_cast<std::size_t>(load_.step())].name));
+  runtime_.heartbeat.set_state(detector_gone_ ? msg::ServiceState::kDegraded : msg::ServiceState::kRunning,
+                               fmt::format("{}", fmt::join(remarks, "; ")));
+}
+
+/// What the old mode knew is forgotten, so the first frames of the new one are judged without views to compare with.
+bus::CommandAnswer FilterService::set_mode(const std::string& name) {
+  const auto& modes = all_modes();
+  const auto found = std::ranges::find_if(modes, [&name](const ModeEntry& entry) { return name == entry.name; });
+  if (found == std::end(modes))
+    return {false, fmt::format("'{}' is no mode of the filter: choose {}", name, fmt::join(mode_names(), ", "))};
+  const std::string before = entry_of(filter_.mode()).name;
+  if (before == name) return {true, "the mode is " + name + " already"};
+  filter_.set_mode(found->mode);
+  movers_.clear();
+  SPDLOG_INFO("event=mode_set_by_command mode={} before={}", name, before);
+  return {true, fmt::format("mode {} from the next frame on, {} before", name, before)};
 }
 
 }  // namespace rtd::filter

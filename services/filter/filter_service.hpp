@@ -6,10 +6,13 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 
+#include "common/bus/command_desk.hpp"
 #include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/service/exit_code.hpp"
@@ -17,13 +20,17 @@
 #include "common/service/runtime.hpp"
 #include "services/filter/config.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
+#include "services/filter/core/load/load_watch.hpp"
 #include "services/filter/inboxes.hpp"
+#include "services/filter/movers_publisher.hpp"
 
 namespace rtd::filter {
 
 /// Frames and detections in, features with their static probability out. Realtime pace: never waits for the detector;
-/// at most 2 frames wait, the oldest is dropped and counted. Asap and lockstep: every frame, with the detections of
-/// exactly that frame; lockstep also after slam's result for the frame before, so that every run is the same.
+/// at most 2 frames wait, the oldest is dropped and counted; features of the next frame are found in a thread of its
+/// own while a frame is judged; sheds load while poses come late (common/service/load_step.hpp). Asap and lockstep:
+/// every frame, with the detections of exactly that frame; lockstep also after slam's result for the frame before, so
+/// that every run is the same.
 class FilterService {
  public:
   static constexpr const char* kName = "filter";
@@ -39,8 +46,18 @@ class FilterService {
 
  private:
   using Frames = concurrency::BoundedQueue<std::shared_ptr<const msg::FrameView>>;
+  /// A frame and, where another thread finds them, its features.
+  struct Work {
+    std::shared_ptr<const msg::FrameView> frame;
+    std::optional<Extraction> extraction;
+    std::exception_ptr failure;  ///< of that thread
+  };
+  using Prepared = concurrency::BoundedQueue<Work>;
 
-  void process(const msg::FrameView& frame);
+  void prepare_frames();
+  std::optional<Work> next_frame();
+  void process(Work work);
+  void watch_load(const msg::TrackingResult& result);
   bool accept(const msg::FrameView& frame);
   void publish_no_features(const msg::FrameView& frame, const std::string& cause);
   void forget_views(const msg::FrameView& frame, const char* cause);
@@ -53,12 +70,15 @@ class FilterService {
   void watch_detector();
   void count(const FilterResult& result);
   void report_state();
+  bus::CommandAnswer set_mode(const std::string& name);
 
   const Config config_;
   service::Runtime& runtime_;
-  const FilterMode mode_;
   DynamicFilter filter_;
+  MoversPublisher movers_;
   std::shared_ptr<Frames> frames_;
+  std::shared_ptr<Prepared> prepared_ = std::make_shared<Prepared>(1, concurrency::Overflow::kBlock);
+  LoadWatch load_;
   std::shared_ptr<DetectionInbox> detections_ = std::make_shared<DetectionInbox>();
   std::shared_ptr<SlamFeedback> feedback_ = std::make_shared<SlamFeedback>();
   bus::Writer<msg::FeatureFrame> writer_;
@@ -77,6 +97,8 @@ class FilterService {
   std::array<double, msg::kFilterStages> total_stage_ms_{};  ///< of all published frames
   service::RateLimit defect_log_{std::chrono::seconds(1)}, other_camera_log_{std::chrono::seconds(5)},
       wait_log_{std::chrono::seconds(1)};
+  std::optional<bus::CommandDesk> commands_;
+  std::thread preparing_;  // these two last: they use the others
 };
 
 }  // namespace rtd::filter

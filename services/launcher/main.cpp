@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/service/bus_config.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/launcher/demo/demo_command.hpp"
@@ -48,6 +49,8 @@ constexpr std::array kCommands = {
     ExternalCommand{"map", "rtd-map", "Show what a map file contains; export its landmarks or keyframe poses", kTools},
     ExternalCommand{"topics", "rtd-topics",
                     "List the topics of a DDS domain, measure rates, print messages, also of a recording", kTools},
+    ExternalCommand{"call", "rtd-topics", "Call a command of a running service: reset the map, pause a replay, ...",
+                    kTools},
     ExternalCommand{"keystore", "rtd-keystore", "Create and renew the keys for --secure", kTools},
     ExternalCommand{"bench", "rtd-bench", "Measure feature extraction, transport and detector engines", kTools},
     ExternalCommand{"camera", "rtd-camera", "Publish the frames of a source"},
@@ -57,6 +60,7 @@ constexpr std::array kCommands = {
     ExternalCommand{"dense", "rtd-dense", "Fuse a dense static map"},
     ExternalCommand{"record", "rtd-record", "Record topics to MCAP files; recover and join recordings"},
     ExternalCommand{"replay", "rtd-replay", "Replay a recording"},
+    ExternalCommand{"viewer", "rtd-viewer", "Show a run in the browser and in Foxglove: map, images, services"},
     ExternalCommand{"link", "rtd-link", "Pass a robot's poses, images and detections to and from a fleet's domain"},
 };
 
@@ -107,6 +111,33 @@ int run_external_command(const std::string& name, std::vector<std::string> argum
   return service::kRunFailed;
 }
 
+/// `rtd replay --viewer`: starts the viewer where the replay will be heard, and takes the flag out of the arguments.
+/// The viewer ends with the replay. Returns why it cannot be started, else "".
+std::string start_viewer(std::vector<std::string>& arguments) {
+  constexpr const char* kFlag = "--viewer";
+  if (std::erase(arguments, kFlag) == 0) return "";
+  const std::string executable = find_executable("rtd-viewer");
+  if (executable.empty()) return missing_executable("rtd-viewer");
+  CLI::App app;
+  app.set_help_flag();
+  app.allow_extras();
+  service::BusArguments bus;
+  service::ConfigSources config;
+  service::add_bus_options(app, bus);
+  app.add_option("--config", config.file);
+  app.add_option("--set", config.overrides);
+  try {
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::ParseError&) {
+    return "";  // the replay says what is wrong
+  }
+  std::vector<std::string> command = service::to_command_line(bus);
+  if (!config.file.empty()) command.insert(command.end(), {"--config", config.file});
+  for (const std::string& assignment : config.overrides) command.insert(command.end(), {"--set", assignment});
+  command.insert(command.end(), {"--log-level", "warning"});
+  return start_companion(executable, command);
+}
+
 struct Requests {
   RunOptions run;
   DemoOptions demo;
@@ -150,6 +181,8 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_flag("--localize-only", options.localize_only,
                     "Only find poses in the map of --map, leave it unchanged");
   command->add_flag("--dense", options.dense, "Also fuse a dense static map: static_map.ply");
+  command->add_flag("--viewer", options.viewer,
+                    "Also show the run in the browser; the address is printed (--set viewer.port=...)");
   command->add_option("--record", options.record,
                       "Also record all topics: FILE.mcap, or a folder in the layout of rosbag2");
   command
@@ -196,8 +229,12 @@ int dispatch(const CLI::App& app, const Requests& requests) {
 int front(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool named = !arguments.empty() && !arguments[0].empty() && arguments[0][0] != '-';
-  if (named && std::ranges::count(kBuiltIn, arguments[0]) == 0)
-    return run_external_command(arguments[0], {arguments.begin() + 1, arguments.end()});
+  if (named && std::ranges::count(kBuiltIn, arguments[0]) == 0) {
+    std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
+    const std::string problem = arguments[0] == "replay" ? start_viewer(rest) : "";
+    if (!problem.empty()) std::cerr << "rtd: --viewer: " << problem << '\n';
+    return problem.empty() ? run_external_command(arguments[0], rest) : service::kUsageOrConfig;
+  }
 
   Requests requests;
   CLI::App app{"RTD-SLAM: RGB-D SLAM that stays accurate when people walk through the view", "rtd"};

@@ -23,8 +23,16 @@ bool in_foreground() {
 
 void Inbox::post(Event event) {
   const std::lock_guard lock(mutex_);
-  events_.push_back(event);
+  if (closed_) return;
+  events_.push_back(std::move(event));
   posted_.notify_one();
+}
+
+void Inbox::close() {
+  std::deque<Event> dropped;
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
+  dropped.swap(events_);
 }
 
 std::optional<Event> Inbox::take_until(std::int64_t deadline_ns) {
@@ -32,7 +40,7 @@ std::optional<Event> Inbox::take_until(std::int64_t deadline_ns) {
   std::unique_lock lock(mutex_);
   posted_.wait_until(lock, deadline, [this] { return !events_.empty(); });
   if (events_.empty()) return std::nullopt;
-  const Event event = events_.front();
+  Event event = std::move(events_.front());
   events_.pop_front();
   return event;
 }

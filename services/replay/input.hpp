@@ -23,11 +23,14 @@ class Inbox {
   void post(Event event);
   /// The next event; waits for one until the deadline (CLOCK_MONOTONIC).
   std::optional<Event> take_until(std::int64_t deadline_ns);
+  /// Drops the events that wait and all that come.
+  void close();
 
  private:
   std::mutex mutex_;
   std::condition_variable posted_;
   std::deque<Event> events_;
+  bool closed_ = false;
 };
 
 /// Reads the keys of the terminal as they are pressed. The destructor restores the terminal. Without a terminal, or in

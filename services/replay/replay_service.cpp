@@ -33,7 +33,7 @@ namespace {
 
 using service::ConfigError;
 
-constexpr std::int64_t kNsPerSecond = 1'000'000'000, kMetricsEveryNs = kNsPerSecond;
+constexpr std::int64_t kNsPerSecond = 1'000'000'000, kMetricsEveryNs = kNsPerSecond / 5;
 constexpr std::chrono::milliseconds kLook{20};
 constexpr std::chrono::milliseconds kSettle{200};    // a reader that has matched here may not have matched us yet
 constexpr std::chrono::milliseconds kFarewell{300};  // time for the last heartbeats to arrive
@@ -117,7 +117,8 @@ void ReplayService::add_options(CLI::App& app, Config& config) {
   app.add_flag("--json", config.json, "Print a report in JSON at the end");
   app.footer(
       "Keys: space pauses, right arrow or s steps (paused), up and down arrow change the rate, b and f jump 10 s back "
-      "and forward, q ends.\nExit code: 0 done, 1 no answers (--lockstep), 2 the recording or an option cannot be "
+      "and forward, q ends.\n'rtd replay --viewer' also shows it in the browser (--set viewer.port=...).\nExit code: 0 "
+      "done, 1 no answers (--lockstep), 2 the recording or an option cannot be "
       "used, 3 the recording is damaged and only its readable part was played");
 }
 
@@ -158,6 +159,7 @@ void ReplayService::open() {
                                 static_cast<double>(std::ranges::count_if(
                                     outputs_->all(), [](const auto& output) { return is_run_topic(output.first); })));
   if (window_ > 0) choose_paced_topic();
+  choose_step_ends();
 }
 
 void ReplayService::choose_topics() {
@@ -231,6 +233,24 @@ void ReplayService::choose_paced_topic() {
                     config_.lockstep, fmt::join(candidates, " or ")));
 }
 
+/// A step goes to the next raw frame; without these to the next features, or image, or message of any topic.
+void ReplayService::choose_step_ends() {
+  const auto take = [this](const auto& wanted) {
+    if (!step_ends_.empty()) return;
+    for (const mcap::Channel* channel : channels_) {
+      const bus::RawTopic& topic = outputs_->of(channel->id).topic;
+      if (wanted(bus::split_robot(topic.name).topic, topic.type)) step_ends_.insert(channel->id);
+    }
+  };
+  using Text = const std::string&;
+  take([](Text topic, Text) {
+    return std::ranges::any_of(bus::frame_topics(), [&](const bus::FrameTopic& frame) { return topic == frame.name; });
+  });
+  take([](Text topic, Text) { return topic == bus::topics::kFeatures.name; });
+  take([](Text, Text type) { return type.starts_with("sensor_msgs::") && type.ends_with("Image_"); });
+  take([](Text, Text) { return true; });
+}
+
 service::ExitCode ReplayService::run() {
   prctl(PR_SET_TIMERSLACK, 1000UL);  // ns; 50 us by default
   SPDLOG_INFO("event=recording_opened file={} topics={} messages={} duration_s={:.3f} summary={}", config_.file,
@@ -246,6 +266,8 @@ service::ExitCode ReplayService::run() {
   if (!subscribe_to_answers() || !wait_for_services() || !wait_for_readers())
     return runtime_.stop.stop_requested() ? service::kOk : service::kRunFailed;
   runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
+  commands_ = std::make_unique<ReplayCommands>(runtime_.bus, RecordedSpan{first_ns_, start_ns_, end_ns_},
+                                               [inbox = inbox_](Request request) { inbox->post(std::move(request)); });
   return play();
 }
 
@@ -324,6 +346,7 @@ service::ExitCode ReplayService::play() {
   if (config_.clock_hz > 0) options.clock_period_ns = to_ns(1 / config_.clock_hz);
   Player player(feed, *this, options);
   const PlayOutcome outcome = player.run();
+  inbox_->close();  // who still waits for an answer does so in vain
   line_.reset();
   return finish(player, outcome);
 }
@@ -367,10 +390,15 @@ std::optional<std::uint64_t> ReplayService::paced_seq(const PlayedMessage& messa
 void ReplayService::show(const PlayState& state) {
   const std::int64_t time_ns = now_ns();
   if (line_) line_->show(state, time_ns);
-  if (time_ns < next_metrics_ns_) return;
+  if (time_ns < next_metrics_ns_ && state.paused == shown_paused_) return;
   next_metrics_ns_ = time_ns + kMetricsEveryNs;
-  runtime_.heartbeat.set_metric("messages_sent", static_cast<double>(state.sent));
-  runtime_.heartbeat.set_metric("position_s", static_cast<double>(state.recorded_ns - first_ns_) * 1e-9);
+  shown_paused_ = state.paused;
+  service::Heartbeat& heartbeat = runtime_.heartbeat;
+  heartbeat.set_metric("messages_sent", static_cast<double>(state.sent));
+  heartbeat.set_metric("replay.position_s", static_cast<double>(state.recorded_ns - first_ns_) * 1e-9);
+  heartbeat.set_metric("replay.length_s", static_cast<double>(end_ns_ - first_ns_) * 1e-9);
+  heartbeat.set_metric("replay.speed", state.rate);
+  heartbeat.set_metric("replay.paused", state.paused ? 1 : 0);
 }
 
 }  // namespace rtd::replay

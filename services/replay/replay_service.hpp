@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "common/service/runtime.hpp"
 #include "services/replay/input.hpp"
 #include "services/replay/outputs.hpp"
+#include "services/replay/replay_commands.hpp"
 #include "services/replay/replay_report.hpp"
 
 namespace CLI {
@@ -88,6 +90,7 @@ class ReplayService final : public PlayerHost {
   void send(const PlayedMessage& message) override { outputs_->send(message); }
   void send_clock(std::int64_t recorded_ns) override { outputs_->send_clock(recorded_ns); }
   std::optional<std::uint64_t> paced_seq(const PlayedMessage& message) override;
+  bool ends_step(const PlayedMessage& message) override { return step_ends_.contains(message.channel); }
   void show(const PlayState& state) override;
 
  private:
@@ -96,6 +99,7 @@ class ReplayService final : public PlayerHost {
   std::string recorded_robot(const std::vector<std::string>& topics) const;
   void choose_paced_topic();
   void choose_span();
+  void choose_step_ends();
   bool wait_for_services();
   bool wait_for_readers();
   bool subscribe_to_answers();
@@ -119,7 +123,10 @@ class ReplayService final : public PlayerHost {
   std::vector<std::unique_ptr<service::Heartbeat>> stand_ins_;
   std::unique_ptr<bus::RawReader> answers_;
   std::unique_ptr<StatusLine> line_;
+  std::set<mcap::ChannelId> step_ends_;
   std::int64_t next_metrics_ns_ = 0;
+  bool shown_paused_ = false;
+  std::unique_ptr<ReplayCommands> commands_;  // last: it uses the inbox
 };
 
 }  // namespace rtd::replay

@@ -32,6 +32,7 @@ struct ServiceConfig {
   int path_length = 2000;
   int path_period_ms = 500;
   int map_period_ms = 1000;
+  int map_changes_period_ms = 500;
 
   void bind(auto& binder) {
     binder.section("techniques", core.techniques);
@@ -55,6 +56,8 @@ struct ServiceConfig {
     binder.field("path_length", path_length, {1, 1000000}, "poses kept for rt/slam/path");
     binder.field("path_period_ms", path_period_ms, {1, 60000}, "time between two path messages");
     binder.field("map_period_ms", map_period_ms, {1, 60000}, "time between two clouds on rt/slam/map_points");
+    binder.field("map_changes_period_ms", map_changes_period_ms, {1, 60000},
+                 "time between two updates on rtd/map, while somebody reads it");
   }
   /// Throws service::ConfigError for keys that contradict each other.
   void validate() const;

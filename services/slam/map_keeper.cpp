@@ -30,7 +30,7 @@ void write_file(const std::filesystem::path& path, const std::function<void(std:
 }  // namespace
 
 MapKeeper::MapKeeper(const MapFileConfig& config, const SlamSystem& slam) : config_(config), slam_(slam) {
-  if (config.checkpoint_s > 0) thread_ = std::thread([this] { loop(); });
+  if (!config.save.empty() && config.checkpoint_s > 0) thread_ = std::thread([this] { loop(); });
 }
 
 MapKeeper::~MapKeeper() {
@@ -46,7 +46,7 @@ std::string MapKeeper::trouble() const {
 bool MapKeeper::save_at_end() {
   ended_.request_stop();
   if (thread_.joinable()) thread_.join();
-  return save("end");
+  return config_.save.empty() || save("end");
 }
 
 void MapKeeper::loop() {
@@ -54,35 +54,54 @@ void MapKeeper::loop() {
   concurrency::lower_thread_priority(kNicer);
   const std::chrono::milliseconds period(static_cast<std::int64_t>(config_.checkpoint_s * 1000));
   while (!ended_.wait_for(period)) {
-    Growth now;
+    Growth now, saved;
     slam_.read_map([&](const Map& map) { now = {map.next_keyframe(), map.next_landmark()}; });
-    if (now != saved_) save("checkpoint");
+    {
+      const std::lock_guard lock(file_mutex_);
+      saved = saved_;
+    }
+    if (now != saved) save("checkpoint");
   }
 }
 
 bool MapKeeper::save(const char* occasion) {
-  const std::int64_t start_ns = service::monotonic_ns();
-  MapSnapshot snapshot;
-  slam_.read_map([&](const Map& map) { snapshot = take_snapshot(map); });
-  const double copy_ms = ms_since(start_ns);
-  if (snapshot.keyframes.empty()) {
+  bool empty = false;
+  slam_.read_map([&](const Map& map) { empty = map.empty(); });
+  if (empty) {
     SPDLOG_WARN("event=map_not_saved file={} cause=\"nothing was mapped\"", config_.save);
     return true;
   }
   try {
-    const std::uint64_t bytes = save_map_file(config_.save, snapshot);
-    SPDLOG_INFO("event=map_saved file={} occasion={} keyframes={} landmarks={} bytes={} copy_ms={:.0f} ms={:.0f}",
-                config_.save, occasion, snapshot.head.keyframes, snapshot.head.landmarks, bytes, copy_ms,
-                ms_since(start_ns));
+    write(config_.save, occasion);
   } catch (const std::exception& error) {
     SPDLOG_ERROR("event=map_not_saved file={} occasion={} cause=\"{}\" kept=\"what the file held before\"",
                  config_.save, occasion, error.what());
     note_trouble(fmt::format("map not saved, {} keeps what it held: {}", config_.save, error.what()));
     return false;
   }
-  saved_ = {snapshot.head.next_keyframe, snapshot.head.next_landmark};
   note_trouble({});
   return true;
+}
+
+SavedMap MapKeeper::save_to(const std::filesystem::path& path) {
+  const SavedMap saved = write(path, "request");
+  if (path == config_.save) note_trouble({});
+  return saved;
+}
+
+SavedMap MapKeeper::write(const std::filesystem::path& path, const char* occasion) {
+  const std::lock_guard lock(file_mutex_);
+  const std::int64_t start_ns = service::monotonic_ns();
+  MapSnapshot snapshot;
+  slam_.read_map([&](const Map& map) { snapshot = take_snapshot(map); });
+  const double copy_ms = ms_since(start_ns);
+  if (snapshot.keyframes.empty()) throw std::runtime_error("nothing was mapped: there is no map to save");
+  const std::uint64_t bytes = save_map_file(path, snapshot);
+  SPDLOG_INFO("event=map_saved file={} occasion={} keyframes={} landmarks={} bytes={} copy_ms={:.0f} ms={:.0f}",
+              path.string(), occasion, snapshot.head.keyframes, snapshot.head.landmarks, bytes, copy_ms,
+              ms_since(start_ns));
+  if (path == config_.save) saved_ = {snapshot.head.next_keyframe, snapshot.head.next_landmark};
+  return {snapshot.head.keyframes, snapshot.head.landmarks, bytes};
 }
 
 void MapKeeper::note_trouble(std::string trouble) {

@@ -13,6 +13,11 @@
 
 namespace rtd::slam {
 
+/// What a saved file holds.
+struct SavedMap {
+  std::uint64_t keyframes = 0, landmarks = 0, bytes = 0;
+};
+
 /// Keeps the map of a SlamSystem on disk: checkpoints while it grows, written in a thread of its own that yields to all
 /// others, and the last word at the end. Tracking is never held up, the mapper only while the map is copied.
 class MapKeeper {
@@ -25,8 +30,13 @@ class MapKeeper {
 
   /// Why the last save failed, what is left and what to do; empty when it did not. Any thread.
   std::string trouble() const;
-  /// Ends the checkpoints and saves the map; false when that fails. An empty map leaves the file as it is.
+  /// Ends the checkpoints and saves the map; false when that fails. An empty map leaves the file as it is. True without
+  /// a file in the configuration.
   bool save_at_end();
+  /// Saves the map as it is now, whatever the configuration says; checkpoints go on. Any thread; the mapper waits while
+  /// the map is copied. Throws std::runtime_error with file and cause: nothing was mapped, or the file cannot be
+  /// written, which then keeps what it held.
+  SavedMap save_to(const std::filesystem::path& path);
 
  private:
   /// Tells one state of the map from a later one.
@@ -38,11 +48,13 @@ class MapKeeper {
 
   void loop();
   bool save(const char* occasion);
+  SavedMap write(const std::filesystem::path& path, const char* occasion);
   void note_trouble(std::string trouble);
 
   const MapFileConfig config_;
   const SlamSystem& slam_;
-  Growth saved_;
+  std::mutex file_mutex_;     ///< one file at a time
+  Growth saved_;              ///< what the configured file holds; guarded by file_mutex_
   mutable std::mutex mutex_;  ///< guards trouble_
   std::string trouble_;
   service::StopToken ended_;

@@ -32,6 +32,8 @@ class SlamPublisher {
   /// The result again, for a frame that was sent again.
   void repeat(const msg::TrackingResult& result) { tracking_.write(result); }
   void publish_diagnostics(msg::DiagnosticArray diagnostics);
+  /// The map is another one: its path begins with the next pose.
+  void begin_path() { poses_.clear(); }
   /// Somebody listens to the results.
   bool matched() const { return tracking_.matched() > 0; }
 

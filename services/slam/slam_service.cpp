@@ -52,12 +52,14 @@ SlamService::SlamService(const Config& config, service::Runtime& runtime)
       runtime_(runtime),
       slam_(with_vocabulary(config), mapping_mode(runtime.pace), service::monotonic_ns, yield_to_tracking),
       publisher_(config, runtime.bus, [this] { return slam_.map_points(); }),
+      map_publisher_(
+          runtime.bus, [this] { return slam_.map_view(); }, std::chrono::milliseconds(config.map_changes_period_ms)),
       arrivals_(runtime.pace == service::Pace::kRealtime
                     ? std::make_shared<Arrivals>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
-                    : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)) {
+                    : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
+      map_keeper_(config.map, slam_) {
   config.validate();
   load_map();
-  if (!config.map.save.empty()) map_keeper_.emplace(config.map, slam_);
   runtime.stop.on_stop([arrivals = arrivals_] { arrivals->close(); });
   runtime.heartbeat.on_status([this](const msg::ServiceStatus& status) {
     if (status.service == "camera") source_ended_ = status.state == msg::ServiceState::kFinished;
@@ -93,19 +95,51 @@ void SlamService::load_map() {
 bool SlamService::check_camera(const msg::FeatureFrame& frame) {
   const std::string difference = difference_to(map_cameras_, frame);
   if (difference.empty()) return true;
+  if (map_by_command_) {
+    SPDLOG_WARN("event=map_given_up cause=\"{}\"", difference);
+    forget_map();
+    refused_map_ = "the map of slam/load_map is not used: " + difference;
+    return true;
+  }
   SPDLOG_ERROR("event=other_camera file={} cause=\"{}\"", config_.map.load, difference);
   return false;
 }
 
+/// How its cameras differ from ours, and what to do; then nothing is taken.
+std::string SlamService::take_map(MapContents contents) {
+  MapCameras cameras = cameras_of(contents);
+  const std::string difference = last_frame_ ? difference_to(cameras, *last_frame_) : "";
+  if (!difference.empty()) return difference;
+  map_cameras_ = std::move(cameras);
+  map_by_command_ = true;
+  refused_map_.clear();
+  slam_.load_map(std::move(contents));
+  publisher_.begin_path();
+  return {};
+}
+
+void SlamService::forget_map() {
+  map_cameras_.clear();
+  refused_map_.clear();
+  slam_.reset();
+  publisher_.begin_path();
+}
+
 service::ExitCode SlamService::run() {
+  commands_.emplace(
+      runtime_.bus, config_.map, slam_, map_keeper_,
+      [this](MapContents contents) { return take_map(std::move(contents)); }, [this] { forget_map(); });
   while (!runtime_.stop.stop_requested()) {
     runtime_.heartbeat.tick();
     report_state();
+    commands_->serve();
     const auto frame = arrivals_->pop_for(kStatePeriod);
     if (frame && counters_.frames == 0 && !check_camera(**frame)) return service::kUsageOrConfig;
     if (frame) answer(**frame);
+    if (frame) last_frame_ = *frame;
     watch_input(frame.has_value());
   }
+  commands_->close();
   SPDLOG_INFO(
       "event=summary frames={} tracked={} dropped={} duplicates={} invalid_features={} keyframes={} landmarks={}",
       counters_.frames, counters_.tracked, arrivals_->dropped(), counters_.duplicates, counters_.invalid_features,
@@ -150,6 +184,7 @@ void SlamService::count(const SlamOutput& output) {
   heartbeat.set_metric("loops_closed", static_cast<double>(counters_.loops));
   heartbeat.set_metric("landmarks", output.result.landmarks);
   heartbeat.set_metric("readout_ms", 1e3 * slam_.readout_s());
+  heartbeat.set_metric("localize_only", slam_.localize_only() ? 1 : 0);
   heartbeat.set_metric("slam_ms", static_cast<double>(output.result.stage_ms[msg::kStageSlamTotal]));
 }
 
@@ -226,9 +261,8 @@ std::string SlamService::trouble() const {
     return fmt::format("no features for {:g} s: camera or filter gone, the map is kept",
                        input_gone_after_s(runtime_.pace));
   }
-  if (map_keeper_) {
-    if (std::string unsaved = map_keeper_->trouble(); !unsaved.empty()) return unsaved;
-  }
+  if (std::string unsaved = map_keeper_.trouble(); !unsaved.empty()) return unsaved;
+  if (!refused_map_.empty()) return refused_map_;
   return counters_.frames > 0 && last_result_.state != msg::TrackingState::kOk ? last_problem_ : std::string{};
 }
 
@@ -248,7 +282,7 @@ service::ExitCode SlamService::finish() {
   // A stop from outside must not wait for seconds; a source that has ended gives its final map.
   slam_.finish(source_ended_ ? PendingAdjustment::kAwait : PendingAdjustment::kCancel);
   const bool written = write_files();
-  const bool saved = !map_keeper_ || map_keeper_->save_at_end();
+  const bool saved = map_keeper_.save_at_end();
   return written && saved ? service::kOk : service::kRunFailed;
 }
 

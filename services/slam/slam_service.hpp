@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/concurrency/bounded_queue.hpp"
@@ -14,6 +15,8 @@
 #include "services/slam/core/slam_system.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_keeper.hpp"
+#include "services/slam/map_publisher.hpp"
+#include "services/slam/slam_commands.hpp"
 #include "services/slam/slam_publisher.hpp"
 
 namespace CLI {
@@ -43,7 +46,9 @@ class SlamService {
   using Arrivals = concurrency::BoundedQueue<std::shared_ptr<const msg::FeatureFrame>>;
 
   void load_map();
-  /// False when the camera is not that of the loaded map.
+  std::string take_map(MapContents contents);
+  void forget_map();
+  /// False when the camera is not that of the map the service was started with. One taken by command is given up.
   bool check_camera(const msg::FeatureFrame& frame);
   void answer(const msg::FeatureFrame& frame);
   void count(const SlamOutput& output);
@@ -58,12 +63,15 @@ class SlamService {
   service::Runtime& runtime_;
   SlamSystem slam_;
   MapCameras map_cameras_;  ///< of the loaded map
+  bool map_by_command_ = false;
+  std::string refused_map_;  ///< why the map taken by command was given up, until the next one or a reset
   SlamPublisher publisher_;
+  MapPublisher map_publisher_;
   std::shared_ptr<Arrivals> arrivals_;
   bus::Reader<msg::FeatureFrame> features_;
   std::atomic<bool> source_ended_{false};  ///< as the camera reports
   SlamCounters counters_;
-  std::optional<MapKeeper> map_keeper_;  ///< ends before the system that it reads
+  MapKeeper map_keeper_;  ///< ends before the system that it reads
   msg::TrackingResult last_result_{};
   std::string last_problem_;
   std::int64_t last_arrival_ns_ = 0, last_diagnostics_ns_ = 0;
@@ -72,6 +80,8 @@ class SlamService {
   std::uint64_t dropped_logged_ = 0;
   service::RateLimit problem_log_{std::chrono::seconds(1)}, invalid_log_{std::chrono::seconds(1)},
       dropped_log_{std::chrono::seconds(1)};
+  std::shared_ptr<const msg::FeatureFrame> last_frame_;
+  std::optional<SlamCommands> commands_;  // last: it uses the others
 };
 
 }  // namespace rtd::slam

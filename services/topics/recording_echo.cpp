@@ -14,6 +14,7 @@
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/json_text.hpp"
 #include "services/topics/core/recorded_types.hpp"
 #include "services/topics/core/topic_report.hpp"
 
@@ -44,7 +45,7 @@ class RecordingPrinter {
                                         {"type", type.type},
                                         {"recorded_ns", message.recorded_ns},
                                         {"message", json}};
-      out_ << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+      out_ << service::json_line(line) << '\n';
     } else {
       if (request_.topics.size() != 2) out_ << title_of(message, type);
       out_ << message_text(json);

@@ -11,6 +11,7 @@
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/json_text.hpp"
 #include "services/topics/core/topic_report.hpp"
 #include "services/topics/topics_session.hpp"
 
@@ -36,7 +37,7 @@ class Printer {
       const nlohmann::ordered_json line{{"topic", ros2::ros_topic(topic.name)}, {"type", ros2::ros_type(topic.type)},
                                         {"sequence", sample.sequence},          {"sent_ns", sample.source_ns},
                                         {"received_ns", sample.received_ns},    {"message", message}};
-      out_ << line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << std::endl;
+      out_ << service::json_line(line) << std::endl;
     } else {
       out_ << message_text(message) << std::flush;
     }

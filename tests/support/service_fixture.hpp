@@ -74,8 +74,9 @@ class ServiceFixture : public ::testing::Test {
   }
 
   /// A heartbeat of another service.
-  void say(const std::string& service, msg::ServiceState state) {
+  void say(const std::string& service, msg::ServiceState state, std::vector<msg::Metric> metrics = {}) {
     msg::ServiceStatus status;
+    status.metrics = std::move(metrics);
     status.service = service;
     status.pid = 1;
     status.state = state;

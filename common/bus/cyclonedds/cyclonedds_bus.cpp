@@ -7,6 +7,7 @@
 #include "common/bus/cyclonedds/codec.hpp"
 #include "common/bus/cyclonedds/endpoints.hpp"
 #include "common/bus/cyclonedds/qos_mapping.hpp"
+#include "common/bus/prefixed_calls.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
@@ -22,27 +23,6 @@ CycloneReader::Handlers typed_handlers(MessageId id, ErasedCallback on_message, 
   handlers.status = std::move(callbacks);
   return handlers;
 }
-
-class CycloneBackend : public BusBackend {
- public:
-  explicit CycloneBackend(const BusOptions& options)
-      : BusBackend("cyclonedds"), participant_(std::make_shared<Participant>(options)) {}
-
-  std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
-                                               StatusCallbacks callbacks) override {
-    Qos qos = writer_qos(to_raw_qos(qos_settings(profile)));
-    return std::make_unique<TypedWriter>(participant_, id, topic, std::move(qos), std::move(callbacks));
-  }
-  std::unique_ptr<ReaderBackend> create_reader(MessageId id, const std::string& topic, QosProfile profile,
-                                               ErasedCallback on_message, StatusCallbacks callbacks) override {
-    Qos qos = reader_qos(to_raw_qos(qos_settings(profile)));
-    return std::make_unique<CycloneReader>(participant_, sample_type(id), topic, std::move(qos),
-                                           typed_handlers(id, std::move(on_message), std::move(callbacks)));
-  }
-
- private:
-  std::shared_ptr<Participant> participant_;
-};
 
 SampleType raw_type(const RawTopic& topic) {
   return {topic.type, topic.keyed, 0, true};
@@ -73,6 +53,12 @@ class RawCycloneWriter : public RawWriter {
     block->assign(cdr);
     return writer_.write(std::move(block), source_ns);
   }
+  /// A number that no other entity of the domain has, as rmw_cyclonedds uses it for a client.
+  std::uint64_t instance() const {
+    dds_instance_handle_t handle = 0;
+    dds_get_instance_handle(writer_.handle(), &handle);
+    return handle;
+  }
   int matched() const override { return writer_.matched(); }
   bool wait_acknowledged(int timeout_ms) override { return writer_.wait_acknowledged(timeout_ms); }
 
@@ -81,9 +67,49 @@ class RawCycloneWriter : public RawWriter {
   CycloneWriter writer_;
 };
 
-/// RTPS: the low bits of an entity's last byte distinguish a writer with key from one without.
+std::unique_ptr<CallEndpoint> create_calls_on(const std::shared_ptr<Participant>& participant, const CallTopics& topics,
+                                              CallRole role, OnCall on_call) {
+  auto writer = std::make_unique<RawCycloneWriter>(participant, sent_topic(topics, role), call_writer_options(),
+                                                   StatusCallbacks());
+  const std::uint64_t client = writer->instance();
+  const RawTopic received = received_topic(topics, role);
+  return std::make_unique<PrefixedCalls>(
+      role, client, std::move(writer),
+      [&](const RawHandlers& handlers) {
+        return std::make_unique<CycloneReader>(participant, raw_type(received), received.name,
+                                               raw_reader_qos(call_reader_options()), raw_handlers(handlers));
+      },
+      std::move(on_call));
+}
+
+class CycloneBackend : public BusBackend {
+ public:
+  explicit CycloneBackend(const BusOptions& options)
+      : BusBackend("cyclonedds"), participant_(std::make_shared<Participant>(options)) {}
+
+  std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
+                                               StatusCallbacks callbacks) override {
+    Qos qos = writer_qos(to_raw_qos(qos_settings(profile)));
+    return std::make_unique<TypedWriter>(participant_, id, topic, std::move(qos), std::move(callbacks));
+  }
+  std::unique_ptr<ReaderBackend> create_reader(MessageId id, const std::string& topic, QosProfile profile,
+                                               ErasedCallback on_message, StatusCallbacks callbacks) override {
+    Qos qos = reader_qos(to_raw_qos(qos_settings(profile)));
+    return std::make_unique<CycloneReader>(participant_, sample_type(id), topic, std::move(qos),
+                                           typed_handlers(id, std::move(on_message), std::move(callbacks)));
+  }
+  std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {
+    return create_calls_on(participant_, topics, role, std::move(on_call));
+  }
+
+ private:
+  std::shared_ptr<Participant> participant_;
+};
+
+/// RTPS: the low bits of an entity's last byte distinguish an endpoint with key from one without.
 bool is_keyed(const WriterId& id) {
-  return (id.back() & 0x0f) == 0x02;
+  const int kind = id.back() & 0x0f;
+  return kind == 0x02 || kind == 0x07;
 }
 
 class CycloneRawBus : public RegistryRawBus {
@@ -91,8 +117,12 @@ class CycloneRawBus : public RegistryRawBus {
   explicit CycloneRawBus(const BusOptions& options)
       : RegistryRawBus("cyclonedds"),
         participant_(std::make_shared<Participant>(options)),
-        watch_(participant_->handle(), EndpointWatch::Direction::kWriters,
-               [this](const WriterId& id, const dds_builtintopic_endpoint_t* writer) { note(id, writer); }) {}
+        writers_(participant_->handle(), EndpointWatch::Direction::kWriters,
+                 [this](const WriterId& id, const dds_builtintopic_endpoint_t* writer) { note_writer(id, writer); }),
+        readers_(participant_->handle(), EndpointWatch::Direction::kReaders,
+                 [this](const WriterId& id, const dds_builtintopic_endpoint_t* reader) { note_reader(id, reader); }) {}
+
+  std::map<ParticipantId, std::string> participants() const override { return participant_->participants(); }
 
   std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
                                     RawHandlers handlers) override {
@@ -103,9 +133,12 @@ class CycloneRawBus : public RegistryRawBus {
                                     StatusCallbacks callbacks) override {
     return std::make_unique<RawCycloneWriter>(participant_, topic, options, std::move(callbacks));
   }
+  std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {
+    return create_calls_on(participant_, topics, role, std::move(on_call));
+  }
 
  private:
-  void note(const WriterId& id, const dds_builtintopic_endpoint_t* endpoint) {
+  void note_writer(const WriterId& id, const dds_builtintopic_endpoint_t* endpoint) {
     if (endpoint == nullptr) return registry_.note_gone(id);
     TopicWriter writer;
     writer.id = id;
@@ -115,9 +148,14 @@ class CycloneRawBus : public RegistryRawBus {
     writer.own = participant_->is_own(id);
     registry_.note(writer);
   }
+  void note_reader(const WriterId& id, const dds_builtintopic_endpoint_t* endpoint) {
+    if (endpoint == nullptr) return registry_.note_gone(id);
+    const RawTopic topic{endpoint->topic_name, endpoint->type_name, is_keyed(id)};
+    registry_.note(TopicReader{id, topic, participant_->is_own(id)});
+  }
 
   std::shared_ptr<Participant> participant_;
-  EndpointWatch watch_;  // last: it uses the others
+  EndpointWatch writers_, readers_;  // last: they use the others
 };
 
 }  // namespace

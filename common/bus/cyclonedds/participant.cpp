@@ -252,6 +252,29 @@ TopicTypes& Participant::types() {
   return types_;
 }
 
+std::map<ParticipantId, std::string> Participant::participants() const {
+  constexpr std::size_t kMost = 512;
+  std::call_once(asked_, [this] {
+    participants_ = dds_create_reader(participant_.get(), DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr);
+  });
+  std::map<ParticipantId, std::string> names;
+  void* samples[kMost] = {};
+  std::vector<dds_sample_info_t> infos(kMost);
+  const std::uint32_t mask = DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ALIVE_INSTANCE_STATE;
+  const dds_return_t count = dds_read_mask(participants_, samples, infos.data(), kMost, kMost, mask);
+  for (int i = 0; i < count; ++i) {
+    const auto* const participant = static_cast<const dds_builtintopic_participant_t*>(samples[i]);
+    char* name = nullptr;
+    if (!infos[static_cast<std::size_t>(i)].valid_data || !dds_qget_entity_name(participant->qos, &name)) continue;
+    ParticipantId id{};
+    std::copy_n(participant->key.v, id.size(), id.begin());
+    names.emplace(id, name);
+    dds_free(name);
+  }
+  if (count > 0) dds_return_loan(participants_, samples, count);
+  return names;
+}
+
 bool Participant::is_own(const WriterId& endpoint) const {
   constexpr std::ptrdiff_t kPrefix = 12;  // of the participant
   return std::equal(endpoint.begin(), endpoint.begin() + kPrefix, id_.begin());

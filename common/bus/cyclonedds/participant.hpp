@@ -58,6 +58,8 @@ class Participant {
   const WriterId& id() const { return id_; }
   /// Whether an endpoint of that identity belongs to us.
   bool is_own(const WriterId& endpoint) const;
+  /// Names of the participants of the domain, ours included.
+  std::map<ParticipantId, std::string> participants() const;
   bool shares_memory() const { return shares_memory_; }
   /// Topics that stay on the host are in a partition of the host, so that no reader elsewhere is matched. Without a
   /// network they need none.
@@ -78,6 +80,8 @@ class Participant {
   std::shared_ptr<Domain> domain_;
   Entity participant_;  // its topics and endpoints end with it
   WriterId id_{};
+  mutable std::once_flag asked_;
+  mutable dds_entity_t participants_ = 0;  ///< a reader, from the first call of participants() on
   const bool shares_memory_, loopback_only_;
   std::mutex mutex_;
   std::map<std::string, KnownTopic> topics_;

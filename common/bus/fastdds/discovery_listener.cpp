@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/discovery_listener.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <sstream>
 #include <string>
@@ -46,6 +47,12 @@ void note_type(const dds::DomainParticipant& participant, const Info& info, bool
   } else {
     types.appeared(id.str(), info.topicName().to_string(), info.typeName().to_string());
   }
+}
+
+ParticipantId id_of(const rtps::GuidPrefix_t& prefix) {
+  ParticipantId id{};
+  std::copy_n(prefix.value, id.size(), id.begin());
+  return id;
 }
 
 }  // namespace
@@ -106,12 +113,13 @@ void ServerWatch::appeared(const rtps::GuidPrefix_t& participant) {
   if (participant == server_prefix()) settled_.request_stop();
 }
 
-DiscoveryListener::DiscoveryListener(const BusOptions& options, WriterRegistry* writers)
-    : writers_(writers), security_(options.security.enabled() ? std::make_unique<SecurityWatch>(options) : nullptr) {}
+DiscoveryListener::DiscoveryListener(const BusOptions& options, EndpointRegistry* registry)
+    : registry_(registry), security_(options.security.enabled() ? std::make_unique<SecurityWatch>(options) : nullptr) {}
 
 void DiscoveryListener::start(dds::DomainParticipant& participant, const BusOptions& options) {
   reannouncer_.start(participant);
   server_.start(options);
+  if (registry_) registry_->note(id_of(participant.guid().guidPrefix), participant.get_qos().name().to_string());
 }
 
 void DiscoveryListener::stop() {
@@ -121,9 +129,18 @@ void DiscoveryListener::stop() {
 
 void DiscoveryListener::on_participant_discovery(Participant*, rtps::ParticipantDiscoveryInfo&& info) {
   if (security_) security_->discovered(info);
+  note(info);
   if (info.status != rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) return;
   reannouncer_.announce_again();
   server_.appeared(info.info.m_guid.guidPrefix);
+}
+
+void DiscoveryListener::note(const rtps::ParticipantDiscoveryInfo& info) {
+  if (!registry_) return;
+  using Info = rtps::ParticipantDiscoveryInfo;
+  const bool gone = info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT;
+  const ParticipantId id = id_of(info.info.m_guid.guidPrefix);
+  gone ? registry_->note_gone(id) : registry_->note(id, info.info.m_participantName.to_string());
 }
 
 void DiscoveryListener::onParticipantAuthentication(Participant*, rtps::ParticipantAuthenticationInfo&& info) {
@@ -133,15 +150,22 @@ void DiscoveryListener::onParticipantAuthentication(Participant*, rtps::Particip
 void DiscoveryListener::on_publisher_discovery(Participant* participant, rtps::WriterDiscoveryInfo&& info) {
   const bool gone = info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER;
   note_type(*participant, info.info, gone, types_);
-  if (writers_ == nullptr) return;
+  if (registry_ == nullptr) return;
   TopicWriter writer = to_topic_writer(info.info);
-  if (gone) return writers_->note_gone(writer.id);
+  if (gone) return registry_->note_gone(writer.id);
   writer.own = is_own(*participant, info.info.guid());
-  writers_->note(writer);
+  registry_->note(writer);
 }
 
 void DiscoveryListener::on_subscriber_discovery(Participant* participant, rtps::ReaderDiscoveryInfo&& info) {
-  note_type(*participant, info.info, info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER, types_);
+  const bool gone = info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER;
+  note_type(*participant, info.info, gone, types_);
+  if (!registry_) return;
+  const rtps::ReaderProxyData& data = info.info;
+  const WriterId id = to_writer_id(data.guid());
+  if (gone) return registry_->note_gone(id);
+  const RawTopic topic{data.topicName().to_string(), data.typeName().to_string(), data.topicKind() == rtps::WITH_KEY};
+  registry_->note(TopicReader{id, topic, is_own(*participant, data.guid())});
 }
 
 }  // namespace rtd::bus::fastdds

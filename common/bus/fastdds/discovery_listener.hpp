@@ -57,21 +57,22 @@ class ServerWatch {
 /// Receives what Fast DDS discovers of the other participants of a domain and of their endpoints.
 class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListener {
  public:
-  /// `writers`, if any, gets all writers.
-  DiscoveryListener(const BusOptions& options, WriterRegistry* writers);
+  /// `registry`, if any, gets all endpoints and participants.
+  DiscoveryListener(const BusOptions& options, EndpointRegistry* registry);
   void start(eprosima::fastdds::dds::DomainParticipant& participant, const BusOptions& options);
   void stop();
   TopicTypes& types() { return types_; }
 
  private:
   using Participant = eprosima::fastdds::dds::DomainParticipant;
+  void note(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
   void on_participant_discovery(Participant*, eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
   void onParticipantAuthentication(Participant*,
                                    eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
   void on_publisher_discovery(Participant* participant, eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
   void on_subscriber_discovery(Participant* participant, eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
 
-  WriterRegistry* const writers_;
+  EndpointRegistry* const registry_;
   std::unique_ptr<SecurityWatch> security_;
   Reannouncer reannouncer_;
   ServerWatch server_;

@@ -21,7 +21,10 @@ FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::uniq
   dds::Topic* const known = participant_->topic(topic, *codec_);
   if (status_.callbacks().on_type_mismatch)
     types_.emplace(participant_->types(), topic, known->get_type_name(), status_);
-  reader_ = subscriber_.create_datareader(known, with_type_hash(qos, known->get_type_name()), this);
+  {
+    const std::lock_guard lock(participant_->readers_mutex());
+    reader_ = subscriber_.create_datareader(known, with_type_hash(qos, known->get_type_name()), this);
+  }
   if (reader_ == nullptr) throw BusError("Fast DDS refused a reader on topic " + topic);
   thread_.wake();  // a sample may have come before reader_ was known
 }
@@ -31,6 +34,7 @@ FastddsReader::~FastddsReader() {
   reader->set_listener(nullptr);
   types_.reset();
   thread_.stop();  // waits for a running callback; only now nothing takes from the reader
+  const std::lock_guard lock(participant_->readers_mutex());
   subscriber_.delete_datareader(reader);
 }
 

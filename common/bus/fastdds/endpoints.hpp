@@ -26,6 +26,8 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
                 const dds::DataReaderQos& qos, ErasedCallback on_message, StatusCallbacks callbacks);
   ~FastddsReader() override;
   int matched() const override { return status_.matched(); }
+  /// Valid in callbacks, too.
+  eprosima::fastrtps::rtps::GUID_t guid() const { return reader_.load()->guid(); }
 
  private:
   bool handle_one();
@@ -81,6 +83,7 @@ class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
   void discard_loan(void* slot) override;
   int matched() const override { return status_.matched(); }
   bool wait_acknowledged(int timeout_ms) override;
+  eprosima::fastrtps::rtps::GUID_t guid() const { return writer_->guid(); }
 
  private:
   void on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus& status) override {

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "common/bus/fastdds/calls.hpp"
 #include "common/bus/fastdds/codec.hpp"
 #include "common/bus/fastdds/endpoints.hpp"
 #include "common/bus/host/host_checks.hpp"
@@ -28,6 +29,9 @@ class FastddsBackend : public BusBackend {
     const auto qos = reader_qos(settings(profile), codec->plain());
     return std::make_unique<FastddsReader>(participant_, std::move(codec), topic, qos, std::move(on_message),
                                            std::move(callbacks));
+  }
+  std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {
+    return fastdds::create_calls(participant_, topics, role, std::move(on_call));
   }
 
  private:
@@ -76,6 +80,9 @@ class FastddsRawBus : public RegistryRawBus {
   std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options,
                                     StatusCallbacks callbacks) override {
     return std::make_unique<FastddsRawWriter>(participant_, topic, options, std::move(callbacks));
+  }
+  std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {
+    return fastdds::create_calls(participant_, topics, role, std::move(on_call));
   }
 
  private:

@@ -59,6 +59,8 @@ dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factor
                                            const HostLimits& limits, DiscoveryScope scope,
                                            dds::DomainParticipantListener* listener) {
   dds::DomainParticipantQos qos = participant_qos(options, limits, scope);
+  static std::mutex one_at_a_time;  // Fast DDS asks getpwuid(), which is not thread-safe
+  const std::lock_guard lock(one_at_a_time);
   constexpr int kAttempts = 5;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {  // an id may be taken by another connection of this process
     qos.wire_protocol().participant_id = next_participant_id();
@@ -73,15 +75,15 @@ dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factor
 
 }  // namespace
 
-Participant::Participant(const BusOptions& options, const HostLimits& limits, WriterRegistry* writers)
-    : secured_(options.security.enabled()), listener_(options, writers) {
+Participant::Participant(const BusOptions& options, const HostLimits& limits, EndpointRegistry* registry)
+    : secured_(options.security.enabled()), listener_(options, registry) {
   if (options.shm_segment_mib < kMinSegmentMib || options.shm_segment_mib > 1024) {
     throw BusError("shared-memory segment of " + std::to_string(options.shm_segment_mib) +
                    " MiB, allowed: " + std::to_string(kMinSegmentMib) + "..1024");
   }
   log_to_stderr_once();
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
-  const DiscoveryScope scope = writers == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;
+  const DiscoveryScope scope = registry == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;
   participant_ = create_participant(*factory_, options, limits, scope, &listener_);
   listener_.start(*participant_, options);
   create_publishers(options.network);

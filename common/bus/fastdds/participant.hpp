@@ -23,7 +23,7 @@ namespace dds = eprosima::fastdds::dds;
 class Participant {
  public:
   /// Throws BusError when Fast DDS refuses. `writers`, if any, gets all writers of the domain from the first one on.
-  Participant(const BusOptions& options, const HostLimits& limits, WriterRegistry* writers = nullptr);
+  Participant(const BusOptions& options, const HostLimits& limits, EndpointRegistry* registry = nullptr);
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
@@ -46,6 +46,9 @@ class Participant {
   void writer_created() {
     if (secured_) hide_shared_memory();
   }
+  /// Held while Fast DDS creates or deletes a reader: its list of readers with a liveliness has no lock of its own
+  /// where it shrinks.
+  std::mutex& readers_mutex() { return readers_mutex_; }
 
  private:
   void create_publishers(const NetworkOptions& network);
@@ -56,7 +59,7 @@ class Participant {
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher *publisher_ = nullptr, *host_publisher_ = nullptr;
   dds::Subscriber *subscriber_ = nullptr, *host_subscriber_ = nullptr;
-  std::mutex topics_mutex_;
+  std::mutex topics_mutex_, readers_mutex_;
 };
 
 }  // namespace rtd::bus::fastdds

@@ -84,13 +84,17 @@ std::shared_ptr<Domain> Domain::join(std::uint32_t number, Content content) {
 
 WriterId Domain::new_id() {
   const std::lock_guard lock(mutex_);
+  return next_id();
+}
+
+WriterId Domain::next_id() {
   WriterId id{};
   ++ids_;
   std::memcpy(id.data(), &ids_, sizeof(ids_));
   return id;
 }
 
-void Domain::add(WriterRegistry& registry) {
+void Domain::add(EndpointRegistry& registry) {
   const std::lock_guard lock(mutex_);
   registries_.push_back(&registry);
   for (const WriterEndpoint* writer : writers_)
@@ -101,20 +105,21 @@ void Domain::add(WriterEndpoint& writer) {
   const std::lock_guard lock(mutex_);
   writers_.push_back(&writer);
   if (writer.discovered)
-    for (WriterRegistry* registry : registries_) registry->note(*writer.discovered);
+    for (EndpointRegistry* registry : registries_) registry->note(*writer.discovered);
   for (ReaderEndpoint* reader : readers_) match(writer, *reader);
 }
 
 void Domain::add(ReaderEndpoint& reader) {
   const std::lock_guard lock(mutex_);
   readers_.push_back(&reader);
+  reader.id = next_id();
   for (WriterEndpoint* writer : writers_) {
     if (!match(*writer, reader) || !reader.kind.qos.transient_local) continue;
     for (const Message& message : writer->retained) deliver(reader, message);
   }
 }
 
-void Domain::remove(WriterRegistry& registry) {
+void Domain::remove(EndpointRegistry& registry) {
   const std::lock_guard lock(mutex_);
   std::erase(registries_, &registry);
 }
@@ -123,7 +128,7 @@ void Domain::remove(WriterEndpoint& writer) {
   const std::lock_guard lock(mutex_);
   std::erase(writers_, &writer);
   if (writer.discovered)
-    for (WriterRegistry* registry : registries_) registry->note_gone(writer.discovered->id);
+    for (EndpointRegistry* registry : registries_) registry->note_gone(writer.discovered->id);
   for (ReaderEndpoint* reader : readers_) {
     if (!connected(writer, *reader)) continue;
     change_matched(*reader, -1);
@@ -137,6 +142,13 @@ void Domain::remove(ReaderEndpoint& reader) {
   for (WriterEndpoint* writer : writers_) {
     if (connected(*writer, reader)) change_matched(*writer, -1);
   }
+}
+
+std::vector<TopicReader> Domain::readers() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<TopicReader> all;
+  for (const ReaderEndpoint* reader : readers_) all.push_back({reader->id, {reader->kind.topic, reader->kind.type}});
+  return all;
 }
 
 void Domain::publish(WriterEndpoint& writer, const Message& message) {

@@ -62,6 +62,7 @@ struct ReaderEndpoint {
         mailbox(kind.qos.depth, std::move(on_message)) {}
   EndpointKind kind;
   StatusReporter status;
+  WriterId id{};    ///< given by the domain
   int lost = 0;     ///< messages pushed out of the full mailbox, guarded by the domain
   Mailbox mailbox;  // last: its thread uses the others and ends first
 };
@@ -76,19 +77,22 @@ class Domain {
 
   WriterId new_id();
   /// A registry gets the writers known now, then all changes.
-  void add(WriterRegistry& registry);
+  void add(EndpointRegistry& registry);
   void add(WriterEndpoint& writer);
   void add(ReaderEndpoint& reader);
   /// After remove() returns the endpoint gets nothing any more.
-  void remove(WriterRegistry& registry);
+  void remove(EndpointRegistry& registry);
   void remove(WriterEndpoint& writer);
   void remove(ReaderEndpoint& reader);
+  std::vector<TopicReader> readers() const;
   void publish(WriterEndpoint& writer, const Message& message);
 
  private:
-  std::mutex mutex_;
+  WriterId next_id();
+
+  mutable std::mutex mutex_;
   std::uint32_t ids_ = 0;
-  std::vector<WriterRegistry*> registries_;
+  std::vector<EndpointRegistry*> registries_;
   std::vector<WriterEndpoint*> writers_;
   std::vector<ReaderEndpoint*> readers_;
 };

@@ -3,12 +3,14 @@
 #include "common/bus/vendors.hpp"
 
 #include <chrono>
+#include <cstring>
 #include <map>
 #include <type_traits>
 #include <utility>
 
 #include "common/bus/backend.hpp"
 #include "common/bus/inprocess/domain.hpp"
+#include "common/bus/prefixed_calls.hpp"
 
 namespace rtd::bus::inprocess {
 namespace {
@@ -79,25 +81,6 @@ class InprocessReader : public ReaderBackend {
   ReaderEndpoint endpoint_;
 };
 
-class InprocessBackend : public BusBackend {
- public:
-  explicit InprocessBackend(const BusOptions& options)
-      : BusBackend("inprocess"), domain_(Domain::join(options.domain, Domain::Content::kTyped)) {}
-
-  std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
-                                               StatusCallbacks callbacks) override {
-    return std::make_unique<InprocessWriter>(domain_, id, topic, profile, std::move(callbacks));
-  }
-  std::unique_ptr<ReaderBackend> create_reader(MessageId id, const std::string& topic, QosProfile profile,
-                                               ErasedCallback on_message, StatusCallbacks callbacks) override {
-    EndpointKind kind{topic, dds_type_name(id), qos_settings(profile)};
-    return std::make_unique<InprocessReader>(domain_, std::move(kind), std::move(on_message), std::move(callbacks));
-  }
-
- private:
-  std::shared_ptr<Domain> domain_;
-};
-
 std::int64_t realtime_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
       .count();
@@ -134,6 +117,47 @@ class InprocessRawWriter : public RawWriter {
   WriterEndpoint endpoint_{{}, StatusReporter({})};
 };
 
+/// Raw endpoints meet raw endpoints, so calls are the same from a typed connection and from a raw one.
+std::unique_ptr<CallEndpoint> create_calls_in(const std::shared_ptr<Domain>& domain, const CallTopics& topics,
+                                              CallRole role, OnCall on_call) {
+  const RawReaderOptions options = call_reader_options();
+  const RawTopic received = received_topic(topics, role);
+  std::uint64_t client = 0;
+  const WriterId id = domain->new_id();
+  std::memcpy(&client, id.data(), sizeof(client));
+  return std::make_unique<PrefixedCalls>(
+      role, client, std::make_unique<InprocessRawWriter>(domain, sent_topic(topics, role), call_writer_options().qos),
+      [&](RawHandlers handlers) {
+        return std::make_unique<InprocessReader>(domain, EndpointKind{received.name, received.type, {options.depth}},
+                                                 raw_callback(std::move(handlers)), StatusCallbacks());
+      },
+      std::move(on_call));
+}
+
+class InprocessBackend : public BusBackend {
+ public:
+  explicit InprocessBackend(const BusOptions& options)
+      : BusBackend("inprocess"),
+        domain_(Domain::join(options.domain, Domain::Content::kTyped)),
+        calls_(Domain::join(options.domain, Domain::Content::kRaw)) {}
+
+  std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
+                                               StatusCallbacks callbacks) override {
+    return std::make_unique<InprocessWriter>(domain_, id, topic, profile, std::move(callbacks));
+  }
+  std::unique_ptr<ReaderBackend> create_reader(MessageId id, const std::string& topic, QosProfile profile,
+                                               ErasedCallback on_message, StatusCallbacks callbacks) override {
+    EndpointKind kind{topic, dds_type_name(id), qos_settings(profile)};
+    return std::make_unique<InprocessReader>(domain_, std::move(kind), std::move(on_message), std::move(callbacks));
+  }
+  std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {
+    return create_calls_in(calls_, topics, role, std::move(on_call));
+  }
+
+ private:
+  std::shared_ptr<Domain> domain_, calls_;
+};
+
 class InprocessRawBus : public RegistryRawBus {
  public:
   explicit InprocessRawBus(const BusOptions& options)
@@ -141,6 +165,8 @@ class InprocessRawBus : public RegistryRawBus {
     domain_->add(registry_);
   }
   ~InprocessRawBus() override { domain_->remove(registry_); }
+
+  std::vector<TopicReader> readers() const override { return domain_->readers(); }
 
   std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
                                     RawHandlers handlers) override {
@@ -150,6 +176,9 @@ class InprocessRawBus : public RegistryRawBus {
   }
   std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options, StatusCallbacks) override {
     return std::make_unique<InprocessRawWriter>(domain_, topic, options.qos);
+  }
+  std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {
+    return create_calls_in(domain_, topics, role, std::move(on_call));
   }
 
  private:

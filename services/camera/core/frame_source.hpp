@@ -69,11 +69,12 @@ struct SourceObject {
 
 /// One frame of a source.
 struct SourceFrame {
-  vision::RgbdImage image;                          ///< seq counts from 0 without gaps; depth 0 = no measurement
-  cv::Mat dynamic_mask;                             ///< CV_8UC1, 255 = moving object; empty when the source has none
-  std::optional<Eigen::Isometry3d> T_world_camera;  ///< exact pose, synthetic sources only
-  std::vector<SourceObject> objects;                ///< all that are seen, synthetic sources only
-  bool has_depth = true;                            ///< some pixel has a measurement
+  vision::RgbdImage image;  ///< seq counts from 0 without gaps; depth 0 = no measurement
+  cv::Mat dynamic_mask;     ///< CV_8UC1, 255 = moving object; empty when the source has none
+  std::optional<Eigen::Isometry3d>
+      T_world_camera;                 ///< exact pose of synthetic sources; with ReadAhead also true_pose()
+  std::vector<SourceObject> objects;  ///< all that are seen, synthetic sources only
+  bool has_depth = true;              ///< some pixel has a measurement
   /// Stamp of the depth image minus that of the colour image; empty where both have one stamp.
   std::optional<std::int64_t> depth_after_color_ns = {};
 };
@@ -110,6 +111,9 @@ class FrameSource {
   /// Ground truth of the span covered: poses of the camera in a world frame of the source's own; empty when there is
   /// none. Endless sources give the part played so far.
   virtual geometry::Trajectory groundtruth() const = 0;
+  /// The true pose of the camera at a stamp of the part played so far, in the same world; empty when it is not known
+  /// nearer than kTrueWithinNs. Synthetic sources give it with the frame.
+  virtual std::optional<Eigen::Isometry3d> true_pose(std::int64_t /*stamp_ns*/) const { return std::nullopt; }
   /// What was skipped since the last call, for the log.
   virtual std::vector<SkippedInput> take_skipped() = 0;
 };
@@ -163,6 +167,9 @@ inline constexpr std::int64_t kPairingToleranceNs = 20'000'000;
 
 /// Ground truth is given this far beyond the first and last frame, so that an evaluator can interpolate.
 inline constexpr std::int64_t kGroundtruthMarginNs = 500'000'000;
+
+/// A moment has a true pose when one is known so near before and after it: some clips have one for each frame only.
+inline constexpr std::int64_t kTrueWithinNs = 50'000'000;
 
 /// Why colour, depth and calibration do not make a frame; empty when they do. `name` is the colour image's.
 std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat& color, const cv::Mat& depth,

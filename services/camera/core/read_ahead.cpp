@@ -32,6 +32,8 @@ ReadItem ReadAhead::read(std::uint64_t frames_read) const {
     const std::uint64_t left = max_frames_ == 0 ? std::numeric_limits<std::uint64_t>::max() : max_frames_ - frames_read;
     item.passed_over = std::min(source_.pass_over(oldest_wanted_ns_), left);
     if (item.passed_over < left) item.frame = source_.next();
+    if (item.frame && !item.frame->T_world_camera)
+      item.frame->T_world_camera = source_.true_pose(item.frame->image.stamp_ns);
   } catch (const std::exception& error) {
     item.error = error.what();
   }

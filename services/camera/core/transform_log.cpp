@@ -45,21 +45,46 @@ Eigen::Isometry3d TransformLog::Link::at(std::int64_t stamp_ns) const {
   return later ? after->second : before->second;
 }
 
-geometry::Trajectory TransformLog::world_poses(const std::string& camera_frame) const {
-  std::vector<const Link*> chain;  // from the camera up
+/// From the camera up to the transform that begins at `world`; empty when there is none.
+std::vector<const TransformLog::Link*> TransformLog::chain_to_world(const std::string& camera_frame) const {
+  std::vector<const Link*> chain;
   for (auto link = links_.find(bare_frame(camera_frame)); link != links_.end();
        link = links_.find(link->second.parent)) {
     chain.push_back(&link->second);
     if (link->second.parent == kWorld || chain.size() > links_.size()) break;  // a ring has no end
   }
   if (chain.empty() || chain.back()->parent != kWorld) return {};
+  return chain;
+}
+
+/// The transforms below the last one of the chain.
+Eigen::Isometry3d TransformLog::T_child_camera(const std::vector<const Link*>& chain, std::int64_t stamp_ns) {
+  Eigen::Isometry3d T_child_camera = Eigen::Isometry3d::Identity();
+  for (std::size_t i = 0; i + 1 < chain.size(); ++i) T_child_camera = chain[i]->at(stamp_ns) * T_child_camera;
+  return T_child_camera;
+}
+
+geometry::Trajectory TransformLog::world_poses(const std::string& camera_frame) const {
+  const std::vector<const Link*> chain = chain_to_world(camera_frame);
   geometry::Trajectory poses;
-  for (const auto& [stamp_ns, T_world_child] : chain.back()->T_parent_child) {
-    Eigen::Isometry3d T_child_camera = Eigen::Isometry3d::Identity();
-    for (std::size_t i = 0; i + 1 < chain.size(); ++i) T_child_camera = chain[i]->at(stamp_ns) * T_child_camera;
-    poses.push_back({stamp_ns, T_world_child * T_child_camera});
-  }
+  if (chain.empty()) return poses;
+  for (const auto& [stamp_ns, T_world_child] : chain.back()->T_parent_child)
+    poses.push_back({stamp_ns, T_world_child * T_child_camera(chain, stamp_ns)});
   return poses;
+}
+
+std::optional<Eigen::Isometry3d> TransformLog::world_pose(const std::string& camera_frame, std::int64_t stamp_ns,
+                                                          std::int64_t max_gap_ns) const {
+  const std::vector<const Link*> chain = chain_to_world(camera_frame);
+  if (chain.empty()) return std::nullopt;
+  const auto& measured = chain.back()->T_parent_child;
+  const auto after = measured.lower_bound(stamp_ns);
+  geometry::Trajectory around;
+  if (after != measured.begin()) around.push_back({std::prev(after)->first, std::prev(after)->second});
+  if (after != measured.end()) around.push_back({after->first, after->second});
+  const auto T_world_child = geometry::pose_at(around, stamp_ns, max_gap_ns);
+  if (!T_world_child) return std::nullopt;
+  return *T_world_child * T_child_camera(chain, stamp_ns);
 }
 
 std::vector<TransformLog::Above> TransformLog::chain_from(const std::string& frame) const {

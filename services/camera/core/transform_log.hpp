@@ -29,6 +29,9 @@ class TransformLog {
   /// the frame of the colour image). Empty when no chain leads from `world` to `camera_frame`: odometry is not ground
   /// truth.
   geometry::Trajectory world_poses(const std::string& camera_frame) const;
+  /// The same at one moment, between two measurements that are no farther away than `max_gap_ns`; empty without.
+  std::optional<Eigen::Isometry3d> world_pose(const std::string& camera_frame, std::int64_t stamp_ns,
+                                              std::int64_t max_gap_ns) const;
   /// T_target_source by the newest transforms; empty when no chain joins the two frames.
   std::optional<Eigen::Isometry3d> between(const std::string& target, const std::string& source) const;
 
@@ -45,6 +48,8 @@ class TransformLog {
     Eigen::Isometry3d T_frame_start;
   };
   std::vector<Above> chain_from(const std::string& frame) const;
+  std::vector<const Link*> chain_to_world(const std::string& camera_frame) const;
+  static Eigen::Isometry3d T_child_camera(const std::vector<const Link*>& chain, std::int64_t stamp_ns);
 
   std::map<std::string, Link> links_;  ///< by child
 };

@@ -7,6 +7,7 @@
 
 #include <utility>
 
+#include "common/service/host_name.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/peer_clocks.hpp"
 #include "services/detector/detector_service.hpp"
@@ -14,11 +15,9 @@
 namespace rtd::detector {
 namespace {
 
-constexpr const char* kHostMetric = "host_name.";  // followed by the name: metrics have no other place for a text
-
 /// "gpubox (pid 42)".
 std::string name_of(const msg::ServiceStatus& status) {
-  const std::string_view prefix = kHostMetric;
+  const std::string_view prefix = service::kHostNameMetric;
   for (const msg::Metric& metric : status.metrics)
     if (metric.name.starts_with(prefix))
       return fmt::format("{} (pid {})", metric.name.substr(prefix.size(), 64), status.pid);
@@ -36,9 +35,9 @@ bool serves(const msg::ServiceStatus& status) {
 
 }  // namespace
 
-RobotLane::RobotLane(const bus::Bus& bus, std::string robot, Options options, OnImage on_image)
+RobotLane::RobotLane(const bus::Bus& bus, std::string robot, std::chrono::milliseconds stuck_after, OnImage on_image)
     : robot_(std::move(robot)),
-      options_(std::move(options)),
+      stuck_after_(stuck_after),
       on_image_(std::move(on_image)),
       bus_(bus.of_robot(robot_)),
       detections_(bus_->writer(bus::topics::kDetections)),
@@ -78,8 +77,7 @@ void RobotLane::update(const View& view) {
 void RobotLane::take_over() {
   auto heartbeat = std::make_unique<service::Heartbeat>(*bus_, DetectorService::kName, twin_found_,
                                                         service::Heartbeat::Twins::kAllowed);
-  heartbeat->watch_progress(options_.stuck_after);
-  heartbeat->set_metric(kHostMetric + options_.host, 1);
+  heartbeat->watch_progress(stuck_after_);
   const std::lock_guard lock(mutex_);
   started_ns_ = heartbeat->started_ns();
   heartbeat_ = std::move(heartbeat);

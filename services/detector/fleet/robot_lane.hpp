@@ -25,10 +25,6 @@ namespace rtd::detector {
 class RobotLane {
  public:
   using OnImage = std::function<void(std::shared_ptr<const msg::CompressedImage>)>;
-  struct Options {
-    std::string host;                       ///< name of this host, for other detectors and people
-    std::chrono::milliseconds stuck_after;  ///< tick() missing for longer: the heartbeat says "hung"
-  };
   /// What the lane is told at each update().
   struct View {
     bool camera_seen = false;   ///< a camera of this robot is in the domain
@@ -37,7 +33,7 @@ class RobotLane {
   };
 
   /// `on_image` runs on a thread of the bus.
-  RobotLane(const bus::Bus& bus, std::string robot, Options options, OnImage on_image);
+  RobotLane(const bus::Bus& bus, std::string robot, std::chrono::milliseconds stuck_after, OnImage on_image);
   ~RobotLane();
   RobotLane(const RobotLane&) = delete;
   RobotLane& operator=(const RobotLane&) = delete;
@@ -70,7 +66,7 @@ class RobotLane {
   std::string name() const;
 
   const std::string robot_;
-  const Options options_;
+  const std::chrono::milliseconds stuck_after_;
   const OnImage on_image_;
   const std::shared_ptr<bus::Bus> bus_;
   bus::Writer<msg::Detection2DArray> detections_;

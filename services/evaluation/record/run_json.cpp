@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
+#include "common/service/json_text.hpp"
 #include "services/evaluation/record/run_record.hpp"
 
 namespace rtd::eval {
@@ -200,7 +201,7 @@ RunRecord read_record(const Json& json) {
 
 void write_run_json(const RunRecord& record, const std::filesystem::path& file) {
   std::ofstream output(file, std::ios::binary);
-  output << record_json(record).dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  output << service::json_line(record_json(record)) << '\n';
   output.flush();
   if (!output) throw RunFileError(file.string() + ": cannot be written; check that the folder exists and has room");
 }

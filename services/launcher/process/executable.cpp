@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/process/executable.hpp"
 
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -86,6 +88,19 @@ std::string replace_process(const std::string& executable, const std::vector<std
   const std::vector<char*> argv = argument_vector(executable, arguments);
   execv(argv[0], argv.data());
   return "cannot run " + executable + ": " + std::strerror(errno);
+}
+
+std::string start_companion(const std::string& executable, const std::vector<std::string>& arguments) {
+  const std::vector<char*> argv = argument_vector(executable, arguments);
+  const pid_t parent = getpid(), pid = fork();
+  if (pid == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent) _exit(1);  // it died before the line above
+    dup2(STDERR_FILENO, STDOUT_FILENO);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  return pid > 0 ? "" : "cannot run " + executable + ": " + std::strerror(errno);
 }
 
 int run_in_foreground(const std::string& executable, const std::vector<std::string>& arguments) {

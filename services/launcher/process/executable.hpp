@@ -25,6 +25,10 @@ std::vector<std::string> installed_commands();
 /// Becomes the program; returns only on failure, with the reason.
 std::string replace_process(const std::string& executable, const std::vector<std::string>& arguments);
 
+/// Starts a program that ends with this process, and with what this process becomes. Its output goes to stderr.
+/// Returns why it cannot be started, else "".
+std::string start_companion(const std::string& executable, const std::vector<std::string>& arguments);
+
 /// Runs a tool that shares this program's terminal and waits for it; its exit code, 128 + signal when one ended it.
 int run_in_foreground(const std::string& executable, const std::vector<std::string>& arguments);
 

@@ -50,7 +50,8 @@ void load_config(RunSetup& setup) {
 
 /// A service that is not named uses the vendor of --dds.
 void choose_vendors(RunSetup& setup) {
-  const std::vector<std::string> services = {"camera", "detector", "filter", "slam", "dense", "record", "replay"};
+  const std::vector<std::string> services = {"camera", "detector", "filter", "slam",
+                                             "dense",  "record",   "replay", "viewer"};
   const std::vector<std::string> vendors = bus::dds_vendors();
   for (const std::string& pair : setup.dds_of) {
     const std::size_t equals = pair.find('=');
@@ -268,6 +269,11 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
     wait_for.push_back(service.name);
     if (setup.pace == "realtime" && (service.name == "detector" || service.name == "dense"))
       service.niceness = kRealtimeNiceness;
+  }
+  if (setup.viewer) {  // no other service waits for it
+    plans.push_back(plan(setup, "viewer", ServiceRole::kOptional, {}));
+    plans.back().niceness = kRealtimeNiceness;
+    plans.back().ends_last = true;
   }
   // In realtime no service waits for boxes: the run starts with geometry and uses boxes when they arrive.
   if (setup.remote_detector && setup.pace != "realtime") wait_for.emplace_back("detector");

@@ -69,6 +69,7 @@ struct RunOptions {
   std::string save_map;                    ///< map file to write; empty: map.rtdmap in out_dir
   bool localize_only = false;              ///< leave the map as it is
   bool dense = false;                      ///< also fuse a dense static map
+  bool viewer = false;                     ///< also show the run in the browser
   std::string record;                      ///< also record all topics: FILE.mcap or a folder; empty = no
   std::vector<std::string> replay_topics;  ///< "detections", "features": recorded ones instead of their services
   bool quiet = false;

@@ -12,6 +12,7 @@
 #include "common/bus/message_types.hpp"
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"
+#include "common/service/json_text.hpp"
 
 namespace rtd::recording {
 namespace {
@@ -94,7 +95,7 @@ class Comparison {
 
   static std::string text_of(const Json& value) {
     if (value.is_number_float()) return fmt::format("{}", value.get<double>());
-    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return service::json_line(value);
   }
 
   const std::string type_;

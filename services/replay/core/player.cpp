@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace rtd::replay {
 namespace {
@@ -87,6 +88,7 @@ PlayOutcome Player::run() {
       end_of_feed();
     }
   }
+  end_step("the replay has ended");
   host_.show(state());
   return *outcome_;
 }
@@ -104,8 +106,8 @@ void Player::play_head() {
   tick_clock(now_ns);
   std::int64_t latest_ns = now_ns + kShowEveryNs;
   if (options_.clock_period_ns > 0) latest_ns = std::min(latest_ns, next_tick_ns_);
-  if (schedule_.paused() && steps_ == 0) return wait_until(latest_ns);
-  const std::int64_t due_ns = by_time() && steps_ == 0 ? schedule_.due_ns(head_->log_ns) : now_ns;
+  if (schedule_.paused() && !stepping()) return wait_until(latest_ns);
+  const std::int64_t due_ns = by_time() && !stepping() ? schedule_.due_ns(head_->log_ns) : now_ns;
   if (due_ns > now_ns) return wait_until(std::min(due_ns, latest_ns));
   if (may_go(*head_)) send_head(due_ns);
 }
@@ -138,9 +140,10 @@ void Player::send_head(std::int64_t due_ns) {
   host_.send(*head_);
   ++sent_;
   last_recorded_ns_ = head_->log_ns;
-  if (steps_ > 0) {
-    --steps_;
+  if (stepping()) {
     schedule_.jump(head_->log_ns, host_.now_ns());
+    if (steps_ > 0) --steps_;
+    if (host_.ends_step(*head_)) end_step("");
   }
   if (by_answers()) {
     const std::optional<std::uint64_t> seq = host_.paced_seq(*head_);
@@ -169,6 +172,8 @@ void Player::handle_events(std::int64_t deadline_ns) {
     if (const auto* answer = std::get_if<Answer>(&*event)) {
       const std::deque<std::uint64_t>& in_flight = pacer_.in_flight();
       answered(answer->seq.value_or(in_flight.empty() ? 0 : in_flight.front()));  // 0: nothing is answered
+    } else if (auto* request = std::get_if<Request>(&*event)) {
+      handle(std::move(*request));
     } else {
       handle(std::get<Command>(*event));
     }
@@ -197,6 +202,41 @@ void Player::handle(Command command) {
   }
 }
 
+void Player::handle(Request request) {
+  using Action = Request::Action;
+  std::string problem;
+  if (request.action == Action::kStepFrame) {
+    end_step("another step came in between");
+    if (!schedule_.paused()) toggle_pause();
+    stepped_frame_ = std::move(request);
+    return;
+  }
+  const bool pause = request.action == Action::kPause, resume = request.action == Action::kResume;
+  if ((pause && !schedule_.paused()) || (resume && schedule_.paused())) toggle_pause();
+  if (resume) end_step("the replay goes on");
+  if (request.action == Action::kSeek) {
+    seek(request.to_ns);
+    take_head();  // the playhead is there from now on
+  }
+  if (request.action == Action::kSetRate) problem = change_rate_to(request.rate);
+  host_.show(state());
+  if (request.done) request.done(state(), problem);
+}
+
+void Player::end_step(const std::string& problem) {
+  if (!stepped_frame_) return;
+  const Request request = std::move(*stepped_frame_);
+  stepped_frame_.reset();
+  if (request.done) request.done(state(), problem);
+}
+
+std::string Player::change_rate_to(double rate) {
+  if (!by_time()) return "this replay does not go by time: each message waits for the one before it";
+  schedule_.set_rate(std::clamp(rate, kLowestRate, kHighestRate), host_.now_ns());
+  timing_.interrupt();
+  return {};
+}
+
 void Player::toggle_pause() {
   if (schedule_.paused()) {
     schedule_.resume(host_.now_ns());
@@ -208,10 +248,7 @@ void Player::toggle_pause() {
 }
 
 void Player::change_rate(double factor) {
-  if (!by_time()) return;
-  schedule_.set_rate(std::clamp(schedule_.rate() * factor, kLowestRate, kHighestRate), host_.now_ns());
-  timing_.interrupt();
-  host_.show(state());
+  if (change_rate_to(schedule_.rate() * factor).empty()) host_.show(state());
 }
 
 void Player::seek(std::int64_t recorded_ns) {

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -73,7 +75,6 @@ struct PlayerOptions {
 struct Answer {
   std::optional<std::uint64_t> seq;
 };
-using Event = std::variant<Command, Answer>;
 
 struct PlayState {
   std::int64_t recorded_ns = 0;  ///< where the playhead is
@@ -81,6 +82,17 @@ struct PlayState {
   bool paused = false;
   std::uint64_t sent = 0;
 };
+
+/// What another program asks for.
+struct Request {
+  enum class Action { kPause, kResume, kStepFrame, kSeek, kSetRate };
+  Action action = Action::kPause;
+  std::int64_t to_ns = 0;  ///< kSeek: recorded time
+  double rate = 1;         ///< kSetRate
+  /// Called by the player, once: where it is then, and why it did not do it; empty when it did.
+  std::function<void(const PlayState& state, const std::string& problem)> done;
+};
+using Event = std::variant<Command, Answer, Request>;
 
 /// The world of the player: time, outputs, events.
 class PlayerHost {
@@ -93,6 +105,8 @@ class PlayerHost {
   virtual void send_clock(std::int64_t recorded_ns) = 0;
   /// The number by which a message of the paced topic is answered; empty for other topics.
   virtual std::optional<std::uint64_t> paced_seq(const PlayedMessage& message) = 0;
+  /// Whether a step to the next frame ends with this message.
+  virtual bool ends_step(const PlayedMessage& message) = 0;
   virtual void show(const PlayState& state) = 0;
 };
 
@@ -118,6 +132,10 @@ class Player {
   void wait_until(std::int64_t deadline_ns);
   void handle_events(std::int64_t deadline_ns);
   void handle(Command command);
+  void handle(Request request);
+  std::string change_rate_to(double rate);
+  void end_step(const std::string& problem);
+  bool stepping() const { return steps_ > 0 || stepped_frame_.has_value(); }
   void answered(std::uint64_t seq);
   void toggle_pause();
   void change_rate(double factor);
@@ -141,6 +159,7 @@ class Player {
   std::optional<std::int64_t> jump_to_;   ///< where the playhead is put with the next message
   std::int64_t last_recorded_ns_, next_tick_ns_ = 0;
   std::uint64_t sent_ = 0, steps_ = 0;
+  std::optional<Request> stepped_frame_;  ///< until the frame has gone
   std::optional<PlayOutcome> outcome_;
 };
 

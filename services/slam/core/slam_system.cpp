@@ -32,11 +32,40 @@ std::string why_doubtful(double consistency) {
 SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns,
                        std::function<void()> on_mapping_thread)
     : config_(config),
-      now_ns_(now_ns),
+      now_ns_(std::move(now_ns)),
+      localize_only_(config.localize_only),
       mapping_(config, mode, std::move(on_mapping_thread)),
-      tracker_(config, std::move(now_ns),
-               [this](const FramePtr& frame, std::size_t attempt) { return mapping_.places_like(frame, attempt); }),
-      odometry_(config.loop) {}
+      odometry_(config.loop) {
+  start_tracker();
+}
+
+void SlamSystem::start_tracker() {
+  tracker_.emplace(config_, now_ns_,
+                   [this](const FramePtr& frame, std::size_t attempt) { return mapping_.places_like(frame, attempt); });
+}
+
+void SlamSystem::reset() {
+  odometry_.correct(tracker_->T_world_camera(), Eigen::Isometry3d::Identity());  // another world, the same odometry
+  mapping_.restart();
+  start_tracker();
+  unknown_view_.reset();
+  readout_ = {};
+  depth_weight_ = DepthWeightEstimator();
+  shutter_ = {};
+  had_pose_ = false;
+  map_ = 0;
+  frames_.clear();
+  frames_tracked_ = 0;
+  changes_ = {};
+  event_count_ = 0;
+  loops_reported_ = 0;
+  requested_centre_ = kNoKeyframe;
+}
+
+void SlamSystem::load_map(MapContents contents) {
+  reset();
+  restore(std::move(contents));
+}
 
 void SlamSystem::restore(MapContents contents) {
   if (!contents.keyframes.empty()) {
@@ -45,7 +74,7 @@ void SlamSystem::restore(MapContents contents) {
     readout_ = ReadoutEstimator(last.readout_s);
   }
   mapping_.restore(std::move(contents));
-  tracker_.await_relocalization();
+  tracker_->await_relocalization();
 }
 
 SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
@@ -73,7 +102,7 @@ void SlamSystem::watch_source(const msg::FeatureFrame& message) {
   if (last_seq_ &&
       (message.seq <= *last_seq_ || message.stamp_ns <= last_stamp_ns_ || message.intrinsics != last_intrinsics_)) {
     ++source_restarts_;
-    tracker_.forget_motion();
+    tracker_->forget_motion();
     if (message.intrinsics != last_intrinsics_) {  // another camera, or another mode of the same
       readout_ = {};
       depth_weight_ = DepthWeightEstimator();
@@ -90,7 +119,11 @@ TrackOutcome SlamSystem::initialize(const FrameInput& input, SlamOutput& output)
     output.problem = input.error;
     return {};
   }
-  if (!tracker_.can_initialize(*input.frame)) {
+  if (localize_only_) {
+    output.problem = "initializing: localize_only is on and there is no map: load one, or switch it off";
+    return {};
+  }
+  if (!tracker_->can_initialize(*input.frame)) {
     output.problem =
         "initializing: fewer than " + std::to_string(config_.tracker.min_initial_points) + " features with depth";
     return {};
@@ -103,9 +136,9 @@ TrackOutcome SlamSystem::begin_map(const FrameInput& input) {
   KeyframeProposal first;
   first.frame = input.frame;
   first.landmarks.assign(input.frame->features.size(), kNoLandmark);
-  const Eigen::Isometry3d before = tracker_.T_world_camera();
-  TrackOutcome outcome = tracker_.initialize(input.frame, mapping_.begin_map(std::move(first)));
-  odometry_.correct(before, tracker_.T_world_camera());  // another world, the same odometry
+  const Eigen::Isometry3d before = tracker_->T_world_camera();
+  TrackOutcome outcome = tracker_->initialize(input.frame, mapping_.begin_map(std::move(first)));
+  odometry_.correct(before, tracker_->T_world_camera());  // another world, the same odometry
   requested_centre_ = outcome.tracked.reference;
   unknown_view_.reset();
   outcome.stage_ms[msg::kStageMapping] = to_ms(now_ns_() - start_ns);
@@ -117,13 +150,13 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   if (input.frame == nullptr) {
     output.problem = input.error;
     TrackOutcome outcome;
-    outcome.state = tracker_.located() ? msg::TrackingState::kRecentlyLost : msg::TrackingState::kRelocalizing;
+    outcome.state = tracker_->located() ? msg::TrackingState::kRecentlyLost : msg::TrackingState::kRelocalizing;
     return outcome;
   }
   const LocalMapPtr snapshot = mapping_.snapshot();
   follow_map(*snapshot);
-  const Eigen::Isometry3d before = tracker_.T_world_camera();
-  TrackOutcome outcome = tracker_.track(input.frame, snapshot);
+  const Eigen::Isometry3d before = tracker_->T_world_camera();
+  TrackOutcome outcome = tracker_->track(input.frame, snapshot);
   if (wants_new_map(*input.frame, outcome)) return begin_map(input);
   if (outcome.at_place()) {
     output.problem = "relocalizing: a place was recognised, the next frames have to agree";
@@ -137,12 +170,12 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   }
   if (outcome.state == msg::TrackingState::kDoubtful) output.problem = why_doubtful(outcome.consistency);
   record(outcome.tracked);
-  if (!had_pose_ && outcome.map->map != map_) odometry_.correct(before, tracker_.T_world_camera());
+  if (!had_pose_ && outcome.map->map != map_) odometry_.correct(before, tracker_->T_world_camera());
   observe_sensor(*outcome.map, outcome);
   maybe_insert_keyframe(outcome);
   // This very frame may have closed a loop: its pose is then that in the corrected map.
   if (const LocalMapPtr corrected = mapping_.snapshot(); follow_map(*corrected)) {
-    outcome.tracked.T_world_camera = tracker_.T_world_camera();
+    outcome.tracked.T_world_camera = tracker_->T_world_camera();
     outcome.map = corrected;
   }
   return outcome;
@@ -166,8 +199,8 @@ double SlamSystem::given_readout_s() const {
 
 /// The motion during the next frame, as the last ones let expect.
 ShutterMotion SlamSystem::shutter_motion() const {
-  if (!config_.techniques.rolling_shutter || !tracker_.motion()) return {};
-  return {tracker_.motion()->velocity_per_s, readout_given() ? given_readout_s() : readout_.readout_s()};
+  if (!config_.techniques.rolling_shutter || !tracker_->motion()) return {};
+  return {tracker_->motion()->velocity_per_s, readout_given() ? given_readout_s() : readout_.readout_s()};
 }
 
 double SlamSystem::disparity_px_m() const {
@@ -192,22 +225,22 @@ void SlamSystem::observe_sensor(const LocalMap& map, const TrackOutcome& outcome
 
 /// Lost for long, with unknown views: the camera continues in a new map.
 bool SlamSystem::wants_new_map(const Frame& frame, const TrackOutcome& outcome) {
-  if (config_.localize_only || msg::has_pose(outcome.state) || outcome.at_place()) {
+  if (localize_only_ || msg::has_pose(outcome.state) || outcome.at_place()) {
     unknown_view_.reset();
     return false;
   }
-  const double unknown_s = unknown_view_.observe(frame.stamp_ns, tracker_.can_initialize(frame));
+  const double unknown_s = unknown_view_.observe(frame.stamp_ns, tracker_->can_initialize(frame));
   return config_.place.new_map_after_s > 0 && unknown_s >= config_.place.new_map_after_s;
 }
 
 void SlamSystem::maybe_insert_keyframe(TrackOutcome& outcome) {
   const std::int64_t start_ns = now_ns_();
-  const KeyframeSituation situation = tracker_.keyframe_situation(*outcome.map, mapping_.idle());
-  const bool insert = !config_.localize_only && wants_keyframe(situation, config_.keyframe) && mapping_.room();
+  const KeyframeSituation situation = tracker_->keyframe_situation(*outcome.map, mapping_.idle());
+  const bool insert = !localize_only_ && wants_keyframe(situation, config_.keyframe) && mapping_.room();
   outcome.stage_ms[msg::kStageKeyframe] = to_ms(now_ns_() - start_ns);
   const std::int64_t mapping_start_ns = now_ns_();
   if (insert) {
-    mapping_.insert(tracker_.propose_keyframe());
+    mapping_.insert(tracker_->propose_keyframe());
     requested_centre_ = kNoKeyframe;
   } else {
     follow_reference(outcome);
@@ -226,9 +259,9 @@ void SlamSystem::follow_reference(const TrackOutcome& outcome) {
 
 /// The map may have been corrected under the camera: the jump is added to map -> odom. True when there was one.
 bool SlamSystem::follow_map(const LocalMap& map) {
-  const Eigen::Isometry3d before = tracker_.T_world_camera();
-  tracker_.adopt(map);
-  return odometry_.correct(before, tracker_.T_world_camera());
+  const Eigen::Isometry3d before = tracker_->T_world_camera();
+  tracker_->adopt(map);
+  return odometry_.correct(before, tracker_->T_world_camera());
 }
 
 void SlamSystem::collect_events(SlamOutput& output) {
@@ -285,6 +318,15 @@ std::vector<MapPoint> SlamSystem::map_points(MapId id) const {
     mapping_.read([&](const Map& map) { append_map_points(map, id, portion, points); });
   }
   return points;
+}
+
+MapView SlamSystem::map_view() const {
+  while (true) {
+    const std::uint64_t session = mapping_.session();
+    MapView view = copy_view([this](const auto& look) { mapping_.read(look); });
+    view.session = session;
+    if (mapping_.session() == session) return view;  // else it may be of two maps
+  }
 }
 
 std::vector<MapId> SlamSystem::maps() const {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
 #include "services/slam/core/corrections.hpp"
+#include "services/slam/core/map/map_view.hpp"
 #include "services/slam/core/map/trajectory.hpp"
 #include "services/slam/core/mapping/mapping_worker.hpp"
 #include "services/slam/core/tracking/depth_weight.hpp"
@@ -45,7 +47,8 @@ struct SlamOutput {
 };
 
 /// RGB-D SLAM on features: tracking, keyframes, local mapping. docs/theory/{tracking,mapping}.md.
-/// process() and the writers: one thread. map_points(), read_map(): any.
+/// process(), reset(), load_map() and the writers: one thread. map_points(), map_view(), read_map(),
+/// set_localize_only(): any.
 class SlamSystem {
  public:
   /// `on_mapping_thread` runs first in the mapper's thread (kThreaded only), e.g. to lower its priority.
@@ -53,6 +56,16 @@ class SlamSystem {
 
   /// Goes on with a map that was saved, before the first frame: relocalizing until a frame is found in it.
   void restore(MapContents contents);
+  /// Begins again, as after a start: the next frame makes a new map, in whose frame the poses are from then on. The
+  /// odometry continues. Keyframes that were announced are removed in the next outputs, whose events count from 0 again.
+  /// Waits for the keyframe in work and gives up a global adjustment.
+  void reset();
+  /// reset(), then restore(): replaces the map while running.
+  void load_map(MapContents contents);
+  /// No new keyframes, landmarks, loops or maps while on; keyframes that wait for the mapper are finished. Takes effect
+  /// with the next frame.
+  void set_localize_only(bool on) { localize_only_ = on; }
+  bool localize_only() const { return localize_only_; }
   /// Never throws for the content of the message. Frames are expected in order; a seq that jumps back means a
   /// source that started again: motion is forgotten, the map stays.
   SlamOutput process(const msg::FeatureFrame& message);
@@ -64,6 +77,8 @@ class SlamSystem {
   std::vector<StampedPose> trajectory(MapId id = 0) const;
   std::vector<StampedPose> keyframes(MapId id = 0) const;
   std::vector<MapPoint> map_points(MapId id = 0) const;
+  /// What viewers show of all maps.
+  MapView map_view() const;
   std::vector<MapId> maps() const;
   /// Reads the whole map: may wait for a bundle adjustment, and the mapper waits until it is done.
   void read_map(const std::function<void(const Map&)>& look) const { mapping_.read(look); }
@@ -78,6 +93,7 @@ class SlamSystem {
   double disparity_px_m() const;
 
  private:
+  void start_tracker();
   void watch_source(const msg::FeatureFrame& message);
   TrackOutcome initialize(const FrameInput& input, SlamOutput& output);
   TrackOutcome begin_map(const FrameInput& input);
@@ -95,8 +111,9 @@ class SlamSystem {
 
   SlamConfig config_;
   Clock now_ns_;
+  std::atomic<bool> localize_only_;
   MappingWorker mapping_;
-  Tracker tracker_;
+  std::optional<Tracker> tracker_;  ///< another one after reset()
   UnknownViewClock unknown_view_;
   ReadoutEstimator readout_;
   DepthWeightEstimator depth_weight_;

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
+#include "common/service/json_text.hpp"
 #include "services/topics/core/topic_report.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@ using Json = nlohmann::ordered_json;
 std::string value_text(const Json& value) {
   if (value.is_number_float()) return fmt::format("{}", value.get<double>());  // the shortest that reads back the same
   if (value.is_string() && (value == "nan" || value == "inf" || value == "-inf")) return '.' + value.get<std::string>();
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return service::json_line(value);
 }
 
 bool holds_messages(const Json& array) {

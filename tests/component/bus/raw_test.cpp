@@ -8,7 +8,9 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
+#include <functional>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -62,6 +64,32 @@ class RawTopics : public ::testing::TestWithParam<std::string> {
     ASSERT_GT(b.matched(), 0);
   }
 };
+
+bool eventually(const std::function<bool()>& holds) {
+  for (int i = 0; i < 5000 && !holds(); ++i) std::this_thread::sleep_for(1ms);
+  return holds();
+}
+
+TEST_P(RawTopics, readers_are_known_by_the_name_of_their_connection_until_they_go) {
+  const auto from = connect_one(), to = connect_one();
+  Samples samples;
+  auto reader = to->reader(kTopic, {}, into(samples));
+  std::optional<TopicReader> seen;
+  const auto look = [&] {
+    seen.reset();
+    for (const TopicReader& other : from->readers())
+      if (other.topic.name == kTopic.name) seen = other;
+    return seen.has_value();
+  };
+  ASSERT_TRUE(eventually(look));
+  EXPECT_EQ(seen->topic, kTopic);
+  EXPECT_FALSE(seen->own);
+  if (GetParam() != "inprocess") {
+    EXPECT_EQ(from->participants()[participant_of(seen->id)], "raw-test");
+  }
+  reader.reset();
+  EXPECT_TRUE(eventually([&] { return !look(); }));
+}
 
 TEST_P(RawTopics, bytes_arrive_as_they_were_written) {
   const auto from = connect_one(), to = connect_one();

@@ -17,6 +17,9 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/service/config.hpp"
+#include "common/service/load_step.hpp"
+#include "common/service/peer_clocks.hpp"
+#include "tests/support/inbox.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -282,6 +285,43 @@ TEST_F(CameraServiceTest, encodes_every_jpeg_when_nothing_may_be_dropped) {
   EXPECT_EQ(received, kImages) << "what waits at the end is published too";
 }
 
+TEST_F(CameraServiceTest, leaves_out_jpegs_beyond_a_limit_of_the_rate) {
+  const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [](const auto&) {});
+  JpegPublisher publisher(*bus_, 90, concurrency::Overflow::kBlock);
+  const auto encoded_in_a_second = [&](double max_hz, std::int64_t begin_s) {
+    publisher.limit_rate(max_hz);
+    const std::uint64_t before = publisher.encoded();
+    for (int i = 0; i < 30; ++i)
+      publisher.offer(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(9)), begin_s * 1'000'000'000 + i * 33'333'333L);
+    wait_until([&] { return publisher.waiting() == 0; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return publisher.encoded() - before;
+  };
+  EXPECT_EQ(encoded_in_a_second(0, 10), 30U);
+  EXPECT_EQ(encoded_in_a_second(10, 11), 10U);
+  EXPECT_EQ(encoded_in_a_second(3, 12), 3U);
+  EXPECT_EQ(encoded_in_a_second(3, 2), 3U) << "a source that begins again";
+}
+
+TEST_F(CameraServiceTest, a_busy_computer_gets_fewer_jpegs_at_pace_realtime) {
+  std::atomic<int> received{0};
+  const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto&) { ++received; });
+  FakeTracker tracker(*bus_);
+  auto filter = bus_->writer(bus::topics::kStatus);
+  config_.source = std::string(kTinyScene) + "60&fps=60";
+  auto code = start(service::Pace::kRealtime);
+  while (code.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
+    msg::ServiceStatus status;
+    status.service = "filter";
+    status.state = msg::ServiceState::kRunning;
+    status.metrics = {{"host_id", service::PeerClocks::this_host_id()}, {service::kLoadStepMetric, 4}};
+    filter.write(status);
+  }
+  EXPECT_EQ(code.get(), service::kOk);
+  EXPECT_GE(received, 2);
+  EXPECT_LE(received, 10) << "3 Hz, and what came before the first heartbeat";
+}
+
 TEST_F(CameraServiceTest, counts_jpegs_replaced_by_newer_ones) {
   std::atomic<std::uint64_t> received{0};
   const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto&) { ++received; });
@@ -338,6 +378,24 @@ TEST_F(CameraServiceTest, limits_frames_and_writes_the_groundtruth) {
   EXPECT_EQ(run(service::Pace::kLockstep), service::kOk);
   EXPECT_THAT(tracker.seqs(), SizeIs(4));
   EXPECT_THAT(geometry::read_tum_trajectory(config_.groundtruth_out), SizeIs(4));
+}
+
+TEST_F(CameraServiceTest, publishes_the_true_pose_of_each_frame) {
+  FakeTracker tracker(*bus_);
+  test_support::Inbox<msg::PoseStamped> truth;
+  const auto reader =
+      bus_->reader<msg::PoseStamped>(bus::topics::kGroundTruth, [truth](auto pose) { truth.take(std::move(pose)); });
+  config_.source = std::string(kTinyScene) + "5";
+  EXPECT_EQ(run(service::Pace::kLockstep), service::kOk);
+  ASSERT_TRUE(truth.wait_count(5));
+  const geometry::Trajectory poses = make_source(config_.source)->groundtruth();
+  for (std::size_t i = 0; i < 5; ++i) {
+    const msg::PoseStamped pose = *truth.at(i);
+    EXPECT_EQ(pose.header.frame_id, "world");
+    EXPECT_EQ(msg::to_ns(pose.header.stamp), poses[i].stamp_ns);
+    EXPECT_NEAR(pose.pose.position.x, poses[i].T_world_body.translation().x(), 1e-9);
+    EXPECT_NEAR(pose.pose.position.z, poses[i].T_world_body.translation().z(), 1e-9);
+  }
 }
 
 TEST_F(CameraServiceTest, refuses_a_source_that_cannot_be_used) {

@@ -10,8 +10,10 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/service/config.hpp"
+#include "common/service/load_step.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/peer_clocks.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 #include "tests/support/service_fixture.hpp"
 
@@ -154,6 +156,25 @@ TEST_F(DetectorServiceTest, keeps_to_the_rate_limit_in_realtime) {
     ASSERT_TRUE(answer_box_.wait_count(i + 1));
   }
   EXPECT_GE(service::monotonic_ns() - started_ns, 4 * 50'000'000);
+}
+
+TEST_F(DetectorServiceTest, follows_the_load_step_of_a_filter_on_its_own_host_only) {
+  start(service::Pace::kRealtime);
+  const auto answers_in_a_second = [&](double filters_host, double step) {
+    const std::size_t before = answer_box_.all().size();
+    for (int i = 0; i < 100; ++i) {
+      say("filter", msg::ServiceState::kRunning, {{"host_id", filters_host}, {service::kLoadStepMetric, step}});
+      send_frame(i);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return answer_box_.all().size() - before;
+  };
+  const double here = service::PeerClocks::this_host_id();
+  EXPECT_LE(answers_in_a_second(here, 4), 4U + 1U);
+  EXPECT_LE(answers_in_a_second(here, 1e9), 4U + 1U) << "more than there are: the last";
+  EXPECT_GE(answers_in_a_second(here, 0), 15U);
+  EXPECT_GE(answers_in_a_second(here, std::nan("")), 15U);
+  EXPECT_GE(answers_in_a_second(here + 1, 4), 15U);
 }
 
 TEST_F(DetectorServiceTest, skips_and_counts_a_broken_jpeg) {

@@ -107,6 +107,28 @@ TEST(DynamicFilter, removes_a_person_from_the_first_frame_on) {
   EXPECT_EQ(removed_share(result, block, false), 0.0);
 }
 
+TEST(DynamicFilter, changes_its_mode_while_it_runs_and_begins_anew_in_each) {
+  const MovingScene scene;
+  DynamicFilter filter = make_filter(FilterMode::kGeometry), fresh = make_filter(FilterMode::kGeometry);
+  const auto frame = [&](std::uint64_t i) {
+    return scene.render(i, kCameraStepM * static_cast<double>(i), -0.25 + kBlockStepM * static_cast<double>(i));
+  };
+  FilterResult result;
+  for (std::uint64_t i = 0; i < 8; ++i) result = filter.apply(frame(i), std::nullopt);
+  EXPECT_GT(result.removed, 0U);
+  filter.set_mode(FilterMode::kOff);
+  EXPECT_EQ(filter.mode(), FilterMode::kOff);
+  for (std::uint64_t i = 8; i < 10; ++i) EXPECT_EQ(filter.apply(frame(i), std::nullopt).removed, 0U);
+  filter.set_mode(FilterMode::kGeometry);
+  for (std::uint64_t i = 10; i < 18; ++i) {
+    result = filter.apply(frame(i), std::nullopt);
+    const FilterResult expected = fresh.apply(frame(i), std::nullopt);
+    ASSERT_EQ(result.removed, expected.removed) << "frame " << i;
+    ASSERT_EQ(result.T_world_camera.matrix(), expected.T_world_camera.matrix()) << "frame " << i;
+  }
+  EXPECT_GT(result.removed, 0U);
+}
+
 TEST(DynamicFilter, ignores_boxes_in_geometry_mode_and_everything_in_mode_off) {
   const MovingScene scene;
   const std::vector<vision::Detection> boxes{{"person", 0.9F, 0, 0, 640, 480}};

@@ -65,8 +65,10 @@ class FilterServiceTest : public test_support::ServiceFixture<FilterService> {
     }
     boxes_.write(message);
   }
-  void send_result(std::uint64_t seq, std::uint64_t event_count) {
+  void send_result(std::uint64_t seq, std::uint64_t event_count, std::int64_t latency_ns = 0) {
     msg::TrackingResult result{};
+    result.published_ns = 1;
+    result.finished_ns = 1 + latency_ns;
     result.seq = seq;
     result.state = msg::TrackingState::kOk;
     result.T_world_camera.rotation_xyzw = {0, 0, 0, 1};

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <thread>
 
+#include "common/bus/commands.hpp"
+#include "common/service/load_step.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "tests/component/filter/filter_service_fixture.hpp"
 
@@ -27,6 +29,24 @@ TEST_F(FilterServiceTest, pairs_each_frame_with_its_own_boxes) {
   EXPECT_EQ(answers_.at(1)->stamp_ns, stamp(1));
 }
 
+TEST_F(FilterServiceTest, changes_its_mode_by_command) {
+  start(service::Pace::kAsap, true);
+  bus::CommandClient client(bus_options_);
+  send_boxes(0, true);
+  send_frame(0);
+  ASSERT_TRUE(answers_.wait_count(1));
+  EXPECT_GT(answers_.at(0)->removed, 20U);
+  EXPECT_EQ(client.call("filter/set_mode", "off", 20'000).message, "mode off from the next frame on, rtd before");
+  send_boxes(1, true);
+  send_frame(1);
+  ASSERT_TRUE(answers_.wait_count(2));
+  EXPECT_EQ(answers_.at(1)->removed, 0U);
+  const bus::CommandAnswer unknown = client.call("filter/set_mode", "magic", 20'000);
+  EXPECT_FALSE(unknown.success);
+  EXPECT_EQ(unknown.message,
+            "'magic' is no mode of the filter: choose off, semantic, geometry, epipolar, rtd-paper, rtd");
+}
+
 TEST_F(FilterServiceTest, publishes_what_moves_while_there_is_a_subscriber) {
   Inbox<msg::Image> masks;
   hear(bus::topics::kDynamicMask, masks);
@@ -38,6 +58,29 @@ TEST_F(FilterServiceTest, publishes_what_moves_while_there_is_a_subscriber) {
   EXPECT_EQ(masks.at(0)->width, 160U);
   const cv::Rect block = test::MovingScene::block(0, 0);
   EXPECT_EQ(masks.at(0)->data.at(static_cast<std::size_t>(160 * (block.y / 4 + 2) + block.x / 4 + 2)), 255);
+}
+
+TEST_F(FilterServiceTest, publishes_objects_in_the_world_once_slam_has_said_where_the_camera_was) {
+  Inbox<msg::Movers> movers;
+  hear(bus::topics::kMovers, movers);
+  start(service::Pace::kLockstep, true);
+  for (std::uint64_t seq = 0; seq < 3; ++seq) {
+    send_boxes(seq, true);
+    send_frame(seq);
+    ASSERT_TRUE(answers_.wait_count(seq + 1));
+    ASSERT_TRUE(movers.wait_count(seq)) << "the frame before";
+    EXPECT_EQ(movers.all().size(), seq) << "too early";
+    send_result(seq, 0);
+  }
+  const msg::Movers last = *movers.all().back();
+  EXPECT_EQ(last.stamp_ns, stamp(last.seq));
+  ASSERT_EQ(last.movers.size(), 1U);
+  EXPECT_EQ(last.movers[0].class_name, "person");
+  EXPECT_EQ(last.movers[0].id, movers.at(0)->movers.at(0).id);
+  EXPECT_NEAR(last.movers[0].center_m[0], 0, 0.05) << "m";
+  EXPECT_NEAR(last.movers[0].center_m[2], test::MovingScene::kBlockM, 0.15) << "m";
+  EXPECT_NEAR(last.movers[0].velocity_mps[0], 0, 0.1) << "m/s";
+  EXPECT_LT(last.movers[0].static_probability, 0.5F);
 }
 
 TEST_F(FilterServiceTest, waits_for_boxes_that_arrive_late) {
@@ -63,6 +106,43 @@ TEST_F(FilterServiceTest, carries_the_newest_boxes_in_realtime_and_does_not_wait
   send_frame(60);  // the boxes are two seconds old
   ASSERT_TRUE(answers_.wait_count(3));
   EXPECT_EQ(answers_.at(2)->detection_use, msg::DetectionUse::kNone);
+}
+
+TEST_F(FilterServiceTest, sheds_load_while_poses_come_late_in_realtime_and_takes_it_back) {
+  start(service::Pace::kRealtime, true);
+  std::uint64_t seq = 0;
+  const auto send = [&](int frames, std::int64_t latency_ns) {
+    std::size_t features = 0;
+    for (int i = 0; i < frames; ++i, ++seq) {
+      send_frame(seq);
+      if (!answers_.wait_count(seq + 1)) return features;
+      features = answers_.at(seq)->count;
+      send_result(seq, 0, latency_ns);
+    }
+    return features;
+  };
+  const std::size_t all = send(10, 20'000'000);
+  ASSERT_GT(all, 200U);
+  const std::size_t fewer = send(150, 150'000'000);
+  EXPECT_LT(fewer, all * 6 / 10) << "35 %";
+  EXPECT_TRUE(wait_metric(service::kLoadStepMetric, 4));
+  EXPECT_TRUE(wait_state(msg::ServiceState::kRunning, "computer too slow or busy: 35 % of the features"));
+  const std::int64_t since_ns = service::monotonic_ns();
+  while (service::monotonic_ns() - since_ns < 8'000'000'000) send(1, 20'000'000);
+  EXPECT_TRUE(states_.wait([](const auto& states) {
+    return metric(*states.back(), service::kLoadStepMetric).value_or(9) <= 2;
+  })) << "a step after each 3 s";
+}
+
+TEST_F(FilterServiceTest, never_sheds_load_when_told_not_to) {
+  config_.shed_load = false;
+  start(service::Pace::kRealtime, true);
+  for (std::uint64_t seq = 0; seq < 30; ++seq) {
+    send_frame(seq);
+    ASSERT_TRUE(answers_.wait_count(seq + 1));
+    send_result(seq, 0, 150'000'000);
+  }
+  EXPECT_EQ(metric(*states_.all().back(), service::kLoadStepMetric), std::nullopt);
 }
 
 TEST_F(FilterServiceTest, reports_within_half_a_second_that_the_detector_has_gone_and_its_return) {

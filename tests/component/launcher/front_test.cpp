@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
+#include <signal.h>
+
+#include <fstream>
+#include <thread>
 
 #include "tests/component/launcher/rtd_command.hpp"
 
@@ -42,6 +46,30 @@ TEST_F(FrontTest, tells_its_version) {
 TEST_F(FrontTest, becomes_a_service_with_its_arguments_and_exit_code) {
   EXPECT_EQ(rtd_.run({"echo", "--help", "a b"}), 7);
   EXPECT_EQ(rtd_.output(), "echo got: --help a b\n");
+}
+
+TEST_F(FrontTest, a_replay_with_viewer_gives_it_the_same_bus_and_ends_it) {
+  const fs::path heard = scratch_ / "viewer";
+  std::ofstream(scratch_ / "rtd-viewer") << "#!/bin/sh\necho \"$$ $*\" > " << heard << ".part\nmv " << heard << ".part "
+                                         << heard << "\nexec sleep 60\n";
+  std::ofstream(scratch_ / "rtd-replay") << "#!/bin/sh\nwhile [ ! -e " << heard
+                                         << " ]; do sleep 0.02; done\necho \"played: $*\"\nexit 3\n";
+  for (const char* name : {"rtd-viewer", "rtd-replay"}) fs::permissions(scratch_ / name, fs::perms::owner_all);
+  EXPECT_EQ(rtd_.run({"replay", "a.mcap", "--viewer", "--domain", "9", "--rate", "2", "--set", "viewer.port=81"}), 3);
+  EXPECT_EQ(rtd_.output(), "played: a.mcap --domain 9 --rate 2 --set viewer.port=81\n");
+  pid_t viewer = 0;
+  std::string arguments;
+  std::getline(std::ifstream(heard) >> viewer, arguments);
+  EXPECT_EQ(arguments, " --domain 9 --set viewer.port=81 --log-level warning");
+  for (int i = 0; i < 2000 && kill(viewer, 0) == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_NE(kill(viewer, 0), 0) << "it still runs";
+}
+
+TEST_F(FrontTest, a_replay_without_the_viewer_that_it_is_to_have_does_not_start) {
+  std::ofstream(scratch_ / "rtd-replay") << "#!/bin/sh\necho played\n";
+  fs::permissions(scratch_ / "rtd-replay", fs::perms::owner_all);
+  EXPECT_EQ(rtd_.run({"replay", "a.mcap", "--viewer"}), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("--target rtd-viewer"));
 }
 
 TEST_F(FrontTest, an_unknown_command_gets_the_nearest_one) {

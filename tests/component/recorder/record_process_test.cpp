@@ -12,6 +12,7 @@
 #include <fstream>
 #include <thread>
 
+#include "common/bus/commands.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "tests/component/bus/patterns.hpp"
 #include "tests/component/recorder/recorded_file.hpp"
@@ -108,6 +109,25 @@ TEST_F(RecordProcess, four_topics_with_raw_frames_are_complete_to_the_byte) {
       ASSERT_GE(recorded[i].log_time, recorded[i].publish_time);
     }
   }
+}
+
+/// Whatever its vendor (RTD_DDS) and ours are.
+TEST_F(RecordProcess, begins_and_ends_recordings_by_command) {
+  RecorderProcess recorder(test_domain(), {"--wait"});
+  const auto raw = bus::connect_raw(options_);
+  const auto laser = raw->writer({"rt/laser", "vendor_msgs::msg::dds_::Laser_"}, {});
+  bus::CommandClient client(options_);
+  for (const char* name : {"first.mcap", "second.mcap"}) {
+    const bus::CommandAnswer started = client.call("recorder/start", folder_ / name, 20'000);
+    ASSERT_TRUE(started.success) << started.message;
+    wait_heard(*laser);
+    ASSERT_TRUE(laser->write(some_bytes(1, 40)));
+    std::this_thread::sleep_for(300ms);
+    const bus::CommandAnswer stopped = client.call("recorder/stop", "", 20'000);
+    EXPECT_TRUE(stopped.success) << stopped.message;
+    EXPECT_EQ(read_recording(folder_ / name).topics.at("/laser").size(), 1U);
+  }
+  EXPECT_EQ(recorder.end_by(SIGINT), 0);
 }
 
 TEST_F(RecordProcess, parts_of_a_split_recording_are_complete_and_compressed) {

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/recorder/recorder_service.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <fstream>
 #include <thread>
 
+#include "common/bus/commands.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/ros2/schema_texts.hpp"
 #include "common/service/config.hpp"
@@ -18,6 +20,8 @@ namespace rtd::recorder {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 std::vector<std::byte> cdr(std::uint8_t content, std::size_t size = 32) {
   std::vector<std::byte> bytes(size, std::byte{content});
@@ -48,6 +52,51 @@ class RecorderTest : public test_support::ServiceFixture<RecorderService> {
 
   const std::shared_ptr<bus::RawBus> raw_;
 };
+
+TEST_F(RecorderTest, commands_end_a_recording_and_begin_another) {
+  start(service::Pace::kRealtime);
+  const auto pose = writer("rt/slam/pose", "geometry_msgs::msg::dds_::PoseStamped_");
+  wait_heard(*pose);
+  for (std::uint8_t i = 0; i < 5; ++i) pose->write(cdr(i));
+  ASSERT_TRUE(wait_metric("messages", 5));
+  EXPECT_TRUE(wait_metric("recording", 1));
+  bus::CommandClient client(bus_options_);
+  const bus::CommandAnswer busy = client.call("recorder/start", "", 10'000);
+  EXPECT_FALSE(busy.success);
+  EXPECT_THAT(busy.message, HasSubstr("already recording to " + config_.output));
+  const bus::CommandAnswer stopped = client.call("recorder/stop", "", 10'000);
+  EXPECT_TRUE(stopped.success);
+  EXPECT_THAT(stopped.message, AllOf(HasSubstr("recorded 5 messages, none lost"), HasSubstr(config_.output)));
+  EXPECT_TRUE(wait_state(msg::ServiceState::kReady, "not recording"));
+  EXPECT_TRUE(wait_metric("recording", 0));
+  EXPECT_FALSE(client.call("recorder/stop", "", 10'000).success);
+  pose->write(cdr(99));  // nobody records it
+
+  EXPECT_FALSE(client.call("recorder/start", config_.output, 10'000).success) << "it exists";
+  const std::string second = folder_ / "second" / "run.mcap";
+  const bus::CommandAnswer started = client.call("recorder/start", second, 10'000);
+  EXPECT_TRUE(started.success) << started.message;
+  EXPECT_EQ(started.message, "recording to " + second);
+  wait_heard(*pose);
+  pose->write(cdr(7));
+  ASSERT_TRUE(wait_metric("messages", 1));
+  EXPECT_EQ(stop(), service::kOk);
+  EXPECT_EQ(read_recording(config_.output).topics.at("/slam/pose").size(), 5U);
+  const RecordedFile again = read_recording(second);
+  ASSERT_EQ(again.topics.at("/slam/pose").size(), 1U);
+  EXPECT_EQ(again.topics.at("/slam/pose")[0].cdr, cdr(7));
+  EXPECT_EQ(again.topics.size(), 1U) << "no commands";
+}
+
+TEST_F(RecorderTest, that_waits_writes_nothing_until_it_is_started) {
+  config_.wait = true;
+  start(service::Pace::kRealtime);
+  EXPECT_TRUE(wait_state(msg::ServiceState::kReady, "not recording"));
+  EXPECT_FALSE(std::filesystem::exists(config_.output));
+  bus::CommandClient client(bus_options_);
+  EXPECT_EQ(client.call("recorder/start", "", 10'000).message, "recording to " + config_.output);
+  EXPECT_TRUE(std::filesystem::exists(config_.output));
+}
 
 TEST_F(RecorderTest, records_known_and_unknown_types_byte_by_byte) {
   start(service::Pace::kRealtime);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/bus/raw_bus.hpp"
+#include "common/bus/robot.hpp"
 #include "common/mcap/writer.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/offered_qos.hpp"
@@ -94,6 +95,7 @@ class Recorder {
   void listen(const bus::TopicWriter& writer, bus::WriterChange change) {
     if (change != bus::WriterChange::kAppeared || writer.topic.name == "rtd/status") return;
     const std::string topic = writer.topic.name;
+    if (bus::is_service_topic(topic)) return;
     if (readers_.contains(topic)) return;
     EXPECT_EQ(writer.topic.type, topic == "rt/clock" ? "rosgraph_msgs::msg::dds_::Clock_" : type_of(topic));
     bus::RawHandlers handlers;

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/commands.hpp"
 #include "common/msg/rgbd_frame.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/component/replay/raw_recording.hpp"
@@ -80,6 +81,21 @@ TEST_F(ReplayProcessTest, as_fast_as_possible_keeps_everything_too) {
   ASSERT_EQ(replay_.run(arguments({"--rate", "0"})), 0) << replay_.output();
   const std::vector<Piece> again = recorder.wait(recorded.size());
   for (const char* topic : {"rtd/frame", "rt/boxes", "rt/pose"}) expect_same(recorded, again, topic);
+}
+
+/// Whatever its vendor and ours are.
+TEST_F(ReplayProcessTest, obeys_commands_of_other_programs) {
+  write_recording(file_.path(), camera_like(20));
+  for (const std::string& vendor : bus::dds_vendors()) {
+    launcher::RtdCommand replay{RTD_REPLAY};
+    replay.start(arguments({"--start-paused", "--dds", vendor}));
+    bus::CommandClient client(options_);
+    EXPECT_EQ(client.call("replay/step", "", 20'000).message, "one frame further, paused at 0.0 s of 0.7 s, speed 1");
+    EXPECT_EQ(client.call("replay/seek", "0.5", 20'000).message, "continues at 0.5 s of 0.7 s, speed 1");
+    EXPECT_EQ(client.call("replay/seek", "0", 20'000).message, "continues at 0.0 s of 0.7 s, speed 1") << "back";
+    EXPECT_TRUE(client.call("replay/pause", "false", 20'000).success);
+    EXPECT_EQ(replay.wait(), 0) << replay.output();
+  }
 }
 
 TEST_F(ReplayProcessTest, ctrl_c_ends_an_endless_replay) {

@@ -6,6 +6,7 @@
 
 #include <future>
 
+#include "common/bus/commands.hpp"
 #include "common/ros2/schema_texts.hpp"
 #include "common/ros2/type_description.hpp"
 #include "common/service/config.hpp"
@@ -85,6 +86,42 @@ TEST_F(ReplayServiceTest, a_recording_of_the_replay_has_the_same_bytes_order_and
   for (const char* topic : {"rtd/features", "rt/boxes"}) expect_same(recorded, again, topic);
   const double lasted_ms = static_cast<double>(again.back().log_ns - again.front().log_ns) / kMillisecond;
   EXPECT_NEAR(lasted_ms, 290, 60) << "as long as recorded";
+}
+
+TEST_F(ReplayServiceTest, commands_pause_step_seek_and_change_the_speed) {
+  std::vector<Piece> recorded;  // two minutes, so that it does not end meanwhile
+  for (std::uint64_t i = 0; i < 1200; ++i) {
+    const std::int64_t time_ns = kEpoch + static_cast<std::int64_t>(i) * 100 * kMillisecond;
+    recorded.push_back({"rtd/features", time_ns, time_ns, cdr_of(i, 100)});
+    recorded.push_back({"rt/boxes", time_ns + kMillisecond, time_ns, cdr_of(i, 20)});
+  }
+  record(recorded);
+  config_.pause = true;
+  Recorder recorder(*raw_);
+  start();
+  bus::CommandClient client(options_);
+  const auto call = [&](const char* command, const std::string& argument = {}) {
+    const bus::CommandAnswer answer = client.call(command, argument, 10'000);
+    return (answer.success ? "" : "failed: ") + answer.message;
+  };
+  EXPECT_EQ(call("replay/pause", "true"), "paused at 0.0 s of 119.9 s, speed 1");
+  EXPECT_EQ(call("replay/step"), "one frame further, paused at 0.0 s of 119.9 s, speed 1");
+  EXPECT_EQ(call("replay/seek", "60"), "continues at 60.0 s of 119.9 s, speed 1");
+  EXPECT_EQ(call("replay/step"), "one frame further, paused at 60.0 s of 119.9 s, speed 1");
+  EXPECT_EQ(call("replay/seek", "1"), "continues at 1.0 s of 119.9 s, speed 1");
+  EXPECT_EQ(call("replay/step"), "one frame further, paused at 1.0 s of 119.9 s, speed 1");
+  const std::vector<Piece> frames = of_topic(recorder.wait(3), "rtd/features");
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_TRUE(frames[0].cdr == cdr_of(0, 100));
+  EXPECT_TRUE(frames[1].cdr == cdr_of(600, 100));
+  EXPECT_TRUE(frames[2].cdr == cdr_of(10, 100)) << "seeking back";
+  EXPECT_THAT(call("replay/seek", "200"),
+              HasSubstr("failed: '200' is no position: give seconds from the beginning, 0"));
+  EXPECT_THAT(call("replay/speed", "fast"), HasSubstr("failed: 'fast' is no speed: give a number from 0.01 to 1000"));
+  EXPECT_THAT(call("replay/speed", "4"), HasSubstr("speed 4"));
+  EXPECT_THAT(call("replay/pause", "false"), AllOf(HasSubstr("playing at 1."), HasSubstr("speed 4")));
+  EXPECT_THAT(call("replay/speed", "1000"), HasSubstr("speed 1000"));
+  EXPECT_EQ(ended(), service::kOk);
 }
 
 TEST_F(ReplayServiceTest, as_fast_as_possible_loses_nothing) {

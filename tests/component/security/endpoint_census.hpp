@@ -38,7 +38,7 @@ class EndpointCensus : private fastdds::dds::DomainParticipantListener {
   mutable std::mutex mutex_;
   std::map<Guid, std::string> names_;
   std::map<Guid, Topics> topics_;
-  WriterRegistry writers_;            // with it, everything is discovered
+  EndpointRegistry writers_;          // with it, everything is discovered
   fastdds::Participant participant_;  // last: calls the others
 };
 

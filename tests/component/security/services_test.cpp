@@ -6,6 +6,7 @@
 
 #include <regex>
 
+#include "common/bus/commands.hpp"
 #include "common/bus/topic_roles.hpp"
 #include "common/bus/topics.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
@@ -93,6 +94,31 @@ TEST_F(SecuredServicesTest, a_secured_run_does_what_a_run_in_the_clear_does) {
   ASSERT_EQ(clear.run(run_command("clear")), 0) << clear.output();
   EXPECT_EQ(text_of(scratch_ / "secured/trajectory.txt"), text_of(scratch_ / "clear/trajectory.txt"))
       << "byte for byte";
+}
+
+TEST_F(SecuredServicesTest, commands_are_answered_to_those_who_may_call_and_to_nobody_else) {
+  const std::string keystore = scratch_ / "keystore", domain = std::to_string(domain_);
+  RtdCommand create;
+  ASSERT_EQ(create.run({"keystore", "create", keystore}), 0) << create.output();
+  rtd_.start({"record", "--wait", "-o", scratch_ / "commanded.mcap", "--domain", domain, "--keystore", keystore});
+  RtdCommand allowed, in_the_clear;
+  EXPECT_EQ(allowed.run({"call", "/recorder/start", "--domain", domain, "--keystore", keystore}), 0)
+      << allowed.output();
+  EXPECT_THAT(allowed.output(), HasSubstr("recording to "));
+  EXPECT_EQ(in_the_clear.run({"call", "/recorder/stop", "--domain", domain}), 1) << in_the_clear.output();
+  EXPECT_THAT(in_the_clear.output(), HasSubstr("no running program offers /recorder/stop"));
+  bus::BusOptions options;
+  options.domain = domain_;
+  options.security = {keystore, "/rtd/observer"};
+  bus::CommandClient observer(options);
+  try {
+    observer.call("recorder/stop", "", 10'000);
+    ADD_FAILURE() << "an observer stopped the recording";
+  } catch (const bus::BusError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("enclave /rtd/observer may not subscribe topic rr/recorder/stopReply"));
+  }
+  rtd_.interrupt();
+  EXPECT_EQ(rtd_.wait(), 0) << rtd_.output();
 }
 
 TEST_F(SecuredServicesTest, secure_never_falls_back_to_clear) {

@@ -6,7 +6,9 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
+#include "common/bus/commands.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
 #include "services/slam/map_file.hpp"
@@ -35,6 +37,11 @@ class MapServiceTest : public test_support::ServiceFixture<SlamService> {
     ASSERT_TRUE(features_.write(*world_.view(seq, FeatureWorld::T_world_camera(seq))));
     ASSERT_TRUE(results_.wait_count(before + 1)) << "no result for frame " << seq;
   }
+  std::string call(const char* command, const std::string& argument = {}) {
+    if (!client_) client_.emplace(bus_options_);
+    const bus::CommandAnswer answer = client_->call(command, argument, 20'000);
+    return (answer.success ? "" : "failed: ") + answer.message;
+  }
   /// A map of 60 frames in file_, made by a core alone.
   void make_map() const {
     SlamSystem slam(SlamConfig{}, MappingMode::kSynchronous, [] { return 0; });
@@ -57,6 +64,7 @@ class MapServiceTest : public test_support::ServiceFixture<SlamService> {
 
   const FeatureWorld world_{{}};
   Inbox<msg::TrackingResult> results_;
+  std::optional<bus::CommandClient> client_;
   bus::Writer<msg::FeatureFrame> features_;
   const std::string file_;
 };
@@ -69,6 +77,33 @@ TEST_F(MapServiceTest, saves_its_map_at_the_end) {
   EXPECT_FALSE(std::filesystem::exists(file_));
   EXPECT_EQ(stop(), service::kOk);
   EXPECT_EQ(load_map_file(file_).keyframes.size(), results_.all().back()->keyframes);
+}
+
+TEST_F(MapServiceTest, obeys_commands_between_frames_and_answers_every_frame) {
+  start(service::Pace::kLockstep);
+  EXPECT_THAT(call("slam/save_map"), HasSubstr("failed: name a file"));
+  EXPECT_THAT(call("slam/save_map", file_), HasSubstr("failed: nothing was mapped"));
+  EXPECT_THAT(call("slam/localize_only", "true"), HasSubstr("failed: there is no map"));
+  std::uint64_t seq = 0;
+  for (; seq < 30; ++seq) step(seq);
+  const std::uint32_t keyframes = results_.all().back()->keyframes;
+  EXPECT_THAT(call("slam/save_map", file_),
+              AllOf(HasSubstr(std::to_string(keyframes) + " keyframes"), HasSubstr(file_)));
+  EXPECT_EQ(load_map_file(file_).keyframes.size(), keyframes);
+
+  EXPECT_THAT(call("slam/localize_only", "true"), HasSubstr("only localizing"));
+  for (; seq < 50; ++seq) step(seq);
+  EXPECT_EQ(results_.all().back()->keyframes, keyframes) << "the map stays as it is";
+  EXPECT_THAT(call("slam/localize_only", "false"), HasSubstr("the map grows again"));
+
+  EXPECT_THAT(call("slam/reset"), HasSubstr(std::to_string(keyframes) + " keyframes"));
+  step(seq++);
+  EXPECT_EQ(results_.all().back()->keyframes, 1U) << "a new map";
+  EXPECT_THAT(call("slam/load_map", file_ + ".missing"), HasSubstr("failed: "));
+  EXPECT_THAT(call("slam/load_map", file_), HasSubstr(std::to_string(keyframes) + " keyframes"));
+  for (const std::uint64_t end = seq + 5; seq < end; ++seq) step(seq);
+  EXPECT_GE(results_.all().back()->keyframes, keyframes);
+  EXPECT_EQ(results_.all().size(), seq) << "one result for each frame";
 }
 
 TEST_F(MapServiceTest, saves_its_map_while_it_runs) {
@@ -159,6 +194,24 @@ TEST_F(MapServiceTest, refuses_another_camera) {
   EXPECT_EQ(running_code(), service::kUsageOrConfig);
 }
 
+TEST_F(MapServiceTest, gives_up_a_map_taken_before_the_first_frame_that_another_camera_made) {
+  make_map();
+  start(service::Pace::kLockstep);
+  EXPECT_THAT(call("slam/load_map", file_), HasSubstr("keyframes"));
+  const auto step_with_other_camera = [&](std::uint64_t seq) {
+    auto frame = world_.view(seq, FeatureWorld::T_world_camera(seq));
+    frame->intrinsics[0] = frame->intrinsics[1] = 365;
+    ASSERT_TRUE(features_.write(*frame));
+    ASSERT_TRUE(results_.wait_count(seq + 1));
+  };
+  step_with_other_camera(0);
+  EXPECT_EQ(results_.all().back()->keyframes, 1U) << "a new map";
+  EXPECT_TRUE(wait_state(msg::ServiceState::kDegraded, "the map of slam/load_map is not used"));
+  EXPECT_THAT(call("slam/reset"), HasSubstr("1 keyframes"));
+  step_with_other_camera(1);
+  EXPECT_TRUE(wait_state(msg::ServiceState::kRunning, ""));
+}
+
 TEST_F(MapServiceTest, keeps_tracking_and_reports_when_the_map_cannot_be_saved) {
   config_.map.save = (folder_ / "none" / "room.rtdmap").string();
   config_.map.checkpoint_s = 0.02;
@@ -168,6 +221,28 @@ TEST_F(MapServiceTest, keeps_tracking_and_reports_when_the_map_cannot_be_saved) 
   step(1);
   EXPECT_EQ(results_.all().back()->state, msg::TrackingState::kOk);
   EXPECT_EQ(stop(), service::kRunFailed);
+}
+
+TEST(MapKeeper, saves_to_any_file_while_the_system_runs) {
+  const auto folder = std::filesystem::temp_directory_path() / "rtd_map_keeper_test";
+  std::filesystem::create_directories(folder);
+  SlamSystem slam(SlamConfig{}, MappingMode::kSynchronous, [] { return 0; });
+  MapKeeper keeper(MapFileConfig{}, slam);
+  EXPECT_THAT([&] { keeper.save_to(folder / "empty.rtdmap"); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("nothing was mapped")));
+  const FeatureWorld world({});
+  for (std::uint64_t seq = 0; seq < 30; ++seq) slam.process(*world.view(seq));
+  const SavedMap saved = keeper.save_to(folder / "room.rtdmap");
+  const MapContents contents = load_map_file(folder / "room.rtdmap");
+  EXPECT_EQ(saved.keyframes, contents.keyframes.size());
+  EXPECT_EQ(saved.landmarks, contents.landmarks.size());
+  EXPECT_EQ(saved.bytes, std::filesystem::file_size(folder / "room.rtdmap"));
+  EXPECT_THROW(keeper.save_to(folder / "none" / "room.rtdmap"), std::runtime_error);
+  EXPECT_TRUE(keeper.save_at_end()) << "no file is configured";
+  for (std::uint64_t seq = 30; seq < 40; ++seq) slam.process(*world.view(seq));
+  slam.load_map(load_map_file(folder / "room.rtdmap"));
+  EXPECT_EQ(slam.keyframes().size(), saved.keyframes);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -25,11 +25,13 @@ void for_each_topic(Visitor visit) {
       visit(kTracking), visit(kStatus), visit(kColorJpeg);
   visit(kCameraInfo), visit(kDetections), visit(kDynamicMask), visit(kOdometry), visit(kPose), visit(kTf);
   visit(kPath), visit(kMapPoints), visit(kDensePoints), visit(kDiagnostics);
+  visit(kMap), visit(kMovers), visit(kGroundTruth);
 }
 
-/// Messages of one round: as many as the topic's history holds, three at most.
+/// Messages of one round: as many as the topic's history holds, three at most; one raw frame, as a camera writes them.
+/// Of several that Cyclone DDS writes in one go, Fast DDS may lose one on a busy computer (docs/topics.md).
 inline int burst(QosProfile profile) {
-  return std::min(3, qos_settings(profile).depth);
+  return profile == QosProfile::kRawFrame ? 1 : std::min(3, qos_settings(profile).depth);
 }
 /// Messages that a late reader of a transient-local topic is to get, and how many were written before them.
 inline int kept(QosProfile profile) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The writing process of the interop matrix: interop_peer VENDOR DOMAIN live|late. Told what to do by lines on stdin
-// (a number: the round to send; end of file: the end), answers by lines on stdout.
+// (a number: the round to send; wait: for all to be acknowledged; end of file: the end), answers by lines on stdout.
 #include <chrono>
 #include <functional>
 #include <iostream>
@@ -22,6 +22,7 @@ using namespace std::chrono_literals;
 struct Writers {
   std::vector<std::function<int()>> matched;
   std::vector<std::function<void(int round)>> send;
+  std::vector<std::function<bool()>> acknowledged;  // waits
 };
 
 Writers writers_of_all(Bus& bus) {
@@ -29,6 +30,7 @@ Writers writers_of_all(Bus& bus) {
   for_each_topic([&]<class T>(const Topic<T>& topic) {
     auto writer = std::make_shared<Writer<T>>(bus.writer(topic));
     all.matched.emplace_back([writer] { return writer->matched(); });
+    all.acknowledged.emplace_back([writer] { return writer->wait_acknowledged(10'000); });
     all.send.emplace_back([writer, topic](int round) {
       const int count = burst(topic.profile);
       for (int i = 0; i < count; ++i) writer->write(*message_of(topic, round * count + i));
@@ -51,7 +53,13 @@ void send_rounds(Bus& bus) {
   const Writers writers = writers_of_all(bus);
   std::cout << (all_matched(writers) ? "ready" : "not matched") << std::endl;
   for (std::string line; std::getline(std::cin, line);) {
-    for (const auto& send : writers.send) send(std::stoi(line));
+    if (line == "wait") {
+      bool all = true;
+      for (const auto& acknowledged : writers.acknowledged) all = acknowledged() && all;
+      std::cout << (all ? "acknowledged" : "not acknowledged") << std::endl;
+    } else {
+      for (const auto& send : writers.send) send(std::stoi(line));
+    }
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include <cstdlib>
 #include <map>
+#include <string>
 #include <tuple>
 
 #include "common/bus/bus_factory.hpp"
@@ -63,11 +64,18 @@ class Readers {
       received = received_.at(topic.name).try_next(10s);
       ASSERT_NE(received, nullptr) << topic.name << ": message " << number << " did not arrive";
     } while (*received != expected && is_of_round_0(topic, *received));
-    ASSERT_TRUE(*received == expected) << topic.name << ": message " << number << " arrived changed";
+    ASSERT_TRUE(*received == expected) << topic.name << ": message " << number << ": " << what_came(topic, *received);
   }
   std::size_t waiting(const char* topic) { return received_.at(topic).size(); }
 
  private:
+  template <class T>
+  static std::string what_came(const Topic<T>& topic, const Bytes& bytes) {
+    for (int other = 0; other < 1000; ++other) {
+      if (bytes == bytes_of(*message_of(topic, other))) return "number " + std::to_string(other) + " came instead";
+    }
+    return "it arrived changed";
+  }
   template <class T>
   static bool is_of_round_0(const Topic<T>& topic, const Bytes& bytes) {
     for (int i = 0; i < burst(topic.profile); ++i) {
@@ -109,6 +117,9 @@ TEST_P(VendorMatrix, every_message_of_every_topic_arrives_with_every_byte) {
   ASSERT_TRUE(readers.all_matched());
   ASSERT_EQ(writing.hear(), "ready");
   readers.wait_until_heard([&] { writing.tell("0"); });
+  // On a loaded machine many may still be on their way, and would push messages of round 1 out of the histories.
+  writing.tell("wait");
+  ASSERT_EQ(writing.hear(), "acknowledged");
 
   for (int round = 1; round <= rounds() && !HasFatalFailure(); ++round) {
     writing.tell(std::to_string(round));
@@ -141,7 +152,7 @@ TEST(VendorMatrixTopics, are_all_that_services_write) {
   std::vector<std::string> names, written;
   for_each_topic([&](const auto& topic) { names.emplace_back(topic.name); });
   for (const TopicRoles& roles : topic_roles()) {
-    const bool pattern = roles.topic.find('*') != std::string::npos;
+    const bool pattern = roles.topic.find('*') != std::string::npos || is_service_topic(roles.topic);
     const bool by_services = !roles.writers.empty() && roles.writers.front() != "observer";
     if (!pattern && by_services) written.push_back(roles.topic);
   }

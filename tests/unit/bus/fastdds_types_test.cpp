@@ -37,6 +37,8 @@ using Pairs = testing::Types<
     Pair<msg::KeyframeEvent, rtd_msgs::msg::dds_::KeyframeEvent_PubSubType>,
     Pair<msg::TrackingResult, rtd_msgs::msg::dds_::TrackingResult_PubSubType>,
     Pair<msg::ServiceStatus, rtd_msgs::msg::dds_::ServiceStatus_PubSubType>,
+    Pair<msg::MapUpdate, rtd_msgs::msg::dds_::MapUpdate_PubSubType>,
+    Pair<msg::Movers, rtd_msgs::msg::dds_::Movers_PubSubType>,
     Pair<msg::CompressedImage, sensor_msgs::msg::dds_::CompressedImage_PubSubType>,
     Pair<msg::Image, sensor_msgs::msg::dds_::Image_PubSubType>,
     Pair<msg::CameraInfo, sensor_msgs::msg::dds_::CameraInfo_PubSubType>,

@@ -31,10 +31,10 @@ TopicFacts facts(const Topic<T>& topic) {
 
 std::vector<TopicFacts> all_topics() {
   using namespace topics;
-  return {facts(kFrame),     facts(kFeatures),    facts(kKeyframes),   facts(kTracking),
-          facts(kStatus),    facts(kColorJpeg),   facts(kCameraInfo),  facts(kDetections),
-          facts(kOdometry),  facts(kPose),        facts(kTf),          facts(kPath),
-          facts(kMapPoints), facts(kDiagnostics), facts(kDynamicMask), facts(kDensePoints)};
+  return {facts(kFrame),       facts(kFeatures),   facts(kKeyframes),  facts(kTracking),    facts(kStatus),
+          facts(kColorJpeg),   facts(kCameraInfo), facts(kDetections), facts(kOdometry),    facts(kPose),
+          facts(kTf),          facts(kPath),       facts(kMapPoints),  facts(kDiagnostics), facts(kDynamicMask),
+          facts(kDensePoints), facts(kMap),        facts(kMovers),     facts(kGroundTruth)};
 }
 
 TEST(Topics, have_names_of_their_own) {
@@ -44,7 +44,9 @@ TEST(Topics, have_names_of_their_own) {
 
 TEST(Topics, standard_types_go_where_ros2_looks_and_our_own_do_not) {
   for (const TopicFacts& topic : all_topics()) {
-    const bool own_type = topic.plain || topic.type == MessageTraits<msg::ServiceStatus>::kId;
+    const bool own_type = topic.plain || topic.type == MessageTraits<msg::ServiceStatus>::kId ||
+                          topic.type == MessageTraits<msg::MapUpdate>::kId ||
+                          topic.type == MessageTraits<msg::Movers>::kId;
     EXPECT_EQ(topic.name.rfind("rt/", 0) == 0, !own_type) << topic.name;
   }
 }

@@ -275,6 +275,12 @@ TEST(BagSource, gives_ground_truth_only_in_a_world_frame) {
   ASSERT_THAT(poses, SizeIs(2)) << "of the span of the frames and half a second around it";
   EXPECT_EQ(poses[1].stamp_ns, 1'100'000'000);
   EXPECT_DOUBLE_EQ(poses[1].T_world_body.translation().x(), 1.1);
+  const auto bag = bag_with("/world", "/kinect");
+  const auto source = make_source(bag->uri());
+  while (source->next()) continue;
+  ASSERT_TRUE(source->true_pose(1'100'000'000));
+  EXPECT_DOUBLE_EQ(source->true_pose(1'100'000'000)->translation().x(), 1.1);
+  EXPECT_FALSE(source->true_pose(1'040'000'000)) << "nothing measured within 50 ms";
   EXPECT_THAT(truth(*bag_with("/odom", "/kinect")), IsEmpty());
   EXPECT_THAT(truth(*bag_with("/world", "/robot")), IsEmpty());
   EXPECT_THAT(truth(*bag_with("/kinect", "/kinect")), IsEmpty()) << "a ring";
@@ -292,7 +298,8 @@ TEST(BagSource, plays_the_intact_part_of_a_damaged_bag_and_reports_the_loss) {
 
 TEST(BagSource, names_the_parameters_it_knows) {
   EXPECT_TRUE(refuses("bag:", {"needs a file", "bag:FILE"}));
-  EXPECT_TRUE(refuses("bag:x?colour=/a", {"unknown parameter 'colour'", "color, depth, info, calibration, depth_info, registered, tolerance_ms"}));
+  EXPECT_TRUE(refuses("bag:x?colour=/a", {"unknown parameter 'colour'",
+                                          "color, depth, info, calibration, depth_info, registered, tolerance_ms"}));
   EXPECT_TRUE(refuses("bag:/nowhere.bag", {"/nowhere.bag cannot be read"}));
 }
 

@@ -209,6 +209,17 @@ TEST(TumSource, gives_groundtruth_of_its_span_only) {
   EXPECT_EQ(poses[1].T_world_body.translation().x(), 2);
 }
 
+TEST(TumSource, knows_the_true_pose_between_two_that_are_near) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  folder.write("groundtruth.txt", "1.00 1 0 0 0 0 0 1\n1.02 3 0 0 0 0 0 1\n1.2 9 0 0 0 0 0 1\n");
+  const auto source = make_source(folder.uri());
+  EXPECT_NEAR(source->true_pose(1'005'000'000).value().translation().x(), 1.5, 1e-9);
+  EXPECT_NEAR(source->true_pose(1'200'000'000).value().translation().x(), 9, 1e-9);
+  EXPECT_FALSE(source->true_pose(1'100'000'000)) << "100 ms from the next";
+  EXPECT_FALSE(source->true_pose(900'000'000));
+}
+
 TEST(TumSource, refuses_broken_groundtruth_by_line) {
   const SequenceFolder folder;
   folder.three_frames();

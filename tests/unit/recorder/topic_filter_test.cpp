@@ -30,6 +30,11 @@ TEST(TopicFilter, knows_the_other_signs_of_a_shell) {
   EXPECT_FALSE(TopicFilter({}).wants("rt/tf"));
 }
 
+TEST(TopicFilter, takes_requests_and_replies_of_services_only_by_their_names) {
+  EXPECT_FALSE(TopicFilter({"*"}).wants("rr/slam/resetReply"));
+  EXPECT_TRUE(TopicFilter({"rr/*"}).wants("rr/slam/resetReply"));
+}
+
 TEST(TopicFilter, of_a_robot_leaves_out_the_topics_of_others) {
   const TopicFilter all({"*"}, "anna"), pose({"/slam/pose", "rtd/frame"}, "anna");
   EXPECT_TRUE(all.wants("rt/anna/slam/pose"));

@@ -48,6 +48,7 @@ class ScriptedHost : public PlayerHost {
     if (payload.starts_with("box")) return std::nullopt;
     return std::stoull(payload);
   }
+  bool ends_step(const PlayedMessage& message) override { return !text_of(*message.cdr).starts_with("box"); }
   void show(const PlayState&) override {}
 
   std::vector<std::string> payloads() const {
@@ -156,6 +157,97 @@ TEST_F(PlayerTest, back_and_forward_jump_ten_seconds) {
   host.at(5100, Command::kStop);
   EXPECT_EQ(play(pieces), PlayOutcome::kStopped);
   EXPECT_THAT(host.payloads(), ElementsAre("0", "1", "2", "13", "14", "5"));
+}
+
+/// What requests were answered.
+struct Answers {
+  Request request(Request asked) {
+    asked.done = [this](const PlayState& state, const std::string& problem) {
+      states.push_back(state);
+      problems.push_back(problem);
+    };
+    return asked;
+  }
+  std::vector<PlayState> states;
+  std::vector<std::string> problems;
+};
+
+TEST_F(PlayerTest, a_request_to_pause_holds_until_the_one_to_go_on) {
+  Answers answers;
+  host.at(15, answers.request({Request::Action::kPause}));
+  host.at(500, answers.request({Request::Action::kPause}));
+  host.at(1015, answers.request({Request::Action::kResume}));
+  play(numbered(4));
+  EXPECT_THAT(host.times_ms(), ElementsAre(0, 10, 1020, 1030));
+  ASSERT_EQ(answers.states.size(), 3U);
+  EXPECT_TRUE(answers.states[0].paused);
+  EXPECT_EQ(answers.states[0].recorded_ns, options.start_ns + 15 * kMillisecond);
+  EXPECT_TRUE(answers.states[1].paused);
+  EXPECT_FALSE(answers.states[2].paused);
+}
+
+TEST_F(PlayerTest, a_request_to_step_pauses_and_goes_to_the_next_frame) {
+  Answers answers;
+  std::vector<RecordedPiece> pieces;
+  for (const char* payload : {"0", "box", "box", "1", "box", "2"})
+    pieces.push_back({"/frame", static_cast<std::int64_t>(pieces.size()) * 10 * kMillisecond, payload});
+  host.at(5, answers.request({Request::Action::kStepFrame}));
+  host.at(100, Command::kStop);
+  EXPECT_EQ(play(pieces), PlayOutcome::kStopped);
+  EXPECT_THAT(host.payloads(), ElementsAre("0", "box", "box", "1"));
+  ASSERT_EQ(answers.states.size(), 1U);
+  EXPECT_TRUE(answers.states[0].paused);
+  EXPECT_EQ(answers.states[0].recorded_ns, 30 * kMillisecond);
+  EXPECT_EQ(answers.problems[0], "");
+}
+
+TEST_F(PlayerTest, a_step_beyond_the_end_says_so) {
+  Answers answers;
+  options.paused = true;
+  host.at(10, answers.request({Request::Action::kStepFrame}));
+  host.at(20, answers.request({Request::Action::kStepFrame}));
+  play({{"/frame", 0, "0"}, {"/box", kMillisecond, "box"}});
+  EXPECT_THAT(answers.problems, ElementsAre("", "the replay has ended"));
+}
+
+TEST_F(PlayerTest, a_request_to_seek_goes_back_and_on_at_the_same_speed) {
+  Answers answers;
+  Request back{Request::Action::kSeek};
+  back.to_ns = numbered(1).front().log_ns;
+  host.at(25, answers.request(back));
+  play(numbered(4));
+  EXPECT_THAT(host.payloads(), ElementsAre("0", "1", "2", "0", "1", "2", "3"));
+  EXPECT_THAT(host.times_ms(), ElementsAre(0, 10, 20, 25, 35, 45, 55));
+  EXPECT_EQ(answers.states.at(0).recorded_ns, back.to_ns);
+  EXPECT_EQ(timing.max_ms(), 0) << "a jump is no error";
+}
+
+TEST_F(PlayerTest, a_request_to_seek_keeps_a_pause) {
+  Answers answers;
+  options.paused = true;
+  Request on{Request::Action::kSeek};
+  on.to_ns = numbered(3).back().log_ns;
+  host.at(25, answers.request(on));
+  host.at(100, answers.request({Request::Action::kStepFrame}));
+  play(numbered(3));
+  EXPECT_THAT(host.payloads(), ElementsAre("2"));
+  EXPECT_TRUE(answers.states.at(0).paused);
+  EXPECT_EQ(answers.states.at(0).recorded_ns, on.to_ns);
+}
+
+TEST_F(PlayerTest, a_request_sets_the_speed_of_a_replay_by_time_only) {
+  Answers answers;
+  Request faster{Request::Action::kSetRate};
+  faster.rate = 2;
+  host.at(0, answers.request(faster));
+  play(numbered(11));
+  EXPECT_EQ(host.sent.back().at_ms, 50);
+  options.pacer.window = 1;
+  answer_after(1);
+  host.at(51, answers.request(faster));
+  play(numbered(3));
+  EXPECT_EQ(answers.problems.at(0), "");
+  EXPECT_THAT(answers.problems.at(1), testing::HasSubstr("does not go by time"));
 }
 
 TEST_F(PlayerTest, a_loop_begins_again_until_it_is_stopped) {

@@ -46,6 +46,15 @@ TEST(PermissionsTest, roles_may_do_what_they_need_and_no_more) {
   EXPECT_EQ(may("observer", "rtd/frame"), std::pair(false, false));
   EXPECT_EQ(may("launcher", "rtd/status"), std::pair(false, true));
   EXPECT_EQ(may("record", "rt/anything"), std::pair(false, true));
+  for (const char* caller : {"call", "viewer"}) {
+    EXPECT_EQ(may(caller, "rq/recorder/stopRequest"), std::pair(true, false)) << caller;
+    EXPECT_EQ(may(caller, "rr/recorder/stopReply"), std::pair(false, true)) << caller;
+  }
+  EXPECT_EQ(may("record", "rq/recorder/stopRequest"), std::pair(false, true));
+  EXPECT_EQ(may("record", "rr/recorder/stopReply"), std::pair(true, false));
+  for (const char* topic : {"rq/recorder/stopRequest", "rr/recorder/stopReply"})
+    EXPECT_EQ(may("observer", topic), std::pair(false, false)) << "neither calls nor answers in another's name";
+  EXPECT_EQ(may("observer", "rq/my_node/get_parametersRequest"), std::pair(false, true));
 }
 
 TEST(PermissionsTest, only_the_frames_are_not_encrypted) {

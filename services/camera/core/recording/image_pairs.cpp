@@ -44,6 +44,9 @@ class ImagePairs final : public RecordingSource {
 
   /// Of what was played so far.
   geometry::Trajectory groundtruth() const override;
+  std::optional<Eigen::Isometry3d> true_pose(std::int64_t stamp_ns) const override {
+    return transforms_.world_pose(color_.frame_id, stamp_ns, kTrueWithinNs);
+  }
 
  private:
   std::optional<std::int64_t> advance() override;

@@ -44,6 +44,9 @@ class TumSource final : public PlayedSource {
   TumSource(std::string uri, std::filesystem::path folder, Options options);
 
   geometry::Trajectory groundtruth() const override { return groundtruth_; }
+  std::optional<Eigen::Isometry3d> true_pose(std::int64_t stamp_ns) const override {
+    return geometry::pose_at(groundtruth_, stamp_ns, kTrueWithinNs);
+  }
 
  private:
   std::optional<std::int64_t> advance() override;

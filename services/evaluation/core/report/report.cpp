@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "common/geometry/ply.hpp"
+#include "common/service/json_text.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -196,7 +197,7 @@ std::string comparison_text(const std::vector<ComparedRun>& runs) {
 
 RunSummary write_report(const Run& run, const std::filesystem::path& folder) {
   RunSummary summary = summarize_run(run);
-  const std::string json = report_json(run, summary).dump(2, ' ', false, Json::error_handler_t::replace);
+  const std::string json = service::json_text(report_json(run, summary));
   write_file(folder / "report.json", json + "\n");
   write_file(folder / "report.html", report_html(run, summary));
   return summary;

@@ -74,6 +74,8 @@ class ModeJudge {
   /// Corrects the pose of an earlier frame.
   virtual void on_pose(const SlamPose& pose) { views_.correct(pose.seq, pose.T_world_camera); }
   virtual void on_keyframe(const SlamKeyframe& keyframe);
+  /// Whether to spend less time on a frame: for a computer that cannot keep up. A mode may ignore it.
+  virtual void set_coarse(bool) {}
   /// Forgets all earlier frames.
   virtual void reset() { views_.clear(); }
   /// Earlier frames; none in a mode that does not compare with them.

@@ -230,6 +230,14 @@ void RtdJudge::on_keyframe(const SlamKeyframe& keyframe) {
   }
 }
 
+void RtdJudge::set_coarse(bool coarse) {
+  config_ = configured_;
+  if (!coarse) return;
+  config_.geometry.max_views = std::min(config_.geometry.max_views, 3);
+  config_.ego_motion.max_proposals = std::min(config_.ego_motion.max_proposals, 2);
+  config_.ego_motion.max_observations = std::min(config_.ego_motion.max_observations, 200);
+}
+
 void RtdJudge::reset() {
   ModeJudge::reset();
   memory_.clear();

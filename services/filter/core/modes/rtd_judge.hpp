@@ -14,11 +14,12 @@ namespace rtd::filter {
 class RtdJudge final : public ModeJudge {
  public:
   /// `config`: effective_config() of the mode.
-  explicit RtdJudge(const FilterConfig& config) : config_(config), movers_(config.movers) {}
+  explicit RtdJudge(const FilterConfig& config) : configured_(config), config_(config), movers_(config.movers) {}
 
   Verdict judge(const Scene& scene, std::vector<msg::Feature> features, StageClock& clock) override;
   void on_pose(const SlamPose& pose) override;
   void on_keyframe(const SlamKeyframe& keyframe) override;
+  void set_coarse(bool coarse) override;
   void reset() override;
 
  private:
@@ -56,7 +57,8 @@ class RtdJudge final : public ModeJudge {
   RememberedMotion recall_movers(const Scene& scene, const Foreground& foreground,
                                  const Eigen::Isometry3d& T_world_camera) const;
 
-  FilterConfig config_;
+  const FilterConfig configured_;
+  FilterConfig config_;    ///< `configured_`, or with less work per frame
   std::uint32_t map_ = 0;  ///< of slam's last pose
   DynamicMemory memory_;
   MoverTracks movers_;

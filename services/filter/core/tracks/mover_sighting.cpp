@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/vision/samples.hpp"
+
 namespace rtd::filter {
 namespace {
 
@@ -25,16 +27,6 @@ std::vector<std::vector<int>> by_cluster(const DepthClusters& clusters, const Ce
   return cells;
 }
 
-/// The interval without the outer twentieths.
-std::pair<double, double> spread(std::vector<double>& values) {
-  const auto outer = static_cast<std::ptrdiff_t>(values.size() / 20);
-  const auto low = values.begin() + outer, high = values.end() - 1 - outer;
-  std::nth_element(values.begin(), low, values.end());
-  const double lowest = *low;
-  std::nth_element(values.begin(), high, values.end());
-  return {lowest, *high};
-}
-
 Eigen::AlignedBox3d extent_of(const std::vector<int>& cells, const MoverFrame& frame) {
   std::array<std::vector<double>, 3> along;
   const std::size_t step = 1 + cells.size() / kEnoughCells;
@@ -44,7 +36,7 @@ Eigen::AlignedBox3d extent_of(const std::vector<int>& cells, const MoverFrame& f
   }
   Eigen::AlignedBox3d extent;
   for (int axis = 0; axis < 3; ++axis) {
-    std::tie(extent.min()[axis], extent.max()[axis]) = spread(along[static_cast<std::size_t>(axis)]);
+    std::tie(extent.min()[axis], extent.max()[axis]) = vision::spread(along[static_cast<std::size_t>(axis)]);
   }
   return extent;
 }

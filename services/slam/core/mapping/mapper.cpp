@@ -192,6 +192,15 @@ std::vector<LocalMapPtr> Mapper::places_like(const Frame& frame, std::size_t fir
   return places;
 }
 
+std::vector<KeyframeChange> Mapper::take_back() const {
+  std::vector<KeyframeChange> changes;
+  for (const auto& [id, T_world_camera] : announced_) {
+    const Frame& frame = *map_.find_keyframe(id)->frame;
+    changes.push_back({KeyframeChange::Kind::kRemoved, id, frame.seq, frame.stamp_ns, T_world_camera});
+  }
+  return changes;
+}
+
 std::vector<KeyframeChange> Mapper::take_changes() {
   return std::exchange(changes_, {});
 }

@@ -58,6 +58,8 @@ class Mapper {
   std::vector<LocalMapPtr> places_like(const Frame& frame, std::size_t first, std::size_t count);
   /// Created, corrected and removed keyframes since the last call, in order.
   std::vector<KeyframeChange> take_changes();
+  /// Every announced keyframe as removed: the map is to be forgotten.
+  std::vector<KeyframeChange> take_back() const;
   /// Global bundle adjustment runs beside the mapper from now on; `on_done` reports, from its thread, that
   /// apply_adjustment() has something to apply.
   void adjust_in_background(std::function<void()> on_done) { adjuster_.run_in_background(std::move(on_done)); }

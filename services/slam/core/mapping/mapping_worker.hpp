@@ -5,6 +5,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <variant>
@@ -24,16 +25,21 @@ enum class MappingMode : std::uint8_t {
 enum class PendingAdjustment : std::uint8_t { kAwait, kCancel };
 
 /// Runs a Mapper in the caller's thread or in one of its own, and provides what tracking needs from it.
-/// restore(), insert(), begin_map(), recentre(), places_like(), finish(): one thread (tracking). snapshot(),
-/// take_changes(), room(), idle(), read(): any.
+/// restart(), restore(), insert(), begin_map(), recentre(), places_like(), finish(): one thread (tracking). snapshot(),
+/// take_changes(), room(), idle(), read(), session(): any.
 class MappingWorker {
  public:
   /// `on_thread_start` runs first in the mapper's own thread (priority, name); may be empty.
   MappingWorker(const SlamConfig& config, MappingMode mode, std::function<void()> on_thread_start);
   ~MappingWorker();
 
-  /// Continues a saved map; before the first keyframe.
+  /// Forgets the map and all that is queued; waits for the keyframe in work and gives up a global adjustment. The
+  /// keyframes that were announced are taken back (take_changes()). Ids begin at 0 again.
+  void restart();
+  /// Continues a saved map; before the first keyframe of a session.
   void restore(MapContents contents);
+  /// Counts the calls of restart().
+  std::uint64_t session() const { return session_; }
   /// Room for another keyframe; idle: nothing queued or in work. Synchronous: both always true.
   bool room() const;
   bool idle() const { return pending_ == 0; }
@@ -67,7 +73,15 @@ class MappingWorker {
     std::size_t attempt;
   };
   using Command = std::variant<KeyframeProposal, Recentre, PlaceQuestion, ApplyAdjustment>;
+  struct Queued {
+    Command command;
+    std::uint64_t session = 0;  ///< whose map it is about
+  };
+  std::unique_ptr<Mapper> make_mapper();
+  bool enqueue(Command command) { return queue_.push({std::move(command), session_}); }
   LocalMapPtr run(const Command& command);
+  LocalMapPtr run_locked(const Command& command);
+  void run_queued(const Queued& queued);
   void work(const KeyframeProposal& proposal);
   void work(Recentre command);
   void work(ApplyAdjustment command);
@@ -75,10 +89,12 @@ class MappingWorker {
   void find_places(const PlaceQuestion& question);
   void loop();
 
+  const SlamConfig config_;
   const MappingMode mode_;
   const std::size_t places_per_frame_;
+  std::atomic<std::uint64_t> session_{0};
   mutable std::mutex mapper_mutex_;  ///< held while the mapper works
-  Mapper mapper_;
+  std::unique_ptr<Mapper> mapper_;   ///< another one in each session
   KeyframeId centre_ = 0;
   mutable std::mutex output_mutex_;  ///< guards the three below, held briefly
   LocalMapPtr snapshot_;
@@ -89,7 +105,7 @@ class MappingWorker {
   std::atomic<bool> place_wanted_{false};
   std::atomic<KeyframeId> wanted_centre_{0};
   std::atomic<bool> recentre_queued_{false};
-  concurrency::BoundedQueue<Command> queue_;
+  concurrency::BoundedQueue<Queued> queue_;
   std::thread thread_;
 };
 

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <exception>
+#include <thread>
+#include <utility>
+
+#include "common/bus/command_codec.hpp"
+#include "common/bus/commands.hpp"
+#include "common/bus/robot.hpp"
+#include "common/concurrency/bounded_queue.hpp"
+
+namespace rtd::bus {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t kMostWaiting = 16;
+/// A client that has just appeared may not receive replies yet: its two endpoints are found one after the other.
+constexpr auto kClientPatience = 500ms;
+
+CallTopics topics_of(const Bus& bus, const std::string& name, CommandKind kind) {
+  CallTopics topics = call_topics(name, kind);
+  topics.request = topic_of_robot(topics.request, bus.robot());
+  topics.reply = topic_of_robot(topics.reply, bus.robot());
+  return topics;
+}
+
+}  // namespace
+
+class CommandServer::State {
+ public:
+  State(Bus& bus, const std::string& name, CommandKind kind, Handler handler)
+      : kind_(kind),
+        handler_(std::move(handler)),
+        calls_(bus.calls(topics_of(bus, name, kind), CallRole::kServer,
+                         [this](const CallId& id, std::span<const std::byte> cdr) { enqueue(id, cdr); })),
+        thread_([this] { serve(); }) {}
+  ~State() {
+    waiting_.close();
+    thread_.join();
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+ private:
+  struct Call {
+    CallId id;
+    std::vector<std::byte> cdr;
+    bool too_long = false;
+  };
+
+  void enqueue(const CallId& id, std::span<const std::byte> cdr) {
+    const bool too_long = cdr.size() > kMostRequestBytes;
+    const std::size_t kept = too_long ? 0 : cdr.size();
+    waiting_.push({id, std::vector<std::byte>(cdr.begin(), cdr.begin() + static_cast<std::ptrdiff_t>(kept)), too_long});
+  }
+  void serve() {
+    while (const auto call = waiting_.pop()) {
+      if (waiting_.closed()) return;
+      const CommandAnswer answer = handle(*call);
+      wait_for_client();
+      calls_->reply(call->id, encode_answer(answer));
+    }
+  }
+  CommandAnswer handle(const Call& call) const {
+    if (call.too_long) return {false, "a request has at most " + std::to_string(kMostRequestBytes) + " bytes"};
+    try {
+      return handler_(decode_request(kind_, call.cdr));
+    } catch (const std::exception& error) {
+      return {false, error.what()};
+    }
+  }
+  void wait_for_client() const {
+    const auto end = std::chrono::steady_clock::now() + kClientPatience;
+    while (calls_->matched_readers() < calls_->matched_writers() && !waiting_.closed() &&
+           std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(2ms);
+    }
+  }
+
+  const CommandKind kind_;
+  const Handler handler_;
+  concurrency::BoundedQueue<Call> waiting_{kMostWaiting, concurrency::Overflow::kDropOldest};
+  std::unique_ptr<CallEndpoint> calls_;
+  std::thread thread_;
+};
+
+CommandServer::CommandServer(Bus& bus, const std::string& name, CommandKind kind, Handler handler)
+    : state_(std::make_unique<State>(bus, name, kind, std::move(handler))) {}
+CommandServer::~CommandServer() = default;
+
+}  // namespace rtd::bus

@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus_factory.hpp"
+
+/// Commands to a running service, over DDS as ROS 2 services: `ros2 service call` and `rtd call` do the same.
+namespace rtd::bus {
+
+/// What the caller asks for.
+struct CommandRequest {
+  std::string argument;  ///< "" for a trigger, "true" or "false" for a switch, any text for kText
+};
+
+struct CommandAnswer {
+  bool success = false;
+  std::string message;  ///< what happened, or cause and fix
+};
+
+/// The type of the ROS 2 service.
+enum class CommandKind {
+  kTrigger,  ///< std_srvs/srv/Trigger
+  kSetBool,  ///< std_srvs/srv/SetBool
+  kText,     ///< rtd_msgs/srv/Command: string argument --- bool success, string message
+};
+
+/// "std_srvs/srv/Trigger", ...
+std::string ros_type(CommandKind kind);
+
+/// Offers one command while it lives. Requests wait in a bounded queue (the oldest goes and gets no answer) for a
+/// thread of this server, on which the handler runs, one call at a time. What the handler throws, and a request that
+/// cannot be read, becomes an answer without success.
+class CommandServer {
+ public:
+  using Handler = std::function<CommandAnswer(const CommandRequest&)>;
+
+  /// `name`: "slam/reset", below the name of the bus's robot if it has one. Throws BusError: refused.
+  CommandServer(Bus& bus, const std::string& name, CommandKind kind, Handler handler);
+  /// Waits for a running handler; requests that still wait get no answer.
+  ~CommandServer();
+  CommandServer(const CommandServer&) = delete;
+  CommandServer& operator=(const CommandServer&) = delete;
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+/// A command that is offered in the domain now.
+struct FoundCommand {
+  std::string name;   ///< "slam/reset", without the robot
+  std::string robot;  ///< "": of a robot without a name, or a service of another program
+  CommandKind kind = CommandKind::kTrigger;
+  std::string vendor;  ///< of the server: "fastdds", "cyclonedds", "inprocess"; "" for one that cannot be called
+  int servers = 1;     ///< programs that offer it under this name
+
+  /// As it is called: "/slam/reset", "/anna/slam/reset".
+  std::string full_name() const;
+};
+
+/// The call brought no answer.
+class CommandError : public BusError {
+ public:
+  enum class Cause { kNotFound, kSeveral, kWrongArgument, kNoAnswer };
+  CommandError(Cause cause, const std::string& what) : BusError(what), cause_(cause) {}
+  Cause cause() const { return cause_; }
+
+ private:
+  Cause cause_;
+};
+
+/// Finds and calls the commands of a domain. Uses a connection of its own, and one more for servers of another DDS
+/// vendor once such a one is called: the RMWs of ROS 2 do not understand the services of each other. Thread-safe.
+class CommandClient {
+ public:
+  /// Throws BusError as connect(). Discovery takes a moment: call() waits for it.
+  explicit CommandClient(const BusOptions& options);
+  ~CommandClient();
+  CommandClient(const CommandClient&) = delete;
+  CommandClient& operator=(const CommandClient&) = delete;
+
+  /// By full name.
+  std::vector<FoundCommand> commands() const;
+
+  /// `name`: "slam/reset" or "/slam/reset"; with options.robot of that robot, else as it is ("anna/slam/reset").
+  /// `argument`: as CommandRequest; "on", "off", "1" and "0" switch, too. Blocks until the answer is there.
+  /// Throws CommandError: no such command, several servers of that name, an argument that it does not take, no answer
+  /// within timeout_ms; BusError: refused.
+  CommandAnswer call(const std::string& name, const std::string& argument, int timeout_ms);
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace rtd::bus

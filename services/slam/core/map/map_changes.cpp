@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/core/map/map_changes.hpp"
+
+#include <algorithm>
+
+#include "common/geometry/se3.hpp"
+
+namespace rtd::slam {
+
+MapNews MapChanges::update(const MapView& view, Extent extent) {
+  MapNews news;
+  news.new_session = session_ != view.session;
+  if (news.new_session) {
+    told_.clear();
+    loop_edges_.clear();
+    session_ = view.session;
+  }
+  take_out_removed(view, news);
+  std::vector<PointsNow> points_now(view.keyframes.size(), PointsNow::kOthers);
+  for (std::size_t i = 0; i < view.keyframes.size() && extent == Extent::kChanges; ++i) {
+    const auto told = told_.find(view.keyframes[i].id);
+    if (told != told_.end()) points_now[i] = compare_points(told->second, view.keyframes[i]);
+  }
+  choose_refined(view, points_now);
+  for (std::size_t i = 0; i < view.keyframes.size(); ++i) {
+    const KeyframeView& now = view.keyframes[i];
+    const auto [place, is_new] = told_.try_emplace(now.id);
+    Told& told = place->second;
+    const bool points = points_now[i] == PointsNow::kOthers;
+    const bool edges = is_new || extent == Extent::kEverything || told.covisible != now.covisible;
+    if (!points && !edges && !has_moved(told, now)) continue;
+    told.map = now.map;
+    told.T_world_camera = now.T_world_camera;
+    if (points) told.landmarks = now.landmarks, told.points_m = now.points_m;
+    if (edges) told.covisible = now.covisible;
+    news.keyframes.push_back({now.id, points, edges, false});
+  }
+  news.loops = loop_edges_ != view.loop_edges;
+  loop_edges_ = view.loop_edges;
+  return news;
+}
+
+/// Both are in the order of ids.
+void MapChanges::take_out_removed(const MapView& view, MapNews& news) {
+  auto now = view.keyframes.begin();
+  for (auto told = told_.begin(); told != told_.end();) {
+    while (now != view.keyframes.end() && now->id < told->first) ++now;
+    if (now != view.keyframes.end() && now->id == told->first) {
+      ++told;
+      continue;
+    }
+    news.keyframes.push_back({told->first, false, false, true});
+    told = told_.erase(told);
+  }
+}
+
+bool MapChanges::has_moved(const Told& told, const KeyframeView& now) const {
+  if (told.map != now.map) return true;
+  const Eigen::Isometry3d T_told_now = told.T_world_camera.inverse() * now.T_world_camera;
+  return T_told_now.translation().norm() > tolerance_.translation_m ||
+         geometry::rotation_angle_rad(T_told_now) > tolerance_.rotation_rad;
+}
+
+MapChanges::PointsNow MapChanges::compare_points(const Told& told, const KeyframeView& now) const {
+  if (told.landmarks != now.landmarks) return PointsNow::kOthers;
+  PointsNow points = PointsNow::kSame;
+  for (std::size_t i = 0; i < now.points_m.size(); ++i) {
+    const double moved_m = static_cast<double>((told.points_m[i] - now.points_m[i]).norm());
+    if (moved_m <= tolerance_.point_m) continue;
+    if (moved_m > tolerance_.point_share * static_cast<double>(now.points_m[i].norm())) return PointsNow::kOthers;
+    points = PointsNow::kRefined;
+  }
+  return points;
+}
+
+/// Some of the keyframes whose points were refined get their turn: theirs count as others.
+void MapChanges::choose_refined(const MapView& view, std::vector<PointsNow>& points) {
+  const std::size_t count = view.keyframes.size();
+  std::size_t left = std::max(tolerance_.refined_at_once, count / 100);
+  const auto first = std::ranges::lower_bound(view.keyframes, next_refined_, {}, &KeyframeView::id);
+  for (std::size_t i = 0, at = static_cast<std::size_t>(first - view.keyframes.begin()); i < count && left > 0; ++i) {
+    PointsNow& now = points[(at + i) % count];
+    if (now != PointsNow::kRefined) continue;
+    now = PointsNow::kOthers;
+    next_refined_ = view.keyframes[(at + i) % count].id + 1;
+    --left;
+  }
+}
+
+}  // namespace rtd::slam

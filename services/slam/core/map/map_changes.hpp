@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "services/slam/core/map/map_view.hpp"
+
+namespace rtd::slam {
+
+/// What is to be said of one keyframe: always its pose, and what else is set.
+struct KeyframeNews {
+  KeyframeId id = kNoKeyframe;
+  bool points = false, edges = false, removed = false;
+};
+
+/// The differences of a map from what was told before.
+struct MapNews {
+  bool new_session = false;             ///< what was told before is void
+  bool loops = false;                   ///< the closed loops are others
+  std::vector<KeyframeNews> keyframes;  ///< removed ones first, then by id
+
+  bool empty() const { return !new_session && !loops && keyframes.empty(); }
+};
+
+/// Finds what changed in a map since it was last told about. What is told is compared, not what was seen last: slow
+/// drift is told too, as soon as it adds up. Not thread-safe.
+class MapChanges {
+ public:
+  struct Tolerance {
+    double translation_m = 1e-4, rotation_rad = 1.7e-4;  ///< of a keyframe's pose: 0.1 mm, 0.01 degrees
+    double point_m = 0.005;                              ///< of a point in its camera's frame
+    /// Of a point, as a share of its distance. What moves less is told bit by bit, because global adjustment moves
+    /// almost every point a little: of `refined_at_once` keyframes at a time, or a hundredth of all if that is more.
+    double point_share = 0.02;
+    std::size_t refined_at_once = 8;
+  };
+  enum class Extent : std::uint8_t { kChanges, kEverything };
+
+  MapChanges() = default;
+  explicit MapChanges(const Tolerance& tolerance) : tolerance_(tolerance) {}
+
+  /// What is new in `view`, which counts as told from now on. kEverything: all keyframes with all they have, for a
+  /// reader that knows nothing yet.
+  MapNews update(const MapView& view, Extent extent = Extent::kChanges);
+  /// Nothing has been told: the next update is a new session.
+  void forget() { *this = MapChanges(tolerance_); }
+
+ private:
+  struct Told {
+    MapId map = 0;
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+    std::vector<LandmarkId> landmarks;
+    std::vector<Eigen::Vector3f> points_m;
+    std::vector<KeyframeId> covisible;
+  };
+  void take_out_removed(const MapView& view, MapNews& news);
+  bool has_moved(const Told& told, const KeyframeView& now) const;
+  enum class PointsNow { kSame, kRefined, kOthers };
+  PointsNow compare_points(const Told& told, const KeyframeView& now) const;
+  void choose_refined(const MapView& view, std::vector<PointsNow>& points);
+
+  Tolerance tolerance_;
+  std::optional<std::uint64_t> session_;
+  std::map<KeyframeId, Told> told_;
+  std::vector<KeyframeId> loop_edges_;
+  KeyframeId next_refined_ = 0;  ///< in turn
+};
+
+}  // namespace rtd::slam

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "common/bus/command_desk.hpp"
+#include "services/slam/config.hpp"
+#include "services/slam/core/slam_system.hpp"
+#include "services/slam/map_keeper.hpp"
+
+namespace rtd::slam {
+
+/// The commands slam/reset, slam/save_map, slam/load_map and slam/localize_only. Files are read and written beside
+/// tracking; what changes the system happens between two frames.
+class SlamCommands {
+ public:
+  /// Takes the map over in the worker's thread; the answer's text when the camera does not fit, else empty.
+  using TakeMap = std::function<std::string(MapContents contents)>;
+  using Forget = std::function<void()>;
+
+  /// The others outlive this. `forget` resets the system in the worker's thread.
+  SlamCommands(bus::Bus& bus, const MapFileConfig& files, SlamSystem& slam, MapKeeper& keeper, TakeMap take_map,
+               Forget forget);
+  /// Carries out what waits. By the worker, between frames.
+  void serve() { desk_.serve(); }
+  void close() { desk_.close(); }
+
+ private:
+  bus::CommandAnswer reset();
+  bus::CommandAnswer save(const std::string& path);
+  bus::CommandAnswer load(const std::string& path);
+  bus::CommandAnswer localize_only(bool on);
+
+  const MapFileConfig files_;
+  SlamSystem& slam_;
+  MapKeeper& keeper_;
+  const TakeMap take_map_;
+  const Forget forget_;
+  bus::CommandDesk desk_;  // last: it uses the others
+};
+
+}  // namespace rtd::slam

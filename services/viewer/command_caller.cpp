@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/viewer/command_caller.hpp"
+
+#include <utility>
+
+#include "common/service/log.hpp"
+
+namespace rtd::viewer {
+namespace {
+
+constexpr int kTimeoutMs = 5'000, kMapTimeoutMs = 30'000;  // a large map takes its time
+
+int timeout_of(const std::string& name) {
+  return name.ends_with("_map") ? kMapTimeoutMs : kTimeoutMs;
+}
+
+bus::BusOptions named(bus::BusOptions options) {
+  options.participant_name = "rtd-viewer-commands";
+  options.robot.clear();  // full names
+  return options;
+}
+
+}  // namespace
+
+CommandCaller::CommandCaller(const bus::BusOptions& options, Mailbox mailbox)
+    : mailbox_(std::move(mailbox)), client_(named(options)), thread_([this] { work(); }) {}
+
+CommandCaller::~CommandCaller() {
+  calls_.close();
+  thread_.join();
+}
+
+void CommandCaller::call(const std::string& name, const std::string& argument, Answer answer) {
+  if (calls_.size() >= kMostWaiting) return answer({false, "too many calls are waiting; try again"});
+  calls_.push({name, argument, std::move(answer)});
+}
+
+void CommandCaller::work() {
+  while (auto call = calls_.pop()) {
+    const CommandResult result = carry_out(*call);
+    SPDLOG_INFO("event=command name={} argument=\"{}\" success={} answer=\"{}\"", call->name, call->argument,
+                result.success, result.message);
+    mailbox_.order([answer = std::move(call->answer), result] { answer(result); });
+  }
+}
+
+CommandResult CommandCaller::carry_out(const Call& call) {
+  try {
+    const bus::CommandAnswer answer = client_.call(call.name, call.argument, timeout_of(call.name));
+    return {answer.success, answer.message};
+  } catch (const bus::BusError& error) {
+    return {false, error.what()};
+  }
+}
+
+CommandInfo info_of(const bus::FoundCommand& command) {
+  switch (command.kind) {
+    case bus::CommandKind::kSetBool:
+      return {command.full_name(), ArgumentKind::kBool};
+    case bus::CommandKind::kText:
+      return {command.full_name(), ArgumentKind::kText};
+    case bus::CommandKind::kTrigger:
+      break;
+  }
+  return {command.full_name(), ArgumentKind::kNone};
+}
+
+}  // namespace rtd::viewer

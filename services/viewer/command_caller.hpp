@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/bus/commands.hpp"
+#include "common/concurrency/bounded_queue.hpp"
+#include "services/viewer/core/command_forms.hpp"
+#include "services/viewer/mailbox.hpp"
+
+namespace rtd::viewer {
+
+/// Calls commands of the domain for clients, one after the other, in a thread of its own: a call may take seconds.
+class CommandCaller {
+ public:
+  using Answer = std::function<void(CommandResult)>;
+
+  /// Answers are ordered through the mailbox. Throws BusError.
+  CommandCaller(const bus::BusOptions& options, Mailbox mailbox);
+  ~CommandCaller();
+  CommandCaller(const CommandCaller&) = delete;
+  CommandCaller& operator=(const CommandCaller&) = delete;
+
+  /// What is offered now.
+  std::vector<bus::FoundCommand> commands() const { return client_.commands(); }
+  /// `name`: full, "/anna/slam/reset". `answer` is called in the viewer's thread; at once when too many calls wait.
+  void call(const std::string& name, const std::string& argument, Answer answer);
+
+ private:
+  struct Call {
+    std::string name, argument;
+    Answer answer;
+  };
+  void work();
+  CommandResult carry_out(const Call& call);
+
+  const Mailbox mailbox_;
+  bus::CommandClient client_;
+  concurrency::BoundedQueue<Call> calls_{kMostWaiting, concurrency::Overflow::kBlock};
+  static constexpr std::size_t kMostWaiting = 16;
+  std::thread thread_;
+};
+
+/// As the viewer's protocols name them.
+CommandInfo info_of(const bus::FoundCommand& command);
+
+}  // namespace rtd::viewer

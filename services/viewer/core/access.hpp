@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rtd::viewer {
+
+/// Who may connect. A web page of another site may open a connection to this host from the user's browser, and a name
+/// of its own may point here: so Host and Origin are checked.
+struct AccessRules {
+  std::vector<std::string> hosts;    ///< names by which this server may be addressed, beside loopback; empty: any
+  std::vector<std::string> origins;  ///< of other sites whose pages may connect: "https://app.foxglove.dev"
+  std::string token;                 ///< empty: none is asked for
+};
+
+/// The parts of a request that matter.
+struct AccessRequest {
+  std::string_view host, origin, target, authorization;
+};
+
+enum class Access { kGranted, kWrongHost, kWrongOrigin, kNoToken };
+
+/// Whether a WebSocket may be opened. A request without Origin is not of a browser.
+Access check_access(const AccessRules& rules, const AccessRequest& request);
+/// Whether a page may be read: no token is asked for.
+Access check_host(const AccessRules& rules, std::string_view host);
+/// Of a host as requests name it ("localhost", "[::1]"), or an address ("127.0.0.1", "::1").
+bool is_loopback(std::string_view host);
+/// For the answer: cause and fix.
+const char* explain(Access access);
+
+/// "token" of "/live?token=abc&x": "abc". Percent-encoding is undone.
+std::string query_value(std::string_view target, std::string_view name);
+/// "/live?x" -> "/live"
+std::string_view path_of(std::string_view target);
+
+}  // namespace rtd::viewer

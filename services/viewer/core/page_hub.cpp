@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/viewer/core/page_hub.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "services/viewer/core/page_session.hpp"
+
+namespace rtd::viewer {
+
+PageHub::PageHub(PageGreeting greeting, PageLimits limits, Hooks hooks)
+    : greeting_(std::move(greeting)), limits_(limits), hooks_(std::move(hooks)) {}
+
+PageHub::~PageHub() = default;
+
+std::unique_ptr<Session> PageHub::open() {
+  return std::make_unique<PageSession>(*this);
+}
+
+RobotMirror* PageHub::robot(const std::string& name) {
+  constexpr std::size_t kMostRobots = 64;
+  const auto known = std::ranges::find(names_, name);
+  if (known != names_.end()) return mirrors_[static_cast<std::size_t>(known - names_.begin())].get();
+  if (names_.size() >= kMostRobots) return nullptr;
+  names_.push_back(name);
+  mirrors_.push_back(std::make_unique<RobotMirror>(static_cast<std::uint8_t>(mirrors_.size())));
+  return mirrors_.back().get();
+}
+
+std::optional<PageWishes> PageHub::wishes(std::uint8_t robot) const {
+  if (sessions_.empty()) return std::nullopt;
+  PageWishes all{false, false, false, false, false};
+  for (const PageSession* session : sessions_) all = all | session->wishes(robot);
+  return all;
+}
+
+}  // namespace rtd::viewer

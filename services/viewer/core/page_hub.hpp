@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "services/viewer/core/robot_mirror.hpp"
+#include "services/viewer/core/session.hpp"
+
+namespace rtd::viewer {
+
+/// What a page wants to be sent; a hidden panel switches its part off.
+struct PageWishes {
+  bool image = true, mask = true, features = true, points = true, dense = false;
+  PageWishes operator|(const PageWishes& other) const {
+    return {image || other.image, mask || other.mask, features || other.features, points || other.points,
+            dense || other.dense};
+  }
+  bool operator==(const PageWishes&) const = default;
+};
+
+/// How much a page gets.
+struct PageLimits {
+  double bytes_per_s = 1e6;           ///< all messages
+  double view_bytes_per_s = 700e3;    ///< images with their overlays
+  double views_per_s = 10;            ///< images, at most
+  double burst_bytes = 2e6;           ///< at once, e.g. the whole state for a new page
+  double messages_per_s = 31;         ///< of poses, at most
+  std::size_t most_points = 200'000;  ///< of a map; a larger map is thinned out
+};
+
+struct PageGreeting {
+  std::string version, vendor;
+  std::uint32_t domain = 0;
+  bool control = false;  ///< commands may be called
+};
+
+class PageSession;
+
+/// What all pages see: the mirrors of the robots. One thread.
+class PageHub {
+ public:
+  struct Hooks {
+    /// Calls a command of a robot. `answer` may be called later, by the hub's thread.
+    std::function<void(const std::string& robot, const std::string& name, const std::string& argument,
+                       std::function<void(CommandResult)> answer)>
+        on_call;
+    std::function<double()> now_ms;  ///< since 1970
+  };
+
+  PageHub(PageGreeting greeting, PageLimits limits, Hooks hooks);
+  ~PageHub();
+
+  /// A page connects. The hub outlives the session.
+  std::unique_ptr<Session> open();
+  /// The mirror of a robot; known ones keep their index. Null when there are too many.
+  RobotMirror* robot(const std::string& name);
+  /// What any page wants of a robot; nothing without pages.
+  std::optional<PageWishes> wishes(std::uint8_t robot) const;
+  std::size_t clients() const { return sessions_.size(); }
+
+ private:
+  friend class PageSession;
+
+  const PageGreeting greeting_;
+  const PageLimits limits_;
+  const Hooks hooks_;
+  std::vector<std::string> names_;
+  std::vector<std::unique_ptr<RobotMirror>> mirrors_;
+  std::set<PageSession*> sessions_;
+};
+
+}  // namespace rtd::viewer

@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/viewer/core/page_messages.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/vision/jpeg_size.hpp"
+#include "services/viewer/core/byte_writer.hpp"
+
+namespace rtd::viewer::page {
+namespace {
+
+void put(ByteWriter& writer, const Head& head) {
+  writer.put(head.kind);
+  writer.put(head.robot);
+  writer.put(head.map);
+  writer.put(head.count);
+}
+
+ByteWriter begin(Kind kind, std::uint8_t robot, std::uint32_t map_id, std::size_t count) {
+  ByteWriter writer;
+  put(writer, {kind, robot, static_cast<std::uint16_t>(std::min<std::uint32_t>(map_id, UINT16_MAX)),
+               static_cast<std::uint32_t>(count)});
+  return writer;
+}
+
+void put(ByteWriter& writer, const Eigen::Vector3f& vector) {
+  for (int axis = 0; axis < 3; ++axis) writer.put(vector[axis]);
+}
+
+double seconds(const msg::Time& stamp) {
+  return 1e-9 * static_cast<double>(to_ns(stamp));
+}
+
+std::uint16_t sixteenths(float px) {
+  return static_cast<std::uint16_t>(std::clamp(std::isfinite(px) ? px : 0.0F, 0.0F, 4095.0F) * 16.0F + 0.5F);
+}
+
+std::uint8_t byte_of(float probability) {
+  return static_cast<std::uint8_t>(std::clamp(std::isfinite(probability) ? probability : 0.0F, 0.0F, 1.0F) * 255.0F +
+                                   0.5F);
+}
+
+/// One keyframe's points, as 16-bit multiples of a step that reaches the farthest.
+void put_points(ByteWriter& writer, const KeyframeRef& keyframe, std::size_t stride) {
+  const auto& points = keyframe.second->points_m;
+  float reach = 0.001F;
+  for (const Eigen::Vector3f& point : points) reach = std::max(reach, point.cwiseAbs().maxCoeff());
+  const float scale = reach / INT16_MAX;
+  const std::size_t total = std::min<std::size_t>(points.size(), UINT16_MAX);
+  writer.put(keyframe.first);
+  writer.put(static_cast<std::uint16_t>((total + stride - 1) / stride));
+  writer.put(static_cast<std::uint16_t>(total));
+  writer.put(scale);
+  for (std::size_t place = 0; place < total; place += stride) {
+    for (int axis = 0; axis < 3; ++axis)
+      writer.put(static_cast<std::int16_t>(std::lround(points[place][axis] / scale)));
+    writer.put(std::uint8_t{255});
+    writer.put(std::uint8_t{0});
+  }
+}
+
+}  // namespace
+
+Bytes poses(std::uint8_t robot, std::uint32_t map_id, std::span<const KeyframeRef> keyframes) {
+  ByteWriter writer = begin(Kind::kPoses, robot, map_id, keyframes.size());
+  for (const auto& [id, keyframe] : keyframes) {
+    const Eigen::Quaternionf q(keyframe->T_world_camera.linear());
+    writer.put(id);
+    put(writer, Eigen::Vector3f(keyframe->T_world_camera.translation()));
+    for (const float value : {q.x(), q.y(), q.z(), q.w()}) writer.put(value);
+  }
+  return writer.take();
+}
+
+Bytes removed(std::uint8_t robot, std::span<const std::uint32_t> ids) {
+  ByteWriter writer = begin(Kind::kRemoved, robot, 0, ids.size());
+  writer.put_bytes(ids.data(), ids.size_bytes());
+  return writer.take();
+}
+
+Bytes points(std::uint8_t robot, std::uint32_t map_id, std::span<const KeyframeRef> keyframes, std::size_t stride) {
+  ByteWriter writer = begin(Kind::kPoints, robot, map_id, keyframes.size());
+  for (const KeyframeRef& keyframe : keyframes) put_points(writer, keyframe, std::max<std::size_t>(stride, 1));
+  return writer.take();
+}
+
+Bytes covisibility(std::uint8_t robot, std::span<const KeyframeRef> keyframes) {
+  ByteWriter writer = begin(Kind::kCovisibility, robot, 0, keyframes.size());
+  for (const auto& [id, keyframe] : keyframes) {
+    const std::size_t count = std::min<std::size_t>(keyframe->covisible.size(), UINT16_MAX);
+    writer.put(id);
+    writer.put(static_cast<std::uint16_t>(count));
+    writer.put(std::uint16_t{0});
+    writer.put_bytes(keyframe->covisible.data(), count * sizeof(std::uint32_t));
+  }
+  return writer.take();
+}
+
+Bytes loop_edges(std::uint8_t robot, std::span<const std::uint32_t> pairs) {
+  ByteWriter writer = begin(Kind::kLoopEdges, robot, 0, pairs.size() / 2);
+  writer.put_bytes(pairs.data(), pairs.size() / 2 * 2 * sizeof(std::uint32_t));
+  return writer.take();
+}
+
+Bytes trajectory(std::uint8_t robot, std::uint32_t start, std::span<const TrajectoryPoint> points) {
+  ByteWriter writer = begin(Kind::kTrajectory, robot, 0, points.size());
+  writer.put(start);
+  for (const TrajectoryPoint& point : points) {
+    writer.put(point.keyframe);
+    put(writer, point.position_m);
+  }
+  return writer.take();
+}
+
+Bytes truth(std::uint8_t robot, std::uint32_t start, std::span<const Eigen::Vector3f> points_m) {
+  ByteWriter writer = begin(Kind::kTruth, robot, 0, points_m.size());
+  writer.put(start);
+  for (const Eigen::Vector3f& point : points_m) put(writer, point);
+  return writer.take();
+}
+
+Bytes image(std::uint8_t robot, const msg::CompressedImage& image) {
+  const cv::Size size = vision::jpeg_size(image.data);
+  ByteWriter writer = begin(Kind::kImage, robot, 0, image.data.size());
+  writer.put(seconds(image.header.stamp));
+  writer.put(static_cast<std::uint32_t>(size.width));
+  writer.put(static_cast<std::uint32_t>(size.height));
+  writer.put_bytes(image.data.data(), image.data.size());
+  return writer.take();
+}
+
+Bytes features(std::uint8_t robot, const msg::FeatureFrame& frame) {
+  const std::uint32_t count = std::min(frame.count, msg::kMaxFeatures);
+  ByteWriter writer = begin(Kind::kFeatures, robot, 0, count);
+  writer.put(1e-9 * static_cast<double>(frame.stamp_ns));
+  writer.put(static_cast<std::uint16_t>(frame.width));
+  writer.put(static_cast<std::uint16_t>(frame.height));
+  for (std::uint32_t place = 0; place < count; ++place) {
+    const msg::Feature& feature = frame.features[place];
+    writer.put(sixteenths(feature.u_raw_px));
+    writer.put(sixteenths(feature.v_raw_px));
+    writer.put(static_cast<std::uint8_t>((feature.flags & msg::kFeatureRemoved) != 0));
+    writer.put(byte_of(feature.static_probability));
+  }
+  return writer.take();
+}
+
+Bytes mask(std::uint8_t robot, const msg::Image& image) {
+  const std::size_t pixels = std::size_t{image.width} * image.height;
+  constexpr std::size_t kMostPixels = 1U << 20U;
+  if (image.encoding != "mono8" || image.step != image.width || pixels == 0 || pixels > kMostPixels ||
+      image.data.size() < pixels)
+    return {};
+  ByteWriter writer = begin(Kind::kMask, robot, 0, 0);
+  writer.put(seconds(image.header.stamp));
+  writer.put(static_cast<std::uint16_t>(image.width));
+  writer.put(static_cast<std::uint16_t>(image.height));
+  const std::size_t first = writer.size();
+  for (std::size_t place = 0; place < pixels;) {
+    std::size_t end = place + 1;
+    while (end < pixels && end - place < 256 && image.data[end] == image.data[place]) ++end;
+    writer.put(image.data[place]);
+    writer.put(static_cast<std::uint8_t>(end - place - 1));
+    place = end;
+  }
+  writer.set(4, static_cast<std::uint32_t>(writer.size() - first));
+  return writer.take();
+}
+
+Bytes dense(std::uint8_t robot, std::uint32_t start, std::uint32_t total, const Eigen::Vector3f& origin_m,
+            float scale_m, std::span<const std::byte> points) {
+  constexpr std::size_t kPointBytes = 9;
+  ByteWriter writer = begin(Kind::kDense, robot, 0, points.size() / kPointBytes);
+  writer.put(start);
+  writer.put(total);
+  put(writer, origin_m);
+  writer.put(scale_m);
+  writer.put_bytes(points.data(), points.size());
+  return writer.take();
+}
+
+}  // namespace rtd::viewer::page

@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/viewer/core/robot_mirror.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "common/msg/transform_eigen.hpp"
+#include "services/viewer/core/byte_writer.hpp"
+#include "services/viewer/core/page_messages.hpp"
+
+namespace rtd::viewer {
+namespace {
+
+constexpr std::size_t kKept = 12;  ///< images and overlays, newest
+constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kPatienceNs = 250 * kMs;  // an image without features of its frame is shown after it
+constexpr std::int64_t kSameFrameNs = 1 * kMs;
+constexpr std::int64_t kBoxesStayNs = 400 * kMs;  // a slow detector's boxes are those of an earlier frame
+
+Payload shared(Bytes bytes) {
+  return std::make_shared<const Bytes>(std::move(bytes));
+}
+
+Payload shared_text(const std::string& text) {
+  const auto bytes = std::as_bytes(std::span(text));
+  return std::make_shared<const Bytes>(bytes.begin(), bytes.end());
+}
+
+/// Offsets of x, y, z and rgb; empty where the cloud has them in another form.
+std::optional<std::array<std::uint32_t, 4>> layout_of(const msg::PointCloud2& cloud) {
+  constexpr std::uint8_t kFloat32 = 7;
+  constexpr const char* kNames[] = {"x", "y", "z", "rgb"};
+  std::array<std::uint32_t, 4> offsets{};
+  for (std::size_t place = 0; place < offsets.size(); ++place) {
+    const auto field = std::ranges::find(cloud.fields, kNames[place], &msg::PointField::name);
+    if (field == cloud.fields.end() || field->datatype != kFloat32 || field->offset + 4 > cloud.point_step) return {};
+    offsets[place] = field->offset;
+  }
+  return offsets;
+}
+
+template <class T>
+T value_at(const std::vector<std::uint8_t>& data, std::size_t position) {
+  T value;
+  std::memcpy(&value, data.data() + position, sizeof(T));
+  return value;
+}
+
+}  // namespace
+
+std::size_t View::bytes() const {
+  std::size_t bytes = 0;
+  for (const Payload& part : {image, features, mask, boxes}) bytes += part ? part->size() : 0;
+  return bytes;
+}
+
+void RobotMirror::add(const msg::TrackingResult& result, double finished_ms) {
+  if (msg::is_measured(result.state)) {
+    const Eigen::Vector3d position(result.T_world_camera.translation_m.data());
+    map_.add_position(result.map_id, position);
+    if (result.map_id == 0) truth_.add_estimate(result.stamp_ns, position);
+  }
+  set_payload(Item::kTracking, page::tracking(index_, result, finished_ms, filter_stage_ms_));
+}
+
+void RobotMirror::add(const msg::FeatureFrame& frame) {
+  filter_stage_ms_ = frame.stage_ms;
+  keep(features_, frame.stamp_ns, shared(page::features(index_, frame)));
+}
+
+void RobotMirror::add(const msg::CompressedImage& image) {
+  keep(images_, to_ns(image.header.stamp), shared(page::image(index_, image)));
+}
+
+void RobotMirror::add(const msg::Detection2DArray& detections) {
+  keep(boxes_, to_ns(detections.header.stamp), shared_text(page::boxes(index_, detections)));
+}
+
+void RobotMirror::add(const msg::Image& mask) {
+  Bytes bytes = page::mask(index_, mask);
+  if (!bytes.empty()) keep(masks_, to_ns(mask.header.stamp), shared(std::move(bytes)));
+}
+
+void RobotMirror::add(const msg::ServiceStatus& status, std::int64_t received_ns) {
+  constexpr std::size_t kMostServices = 256;
+  if (services_.size() >= kMostServices && !services_.contains(status.service)) return;
+  services_.insert_or_assign(status.service, KnownService{status, received_ns});
+}
+
+/// 16-bit steps within the cloud's box, and its colours.
+void RobotMirror::add(const msg::PointCloud2& cloud) {
+  const auto layout = layout_of(cloud);
+  const std::size_t count = cloud.point_step == 0 ? 0 : cloud.data.size() / cloud.point_step;
+  if (!layout || count == 0) return;
+  const auto position = [&](std::size_t place) {
+    const std::size_t begin = place * cloud.point_step;
+    return Eigen::Vector3f(value_at<float>(cloud.data, begin + (*layout)[0]),
+                           value_at<float>(cloud.data, begin + (*layout)[1]),
+                           value_at<float>(cloud.data, begin + (*layout)[2]));
+  };
+  Eigen::AlignedBox3f box;
+  for (std::size_t place = 0; place < count; ++place)
+    if (const Eigen::Vector3f point = position(place); point.allFinite()) box.extend(point);
+  if (box.isEmpty()) return;
+  Dense dense{.revision = dense_.revision + 1, .origin_m = box.center()};
+  dense.scale_m = std::max(0.001F, box.sizes().maxCoeff() / 2) / INT16_MAX;
+  ByteWriter writer;
+  for (std::size_t place = 0; place < count; ++place) {
+    const Eigen::Vector3f point = (position(place) - dense.origin_m) / dense.scale_m;
+    if (!point.allFinite()) continue;
+    for (int axis = 0; axis < 3; ++axis) writer.put(static_cast<std::int16_t>(std::lround(point[axis])));
+    const auto bgr = value_at<std::array<std::uint8_t, 4>>(cloud.data, place * cloud.point_step + (*layout)[3]);
+    for (const int channel : {2, 1, 0}) writer.put(bgr[static_cast<std::size_t>(channel)]);
+  }
+  dense.points = writer.take();
+  dense_ = std::move(dense);
+}
+
+void RobotMirror::add_truth(std::int64_t stamp_ns, const Eigen::Vector3d& position_m) {
+  truth_.add_truth(stamp_ns, position_m);
+}
+
+void RobotMirror::set_commands(const std::vector<CommandInfo>& commands) {
+  set_payload(Item::kCommands, page::commands(index_, commands));
+}
+
+void RobotMirror::set(Item item, std::string json) {
+  set_payload(item, std::move(json));
+}
+
+void RobotMirror::refresh(std::int64_t now_ns) {
+  set_payload(Item::kStatus, page::services(index_, services(now_ns)));
+  truth_.align_if_grown();
+  if (truth_.ate_m() > 0) set_payload(Item::kTruthError, page::truth_error(index_, truth_.ate_m(), truth_.pairs()));
+}
+
+std::vector<msg::ServiceStatus> RobotMirror::services() const {
+  std::vector<msg::ServiceStatus> list;
+  for (const auto& [name, known] : services_) list.push_back(known.status);
+  return list;
+}
+
+std::vector<page::ServiceLine> RobotMirror::services(std::int64_t now_ns) const {
+  std::vector<page::ServiceLine> lines;
+  for (const auto& [name, known] : services_)
+    lines.push_back({known.status, 1e-6 * static_cast<double>(now_ns - known.received_ns)});
+  return lines;
+}
+
+/// A revision stands for a content: what is set again unchanged is not sent again.
+void RobotMirror::set_payload(Item item, std::string text) {
+  Message& message = items_[static_cast<std::size_t>(item)];
+  Payload payload = shared_text(text);
+  if (message.payload && *message.payload == *payload) return;
+  message.payload = std::move(payload);
+  ++message.revision;
+}
+
+void RobotMirror::keep(Overlays& overlays, std::int64_t stamp_ns, Payload payload) {
+  overlays.push_back({stamp_ns, std::move(payload)});
+  if (overlays.size() > kKept) overlays.pop_front();
+}
+
+/// The newest one not after the stamp and at most this much before.
+Payload RobotMirror::at(const Overlays& overlays, std::int64_t stamp_ns, std::int64_t tolerance_ns) {
+  for (auto overlay = overlays.rbegin(); overlay != overlays.rend(); ++overlay)
+    if (overlay->stamp_ns <= stamp_ns + kSameFrameNs)
+      return stamp_ns - overlay->stamp_ns <= tolerance_ns ? overlay->payload : nullptr;
+  return nullptr;
+}
+
+std::optional<View> RobotMirror::newest_view() const {
+  if (images_.empty() && features_.empty()) return std::nullopt;
+  const std::int64_t newest_ns = images_.empty() ? features_.back().stamp_ns : images_.back().stamp_ns;
+  View view;
+  for (auto image = images_.rbegin(); image != images_.rend() && !view.features; ++image) {
+    if (newest_ns - image->stamp_ns > kPatienceNs) break;
+    view = {
+        .stamp_ns = image->stamp_ns, .image = image->payload, .features = at(features_, image->stamp_ns, kSameFrameNs)};
+  }
+  if (!view.features) {  // no filter, or no image
+    view.stamp_ns = newest_ns;
+    view.image = images_.empty() ? nullptr : images_.back().payload;
+    view.features = images_.empty() ? features_.back().payload : nullptr;
+  }
+  view.mask = at(masks_, view.stamp_ns, kSameFrameNs);
+  view.boxes = at(boxes_, view.stamp_ns, kBoxesStayNs);
+  return view;
+}
+
+}  // namespace rtd::viewer

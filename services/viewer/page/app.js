@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The page: connects the server's messages to the state, and the state to the panels and the scene.
+
+import { Calls } from "./calls.js";
+import { Connection, liveAddress } from "./connection.js";
+import { Controls } from "./controls.js";
+import { decode } from "./decode.js";
+import { byId, setText } from "./dom.js";
+import { Header } from "./header.js";
+import { ImagePanel } from "./image_panel.js";
+import { LayersPanel } from "./layers_panel.js";
+import { PanelFrame } from "./panel_frame.js";
+import { Plots } from "./plots.js";
+import { PoseAge } from "./pose_age.js";
+import { ReplayBar } from "./replay_bar.js";
+import { Session } from "./session.js";
+import { Settings } from "./settings.js";
+import { bindShortcuts } from "./shortcuts.js";
+import { SystemPanel } from "./system_panel.js";
+import { exposeHooks } from "./hooks.js";
+import { situation } from "./waiting.js";
+
+const kPanelPeriod_ms = 250;
+
+class App {
+  constructor() {
+    this.settings = new Settings();
+    this.session = new Session();
+    this.age = new PoseAge();
+    this.undecoded = { count: 0, reason: "" };
+    this.calls = new Calls((message) => this.connection.send(message));
+    this.header = new Header((index) => this.select(index));
+    this.image = new ImagePanel(this.settings);
+    this.plots = new Plots();
+    this.system = new SystemPanel();
+    this.controls = new Controls(this.calls);
+    this.replay = new ReplayBar(this.calls);
+    this.layers = new LayersPanel(this.settings, () => this.settingsChanged());
+    this.frame = new PanelFrame(this.settings, () => this.settingsChanged());
+    this.connection = new Connection(liveAddress(location), {
+      open: () => this.forget(), close: () => this.calls.abandon(), text: (message) => this.receiveText(message),
+      binary: (buffer) => this.receiveBinary(buffer),
+    });
+    byId("retry").addEventListener("click", () => this.connection.retryNow());
+    bindShortcuts(this.actions());
+    exposeHooks(this);
+    setInterval(() => this.updatePanels(), kPanelPeriod_ms);
+    document.addEventListener("visibilitychange", () => this.settingsChanged());
+    this.settingsChanged();
+    this.startScene();
+  }
+
+  get robot() {
+    return this.session.robots.get(this.selected);
+  }
+
+  /** The 3D view is loaded last: without WebGL, or without three.js on the server, the panels work all the same. */
+  async startScene() {
+    try {
+      const { Scene } = await import("./scene.js");
+      this.scene = new Scene(byId("map"), this.settings, (tracking) => this.measureAge(tracking));
+      this.frame.bindView(this.scene);
+      this.showRobots();
+    } catch (error) {
+      byId("no-scene").hidden = false;
+      setText(byId("no-scene-reason"), error.message);
+    }
+  }
+
+  /** After a connection is opened the server sends everything again. */
+  forget() {
+    this.session = new Session();
+    this.age = new PoseAge();
+    this.options = "";
+    this.sendOptions();
+    this.showRobots();
+    this.updatePanels();
+  }
+
+  receiveText(message) {
+    if (message.type === "answer") this.calls.answer(message);
+    this.session.applyText(message, performance.now());
+    if (message.type === "tracking" && message.robot === this.selected) {
+      this.scene?.pace.pose(message);
+      if (!this.scene) this.measureAge(message);
+    }
+    if (message.type === "boxes" && message.robot === this.selected) this.image.update(this.robot);
+    this.afterMessage();
+  }
+
+  receiveBinary(buffer) {
+    try {
+      const message = decode(buffer);
+      if (!message) return;
+      this.session.applyBinary(message);
+      if (["image", "features", "mask"].includes(message.type)) {
+        if (message.robot === this.selected) this.image.update(this.robot);
+        return;
+      }
+    } catch (error) {
+      this.undecoded = { count: this.undecoded.count + 1, reason: error.message };
+    }
+    this.afterMessage();
+  }
+
+  afterMessage() {
+    if (this.generation !== this.session.generation) this.showRobots();
+    this.scene?.request();
+  }
+
+  showRobots() {
+    this.generation = this.session.generation;
+    const robot = this.session.robotNamed(this.chosen);
+    this.selected = robot?.index;
+    if (this.session.announced) this.chosen ??= robot?.name;   // it stays when one comes whose name is before
+    this.scene?.setRobots(this.session.robots, this.selected);
+    this.sendOptions();
+  }
+
+  select(index) {
+    this.selected = index;
+    this.chosen = this.robot.name;
+    this.age = new PoseAge();
+    this.sendOptions();
+    this.scene?.setRobots(this.session.robots, index);
+    this.image.update(this.robot);
+    this.updatePanels();
+  }
+
+  measureAge(tracking) {
+    this.age.add(tracking.finished_ms, Date.now(), this.connection.clock.offset_ms);
+  }
+
+  updatePanels() {
+    const { session, robot, connection } = this, now_ms = performance.now(), now_s = now_ms / 1000;
+    const report = situation({
+      connection: { state: connection.state, address: connection.shownAddress, retry_s: connection.retry_s },
+      hello: session.hello, robot, now_ms });
+    this.report = report;
+    const allowed = connection.state === "open" && session.hello?.control === true;
+    this.header.update({ report, session, robot, pose_ms: this.age.shown_ms(Date.now(), connection.clock.offset_ms) });
+    byId("retry").hidden = connection.state !== "closed";
+    if (this.frame.shows("plots")) this.plots.update(robot, now_s);
+    if (this.frame.shows("system")) this.system.update(session, robot, connection, now_s);
+    this.controls.update(robot, allowed);
+    this.replay.update(robot, allowed);
+    this.layers.update(session);
+    if (!robot?.image) this.image.update(robot);
+    const { count, reason } = this.undecoded;
+    setText(byId("undecoded"), count > 0 ? `${count} messages could not be read: ${reason}` : "");
+  }
+
+  settingsChanged() {
+    this.frame.apply();
+    this.scene?.applySettings();
+    this.sendOptions();
+    this.updatePanels();
+  }
+
+  /** What nobody looks at is not sent. */
+  sendOptions() {
+    const { layers, overlays } = this.settings, image = this.frame.shows("image") && !document.hidden;
+    const options = { op: "options", image, mask: image && overlays.mask, features: image && overlays.features,
+                      points: layers.points, dense: layers.dense, robot: this.selected };
+    const text = JSON.stringify(options);
+    if (text !== this.options && this.connection.send(options)) this.options = text;
+  }
+
+  actions() {
+    const mode = (name) => () => this.frame.setMode(name);
+    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    return {
+      follow: mode("follow"), above: mode("above"), free: mode("free"), fit: () => this.scene?.fit(),
+      move: (key) => this.scene?.nudge(...step[key], 1), zoom: (key) => this.scene?.nudge(0, 0, key === "+" ? 0.85 : 1.18),
+      coloring: () => this.layers.nextColoring(), pause: () => this.replay.togglePause(), step: () => this.replay.step(),
+      save: () => this.controls.press("/slam/save_map"), reset: () => this.controls.press("/slam/reset"),
+      robot: () => this.nextRobot(), large: () => this.frame.toggleLarge(), theme: () => this.frame.nextTheme(),
+      help: () => byId("help").showModal(),
+    };
+  }
+
+  nextRobot() {
+    const indices = this.session.byName.map(({ index }) => index);
+    if (indices.length > 1) this.select(indices[(indices.indexOf(this.selected) + 1) % indices.length]);
+  }
+}
+
+new App();

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The runtime commands that the page knows: their words, and which of them destroy something. Others keep their names.
+
+export const kFilterModes = ["off", "semantic", "geometry", "rtd"];
+const kModesByMetric = ["off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd"];
+
+/** kind: button, text (a field and a button), switch (two states), choice. confirm: asked before it is sent.
+    idle: what the button says while it has nothing to do. */
+const kKnown = {
+  "/slam/reset": {
+    group: "Map", kind: "button", label: "Reset map", danger: true,
+    confirm: "Reset the map? Keyframes, landmarks and the trajectory are deleted. Save the map first if you need it.",
+  },
+  "/slam/save_map": { group: "Map", kind: "text", label: "Save map", placeholder: "file (empty: default)" },
+  "/slam/load_map": {
+    group: "Map", kind: "text", label: "Load map", placeholder: "file on the robot's host", danger: true, required: true,
+    confirm: "Load the map? It replaces the current one. Save the current map first if you need it.",
+  },
+  "/slam/localize_only": { group: "Map", kind: "switch", label: "Mode", off: "Map and localise", on: "Localise only" },
+  "/filter/set_mode": { group: "Filter", kind: "choice", label: "Filter mode", choices: kFilterModes },
+  "/recorder/start": { group: "Recording", kind: "text", label: "Start recording", placeholder: "file (empty: default)",
+                       idle: "Recording …" },
+  "/recorder/stop": { group: "Recording", kind: "button", label: "Stop recording", idle: "Not recording" },
+};
+
+const kReplay = "/replay/";
+const kKinds = { none: "button", bool: "switch", text: "text" };
+
+/** The commands for the panel, in a fixed order; those of a replay have a bar of their own. */
+export function panelCommands(commands) {
+  const order = Object.keys(kKnown);
+  const rank = ({ name }) => (order.includes(name) ? order.indexOf(name) : order.length);
+  return commands.filter(({ name }) => !name.startsWith(kReplay)).map(describe)
+    .sort((a, b) => rank(a) - rank(b) || a.name.localeCompare(b.name));
+}
+
+export function describe({ name, argument }) {
+  const other = { group: "Other commands", kind: kKinds[argument] ?? "text", label: name, off: "Off", on: "On" };
+  return { name, ...(kKnown[name] ?? other) };
+}
+
+/** The argument that holds now, from the heartbeats of the services; undefined if they do not say. */
+export function currentArgument(name, services) {
+  const metric = (service, key) => services.find((one) => one.name === service)?.metrics?.[key];
+  if (name === "/filter/set_mode") return kModesByMetric[metric("filter", "mode")];
+  const localizes = metric("slam", "localize_only");
+  return name === "/slam/localize_only" && localizes !== undefined ? String(localizes === 1) : undefined;
+}
+
+/** Whether the command would change nothing now, by the heartbeats; false if they do not say. */
+export function isIdle(name, services) {
+  const recording = services.find((one) => one.name === "recorder")?.metrics?.recording;
+  return (name === "/recorder/start" && recording === 1) || (name === "/recorder/stop" && recording === 0);
+}
+
+export const offers = (commands, name) => commands.some((command) => command.name === name);

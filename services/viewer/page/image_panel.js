@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The newest image of the camera with what the filter says about it: features, boxes, dynamic mask.
+
+import { byId, setText } from "./dom.js";
+import { expandMask } from "./decode.js";
+import { count } from "./format.js";
+import { kKept, kRemoved } from "./palette.js";
+
+const kMoving = [239, 68, 68, 105], kUnknown = [245, 158, 11, 60];
+const kFeatureRadius_px = 1.7;   // on the screen
+const kFont_px = 12;
+
+export class ImagePanel {
+  constructor(settings) {
+    this.settings = settings;
+    this.canvas = byId("image");
+    this.context = this.canvas.getContext("2d", { willReadFrequently: true });   // drawn by the processor
+    this.legend = { kept: byId("kept"), removed: byId("removed"), boxes: byId("boxes") };
+    this.mask = document.createElement("canvas");
+    for (const name of Object.keys(settings.overlays)) this.#bindSwitch(name);
+  }
+
+  /** robot: or undefined. Draws with the next frame of the screen. */
+  update(robot) {
+    this.robot = robot;
+    if (this.requested) return;
+    this.requested = true;
+    requestAnimationFrame(() => {
+      this.requested = false;
+      this.#show();
+    });
+  }
+
+  #bindSwitch(name) {
+    const box = byId(`overlay-${name}`);
+    box.checked = this.settings.overlays[name];
+    box.addEventListener("change", () => {
+      this.settings.overlays[name] = box.checked;
+      this.settings.save();
+      this.#draw();
+    });
+  }
+
+  #show() {
+    const image = this.robot?.image;
+    byId("image-none").hidden = Boolean(image);
+    this.canvas.hidden = !image;
+    if (!image) {
+      this.decoded = null;
+      this.bitmap = null;
+      this.#describe();
+    } else if (image === this.decoded) {
+      this.#draw();
+    } else if (!this.decoding) {
+      this.#decode(image);
+    }
+  }
+
+  /** One at a time: while an image is decoded the next ones wait, and only the newest of them is shown. */
+  async #decode(image) {
+    this.decoding = true;
+    try {
+      const bitmap = await createImageBitmap(new Blob([image.jpeg], { type: "image/jpeg" }));
+      this.bitmap?.close();
+      this.bitmap = bitmap;
+      this.error = "";
+    } catch {
+      this.error = "this image could not be decoded";
+    }
+    this.decoding = false;
+    this.decoded = image;
+    if (this.robot?.image === image) this.#draw();
+    else this.update(this.robot);
+  }
+
+  #draw() {
+    const image = this.robot?.image;
+    if (!image || !this.bitmap) return;
+    if (this.canvas.width !== image.width || this.canvas.height !== image.height) {
+      this.canvas.width = image.width;
+      this.canvas.height = image.height;
+    }
+    this.scale = image.width / (this.canvas.clientWidth || image.width);   // image pixels per pixel of the screen
+    this.context.drawImage(this.bitmap, 0, 0, image.width, image.height);
+    const { overlays } = this.settings;
+    if (overlays.mask) this.#drawMask(this.robot.overlay("mask"));
+    if (overlays.features) this.#drawFeatures(this.robot.overlay("features"));
+    if (overlays.boxes) this.#drawBoxes(this.robot.overlay("boxes"));
+    this.#describe();
+  }
+
+  #drawMask(mask) {
+    if (!mask || mask.width * mask.height === 0) return;
+    if (mask !== this.drawnMask) this.#paintMask(mask);
+    this.context.imageSmoothingEnabled = false;
+    this.context.drawImage(this.mask, 0, 0, this.canvas.width, this.canvas.height);
+    this.context.imageSmoothingEnabled = true;
+  }
+
+  #paintMask(mask) {
+    this.drawnMask = mask;
+    this.mask.width = mask.width;
+    this.mask.height = mask.height;
+    const context = this.mask.getContext("2d", { willReadFrequently: true }), pixels = context.createImageData(mask.width, mask.height);
+    expandMask(mask).forEach((value, i) => {
+      if (value > 0) pixels.data.set(value === 255 ? kMoving : kUnknown, 4 * i);
+    });
+    context.putImageData(pixels, 0, 0);
+  }
+
+  #drawFeatures(features) {
+    if (!features) return;
+    const { context } = this, toX = this.canvas.width / features.width, toY = this.canvas.height / features.height;
+    const radius = kFeatureRadius_px * this.scale;
+    for (const flag of [0, 1]) {
+      context.fillStyle = flag ? kRemoved : kKept;
+      for (let i = 0; i < features.count; ++i) {
+        if (features.removed[i] !== flag) continue;
+        context.fillRect(features.us[i] * toX - radius, features.vs[i] * toY - radius, 2 * radius, 2 * radius);
+      }
+    }
+  }
+
+  #drawBoxes(overlay) {
+    if (!overlay) return;
+    const { context } = this, size = kFont_px * this.scale;
+    context.lineWidth = 1.5 * this.scale;
+    context.font = `600 ${size}px system-ui, sans-serif`;
+    context.textBaseline = "top";
+    for (const { label, score, x, y, w, h } of overlay.boxes) {
+      const text = `${label} ${Math.round(100 * score)} %`, top = Math.max(0, y - 1.4 * size);
+      context.strokeStyle = "#fbbf24";
+      context.strokeRect(x, y, w, h);
+      context.fillStyle = "rgba(20, 16, 4, 0.75)";
+      context.fillRect(x, top, context.measureText(text).width + 0.8 * size, 1.4 * size);
+      context.fillStyle = "#fde68a";
+      context.fillText(text, x + 0.4 * size, top + 0.2 * size);
+    }
+  }
+
+  #describe() {
+    const features = this.robot?.overlay("features"), boxes = this.robot?.overlay("boxes");
+    const removed = features ? features.removed.reduce((sum, flag) => sum + flag, 0) : NaN;
+    setText(this.legend.kept, count(features ? features.count - removed : NaN));
+    setText(this.legend.removed, count(removed));
+    setText(this.legend.boxes, count(boxes ? boxes.boxes.length : NaN));
+    setText(byId("image-error"), this.error ?? "");
+  }
+}

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What the map shows: kinds of things, colours of the points, robots and their maps.
+
+import { byId, el } from "./dom.js";
+import { count } from "./format.js";
+import { kLayers } from "./settings.js";
+
+const kColorings = ["height", "static probability", "one colour"];
+
+export class LayersPanel {
+  /** onChange: a setting of the scene is another one now. */
+  constructor(settings, onChange) {
+    this.settings = settings;
+    this.onChange = onChange;
+    byId("layers").append(...Object.entries(kLayers).map(([name, title]) => this.#kind(name, title)));
+    const select = byId("coloring");
+    select.append(...kColorings.map((name) => el("option", { value: name }, name)));
+    select.value = settings.coloring;
+    select.addEventListener("change", () => this.#color(select.value));
+    this.shown = "";
+  }
+
+  nextColoring() {
+    const at = kColorings.indexOf(this.settings.coloring);
+    this.#color(kColorings[(at + 1) % kColorings.length]);
+  }
+
+  /** The list of robots and maps, if there is more than one map in all. */
+  update(session) {
+    const rows = session.byName.flatMap((robot) => [...robot.maps.values()].map((map) => ({ robot, map })));
+    byId("maps-row").hidden = rows.length < 2;
+    const key = JSON.stringify(rows.map(({ robot, map }) => [robot.index, robot.name, map.id, map.posedCount]));
+    if (key === this.shown || rows.length < 2) return;
+    this.shown = key;
+    const hadFocus = document.activeElement?.dataset?.map;
+    byId("maps").replaceChildren(...rows.map(({ robot, map }) => this.#map(robot, map)));
+    if (hadFocus) byId("maps").querySelector(`[data-map="${hadFocus}"]`)?.focus();
+  }
+
+  #color(name) {
+    byId("coloring").value = this.settings.coloring = name;
+    this.#changed();
+  }
+
+  #kind(name, title) {
+    return this.#check(title, this.settings.layers[name], (checked) => { this.settings.layers[name] = checked; }, `layer-${name}`);
+  }
+
+  #map(robot, map) {
+    const key = robot.mapKey(map.id), { hiddenMaps } = this.settings;
+    const label = this.#check(`${robot.title}, map ${map.id} (${count(map.posedCount)} keyframes)`, !hiddenMaps.has(key),
+                              (checked) => (checked ? hiddenMaps.delete(key) : hiddenMaps.add(key)), `map-${key}`);
+    label.firstChild.dataset.map = key;
+    return label;
+  }
+
+  #check(title, checked, set, id) {
+    const box = el("input", { type: "checkbox", id });
+    box.checked = checked;
+    box.addEventListener("change", () => {
+      set(box.checked);
+      this.#changed();
+    });
+    return el("label", { class: "check" }, box, title);
+  }
+
+  #changed() {
+    this.settings.save();
+    this.onChange();
+  }
+}

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+
+// One robot in the scene: its maps side by side, its camera, the objects that move.
+
+import * as THREE from "/three/build/three.module.js";
+import { MapLayer } from "./map_layer.js";
+import { frustumLines } from "./map_lines.js";
+import { textSprite } from "./text_sprite.js";
+
+const kCameraDepth_m = 0.22;
+const kVelocitySeconds = 1;     // an arrow shows the way of so long
+const kGap_m = 2;
+const kNameSize = 2.5;          // of the text at a moving object
+
+export class RobotLayer {
+  constructor(robot, look) {
+    this.robot = robot;
+    this.look = look;
+    this.name = null;             // sprite
+    this.drawnName = "";
+    this.group = new THREE.Group();
+    this.layers = new Map();      // map id -> MapLayer
+    const { positions } = frustumLines([0], kCameraDepth_m);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
+    this.camera = new THREE.LineSegments(geometry, look.cameraMaterial);
+    this.camera.visible = false;
+    this.movers = new THREE.Group();
+    this.group.add(this.camera, this.movers);
+  }
+
+  /** True if the picture is another one now. */
+  update(now_ms) {
+    let changed = this.#syncMaps();
+    for (const layer of this.layers.values()) changed = layer.update(now_ms) || changed;
+    changed = this.#updateCamera() || changed;
+    return this.#updateMovers() || changed;
+  }
+
+  /**
+   * Maps of a robot have world frames of their own: side by side, the current one first, its frame at `at_m` or, with
+   * beside, its left edge there. Returns where the next robot may begin.
+   */
+  arrange(at_m, beside, hiddenMaps) {
+    const ids = this.#mapIds();
+    this.group.position.x = at_m - (beside ? this.layers.get(ids[0])?.bounds?.min[0] ?? 0 : 0);
+    let right_m = 0;
+    ids.forEach((id, i) => {
+      const { group, bounds } = this.layers.get(id);
+      group.visible = !hiddenMaps.has(this.robot.mapKey(id));
+      group.position.x = i === 0 || !bounds ? 0 : right_m + kGap_m - bounds.min[0];
+      if (bounds && (i === 0 || group.visible)) right_m = group.position.x + bounds.max[0];
+    });
+    return this.group.position.x + right_m;
+  }
+
+  /** The robot's name above its current map, if that is shown. */
+  showName(shown) {
+    const map = this.layers.get(this.#mapIds()[0]), there = shown && Boolean(map?.bounds && map.group.visible);
+    const color = this.look.cameraMaterial.color, scale = { value: kNameSize * this.look.textScale.value };
+    const key = there ? `${this.robot.title} ${color.getStyle()} ${scale.value}` : "";
+    if (key !== this.drawnName) {
+      this.group.remove(this.name);
+      this.name = there ? textSprite(this.robot.title, color, scale) : null;
+      if (there) this.group.add(this.name);
+      this.drawnName = key;
+    }
+    if (!there) return;
+    const { min, max } = map.bounds;
+    this.name.position.set((min[0] + max[0]) / 2, min[1] - this.name.scale.y, (min[2] + max[2]) / 2);
+  }
+
+  /** T_scene_camera of the newest pose, or null. */
+  cameraMatrix() {
+    if (!this.camera.visible) return null;
+    this.camera.updateWorldMatrix(true, false);
+    return this.camera.matrixWorld;
+  }
+
+  show(visible) {
+    this.visible = visible;
+    for (const layer of this.layers.values()) layer.show(visible);
+    this.movers.visible = visible.movers;
+  }
+
+  dispose() {
+    for (const layer of this.layers.values()) layer.dispose();
+    this.camera.geometry.dispose();
+  }
+
+  /** The current one first. */
+  #mapIds() {
+    const current = this.robot.tracking?.map ?? 0;
+    return [...this.layers.keys()].sort((a, b) => (b === current) - (a === current) || a - b);
+  }
+
+  #syncMaps() {
+    let changed = false;
+    for (const [id, layer] of this.layers) {
+      if (this.robot.maps.get(id) === layer.map) continue;
+      this.group.remove(layer.group);
+      layer.dispose();
+      this.layers.delete(id);
+      changed = true;
+    }
+    for (const [id, map] of this.robot.maps) {
+      if (this.layers.has(id)) continue;
+      const layer = new MapLayer(map, this.look);
+      if (this.visible) layer.show(this.visible);
+      this.layers.set(id, layer);
+      this.group.add(layer.group);
+      changed = true;
+    }
+    return changed;
+  }
+
+  #updateCamera() {
+    const { tracking } = this.robot;
+    if (tracking === this.drawnTracking) return false;
+    this.drawnTracking = tracking;
+    if (!tracking) return true;
+    this.camera.material = tracking.state === "ok" ? this.look.cameraMaterial : this.look.lostMaterial;
+    if (!tracking.pose) return true;   // it stays where it was last
+    const [x, y, z, qx, qy, qz, qw] = tracking.pose;
+    const map = this.layers.get(tracking.map);
+    this.camera.position.set(x, y, z).add(map?.group.position ?? new THREE.Vector3());
+    this.camera.quaternion.set(qx, qy, qz, qw);
+    this.camera.visible = true;
+    return true;
+  }
+
+  #updateMovers() {
+    if (this.robot.movers === this.drawnMovers) return false;
+    this.drawnMovers = this.robot.movers;
+    for (const object of this.movers.children) {
+      if (object.isLineSegments) object.geometry.dispose();   // the others share theirs
+    }
+    this.movers.remove(...this.movers.children);
+    for (const mover of this.robot.movers) this.movers.add(...this.#draw(mover));
+    return true;
+  }
+
+  #draw({ center, size, velocity, label }) {
+    const at = new THREE.Vector3(...center), way = new THREE.Vector3(...velocity).multiplyScalar(kVelocitySeconds);
+    const box = new THREE.LineSegments(new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(...size)), this.look.moverMaterial);
+    box.position.copy(at);
+    const speed = `${(way.length() / kVelocitySeconds).toFixed(1)} m/s`;
+    const sprite = textSprite(`${label || "moves"} ${speed}`, this.look.moverMaterial.color, this.look.textScale);
+    sprite.position.set(at.x, at.y - size[1] / 2 - 0.08, at.z);
+    const parts = [box, sprite];
+    if (way.length() > 0.02) {
+      parts.push(new THREE.ArrowHelper(way.clone().normalize(), at, way.length(), this.look.moverMaterial.color.getHex(),
+                                       Math.min(0.15, 0.4 * way.length()), 0.08));
+    }
+    return parts;
+  }
+}

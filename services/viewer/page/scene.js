@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The 3D view. It draws when something has changed: a message, the view, the size; otherwise it costs nothing.
+
+import * as THREE from "/three/build/three.module.js";
+import { CameraModes } from "./camera_modes.js";
+import { Detail } from "./detail.js";
+import { DrawPace, isLoopback } from "./draw_pace.js";
+import { FrameRate } from "./frame_rate.js";
+import { Look } from "./look.js";
+import { RobotLayer } from "./robot_layer.js";
+
+const kLargestPixelRatio = 2;
+const kLongestStep_s = 0.1;
+const kRobotGap_m = 3;
+const kPutOff_ms = 250;         // work that was put off is done after so long at the latest
+const kRest_ms = 400;
+const kSoftware = /swiftshader|llvmpipe|software/i;
+
+export class Scene {
+  /** Throws if the browser has no WebGL. settings: see settings.js; onPoseDrawn(tracking): a pose is on the screen. */
+  constructor(container, settings, onPoseDrawn) {
+    this.container = container;
+    this.settings = settings;
+    this.onPoseDrawn = onPoseDrawn;
+    this.rate = new FrameRate();
+    this.detail = new Detail();
+    this.pace = new DrawPace(isLoopback(location.hostname));
+    this.robots = new Map();
+    this.robotStates = new Map();
+    this.look = new Look();
+    this.software = drawsInSoftware();
+    this.renderer = createRenderer(this.software);
+    this.canvas = this.renderer.domElement;
+    this.#prepareCanvas();
+    this.three = new THREE.Scene();
+    this.root = new THREE.Group();
+    this.root.rotation.x = Math.PI;   // in the world y points down, on the screen up
+    this.three.add(this.root);
+    this.camera = new THREE.PerspectiveCamera(55, 1, 0.02, 3000);
+    this.modes = new CameraModes(this.camera, this.canvas, () => this.request());
+    this.bounds = new THREE.Box3();
+    new ResizeObserver(() => this.#resize()).observe(container);
+    this.applySettings();
+  }
+
+  applySettings() {
+    this.look.apply(this.settings, this.renderer.getPixelRatio());
+    this.renderer.setClearColor(this.look.background);
+    if (this.grid) this.#drawGrid();
+    this.forced = true;
+    for (const robot of this.robots.values()) robot.show(this.settings.layers);
+    this.request();
+  }
+
+  /** states: index -> RobotState; selected: the robot that the view follows. */
+  setRobots(states, selected) {
+    this.robotStates = states;
+    this.selected = selected;
+    this.request();
+  }
+
+  setMode(mode) {
+    this.modes.setMode(mode);
+    this.request();
+  }
+
+  fit() {
+    this.modes.fit(this.bounds);
+    this.request();
+  }
+
+  nudge(right, up, factor) {
+    this.modes.nudge(right, up, factor);
+    this.request();
+  }
+
+  /** Draws with the next frame of the screen if something is new. A processor that also draws gets pauses. */
+  request() {
+    if (this.requested) return;
+    this.requested = true;
+    const draw = () => requestAnimationFrame((now_ms) => this.#frame(now_ms));
+    const pause_ms = this.software && !this.#measuring() ? (this.drawn_ms ?? 0) + this.pace.period_ms - performance.now() : 0;
+    if (pause_ms > 0) setTimeout(draw, pause_ms);
+    else draw();
+  }
+
+  #measuring() {
+    return performance.now() < (this.continuousUntil_ms ?? 0);
+  }
+
+  get framesPerSecond() {
+    return this.rate.perSecond(performance.now());
+  }
+
+  /** Draws without a pause for so long; frames per second. */
+  measure(seconds) {
+    this.continuousUntil_ms = performance.now() + 1000 * seconds;
+    this.measured = 0;
+    this.request();
+    return new Promise((resolve) => setTimeout(() => resolve(this.measured / seconds), 1000 * seconds));
+  }
+
+  #prepareCanvas() {
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "application");
+    this.canvas.setAttribute("aria-label", "3D map. Arrow keys move the view, plus and minus zoom, F shows everything.");
+    this.canvas.addEventListener("webglcontextrestored", () => this.applySettings());
+    this.container.prepend(this.canvas);
+  }
+
+  #frame(now_ms) {
+    this.requested = false;
+    const dt_s = Math.min(kLongestStep_s, (now_ms - (this.drawn_ms ?? now_ms)) / 1000 || 1 / 60);
+    const continuous = this.#measuring();
+    let changed = this.#updateRobots(now_ms) || this.forced || continuous;
+    const followed = this.robots.get(this.selected);
+    const moving = this.modes.update(dt_s, followed?.cameraMatrix() ?? null, this.bounds);
+    changed = changed || moving || this.#viewMoved();
+    if (changed) this.#draw(now_ms, followed);
+    if (moving || continuous) this.request();
+    else this.#resumeLater();
+  }
+
+  #draw(now_ms, followed) {
+    this.detail.frame(now_ms - (this.drawn_ms ?? -Infinity));
+    this.look.share = this.resting ? 1 : this.detail.share;
+    this.forced = this.resting = false;
+    this.drawn_ms = now_ms;
+    this.renderer.render(this.three, this.camera);
+    this.rate.count(performance.now());
+    this.measured += 1;
+    const tracking = followed?.drawnTracking;
+    if (tracking && tracking !== this.reported) this.onPoseDrawn(tracking);
+    this.reported = tracking;
+  }
+
+  /** What was put off, and at rest the points that were left out. */
+  #resumeLater() {
+    const waiting = [...this.robots.values()].some((robot) => [...robot.layers.values()].some((layer) => layer.waiting));
+    clearTimeout(this.timer);
+    if (waiting) this.timer = setTimeout(() => this.request(), kPutOff_ms);
+    clearTimeout(this.restTimer);
+    if (this.look.share < 1) this.restTimer = setTimeout(() => this.#rest(), kRest_ms);
+  }
+
+  #rest() {
+    this.resting = this.forced = true;
+    this.request();
+  }
+
+  #viewMoved() {
+    const view = this.camera.position.toArray().concat(this.camera.quaternion.toArray()).join();
+    const moved = view !== this.view;
+    this.view = view;
+    return moved;
+  }
+
+  #updateRobots(now_ms) {
+    let changed = this.#syncRobots();
+    for (const robot of this.robots.values()) changed = robot.update(now_ms) || changed;
+    if (changed) this.#arrange();
+    return changed;
+  }
+
+  #syncRobots() {
+    let changed = false;
+    for (const [index, layer] of this.robots) {
+      if (this.robotStates.get(index) === layer.robot) continue;
+      this.root.remove(layer.group);
+      layer.dispose();
+      this.robots.delete(index);
+      changed = true;
+    }
+    for (const [index, state] of this.robotStates) {
+      if (this.robots.has(index)) continue;
+      const layer = new RobotLayer(state, this.look);
+      layer.show(this.settings.layers);
+      this.robots.set(index, layer);
+      this.root.add(layer.group);
+      changed = true;
+    }
+    return changed;
+  }
+
+  /** Robots share no frame: side by side, the selected one first. */
+  #arrange() {
+    const order = [...this.robots.values()].sort((a, b) => (b.robot.index === this.selected) - (a.robot.index === this.selected));
+    let at_m = 0;
+    this.bounds.makeEmpty();
+    for (const robot of order) {
+      at_m = robot.arrange(at_m, robot !== order[0], this.settings.hiddenMaps) + kRobotGap_m;
+      robot.showName(order.length > 1);
+      this.#include(robot);
+    }
+    this.#drawGrid();
+  }
+
+  #include(robot) {
+    for (const { bounds, group } of robot.layers.values()) {
+      if (!bounds || !group.visible) continue;
+      const x = robot.group.position.x + group.position.x;
+      this.bounds.expandByPoint(new THREE.Vector3(bounds.min[0] + x, -bounds.min[1], -bounds.min[2]));
+      this.bounds.expandByPoint(new THREE.Vector3(bounds.max[0] + x, -bounds.max[1], -bounds.max[2]));
+    }
+  }
+
+  #drawGrid() {
+    const floor = this.bounds.isEmpty() ? -1.2 : this.bounds.min.y;
+    const cell_m = this.bounds.isEmpty() || this.bounds.getSize(new THREE.Vector3()).length() < 40 ? 1 : 10;
+    const key = `${cell_m} ${this.look.grid.getHex()}`;
+    if (this.gridKey !== key) {
+      this.three.remove(this.grid);
+      this.grid?.geometry.dispose();
+      this.grid = new THREE.GridHelper(40 * cell_m, 40, this.look.grid, this.look.grid);
+      this.three.add(this.grid);
+      this.gridKey = key;
+    }
+    this.grid.position.y = Math.round(floor * 10) / 10;
+    this.grid.visible = this.settings.layers.grid;
+  }
+
+  #resize() {
+    const { clientWidth: width, clientHeight: height } = this.container;
+    if (width === 0 || height === 0) return;
+    this.renderer.setPixelRatio(Math.min(kLargestPixelRatio, window.devicePixelRatio));
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.applySettings();
+  }
+}
+
+/** WebGL 2 if there is one; without a graphics card no smoothing of edges, which would take most of the time. */
+function createRenderer(software) {
+  const canvas = document.createElement("canvas");
+  const attributes = { alpha: false, antialias: !software, powerPreference: "high-performance" };
+  const context = canvas.getContext("webgl2", attributes) ?? canvas.getContext("webgl", attributes);
+  if (!context) throw new Error("the browser offers no WebGL");
+  const renderer = new THREE.WebGLRenderer({ canvas, context });
+  if (!renderer.capabilities.isWebGL2 && !context.getExtension("OES_texture_float")) {
+    throw new Error("the graphics driver has no floating-point textures");
+  }
+  return renderer;
+}
+
+function drawsInSoftware() {
+  const context = document.createElement("canvas").getContext("webgl");
+  const info = context?.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? context.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+  context?.getExtension("WEBGL_lose_context")?.loseContext();
+  return kSoftware.test(name);
+}

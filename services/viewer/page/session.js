@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Everything the server has sent since the connection was opened. Pure data: messages in, state out; no DOM, no clock.
+
+import { MapState } from "./world.js";
+import { Series } from "./series.js";
+
+const kOverlaySlack_s = 0.1;      // an overlay belongs to an image if their stamps differ by less
+const kStageOrder = ["wait_detections", "extract", "masks", "ego_motion", "depth_check", "fuse", "match", "local_map", "pose",
+                     "relocalize", "keyframe", "mapping"];   // as they follow each other; others come last
+const kMapHandlers = {
+  keyframe_poses: "setPoses", keyframes_removed: "remove", points: "setPoints", covisibility: "setCovisibility",
+  loop_edges: "setLoops", trajectory: "setTrajectory", ground_truth: "setTruth", dense: "setDense",
+};
+
+export class RobotState {
+  constructor(index) {
+    this.index = index;
+    this.name = "";
+    this.maps = new Map();
+    this.tracking = null;
+    this.trackingAt_ms = -Infinity;  // browser's clock
+    this.services = [];
+    this.movers = [];
+    this.commands = [];
+    this.playback = null;
+    this.truthError = null;
+    this.image = null;
+    this.overlays = { boxes: null, features: null, mask: null };
+    this.history = { latency_ms: new Series(), inliers: new Series(), removedShare: new Series(), stage_ms: new Series() };
+  }
+
+  get title() {
+    return this.name === "" ? "robot" : this.name;
+  }
+
+  /** Names a map of this robot for what the user chooses. Not by the index: a viewer that was restarted may give others. */
+  mapKey(id) {
+    return `${this.name}:${id}`;
+  }
+
+  map(id) {
+    if (!this.maps.has(id)) this.maps.set(id, new MapState(id));
+    return this.maps.get(id);
+  }
+
+  /** The overlay that belongs to the image: of the same frame, or nearly. */
+  overlay(name) {
+    const overlay = this.overlays[name];
+    const near = overlay && this.image && Math.abs(overlay.stamp_s - this.image.stamp_s) < kOverlaySlack_s;
+    return near ? overlay : null;
+  }
+
+  count(name) {
+    return [...this.maps.values()].reduce((sum, map) => sum + map[name], 0);
+  }
+
+  forgetMaps() {
+    this.maps.clear();
+    this.movers = [];
+  }
+
+  setTracking(message, now_ms) {
+    this.tracking = message;
+    this.trackingAt_ms = now_ms;
+    const seen = (message.static ?? 0) + (message.removed ?? 0), at_s = now_ms / 1000;
+    this.history.latency_ms.push(at_s, message.latency_ms);
+    this.history.inliers.push(at_s, message.inliers);
+    this.history.removedShare.push(at_s, seen > 0 ? 100 * message.removed / seen : 0);
+    this.history.stage_ms.push(at_s, stages(message));
+  }
+}
+
+/** Titles of stages, as in the history, in the order in which the stages run. */
+export function inOrder(titles) {
+  const rank = (title) => (kStageOrder.indexOf(title.replace(/^\w+ /, "").replaceAll(" ", "_")) + 99) % 99;
+  return [...titles].sort((a, b) => rank(a) - rank(b));
+}
+
+/** Times of the filter's and slam's stages, without the totals. */
+function stages({ filter_stage_ms = {}, stage_ms = {} }) {
+  const parts = {};
+  for (const [prefix, times] of [["filter", filter_stage_ms], ["slam", stage_ms]]) {
+    for (const [name, ms] of Object.entries(times)) {
+      if (!/total$/.test(name)) parts[`${prefix} ${name.replaceAll("_", " ")}`] = ms;
+    }
+  }
+  return parts;
+}
+
+export class Session {
+  constructor() {
+    this.hello = null;
+    this.link = null;
+    this.robots = new Map();
+    this.announced = false;   // whether the list of robots has come
+    this.generation = 0;      // counts the robots and maps that came or went
+  }
+
+  robot(index) {
+    if (!this.robots.has(index)) {
+      this.robots.set(index, new RobotState(index));
+      this.generation += 1;
+    }
+    return this.robots.get(index);
+  }
+
+  /** All robots, by their names. */
+  get byName() {
+    return [...this.robots.values()].sort((a, b) => a.name.localeCompare(b.name) || a.index - b.index);
+  }
+
+  /** The robot of that name, else the first one; undefined without robots. */
+  robotNamed(name) {
+    return this.byName.find((robot) => robot.name === name) ?? this.byName[0];
+  }
+
+  /** A text message; answers and pongs are for others. Unknown types are left alone: a newer server may send them. */
+  applyText(message, now_ms) {
+    const robot = () => this.robot(message.robot ?? 0);
+    switch (message.type) {
+      case "hello": this.hello = message; break;
+      case "link": this.link = message; break;
+      case "robots": this.#setRobots(message.robots); break;
+      case "map_reset": robot().forgetMaps(); this.generation += 1; break;
+      case "tracking": robot().setTracking(message, now_ms); break;
+      case "status": robot().services = message.services; break;
+      case "boxes": robot().overlays.boxes = message; break;
+      case "movers": robot().movers = message.movers; break;
+      case "commands": robot().commands = message.commands; break;
+      case "playback": robot().playback = message; break;
+      case "truth_error": robot().truthError = message; break;
+    }
+  }
+
+  /** A message from decode(). */
+  applyBinary(message) {
+    const robot = this.robot(message.robot);
+    if (message.type === "image") {
+      robot.image = message;
+    } else if (message.type === "features" || message.type === "mask") {
+      robot.overlays[message.type] = message;
+    } else {
+      if (!robot.maps.has(message.map)) this.generation += 1;
+      robot.map(message.map)[kMapHandlers[message.type]](message);
+    }
+  }
+
+  #setRobots(robots) {
+    this.announced = true;
+    for (const { index, name } of robots) this.robot(index).name = name;
+    const there = new Set(robots.map((robot) => robot.index));
+    for (const index of [...this.robots.keys()]) {
+      if (!there.has(index)) this.robots.delete(index);
+    }
+    this.generation += 1;
+  }
+}

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+
+// One sentence about where things stand, and one about what to do: the page is never blank without saying why.
+
+const kStale_ms = 3000;
+const kSources = ["camera", "replay"];
+const kEnded = ["finished", "gone"];
+
+const kStates = {
+  ok: ["ok", "Tracking", ""],
+  initializing: ["wait", "Starting the map", "Move the camera slowly; show it something with texture."],
+  predicted: ["warn", "Predicted pose", "Nothing static is in view; the last motion continues for a moment."],
+  doubtful: ["warn", "Doubtful pose", "Much of the view contradicts it: a large object may be moving."],
+  "recently lost": ["warn", "Tracking just lost", "Point the camera at something it has seen before."],
+  lost: ["bad", "Tracking lost", "Point the camera at a place it has seen before; the map stays."],
+  relocalizing: ["warn", "Place recognised", "The pose returns when the next frames confirm it."],
+};
+
+const report = (level, title, detail = "") => ({ level, title, detail });
+
+/** connection: {state, address, retry_s}; hello: or null; robot: RobotState or undefined. level: ok, wait, warn, bad. */
+export function situation({ connection, hello, robot, now_ms }) {
+  return ofConnection(connection, hello) ?? ofServices(robot, hello) ?? ofTracking(robot, now_ms);
+}
+
+function ofConnection({ state, address, retry_s }, hello) {
+  if (state === "connecting") return report("wait", "Connecting", `to ${address}`);
+  if (state !== "open") {
+    const again = retry_s > 0 ? ` Next attempt in ${retry_s} s.` : "";
+    return report("bad", "Not connected",
+                  `Nothing answers at ${address}. Start "rtd viewer" or "rtd run --viewer" there.${again}`);
+  }
+  if (!hello) return report("wait", "Connected", "The server has not introduced itself yet.");
+  if (hello.protocol !== 1) {
+    return report("bad", "This page is of another version",
+                  `The server speaks protocol ${hello.protocol}, the page protocol 1. Reload the page.`);
+  }
+  return null;
+}
+
+function ofServices(robot, hello) {
+  if (!robot || (robot.services.length === 0 && !robot.tracking)) {
+    return report("wait", "Waiting for a robot",
+                  `No service on DDS domain ${hello.domain} (${hello.vendor}) yet. Start "rtd run --source ..." in this domain.`);
+  }
+  const failed = robot.services.find((service) => service.state === "failed");
+  if (failed) return report("bad", `${failed.name} failed`, failed.message || "Its log says why.");
+  if (robot.tracking) return null;
+  const running = (name) => robot.services.some((service) => service.name === name && !kEnded.includes(service.state));
+  if (!kSources.some(running)) return report("wait", "Waiting for a camera", "No camera and no replay is running.");
+  if (!running("slam")) return report("wait", "Waiting for slam", "Images arrive, but rtd-slam is not running.");
+  const busy = robot.services.filter((service) => service.state === "starting" || service.state === "ready");
+  const reasons = busy.map(({ name, message }) => (message ? `${name}: ${message}` : `${name} starts`));
+  return report("wait", "Waiting for the first pose", reasons.join("; "));
+}
+
+function ofTracking(robot, now_ms) {
+  const age_ms = now_ms - robot.trackingAt_ms;
+  if (age_ms > kStale_ms) return withoutPoses(robot, age_ms);
+  const [level, title, detail] = kStates[robot.tracking.state] ?? ["warn", `State: ${robot.tracking.state}`, ""];
+  return report(level, title, detail);
+}
+
+function withoutPoses(robot, age_ms) {
+  const { playback, services } = robot;
+  if (playback?.state === "paused") return report("wait", "Paused", `at ${playback.position_s.toFixed(1)} s of the recording`);
+  const sources = services.filter((service) => kSources.includes(service.name));
+  if (playback?.state === "ended" || (sources.length > 0 && sources.every(({ state }) => kEnded.includes(state)))) {
+    return report("wait", "The source has ended", "The map stays until slam is restarted or the page is closed.");
+  }
+  const slam = services.find((service) => service.name === "slam");
+  if (!slam || kEnded.includes(slam.state)) return report("bad", "slam is gone", "Its last map is shown.");
+  return report("warn", "No pose", `for ${Math.round(age_ms / 1000)} s. ${slam.message}`.trim());
+}

@@ -1,0 +1,298 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/viewer/viewer_service.hpp"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <iostream>
+#include <set>
+#include <utility>
+
+#include "common/service/config.hpp"
+#include "common/service/host_name.hpp"
+#include "common/service/log.hpp"
+#include "common/service/monotonic_clock.hpp"
+#include "services/viewer/core/page_messages.hpp"
+#include "services/viewer/wall_clock.hpp"
+
+namespace rtd::viewer {
+namespace {
+
+using service::ConfigError;
+
+constexpr std::chrono::milliseconds kTick{8}, kIdleTick{40};  // with and without clients
+constexpr std::int64_t kRefreshPeriodNs = 500'000'000;
+
+std::string hexadecimal(std::span<const unsigned char> bytes) {
+  std::string text;
+  for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+std::string random_text() {
+  std::array<unsigned char, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    throw ConfigError("no random numbers for a token: give one with --token");
+  return hexadecimal(bytes);
+}
+
+/// On other interfaces than loopback every client must know it.
+std::string token_of(const ServiceConfig& config) {
+  return config.token.empty() && !is_loopback(config.bind_address) ? random_text() : config.token;
+}
+
+WebOptions web_options(const ServiceConfig& config, const std::string& token) {
+  WebOptions options;
+  options.address = config.bind_address;
+  options.port = static_cast<std::uint16_t>(config.port);
+  options.access = {.hosts = config.hosts, .origins = config.origins, .token = token};
+  if (is_loopback(config.bind_address) && options.access.hosts.empty()) options.access.hosts = {"localhost"};
+  if (config.publish) options.longest_message_bytes = 16U << 20U;
+  return options;
+}
+
+PageLimits page_limits(const ServiceConfig& config) {
+  PageLimits limits;
+  limits.bytes_per_s = 1e3 * config.max_kbps;
+  limits.view_bytes_per_s = 0.7 * limits.bytes_per_s;
+  limits.burst_bytes = 2 * limits.bytes_per_s;
+  limits.views_per_s = config.image_hz;
+  return limits;
+}
+
+bus::BusOptions raw_options(const service::Runtime& runtime) {
+  bus::BusOptions options = runtime.bus_options;
+  options.participant_name = "rtd-viewer-topics";
+  return options;
+}
+
+}  // namespace
+
+void ViewerService::add_options(CLI::App& app, Config& config) {
+  app.add_option("--port", config.port, "Port; 0: any free one")->check(CLI::Range(0, 65535))->capture_default_str();
+  app.add_option("--bind", config.bind_address, "Address to listen on; 0.0.0.0: all interfaces, with a token")
+      ->capture_default_str();
+  app.add_option("--token", config.token,
+                 "Asked of every client; without it one is made up unless the viewer listens on loopback only");
+  app.add_option("--host", config.hosts, "Further names by which browsers may address this host")->delimiter(',');
+  app.add_option("--origin", config.origins, "Sites whose pages may connect, e.g. a Foxglove of your own")
+      ->delimiter(',');
+  app.add_option("--topics", config.topics, "Topics or patterns that Foxglove clients are offered, e.g. '/slam/*'")
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_flag("--read-only", config.read_only, "No buttons: clients cannot call commands");
+  app.add_flag("--publish", config.publish, "Foxglove clients may publish messages");
+  app.footer("Open the printed address in a browser, or ws://HOST:PORT in Foxglove (docs/viewer.md).");
+}
+
+ViewerService::ViewerService(const Config& config, service::Runtime& runtime)
+    : config_(config),
+      runtime_(runtime),
+      token_(token_of(config)),
+      site_(RTD_THREE_DIR),
+      foxglove_("RTD-SLAM " RTD_VERSION, random_text(),
+                {{"vendor", runtime.bus.vendor()}, {"domain", std::to_string(runtime.bus_options.domain)}},
+                foxglove_hooks()),
+      page_({.version = RTD_VERSION,
+             .vendor = runtime.bus.vendor(),
+             .domain = runtime.bus_options.domain,
+             .control = !config.read_only},
+            page_limits(config),
+            {.on_call =
+                 [this](const std::string& robot, const std::string& name, const std::string& argument, auto answer) {
+                   call(robot.empty() ? name : '/' + robot + name, argument, std::move(answer));
+                 },
+             .now_ms = wall_clock_ms}) {
+  try {
+    server_.emplace(
+        web_options(config_, token_), site_, [this](const std::string& subprotocol) { return open(subprotocol); },
+        reports());
+  } catch (const WebError& error) {
+    throw ConfigError(error.what());
+  }
+  if (!site_.has_three())
+    SPDLOG_WARN("event=no_three cause=\"{} has no three.js\" fix=\"apt-get install libjs-three\"", RTD_THREE_DIR);
+  mailbox_.emplace([this](Mailbox::Task task) { server_->post(std::move(task)); });
+  raw_ = bus::connect_raw(raw_options(runtime_));
+  topics_.emplace(*raw_, foxglove_, *mailbox_, config_.topics, [this] { robots_changed_ = true; });
+  if (!config_.read_only) commands_.emplace(runtime_.bus_options, *mailbox_);
+}
+
+/// What the bus's threads have posted runs before the server ends, so the feeds are there until then.
+ViewerService::~ViewerService() {
+  commands_.reset();
+  robots_.clear();
+  topics_->stop();
+  server_.reset();
+}
+
+FoxgloveHooks ViewerService::foxglove_hooks() {
+  FoxgloveHooks hooks;
+  hooks.on_wanted = [this](std::uint32_t channel, bool wanted) { topics_->want(channel, wanted); };
+  if (!config_.read_only) {
+    hooks.on_call = [this](const CommandInfo& command, const std::string& argument, auto answer) {
+      call(command.name, argument, std::move(answer));
+    };
+    hooks.on_set = [this](const foxglove::Parameter& parameter) { return set_parameter(parameter); };
+    hooks.on_playback = [this](const foxglove::PlaybackControl& control) { control_playback(control); };
+  }
+  if (config_.publish)
+    hooks.on_publish = [this](const std::string& topic, const std::string& schema, std::span<const std::byte> cdr) {
+      return topics_->publish(topic, schema, cdr);
+    };
+  return hooks;
+}
+
+std::unique_ptr<Session> ViewerService::open(const std::string& subprotocol) {
+  return subprotocol == page::kSubprotocol ? page_.open() : foxglove_.open();
+}
+
+Reports ViewerService::reports() const {
+  return {{"/metrics",
+           [this] {
+             return Report{metrics_text(watched_services()), "text/plain; version=0.0.4; charset=utf-8"};
+           }},
+          {"/healthz", [this] {
+             Health health = health_of(watched_services());
+             return Report{std::move(health.json), "application/json", health.well};
+           }}};
+}
+
+std::vector<WatchedService> ViewerService::watched_services() const {
+  std::vector<WatchedService> all;
+  for (const auto& [name, feed] : robots_)
+    for (page::ServiceLine& line : feed->mirror().services(service::monotonic_ns()))
+      all.push_back({name, std::move(line)});
+  return all;
+}
+
+/// The robot that was asked for, or every one that has topics.
+void ViewerService::find_robots() {
+  if (!std::exchange(robots_changed_, false)) return;
+  const std::string own = runtime_.bus.robot();
+  const std::set<std::string> names = own.empty() ? shown_robots(topics_->topics()) : std::set{own};
+  for (const std::string& name : names) {
+    if (robots_.contains(name)) continue;
+    RobotMirror* mirror = page_.robot(name);
+    if (mirror == nullptr) continue;
+    robots_.emplace(name, std::make_unique<RobotFeed>(runtime_.bus.of_robot(name), *mirror, *mailbox_));
+  }
+}
+
+void ViewerService::apply_wishes() {
+  for (auto& [name, feed] : robots_) feed->set_wishes(page_.wishes(feed->mirror().index()));
+}
+
+void ViewerService::refresh(std::int64_t now) {
+  if (now - refreshed_ns_ < kRefreshPeriodNs) return;
+  refreshed_ns_ = now;
+  if (page_.clients() > 0)
+    for (auto& [name, feed] : robots_) feed->mirror().refresh(now);
+  refresh_commands();
+  refresh_playback();
+  if (foxglove_.clients() > 0) topics_->update_graph();
+  foxglove_.send_time(static_cast<std::uint64_t>(service::realtime_ns()));
+  report();
+}
+
+void ViewerService::call(const std::string& name, const std::string& argument, CommandCaller::Answer answer) {
+  if (!commands_) return answer({false, "this viewer was started with --read-only"});
+  commands_->call(name, argument, std::move(answer));
+}
+
+/// The new value comes with a heartbeat once the service has it.
+std::string ViewerService::set_parameter(const foxglove::Parameter& parameter) {
+  const auto setting = call_for(parameter);
+  if (!setting) return fmt::format("parameter '{}' does not exist or does not take this kind of value", parameter.name);
+  call(setting->command, setting->argument, [](const CommandResult&) {});
+  return "";
+}
+
+void ViewerService::control_playback(const foxglove::PlaybackControl& control) {
+  const auto ignore = [](const CommandResult&) {};
+  const std::string robot = runtime_.bus.robot().empty() ? "" : '/' + runtime_.bus.robot();
+  if (control.seek_ns)
+    call(robot + "/replay/seek", fmt::format("{:.6f}", 1e-9 * static_cast<double>(*control.seek_ns)), ignore);
+  call(robot + "/replay/speed", fmt::format("{}", control.speed), ignore);
+  call(robot + "/replay/pause", control.pause ? "true" : "false", ignore);
+}
+
+void ViewerService::refresh_commands() {
+  if (!commands_) return;
+  const std::vector<bus::FoundCommand> found = commands_->commands();
+  std::vector<CommandInfo> all;
+  std::map<std::string, std::vector<CommandInfo>> by_robot;
+  for (const bus::FoundCommand& command : found) {
+    if (command.vendor.empty()) continue;  // not callable
+    all.push_back(info_of(command));
+    by_robot[command.robot].push_back({'/' + command.name, all.back().kind});
+  }
+  foxglove_.set_commands(all);
+  for (auto& [name, feed] : robots_) feed->mirror().set_commands(by_robot[name]);
+}
+
+void ViewerService::refresh_playback() {
+  std::vector<foxglove::Parameter> parameters;
+  for (auto& [name, feed] : robots_) {
+    const std::vector<msg::ServiceStatus> services = feed->mirror().services();
+    const auto settings = settings_of(name, services);
+    parameters.insert(parameters.end(), settings.begin(), settings.end());
+    const auto playback = playback_of(services);
+    if (!playback) continue;
+    feed->mirror().set(Item::kPlayback, page::playback(feed->mirror().index(), *playback));
+    if (name != runtime_.bus.robot()) continue;
+    const auto ns = [](double seconds) { return static_cast<std::uint64_t>(1e9 * std::max(0.0, seconds)); };
+    using Status = foxglove::PlaybackStatus;
+    foxglove_.set_played(0, ns(playback->length_s));
+    foxglove_.set_playback({.status = playback->ended    ? Status::kEnded
+                                      : playback->paused ? Status::kPaused
+                                                         : Status::kPlaying,
+                            .now_ns = ns(playback->position_s),
+                            .speed = static_cast<float>(playback->speed)});
+  }
+  foxglove_.set_parameters(std::move(parameters));
+}
+
+void ViewerService::report() {
+  const WebCounts counts = server_->counts();
+  const auto clients = static_cast<double>(counts.clients);
+  runtime_.heartbeat.set_state(counts.clients > 0 ? msg::ServiceState::kRunning : msg::ServiceState::kReady,
+                               fmt::format("port {}, {} clients", server_->port(), counts.clients));
+  runtime_.heartbeat.set_metric("clients", clients);
+  runtime_.heartbeat.set_metric("sent_mb", 1e-6 * static_cast<double>(counts.sent_bytes));
+  runtime_.heartbeat.set_metric("requests", static_cast<double>(counts.requests));
+  runtime_.heartbeat.set_metric("requests_refused", static_cast<double>(counts.refused));
+  runtime_.heartbeat.set_metric("clients_too_slow", static_cast<double>(counts.closed_slow));
+  runtime_.heartbeat.set_metric("messages_dropped", static_cast<double>(mailbox_->dropped() + foxglove_.dropped()));
+}
+
+void ViewerService::print_address() const {
+  const bool any = config_.bind_address == "0.0.0.0" || config_.bind_address == "::";
+  const std::string host = any ? service::host_name() : config_.bind_address;
+  const std::string place =
+      fmt::format("{}:{}", host.find(':') == std::string::npos ? host : '[' + host + ']', server_->port());
+  const std::string token = token_.empty() ? "" : "?token=" + token_;
+  std::cout << fmt::format("viewer: http://{}/{}   Foxglove: ws://{}/{}\n", place, token, place, token) << std::flush;
+  SPDLOG_INFO("event=listening address={} port={} token={} commands={}", config_.bind_address, server_->port(),
+              token_.empty() ? "none" : "asked", config_.read_only ? "off" : "on");
+}
+
+service::ExitCode ViewerService::run() {
+  print_address();
+  while (!runtime_.stop.stop_requested()) {
+    server_->run_for(server_->counts().clients > 0 ? kTick : kIdleTick);
+    runtime_.heartbeat.tick();
+    find_robots();
+    apply_wishes();
+    refresh(service::monotonic_ns());
+    server_->pump();
+  }
+  return service::kOk;
+}
+
+}  // namespace rtd::viewer

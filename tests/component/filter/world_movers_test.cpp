@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+/// Where the filter says that objects are and how fast, against the objects of rendered scenes.
+#include "services/filter/core/tracks/world_movers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "services/camera/core/source_factory.hpp"
+#include "services/camera/core/synthetic/synthetic_source.hpp"
+#include "services/filter/core/dynamic_filter.hpp"
+
+namespace rtd::filter {
+namespace {
+
+namespace synthetic = camera::synthetic;
+
+/// The objects of a scene in the frame of its first camera.
+class Truth {
+ public:
+  explicit Truth(const std::string& uri)
+      : options_(camera::parse_synthetic_options(camera::parse_source_uri(uri))),
+        scene_(options_.scene, options_.seed),
+        T_first_world_(scene_.T_world_camera(0).inverse()) {}
+
+  Eigen::AlignedBox3d extent(int object, double t_s) const {
+    const synthetic::Geometry geometry = scene_.geometry_at(t_s);
+    Eigen::AlignedBox3d extent;
+    const auto add = [&](const Eigen::Vector3f& p) { extent.extend(T_first_world_ * p.cast<double>()); };
+    for (const synthetic::Face& face : geometry.faces) {
+      if (face.object != object) continue;
+      for (const int corner : {0, 1, 2, 3}) {
+        add(face.origin + face.axis_s * (face.width_m * static_cast<float>(corner & 1)) +
+            face.axis_t * (face.height_m * static_cast<float>(corner >> 1)));
+      }
+    }
+    for (const synthetic::Ellipsoid& body : geometry.ellipsoids) {
+      if (body.object != object) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const float side : {-1.0F, 1.0F})
+          add(body.T_world_body * (side * body.semi_axes_m[axis] * Eigen::Vector3f::Unit(axis)));
+      }
+    }
+    return extent;
+  }
+  /// Of its largest part: what a person does, not what the limbs do.
+  Eigen::Vector3d velocity(int object, double t_s) const {
+    constexpr double kStepS = 0.1;
+    return (middle(object, t_s + kStepS) - middle(object, t_s - kStepS)) / (2 * kStepS);
+  }
+  /// Without what is vertical: the feet of people are mostly not in the image.
+  Eigen::Vector2d horizontal(const Eigen::Vector3d& v_first) const {
+    return (T_first_world_.linear().transpose() * v_first).head<2>();
+  }
+  Eigen::Isometry3d T_first_camera(const Eigen::Isometry3d& T_world_camera) const {
+    return T_first_world_ * T_world_camera;
+  }
+  double fps() const { return options_.fps; }
+
+ private:
+  Eigen::Vector3d middle(int object, double t_s) const {
+    const synthetic::Geometry geometry = scene_.geometry_at(t_s);
+    const synthetic::Ellipsoid* largest = nullptr;
+    for (const synthetic::Ellipsoid& body : geometry.ellipsoids) {
+      if (body.object != object) continue;
+      if (largest == nullptr || body.semi_axes_m.prod() > largest->semi_axes_m.prod()) largest = &body;
+    }
+    if (largest == nullptr) return extent(object, t_s).center();
+    return T_first_world_ * largest->T_world_body.translation().cast<double>();
+  }
+
+  camera::SyntheticOptions options_;
+  synthetic::Scene scene_;
+  Eigen::Isometry3d T_first_world_;
+};
+
+struct Accuracy {
+  std::size_t seen = 0, found = 0;  ///< objects of frames that are wholly in view
+  double position_rmse_m = 0, velocity_rmse_m_s = 0;
+  std::map<int, std::map<std::uint32_t, int>> ids;  ///< mover ids of each object
+};
+
+/// Nobody else in front of it, and not cut off by the border of the image but at its feet.
+bool is_in_view(const camera::SourceFrame& frame, const camera::SourceObject& object) {
+  constexpr int kMarginPx = 12;
+  const cv::Size size = frame.image.color_bgr.size();
+  const cv::Rect inside(kMarginPx, kMarginPx, size.width - 2 * kMarginPx, size.height - kMarginPx);
+  if ((object.box_px & inside) != object.box_px || object.visible_px < 4000) return false;
+  for (const camera::SourceObject& other : frame.objects) {
+    if (other.id != object.id && other.class_name != "chair" && (other.box_px & object.box_px).area() > 0) return false;
+  }
+  return true;
+}
+
+/// Two thirds of a second after it has come into view alone: a velocity needs some frames.
+constexpr int kSettled = 20;
+
+Accuracy measure(const std::string& uri) {
+  const auto source = camera::make_source(uri);
+  const Truth truth(uri);
+  FilterConfig config;
+  config.mode = FilterMode::kRtd;
+  DynamicFilter filter(config, [] { return std::int64_t{0}; });
+  WorldMovers world;
+  Accuracy accuracy;
+  std::map<int, int> in_view_for;  // frames in a row
+  double position_sum = 0, velocity_sum = 0;
+  while (const auto frame = source->next()) {
+    std::vector<vision::Detection> boxes;
+    for (const camera::SourceObject& object : frame->objects) {
+      if (object.class_name == "box" || object.visible_px < 900) continue;
+      const cv::Rect2f box = object.box_px;
+      boxes.push_back({object.class_name, 0.9F, box.x, box.y, box.width, box.height});
+    }
+    const FilterResult result = filter.apply(frame->image, boxes);
+    const Eigen::Isometry3d T_map_camera = truth.T_first_camera(*frame->T_world_camera);
+    const auto movers = world.place(frame->image.stamp_ns, T_map_camera, filter.sight_objects(result));
+    filter.on_pose({frame->image.seq, 0, T_map_camera});
+    const double t_s = static_cast<double>(frame->image.seq) / truth.fps();
+    for (const camera::SourceObject& object : frame->objects) {
+      const bool in_view = is_in_view(*frame, object) && object.class_name != "chair";
+      int& frames_in_view = in_view_for[object.id];
+      frames_in_view = in_view ? frames_in_view + 1 : 0;
+      if (frames_in_view < kSettled) continue;
+      const Eigen::AlignedBox3d extent = truth.extent(object.id, t_s);
+      const auto error_m = [&](const WorldMover& mover) {
+        return truth.horizontal(mover.extent_world.center() - extent.center()).norm();
+      };
+      ++accuracy.seen;
+      const auto nearest = std::ranges::min_element(movers, {}, error_m);
+      if (nearest == movers.end() || error_m(*nearest) > 0.5) continue;
+      ++accuracy.found;
+      ++accuracy.ids[object.id][nearest->id];
+      position_sum += std::pow(error_m(*nearest), 2);
+      velocity_sum += truth.horizontal(nearest->velocity_world_m_s - truth.velocity(object.id, t_s)).squaredNorm();
+    }
+  }
+  accuracy.position_rmse_m = std::sqrt(position_sum / static_cast<double>(accuracy.found));
+  accuracy.velocity_rmse_m_s = std::sqrt(velocity_sum / static_cast<double>(accuracy.found));
+  std::printf("%s: %zu of %zu found, position %.3f m, velocity %.3f m/s", uri.c_str(), accuracy.found, accuracy.seen,
+              accuracy.position_rmse_m, accuracy.velocity_rmse_m_s);
+  for (const auto& [object, ids] : accuracy.ids) std::printf(", object %d: %zu ids", object, ids.size());
+  std::printf("\n");
+  return accuracy;
+}
+
+class WorldMoversIn : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(WorldMoversIn, scenes_are_where_and_as_fast_as_they_are) {
+  const Accuracy accuracy = measure(GetParam());
+  EXPECT_GE(accuracy.found, accuracy.seen * 9 / 10);
+  EXPECT_GT(accuracy.found, 0U);
+  EXPECT_LE(accuracy.position_rmse_m, 0.15);
+  EXPECT_LE(accuracy.velocity_rmse_m_s, 0.25);
+  for (const auto& [object, ids] : accuracy.ids) EXPECT_EQ(ids.size(), 1U) << "object " << object;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, WorldMoversIn,
+                         ::testing::Values("synthetic:office?frames=300&seed=5", "synthetic:flicker?frames=200&seed=3",
+                                           "synthetic:sitting?frames=420", "synthetic:box?frames=240",
+                                           "synthetic:approach?frames=200"));
+
+}  // namespace
+}  // namespace rtd::filter

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The page in Chromium with the real services: a rendered camera, filter, slam and viewer.
+
+import assert from "node:assert/strict";
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, afterEach, before, test } from "node:test";
+import { launchBrowser, openPage, screenshot, textOf, waitFor } from "../viewer_page/browser.mjs";
+import { Service, startViewer, stopAll } from "./rtd_process.mjs";
+
+const kFrames = 120, kRecordedFrames = 300;
+const kLockstep = ["--pace", "lockstep"];  // the mapper is done with a frame when its result is there
+let browser, page, services = [], folder;
+
+before(async () => {
+  browser = await launchBrowser();
+  folder = mkdtempSync(join(tmpdir(), "rtd_live_"));
+});
+after(async () => {
+  await browser.close();
+  rmSync(folder, { recursive: true });
+});
+afterEach(async () => {
+  const complaints = page?.complaints ?? [];
+  await page?.close();
+  await stopAll(services);
+  services = [];
+  page = undefined;
+  const serious = complaints.filter((line) => !/ERR_CONNECTION|WebSocket connection/.test(line));
+  assert.deepEqual(serious, [], "errors and warnings of the page");
+});
+
+function start(...args) {
+  services.push(new Service(...args));
+  return services.at(-1);
+}
+
+async function startRun() {
+  services.push(await startViewer());
+  const viewer = services.at(-1);
+  page = await openPage(browser, viewer.address);
+  start("slam", "--out", join(folder, "out"), ...kLockstep);
+  start("filter", "--set", "filter.detector=off", ...kLockstep);
+  return viewer;
+}
+
+const startCamera = () =>
+  start("camera", "--source", `synthetic:office?frames=${kFrames}`, "--wait-for", "filter,slam,viewer", ...kLockstep);
+
+/** All frames are tracked, and the page has every landmark that slam says it has. */
+const waitForWholeMap = () => waitFor(page, (last) => {
+  const tracking = rtdViewer.state().robots[0]?.tracking;
+  return tracking?.seq === last && rtdViewer.counts.pointsTotal === tracking.landmarks && tracking.landmarks > 500;
+}, kFrames - 1).catch(async (error) => {
+  const seen = await page.evaluate(() => JSON.stringify([rtdViewer.counts, rtdViewer.state().robots[0]?.tracking]));
+  throw new Error(`${error.message}: ${seen}`);
+});
+
+const command = (name) => `[data-command="${name}"]`;
+async function press(name, selector, value) {
+  await waitFor(page, (button) => document.querySelector(button)?.disabled === false, `${command(name)} ${selector}`);
+  if (value !== undefined) await page.type(`${command(name)} input`, value);
+  await page.click(`${command(name)} ${selector}`);
+}
+async function answerOf(name) {
+  await waitFor(page, (output) => /good|bad/.test(document.querySelector(output)?.className), `${command(name)} output`);
+  return textOf(page, `${command(name)} output`);
+}
+
+test("the page waits, shows the map as it grows, and has as many points as slam", async () => {
+  await startRun();
+  await waitFor(page, () => !document.getElementById("notice").hidden);
+  startCamera();
+  await waitFor(page, () => rtdViewer.counts.keyframes > 2 && rtdViewer.counts.points > 100);
+  await waitFor(page, () => !document.getElementById("image").hidden);
+  assert.ok(await page.evaluate(() => rtdViewer.poseAgeP50) > 0);
+  await waitForWholeMap();
+  await screenshot(page, "live_map");
+});
+
+test("a viewer that was killed and started again gives the page the whole map again", async () => {
+  const viewer = await startRun();
+  startCamera();
+  await waitForWholeMap();
+  await viewer.stop("SIGKILL");
+  await waitFor(page, () => rtdViewer.state().connection !== "open");
+  services.push(await startViewer("--port", viewer.port));
+  await waitFor(page, () => rtdViewer.reconnects > 0 && rtdViewer.counts.keyframes > 2);
+  await waitFor(page, () => rtdViewer.counts.pointsTotal > 500);
+});
+
+test("buttons act: save the map, change the filter's mode, reset the map", async () => {
+  await startRun();
+  startCamera();
+  await waitForWholeMap();
+  const file = join(folder, "button.rtdmap");
+  await press("/slam/save_map", "button", file);
+  assert.match(await answerOf("/slam/save_map"), /saved/);
+  assert.ok(existsSync(file));
+  await press("/filter/set_mode", "button:nth-child(1)");
+  assert.match(await answerOf("/filter/set_mode"), /off/);
+  await press("/slam/reset", "button");
+  await page.click("#confirm [value=yes]");
+  await answerOf("/slam/reset");
+  await waitFor(page, () => rtdViewer.counts.keyframes === 0 && rtdViewer.counts.points === 0);
+});
+
+test("a replay can be paused, stepped and sought from the page", async () => {
+  const recording = join(folder, "run.mcap");
+  const recorder = start("record", "--topics", "rtd/features", "--topics", "rtd/tracking", "-o", recording);
+  await recorder.waitFor(/event=/);
+  start("slam", "--out", join(folder, "recorded"));
+  start("filter", "--set", "filter.detector=off");
+  await start("camera", "--source", `synthetic:office?frames=${kRecordedFrames}`, "--wait-for", "filter,slam").ended;
+  await stopAll(services);
+
+  services = [await startViewer()];
+  page = await openPage(browser, services[0].address);
+  start("replay", recording, "--topics", "rtd/features");
+  await waitFor(page, () => !document.getElementById("replay").hidden && !document.getElementById("pause").disabled);
+  await page.click("#pause");
+  await waitFor(page, () => rtdViewer.state().robots[0].playback?.state === "paused");
+  await page.$eval("#seek", (slider) => {
+    slider.value = "1";
+    slider.dispatchEvent(new Event("input"));
+    slider.dispatchEvent(new Event("change"));
+  });
+  await waitFor(page, () => Math.abs(rtdViewer.state().robots[0].playback.position_s - 1) < 0.15);
+  const before = await page.evaluate(() => rtdViewer.state().robots[0].playback.position_s);
+  await page.click("#step");
+  await waitFor(page, (at) => rtdViewer.state().robots[0].playback.position_s > at, before);
+  await page.click("#pause");
+  await waitFor(page, () => rtdViewer.state().robots[0].playback.state === "playing");
+});

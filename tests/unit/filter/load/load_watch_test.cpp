@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/load/load_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+namespace rtd::filter {
+namespace {
+
+constexpr int kSteps = 4;
+constexpr double kEasy = 20, kLate = 100;  // ms
+
+/// Poses at 30 Hz.
+class LoadWatchTest : public ::testing::Test {
+ protected:
+  /// True when the step has changed at least once.
+  bool add(int frames, double latency_ms) {
+    bool changed = false;
+    for (int i = 0; i < frames; ++i) {
+      now_ns_ += 33'333'333;
+      changed = watch_.add(seq_++, latency_ms, now_ns_) || changed;
+    }
+    return changed;
+  }
+  void lose(int frames) {
+    seq_ += static_cast<std::uint64_t>(frames);
+    now_ns_ += frames * 33'333'333L;
+  }
+  /// Seconds until the step is taken back, at most 100.
+  double seconds_until_less() {
+    const int before = watch_.step();
+    const std::int64_t since_ns = now_ns_;
+    for (int i = 0; i < 3000 && watch_.step() >= before; ++i) add(1, kEasy);
+    return static_cast<double>(now_ns_ - since_ns) * 1e-9;
+  }
+
+  LoadWatch watch_{LoadLimits{}, kSteps};
+  std::uint64_t seq_ = 100;
+  std::int64_t now_ns_ = 5'000'000'000;
+};
+
+TEST_F(LoadWatchTest, leaves_a_quick_pipeline_alone) {
+  EXPECT_FALSE(add(1000, kEasy));
+  EXPECT_EQ(watch_.step(), 0);
+}
+
+TEST_F(LoadWatchTest, one_late_pose_in_a_window_is_not_too_many) {
+  for (int i = 0; i < 20; ++i) {
+    add(1, kLate);
+    add(12, kEasy);
+  }
+  EXPECT_EQ(watch_.step(), 0);
+}
+
+TEST_F(LoadWatchTest, sheds_a_step_for_late_poses_and_no_more_than_there_are) {
+  add(2, kEasy);
+  EXPECT_TRUE(add(2, kLate));
+  EXPECT_EQ(watch_.step(), 1);
+  EXPECT_EQ(watch_.burdened(), 2);
+  EXPECT_FALSE(add(5, kLate)) << "they were on their way";
+  add(100, kLate);
+  EXPECT_EQ(watch_.step(), kSteps);
+  EXPECT_FALSE(add(100, kLate));
+}
+
+TEST_F(LoadWatchTest, counts_missing_frames_as_burdened) {
+  add(20, kEasy);
+  lose(2);
+  EXPECT_TRUE(add(1, kEasy));
+  EXPECT_EQ(watch_.step(), 1);
+}
+
+TEST_F(LoadWatchTest, a_pause_of_the_camera_and_numbers_that_begin_again_are_no_burden) {
+  add(20, kEasy);
+  lose(300);
+  EXPECT_FALSE(add(20, kEasy));
+  seq_ = 0;
+  EXPECT_FALSE(add(20, kEasy));
+  EXPECT_EQ(watch_.step(), 0);
+}
+
+TEST_F(LoadWatchTest, takes_back_after_a_calm_time_and_waits_longer_where_that_was_too_early) {
+  add(2, kEasy);
+  add(2, kLate);
+  ASSERT_EQ(watch_.step(), 1);
+  double calm_s = seconds_until_less();
+  EXPECT_NEAR(calm_s, LoadLimits{}.calm_s, 1.0);
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_EQ(watch_.step(), 0);
+    add(2, kLate);
+    ASSERT_EQ(watch_.step(), 1);
+    const double before_s = std::exchange(calm_s, seconds_until_less());
+    EXPECT_GT(calm_s, std::min(1.5 * before_s, LoadLimits{}.longest_calm_s - 1));
+    EXPECT_LT(calm_s, LoadLimits{}.longest_calm_s + 2);
+  }
+}
+
+TEST_F(LoadWatchTest, does_not_take_back_while_poses_are_nearly_late) {
+  add(2, kEasy);
+  add(2, kLate);
+  EXPECT_FALSE(add(3000, LoadLimits{}.easy_latency_ms + 10));
+  EXPECT_EQ(watch_.step(), 1);
+}
+
+TEST_F(LoadWatchTest, forgets_the_long_wait_after_a_long_good_time) {
+  add(2, kEasy);
+  for (int i = 0; i < 4; ++i) {
+    add(2, kLate);
+    seconds_until_less();
+  }
+  add(30 * 600, kEasy);
+  add(2, kLate);
+  EXPECT_NEAR(seconds_until_less(), LoadLimits{}.calm_s, 1.0);
+}
+
+}  // namespace
+}  // namespace rtd::filter

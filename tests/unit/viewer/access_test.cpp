@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/viewer/core/access.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rtd::viewer {
+namespace {
+
+const AccessRules kLoopback{.hosts = {"localhost"}, .origins = {"https://app.foxglove.dev"}, .token = ""};
+
+TEST(Access, programs_and_the_own_page_may_connect) {
+  EXPECT_EQ(check_access(kLoopback, {.host = "127.0.0.1:8765"}), Access::kGranted);
+  EXPECT_EQ(check_access(kLoopback, {.host = "LocalHost:8765", .origin = "http://localhost:8765"}), Access::kGranted);
+  EXPECT_EQ(check_access(kLoopback, {.host = "[::1]:8765", .origin = "http://[::1]:8765"}), Access::kGranted);
+  EXPECT_EQ(check_access(kLoopback, {.host = "127.0.0.1:8765", .origin = "https://app.foxglove.dev"}),
+            Access::kGranted);
+}
+
+TEST(Access, pages_of_other_sites_may_not) {
+  for (const char* origin : {"https://evil.example", "http://localhost:9999", "null", "http://127.0.0.1", "evil"})
+    EXPECT_EQ(check_access(kLoopback, {.host = "localhost:8765", .origin = origin}), Access::kWrongOrigin) << origin;
+}
+
+TEST(Access, a_foreign_name_that_points_here_is_refused) {
+  for (const char* host : {"evil.example:8765", "127.evil.example", "", "localhost.evil.example:8765"})
+    EXPECT_EQ(check_access(kLoopback, {.host = host}), Access::kWrongHost) << host;
+  EXPECT_EQ(check_host({.hosts = {"robot.lan"}}, "ROBOT.lan:8765"), Access::kGranted);
+  EXPECT_EQ(check_host({}, "anything:1"), Access::kGranted) << "no names given: the token is asked for";
+}
+
+TEST(Access, a_token_is_asked_for_when_there_is_one) {
+  const AccessRules rules{.token = "s3cret+"};
+  EXPECT_EQ(check_access(rules, {.host = "robot", .target = "/live?token=s3cret%2B"}), Access::kGranted);
+  EXPECT_EQ(check_access(rules, {.host = "robot", .target = "/live?x=1&token=s3cret+"}), Access::kGranted);
+  EXPECT_EQ(check_access(rules, {.host = "robot", .target = "/", .authorization = "Bearer s3cret+"}), Access::kGranted);
+  for (const char* target : {"/", "/?token=", "/?token=s3cret", "/?token=s3cret%2B%2B", "/?tokens=s3cret+", "/?token"})
+    EXPECT_EQ(check_access(rules, {.host = "robot", .target = target}), Access::kNoToken) << target;
+}
+
+TEST(Access, a_query_is_taken_apart) {
+  EXPECT_EQ(query_value("/?a=1&b=%41%zz%4", "b"), "A%zz%4");
+  EXPECT_EQ(query_value("/?a=1&&b=2&", "b"), "2");
+  EXPECT_EQ(query_value("/plain", "a"), "");
+  EXPECT_EQ(path_of("/live?token=x"), "/live");
+}
+
+}  // namespace
+}  // namespace rtd::viewer

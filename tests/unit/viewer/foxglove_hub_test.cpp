@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/viewer/core/foxglove_hub.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+namespace rtd::viewer {
+namespace {
+
+using foxglove::Schema;
+using nlohmann::json;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+const Schema kSchema{"cdr", "std_msgs/msg/String", "ros2msg", "string data"};
+
+std::string text_of(const Frame& frame) {
+  return {reinterpret_cast<const char*>(frame.head.data()), frame.head.size()};
+}
+
+/// All that waits for a client; binary messages by their opcode.
+std::vector<json> take(Session& session) {
+  std::vector<json> messages;
+  while (auto frame = session.next(0))
+    messages.push_back(frame->text ? json::parse(text_of(*frame)) : json(std::to_integer<int>(frame->head[0])));
+  return messages;
+}
+
+std::vector<std::string> ops(const std::vector<json>& messages) {
+  std::vector<std::string> names;
+  for (const json& message : messages)
+    names.push_back(message.is_object() ? message["op"].get<std::string>() : "binary " + message.dump());
+  return names;
+}
+
+class FoxgloveHubTest : public ::testing::Test {
+ protected:
+  FoxgloveHooks hooks() {
+    FoxgloveHooks hooks;
+    hooks.on_wanted = [this](std::uint32_t channel, bool on) { wanted.emplace_back(channel, on); };
+    hooks.on_call = [this](const CommandInfo& command, const std::string& argument, auto answer) {
+      calls.push_back(command.name + " " + argument);
+      answers.push_back(answer);
+    };
+    hooks.on_set = [](const foxglove::Parameter& parameter) {
+      return parameter.name == "good" ? "" : "there is no parameter '" + parameter.name + "'";
+    };
+    hooks.on_playback = [](const foxglove::PlaybackControl&) {};
+    return hooks;
+  }
+  FoxgloveHub hub{"name", "session", {}, hooks()};
+  std::vector<std::pair<std::uint32_t, bool>> wanted;
+  std::vector<std::string> calls;
+  std::vector<std::function<void(CommandResult)>> answers;
+};
+
+TEST_F(FoxgloveHubTest, a_client_is_greeted_and_told_of_channels) {
+  const auto id = hub.add_channel("/a", kSchema);
+  const auto client = hub.open();
+  const auto first = take(*client);
+  EXPECT_THAT(ops(first), ElementsAre("serverInfo", "advertise"));
+  EXPECT_EQ(first[1]["channels"][0]["id"], id);
+  hub.add_channel("/b", kSchema);
+  EXPECT_THAT(ops(take(*client)), ElementsAre("advertise"));
+  hub.remove_channel(id);
+  EXPECT_THAT(ops(take(*client)), ElementsAre("unadvertise"));
+  EXPECT_EQ(hub.add_channel("/a", kSchema), id) << "the same topic and type";
+  EXPECT_NE(hub.add_channel("/a", {"cdr", "other/msg/Type", "", ""}), id);
+}
+
+TEST_F(FoxgloveHubTest, only_subscribed_channels_are_wanted_and_delivered) {
+  const auto id = hub.add_channel("/a", kSchema);
+  auto first = hub.open();
+  const auto second = hub.open();
+  take(*first), take(*second);
+  const std::string subscribe =
+      R"({"op":"subscribe","subscriptions":[{"id":7,"channelId":)" + std::to_string(id) + "}]}";
+  first->on_text(subscribe);
+  second->on_text(subscribe);
+  EXPECT_THAT(wanted, ElementsAre(std::pair(id, true)));
+  hub.publish(id, 5, std::make_shared<const Bytes>(3));
+  EXPECT_THAT(ops(take(*first)), ElementsAre("binary 1"));
+  first->on_text(R"({"op":"unsubscribe","subscriptionIds":[7]})");
+  hub.publish(id, 6, std::make_shared<const Bytes>(3));
+  EXPECT_THAT(take(*first), IsEmpty());
+  EXPECT_EQ(take(*second).size(), 2U);
+  wanted.clear();
+  first.reset();
+  EXPECT_THAT(wanted, IsEmpty());
+  second->on_text(R"({"op":"unsubscribe","subscriptionIds":[7]})");
+  EXPECT_THAT(wanted, ElementsAre(std::pair(id, false)));
+}
+
+TEST_F(FoxgloveHubTest, a_client_that_leaves_frees_its_channels) {
+  const auto id = hub.add_channel("/a", kSchema);
+  auto client = hub.open();
+  client->on_text(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1}]})");
+  client.reset();
+  EXPECT_THAT(wanted, ElementsAre(std::pair(id, true), std::pair(id, false)));
+  EXPECT_FALSE(hub.wanted(id));
+}
+
+TEST_F(FoxgloveHubTest, wrong_requests_are_answered_and_cost_nothing_else) {
+  const auto client = hub.open();
+  take(*client);
+  client->on_text(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":99}]})");
+  client->on_text(R"({"op":"unsubscribe","subscriptionIds":[5]})");
+  client->on_text("garbage");
+  client->on_binary({});
+  client->on_text(R"({"op":"advertise","channels":[{"id":1,"topic":"/x","encoding":"cdr","schemaName":"y"}]})");
+  const auto answers_now = take(*client);
+  EXPECT_THAT(ops(answers_now), ElementsAre("status", "status", "status", "status", "status"));
+  EXPECT_THAT(answers_now[4]["message"].get<std::string>(), HasSubstr("--publish"));
+  EXPECT_FALSE(client->overflowed());
+}
+
+TEST_F(FoxgloveHubTest, a_client_that_floods_and_does_not_read_is_given_up) {
+  const auto client = hub.open();
+  for (int i = 0; i < 2000; ++i) client->on_text("garbage");
+  EXPECT_TRUE(client->overflowed());
+}
+
+TEST_F(FoxgloveHubTest, commands_are_services) {
+  hub.set_commands({{"/slam/reset", ArgumentKind::kNone}, {"/filter/set_mode", ArgumentKind::kText}});
+  auto client = hub.open();
+  const auto greeting = take(*client);
+  ASSERT_THAT(ops(greeting), ElementsAre("serverInfo", "advertise", "advertiseServices"));
+  EXPECT_EQ(greeting[2]["services"][0]["type"], "std_srvs/srv/Trigger");
+  EXPECT_EQ(greeting[2]["services"][1]["request"]["schema"], "string argument\n");
+  const std::string call(std::string_view("\x02\x01\x00\x00\x00\x09\x00\x00\x00\x04\x00\x00\x00json{}", 19));
+  client->on_binary(std::as_bytes(std::span(call)));
+  EXPECT_THAT(calls, ElementsAre("/slam/reset "));
+  EXPECT_THAT(take(*client), IsEmpty());
+  answers[0]({true, "done"});
+  EXPECT_THAT(ops(take(*client)), ElementsAre("binary 3"));
+  client->on_binary(std::as_bytes(std::span(call)));
+  client.reset();
+  answers[1]({true, "too late"});  // must not touch the client
+  hub.set_commands({});
+  const auto other = hub.open();
+  take(*other);
+  other->on_binary(std::as_bytes(std::span(call)));
+  EXPECT_THAT(ops(take(*other)), ElementsAre("serviceCallFailure"));
+}
+
+TEST_F(FoxgloveHubTest, parameters_are_read_set_and_watched) {
+  hub.set_parameters({{"good", 1.0}});
+  const auto client = hub.open();
+  take(*client);
+  client->on_text(R"({"op":"getParameters","parameterNames":[],"id":"q"})");
+  EXPECT_EQ(take(*client)[0]["parameters"][0]["value"], 1.0);
+  client->on_text(R"({"op":"subscribeParameterUpdates","parameterNames":["good"]})");
+  hub.set_parameters({{"good", 2.0}});
+  hub.set_parameters({{"good", 2.0}});
+  EXPECT_EQ(take(*client).size(), 1U) << "only the change";
+  client->on_text(R"({"op":"setParameters","parameters":[{"name":"bad","value":1}]})");
+  EXPECT_THAT(take(*client)[0]["message"].get<std::string>(), HasSubstr("no parameter 'bad'"));
+}
+
+TEST_F(FoxgloveHubTest, a_replay_that_begins_is_offered_to_clients_that_are_there) {
+  const auto client = hub.open();
+  const json before = take(*client)[0];
+  EXPECT_THAT(before["capabilities"], Not(Contains("playbackControl")));
+  hub.set_played(0, 5'000'000'000);
+  hub.set_played(0, 5'000'000'000);
+  const auto news = take(*client);
+  ASSERT_THAT(ops(news), ElementsAre("serverInfo")) << "once";
+  EXPECT_THAT(news[0]["capabilities"], Contains("playbackControl"));
+  EXPECT_EQ(news[0]["dataEndTime"]["sec"], 5);
+  EXPECT_EQ(news[0]["sessionId"], before["sessionId"]) << "the client keeps what it has";
+}
+
+TEST_F(FoxgloveHubTest, the_graph_comes_whole_and_then_its_changes) {
+  foxglove::ConnectionGraph graph;
+  graph.published["/a"] = {"1"};
+  hub.set_graph(graph);
+  const auto client = hub.open();
+  take(*client);
+  client->on_text(R"({"op":"subscribeConnectionGraph"})");
+  EXPECT_THAT(ops(take(*client)), ElementsAre("connectionGraphUpdate"));
+  hub.set_graph(graph);
+  EXPECT_THAT(take(*client), IsEmpty());
+}
+
+}  // namespace
+}  // namespace rtd::viewer

@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/viewer/core/robot_mirror.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+namespace rtd::viewer {
+namespace {
+
+using nlohmann::json;
+
+json text(const Payload& payload) {
+  return json::parse(reinterpret_cast<const char*>(payload->data()),
+                     reinterpret_cast<const char*>(payload->data()) + payload->size());
+}
+
+template <class T>
+T at(const Payload& payload, std::size_t position) {
+  T value;
+  std::memcpy(&value, payload->data() + position, sizeof(T));
+  return value;
+}
+
+msg::Time stamp(std::int64_t ms) {
+  return {static_cast<std::int32_t>(ms / 1000), static_cast<std::uint32_t>(ms % 1000) * 1'000'000U};
+}
+
+std::unique_ptr<msg::FeatureFrame> features(std::int64_t ms) {
+  auto frame = std::make_unique<msg::FeatureFrame>();
+  frame->stamp_ns = ms * 1'000'000;
+  frame->count = 2;
+  frame->width = 640, frame->height = 480;
+  frame->features[1] = {.u_raw_px = 10.5F, .v_raw_px = 20, .static_probability = 1, .flags = msg::kFeatureRemoved};
+  frame->stage_ms[msg::kStageExtract] = 6.126F;
+  return frame;
+}
+
+msg::CompressedImage image(std::int64_t ms) {
+  return {.header = {stamp(ms), ""}, .format = "jpeg", .data = {1, 2, 3}};
+}
+
+TEST(RobotMirror, a_view_is_an_image_with_the_overlays_of_its_frame) {
+  RobotMirror mirror(0);
+  EXPECT_FALSE(mirror.newest_view().has_value());
+  mirror.add(image(1000));
+  mirror.add(*features(1000));
+  mirror.add(image(1033));
+  const auto view = mirror.newest_view();
+  ASSERT_TRUE(view.has_value());
+  EXPECT_EQ(view->stamp_ns, 1'000'000'000) << "the newest that the filter has looked at";
+  EXPECT_EQ(at<std::uint8_t>(view->features, 0), 9);
+  EXPECT_EQ(at<std::uint32_t>(view->features, 4), 2U);
+  EXPECT_EQ(at<std::uint16_t>(view->features, 26), 168) << "10.5 px in sixteenths";
+  EXPECT_EQ(at<std::uint8_t>(view->features, 30), 1) << "removed";
+  EXPECT_EQ(at<std::uint8_t>(view->features, 31), 255);
+}
+
+TEST(RobotMirror, without_a_filter_the_image_is_shown_alone) {
+  RobotMirror mirror(0);
+  mirror.add(*features(1000));
+  mirror.add(image(2000));
+  const auto view = mirror.newest_view();
+  EXPECT_EQ(view->stamp_ns, 2'000'000'000);
+  EXPECT_EQ(view->features, nullptr);
+}
+
+TEST(RobotMirror, boxes_of_a_slow_detector_stay_for_a_moment) {
+  RobotMirror mirror(0);
+  msg::Detection2DArray detections{.header = {stamp(1000), ""}};
+  detections.detections.push_back(
+      {.results = {{.hypothesis = {"person", 0.9}}}, .bbox = {.center = {{100, 50}, 0}, .size_x = 20, .size_y = 10}});
+  mirror.add(detections);
+  mirror.add(image(1300));
+  const json boxes = text(mirror.newest_view()->boxes);
+  EXPECT_EQ(boxes["boxes"][0]["label"], "person");
+  EXPECT_EQ(boxes["boxes"][0]["x"], 90);
+  mirror.add(image(1500));
+  EXPECT_EQ(mirror.newest_view()->boxes, nullptr);
+}
+
+TEST(RobotMirror, a_mask_is_sent_as_runs) {
+  RobotMirror mirror(2);
+  msg::Image mask{.header = {stamp(1000), ""}, .height = 2, .width = 300, .encoding = "mono8", .step = 300};
+  mask.data.assign(600, 0);
+  mask.data[599] = 255;
+  mirror.add(mask);
+  mirror.add(image(1000));
+  const Payload runs = mirror.newest_view()->mask;
+  ASSERT_NE(runs, nullptr);
+  EXPECT_EQ(at<std::uint8_t>(runs, 1), 2) << "the robot";
+  EXPECT_EQ(at<std::uint32_t>(runs, 4), 8U) << "256 + 256 + 87 zeros and one";
+  EXPECT_EQ(at<std::uint16_t>(runs, 16), 300);
+  EXPECT_EQ(runs->size(), 28U);
+  mask.data.resize(10);
+  mask.header.stamp = stamp(1001);
+  mirror.add(mask);
+  mirror.add(image(1010));
+  EXPECT_EQ(mirror.newest_view()->mask, nullptr) << "too few bytes";
+}
+
+TEST(RobotMirror, a_pose_says_when_it_was_ready_and_what_it_cost) {
+  RobotMirror mirror(1);
+  mirror.add(*features(1000));
+  msg::TrackingResult result{};
+  result.seq = 7;
+  result.state = msg::TrackingState::kOk;
+  result.T_world_camera.rotation_xyzw = {0, 0, 0, 1};
+  result.published_ns = 1'000'000, result.finished_ns = 23'456'789;
+  mirror.add(result, 1e12);
+  const json message = text(mirror.item(Item::kTracking).payload);
+  EXPECT_EQ(message["latency_ms"], 22.46);
+  EXPECT_EQ(message["state"], "ok");
+  EXPECT_EQ(message["pose"].size(), 7U);
+  EXPECT_EQ(message["filter_stage_ms"]["extract"], 6.13);
+  EXPECT_EQ(mirror.map().trajectory().size(), 1U);
+  result.state = msg::TrackingState::kLost;
+  mirror.add(result, 1e12);
+  EXPECT_TRUE(text(mirror.item(Item::kTracking).payload)["pose"].is_null());
+  EXPECT_EQ(mirror.map().trajectory().size(), 1U);
+}
+
+TEST(RobotMirror, a_service_that_falls_silent_is_gone) {
+  RobotMirror mirror(0);
+  msg::ServiceStatus status{.service = "slam", .state = msg::ServiceState::kRunning};
+  mirror.add(status, 0);
+  mirror.refresh(100'000'000);
+  EXPECT_EQ(text(mirror.item(Item::kStatus).payload)["services"][0]["state"], "running");
+  mirror.refresh(3'000'000'000);
+  EXPECT_EQ(text(mirror.item(Item::kStatus).payload)["services"][0]["state"], "gone");
+  status.state = msg::ServiceState::kFinished;
+  mirror.add(status, 0);
+  mirror.refresh(3'000'000'000);
+  EXPECT_EQ(text(mirror.item(Item::kStatus).payload)["services"][0]["state"], "finished");
+}
+
+TEST(RobotMirror, dense_points_keep_place_and_colour) {
+  RobotMirror mirror(0);
+  msg::PointCloud2 cloud{.width = 2, .point_step = 16};
+  const char* names[] = {"x", "y", "z", "rgb"};
+  for (std::uint32_t i = 0; i < 4; ++i) cloud.fields.push_back({names[i], 4 * i, 7, 1});
+  cloud.data.resize(32);
+  const std::array<float, 3> first = {1, 2, 3}, second = {-1, 2, 3};
+  std::memcpy(cloud.data.data(), first.data(), 12);
+  std::memcpy(cloud.data.data() + 16, second.data(), 12);
+  cloud.data[12] = 10, cloud.data[13] = 20, cloud.data[14] = 30;  // blue, green, red
+  mirror.add(cloud);
+  const auto& dense = mirror.dense();
+  ASSERT_EQ(dense.points.size(), 18U);
+  std::int16_t x = 0;
+  std::memcpy(&x, dense.points.data(), 2);
+  EXPECT_NEAR(dense.origin_m.x() + static_cast<float>(x) * dense.scale_m, 1, 1e-3);
+  EXPECT_EQ(std::to_integer<int>(dense.points[6]), 30);
+  cloud.point_step = 8;
+  mirror.add(cloud);
+  EXPECT_EQ(mirror.dense().revision, 1U) << "fields beyond a point are refused";
+}
+
+}  // namespace
+}  // namespace rtd::viewer
