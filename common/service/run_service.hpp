@@ -33,6 +33,14 @@ struct ServiceDefinition {
 /// Exceptions become one line on stderr and an exit code: ConfigError and BusError 2, others 1.
 int run_service(const ServiceDefinition& definition, int argc, char** argv);
 
+/// Runs `service`, a temporary: its own connections are destroyed in bounded time, as that of the runtime is.
+template <class Service>
+ExitCode run_to_end(Service&& service, const Runtime& runtime) {
+  const ExitCode code = service.run();
+  runtime.bound_end(code);
+  return code;
+}
+
 /// Service needs: static constexpr kName, kDescription; struct Config { void bind(auto& binder); };
 /// static void add_options(CLI::App&, Config&); Service(const Config&, Runtime&); ExitCode run().
 template <class Service>
@@ -40,7 +48,7 @@ int run_service(int argc, char** argv) {
   typename Service::Config config;
   return run_service({Service::kName, Service::kDescription, [&](CLI::App& app) { Service::add_options(app, config); },
                       [&](ConfigBinder& binder) { binder.section(Service::kName, config); },
-                      [&](Runtime& runtime) { return Service(config, runtime).run(); }},
+                      [&](Runtime& runtime) { return run_to_end(Service(config, runtime), runtime); }},
                      argc, argv);
 }
 

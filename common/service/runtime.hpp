@@ -105,6 +105,8 @@ struct Runtime {
   StopToken& stop;
   Pace pace;
   bus::BusOptions bus_options;  ///< of `bus`, for a service that needs a further connection
+  /// The service's results are written: from now on the process ends within seconds, whatever blocks a bus.
+  std::function<void(int exit_code)> bound_end = [](int) {};
 };
 
 }  // namespace rtd::service

@@ -12,11 +12,12 @@ namespace {
 /// One robot or several, as configured.
 int run_detector(int argc, char** argv) {
   using namespace rtd::detector;
+  using rtd::service::run_to_end;
   ServiceConfig config;
   const auto run = [&config](rtd::service::Runtime& runtime) {
-    if (config.robots.empty()) return DetectorService(config, runtime).run();
+    if (config.robots.empty()) return run_to_end(DetectorService(config, runtime), runtime);
     const FleetConfig fleet = fleet_config(config, runtime);
-    return FleetService(fleet, runtime, load_inference(config)).run();
+    return run_to_end(FleetService(fleet, runtime, load_inference(config)), runtime);
   };
   return rtd::service::run_service(
       {DetectorService::kName, DetectorService::kDescription,

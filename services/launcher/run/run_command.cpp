@@ -88,10 +88,9 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   write_record(session.record(), setup.out_dir);
   result.report = make_report(setup.out_dir, setup.quiet, signals, terminal);
   if (result.report == ReportState::kFailed) result.code = service::kRunFailed;
-  if (outcome == RunOutcome::kComplete && !session.tracked_any()) terminal.warn("rtd: no frame got a pose");
-  if (outcome != RunOutcome::kInterrupted) return result;
-  terminal.print("rtd: interrupted, partial results are in " + setup.out_dir);
   end.begin(result.code);
+  if (outcome == RunOutcome::kComplete && !session.tracked_any()) terminal.warn("rtd: no frame got a pose");
+  if (outcome == RunOutcome::kInterrupted) terminal.print("rtd: interrupted, partial results are in " + setup.out_dir);
   return result;
 }
 

@@ -26,6 +26,8 @@ class RtdCommand {
   void start(const std::vector<std::string>& arguments) {
     std::vector<std::string> command = {executable_};
     command.insert(command.end(), arguments.begin(), arguments.end());
+    command_.clear();
+    for (const std::string& word : command) command_ += word + ' ';
     process_ = host_.start({"rtd", command});
   }
   void interrupt() const { ::kill(static_cast<pid_t>(process_), SIGINT); }
@@ -37,7 +39,7 @@ class RtdCommand {
       host_.wait(std::chrono::milliseconds(20));
       if (const auto exit = host_.poll_exit(process_)) return exit->signal != 0 ? -exit->signal : exit->code;
     }
-    ADD_FAILURE() << "rtd did not end in time:\n" << output_;
+    ADD_FAILURE() << command_ << "did not end in time:\n" << output_;
     host_.kill(process_);
     return -1;
   }
@@ -59,7 +61,7 @@ class RtdCommand {
   ProcessId process() const { return process_; }
 
  private:
-  std::string executable_, output_;
+  std::string executable_, command_, output_;
   ProcessId process_ = 0;
   PosixProcessHost host_{[this](const std::string&, const std::string& line) { output_ += line + '\n'; }};
 };

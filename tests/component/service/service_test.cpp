@@ -274,6 +274,23 @@ TEST(BoundedEndTest, ends_the_process_only_when_its_time_is_up) {
   end.begin(7);
 }
 
+TEST_F(RunServiceTest, the_end_is_bounded_before_a_service_is_destroyed) {
+  static std::vector<std::string> steps;
+  struct Service {
+    ~Service() { steps.push_back("destroyed"); }
+    ExitCode run() {
+      steps.push_back("run");
+      return kRunFailed;
+    }
+  };
+  body_ = [](Runtime& runtime) {
+    runtime.bound_end = [](int code) { steps.push_back("bounded " + std::to_string(code)); };
+    return run_to_end(Service(), runtime);
+  };
+  EXPECT_EQ(run({"--dds", "inprocess"}), kRunFailed);
+  EXPECT_EQ(steps, (std::vector<std::string>{"run", "bounded 1", "destroyed"}));
+}
+
 TEST_F(RunServiceTest, print_config_does_not_run_the_service) {
   body_ = [](Runtime&) -> ExitCode { throw std::runtime_error("must not run"); };
   EXPECT_EQ(run({"--print-config"}), kOk);

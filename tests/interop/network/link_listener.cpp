@@ -17,6 +17,7 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/run_service.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -42,7 +43,24 @@ BusOptions network_options(char** argv) {
   return options;
 }
 
-void listen_on_first_host(Bus& bus, Book& book, const sigset_t& ends) {
+/// Waits for the end, which a blocked bus does not hold up once `path` is written.
+struct End {
+  sigset_t signals{};
+  std::string path;
+  service::BoundedEnd bounded{"link_listener", std::chrono::seconds(10)};
+
+  void await() const {
+    int number = 0;
+    sigwait(&signals, &number);
+  }
+  void write(Book& book) {
+    const std::lock_guard lock(book.mutex);
+    std::ofstream(path) << book.lines.str();
+    bounded.begin(0);
+  }
+};
+
+void listen_on_first_host(Bus& bus, Book& book, End& end) {
   const auto detections = bus.reader<msg::Detection2DArray>(topics::kDetections, [&](auto message) {
     const std::lock_guard lock(book.mutex);
     const std::int64_t now_ns = service::monotonic_ns();
@@ -59,11 +77,16 @@ void listen_on_first_host(Bus& bus, Book& book, const sigset_t& ends) {
   });
   std::puts("listening");
   std::fflush(stdout);
-  int number = 0;
-  sigwait(&ends, &number);
+  end.await();
+  end.write(book);
 }
 
-void listen_elsewhere(Bus& bus, Book& book, const sigset_t& ends) {
+void note_matched(Book& book, std::size_t writers) {
+  const std::lock_guard lock(book.mutex);
+  book.lines << "matched " << writers << '\n';
+}
+
+void listen_elsewhere(Bus& bus, Book& book, End& end) {
   const auto note = [&](std::uint64_t seq) {
     const std::lock_guard lock(book.mutex);
     book.lines << "frame " << seq << ' ' << service::monotonic_ns() << '\n';
@@ -72,10 +95,9 @@ void listen_elsewhere(Bus& bus, Book& book, const sigset_t& ends) {
   const auto features = bus.reader<msg::FeatureFrame>(topics::kFeatures, [&](auto frame) { note(frame->seq); });
   std::puts("listening");
   std::fflush(stdout);
-  int number = 0;
-  sigwait(&ends, &number);
-  const std::lock_guard lock(book.mutex);
-  book.lines << "matched " << frames.matched() + features.matched() << '\n';
+  end.await();
+  note_matched(book, frames.matched() + features.matched());
+  end.write(book);
 }
 
 }  // namespace
@@ -83,12 +105,13 @@ void listen_elsewhere(Bus& bus, Book& book, const sigset_t& ends) {
 
 int main(int argc, char** argv) try {
   if (argc < 4) return 2;
-  sigset_t ends;
-  sigemptyset(&ends);
-  sigaddset(&ends, SIGINT);
-  sigaddset(&ends, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &ends, nullptr);  // before any thread exists
   rtd::bus::Book book;
+  rtd::bus::End end;
+  end.path = argv[3];
+  sigemptyset(&end.signals);
+  sigaddset(&end.signals, SIGINT);
+  sigaddset(&end.signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &end.signals, nullptr);  // before any thread exists
   const bool elsewhere = argc > 4 && std::string(argv[4]) == "remote";
   rtd::bus::BusOptions options = rtd::bus::network_options(argv);
   if (elsewhere) options.network.peers = {"10.99.0.1"};
@@ -97,11 +120,8 @@ int main(int argc, char** argv) try {
     options.robot = argv[4] + kRobot.size();
     options.network = {};
   }
-  {
-    const auto bus = rtd::bus::connect(options);
-    elsewhere ? rtd::bus::listen_elsewhere(*bus, book, ends) : rtd::bus::listen_on_first_host(*bus, book, ends);
-  }
-  std::ofstream(argv[3]) << book.lines.str();
+  const auto bus = rtd::bus::connect(options);
+  elsewhere ? rtd::bus::listen_elsewhere(*bus, book, end) : rtd::bus::listen_on_first_host(*bus, book, end);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "link_listener: %s\n", error.what());
