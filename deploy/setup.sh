@@ -7,14 +7,15 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: deploy/setup.sh [--product] [--check | --list | --models | --no-models | --viewers]
-  (none)       install missing Debian packages, then download the detector weights if they are missing
-  --product    leave out the packages that only the tests need; alone or before another option
-  --check      only report what is missing; exit code 1 if something is
-  --list       print the Debian packages, one per line
-  --models     only download and convert the detector weights
-  --no-models  only install the packages
-  --viewers    also install node, Chromium and npm packages (500 MB) for the tests with external viewers and serialisers
+Usage: deploy/setup.sh [--product] [--check | --list | --models | --no-models | --viewers | --packaging]
+  (none)         install missing Debian packages, then download the detector weights if they are missing
+  --product      leave out the packages that only the tests need; alone or before another option
+  --check        only report what is missing; exit code 1 if something is
+  --list         print the Debian packages, one per line
+  --models       only download and convert the detector weights
+  --no-models    only install the packages
+  --viewers      also install node, Chromium and npm packages (500 MB) for the tests with external viewers and serialisers
+  --packaging    also install what builds and checks Debian packages
 TEXT
 }
 
@@ -49,6 +50,9 @@ viewer_packages=()
 command -v node >/dev/null || viewer_packages+=(nodejs)
 command -v npm >/dev/null || viewer_packages+=(npm)
 command -v chromium >/dev/null || viewer_packages+=(chromium)
+
+# Only for deploy/package.sh.
+packaging_packages=(dpkg-dev help2man lintian)
 
 missing_packages() {
   local package
@@ -142,6 +146,10 @@ case "${1:-}" in
   --models) fetch_models ;;
   --no-models) install_packages ;;
   --viewers) install_viewers ;;
+  --packaging)
+    packages+=("${packaging_packages[@]}")
+    install_packages
+    ;;
   --help | -h) usage ;;
   *)
     echo "setup: unknown option '$1'" >&2

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 #include <vector>
 
 namespace rtd::service {
@@ -27,6 +28,10 @@ std::vector<std::filesystem::path> search_folders(const EnvironmentReader& envir
   } else if (const std::string home = value("HOME"); !home.empty()) {
     folders.push_back(std::filesystem::path(home) / ".cache" / "rtd-slam");
   }
+  // For all users of this computer: deploy/install.sh puts them into the first one.
+  std::istringstream shared(environment("XDG_DATA_DIRS").value_or("/usr/local/share:/usr/share"));
+  for (std::string folder; std::getline(shared, folder, ':');)
+    if (!folder.empty()) folders.push_back(std::filesystem::path(folder) / "rtd-slam" / "models");
   return folders;
 }
 
@@ -44,7 +49,6 @@ ModelSearch find_model(const std::string& configured, const EnvironmentReader& e
     looked += looked.empty() ? "" : ", ";
     looked += folder.string();
   }
-  if (looked.empty()) looked = "nowhere, as neither RTD_MODEL_DIR nor XDG_CACHE_HOME nor HOME is set";
   return {{}, "no detector weights: looked for " + name + " in " + looked + "; " + kAdvice};
 }
 

@@ -23,7 +23,7 @@ struct ModelSearch {
 
 /// Looks for the network. `configured` (config key detector.model) may be empty (the default file name), a bare file
 /// name or a path. A path is taken as it is; a file name is looked for in RTD_MODEL_DIR, then in the user's cache
-/// ($XDG_CACHE_HOME or $HOME/.cache)/rtd-slam.
+/// ($XDG_CACHE_HOME or $HOME/.cache)/rtd-slam, then in rtd-slam/models of $XDG_DATA_DIRS (/usr/local/share, /usr/share).
 ModelSearch find_model(const std::string& configured, const EnvironmentReader& environment);
 
 /// The folder of the user's cache for what OpenCL compiles for a device; empty without XDG_CACHE_HOME and HOME.

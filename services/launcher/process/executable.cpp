@@ -60,8 +60,9 @@ std::string find_executable(const std::string& name) {
 }
 
 std::string missing_executable(const std::string& name) {
-  return name + " is neither beside rtd (" + own_directory() +
-         ") nor in PATH: build it with 'cmake --build <build folder> --target " + name + "'";
+  const std::string package = name == "rtd-viewer" ? "rtd-slam-viewer" : "rtd-slam";
+  return name + " is neither beside rtd (" + own_directory() + ") nor in PATH: install the package " + package +
+         ", or build it with 'cmake --build <build folder> --target " + name + "'";
 }
 
 std::string require_executable(const std::string& name) {

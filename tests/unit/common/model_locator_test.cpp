@@ -30,7 +30,8 @@ class ModelLocator : public ::testing::Test {
     return path.string();
   }
   std::string in_folder(const std::string& relative) const { return (folder_ / relative).string(); }
-  static EnvironmentReader environment(std::map<std::string, std::string> values) {
+  EnvironmentReader environment(std::map<std::string, std::string> values) const {
+    values.emplace("XDG_DATA_DIRS", in_folder("local") + ":" + in_folder("share"));  // not those of this host
     return [values = std::move(values)](const std::string& name) -> std::optional<std::string> {
       const auto found = values.find(name);
       return found == values.end() ? std::nullopt : std::optional<std::string>(found->second);
@@ -58,6 +59,15 @@ TEST_F(ModelLocator, looks_in_the_cache_next) {
 TEST_F(ModelLocator, uses_the_home_folder_when_no_cache_is_set) {
   const std::string expected = make(std::string("home/.cache/rtd-slam/") + kDefaultModelFile);
   EXPECT_EQ(find_model("", environment({{"HOME", in_folder("home")}, {"XDG_CACHE_HOME", ""}})).path, expected);
+}
+
+TEST_F(ModelLocator, looks_last_in_the_folders_for_all_users) {
+  const std::string second = make(std::string("share/rtd-slam/models/") + kDefaultModelFile);
+  EXPECT_EQ(find_model("", environment({})).path, second);
+  const std::string first = make(std::string("local/rtd-slam/models/") + kDefaultModelFile);
+  EXPECT_EQ(find_model("", environment({})).path, first);
+  const std::string cached = make(std::string("xdg/rtd-slam/") + kDefaultModelFile);
+  EXPECT_EQ(find_model("", all()).path, cached);
 }
 
 TEST_F(ModelLocator, finds_another_file_name_in_the_same_folders) {
