@@ -140,11 +140,12 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
                       [](const std::string& cause) { SPDLOG_WARN("event=no_peers cause=\"{}\"", cause); });
     }
     const SystemdLink systemd([&heartbeat] { return heartbeat.work(); });
+    Trace trace(process_environment()(kTraceVariable).value_or(""), definition.name);
     const auto bound_end = [&](int exit_code) {
       duplicate = heartbeat.duplicate();
       end.begin(duplicate.empty() ? exit_code : kUsageOrConfig);
     };
-    Runtime runtime{*bus, heartbeat, stop, pace, options, bound_end};
+    Runtime runtime{*bus, heartbeat, stop, pace, options, bound_end, trace};
     SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), options.domain, to_string(pace),
                 getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");
     code = definition.run(runtime);

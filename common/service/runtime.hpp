@@ -18,6 +18,7 @@
 #include "common/service/peer_clocks.hpp"
 #include "common/service/peer_health.hpp"
 #include "common/service/stop_token.hpp"
+#include "common/service/trace.hpp"
 
 namespace rtd::service {
 
@@ -107,6 +108,7 @@ struct Runtime {
   bus::BusOptions bus_options;  ///< of `bus`, for a service that needs a further connection
   /// The service's results are written: from now on the process ends within seconds, whatever blocks a bus.
   std::function<void(int exit_code)> bound_end = [](int) {};
+  Trace& trace = Trace::none();
 };
 
 }  // namespace rtd::service

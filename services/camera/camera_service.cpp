@@ -117,7 +117,7 @@ service::ExitCode CameraService::run() {
   if (outcome == Outcome::kDone) {
     runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
     playing_ = true;
-    ReadAhead frames(*source_, kReadAhead, static_cast<std::uint64_t>(config_.frames));
+    ReadAhead frames(*source_, kReadAhead, static_cast<std::uint64_t>(config_.frames), service::monotonic_ns);
     outcome = play(frames);
     if (outcome == Outcome::kDone) outcome = drain();
   }
@@ -194,6 +194,7 @@ CameraService::Outcome CameraService::play(ReadAhead& frames) {
     frames_in_ += item->passed_over;
     passed_over_ += item->passed_over;
     if (!item->frame) return runtime_.stop.stop_requested() ? Outcome::kStopped : Outcome::kDone;
+    runtime_.trace.way("read", item->begin_ns, item->end_ns, item->frame->image.seq);
     if (const Outcome outcome = handle(std::move(*item->frame), frames); outcome != Outcome::kDone) return outcome;
     if (frames_in_ % kReportEvery == 0) report_counters();
   }
@@ -211,7 +212,9 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
     if (decision.action == service::PaceAction::kSkipLate) return Outcome::kDone;
     if (decision.action == service::PaceAction::kSend) {
       runtime_.heartbeat.tick();
+      const std::int64_t begin_ns = service::monotonic_ns();
       send(frame.image);
+      runtime_.trace.span("publish", begin_ns, service::monotonic_ns(), frame.image.seq);
       send_truth(frame);
       runtime_.heartbeat.idle();  // until the next frame, whenever it comes
       last_seq_ = frame.image.seq;

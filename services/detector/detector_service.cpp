@@ -156,7 +156,12 @@ void DetectorService::work(EngineGuard& detector) {
     const std::optional<Taken> taken = take();
     if (!taken) continue;
     const std::int64_t started_ns = service::monotonic_ns();
-    publish_in_turn(taken->turn, detect(detector, taken->arrival));
+    const auto detections = detect(detector, taken->arrival);
+    const std::int64_t detected_ns = service::monotonic_ns();
+    publish_in_turn(taken->turn, detections);
+    const std::uint64_t frame = taken->arrival.frame ? taken->arrival.frame->seq : taken->turn;
+    runtime_.trace.span("detect", started_ns, detected_ns, frame);
+    runtime_.trace.span("publish", detected_ns, service::monotonic_ns(), frame);
     keep_rate(started_ns);
   }
 }

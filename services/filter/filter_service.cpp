@@ -99,6 +99,7 @@ void FilterService::prepare_frames() {
   while (const auto frame = frames_->pop()) {
     Work work{*frame, std::nullopt, nullptr};
     try {
+      const service::TraceSpan span(runtime_.trace, "extract", (*frame)->seq);
       if (vision::defect(**frame).empty()) work.extraction = filter_.extract(vision::view_image(**frame));
     } catch (...) {
       work.failure = std::current_exception();
@@ -113,26 +114,46 @@ std::optional<FilterService::Work> FilterService::next_frame() {
   return frame ? std::optional(Work{std::move(*frame), std::nullopt, nullptr}) : std::nullopt;
 }
 
+Extraction FilterService::extract(std::uint64_t seq, const vision::RgbdImage& image) {
+  const service::TraceSpan span(runtime_.trace, "extract", seq);
+  return filter_.extract(image);
+}
+
 /// One frame: features while the detector still works on it, then its boxes, then the judgement.
 void FilterService::process(Work work) {
   if (work.failure) std::rethrow_exception(work.failure);
   const msg::FrameView& frame = *work.frame;
   const vision::RgbdImage image = vision::view_image(frame);
-  Extraction extraction = work.extraction ? std::move(*work.extraction) : filter_.extract(image);
+  Extraction extraction = work.extraction ? std::move(*work.extraction) : extract(frame.seq, image);
   const std::int64_t waiting_since_ns = service::monotonic_ns();
   const DetectorUpdate detector = collect_detections(frame);
   apply_slam_feedback();
-  const std::int64_t waited_ns = service::monotonic_ns() - waiting_since_ns;
+  const std::int64_t judging_since_ns = service::monotonic_ns(), waited_ns = judging_since_ns - waiting_since_ns;
 
   FilterResult result = filter_.judge(image, std::move(extraction), detector);
   result.stage_ms[msg::kStageWaitDetections] = static_cast<float>(static_cast<double>(waited_ns) * 1e-6);
   fill_message(frame, result, use_of(detector, result, frame.stamp_ns), *message_);
+  trace(waiting_since_ns, judging_since_ns);
   writer_.write(*message_);
   // After the features: slam's pose waits for them, not for the mask. Costs nothing without a subscriber.
   if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result, runtime_.bus.frame(kCameraFrame)));
   if (movers_.wanted()) movers_.add(frame.seq, frame.stamp_ns, filter_.sight_objects(result));
   ++published_;
   count(result);
+}
+
+/// Of the message before it is written.
+void FilterService::trace(std::int64_t waiting_since_ns, std::int64_t judging_since_ns) {
+  service::Trace& trace = runtime_.trace;
+  if (!trace.on()) return;
+  const auto& ms = message_->stage_ms;
+  const std::array<service::TraceStage, 4> stages{{{"masks", ms[msg::kStageMasks]},
+                                                   {"ego motion", ms[msg::kStageEgoMotion]},
+                                                   {"depth check", ms[msg::kStageDepthCheck]},
+                                                   {"fuse", ms[msg::kStageFuse]}}};
+  trace.span("wait for boxes", waiting_since_ns, judging_since_ns, message_->seq);
+  trace.span("judge", judging_since_ns, service::monotonic_ns(), message_->seq);
+  trace.stages(judging_since_ns, stages, message_->seq);
 }
 
 /// False for a frame that is not to be processed: from a second camera, defective, or sent again (its features are

@@ -63,6 +63,8 @@ class FilterService {
   void forget_views(const msg::FrameView& frame, const char* cause);
   bool detector_alive() const;
   bool from_other_camera(const msg::FrameView& frame);
+  Extraction extract(std::uint64_t seq, const vision::RgbdImage& image);
+  void trace(std::int64_t waiting_since_ns, std::int64_t judging_since_ns);
   void apply_slam_feedback();
   DetectorUpdate collect_detections(const msg::FrameView& frame);
   void wait_for_detections(const msg::FrameView& frame);

@@ -185,6 +185,8 @@ void add_run_command(CLI::App& app, RunOptions& options) {
                     "Also show the run in the browser; the address is printed (--set viewer.port=...)");
   command->add_option("--record", options.record,
                       "Also record all topics: FILE.mcap, or a folder in the layout of rosbag2");
+  command->add_option("--trace", options.trace,
+                      "Also write what each service did when, for ui.perfetto.dev or chrome://tracing: FILE.json");
   command
       ->add_option(
           "--replay-topics", options.replay_topics,

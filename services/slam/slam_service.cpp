@@ -155,14 +155,33 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
     return;
   }
   const msg::TrackingState previous = last_result_.state;
+  const std::int64_t started_ns = service::monotonic_ns();
   const SlamOutput output = slam_.process(frame);
   last_result_ = make_result(output.result);
   last_result_.published_ns = frame.published_ns;
   last_result_.finished_ns = service::monotonic_ns();
   publisher_.publish(output, last_result_);
+  trace(started_ns);
   last_problem_ = output.problem;
   count(output);
   log(output, previous);
+}
+
+void SlamService::trace(std::int64_t started_ns) {
+  service::Trace& trace = runtime_.trace;
+  if (!trace.on()) return;
+  const msg::TrackingResult& result = last_result_;
+  trace.span("slam", started_ns, result.finished_ns, result.seq);
+  trace.span("publish", result.finished_ns, service::monotonic_ns(), result.seq);
+  trace.way("camera to pose", result.published_ns, result.finished_ns, result.seq);
+  const auto& ms = result.stage_ms;
+  const std::array<service::TraceStage, 6> stages{{{"match", ms[msg::kStageMatch]},
+                                                   {"local map", ms[msg::kStageLocalMap]},
+                                                   {"pose", ms[msg::kStagePose]},
+                                                   {"relocalize", ms[msg::kStageRelocalize]},
+                                                   {"keyframe", ms[msg::kStageKeyframe]},
+                                                   {"mapping", ms[msg::kStageMapping]}}};
+  trace.stages(started_ns, stages, result.seq);
 }
 
 void SlamService::count(const SlamOutput& output) {

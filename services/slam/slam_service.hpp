@@ -51,6 +51,7 @@ class SlamService {
   /// False when the camera is not that of the map the service was started with. One taken by command is given up.
   bool check_camera(const msg::FeatureFrame& frame);
   void answer(const msg::FeatureFrame& frame);
+  void trace(std::int64_t started_ns);
   void count(const SlamOutput& output);
   void log(const SlamOutput& output, msg::TrackingState previous);
   void watch_input(bool arrived);

@@ -7,8 +7,12 @@
 
 namespace rtd::camera {
 
-ReadAhead::ReadAhead(FrameSource& source, std::size_t depth, std::uint64_t max_frames)
-    : source_(source), items_(depth, concurrency::Overflow::kBlock), max_frames_(max_frames) {
+ReadAhead::ReadAhead(FrameSource& source, std::size_t depth, std::uint64_t max_frames,
+                     std::function<std::int64_t()> now_ns)
+    : source_(source),
+      items_(depth, concurrency::Overflow::kBlock),
+      max_frames_(max_frames),
+      now_ns_(std::move(now_ns)) {
   thread_ = std::thread([this] { read_all(); });
 }
 
@@ -28,6 +32,7 @@ ReadAhead::~ReadAhead() {
 
 ReadItem ReadAhead::read(std::uint64_t frames_read) const {
   ReadItem item;
+  item.begin_ns = now_ns_();
   try {
     const std::uint64_t left = max_frames_ == 0 ? std::numeric_limits<std::uint64_t>::max() : max_frames_ - frames_read;
     item.passed_over = std::min(source_.pass_over(oldest_wanted_ns_), left);
@@ -39,6 +44,7 @@ ReadItem ReadAhead::read(std::uint64_t frames_read) const {
   }
   item.skipped = source_.take_skipped();
   item.counters = source_.counters();
+  item.end_ns = now_ns_();
   return item;
 }
 

@@ -6,15 +6,18 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 
 #include "common/bus/bus_factory.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/run_service.hpp"
+#include "common/service/trace.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/evaluation/record/run_record.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
+#include "services/launcher/core/run/trace_file.hpp"
 #include "services/launcher/process/executable.hpp"
 #include "services/launcher/run/run_session.hpp"
 #include "services/launcher/run/run_setup.hpp"
@@ -73,6 +76,19 @@ ReportState make_report(const std::string& out_dir, bool quiet, service::Interru
   return ReportState::kFailed;
 }
 
+/// The services inherit where to write their parts.
+void begin_trace(const RunSetup& setup) {
+  if (!setup.trace.empty()) ::setenv(service::kTraceVariable, setup.trace_folder().c_str(), 1);
+}
+
+void end_trace(const RunSetup& setup, Terminal& terminal) {
+  if (setup.trace.empty()) return;
+  ::unsetenv(service::kTraceVariable);
+  const std::string problem = join_trace(setup.trace_folder(), setup.trace);
+  problem.empty() ? terminal.print("rtd: trace for ui.perfetto.dev: " + setup.trace)
+                  : terminal.warn("rtd: no trace: " + problem);
+}
+
 RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& plans) {
   service::InterruptSignals signals;
   Terminal terminal = open_terminal(setup.quiet);
@@ -82,7 +98,9 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   RunSession session(setup, *bus, signals, terminal);
 
   RunResult result;
+  begin_trace(setup);
   const RunOutcome outcome = session.run(plans);
+  end_trace(setup, terminal);
   result.code = exit_code(outcome, session.tracked_any());
   if (outcome == RunOutcome::kConfigError) return result;
   write_record(session.record(), setup.out_dir);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -216,6 +217,12 @@ std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vect
   return arguments;
 }
 
+void check_trace_file(const std::string& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) throw ConfigError("--trace " + path + ": this is a folder: name a file in it");
+  if (!std::ofstream(path, std::ios::app)) throw ConfigError("--trace " + path + ": cannot be written");
+}
+
 }  // namespace
 
 RunSetup prepare_run(const RunOptions& options) {
@@ -231,6 +238,7 @@ RunSetup prepare_run(const RunOptions& options) {
   choose_detector(setup);
   choose_map(setup);
   create_out_dir(setup.out_dir);
+  if (!setup.trace.empty()) check_trace_file(setup.trace);
   if (fs::exists(setup.record)) throw ConfigError("--record " + setup.record + " exists already: choose another name");
   return setup;
 }
@@ -243,11 +251,12 @@ void clear_out_dir(const RunSetup& setup) {
   error.clear();
   if (!needed) fs::remove(map, error);
   for (const char* left :
-       {"logs", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "static_map.ply",
+       {"logs", "trace", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "static_map.ply",
         "background.png", "groundtruth.txt", "run.json", "report.json", "report.html"}) {
     if (!error) fs::remove_all(out_dir / left, error);
   }
   if (!error) fs::create_directories(out_dir / "logs", error);
+  if (!error && !setup.trace.empty()) fs::create_directories(setup.trace_folder(), error);
   if (error) throw ConfigError("--out " + setup.out_dir + ": cannot be written: " + error.message());
 }
 

@@ -70,6 +70,7 @@ struct RunOptions {
   bool localize_only = false;              ///< leave the map as it is
   bool dense = false;                      ///< also fuse a dense static map
   bool viewer = false;                     ///< also show the run in the browser
+  std::string trace;                       ///< write what each service did when into this file; empty = no
   std::string record;                      ///< also record all topics: FILE.mcap or a folder; empty = no
   std::vector<std::string> replay_topics;  ///< "detections", "features": recorded ones instead of their services
   bool quiet = false;
@@ -111,6 +112,8 @@ struct RunSetup : RunOptions {
   bool save_map_asked = false;  ///< the user named the file
   ReplaySetup replay;
 
+  /// Where the services write their parts of --trace.
+  std::string trace_folder() const { return out_dir + "/trace"; }
   std::string groundtruth_path() const { return out_dir + "/groundtruth.txt"; }
 };
 

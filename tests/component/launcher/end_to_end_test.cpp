@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -69,14 +70,14 @@ TEST_F(EndToEndTest, a_lockstep_run_tracks_every_frame_and_reports_every_key) {
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("30 in, "), HasSubstr("ATE rmse"), HasSubstr("report.html")));
 }
 
-TEST_F(EndToEndTest, a_dense_map_and_a_recording_change_nothing_of_the_run) {
+TEST_F(EndToEndTest, a_dense_map_a_recording_and_a_trace_change_nothing_of_the_run) {
   const std::vector<std::string> lockstep = {"--pace", "lockstep", "--detector", "off"};
   ASSERT_EQ(rtd_.run(arguments(129, "synthetic:office?frames=30", lockstep)), 0) << rtd_.output();
   const std::string without = text_of(out_ + "/trajectory.txt");
   EXPECT_TRUE(report()["static_map"].is_null());
   RtdCommand dense;
   std::vector<std::string> command = arguments(129, "synthetic:office?frames=30", lockstep);
-  command.insert(command.end(), {"--dense", "--record", scratch_ / "run.mcap"});
+  command.insert(command.end(), {"--dense", "--record", scratch_ / "run.mcap", "--trace", scratch_ / "trace.json"});
   ASSERT_EQ(dense.run(command), 0) << dense.output();
   EXPECT_EQ(text_of(out_ + "/trajectory.txt"), without) << "byte for byte";
   EXPECT_THAT(dense.output(), HasSubstr("static_map.ply"));
@@ -84,6 +85,19 @@ TEST_F(EndToEndTest, a_dense_map_and_a_recording_change_nothing_of_the_run) {
   EXPECT_GT(report()["cpu_s"]["dense"], 0.0);
   EXPECT_GT(fs::file_size(scratch_ / "run.mcap"), 30U * 640 * 480 * 5) << "with all raw frames";
   EXPECT_THAT(text_of(out_ + "/logs/record.log"), HasSubstr("topic=rtd/frame messages=30 lost_in_transit=0"));
+  EXPECT_FALSE(fs::exists(out_ + "/trace"));
+  std::map<std::string, int> spans;
+  for (const nlohmann::json& event : nlohmann::json::parse(text_of(scratch_ / "trace.json"))["traceEvents"])
+    ++spans[event["ph"] == "M" ? event["args"]["name"] : event["name"]];
+  for (const char* process : {"rtd-camera", "rtd-filter", "rtd-slam", "rtd-dense", "rtd-record"})
+    EXPECT_EQ(spans[process], 1) << process;
+  for (const char* stage : {"extract", "judge", "wait for boxes", "slam", "fuse"}) EXPECT_EQ(spans[stage], 30) << stage;
+  for (const char* way : {"read", "camera to pose"}) EXPECT_EQ(spans[way], 60) << way << ": begin and end";
+}
+
+TEST_F(EndToEndTest, a_trace_that_cannot_be_written_is_refused_before_the_run) {
+  EXPECT_EQ(rtd_.run(arguments(129, "synthetic:office?frames=5", {"--trace", scratch_ / "none/trace.json"})), 2);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("--trace"), HasSubstr("cannot be written")));
 }
 
 TEST_F(EndToEndTest, a_slam_killed_during_the_run_goes_on_with_its_last_checkpoint) {
