@@ -4,10 +4,18 @@
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 
+#include "common/service/journal_sink.hpp"
+
 namespace rtd::service {
 
 void init_logging(const std::string& service, const std::string& level) {
-  auto logger = std::make_shared<spdlog::logger>(service, std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+  spdlog::sink_ptr sink;
+  if (stderr_is_journal()) {
+    sink = std::make_shared<JournalSink>(service);
+  } else {
+    sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+  }
+  auto logger = std::make_shared<spdlog::logger>(service, std::move(sink));
   logger->set_pattern("%H:%M:%S.%e %^%l%$ %n %v");
   logger->set_level(spdlog::level::from_str(level));
   logger->flush_on(spdlog::level::info);
