@@ -21,6 +21,7 @@
 #include "common/bus/host/shm_leftovers.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/log.hpp"
+#include "common/service/model_locator.hpp"
 #include "common/service/systemd_link.hpp"
 
 namespace rtd::service {
