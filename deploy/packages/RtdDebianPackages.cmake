@@ -7,7 +7,7 @@ set(maintainer "${RTD_PACKAGE_MAINTAINER}")
 if(NOT maintainer AND DEFINED ENV{DEBFULLNAME} AND DEFINED ENV{DEBEMAIL})
   set(maintainer "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
 elseif(NOT maintainer)
-  set(maintainer "The RTD-SLAM Authors <rtd-slam@localhost.localdomain>")
+  set(maintainer "The RTD-SLAM Authors <rtd-slam@example.org>")
 endif()
 
 set(CPACK_GENERATOR DEB)

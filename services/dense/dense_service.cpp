@@ -68,7 +68,7 @@ service::ExitCode DenseService::run() {
 }
 
 void DenseService::integrate(const JoinedFrame& joined) {
-  const service::TraceSpan span(runtime_.trace, "fuse", joined.result.seq);
+  const service::TraceSpan span(runtime_.trace, "integrate", joined.result.seq);
   update(joined.updates);
   if (const std::string cause = vision::defect(*joined.frame); !cause.empty()) {
     ++totals_.defective;
