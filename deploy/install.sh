@@ -64,6 +64,8 @@ if [ "$action" != install ]; then
   exit 0
 fi
 
+[ -z "$source" ] || [ -d /run/systemd/system ] ||
+  fail "--source starts the services with systemd, which does not run here"
 if [ -z "$packages" ]; then
   packages="$root/build/release/packages"
   compgen -G "$packages/rtd-slam_*.deb" >/dev/null || "$root/deploy/package.sh"
@@ -72,7 +74,7 @@ wanted=(rtd-slam)
 [ "$viewer" -eq 0 ] || wanted+=(rtd-slam-viewer)
 files=()
 for package in "${wanted[@]}"; do
-  newest="$(compgen -G "$packages/${package}_*.deb" | sort -V | tail -1)"
+  newest="$(compgen -G "$packages/${package}_*.deb" | sort -V | tail -1 || true)"
   [ -n "$newest" ] || fail "no $package package in $packages; build it with deploy/package.sh"
   files+=("$(realpath "$newest")")
 done
@@ -96,7 +98,6 @@ if [ -z "$source" ]; then
   echo "install: next: rtd run --source synthetic:office --viewer --out DIR, or deploy/install.sh --source CAMERA to start at boot"
   exit 0
 fi
-[ -d /run/systemd/system ] || fail "--source starts the services with systemd, which does not run here"
 echo "RTD_OPTIONS=--source $source" | as_root tee /etc/rtd-slam/camera.conf >/dev/null
 as_root systemctl enable --now rtd-slam.target rtd-slam@camera rtd-slam@detector rtd-slam@filter rtd-slam@slam
 echo "install: started; next: systemctl status 'rtd-slam@*', docs/operations.md"
