@@ -178,6 +178,10 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--frames", options.frames, "End after this many frames");
   command->add_option("--map", options.map, "Continue the map in this file");
   command->add_option("--save-map", options.save_map, "Map file to write (default: map.rtdmap in the folder of --out)");
+  command->add_option("--base-frame", options.base_frame, "Frame of the robot, with --camera-in-base (base_link)");
+  command->add_option("--camera-in-base", options.camera_in_base,
+                      "Where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw; poses are then those of the "
+                      "base, in a map with z up");
   command->add_flag("--localize-only", options.localize_only,
                     "Only find poses in the map of --map, leave it unchanged");
   command->add_flag("--dense", options.dense, "Also fuse a dense static map: static_map.ply");

@@ -7,6 +7,7 @@
 
 #include "common/service/config.hpp"
 #include "services/slam/core/place/vocabulary.hpp"
+#include "services/slam/robot_base.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -25,8 +26,9 @@ std::vector<std::byte> read_file(const std::string& path) {
 
 }  // namespace
 
-SlamConfig with_vocabulary(const ServiceConfig& config) {
+SlamConfig core_config(const ServiceConfig& config) {
   SlamConfig core = config.core;
+  if (config.base.given()) core.first_pose = parse_mount(config.base.camera);
   if (config.vocabulary_file.empty()) return core;
   try {
     core.place.vocabulary = std::make_shared<const Vocabulary>(Vocabulary::parse(read_file(config.vocabulary_file)));
@@ -37,6 +39,7 @@ SlamConfig with_vocabulary(const ServiceConfig& config) {
 }
 
 void ServiceConfig::validate() const {
+  if (base.given()) parse_mount(base.camera);
   if (!core.localize_only) return;
   if (map.load.empty())
     throw service::ConfigError("slam.map.localize_only needs a map: name its file with --map (slam.map.load)");

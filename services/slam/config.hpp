@@ -20,11 +20,28 @@ struct MapFileConfig {
   }
 };
 
+/// The robot that carries the camera; without it all poses are those of the camera.
+struct BaseConfig {
+  std::string frame = "base_link";
+  std::string camera;
+  bool publish_camera = true;
+
+  void bind(auto& binder) {
+    binder.field("frame", frame, "frame of the robot in odometry, poses and tf, when base.camera is given");
+    binder.field("camera", camera,
+                 "where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw; empty: poses of the camera. The "
+                 "map then begins at the base, with z up");
+    binder.field("publish_camera", publish_camera, "tf also has base -> camera; off where a robot description has it");
+  }
+  bool given() const { return !camera.empty(); }
+};
+
 /// Section `slam` of the configuration.
 struct ServiceConfig {
-  SlamConfig core;  ///< without place.vocabulary, which with_vocabulary() adds
+  SlamConfig core;  ///< without what core_config() adds
   std::string vocabulary_file;
   MapFileConfig map;
+  BaseConfig base;
   std::string out_dir;
   std::string map_frame = "map";
   std::string odom_frame = "odom";
@@ -47,6 +64,7 @@ struct ServiceConfig {
     binder.field("place.vocabulary", vocabulary_file, "file of rtd-train-vocabulary; empty: the built-in one");
     binder.section("loop", core.loop);
     binder.section("map", map);
+    binder.section("base", base);
     binder.field("map.localize_only", core.localize_only, "find poses in the loaded map and leave it as it is");
     binder.field("out", out_dir,
                  "folder for trajectory.txt, keyframes.txt and map.ply, written at the end; empty: none");
@@ -63,8 +81,8 @@ struct ServiceConfig {
   void validate() const;
 };
 
-/// The configuration of the core with the vocabulary of `vocabulary_file`. Throws service::ConfigError naming the file
-/// when it cannot be read or is damaged.
-SlamConfig with_vocabulary(const ServiceConfig& config);
+/// The configuration of the core, with the vocabulary of `vocabulary_file` and the first pose that `base` gives. Throws
+/// service::ConfigError naming the file when it cannot be read or is damaged.
+SlamConfig core_config(const ServiceConfig& config);
 
 }  // namespace rtd::slam

@@ -5,10 +5,19 @@
 #include "common/service/monotonic_clock.hpp"
 
 namespace rtd::slam {
+namespace {
+
+std::optional<RobotBase> base_of(const BaseConfig& config, const bus::Bus& bus) {
+  if (!config.given()) return std::nullopt;
+  return RobotBase{bus.frame(config.frame), parse_mount(config.camera), config.publish_camera};
+}
+
+}  // namespace
 
 SlamPublisher::SlamPublisher(const ServiceConfig& config, bus::Bus& bus, std::function<std::vector<MapPoint>()> points)
     : config_(config),
       names_{bus.frame(config.map_frame), bus.frame(config.odom_frame), bus.frame(config.camera_frame)},
+      base_(base_of(config.base, bus)),
       robot_(bus.robot()),
       points_(std::move(points)),
       keyframes_(bus.writer(bus::topics::kKeyframes)),
@@ -38,8 +47,11 @@ void SlamPublisher::publish(const SlamOutput& output, const msg::TrackingResult&
     return;
   }
   const OdometryPose smooth = to_odometry_frame(result, output.T_map_odom);
-  odometry_.write(make_odometry(smooth, previous_, names_));
-  tf_.write(make_tf(smooth, output.T_map_odom, names_));
+  msg::Odometry odometry = make_odometry(smooth, previous_, names_);
+  msg::TFMessage tf = make_tf(smooth, output.T_map_odom, names_);
+  if (base_) move_to_base(odometry, *base_), move_to_base(tf, *base_);
+  odometry_.write(odometry);
+  tf_.write(tf);
   previous_ = smooth;
   if (measured) publish_pose(result);
 }
@@ -52,6 +64,7 @@ void SlamPublisher::publish_diagnostics(msg::DiagnosticArray diagnostics) {
 
 void SlamPublisher::publish_pose(const msg::TrackingResult& result) {
   msg::PoseStamped pose = make_pose(result, names_);
+  if (base_) move_to_base(pose, *base_);
   pose_.write(pose);
   newest_stamp_ns_ = result.stamp_ns;
   if (!poses_.empty() && poses_.back().header.frame_id != pose.header.frame_id) poses_.clear();  // one path, one frame

@@ -11,6 +11,7 @@
 #include "common/service/runtime.hpp"
 #include "services/slam/config.hpp"
 #include "services/slam/core/slam_system.hpp"
+#include "services/slam/robot_base.hpp"
 #include "services/slam/slam_messages.hpp"
 
 namespace rtd::slam {
@@ -44,6 +45,7 @@ class SlamPublisher {
 
   const ServiceConfig config_;
   const FrameNames names_;
+  const std::optional<RobotBase> base_;
   const std::string robot_;
   const std::function<std::vector<MapPoint>()> points_;
   bus::Writer<msg::KeyframeEvent> keyframes_;

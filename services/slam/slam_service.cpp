@@ -43,6 +43,11 @@ void SlamService::add_options(CLI::App& app, Config& config) {
   app.add_option("--map", config.map.load, "Map file to go on with (slam.map.load)")->multi_option_policy(last);
   app.add_option("--save-map", config.map.save, "Map file to write at the end and at checkpoints (slam.map.save)")
       ->multi_option_policy(last);
+  app.add_option("--base-frame", config.base.frame, "Frame of the robot, with --camera-in-base (slam.base.frame)");
+  app.add_option(
+      "--camera-in-base", config.base.camera,
+      "Where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw; poses are then those of the base, "
+      "in a map with z up (slam.base.camera)");
   app.add_flag("--localize-only", config.core.localize_only,
                "Find poses in the map of --map and leave it as it is (slam.map.localize_only)");
 }
@@ -50,7 +55,7 @@ void SlamService::add_options(CLI::App& app, Config& config) {
 SlamService::SlamService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
-      slam_(with_vocabulary(config), mapping_mode(runtime.pace), service::monotonic_ns, yield_to_tracking),
+      slam_(core_config(config), mapping_mode(runtime.pace), service::monotonic_ns, yield_to_tracking),
       publisher_(config, runtime.bus, [this] { return slam_.map_points(); }),
       map_publisher_(
           runtime.bus, [this] { return slam_.map_view(); }, std::chrono::milliseconds(config.map_changes_period_ms)),
@@ -200,6 +205,7 @@ void SlamService::count(const SlamOutput& output) {
   heartbeat.set_metric("frames_dropped", static_cast<double>(counters_.dropped));
   heartbeat.set_metric("features_invalid", static_cast<double>(counters_.invalid_features));
   heartbeat.set_metric("keyframes", output.result.keyframes);
+  if (config_.base.given()) heartbeat.set_metric("map_z_up", 1);
   heartbeat.set_metric("loops_closed", static_cast<double>(counters_.loops));
   heartbeat.set_metric("landmarks", output.result.landmarks);
   heartbeat.set_metric("readout_ms", 1e3 * slam_.readout_s());

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
 #include <memory>
 
 namespace rtd::slam {
@@ -265,6 +266,8 @@ struct SlamConfig {
   bool localize_only = false;  ///< the map stays as it was loaded
   PlaceConfig place;
   LoopConfig loop;
+  /// T_world_camera of the first frame of each map: says where the world is, and which way is up in it.
+  Eigen::Isometry3d first_pose = Eigen::Isometry3d::Identity();
 };
 
 }  // namespace rtd::slam

@@ -45,7 +45,7 @@ void SlamSystem::start_tracker() {
 }
 
 void SlamSystem::reset() {
-  odometry_.correct(tracker_->T_world_camera(), Eigen::Isometry3d::Identity());  // another world, the same odometry
+  odometry_.correct(tracker_->T_world_camera(), config_.first_pose);  // another world, the same odometry
   mapping_.restart();
   start_tracker();
   unknown_view_.reset();
@@ -136,7 +136,9 @@ TrackOutcome SlamSystem::begin_map(const FrameInput& input) {
   KeyframeProposal first;
   first.frame = input.frame;
   first.landmarks.assign(input.frame->features.size(), kNoLandmark);
-  const Eigen::Isometry3d before = tracker_->T_world_camera();
+  first.T_reference_camera = config_.first_pose;
+  const bool first_map = mapping_.snapshot() == nullptr;
+  const Eigen::Isometry3d before = first_map ? config_.first_pose : tracker_->T_world_camera();
   TrackOutcome outcome = tracker_->initialize(input.frame, mapping_.begin_map(std::move(first)));
   odometry_.correct(before, tracker_->T_world_camera());  // another world, the same odometry
   requested_centre_ = outcome.tracked.reference;

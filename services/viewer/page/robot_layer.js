@@ -32,10 +32,19 @@ export class RobotLayer {
 
   /** True if the picture is another one now. */
   update(now_ms) {
-    let changed = this.#syncMaps();
+    let changed = this.#turnUp();
+    changed = this.#syncMaps() || changed;
     for (const layer of this.layers.values()) changed = layer.update(now_ms) || changed;
     changed = this.#updateCamera() || changed;
     return this.#updateMovers() || changed;
+  }
+
+  /** On the screen y points up; in the world down, or for a robot with a base z points up. */
+  #turnUp() {
+    const turn = this.robot.zUp ? -Math.PI / 2 : Math.PI;
+    if (this.group.rotation.x === turn) return false;
+    this.group.rotation.x = turn;
+    return true;
   }
 
   /**
@@ -68,7 +77,9 @@ export class RobotLayer {
     }
     if (!there) return;
     const { min, max } = map.bounds;
-    this.name.position.set((min[0] + max[0]) / 2, min[1] - this.name.scale.y, (min[2] + max[2]) / 2);
+    const [x, y, z] = [0, 1, 2].map((axis) => (min[axis] + max[axis]) / 2);
+    if (this.robot.zUp) this.name.position.set(x, y, max[2] + this.name.scale.y);
+    else this.name.position.set(x, min[1] - this.name.scale.y, z);
   }
 
   /** T_scene_camera of the newest pose, or null. */

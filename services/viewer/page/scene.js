@@ -36,7 +36,6 @@ export class Scene {
     this.#prepareCanvas();
     this.three = new THREE.Scene();
     this.root = new THREE.Group();
-    this.root.rotation.x = Math.PI;   // in the world y points down, on the screen up
     this.three.add(this.root);
     this.camera = new THREE.PerspectiveCamera(55, 1, 0.02, 3000);
     this.modes = new CameraModes(this.camera, this.canvas, () => this.request());
@@ -201,8 +200,10 @@ export class Scene {
     for (const { bounds, group } of robot.layers.values()) {
       if (!bounds || !group.visible) continue;
       const x = robot.group.position.x + group.position.x;
-      this.bounds.expandByPoint(new THREE.Vector3(bounds.min[0] + x, -bounds.min[1], -bounds.min[2]));
-      this.bounds.expandByPoint(new THREE.Vector3(bounds.max[0] + x, -bounds.max[1], -bounds.max[2]));
+      for (const corner of [bounds.min, bounds.max]) {
+        const point = new THREE.Vector3(...corner).applyEuler(robot.group.rotation);
+        this.bounds.expandByPoint(point.setX(point.x + x));
+      }
     }
   }
 

@@ -31,6 +31,11 @@ export class RobotState {
     this.history = { latency_ms: new Series(), inliers: new Series(), removedShare: new Series(), stage_ms: new Series() };
   }
 
+  /** Whether the world of its maps has z up: that of a robot with a base. */
+  get zUp() {
+    return this.services.find(({ name }) => name === "slam")?.metrics?.map_z_up === 1;
+  }
+
   get title() {
     return this.name === "" ? "robot" : this.name;
   }

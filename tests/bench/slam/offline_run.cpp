@@ -155,7 +155,7 @@ std::pair<std::vector<std::string>, rtd::slam::SlamConfig> split_settings(const 
   for (const std::string& setting : settings) {
     setting.starts_with("slam.") ? binder.set(setting) : filter_settings.push_back(setting);
   }
-  return {filter_settings, rtd::slam::with_vocabulary(slam)};
+  return {filter_settings, rtd::slam::core_config(slam)};
 }
 
 void print_errors(const rtd::test_support::OfflineReport& report) {

@@ -90,6 +90,29 @@ TEST_F(SlamServiceTest, publishes_pose_odometry_and_tf_for_every_frame) {
   EXPECT_TRUE(wait_state(msg::ServiceState::kRunning));
 }
 
+TEST_F(SlamServiceTest, publishes_poses_of_the_robot_when_it_knows_where_the_camera_is) {
+  config_.base.frame = "base_link";
+  config_.base.camera = "0.2,0,0.5,-0.5,0.5,-0.5,0.5";
+  start(service::Pace::kLockstep);
+  for (std::uint64_t seq = 0; seq < 20; ++seq) {
+    step(seq);
+    ASSERT_TRUE(tf_.wait_count(seq + 1));
+    ASSERT_TRUE(odometry_.wait_count(seq + 1));
+  }
+  const auto& start = odometry_.all().front()->pose.pose.position;
+  EXPECT_NEAR(std::hypot(start.x, start.y, start.z), 0, 1e-6) << "the map begins at the base";
+  const msg::Odometry odometry = *odometry_.all().back();
+  EXPECT_EQ(odometry.child_frame_id, "base_link");
+  // The camera of this world moves to its right: the robot, which looks along x, to -y.
+  const double right_m = FeatureWorld::T_world_camera(19).translation().x();
+  ASSERT_GT(right_m, 0.01);
+  EXPECT_LT(odometry.pose.pose.position.y, -0.5 * right_m);
+  const std::vector<msg::TransformStamped> tf = tf_.all().back()->transforms;
+  ASSERT_EQ(tf.size(), 3U);
+  EXPECT_EQ(tf[1].header.frame_id + tf[1].child_frame_id, "odombase_link");
+  EXPECT_EQ(tf[2].header.frame_id + tf[2].child_frame_id, "base_linkcamera_color_optical_frame");
+}
+
 TEST_F(SlamServiceTest, publishes_keyframes_before_the_result_that_counts_them) {
   start(service::Pace::kLockstep);
   for (std::uint64_t seq = 0; seq < 40; ++seq) {

@@ -145,13 +145,13 @@ TEST(Config, refuses_unknown_keys_and_values_out_of_range) {
 
 TEST(SlamConfig, refuses_a_vocabulary_that_is_missing_or_damaged) {
   ServiceConfig config;
-  EXPECT_EQ(with_vocabulary(config).place.vocabulary, nullptr);  // the core takes the built-in one
+  EXPECT_EQ(core_config(config).place.vocabulary, nullptr);  // the core takes the built-in one
   config.vocabulary_file = testing::TempDir() + "rtd_no_such_file.vocabulary";
-  EXPECT_THAT([&] { with_vocabulary(config); },
+  EXPECT_THAT([&] { core_config(config); },
               ThrowsMessage<service::ConfigError>(HasSubstr("slam.place.vocabulary: cannot read")));
   config.vocabulary_file = testing::TempDir() + "rtd_damaged.vocabulary";
   std::ofstream(config.vocabulary_file) << "RTDVOC01 and then something else";
-  EXPECT_THAT([&] { with_vocabulary(config); }, ThrowsMessage<service::ConfigError>(HasSubstr("rtd-train-vocabulary")));
+  EXPECT_THAT([&] { core_config(config); }, ThrowsMessage<service::ConfigError>(HasSubstr("rtd-train-vocabulary")));
 }
 
 }  // namespace

@@ -49,6 +49,26 @@ TEST(SlamSystem, follows_the_camera_through_an_exact_world) {
   }
 }
 
+TEST(SlamSystem, the_first_pose_says_where_the_world_is) {
+  const FeatureWorld world({});
+  SlamConfig config;
+  config.first_pose = geometry::se3_exp((geometry::Vector6d() << 0.2, 0, 0.5, -1.2, 1.2, -1.2).finished());
+  SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);
+  SlamSystem usual(SlamConfig(), MappingMode::kSynchronous, frozen_clock);
+  for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
+    const SlamOutput output = slam.process(*world.view(seq));
+    ASSERT_EQ(output.result.state, TrackingState::kOk) << "frame " << seq << ": " << output.problem;
+    const Eigen::Isometry3d expected = config.first_pose * FeatureWorld::T_world_camera(seq);
+    EXPECT_TRUE(output.result.T_world_camera.isApprox(expected, 2e-3)) << "frame " << seq;
+    EXPECT_TRUE(output.T_map_odom.isApprox(Eigen::Isometry3d::Identity(), 1e-9)) << "odom begins where map does";
+    const double trace = usual.process(*world.view(seq)).result.covariance.trace();
+    EXPECT_NEAR(output.result.covariance.trace(), trace, 0.1 * trace) << "frame " << seq;
+  }
+  slam.reset();
+  const SlamOutput again = slam.process(*world.view(0));
+  EXPECT_TRUE(again.result.T_world_camera.isApprox(config.first_pose, 1e-9)) << "also after a reset";
+}
+
 TEST(SlamSystem, stays_within_a_centimetre_with_noise) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam();

@@ -70,6 +70,7 @@ TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
   last_.landmarks.assign(frame->features.size(), kNoLandmark);
   last_.frame = std::move(frame);
   last_.reference = map->keyframes.front().id;
+  last_.T_world_camera = map->keyframes.front().T_world_camera;
   outcome.tracked = last_;
   outcome.inliers = static_cast<int>(map->landmarks.size());
   motion_.reset();
@@ -218,8 +219,8 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
       config_.sensor.shared_error * tracking.guess.covariance + consistency_.covariance(scene_m_);
   covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
   map_covariance_ = covariance_ - local;
-  outcome.covariance =
-      covariance_ + calibration_covariance(last_.T_world_camera, scene_m_, config_.sensor.calibration_error);
+  outcome.covariance = covariance_ + calibration_covariance(since_first(last_.T_world_camera), scene_m_,
+                                                            config_.sensor.calibration_error);
 }
 
 /// Found by the reference keyframe's descriptors alone, or by hardly any landmark of the last frame, the camera may as
@@ -298,8 +299,9 @@ void Tracker::reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess&
       claimed = measured;
     }
     outcome.tracked.T_world_camera = claimed->T_world_camera;
-    outcome.covariance = config_.sensor.shared_error * claimed->covariance + map_covariance_ +
-                         calibration_covariance(claimed->T_world_camera, scene_m_, config_.sensor.calibration_error);
+    outcome.covariance =
+        config_.sensor.shared_error * claimed->covariance + map_covariance_ +
+        calibration_covariance(since_first(claimed->T_world_camera), scene_m_, config_.sensor.calibration_error);
     outcome.state = state_ = msg::TrackingState::kPredicted;
     return;
   }

@@ -85,6 +85,10 @@ class Tracker {
 
  private:
   TrackingContext context() const { return {config_, now_ns_, statistics_}; }
+  /// The way from where the map began.
+  Eigen::Isometry3d since_first(const Eigen::Isometry3d& T_world_camera) const {
+    return config_.first_pose.inverse() * T_world_camera;
+  }
   Eigen::Isometry3d predict(const Frame& frame) const;
   /// Ways to a first guess of the pose, in the order in which they are tried.
   enum class Attempt { kLastFrame, kKeyframe, kAround, kRecovery };

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/slam/robot_base.hpp"
+
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "common/geometry/se3.hpp"
+#include "common/service/config.hpp"
+
+namespace rtd::slam {
+namespace {
+
+using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+using geometry::Matrix6d;
+
+constexpr double kUnitTolerance = 0.01;  // of a quaternion written with few digits
+constexpr double kFarthestMount_m = 100;
+
+Eigen::Isometry3d to_isometry(const msg::Pose& pose) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() << pose.position.x, pose.position.y, pose.position.z;
+  const msg::Quaternion& q = pose.orientation;
+  T.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).toRotationMatrix();
+  return T;
+}
+
+msg::Pose to_pose(const Eigen::Isometry3d& T) {
+  const Eigen::Quaterniond q(T.linear());
+  const Eigen::Vector3d t = T.translation();
+  return {{t.x(), t.y(), t.z()}, {q.x(), q.y(), q.z(), q.w()}};
+}
+
+msg::Pose of_base(const msg::Pose& camera, const RobotBase& base) {
+  return to_pose(to_isometry(camera) * base.T_base_camera.inverse());
+}
+
+/// Twist of one point of a rigid body -> that of another, both in their own axes: (v, w), docs/theory/se3.md.
+Matrix6d adjoint(const Eigen::Isometry3d& T) {
+  Matrix6d A = Matrix6d::Zero();
+  A.topLeftCorner<3, 3>() = A.bottomRightCorner<3, 3>() = T.linear();
+  A.topRightCorner<3, 3>() = geometry::skew(T.translation()) * T.linear();
+  return A;
+}
+
+void transform_covariance(std::array<double, 36>& covariance, const Matrix6d& J) {
+  Eigen::Map<RowMajor6d> matrix(covariance.data());
+  matrix = (J * Matrix6d(matrix) * J.transpose()).eval();
+}
+
+}  // namespace
+
+Eigen::Isometry3d parse_mount(const std::string& text) {
+  std::array<double, 7> values{};
+  std::istringstream words(text);
+  std::string word;
+  std::size_t count = 0;
+  for (; std::getline(words, word, ','); ++count) {
+    std::size_t used = 0;
+    try {
+      if (count < values.size()) values[count] = std::stod(word, &used);
+    } catch (const std::exception&) {
+      used = 0;
+    }
+    if (count >= values.size() || used != word.size() || !std::isfinite(values[count])) break;
+  }
+  const Eigen::Quaterniond q(values[6], values[3], values[4], values[5]);
+  const Eigen::Vector3d t(values[0], values[1], values[2]);
+  const bool complete = count == values.size() && words.eof();
+  if (!complete || std::abs(q.norm() - 1) > kUnitTolerance || t.norm() > kFarthestMount_m) {
+    throw service::ConfigError(
+        "slam.base.camera=" + text +
+        ": must be x,y,z,qx,qy,qz,qw: where the camera is in the base, m, and how its optical frame (x right, y down, "
+        "z "
+        "forward) is turned, a quaternion of length 1. A camera 0.4 m above the base that looks forward: "
+        "0,0,0.4,-0.5,0.5,-0.5,0.5");
+  }
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = t;
+  T.linear() = q.normalized().toRotationMatrix();
+  return T;
+}
+
+void move_to_base(msg::PoseStamped& pose, const RobotBase& base) {
+  pose.pose = of_base(pose.pose, base);
+}
+
+void move_to_base(msg::Odometry& odometry, const RobotBase& base) {
+  // The base is off the camera by r, in the axes of the world: an error of the rotation swings it.
+  const Eigen::Isometry3d T_odom_camera = to_isometry(odometry.pose.pose);
+  const Eigen::Vector3d r = T_odom_camera.linear() * base.T_base_camera.inverse().translation();
+  Matrix6d lever = Matrix6d::Identity();
+  lever.topRightCorner<3, 3>() = -geometry::skew(r);
+  odometry.pose.pose = of_base(odometry.pose.pose, base);
+  transform_covariance(odometry.pose.covariance, lever);
+
+  auto& [linear, angular] = odometry.twist.twist;
+  const Matrix6d A = adjoint(base.T_base_camera);
+  geometry::Vector6d twist;
+  twist << linear.x, linear.y, linear.z, angular.x, angular.y, angular.z;
+  twist = (A * twist).eval();
+  linear = {twist[0], twist[1], twist[2]};
+  angular = {twist[3], twist[4], twist[5]};
+  transform_covariance(odometry.twist.covariance, A);
+  odometry.child_frame_id = base.frame;
+}
+
+void move_to_base(msg::TFMessage& tf, const RobotBase& base) {
+  msg::TransformStamped& link = tf.transforms.back();
+  const auto set = [](msg::TransformStamped& transform, const msg::Pose& pose) {
+    transform.transform = {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation};
+  };
+  msg::TransformStamped to_camera = link;
+  to_camera.header.frame_id = base.frame;
+  set(to_camera, to_pose(base.T_base_camera));
+  const auto& [t, q] = link.transform;
+  set(link, of_base({{t.x, t.y, t.z}, q}, base));
+  link.child_frame_id = base.frame;
+  if (base.publish_camera) tf.transforms.push_back(std::move(to_camera));
+}
+
+}  // namespace rtd::slam
