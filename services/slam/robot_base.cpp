@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/robot_base.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <sstream>
 
 #include "common/geometry/se3.hpp"
@@ -54,20 +56,16 @@ void transform_covariance(std::array<double, 36>& covariance, const Matrix6d& J)
 Eigen::Isometry3d parse_mount(const std::string& text) {
   std::array<double, 7> values{};
   std::istringstream words(text);
-  std::string word;
-  std::size_t count = 0;
-  for (; std::getline(words, word, ','); ++count) {
-    std::size_t used = 0;
-    try {
-      if (count < values.size()) values[count] = std::stod(word, &used);
-    } catch (const std::exception&) {
-      used = 0;
-    }
-    if (count >= values.size() || used != word.size() || !std::isfinite(values[count])) break;
+  bool complete = std::ranges::count(text, ',') == static_cast<std::ptrdiff_t>(values.size()) - 1;
+  for (double& value : values) {
+    std::string word;
+    std::getline(words, word, ',');
+    char* end = nullptr;
+    value = std::strtod(word.c_str(), &end);
+    complete = complete && !word.empty() && *end == '\0' && std::isfinite(value);
   }
   const Eigen::Quaterniond q(values[6], values[3], values[4], values[5]);
   const Eigen::Vector3d t(values[0], values[1], values[2]);
-  const bool complete = count == values.size() && words.eof();
   if (!complete || std::abs(q.norm() - 1) > kUnitTolerance || t.norm() > kFarthestMount_m) {
     throw service::ConfigError(
         "slam.base.camera=" + text +
