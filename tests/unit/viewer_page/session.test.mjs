@@ -77,3 +77,15 @@ test("a message of a newer server changes nothing", () => {
   session.applyText({ type: "weather", robot: 5 }, 0);
   assert.equal(session.robots.size, 0);
 });
+
+test("slam says whether z is up in its maps", () => {
+  const session = new Session();
+  session.applyText({ type: "robots", robots: [{ index: 0, name: "" }] }, 0);
+  const robot = session.robots.get(0);
+  assert.equal(robot.zUp, false);
+  const slam = { name: "slam", state: "running", message: "", metrics: { map_z_up: 1 }, age_ms: 1 };
+  session.applyText({ type: "status", robot: 0, services: [slam] }, 0);
+  assert.equal(robot.zUp, true);
+  session.applyText({ type: "status", robot: 0, services: [{ ...slam, metrics: {} }] }, 0);
+  assert.equal(robot.zUp, false);
+});
