@@ -30,7 +30,8 @@ def arguments():
     parser.add_argument("--count", default=20, type=int, help="faults (%(default)s)")
     parser.add_argument("--pause", default=6.0, type=float, help="seconds between two faults (%(default)s)")
     parser.add_argument("--faults", default="kill,stop,shm", help="of these, comma-separated (%(default)s)")
-    parser.add_argument("--services", default="camera,filter,slam", help="whom kill and stop meet (%(default)s)")
+    parser.add_argument("--services", default="filter,slam",
+                        help="whom kill and stop meet (%(default)s); a run ends with its camera")
     parser.add_argument("--dds", default="fastdds", help="(%(default)s)")
     parser.add_argument("--domain", default=143, type=int, help="DDS domain (%(default)s)")
     parser.add_argument("--seed", default=1, type=int, help="(%(default)s)")
@@ -80,7 +81,7 @@ def inflict(args, out, process):
     done = []
     for number in range(args.count):
         if process.poll() is not None:
-            sys.exit(f"chaos: rtd run ended after {number} faults with exit code {process.returncode}")
+            sys.exit(f"chaos: rtd run ended after {number} faults with exit code {process.returncode}:\n{process.stdout.read()}")
         fault = chance.choice(args.faults.split(","))
         service = "-" if fault == "shm" else chance.choice(args.services.split(","))
         pid = None if service == "-" else pid_of(out, service)

@@ -163,8 +163,8 @@ class ViewerTest(unittest.TestCase):
 
     @classmethod
     def tearDownClass(cls):
-        assert cls.camera.stop() in (0, 130)
-        code = cls.viewer.stop()
+        camera, code = cls.camera.stop(), cls.viewer.stop()
+        assert camera in (0, 130), f"camera: exit code {camera}"
         assert code == 0, f"exit code {code}: {''.join(cls.viewer.lines)}"
 
     def test_pages(self):
