@@ -28,7 +28,7 @@ struct LauncherConfig {
   void bind(auto& binder) {
     binder.field("max_restarts", max_restarts, {0, 100}, "deaths of a service in a row before it is given up");
     binder.field("first_backoff_ms", first_backoff_ms, {0, 2000},
-                 "pause before the first restart, doubled for each further one");
+                 "pause before the restart of a service that lived for less than 5 s, doubled for each further one");
     binder.field("domain_check_ms", domain_check_ms, {0, 10000},
                  "looking for another run in the same domain before anything starts");
     binder.field("connect_timeout_ms", connect_timeout_ms, {0, 60000},

@@ -120,6 +120,19 @@ TEST_F(SupervisorTest, names_service_and_signal_of_a_death_and_restarts_after_th
   EXPECT_EQ(supervisor.outcome(), RunOutcome::kRunning);
 }
 
+TEST_F(SupervisorTest, restarts_one_that_had_worked_for_long_at_once) {
+  start_all();
+  advance(milliseconds(6000));
+  host.end("slam", {0, 9});
+  advance(milliseconds(0));
+  EXPECT_THAT(told, testing::Contains(HasSubstr("slam died: killed by signal 9 (SIGKILL), restart at once")));
+  EXPECT_EQ(host.started.back(), "slam");
+  EXPECT_EQ(restarts("slam"), 1);
+  host.end("slam", {0, 9});
+  advance(milliseconds(10));
+  EXPECT_THAT(told.back(), HasSubstr("restart in 400 ms")) << "young: the second of its row";
+}
+
 TEST_F(SupervisorTest, a_worker_that_ends_with_0_by_itself_is_restarted_too) {
   start_all();
   host.end("slam", {0, 0});

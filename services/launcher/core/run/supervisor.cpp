@@ -42,9 +42,8 @@ void Supervisor::update(Clock now) {
   for (Child& child : children_) {
     if (child.state == State::kRunning) {
       if (const auto exit = host_.poll_exit(child.process)) on_exit(child, *exit, now);
-    } else if (child.state == State::kWaiting && now >= child.restart_at) {
-      relaunch(child, now);
     }
+    if (child.state == State::kWaiting && now >= child.restart_at) relaunch(child, now);
     if (child.asked && child.state == State::kRunning && now >= child.kill_at && !child.killed) {
       child.killed = true;
       host_.kill(child.process);
@@ -137,7 +136,8 @@ void Supervisor::on_death(Child& child, const ProcessExit& exit, Clock now) {
     report(SupervisorEvent::Kind::kGivenUp, child, what, exit);
     return decide(RunOutcome::kFailed);
   }
-  child.deaths_in_row = now - child.started >= options_.healthy_after ? 1 : child.deaths_in_row + 1;
+  const bool healthy = now - child.started >= options_.healthy_after;
+  child.deaths_in_row = healthy ? 1 : child.deaths_in_row + 1;
   if (child.deaths_in_row > options_.max_restarts_in_row) {
     const bool optional = child.plan.role == ServiceRole::kOptional;
     report(SupervisorEvent::Kind::kGivenUp, child,
@@ -147,10 +147,11 @@ void Supervisor::on_death(Child& child, const ProcessExit& exit, Clock now) {
     if (!optional) decide(RunOutcome::kFailed);
     return;
   }
-  const Clock pause = backoff(options_, child.deaths_in_row);
+  const Clock pause = healthy ? Clock(0) : backoff(options_, child.deaths_in_row);
   child.state = State::kWaiting;
   child.restart_at = now + pause;
-  report(SupervisorEvent::Kind::kDied, child, what + ", restart in " + std::to_string(pause.count()) + " ms", exit);
+  const std::string when = healthy ? "at once" : "in " + std::to_string(pause.count()) + " ms";
+  report(SupervisorEvent::Kind::kDied, child, what + ", restart " + when, exit);
 }
 
 void Supervisor::decide(RunOutcome outcome) {

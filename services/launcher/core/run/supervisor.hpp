@@ -71,9 +71,9 @@ struct ServicePlan {
 
 struct SupervisorOptions {
   int max_restarts_in_row = 5;                   ///< deaths in a row before a service is given up
-  std::chrono::milliseconds first_backoff{200};  ///< pause before the first restart, doubled for each further one
+  std::chrono::milliseconds first_backoff{200};  ///< pause before the restart of one that died young, doubled
   std::chrono::milliseconds max_backoff{2000};
-  std::chrono::milliseconds healthy_after{5000};  ///< a service that lived this long starts a new row
+  std::chrono::milliseconds healthy_after{5000};  ///< a service that lived this long starts a new row, at once
 };
 
 enum class RunOutcome {
