@@ -27,14 +27,13 @@ const kPointVertex = `
   attribute float rated;      // static probability, in the lower byte
   uniform float size;
   uniform int coloring;
-  uniform vec2 depthRange;    // along `down`, m
-  uniform vec3 down;
+  uniform vec2 heightRange;
   uniform vec3 plainColor;
   uniform vec3 ramp[5];
   uniform vec3 movingColor;
   varying vec3 tint;
-  vec3 colorOfDepth(float depth) {
-    float t = 4.0 * clamp((depthRange.y - depth) / (depthRange.y - depthRange.x), 0.0, 1.0);
+  vec3 colorOfHeight(float y) {
+    float t = 4.0 * clamp((heightRange.y - y) / (heightRange.y - heightRange.x), 0.0, 1.0);
     vec3 color = mix(ramp[0], ramp[1], clamp(t, 0.0, 1.0));
     color = mix(color, ramp[2], clamp(t - 1.0, 0.0, 1.0));
     color = mix(color, ramp[3], clamp(t - 2.0, 0.0, 1.0));
@@ -50,7 +49,7 @@ const kPointVertex = `
     vec4 q = texel(${kTexelsPerSlot}.0 * slot + 1.0);
     vec3 p_world = translation.xyz + rotate(q, position * translation.w);
     float staticProbability = mod(rated, 256.0) / 255.0;
-    tint = coloring == 0 ? colorOfDepth(dot(down, p_world))
+    tint = coloring == 0 ? colorOfHeight(p_world.y)
          : coloring == 1 ? mix(movingColor, plainColor, staticProbability) : plainColor;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(p_world, 1.0);
     gl_PointSize = size;
@@ -103,9 +102,9 @@ export class PoseTexture {
 }
 
 /** look: uniforms that all points of the page share (size, coloring, ramp, ...). */
-export function pointMaterial(poseTexture, look, depthRange, down) {
+export function pointMaterial(poseTexture, look, heightRange) {
   return new THREE.ShaderMaterial({
-    uniforms: { ...poseTexture.uniforms, ...look, depthRange, down, opacity: { value: 1 } },
+    uniforms: { ...poseTexture.uniforms, ...look, heightRange, opacity: { value: 1 } },
     vertexShader: kPointVertex, fragmentShader: kFragment,
   });
 }

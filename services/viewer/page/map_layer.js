@@ -17,19 +17,18 @@ const kTrajectoryEvery_ms = 200;
 const kBoundsEvery_ms = 1000;
 
 export class MapLayer {
-  /** look: what all layers share, see scene.js. down: {value: the direction in the world that points down}. */
-  constructor(map, look, down) {
+  /** look: what all layers share, see scene.js. */
+  constructor(map, look) {
     this.map = map;
     this.look = look;
     this.group = new THREE.Group();
     this.bounds = null;
     this.frustumScale = { value: kLeastFrustumScale };
-    this.down = down;
-    this.depthRange = { value: new THREE.Vector2(-1, 1) };
+    this.heightRange = { value: new THREE.Vector2(-1, 1) };
     this.poses = new PoseTexture(map);
     this.pool = new PointPool();
     this.chunks = [];
-    this.pointMaterial = pointMaterial(this.poses, look.points, this.depthRange, down);
+    this.pointMaterial = pointMaterial(this.poses, look.points, this.heightRange);
     this.frustums = this.#anchored(THREE.LineSegments, "keyframes", lineMaterial(this.poses, look.keyframe, 1, this.frustumScale));
     this.covisibility = this.#anchored(THREE.LineSegments, "edges", lineMaterial(this.poses, look.covisibility, 0.5));
     this.loops = this.#anchored(THREE.LineSegments, "edges", lineMaterial(this.poses, look.loop));
@@ -192,14 +191,6 @@ export class MapLayer {
   #updateBounds() {
     this.bounds = mapBounds(this.map);
     this.frustumScale.value = Math.min(1, Math.max(kLeastFrustumScale, keyframeExtent_m(this.map) / kFullSizeExtent_m));
-    this.rangeDepths();
-  }
-
-  /** From the highest point to the lowest. */
-  rangeDepths() {
-    if (!this.bounds) return;
-    const ends_m = [this.bounds.min, this.bounds.max].map((corner) => this.down.value.dot(new THREE.Vector3(...corner)));
-    const top_m = Math.min(...ends_m);
-    this.depthRange.value.set(top_m, Math.max(...ends_m, top_m + 0.1));
+    if (this.bounds) this.heightRange.value.set(this.bounds.min[1], Math.max(this.bounds.max[1], this.bounds.min[1] + 0.1));
   }
 }

@@ -20,7 +20,6 @@ export class RobotLayer {
     this.name = null;             // sprite
     this.drawnName = "";
     this.group = new THREE.Group();
-    this.down = { value: new THREE.Vector3(0, 1, 0) };   // in its world
     this.layers = new Map();      // map id -> MapLayer
     const { positions } = frustumLines([0], kCameraDepth_m);
     const geometry = new THREE.BufferGeometry();
@@ -45,8 +44,6 @@ export class RobotLayer {
     const turn = this.robot.zUp ? -Math.PI / 2 : Math.PI;
     if (this.group.rotation.x === turn) return false;
     this.group.rotation.x = turn;
-    this.down.value.set(0, this.robot.zUp ? 0 : 1, this.robot.zUp ? -1 : 0);
-    for (const layer of this.layers.values()) layer.rangeDepths();
     return true;
   }
 
@@ -120,7 +117,7 @@ export class RobotLayer {
     }
     for (const [id, map] of this.robot.maps) {
       if (this.layers.has(id)) continue;
-      const layer = new MapLayer(map, this.look, this.down);
+      const layer = new MapLayer(map, this.look);
       if (this.visible) layer.show(this.visible);
       this.layers.set(id, layer);
       this.group.add(layer.group);
