@@ -8,7 +8,7 @@
 set -eu
 build="$1"
 [ "$(id -u)" -eq 0 ] || { echo "SKIPPED: needs root for a copy of the file system"; exit 77; }
-for tool in cpack dpkg-deb unshare chroot; do
+for tool in cpack dpkg-deb unshare chroot systemd-sysusers; do
   command -v "$tool" >/dev/null || { echo "SKIPPED: $tool is not installed"; exit 77; }
 done
 if [ "${RTD_IN_NAMESPACE:-}" = "" ]; then
