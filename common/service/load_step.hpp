@@ -24,14 +24,16 @@ struct LoadStep {
   bool coarse_depth_check;   ///< fewer earlier views, fewer proposals for the camera's motion
   double max_detections_hz;  ///< of a detector on this host; 0 = no limit
   double max_jpeg_hz;        ///< JPEG images of the camera on this host; 0 = no limit
+  int first_octave = 0;      ///< features of finer octaves are not looked for
 };
 
-inline constexpr std::array<LoadStep, 5> kLoadSteps{{
+inline constexpr std::array<LoadStep, 6> kLoadSteps{{
     {"", 1.0, false, 0, 0},
     {"70 % of the features, detector and JPEG at 10 Hz", 0.7, false, 10, 10},
     {"70 % of the features, coarser depth check, detector and JPEG at 5 Hz", 0.7, true, 5, 5},
     {"50 % of the features, coarser depth check, detector and JPEG at 5 Hz", 0.5, true, 5, 5},
     {"35 % of the features, coarser depth check, detector and JPEG at 3 Hz", 0.35, true, 3, 3},
+    {"35 % of the features, none of the finest, coarser depth check, detector and JPEG at 3 Hz", 0.35, true, 3, 3, 3},
 }};
 
 /// What the filter on this host asks of the others; full work without one, or with a value that makes no sense.

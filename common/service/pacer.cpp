@@ -47,7 +47,7 @@ PaceDecision Pacer::by_stamp(std::int64_t stamp_ns, std::size_t newer_waiting) {
   } else if (late_ns > config_.max_lateness_ns) {
     *due_ns_ += late_ns;
     decision.shifted_ns = late_ns;
-  } else if (late_ns > config_.period_ns) {
+  } else if (late_ns > config_.late_after_ns) {
     decision.late_ns = late_ns;
     if (newer_waiting > 0) {
       decision.action = PaceAction::kSkipLate;

@@ -26,7 +26,7 @@ struct PacerConfig {
   /// Frames that may be without a result at a time (1: lockstep, 3: asap). 0: by their stamps (realtime).
   int window = 0;
   bool at_once = false;                             ///< realtime: a running camera, whose frames are never early
-  std::int64_t period_ns = 33'333'333;              ///< realtime: a frame later than this is skipped for a newer one
+  std::int64_t late_after_ns = 33'333'333;          ///< realtime: a frame later than this is skipped for a newer one
   std::int64_t max_gap_ns = 1'000'000'000;          ///< realtime: longest pause between two stamps that is played
   std::int64_t max_lateness_ns = 500'000'000;       ///< realtime: beyond this the timeline is shifted, not skipped
   std::int64_t resend_after_ns = 2'000'000'000;     ///< window: silence after which the frames in flight are sent again
@@ -44,7 +44,7 @@ enum class PaceAction {
 struct PaceDecision {
   PaceAction action = PaceAction::kSend;
   std::int64_t wait_ns = 0;
-  std::int64_t late_ns = 0;     ///< realtime: how far the frame is behind its time, when more than one period
+  std::int64_t late_ns = 0;     ///< realtime: how far the frame is behind its time, when more than late_after_ns
   std::int64_t cut_gap_ns = 0;  ///< realtime: how much of the pause before this frame is left out
   std::int64_t shifted_ns = 0;  ///< realtime: how much the timeline was shifted because the source is too slow
 };

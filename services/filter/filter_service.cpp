@@ -13,12 +13,15 @@
 #include "common/vision/rgbd_image.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
 #include "services/filter/filter_messages.hpp"
+#include "services/filter/processor_quota.hpp"
 
 namespace rtd::filter {
 namespace {
 
 constexpr std::size_t kRealtimeQueue = 2, kEveryFrameQueue = 8;
 constexpr std::chrono::milliseconds kStatePeriod{50};
+constexpr int kLastLoadStep = static_cast<int>(service::kLoadSteps.size()) - 1;
+constexpr double kFullWorkCores = 0.9;  // camera, filter and slam at 30 Hz, without a detector
 constexpr std::int64_t kSourceGoneAfterNs = 1'000'000'000;
 constexpr std::int64_t kDetectorSilentNs = 450'000'000;  // two heartbeats missed: reported within half a second
 constexpr std::int64_t kPatienceNs = 1'500'000'000;      // before a silent heartbeat ends the wait for detections
@@ -38,8 +41,9 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
       frames_(runtime.pace == service::Pace::kRealtime
                   ? std::make_shared<Frames>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
                   : std::make_shared<Frames>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
-      load_(LoadLimits{}, static_cast<int>(service::kLoadSteps.size()) - 1) {
+      load_(LoadLimits{}, kLastLoadStep, first_load_step()) {
   cv::setNumThreads(1);
+  if (load_.step() > 0) follow_load_step();
   runtime.stop.on_stop([frames = frames_, prepared = prepared_, detections = detections_, feedback = feedback_] {
     frames->close();
     prepared->close();
@@ -234,15 +238,33 @@ void FilterService::apply_slam_feedback() {
   }
 }
 
+/// Most frames of the first second would be lost until step after step is shed.
+int FilterService::first_load_step() const {
+  const double cores = usable_cores();
+  if (!sheds_load() || cores >= kFullWorkCores) return 0;
+  SPDLOG_WARN("event=load_shed step={} effect=\"{}\" cause=\"{:.2g} cores at most for this service\"", kLastLoadStep,
+              service::kLoadSteps.back().name, cores);
+  return kLastLoadStep;
+}
+
 /// Only at pace realtime is a late pose a sign of too much work, and never a matter of results that must be repeatable.
+bool FilterService::sheds_load() const {
+  return runtime_.pace == service::Pace::kRealtime && config_.shed_load;
+}
+
+void FilterService::follow_load_step() {
+  const service::LoadStep& step = service::kLoadSteps[static_cast<std::size_t>(load_.step())];
+  filter_.set_effort({step.feature_share, step.coarse_depth_check, step.first_octave});
+  runtime_.heartbeat.set_metric(service::kLoadStepMetric, load_.step());
+}
+
 void FilterService::watch_load(const msg::TrackingResult& result) {
-  if (runtime_.pace != service::Pace::kRealtime || !config_.shed_load) return;
+  if (!sheds_load()) return;
   const int before = load_.step();
   const double latency_ms = static_cast<double>(result.finished_ns - result.published_ns) * 1e-6;
   if (!load_.add(result.seq, latency_ms, service::monotonic_ns())) return;
+  follow_load_step();
   const service::LoadStep& step = service::kLoadSteps[static_cast<std::size_t>(load_.step())];
-  filter_.set_effort({step.feature_share, step.coarse_depth_check});
-  runtime_.heartbeat.set_metric(service::kLoadStepMetric, load_.step());
   if (load_.step() > before) {
     SPDLOG_WARN("event=load_shed step={} effect=\"{}\" cause=\"{} of {} frames late or missing\"", load_.step(),
                 step.name, load_.burdened(), load_.window());

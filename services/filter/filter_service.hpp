@@ -57,6 +57,9 @@ class FilterService {
   void prepare_frames();
   std::optional<Work> next_frame();
   void process(Work work);
+  int first_load_step() const;
+  bool sheds_load() const;
+  void follow_load_step();
   void watch_load(const msg::TrackingResult& result);
   bool accept(const msg::FrameView& frame);
   void publish_no_features(const msg::FrameView& frame, const std::string& cause);

@@ -64,7 +64,7 @@ DynamicFilter::DynamicFilter(const FilterConfig& config, std::function<std::int6
 
 Extraction DynamicFilter::extract(const vision::RgbdImage& image) {
   StageClock clock(now_ns_);
-  std::vector<msg::Feature> features = extractor_.extract(image, wanted_features_);
+  std::vector<msg::Feature> features = extractor_.extract(image, wanted_features_, first_octave_);
   clock.finish(msg::kStageExtract);
   return {std::move(features), clock.times_ms()[msg::kStageExtract]};
 }
@@ -112,6 +112,7 @@ void DynamicFilter::set_mode(FilterMode mode) {
 
 void DynamicFilter::set_effort(const Effort& effort) {
   effort_ = effort;
+  first_octave_ = effort.first_octave;
   judge_->set_coarse(effort.coarse_depth_check);
   choose_feature_count();
 }

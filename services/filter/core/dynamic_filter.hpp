@@ -33,6 +33,7 @@ struct Extraction {
 struct Effort {
   double feature_share = 1;         ///< of orb.feature_count
   bool coarse_depth_check = false;  ///< fewer earlier views, fewer proposals for the camera's motion
+  int first_octave = 0;             ///< no features of finer ones
 };
 
 /// Separates the static world from what moves: which features slam may use, and how much each of them counts. The
@@ -90,7 +91,7 @@ class DynamicFilter {
   std::unique_ptr<ModeJudge> judge_;
   Effort effort_;
   bool something_masked_ = true;  ///< in the last frame; the first is treated as if
-  std::atomic<int> wanted_features_{0};
+  std::atomic<int> wanted_features_{0}, first_octave_{0};
 };
 
 }  // namespace rtd::filter

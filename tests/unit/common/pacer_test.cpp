@@ -18,7 +18,7 @@ class PacerTest : public ::testing::Test {
   Pacer pacer(int window) {
     PacerConfig config;
     config.window = window;
-    config.period_ns = 33 * kMs;
+    config.late_after_ns = 33 * kMs;
     return Pacer(config, [this] { return now_ns_; });
   }
   std::int64_t now_ns_ = 500 * kS;
@@ -34,7 +34,7 @@ TEST_F(PacerTest, RealtimeFollowsTheStamps) {
   EXPECT_EQ(pacer.next(7 * kS + 33 * kMs).action, PaceAction::kSend);
 }
 
-TEST_F(PacerTest, RealtimeSkipsAndCountsFramesLaterThanOnePeriod) {
+TEST_F(PacerTest, RealtimeSkipsAndCountsLateFrames) {
   Pacer pacer = this->pacer(0);
   pacer.next(0);
   now_ns_ += 100 * kMs;  // the frames of 33 and 66 ms are late; by 67 and 34 ms

@@ -24,7 +24,8 @@ struct LoadLimits {
 /// are arguments. One thread.
 class LoadWatch {
  public:
-  LoadWatch(const LoadLimits& limits, int steps) : limits_(limits), steps_(steps) {}
+  /// `first`: the step to begin with, for a computer that is known to be slow.
+  LoadWatch(const LoadLimits& limits, int steps, int first = 0) : limits_(limits), steps_(steps), step_(first) {}
 
   /// A pose has come back. Frames that are missing between two poses count as burdened; a gap that is longer than the
   /// window is a pause, not a burden. True when step() has changed.
@@ -41,7 +42,7 @@ class LoadWatch {
 
   LoadLimits limits_;
   int steps_;
-  int step_ = 0;
+  int step_;
   int burdened_ = 0;
   std::optional<std::uint64_t> last_seq_;
   std::deque<bool> recent_;  ///< whether each of the last frames was burdened

@@ -59,7 +59,7 @@ cv::Point2f UndistortionTable::undistort(cv::Point2f raw_pixel) const {
   return (upper[0] * (1 - fx) + upper[1] * fx) * (1 - fy) + (lower[0] * (1 - fx) + lower[1] * fx) * fy;
 }
 
-void ImagePyramid::build(const cv::Mat& image) {
+void ImagePyramid::build(const cv::Mat& image, int first_level) {
   size_ = image.size();
   if (image.channels() == 3) {
     cv::cvtColor(image, images_[0], cv::COLOR_BGR2GRAY);
@@ -70,11 +70,14 @@ void ImagePyramid::build(const cv::Mat& image) {
       msg::feature_scale(static_cast<std::uint32_t>(size_.width), static_cast<std::uint32_t>(size_.height));
   if (enlarged > 1) cv::resize(images_[0], images_[0], {}, enlarged, enlarged, cv::INTER_CUBIC);
   double scale = 1.0;
+  std::size_t from = 0;
   for (std::size_t level = 1; level < images_.size(); ++level) {
     scale *= scale_factor_;
+    if (level < static_cast<std::size_t>(first_level)) continue;
     const cv::Size size(std::max(1, static_cast<int>(std::lround(images_[0].cols / scale))),
                         std::max(1, static_cast<int>(std::lround(images_[0].rows / scale))));
-    cv::resize(images_[level - 1], images_[level], size, 0, 0, cv::INTER_LINEAR);
+    cv::resize(images_[from], images_[level], size, 0, 0, cv::INTER_LINEAR);
+    from = level;
   }
 }
 
@@ -89,14 +92,15 @@ OrbExtractor::OrbExtractor(const OrbConfig& config) : config_(config), pyramid_(
   brief_pattern();  // made now, not within the first frame
 }
 
-std::vector<msg::Feature> OrbExtractor::extract(const vision::RgbdImage& image, int feature_count) {
-  pyramid_.build(image.color_bgr);
+std::vector<msg::Feature> OrbExtractor::extract(const vision::RgbdImage& image, int feature_count, int first_level) {
+  first_level = std::clamp(first_level, 0, pyramid_.levels() - 1);
+  pyramid_.build(image.color_bgr, first_level);
   undistortion_.fit(image.camera);
   std::vector<msg::Feature> features;
   features.reserve(static_cast<std::size_t>(feature_count + 3 * config_.levels));
-  const std::vector<int> wanted = share_of_levels(feature_count, config_.levels, config_.scale_factor);
-  for (int level = 0; level < pyramid_.levels(); ++level)
-    append_level(image, level, wanted[static_cast<std::size_t>(level)], features);
+  const std::vector<int> wanted = share_of_levels(feature_count, pyramid_.levels() - first_level, config_.scale_factor);
+  for (int level = first_level; level < pyramid_.levels(); ++level)
+    append_level(image, level, wanted[static_cast<std::size_t>(level - first_level)], features);
   if (features.size() > msg::kMaxFeatures) features.resize(msg::kMaxFeatures);
   return features;
 }

@@ -34,8 +34,8 @@ class ImagePyramid {
   ImagePyramid(int levels, double scale_factor)
       : scale_factor_(scale_factor), images_(static_cast<std::size_t>(levels)) {}
 
-  /// `image`: CV_8UC3 (BGR) or CV_8UC1.
-  void build(const cv::Mat& image);
+  /// `image`: CV_8UC3 (BGR) or CV_8UC1. Levels between 0 and `first_level` are left as they are.
+  void build(const cv::Mat& image, int first_level = 0);
 
   int levels() const { return static_cast<int>(images_.size()); }
   const cv::Mat& image(int level) const { return images_[static_cast<std::size_t>(level)]; }
@@ -59,8 +59,9 @@ class OrbExtractor {
   /// About config.feature_count features (never more than msg::kMaxFeatures), each with static_probability 1, no flags,
   /// no object.
   std::vector<msg::Feature> extract(const vision::RgbdImage& image) { return extract(image, config_.feature_count); }
-  /// The same with another number of wanted features.
-  std::vector<msg::Feature> extract(const vision::RgbdImage& image, int feature_count);
+  /// The same with another number of wanted features, and without those of the levels below `first_level`: the
+  /// finest levels cost most of the time, and their features are the most precise.
+  std::vector<msg::Feature> extract(const vision::RgbdImage& image, int feature_count, int first_level = 0);
 
   const OrbConfig& config() const { return config_; }
 

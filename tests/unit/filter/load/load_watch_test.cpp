@@ -115,5 +115,12 @@ TEST_F(LoadWatchTest, forgets_the_long_wait_after_a_long_good_time) {
   EXPECT_NEAR(seconds_until_less(), LoadLimits{}.calm_s, 1.0);
 }
 
+TEST_F(LoadWatchTest, a_slow_computer_begins_with_its_step_and_takes_it_back_where_it_can) {
+  watch_ = LoadWatch(LoadLimits{}, kSteps, kSteps);
+  EXPECT_EQ(watch_.step(), kSteps);
+  EXPECT_NEAR(seconds_until_less(), LoadLimits{}.calm_s, 0.2);
+  EXPECT_EQ(watch_.step(), kSteps - 1);
+}
+
 }  // namespace
 }  // namespace rtd::filter

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "common/vision/features.hpp"
@@ -36,6 +38,21 @@ TEST(OrbExtractor, gives_the_wanted_number_on_textured_images) {
   OrbExtractor extractor{OrbConfig{}};
   EXPECT_NEAR(static_cast<double>(extractor.extract(rgbd_image(textured_image())).size()), 1000, 20);
   EXPECT_NEAR(static_cast<double>(extractor.extract(rgbd_image(textured_image()), 1500).size()), 1500, 20);
+}
+
+TEST(OrbExtractor, leaves_out_fine_octaves_and_finds_the_same_places_in_the_others) {
+  OrbExtractor extractor{OrbConfig{}}, coarse_extractor{OrbConfig{}};
+  const std::vector<msg::Feature> all = extractor.extract(rgbd_image(textured_image()), 1000);
+  const std::vector<msg::Feature> coarse = coarse_extractor.extract(rgbd_image(textured_image()), 400, 3);
+  EXPECT_NEAR(static_cast<double>(coarse.size()), 400, 20);
+  std::size_t known = 0;
+  for (const msg::Feature& feature : coarse) {
+    ASSERT_GE(feature.octave, 3);
+    known += std::ranges::any_of(all, [&feature](const msg::Feature& other) {
+      return other.octave >= 2 && std::hypot(other.u_px - feature.u_px, other.v_px - feature.v_px) < 3;
+    });
+  }
+  EXPECT_GT(known, coarse.size() / 2) << "the pyramid without its fine levels shows the same image";
 }
 
 TEST(OrbExtractor, gives_the_same_bits_twice) {
