@@ -1,61 +1,141 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""Does harm to the services of a run, at random but repeatably, and prints how soon they are back.
+"""Harms the services of a run, at random but repeatably, and prints how soon poses are back.
 
-Faults: kill (SIGKILL), stop (SIGSTOP for two seconds), shm (/dev/shm full for two seconds)."""
+Faults: kill (SIGKILL), stop (SIGSTOP), shm (/dev/shm full), disk (the disk of the map full), clock (a step of up to an
+hour), link (loopback down). All but kill and clock last two seconds. As root, everything happens in namespaces of this
+program: neither the network nor the memory of the host is touched. Without root, disk and link are left out."""
 import argparse
 import json
+import mmap
 import os
 import pathlib
 import random
 import re
 import signal
 import statistics
+import struct
 import subprocess
 import sys
 import tempfile
 import time
 
+FAULTS = ("kill", "stop", "shm", "disk", "clock", "link")
+NEED_ROOT = {"disk", "link"}
+SERVICES = ("camera", "filter", "slam", "dense")
 SPAN_S = 2.0          # of a fault that lasts
-WARM_UP_S = 8.0
+WARM_UP_S = 8.0       # until the first checkpoint is there
 LEAST_POSES = 0.95    # share of the frames outside of the faults' own spans
 FAULT_SPAN_S = 3.0    # a fault and what it may cost
+UNWRITTEN_S = 1.1     # of the trace, when a process is killed
+LARGEST_STEP_S = 3600
+DISK_MB = 256
+SHARED_MEMORY_MB = 1024
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", default="build/release/bin", type=pathlib.Path, help="folder of rtd (%(default)s)")
-    parser.add_argument("--source", default="synthetic:office?frames=0", help="endless (%(default)s)")
+    parser.add_argument("--source", default="synthetic:office?motion=tour&frames=0", help="endless (%(default)s)")
     parser.add_argument("--count", default=20, type=int, help="faults (%(default)s)")
+    parser.add_argument("--minutes", default=0, type=float, help="instead of --count: faults until this time is over")
     parser.add_argument("--pause", default=6.0, type=float, help="seconds between two faults (%(default)s)")
-    parser.add_argument("--faults", default="kill,stop,shm", help="of these, comma-separated (%(default)s)")
-    parser.add_argument("--services", default="filter,slam",
-                        help="whom kill and stop meet (%(default)s); a run ends with its camera")
+    parser.add_argument("--faults", default=",".join(FAULTS), help="of these, comma-separated (%(default)s)")
+    parser.add_argument("--services", default=",".join(SERVICES),
+                        help="which ones are killed and stopped (%(default)s); detector needs its weights")
     parser.add_argument("--dds", default="fastdds", help="(%(default)s)")
     parser.add_argument("--domain", default=143, type=int, help="DDS domain (%(default)s)")
     parser.add_argument("--seed", default=1, type=int, help="(%(default)s)")
     parser.add_argument("options", nargs="*", metavar="-- OPTION", help="of rtd run")
-    return parser.parse_args()
+    args = parser.parse_args()
+    args.faults, args.services = args.faults.split(","), args.services.split(",")
+    if unknown := set(args.faults) - set(FAULTS):
+        parser.error(f"--faults: unknown {', '.join(sorted(unknown))}; use {', '.join(FAULTS)}")
+    if unknown := set(args.services) - {*SERVICES, "detector"}:
+        parser.error(f"--services: unknown {', '.join(sorted(unknown))}; use {', '.join(SERVICES)}, detector")
+    args.clock_library = args.bin.parent / "bench/librtd_clock_step.so"
+    if "clock" in args.faults and not args.clock_library.exists():
+        parser.error(f"--faults clock needs {args.clock_library}: build the target rtd_clock_step, or leave clock out")
+    return args
 
 
-def pid_of(out, service):
-    log = pathlib.Path(out, "logs", f"{service}.log").read_text(encoding="utf-8", errors="replace")
-    return int(re.findall(r"event=started .*?pid=(\d+)", log)[-1])
+def enter_namespaces(args):
+    """Starts this program again with a network, a /dev/shm and mounts of its own."""
+    if os.geteuid() != 0:
+        args.faults = [fault for fault in args.faults if fault not in NEED_ROOT]
+        print("chaos: not root: without the faults disk and link", flush=True)
+    elif "RTD_IN_NAMESPACE" not in os.environ:
+        os.environ["RTD_IN_NAMESPACE"] = "1"
+        os.execvp("unshare", ["unshare", "-n", "-m", "--propagation", "private", sys.executable, "-B", *sys.argv])
+    else:
+        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={SHARED_MEMORY_MB}m", "tmpfs", "/dev/shm"], check=True)
+        subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
 
 
-def memory_mb(pids):
-    total = 0
-    for pid in pids:
-        status = pathlib.Path(f"/proc/{pid}/status").read_text(encoding="utf-8")
-        total += int(re.search(r"VmRSS:\s+(\d+)", status)[1])
-    return total / 1024
+class Run:
+    """An `rtd run` and what can be done to it."""
+
+    def __init__(self, args, folder):
+        self.args, self.out = args, folder + "/out"
+        self.disk, self.step, self.trace = (pathlib.Path(folder, name) for name in ("disk", "step", "trace.json"))
+        self.disk.mkdir()
+        if os.geteuid() == 0:
+            subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={DISK_MB}m", "tmpfs", str(self.disk)], check=True)
+        self.step.write_bytes(bytes(8))
+        command = [str(args.bin / "rtd"), "run", "--source", args.source, "--out", self.out, "--domain", str(args.domain),
+                   "--dds", args.dds, "--quiet", "--trace", str(self.trace), "--save-map", str(self.disk / "room.rtdmap"),
+                   "--set", "slam.map.checkpoint_s=5", *args.options]
+        if "detector" not in args.services:
+            command += ["--detector", "off"]
+        if "dense" in args.services:
+            command += ["--dense"]
+        environment = dict(os.environ)
+        if "clock" in args.faults:
+            environment |= {"LD_PRELOAD": str(args.clock_library.resolve()), "RTD_CLOCK_STEP_FILE": str(self.step)}
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                        env=environment)
+
+    def log(self, service):
+        return pathlib.Path(self.out, "logs", f"{service}.log").read_text(encoding="utf-8", errors="replace")
+
+    def pid_of(self, service):
+        return int(re.findall(r"event=started .*?pid=(\d+)", self.log(service))[-1])
+
+    def memory_mb(self):
+        """Of each service, without pages of shared memory and files."""
+        sizes = {}
+        for service in self.args.services:
+            status = pathlib.Path(f"/proc/{self.pid_of(service)}/status").read_text(encoding="utf-8")
+            sizes[service] = int(re.search(r"RssAnon:\s+(\d+)", status)[1]) / 1024
+        return sizes
+
+    def harm(self, fault, pid, chance):
+        if fault == "kill":
+            os.kill(pid, signal.SIGKILL)
+        elif fault == "stop":
+            os.kill(pid, signal.SIGSTOP)
+            time.sleep(SPAN_S)
+            os.kill(pid, signal.SIGCONT)
+        elif fault == "clock":
+            with self.step.open("r+b") as file, mmap.mmap(file.fileno(), 8) as offset:
+                offset[:8] = struct.pack("<q", int(chance.uniform(-LARGEST_STEP_S, LARGEST_STEP_S) * 1e9))
+        elif fault == "link":
+            subprocess.run(["ip", "link", "set", "lo", "down"], check=True)
+            time.sleep(SPAN_S)
+            subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
+        else:
+            fill("/dev/shm" if fault == "shm" else self.disk)
+
+    def stop(self):
+        self.process.send_signal(signal.SIGINT)
+        return self.process.communicate(timeout=120)[0]
 
 
-def fill_shared_memory():
-    """Leaves a few pages, as a program with a leak would."""
-    place = os.statvfs("/dev/shm")
-    descriptor, path = tempfile.mkstemp(dir="/dev/shm", prefix="rtd_chaos_")
+def fill(folder):
+    """Leaves a few pages for SPAN_S, as a program with a leak would."""
+    place = os.statvfs(folder)
+    descriptor, path = tempfile.mkstemp(dir=folder, prefix="rtd_chaos_")
     try:
         os.posix_fallocate(descriptor, 0, max(place.f_bavail * place.f_frsize - 65536, 1))
         time.sleep(SPAN_S)
@@ -64,49 +144,54 @@ def fill_shared_memory():
         os.unlink(path)
 
 
-def harm(fault, pid):
-    if fault == "kill":
-        os.kill(pid, signal.SIGKILL)
-    elif fault == "stop":
-        os.kill(pid, signal.SIGSTOP)
-        time.sleep(SPAN_S)
-        os.kill(pid, signal.SIGCONT)
-    else:
-        fill_shared_memory()
+def show_memory(run, when):
+    sizes = run.memory_mb()
+    print(f"chaos: {when}: " + ", ".join(f"{name} {size:.0f} MB" for name, size in sizes.items()), flush=True)
 
 
-def inflict(args, out, process):
+def inflict(args, run):
     """The faults that were done: (fault, service, pid, time in ns)."""
     chance = random.Random(args.seed)
-    done = []
-    for number in range(args.count):
-        if process.poll() is not None:
-            sys.exit(f"chaos: rtd run ended after {number} faults with exit code {process.returncode}:\n{process.stdout.read()}")
-        fault = chance.choice(args.faults.split(","))
-        service = "-" if fault == "shm" else chance.choice(args.services.split(","))
-        pid = None if service == "-" else pid_of(out, service)
+    started, shown, done = time.monotonic(), time.monotonic(), []
+    while len(done) < args.count if args.minutes == 0 else time.monotonic() - started < 60 * args.minutes:
+        if run.process.poll() is not None:
+            sys.exit(f"chaos: rtd run ended after {len(done)} faults with exit code {run.process.returncode}:\n"
+                     f"{run.process.stdout.read()}")
+        fault = chance.choice(args.faults)
+        service = chance.choice(args.services) if fault in ("kill", "stop") else ""
+        pid = run.pid_of(service) if service else None
         done.append((fault, service, pid, time.monotonic_ns()))
-        print(f"chaos: {number + 1} of {args.count}: {fault} {service}", flush=True)
-        harm(fault, pid)
+        print(f"chaos: {(time.monotonic() - started) / 60:.1f} min: {fault} {service}", flush=True)
+        run.harm(fault, pid, chance)
         time.sleep(args.pause * chance.uniform(0.7, 1.3))
+        if time.monotonic() - shown > 600:
+            show_memory(run, f"{(time.monotonic() - started) / 60:.0f} min")
+            shown = time.monotonic()
     return done
 
 
 class Trace:
-    """What `rtd run --trace` wrote: spans by process, poses in order."""
+    """What `rtd run --trace` wrote, one event a line: beginnings of processes, frames sent, poses."""
 
     def __init__(self, path):
-        events = json.loads(path.read_text(encoding="utf-8"))["traceEvents"]
-        self.names = {event["pid"]: event["args"]["name"] for event in events if event["ph"] == "M"}
-        ways = [event for event in events if event["name"] == "camera to pose"]
-        self.frames = sorted(event["ts"] * 1e3 for event in events if event["name"] == "publish"
-                             and self.names[event["pid"]] == "rtd-camera")
-        pairs = zip(ways[::2], ways[1::2])  # written together; frame numbers repeat once a camera has started again
-        self.poses = sorted((begin["ts"] * 1e3, end["ts"] * 1e3) for begin, end in pairs)
-        self.first = {}
-        for event in events:
-            if "ts" in event:
-                self.first[event["pid"]] = min(self.first.get(event["pid"], float("inf")), event["ts"] * 1e3)
+        self.first, self.frames, self.poses, names, begun = {}, [], [], {}, {}
+        with path.open(encoding="utf-8") as lines:
+            events = (json.loads(line.strip(",\n")) for line in lines if '"ph"' in line)
+            for event in events:
+                pid, at_ns = event["pid"], event.get("ts", 0) * 1e3
+                if event["ph"] == "M":
+                    names[pid] = event["args"]["name"]
+                    continue
+                self.first[pid] = min(self.first.get(pid, float("inf")), at_ns)
+                if event["name"] == "publish" and names[pid] == "rtd-camera":
+                    self.frames.append(at_ns)
+                elif event["name"] == "camera to pose" and event["ph"] == "b":
+                    begun[pid] = at_ns
+                elif event["name"] == "camera to pose":
+                    self.poses.append((begun[pid], at_ns))  # both are written together
+        self.names = names
+        self.frames.sort()
+        self.poses.sort()
 
     def pose_after_s(self, at_ns):
         """Until the pose of a frame that was taken afterwards."""
@@ -120,7 +205,7 @@ class Trace:
 
     def share_with_pose(self, faults):
         """Of the frames outside of the faults' spans."""
-        spans = [(at - 1e8, at + FAULT_SPAN_S * 1e9) for _, _, _, at in faults]
+        spans = [(at - UNWRITTEN_S * 1e9, at + FAULT_SPAN_S * 1e9) for _, _, _, at in faults]
         outside = [at for at in self.frames if not any(begin < at < end for begin, end in spans)]
         posed = {round(begin / 1e6) for begin, _ in self.poses}
         near = [at for at in outside if any(round(at / 1e6) + shift in posed for shift in range(-2, 12))]
@@ -133,40 +218,39 @@ def row(what, values):
     print(f"{what:28} n {len(values):3}   median {statistics.median(values):6.2f} s   p99 {late:6.2f} s", flush=True)
 
 
-def report(trace, faults, out):
+def report(run, trace, faults):
+    """Prints the figures; true when they are good enough."""
     for fault, service in sorted({(fault, service) for fault, service, _, _ in faults}):
         those = [one for one in faults if one[:2] == (fault, service)]
+        name = f"{fault} {service}".strip()
         if fault == "kill":
-            row(f"kill {service}: works again", [trace.back_after_s(service, pid, at) for _, _, pid, at in those])
-        lasting_ns = 0 if fault == "kill" else SPAN_S * 1e9
-        row(f"{fault} {service}: next pose", [trace.pose_after_s(at + lasting_ns) for _, _, _, at in those])
-    share = trace.share_with_pose(faults)
-    log = pathlib.Path(out, "logs", "slam.log").read_text(encoding="utf-8", errors="replace")
-    print(f"frames with pose outside of the faults' spans {100 * share:.1f} %; maps begun {log.count('event=map_started')}, "
+            row(f"{name}: works again", [trace.back_after_s(service, pid, at) for _, _, pid, at in those])
+        lasting_ns = 0 if fault in ("kill", "clock") else SPAN_S * 1e9
+        row(f"{name}: next pose", [trace.pose_after_s(at + lasting_ns) for _, _, _, at in those])
+    share, log = trace.share_with_pose(faults), run.log("slam")
+    maps = log.count("event=map_started")
+    print(f"frames with pose outside of the faults' spans {100 * share:.1f} %; maps begun {maps}, "
           f"loaded and found again {log.count('event=relocalized')}")
-    return share >= LEAST_POSES
+    return share >= LEAST_POSES and maps == 1
 
 
 def main():
     args = arguments()
+    enter_namespaces(args)
     with tempfile.TemporaryDirectory(prefix="rtd_chaos_") as folder:
-        out, trace = folder + "/out", pathlib.Path(folder, "trace.json")
-        command = [str(args.bin / "rtd"), "run", "--source", args.source, "--out", out, "--domain", str(args.domain), "--dds",
-                   args.dds, "--detector", "off", "--quiet", "--trace", str(trace), "--set", "slam.map.checkpoint_s=5",
-                   *args.options]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
-            try:
-                time.sleep(WARM_UP_S)
-                services = args.services.split(",")
-                before_mb = memory_mb(pid_of(out, service) for service in services)
-                faults = inflict(args, out, process)
-                after_mb = memory_mb(pid_of(out, service) for service in services)
-            finally:
-                process.send_signal(signal.SIGINT)
-                output, _ = process.communicate(timeout=60)
-        print(f"memory of {', '.join(services)}: {before_mb:.0f} MB before, {after_mb:.0f} MB after")
-        if not report(Trace(trace), faults, out):
-            sys.exit(f"chaos: too few poses\n{output}")
+        run = Run(args, folder)
+        try:
+            time.sleep(WARM_UP_S)
+            show_memory(run, "before")
+            faults = inflict(args, run)
+            show_memory(run, "after")
+        finally:
+            output = run.stop()
+        good = report(run, Trace(run.trace), faults)
+        if os.geteuid() == 0:
+            subprocess.run(["umount", "-l", str(run.disk)], check=True)
+        if not good:
+            sys.exit(f"chaos: too few poses, or a map was lost\n{output}")
 
 
 if __name__ == "__main__":

@@ -197,7 +197,10 @@ void SlamService::count(const SlamOutput& output) {
   counters_.invalid_features += output.invalid_features;
   counters_.loops += output.loops.size();
   counters_.dropped = arrivals_->dropped();
-  counters_.source_restarts = slam_.source_restarts();
+  if (slam_.source_restarts() > counters_.source_restarts) {
+    counters_.source_restarts = slam_.source_restarts();
+    SPDLOG_WARN("event=source_restarted frame={} total={}", output.result.seq, counters_.source_restarts);
+  }
   service::Heartbeat& heartbeat = runtime_.heartbeat;
   heartbeat.set_metric("frames", static_cast<double>(counters_.frames));
   heartbeat.set_metric("frames_tracked", static_cast<double>(counters_.tracked));

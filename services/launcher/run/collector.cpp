@@ -31,7 +31,7 @@ Collector::Collector(bus::Bus& bus, const Options& options)
   features_ = bus.reader<msg::FeatureFrame>(bus::topics::kFeatures, [this](const auto& features) {
     const std::lock_guard lock(mutex_);
     builder_.add(*features);
-    samples_.add_features(*features);
+    samples_.add_features(builder_.run_seq(features->seq), *features);
     if (keep_features_ && judged_.size() < kMaxJudgedFrames) {
       judged_.try_emplace(features->stamp_ns, eval::judged({features->features.data(), features->count}));
     }
@@ -41,11 +41,13 @@ Collector::Collector(bus::Bus& bus, const Options& options)
     builder_.add(*status);
   });
   frames_ = bus::FrameReader(bus, [this](const auto& frame) {
+    std::uint64_t seq = 0;
     {
       const std::lock_guard lock(mutex_);
-      if (!samples_.wants(frame->seq)) return;
+      seq = builder_.run_seq(frame->seq);
+      if (!samples_.wants(seq)) return;
     }
-    images_.push(frame);
+    images_.push({seq, frame});
   });
   encoder_ = std::thread([this] { encode_samples(); });  // last: the bus may refuse a reader
 }
@@ -90,10 +92,10 @@ void Collector::fill(eval::RunRecord& record) const {
 }
 
 void Collector::encode_samples() {
-  while (const auto frame = images_.pop()) {
-    std::vector<std::uint8_t> jpeg = encode_jpeg(**frame);
+  while (const auto image = images_.pop()) {
+    std::vector<std::uint8_t> jpeg = encode_jpeg(*image->frame);
     const std::lock_guard lock(mutex_);
-    if (!jpeg.empty()) samples_.add_image((*frame)->seq, std::move(jpeg));
+    if (!jpeg.empty()) samples_.add_image(image->seq, std::move(jpeg));
   }
 }
 

@@ -48,7 +48,11 @@ class Collector {
   std::uint64_t total_;
   bool keep_features_;
   std::map<std::int64_t, std::vector<eval::JudgedFeature>> judged_;  ///< by stamp
-  concurrency::BoundedQueue<std::shared_ptr<const msg::FrameView>> images_{2, concurrency::Overflow::kDropOldest};
+  struct Image {
+    std::uint64_t seq = 0;  ///< within the run
+    std::shared_ptr<const msg::FrameView> frame;
+  };
+  concurrency::BoundedQueue<Image> images_{2, concurrency::Overflow::kDropOldest};
   std::thread encoder_;
   bus::Reader<msg::TrackingResult> tracking_;
   bus::Reader<msg::FeatureFrame> features_;

@@ -291,7 +291,9 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
   if (setup.replay) {
     plans.push_back(plan(setup, "replay", ServiceRole::kSource, setup.replay.arguments(wait_for)));
   } else {
-    plans.push_back(plan(setup, "camera", ServiceRole::kSource, camera_arguments(setup, wait_for)));
+    const bool endless = setup.total_frames == 0;
+    plans.push_back(
+        plan(setup, "camera", endless ? ServiceRole::kLive : ServiceRole::kSource, camera_arguments(setup, wait_for)));
   }
   return plans;
 }

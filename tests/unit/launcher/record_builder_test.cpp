@@ -115,6 +115,23 @@ TEST(record_builder, drops_are_named_by_place_and_survive_a_restart) {
   EXPECT_EQ(builder.live().dropped, 9U) << "the detector only ever looks at the newest frame";
 }
 
+TEST(record_builder, frames_of_a_restarted_camera_follow_those_before) {
+  RecordBuilder builder;
+  builder.add(status_of("camera", 7, {{"frames_in", 3}}));
+  for (const std::uint64_t seq : {0, 1, 2}) builder.add(result_of(seq));
+  builder.add(status_of("camera", 8, {}));
+  EXPECT_EQ(builder.run_seq(0), 3U);
+  builder.add(result_of(0, msg::TrackingState::kLost));
+  builder.add(result_of(1));
+  builder.add(status_of("camera", 8, {{"frames_in", 4}}));
+  eval::RunRecord record;
+  builder.fill(record);
+  EXPECT_THAT(seqs(record), ElementsAre(0, 1, 2, 0, 1));
+  EXPECT_EQ(record.frames.at(3).tracking.state, msg::TrackingState::kLost);
+  EXPECT_EQ(record.frames_in, 7U);
+  EXPECT_EQ(record.frames_dropped, 2U);
+}
+
 TEST(record_builder, knows_whether_anything_was_tracked) {
   RecordBuilder builder;
   EXPECT_FALSE(builder.live().tracking);
@@ -217,7 +234,7 @@ TEST(record_builder, knows_the_clocks_of_other_hosts_from_slam) {
 std::vector<eval::SampleFrame> run_samples(SampleKeeper& keeper, std::uint64_t frames) {
   for (std::uint64_t seq = 0; seq < frames; ++seq) {
     if (keeper.wants(seq)) keeper.add_image(seq, {1, 2, 3});
-    keeper.add_features(*features_of(seq));
+    keeper.add_features(seq, *features_of(seq));
   }
   return keeper.samples();
 }
@@ -243,16 +260,16 @@ TEST(sample_keeper, stays_even_and_bounded_over_an_unknown_length) {
 TEST(sample_keeper, needs_picture_and_features) {
   SampleKeeper keeper(12, 24);
   keeper.add_image(0, {1});
-  keeper.add_features(*features_of(2));
+  keeper.add_features(2, *features_of(2));
   keeper.add_image(4, {1});
-  keeper.add_features(*features_of(4));
+  keeper.add_features(4, *features_of(4));
   EXPECT_THAT(keeper.samples(), ElementsAre(Field(&eval::SampleFrame::seq, 4)));
 }
 
 TEST(sample_keeper, believes_no_count_beyond_the_message) {
   SampleKeeper keeper;
   keeper.add_image(0, {1});
-  keeper.add_features(*features_of(0, 4'000'000'000U));
+  keeper.add_features(0, *features_of(0, 4'000'000'000U));
   EXPECT_EQ(keeper.samples().at(0).features.size(), msg::kMaxFeatures);
 }
 

@@ -98,6 +98,24 @@ TEST_F(SupervisorTest, fails_when_the_source_fails) {
   EXPECT_EQ(supervisor.outcome(), RunOutcome::kFailed);
 }
 
+TEST_F(SupervisorTest, restarts_a_live_camera_that_dies_and_ends_with_one_that_ends) {
+  supervisor.start({"camera", {"rtd-camera"}, ServiceRole::kLive}, now);
+  advance(milliseconds(6000));
+  host.end("camera", {0, 9});
+  advance(milliseconds(10));
+  EXPECT_EQ(restarts("camera"), 1);
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kRunning);
+  host.end("camera", {0, 0});
+  advance(milliseconds(10));
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kComplete);
+}
+
+TEST_F(SupervisorTest, fails_when_a_live_camera_keeps_dying) {
+  supervisor.start({"camera", {"rtd-camera"}, ServiceRole::kLive}, now);
+  die_and_wait("camera", 6);
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kFailed);
+}
+
 TEST_F(SupervisorTest, exit_code_2_at_start_is_a_config_error) {
   start_all();
   host.end("slam", {2, 0});

@@ -47,16 +47,18 @@ double frames_per_second(const std::deque<msg::TrackingResult>& results) {
 }  // namespace
 
 void RecordBuilder::add(const msg::FeatureFrame& features) {
-  end_of_seen_ = std::max(end_of_seen_, features.seq + 1);
-  Frame& frame = frames_[features.seq];
+  const std::uint64_t seq = run_seq(features.seq);
+  end_of_seen_ = std::max(end_of_seen_, seq + 1);
+  Frame& frame = frames_[seq];
   if (frame.has_features) return;
   frame.has_features = true;
   frame.record.filter_stage_ms = features.stage_ms;
 }
 
 void RecordBuilder::add(const msg::TrackingResult& result) {
-  end_of_seen_ = std::max(end_of_seen_, result.seq + 1);
-  Frame& frame = frames_[result.seq];
+  const std::uint64_t seq = run_seq(result.seq);
+  end_of_seen_ = std::max(end_of_seen_, seq + 1);
+  Frame& frame = frames_[seq];
   if (frame.has_result) return;
   frame.has_result = true;
   frame.record.tracking = result;
@@ -68,6 +70,7 @@ void RecordBuilder::add(const msg::TrackingResult& result) {
 void RecordBuilder::add(const msg::ServiceStatus& status) {
   Service& service = services_[status.service];
   if (service.pid != status.pid) {
+    if (status.service == "camera" && service.pid != 0) first_of_camera_ = end_of_seen_;
     service.pid = status.pid;
     for (auto& [name, counter] : service.counters) counter = {0, counter.total()};
   }
@@ -102,13 +105,13 @@ void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
 }
 
 std::uint64_t RecordBuilder::frames_in() const {
-  return std::max(static_cast<std::uint64_t>(camera_counter("frames_in")), end_of_seen_);
+  return std::max(static_cast<std::uint64_t>(camera_counter("frames_in").total()), end_of_seen_);
 }
 
 LiveStatus RecordBuilder::live() const {
   LiveStatus status;
   status.frames = end_of_seen_;
-  status.total = static_cast<std::uint64_t>(camera_counter("frames_total"));
+  status.total = static_cast<std::uint64_t>(camera_counter("frames_total").current);
   for (const auto& [place, count] : drops()) {
     const bool before_the_pose = !place.starts_with("detector.") &&
                                  place.find(".topic.") == std::string::npos;  // it only needs the newest frame
@@ -192,11 +195,11 @@ std::map<std::string, double> RecordBuilder::drops() const {
   return result;
 }
 
-double RecordBuilder::camera_counter(const std::string& name) const {
+RecordBuilder::Counter RecordBuilder::camera_counter(const std::string& name) const {
   const auto camera = services_.find("camera");
-  if (camera == services_.end()) return 0;
+  if (camera == services_.end()) return {};
   const auto counter = camera->second.counters.find(name);
-  return counter == camera->second.counters.end() ? 0 : counter->second.current;
+  return counter == camera->second.counters.end() ? Counter{} : counter->second;
 }
 
 SampleKeeper::SampleKeeper(std::uint64_t wanted, std::uint64_t total)
@@ -211,10 +214,10 @@ void SampleKeeper::add_image(std::uint64_t seq, std::vector<std::uint8_t> jpeg) 
   thin_out();
 }
 
-void SampleKeeper::add_features(const msg::FeatureFrame& features) {
-  if (!wants(features.seq)) return;
-  eval::SampleFrame& sample = kept_[features.seq];
-  sample.seq = features.seq;
+void SampleKeeper::add_features(std::uint64_t seq, const msg::FeatureFrame& features) {
+  if (!wants(seq)) return;
+  eval::SampleFrame& sample = kept_[seq];
+  sample.seq = seq;
   sample.features = eval::judged({features.features.data(), std::min<std::size_t>(features.count, msg::kMaxFeatures)});
   thin_out();
 }

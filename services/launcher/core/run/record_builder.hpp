@@ -42,9 +42,12 @@ struct Tolerated {
 };
 
 /// Joins the message streams of a run into its record. Messages may be missing, doubled or out of order: the first
-/// message of a frame counts, because later ones answer a frame that was sent again. Not thread-safe.
+/// message of a frame counts, because later ones answer a frame that was sent again. Frames of a camera that was
+/// restarted follow those that it sent before. Not thread-safe.
 class RecordBuilder {
  public:
+  /// Number of a frame within the run, from its number within the present life of the camera.
+  std::uint64_t run_seq(std::uint64_t seq) const { return first_of_camera_ + seq; }
   void add(const msg::FeatureFrame& features);
   void add(const msg::TrackingResult& result);
   /// Counters of a service. Those named *dropped*, *late*, *skipped*, *lost* or *refused* become RunRecord::drops; they
@@ -81,18 +84,19 @@ class RecordBuilder {
   std::map<std::string, double> drops() const;
   std::vector<eval::HostClock> clocks() const;
   void note_troubles(const msg::ServiceStatus& status);
-  double camera_counter(const std::string& name) const;
+  Counter camera_counter(const std::string& name) const;
 
   struct Frame {
     eval::FrameRecord record;
     bool has_features = false, has_result = false;
   };
-  std::map<std::uint64_t, Frame> frames_;  ///< by seq
+  std::map<std::uint64_t, Frame> frames_;  ///< by run_seq()
   std::map<std::string, Service> services_;
   std::deque<std::string> notices_;
   std::map<std::string, std::string> troubles_;  ///< already reported, by service or counter
   std::deque<msg::TrackingResult> recent_;
-  std::uint64_t end_of_seen_ = 0;  ///< highest seq seen + 1
+  std::uint64_t end_of_seen_ = 0;      ///< highest run_seq() seen + 1
+  std::uint64_t first_of_camera_ = 0;  ///< frames that the camera sent before it was restarted
   bool tracked_any_ = false;
 };
 
@@ -107,7 +111,7 @@ class SampleKeeper {
   /// True when frame `seq` is one to keep.
   bool wants(std::uint64_t seq) const { return seq % stride_ == 0; }
   void add_image(std::uint64_t seq, std::vector<std::uint8_t> jpeg);
-  void add_features(const msg::FeatureFrame& features);
+  void add_features(std::uint64_t seq, const msg::FeatureFrame& features);
 
   /// The kept frames that have both image and features, by seq, at most `wanted`.
   std::vector<eval::SampleFrame> samples() const;

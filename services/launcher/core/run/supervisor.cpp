@@ -104,7 +104,7 @@ void Supervisor::relaunch(Child& child, Clock now) {
   } catch (const ProcessError& error) {
     child.state = State::kEnded;
     report(SupervisorEvent::Kind::kGivenUp, child, child.plan.name + " could not be restarted: " + error.what());
-    if (child.plan.role == ServiceRole::kEssential) decide(RunOutcome::kFailed);
+    if (child.plan.role != ServiceRole::kOptional) decide(RunOutcome::kFailed);
     return;
   }
   report(SupervisorEvent::Kind::kRestarted, child,
@@ -119,7 +119,8 @@ void Supervisor::on_exit(Child& child, const ProcessExit& exit, Clock now) {
            child.plan.name + (forced ? " did not end when asked and was killed" : " ended: " + describe(exit)), exit);
     return;
   }
-  if (child.plan.role == ServiceRole::kSource && exit.clean()) {
+  const bool source = child.plan.role == ServiceRole::kSource || child.plan.role == ServiceRole::kLive;
+  if (source && exit.clean()) {
     report(SupervisorEvent::Kind::kEnded, child, child.plan.name + " reached the end of its source", exit);
     return decide(RunOutcome::kComplete);
   }

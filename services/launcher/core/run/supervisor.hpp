@@ -53,7 +53,8 @@ class ProcessHost {
 
 /// What the death of a service means for the run.
 enum class ServiceRole {
-  kSource,     ///< the camera: its end is the end of the run
+  kSource,     ///< a recording: its end is the end of the run, and it is not played twice
+  kLive,       ///< a camera: restarted, because it goes on where it is now; its clean end is the end of the run
   kEssential,  ///< restarted; when it keeps dying the run fails
   kOptional,   ///< restarted; when it keeps dying the run goes on without it (detector)
 };
