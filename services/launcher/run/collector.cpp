@@ -23,12 +23,21 @@ std::vector<std::uint8_t> encode_jpeg(const msg::FrameView& frame) {
 }  // namespace
 
 Collector::Collector(bus::Bus& bus, const Options& options)
-    : samples_(options.samples, options.total), total_(options.total), keep_features_(options.keep_features) {
-  tracking_ = bus.reader<msg::TrackingResult>(bus::topics::kTracking, [this](const auto& result) {
+    : bus_(bus),
+      samples_(options.samples, options.total),
+      total_(options.total),
+      keep_features_(options.keep_features),
+      readers_(subscribe()) {
+  encoder_ = std::thread([this] { encode_samples(); });  // last: the bus may refuse a reader
+}
+
+std::unique_ptr<Collector::Readers> Collector::subscribe() {
+  auto readers = std::make_unique<Readers>();
+  readers->tracking = bus_.reader<msg::TrackingResult>(bus::topics::kTracking, [this](const auto& result) {
     const std::lock_guard lock(mutex_);
     builder_.add(*result);
   });
-  features_ = bus.reader<msg::FeatureFrame>(bus::topics::kFeatures, [this](const auto& features) {
+  readers->features = bus_.reader<msg::FeatureFrame>(bus::topics::kFeatures, [this](const auto& features) {
     const std::lock_guard lock(mutex_);
     builder_.add(*features);
     samples_.add_features(builder_.run_seq(features->seq), *features);
@@ -36,11 +45,11 @@ Collector::Collector(bus::Bus& bus, const Options& options)
       judged_.try_emplace(features->stamp_ns, eval::judged({features->features.data(), features->count}));
     }
   });
-  status_ = bus.reader<msg::ServiceStatus>(bus::topics::kStatus, [this](const auto& status) {
+  readers->status = bus_.reader<msg::ServiceStatus>(bus::topics::kStatus, [this](const auto& status) {
     const std::lock_guard lock(mutex_);
     builder_.add(*status);
   });
-  frames_ = bus::FrameReader(bus, [this](const auto& frame) {
+  readers->frames = bus::FrameReader(bus_, [this](const auto& frame) {
     std::uint64_t seq = 0;
     {
       const std::lock_guard lock(mutex_);
@@ -49,7 +58,12 @@ Collector::Collector(bus::Bus& bus, const Options& options)
     }
     images_.push({seq, frame});
   });
-  encoder_ = std::thread([this] { encode_samples(); });  // last: the bus may refuse a reader
+  return readers;
+}
+
+void Collector::subscribe_again() {
+  static_cast<void>(readers_.release());
+  readers_ = subscribe();
 }
 
 Collector::~Collector() {
@@ -58,7 +72,7 @@ Collector::~Collector() {
 }
 
 bool Collector::connected(bool with_filter) const {
-  return tracking_.matched() > 0 && (!with_filter || features_.matched() > 0);
+  return readers_->tracking.matched() > 0 && (!with_filter || readers_->features.matched() > 0);
 }
 
 std::string Collector::active_services(const Tolerated& tolerated) const {

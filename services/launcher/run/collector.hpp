@@ -34,14 +34,26 @@ class Collector {
   LiveStatus live() const;
   std::optional<std::string> take_notice();
   bool tracked_any() const;
+  /// Subscribes again after a thread that reads was lost (process/lost_lock.hpp). The readers up to now are kept for
+  /// ever: they would wait for that thread.
+  void subscribe_again();
   /// Writes what was received (frames, counters, samples, features of the first kMaxJudgedFrames frames) into the
   /// record.
   void fill(eval::RunRecord& record) const;
   static constexpr std::size_t kMaxJudgedFrames = 5000;  ///< about 15 kB each
 
  private:
+  struct Readers {
+    bus::Reader<msg::TrackingResult> tracking;
+    bus::Reader<msg::FeatureFrame> features;
+    bus::Reader<msg::ServiceStatus> status;
+    bus::FrameReader frames;
+  };
+
+  std::unique_ptr<Readers> subscribe();
   void encode_samples();
 
+  bus::Bus& bus_;
   mutable std::mutex mutex_;
   RecordBuilder builder_;
   SampleKeeper samples_;
@@ -54,10 +66,7 @@ class Collector {
   };
   concurrency::BoundedQueue<Image> images_{2, concurrency::Overflow::kDropOldest};
   std::thread encoder_;
-  bus::Reader<msg::TrackingResult> tracking_;
-  bus::Reader<msg::FeatureFrame> features_;
-  bus::Reader<msg::ServiceStatus> status_;
-  bus::FrameReader frames_;
+  std::unique_ptr<Readers> readers_;
 };
 
 }  // namespace rtd::launcher

@@ -19,6 +19,7 @@
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/trace_file.hpp"
 #include "services/launcher/process/executable.hpp"
+#include "services/launcher/process/lost_lock.hpp"
 #include "services/launcher/run/run_session.hpp"
 #include "services/launcher/run/run_setup.hpp"
 
@@ -92,6 +93,7 @@ void end_trace(const RunSetup& setup, Terminal& terminal) {
 RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& plans) {
   service::InterruptSignals signals;
   Terminal terminal = open_terminal(setup.quiet);
+  survive_lost_locks();
   service::BoundedEnd end("rtd run", kEndOfBus);
   const std::shared_ptr<bus::Bus> bus = bus::connect(setup.bus_options);
   print_setup(setup, terminal);
@@ -109,6 +111,10 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   end.begin(result.code);
   if (outcome == RunOutcome::kComplete && !session.tracked_any()) terminal.warn("rtd: no frame got a pose");
   if (outcome == RunOutcome::kInterrupted) terminal.print("rtd: interrupted, partial results are in " + setup.out_dir);
+  if (lost_locks() > 0) {  // threads that stand still cannot be waited for
+    std::cout.flush();
+    std::_Exit(result.code);
+  }
   return result;
 }
 

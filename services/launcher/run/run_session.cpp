@@ -5,6 +5,7 @@
 #include "common/io/text.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/live/live_source.hpp"
+#include "services/launcher/process/lost_lock.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -106,6 +107,7 @@ void RunSession::supervise(const ServicePlan& camera) {
       supervisor_.stop(time, again ? milliseconds(0) : interrupt_grace(), RunOutcome::kInterrupted);
     }
     supervisor_.update(time);
+    watch_locks();
     stop_when_decided(time);
     if (!camera_started && !supervisor_.stopping() && camera_may_start(time)) {
       supervisor_.start(camera, time);
@@ -115,6 +117,13 @@ void RunSession::supervise(const ServicePlan& camera) {
     while (const auto notice = collector_.take_notice()) events_.push_back(*notice);  // the terminal shows the warning
     if (!supervisor_.stopping()) terminal_.status(format_live_status(collector_.live()), time);
   }
+}
+
+void RunSession::watch_locks() {
+  if (lost_locks() == lost_locks_) return;
+  lost_locks_ = lost_locks();
+  note("a service died while it held a lock in shared memory: subscribed again");
+  collector_.subscribe_again();
 }
 
 /// A user who names a map file wants the complete map in it, however large it is.

@@ -42,6 +42,7 @@ class RunSession {
   std::chrono::milliseconds interrupt_grace() const;
   void stop_when_decided(Milliseconds now);
   void sample_memory(Milliseconds now);
+  void watch_locks();
   void note(const std::string& text);
 
   const RunSetup& setup_;
@@ -55,6 +56,7 @@ class RunSession {
   std::vector<std::string> events_;
   Milliseconds started_{}, next_sample_{};
   double own_cpu_before_s_ = 0;
+  std::uint64_t lost_locks_ = 0;
 };
 
 }  // namespace rtd::launcher
