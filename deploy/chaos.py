@@ -246,10 +246,9 @@ def main():
             show_memory(run, "after")
         finally:
             output = run.stop()
-        good = report(run, Trace(run.trace), faults)
-        if os.geteuid() == 0:
-            subprocess.run(["umount", "-l", str(run.disk)], check=True)
-        if not good:
+            if os.geteuid() == 0:
+                subprocess.run(["umount", "-l", str(run.disk)], check=True)
+        if not report(run, Trace(run.trace), faults):
             sys.exit(f"chaos: too few poses, or a map was lost\n{output}")
 
 

@@ -8,6 +8,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <semaphore.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <sys/mman.h>
@@ -17,15 +18,19 @@
 
 static const volatile int64_t* step_ns;
 static int (*real_gettime)(clockid_t, struct timespec*);
-static int (*real_timedwait)(pthread_cond_t*, pthread_mutex_t*, const struct timespec*);
+static int (*real_cond)(pthread_cond_t*, pthread_mutex_t*, const struct timespec*);
+static int (*real_mutex)(pthread_mutex_t*, const struct timespec*);
+static int (*real_semaphore)(sem_t*, const struct timespec*);
 
 enum { kBillion = 1000000000 };
 
 __attribute__((constructor)) static void open_step(void) {
   real_gettime = (int (*)(clockid_t, struct timespec*))dlsym(RTLD_NEXT, "clock_gettime");
   // Plain dlsym finds the version of 1999, whose condition variables are smaller.
-  real_timedwait = (int (*)(pthread_cond_t*, pthread_mutex_t*, const struct timespec*))dlvsym(
+  real_cond = (int (*)(pthread_cond_t*, pthread_mutex_t*, const struct timespec*))dlvsym(
       RTLD_NEXT, "pthread_cond_timedwait", "GLIBC_2.3.2");
+  real_mutex = (int (*)(pthread_mutex_t*, const struct timespec*))dlsym(RTLD_NEXT, "pthread_mutex_timedlock");
+  real_semaphore = (int (*)(sem_t*, const struct timespec*))dlsym(RTLD_NEXT, "sem_timedwait");
   const char* path = getenv("RTD_CLOCK_STEP_FILE");
   const int file = path == NULL ? -1 : open(path, O_RDONLY | O_CLOEXEC);
   if (file < 0) return;
@@ -67,9 +72,22 @@ time_t time(time_t* at) {
 }
 
 // Deadlines on the real-time clock were computed with the shifted clock; those on the monotonic clock are far smaller.
+static struct timespec real_deadline(const struct timespec* until) {
+  return step_ns == NULL || until->tv_sec < kBillion ? *until : shifted(*until, -*step_ns);
+}
+
 int pthread_cond_timedwait(pthread_cond_t* restrict condition, pthread_mutex_t* restrict mutex,
                            const struct timespec* restrict until) {
-  if (step_ns == NULL || until->tv_sec < kBillion) return real_timedwait(condition, mutex, until);
-  const struct timespec real = shifted(*until, -*step_ns);
-  return real_timedwait(condition, mutex, &real);
+  const struct timespec deadline = real_deadline(until);
+  return real_cond(condition, mutex, &deadline);
+}
+
+int pthread_mutex_timedlock(pthread_mutex_t* restrict mutex, const struct timespec* restrict until) {
+  const struct timespec deadline = real_deadline(until);
+  return real_mutex(mutex, &deadline);
+}
+
+int sem_timedwait(sem_t* restrict semaphore, const struct timespec* restrict until) {
+  const struct timespec deadline = real_deadline(until);
+  return real_semaphore(semaphore, &deadline);
 }
