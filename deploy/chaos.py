@@ -152,13 +152,16 @@ def show_memory(run, when):
 def inflict(args, run):
     """The faults that were done: (fault, service, pid, time in ns)."""
     chance = random.Random(args.seed)
-    started, shown, done = time.monotonic(), time.monotonic(), []
+    started, shown, done, turn = time.monotonic(), time.monotonic(), [], 0
     while len(done) < args.count if args.minutes == 0 else time.monotonic() - started < 60 * args.minutes:
         if run.process.poll() is not None:
             sys.exit(f"chaos: rtd run ended after {len(done)} faults with exit code {run.process.returncode}:\n"
                      f"{run.process.stdout.read()}")
         fault = chance.choice(args.faults)
-        service = chance.choice(args.services) if fault in ("kill", "stop") else ""
+        service = ""
+        if fault in ("kill", "stop"):  # in turn: one that was killed twice within 5 s is restarted later
+            service = args.services[turn % len(args.services)]
+            turn += 1
         pid = run.pid_of(service) if service else None
         done.append((fault, service, pid, time.monotonic_ns()))
         print(f"chaos: {(time.monotonic() - started) / 60:.1f} min: {fault} {service}", flush=True)
