@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <span>
 
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/agreement.hpp"
@@ -209,8 +210,12 @@ TEST_P(EachEngine, batches_hold_what_single_images_hold) {
     alone.push_back(detector.detect(images.back()));
     EXPECT_THAT(alone.back(), Not(IsEmpty()));
   }
-  const auto together = detector.detect_batch(images);
-  for (std::size_t i = 0; i < images.size(); ++i) EXPECT_EQ(disagreement(alone[i], together[i], 0.25), "") << i;
+  const bool slow = GetParam() == std::string("opencl");  // it compiles for each size
+  for (std::size_t size = images.size(); size > 0; size = slow ? size / 4 : size - 1) {
+    const auto together = detector.detect_batch(std::span(images).first(size));
+    for (std::size_t i = 0; i < size; ++i)
+      EXPECT_EQ(disagreement(alone[i], together[i], 0.25), "") << i << " of " << size;
+  }
 }
 
 TEST_F(EngineTest, torch_names_an_operator_that_it_does_not_know) {

@@ -114,7 +114,9 @@ void draw_engines(Svg& svg, const BarLayout& layout, const std::vector<DetectorR
 /// By the number of robots.
 void draw_robots(Svg& svg, const BarLayout& layout, const std::vector<FleetResult>& cases, double rate_hz) {
   draw_ticks(svg, layout, fmt::format("answers a second for each robot, of {:g} images", rate_hz));
-  const auto title = [](const FleetResult& result) { return fmt::format("{} robot{}", result.robots, result.robots == 1 ? "" : "s"); };
+  const auto title = [](const FleetResult& result) {
+    return fmt::format("{} robot{}", result.robots, result.robots == 1 ? "" : "s");
+  };
   draw_groups(svg, layout, cases, title, [&](const FleetResult& result, double y) {
     draw_bar(svg, layout,
              {fmt::format("{}, batch {}", engine_label(result.engine), result.batch),
