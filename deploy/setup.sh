@@ -7,7 +7,7 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: deploy/setup.sh [--product] [--check | --list | --models | --no-models | --viewers | --packaging]
+Usage: deploy/setup.sh [--product] [--check | --list | --models | --no-models | --viewers | --onnxruntime | --packaging]
   (none)         install missing Debian packages, then download the detector weights if they are missing
   --product      leave out the packages that only the tests need; alone or before another option
   --check        only report what is missing; exit code 1 if something is
@@ -15,6 +15,7 @@ Usage: deploy/setup.sh [--product] [--check | --list | --models | --no-models | 
   --models       only download and convert the detector weights
   --no-models    only install the packages
   --viewers      also install node, Chromium and npm packages (500 MB) for the tests with external viewers and serialisers
+  --onnxruntime  only download ONNX Runtime with its C API (150 MB, from npm) into build/onnxruntime, for that engine
   --packaging    also install what builds and checks Debian packages
 TEXT
 }
@@ -116,6 +117,23 @@ install_viewers() {
   echo "setup: next step: ./deploy/test.sh -R interop"
 }
 
+# Debian 12 has no package of it. The npm package holds the library for the CPU and the header for many systems.
+install_onnxruntime() {
+  local package=com.github.asus4.onnxruntime@0.4.9 folder="$root/build/onnxruntime" scratch
+  local headers="package/Plugins/iOS~/onnxruntime.xcframework/ios-arm64/onnxruntime.framework/Headers"
+  command -v npm >/dev/null || packages+=(npm)
+  install_packages
+  scratch="$(mktemp -d)"
+  trap 'rm -rf "$scratch"' RETURN
+  npm pack --silent --pack-destination "$scratch" "$package" >/dev/null
+  mkdir -p "$folder/include" "$folder/lib"
+  tar xzf "$scratch"/*.tgz -C "$scratch" "$headers" package/Plugins/Linux/x64/libonnxruntime.so package/LICENSE
+  cp "$scratch/$headers"/onnxruntime_*.h "$folder/include/"
+  cp "$scratch/package/Plugins/Linux/x64/libonnxruntime.so" "$folder/lib/"
+  cp "$scratch/package/LICENSE" "$folder/"
+  echo "setup: ONNX Runtime: $folder; next step: cmake -S . -B build/release"
+}
+
 check() {
   local missing model status=0
   mapfile -t missing < <(missing_packages)
@@ -146,6 +164,7 @@ case "${1:-}" in
   --models) fetch_models ;;
   --no-models) install_packages ;;
   --viewers) install_viewers ;;
+  --onnxruntime) install_onnxruntime ;;
   --packaging)
     packages+=("${packaging_packages[@]}")
     install_packages

@@ -70,5 +70,22 @@ if(RTD_WITH_TORCH)
     message(FATAL_ERROR "RTD_WITH_TORCH is ON, but libtorch was not found: install libtorch-dev or set RTD_TORCH_ROOT")
   endif()
 endif()
+# The ONNX Runtime engine of the detector needs only the C API's header: its library is named when the detector starts.
+# deploy/setup.sh --onnxruntime fills build/onnxruntime.
+set(RTD_WITH_ONNXRUNTIME AUTO CACHE STRING "Build the ONNX Runtime engine: AUTO (if its C API is there), ON or OFF")
+set(RTD_ONNXRUNTIME_ROOT "" CACHE PATH "Folder of an unpacked ONNX Runtime")
+if(RTD_WITH_ONNXRUNTIME)
+  set(onnxruntime_hints "${RTD_ONNXRUNTIME_ROOT}" "${PROJECT_SOURCE_DIR}/build/onnxruntime")
+  find_path(RTD_ONNXRUNTIME_INCLUDE_DIR onnxruntime_c_api.h HINTS ${onnxruntime_hints}
+            PATH_SUFFIXES include onnxruntime onnxruntime/core/session)
+  find_library(RTD_ONNXRUNTIME_LIBRARY onnxruntime HINTS ${onnxruntime_hints} PATH_SUFFIXES lib)  # for the tests
+  if(RTD_ONNXRUNTIME_INCLUDE_DIR)
+    set(RTD_HAS_ONNXRUNTIME ON)
+  elseif(RTD_WITH_ONNXRUNTIME STREQUAL "AUTO")
+    message(STATUS "The ONNX Runtime engine is left out: set RTD_ONNXRUNTIME_ROOT and configure again")
+  else()
+    message(FATAL_ERROR "RTD_WITH_ONNXRUNTIME is ON, but onnxruntime_c_api.h was not found: set RTD_ONNXRUNTIME_ROOT")
+  endif()
+endif()
 include(CheckIncludeFile)
 check_include_file(linux/videodev2.h RTD_HAS_V4L2)

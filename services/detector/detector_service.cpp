@@ -88,9 +88,10 @@ void DetectorService::add_options(CLI::App& app, Config& config) {
   app.add_option("--model", config.model, "ONNX file (detector.model)");
   app.add_option("--input", config.input, "auto, frame or jpeg (detector.input)")
       ->check(CLI::IsMember({"auto", "frame", "jpeg"}));
-  app.add_option("--engine", config.core.engine,
-                 "What computes the network: cpu, opencl[:DEVICE], torch[:cuda[/fp16]], or auto: a GPU if there is one "
-                 "(detector.engine)");
+  app.add_option(
+      "--engine", config.core.engine,
+      "What computes the network: cpu, opencl[:DEVICE], torch[:cuda[/fp16]], onnxruntime:LIBRARY[@cuda], or auto: a "
+      "GPU if there is one (detector.engine)");
   app.add_flag("--verify-engine", config.verify_engine,
                "Compare the first ten images with the CPU, and go on with the CPU if they differ");
   app.add_option("--max-rate", config.max_rate_hz, "Realtime pace: at most this many detections a second, 0 = no limit")
@@ -110,6 +111,7 @@ DetectorService::DetectorService(const Config& config, service::Runtime& runtime
     : config_(config),
       runtime_(runtime),
       detectors_(load_detectors(config, runtime.pace)),
+      engine_log_(config.core.engine),
       arrivals_(runtime.pace == service::Pace::kRealtime
                     ? std::make_shared<Arrivals>(1, concurrency::Overflow::kDropOldest)
                     : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
@@ -226,18 +228,12 @@ double DetectorService::roll_for(const Arrival& arrival) {
   return roll_->roll_rad();
 }
 
-/// What computes the boxes, in the status; logged when it changes.
+/// What computes the boxes, in the status and the log.
 void DetectorService::report_engine(const EngineGuard& detector) {
   const std::lock_guard lock(counters_mutex_);
-  if (detector.verified() == EngineGuard::kVerifiedImages && !std::exchange(verified_, true))
-    SPDLOG_INFO("event=engine_verified images={} device=\"{}\"", detector.verified(), detector.detector().device());
-  std::string text = "computes on " + detector.detector().device();
-  if (!detector.fallback().empty()) text += " in place of " + config_.core.engine + ": " + detector.fallback();
-  if (text == engine_) return;
-  engine_ = text;
-  if (!detector.fallback().empty())
-    SPDLOG_WARN("event=engine_fallback asked={} device=\"{}\" cause=\"{}\"", config_.core.engine,
-                detector.detector().device(), detector.fallback());
+  engine_ = "computes on " + detector.detector().device();
+  if (!detector.fallback().empty()) engine_ += " in place of " + config_.core.engine + ": " + detector.fallback();
+  engine_log_.report(detector);
 }
 
 void DetectorService::skip(const Arrival& arrival, const std::string& cause) {

@@ -20,6 +20,7 @@
 #include "common/vision/detection.hpp"
 #include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/engine_guard.hpp"
+#include "services/detector/engine_log.hpp"
 #include "services/detector/image_input.hpp"
 
 namespace CLI {
@@ -117,6 +118,7 @@ class DetectorService {
   const Config config_;
   service::Runtime& runtime_;
   std::vector<std::unique_ptr<EngineGuard>> detectors_;  ///< one for each worker
+  EngineLog engine_log_;
   std::shared_ptr<Arrivals> arrivals_;
   bus::Writer<msg::Detection2DArray> detections_;
   std::unique_ptr<ImageInput> input_;
@@ -132,7 +134,6 @@ class DetectorService {
   std::atomic<std::uint64_t> detected_{0};
   std::uint64_t broken_ = 0;
   std::string engine_;  ///< what computes the boxes, for people
-  bool verified_ = false;
   double total_detect_ms_ = 0, max_detect_ms_ = 0;
   service::RateLimit broken_log_{std::chrono::seconds(1)}, roll_log_{std::chrono::seconds(1)};
 };

@@ -9,6 +9,7 @@
 #include <opencv2/core/ocl.hpp>
 #include <optional>
 
+#include "services/detector/core/onnxruntime_engine.hpp"
 #include "services/detector/core/opencv_engine.hpp"
 #include "services/detector/core/torch_engine.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 
 using Kind = EngineChoice::Kind;
 
-constexpr std::string_view kOpenClPrefix = "opencl:", kTorchPrefix = "torch:";
+constexpr std::string_view kOpenClPrefix = "opencl:", kTorchPrefix = "torch:", kOnnxRuntimePrefix = "onnxruntime:";
 
 struct FoundDevice {
   std::string name;
@@ -91,6 +92,17 @@ std::unique_ptr<Engine> make_opencl(const FoundDevice& found, const EngineModel&
   return make_opencv_engine(model, found.name + " (OpenCL, OpenCV DNN)", opencl);
 }
 
+/// "/opt/lib/libonnxruntime.so@cuda:1", taken apart.
+EngineChoice onnxruntime_choice(const std::string& text) {
+  const std::size_t at = text.rfind('@');
+  const bool has_device = at != std::string::npos && text.find('/', at) == std::string::npos;
+  EngineChoice choice{Kind::kOnnxRuntime, has_device ? text.substr(at + 1) : "cpu",
+                      text.substr(0, has_device ? at : text.size())};
+  if (choice.library.empty())
+    throw EngineError("the engine onnxruntime needs the path of its library: onnxruntime:/path/to/libonnxruntime.so");
+  return choice;
+}
+
 }  // namespace
 
 EngineChoice parse_engine(const std::string& text) {
@@ -100,11 +112,17 @@ EngineChoice parse_engine(const std::string& text) {
   if (text == "torch") return {Kind::kTorch, "cpu"};
   if (text.starts_with(kOpenClPrefix)) return {Kind::kOpenCl, text.substr(kOpenClPrefix.size())};
   if (text.starts_with(kTorchPrefix)) return {Kind::kTorch, text.substr(kTorchPrefix.size())};
-  throw EngineError("'" + text + "' is not an engine: use auto, cpu, opencl, opencl:DEVICE, torch or torch:DEVICE");
+  if (text == "onnxruntime") return onnxruntime_choice({});
+  if (text.starts_with(kOnnxRuntimePrefix)) return onnxruntime_choice(text.substr(kOnnxRuntimePrefix.size()));
+  throw EngineError("'" + text +
+                    "' is not an engine: use auto, cpu, opencl, opencl:DEVICE, torch, torch:DEVICE, "
+                    "onnxruntime:LIBRARY or onnxruntime:LIBRARY@DEVICE");
 }
 
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice, const EngineModel& model) {
   if (choice.kind == Kind::kTorch) return halve_when_full(make_torch_engine(model, choice.device));
+  if (choice.kind == Kind::kOnnxRuntime)
+    return halve_when_full(make_onnxruntime_engine(model, choice.library, choice.device));
   if (choice.kind == Kind::kAuto && torch_sees_gpu()) return halve_when_full(make_torch_engine(model, "cuda"));
   if (choice.kind != Kind::kCpu) {
     if (const auto device = choose_device(choice.device, choice.kind == Kind::kAuto))
@@ -117,7 +135,7 @@ std::unique_ptr<Engine> make_engine(const EngineChoice& choice, const EngineMode
                                        : "; there are: " + names_of(there)));
     }
   }
-  return make_opencv_engine(model, "CPU (OpenCV DNN)", std::nullopt);
+  return make_opencv_engine(model, kCpuDevice, std::nullopt);
 }
 
 std::vector<std::string> opencl_devices() {

@@ -36,13 +36,17 @@ struct EngineChoice {
     kCpu,     ///< OpenCV DNN
     kOpenCl,  ///< OpenCV DNN, any OpenCL device
     kTorch,   ///< libtorch
+    kOnnxRuntime,
   };
   Kind kind = Kind::kCpu;
   /// OpenCL: part of the device's name; empty: the first one. libtorch: "cpu", "cuda", "cuda:1", with "/fp16".
+  /// ONNX Runtime: "cpu", "cuda", "cuda:1".
   std::string device;
+  std::string library;  ///< ONNX Runtime's
 };
 
-/// "auto", "cpu", "opencl", "opencl:DEVICE", "torch" or "torch:DEVICE". Throws EngineError naming these.
+/// "auto", "cpu", "opencl", "opencl:DEVICE", "torch", "torch:DEVICE", "onnxruntime:LIBRARY" or
+/// "onnxruntime:LIBRARY@DEVICE". Throws EngineError naming these.
 EngineChoice parse_engine(const std::string& text);
 
 /// A network as an engine takes it.
@@ -61,6 +65,9 @@ struct RawHead {
   int images = 0, planes = 0, rows = 0, cols = 0;
   const float* of(int image) const { return logits + static_cast<std::ptrdiff_t>(image) * planes * rows * cols; }
 };
+
+/// The device() of the engine cpu.
+inline constexpr const char* kCpuDevice = "CPU (OpenCV DNN)";
 
 /// A loaded network. Not thread-safe.
 class Engine {

@@ -31,13 +31,34 @@ std::vector<vision::Detection> EngineGuard::detect_upright(const cv::Mat& color_
   std::vector<vision::Detection> found = detector_->detect_upright(color_bgr, roll_rad);
   if (!reference_) return found;
   std::vector<vision::Detection> expected = reference_->detect_upright(color_bgr, roll_rad);
+  return agrees(expected, found) ? found : expected;
+}
+
+std::vector<std::vector<vision::Detection>> EngineGuard::detect_batch(std::span<const cv::Mat> images) {
+  const std::vector<std::vector<vision::Detection>> found = detector_->detect_batch(images);
+  for (std::size_t i = 0; i < images.size() && reference_; ++i) {
+    if (!agrees(reference_->detect(images[i]), found[i])) return detector_->detect_batch(images);  // now on the CPU
+  }
+  return found;
+}
+
+void EngineGuard::warm_up(std::span<const cv::Mat> images) {
+  try {
+    detector_->detect_batch(images);
+  } catch (const EngineError& error) {
+    fall_back(error.what());
+  }
+}
+
+/// Falls back when they differ; ends the comparison after the last image.
+bool EngineGuard::agrees(const std::vector<vision::Detection>& expected, const std::vector<vision::Detection>& found) {
   const std::string cause = disagreement(expected, found, on_cpu_.decode.confidence_threshold);
   if (!cause.empty()) {
     fall_back(detector_->device() + " does not agree with the CPU: " + cause);
-    return expected;
+    return false;
   }
   if (++verified_ == kVerifiedImages) reference_.reset();
-  return found;
+  return true;
 }
 
 }  // namespace rtd::detector

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory>
+#include <opencv2/core.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,8 +20,14 @@ class EngineGuard {
   /// EngineError only for an engine whose name is wrong.
   EngineGuard(DetectorConfig config, bool verify);
 
-  /// As Detector::detect_upright(), which loads the network anew when a disagreement is found.
+  /// As Detector::detect_upright(), but loads the network again when a disagreement is found.
   std::vector<vision::Detection> detect_upright(const cv::Mat& color_bgr, double roll_rad);
+  /// As Detector::detect_batch(), verified in the same way.
+  std::vector<std::vector<vision::Detection>> detect_batch(std::span<const cv::Mat> images);
+
+  /// Runs a batch that compiles what its size needs. Throws std::invalid_argument as Detector::detect_batch() does;
+  /// falls back when the engine fails.
+  void warm_up(std::span<const cv::Mat> images);
 
   const Detector& detector() const { return *detector_; }
   /// Why the CPU is used in place of the engine asked for; empty while it is not.
@@ -31,6 +39,7 @@ class EngineGuard {
 
  private:
   void fall_back(const std::string& cause);
+  bool agrees(const std::vector<vision::Detection>& expected, const std::vector<vision::Detection>& found);
 
   DetectorConfig on_cpu_;
   std::unique_ptr<Detector> detector_, reference_;  ///< reference_: null when nothing (more) is verified

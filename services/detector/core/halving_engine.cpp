@@ -33,7 +33,8 @@ class HalvingEngine final : public Engine {
         const int tried = most_ == 0 ? images : std::min(images, most_);
         if (tried == 1) throw;
         most_ = (tried + 1) / 2;
-        device_ = engine_->device() + ", batches of " + std::to_string(most_) + " for its memory holds no more";
+        device_ = engine_->device() + ", at most " + std::to_string(most_) +
+                  " images at once because its memory holds no more";
       }
     }
   }

@@ -10,9 +10,9 @@
 
 #include "common/bus/robot.hpp"
 #include "common/service/config.hpp"
-#include "common/service/log.hpp"
 #include "services/detector/core/engine.hpp"
 #include "services/detector/detector_service.hpp"
+#include "services/detector/engine_log.hpp"
 #include "services/detector/fleet/batch_detector.hpp"
 
 namespace rtd::detector {
@@ -31,7 +31,6 @@ void require_combinable(const ServiceConfig& config, const service::Runtime& run
   refuse(config.derotate == "on", "detector.derotate follows the poses of one robot: leave it off");
   refuse(config.input == "frame", "raw frames never leave their host: leave detector.input at auto or jpeg");
   refuse(config.max_rate_hz > 0, "detector.max_rate_hz (--max-rate) is for one robot: leave it at 0");
-  refuse(config.verify_engine, "--verify-engine is for one robot: check the engine with a run of its own first");
   refuse(!runtime.bus.robot().empty(), "--robot names the one robot of a detector: leave one of the two out");
 }
 
@@ -62,16 +61,19 @@ FleetConfig fleet_config(const ServiceConfig& config, const service::Runtime& ru
 
 Inference load_inference(const ServiceConfig& config) {
   try {
-    const auto detector = std::make_shared<BatchDetector>(core_config(config), config.batch);
-    const InputSize input = detector->detector().input_size();
-    SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} device=\"{}\"",
-                detector->detector().config().model_path, input.width_px, input.height_px, config.core.threads,
-                detector->detector().device());
-    if (!detector->fallback().empty())
-      SPDLOG_WARN("event=engine_fallback asked={} device=\"{}\" cause=\"{}\"", config.core.engine,
-                  detector->detector().device(), detector->fallback());
+    const auto detector = std::make_shared<BatchDetector>(core_config(config), config.batch, config.verify_engine);
+    const Detector& loaded = detector->guard().detector();
+    const InputSize input = loaded.input_size();
+    SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} device=\"{}\"", loaded.config().model_path,
+                input.width_px, input.height_px, config.core.threads, loaded.device());
     if (!detector->no_batch().empty()) SPDLOG_WARN("event=no_batch cause=\"{}\"", detector->no_batch());
-    return {[detector](std::span<const cv::Mat> images) { return detector->detect(images); },
+    const auto log = std::make_shared<EngineLog>(config.core.engine);
+    log->report(detector->guard());
+    return {[detector, log](std::span<const cv::Mat> images) {
+              auto found = detector->detect(images);
+              log->report(detector->guard());
+              return found;
+            },
             [detector] { return "computes on " + detector->device(); }};
   } catch (const ModelError& error) {
     throw service::ConfigError(error.what());

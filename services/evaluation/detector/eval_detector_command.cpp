@@ -82,7 +82,7 @@ CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& optio
   command->add_option("--model", options.models, "ONNX files, compared side by side (default: the usual model)");
   command
       ->add_option("--engine", options.engines,
-                   "cpu, opencl[:DEVICE], torch[:DEVICE] or auto; several: compared side by side")
+                   "cpu, opencl[:DEVICE], torch[:DEVICE], onnxruntime:LIBRARY or auto; several: compared side by side")
       ->delimiter(',')
       ->capture_default_str();
   command->add_option("--recall", options.wanted_recall, "Wanted recall of the high motion level")

@@ -3,8 +3,9 @@
 //
 // One detector for several robots, each in a process of its own, over Fast DDS on the loopback interface. Robots are
 // doubles that send JPEG images and check every answer; in the box, what stands in for the network takes the time that
-// it is told. With --detector the box is `rtd-detector` with a real network: its answers are then not checked for what
-// they say (column wrong). Prints a line for each robot.
+// it is told. With --link each robot has a domain of its own, behind `rtd-link`. With --detector the box is
+// `rtd-detector` with a real network: its answers are then not checked for what they say (column wrong). Prints a line
+// for each robot.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -31,8 +32,17 @@ struct Options {
   std::string role = "run";
   int robots = 8, id = 0, batch = 8, width = 640, height = 480, domain = 0;
   double rate_hz = 30, seconds = 20, batch_ms = 3, image_ms = 0, flood_hz = 0;
-  std::string detector;
+  std::string detector, link;
 };
+
+/// DDS domain of a robot behind a link; others are in that of the box.
+constexpr int kFirstLinkedDomain = 200;
+int domain_of_robot(const Options& options, int id) {
+  return options.link.empty() ? options.domain : kFirstLinkedDomain + id;
+}
+std::string name_of_robot(int id) {
+  return "r" + std::to_string(id);
+}
 
 bus::BusOptions bus_options(const Options& options) {
   bus::BusOptions bus;
@@ -77,7 +87,7 @@ int be_box(const Options& options) {
 
 /// Measures from its first answers on.
 int be_robot(const Options& options) {
-  const std::string name = "r" + std::to_string(options.id);
+  const std::string name = name_of_robot(options.id);
   const bool floods = options.flood_hz > 0 && options.id == options.robots - 1;
   RobotDouble robot(bus_options(options), {.name = name,
                                            .id = options.id,
@@ -117,12 +127,24 @@ FILE* start(const std::string& role, int id, const Options& options) {
     add("--flood", options.flood_hz);
     add("--seconds", role == "box" ? box_s : options.seconds);
   }
-  return popen((command + " --domain " + std::to_string(options.domain)).c_str(), "r");
+  const int domain = role == "robot" ? domain_of_robot(options, id) : options.domain;
+  return popen((command + " --domain " + std::to_string(domain)).c_str(), "r");
+}
+
+/// What takes the images of a robot to the box and brings its boxes back.
+FILE* start_link(int id, const Options& options) {
+  const std::string time_s = std::to_string(options.seconds + 8);
+  return popen(("timeout -s INT " + time_s + " " + options.link + " --robot " + name_of_robot(id) + " --domain " +
+                std::to_string(domain_of_robot(options, id)) + " --fleet " + std::to_string(options.domain) +
+                " --log-level warning")
+                   .c_str(),
+               "r");
 }
 
 int run(Options options) {
   std::vector<FILE*> processes = {start("box", 0, options)};
   for (int id = 0; id < options.robots; ++id) processes.push_back(start("robot", id, options));
+  for (int id = 0; id < options.robots && !options.link.empty(); ++id) processes.push_back(start_link(id, options));
   std::printf("%-6s %8s %8s %7s %6s %8s %8s %8s\n", "robot", "sent", "answers", "share", "wrong", "p50 ms", "p99 ms",
               "gap ms");
   std::fflush(stdout);
@@ -155,6 +177,7 @@ int main(int argc, char** argv) {
   app.add_option("--image-ms", options.image_ms, "and for each of its images")->capture_default_str();
   app.add_option("--domain", options.domain, "DDS domain");
   app.add_option("--detector", options.detector, "rtd-detector, with its options: in place of the stand-in");
+  app.add_option("--link", options.link, "rtd-link: gives each robot a domain of its own");
   CLI11_PARSE(app, argc, argv);
   if (size.size() == 2) options.width = size[0], options.height = size[1];
   if (options.role == "box") return be_box(options);

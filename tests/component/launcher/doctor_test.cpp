@@ -103,6 +103,11 @@ TEST_F(DoctorTest, ports_in_use_are_named) {
   EXPECT_THAT(rtd_.output(), HasSubstr("FAIL ports: 0 of 16 from UDP"));
 }
 
+TEST_F(DoctorTest, the_engines_of_the_detector_are_named) {
+  doctor({});
+  EXPECT_THAT(rtd_.output(), HasSubstr("ok   detector engines: cpu"));
+}
+
 TEST_F(DoctorTest, a_missing_keystore_is_named_with_the_command_that_makes_one) {
   EXPECT_EQ(doctor({"--secure", "--keystore", scratch_ / "none"}), 1);
   EXPECT_THAT(rtd_.output(),

@@ -27,10 +27,11 @@ std::vector<std::string> link_arguments(const std::string& robot, int fleet,
   return all;
 }
 
-std::shared_ptr<bus::Bus> join(std::uint32_t domain) {
+std::shared_ptr<bus::Bus> join(std::uint32_t domain, const bus::SecurityOptions& security = {}) {
   bus::BusOptions options;
   options.domain = domain;
   options.robot = "anna";
+  options.security = security;
   return bus::connect(options);
 }
 
@@ -65,6 +66,38 @@ TEST(LinkProcess, brings_images_to_a_detector_and_its_boxes_back) {
   EXPECT_TRUE(filter.alive("detector")) << "the robot knows that it is served";
   EXPECT_TRUE(filter.alive("link"));
 
+  camera.interrupt(), link.interrupt();
+  EXPECT_EQ(link.wait(), 0) << link.output();
+  camera.wait();
+}
+
+TEST(LinkProcess, passes_both_ways_between_secured_domains_and_nothing_to_programs_without_keys) {
+  const launcher::ScratchFolder scratch;
+  const std::string keystore = scratch / "keystore";
+  RtdCommand create, link, camera;
+  ASSERT_EQ(create.run({"keystore", "create", keystore, "--robot", "anna"}), 0) << create.output();
+  const auto robot = join(kRobotDomain, {keystore, "/rtd/anna/filter"});
+  const auto fleet = join(kFleetDomain, {keystore, "/rtd/detector"}), without_keys = join(kFleetDomain);
+  const test_support::Inbox<msg::CompressedImage> images, stolen;
+  const test_support::Inbox<msg::Detection2DArray> boxes;
+  const auto image_reader =
+      fleet->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto& m) { images.take(m); });
+  const auto thief =
+      without_keys->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto& m) { stolen.take(m); });
+  const auto box_reader =
+      robot->reader<msg::Detection2DArray>(bus::topics::kDetections, [&](const auto& m) { boxes.take(m); });
+  auto box_writer = fleet->writer(bus::topics::kDetections);
+
+  link.start(link_arguments("anna", kFleetDomain, {"--secure", "--keystore", keystore}));
+  camera.start({"camera", "--source", "synthetic:office?frames=0", "--robot", "anna", "--domain",
+                std::to_string(kRobotDomain), "--wait-for", "none", "--secure", "--keystore", keystore});
+  EXPECT_TRUE(images.wait_count(10)) << link.output() << camera.output();
+  for (int i = 0; i < 200 && boxes.all().empty(); ++i) {
+    box_writer.write({});
+    link.wait_for("never printed", std::chrono::milliseconds(50));
+  }
+  EXPECT_FALSE(boxes.all().empty()) << link.output();
+  EXPECT_TRUE(stolen.all().empty());
   camera.interrupt(), link.interrupt();
   EXPECT_EQ(link.wait(), 0) << link.output();
   camera.wait();

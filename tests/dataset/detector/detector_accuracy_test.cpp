@@ -19,6 +19,7 @@
 #include "services/detector/core/engine.hpp"
 #include "services/detector/core/evaluation/average_precision.hpp"
 #include "services/detector/core/evaluation/mask_recall.hpp"
+#include "services/detector/core/onnxruntime_engine.hpp"
 #include "services/detector/core/torch_engine.hpp"
 
 namespace rtd::detector {
@@ -171,8 +172,14 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(EngineTrial{"opencl", "v5lite-e-raw-320x320.onnx", [] { return !opencl_devices().empty(); },
                                   "needs an OpenCL device: apt-get install pocl-opencl-icd"},
                       EngineTrial{"torch", "v5lite-s-raw-480x640.onnx", [] { return !torch_devices().empty(); },
-                                  "needs the torch engine: apt-get install libtorch-dev"}),
-    [](const auto& trial) { return std::string(trial.param.engine); });
+                                  "needs the torch engine: apt-get install libtorch-dev"},
+                      EngineTrial{"onnxruntime:" ONNXRUNTIME_LIBRARY, "v5lite-s-raw-480x640.onnx",
+                                  [] { return knows_onnxruntime() && fs::exists(ONNXRUNTIME_LIBRARY); },
+                                  "needs ONNX Runtime: deploy/setup.sh --onnxruntime, then configure again"}),
+    [](const auto& trial) {
+      const std::string engine = trial.param.engine;
+      return engine.substr(0, engine.find(':'));
+    });
 
 TEST_P(EngineQuality, finds_on_coco_what_the_cpu_finds) {
   Detector cpu(config_);

@@ -125,14 +125,14 @@ TEST_F(DetectorBench, the_command_writes_table_json_and_drawing) {
   cv::imwrite((folder_ / "images/a.png").string(), images_[0]);
   write("images/notes.txt", "no image");
   const std::string json = (folder_ / "out.json").string(), svg = (folder_ / "out.svg").string();
-  const Outcome outcome =
-      run({"--images", (folder_ / "images").string(), "--batch", "1,2", "--json", json, "--svg", svg});
+  const Outcome outcome = run({"--images", (folder_ / "images").string(), "--batch", "1,2", "--robots", "1,3",
+                               "--seconds", "0.2", "--json", json, "--svg", svg});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("free.onnx, 64x64, 1 image,"), HasSubstr("1 of 1")));
   EXPECT_EQ(nlohmann::json::parse(std::ifstream(json))["cases"][1]["batch"], 2);
   std::stringstream drawing;
   drawing << std::ifstream(svg).rdbuf();
-  EXPECT_THAT(drawing.str(), AllOf(HasSubstr("batch 2"), HasSubstr("</svg>")));
+  EXPECT_THAT(drawing.str(), AllOf(HasSubstr("batch 2"), HasSubstr("3 robots"), HasSubstr("</svg>")));
 }
 
 TEST_F(DetectorBench, the_command_names_what_is_wrong) {
@@ -162,8 +162,16 @@ TEST_F(DetectorBench, serves_robots_with_every_engine_and_batch) {
     EXPECT_EQ(result["robots"], 3);
     EXPECT_NEAR(result["answered_hz"]["least"].get<double>(), 20, 6);
     EXPECT_GT(result["latency_ms"]["p50"].get<double>(), 0);
+    EXPECT_NEAR(result["images_per_s"].get<double>(), 60, 18);
+    EXPECT_GT(result["cpu_percent"].get<double>(), 0);
   }
   EXPECT_EQ(cases[1]["batch"], 4);
+}
+
+TEST_F(DetectorBench, names_engines_without_libraries) {
+  EXPECT_EQ(engine_label("torch:cuda/fp16"), "torch:cuda/fp16");
+  EXPECT_EQ(engine_label("onnxruntime:/opt/ort/lib/libonnxruntime.so"), "onnxruntime");
+  EXPECT_EQ(engine_label("onnxruntime:lib/libonnxruntime.so@cuda:1"), "onnxruntime@cuda:1");
 }
 
 TEST_F(DetectorBench, says_which_engines_serve_no_robots) {

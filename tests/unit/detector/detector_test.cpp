@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgproc.hpp>
+#include <span>
 #include <stdexcept>
 
 #include "services/detector/core/detector_config.hpp"
@@ -90,6 +91,27 @@ TEST_F(DetectorTest, finds_in_a_batch_what_it_finds_in_each_image) {
     expect_the_white_cell(found[0]);
     EXPECT_THAT(found[1], SizeIs(0));
     EXPECT_THAT(detector.detect_batch({}), SizeIs(0));
+  }
+}
+
+TEST_F(DetectorTest, finds_the_same_in_batches_of_any_size_up_to_sixteen) {
+  Detector detector(config({.free_batch = true}));
+  std::vector<cv::Mat> images;
+  std::vector<std::vector<vision::Detection>> alone;
+  for (int i = 0; i < 16; ++i) {
+    images.push_back(one_white_cell({64, 64}, i % 8, i / 2));
+    alone.push_back(detector.detect(images.back()));
+    ASSERT_THAT(alone.back(), SizeIs(1)) << i;
+  }
+  for (std::size_t size = 1; size <= images.size(); ++size) {
+    const auto together = detector.detect_batch(std::span(images).first(size));
+    ASSERT_THAT(together, SizeIs(size));
+    for (std::size_t i = 0; i < size; ++i) {
+      ASSERT_THAT(together[i], SizeIs(1)) << i << " of " << size;
+      EXPECT_EQ(together[i][0].x_px, alone[i][0].x_px) << i << " of " << size;
+      EXPECT_EQ(together[i][0].y_px, alone[i][0].y_px) << i << " of " << size;
+      EXPECT_EQ(together[i][0].score, alone[i][0].score) << i << " of " << size;
+    }
   }
 }
 

@@ -49,7 +49,7 @@ TEST(HalvingEngine, computes_in_parts_what_its_device_cannot_hold) {
   ASSERT_EQ(heads[0].images, 10);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(*heads[0].of(i), i);
   EXPECT_EQ(heads[1].logits, nullptr) << "an output that is no float tensor stays so";
-  EXPECT_THAT(engine->device(), HasSubstr("small, batches of 3"));
+  EXPECT_THAT(engine->device(), HasSubstr("small, at most 3 images at once because"));
   engine->infer(numbered_images(4));
   EXPECT_THAT(batches, ElementsAre(3, 3, 3, 1, 3, 1)) << "it is remembered";
 }

@@ -119,6 +119,12 @@ detector::DetectorConfig config_of(const DetectorOptions& options, const std::st
   return config;
 }
 
+std::string engine_label(const std::string& engine) {
+  const detector::EngineChoice choice = detector::parse_engine(engine);
+  if (choice.kind != detector::EngineChoice::Kind::kOnnxRuntime) return engine;
+  return choice.device == "cpu" ? "onnxruntime" : "onnxruntime@" + choice.device;
+}
+
 double DetectorResult::ms_per_image() const {
   return percentile(batch_ms, 50) / what.batch;
 }

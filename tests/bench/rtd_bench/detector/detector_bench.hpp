@@ -29,6 +29,9 @@ struct DetectorOptions {
   std::string kernel_cache;  ///< folder for what OpenCL compiles; empty: none
 };
 
+/// The name of an engine without the path of its library: "onnxruntime@cuda".
+std::string engine_label(const std::string& engine);
+
 /// For one of the engines.
 detector::DetectorConfig config_of(const DetectorOptions& options, const std::string& engine);
 

@@ -94,7 +94,7 @@ int compare_engines(DetectorRequest& request, std::ostream& out, std::ostream& e
 void add_detector_command(CLI::App& app, DetectorRequest& request) {
   DetectorOptions& options = request.options;
   CLI::App* bench = app.add_subcommand("detector", "Time of the detector's engines by batch size, and their boxes");
-  bench->add_option("--engines", options.engines, "cpu, opencl[:DEVICE], torch[:DEVICE], auto")
+  bench->add_option("--engines", options.engines, "cpu, opencl[:DEVICE], torch[:DEVICE], onnxruntime:LIBRARY, auto")
       ->delimiter(',')
       ->capture_default_str();
   bench->add_option("--batch", options.batches, "Images that are computed at once; more than 1 needs a free batch")

@@ -12,7 +12,7 @@ namespace rtd::bench {
 namespace {
 
 std::string case_row(const DetectorResult& result) {
-  const std::string head = fmt::format("{:<16} {:>5}", result.what.engine, result.what.batch);
+  const std::string head = fmt::format("{:<16} {:>5}", engine_label(result.what.engine), result.what.batch);
   if (!result.failure.empty()) return fmt::format("{}  {}\n", head, result.failure);
   const detector::AgreementCount& same = result.same;
   const std::string difference = same.first_difference.empty() ? "" : "; first difference: " + same.first_difference;
@@ -54,6 +54,8 @@ nlohmann::json fleet_json(const FleetResult& result, const FleetLoad& load) {
   json["answered_hz"] = {{"mean", result.mean_hz}, {"least", result.least_hz}};
   json["latency_ms"] = {{"p50", result.latency_p50_ms}, {"p99", result.latency_p99_ms}};
   json["batch_mean"] = result.batch_mean;
+  json["images_per_s"] = result.images_per_s();
+  json["cpu_percent"] = result.cpu_percent;
   return json;
 }
 

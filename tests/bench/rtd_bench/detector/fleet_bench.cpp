@@ -99,9 +99,12 @@ void serve(const std::shared_ptr<detector::BatchDetector>& detector, const Jpegs
        [detector] { return detector->device(); }},
       {[&answers](const std::string& robot, const detector::Answer& answer) { answers.add(robot, answer); },
        [](const std::string&, const std::string&) {}, [] {}});
+  CpuMeter cpu;
+  cpu.start();
   const std::jthread sender([&] { send(pipeline, jpegs, load, result.robots, end); });
   if (pipeline.run() == detector::FleetPipeline::End::kEngineFailed)
     result.failure = "the engine failed again and again";
+  result.cpu_percent = cpu.percent();
   result.device = pipeline.device();
   answers.summarise(load.seconds, result);
 }
@@ -123,7 +126,8 @@ std::vector<FleetResult> bench_fleet(std::span<const cv::Mat> images, const Dete
       std::string failure;
       try {
         detector = std::make_shared<detector::BatchDetector>(config_of(options, engine), batch);
-        failure = detector->fallback().empty() ? detector->no_batch() : detector->fallback();
+        const std::string& fallback = detector->guard().fallback();
+        failure = fallback.empty() ? detector->no_batch() : fallback;
       } catch (const std::exception& error) {
         failure = error.what();
       }
@@ -141,15 +145,15 @@ std::string fleet_table(const std::vector<FleetResult>& results, const FleetLoad
   if (results.empty()) return "";
   std::string text = fmt::format(
       "\nrobots that send {:g} JPEG images a second each, from arrival to boxes, {:g} s\n\n{:<16} {:>5} {:>6} {:>9} "
-      "{:>9} "
-      "{:>9} {:>9} {:>10}  {}\n",
-      load.rate_hz, load.seconds, "engine", "batch", "robots", "Hz each", "Hz least", "p50 ms", "p99 ms", "batch mean",
-      "device");
+      "{:>9} {:>9} {:>9} {:>9} {:>10} {:>6}  {}\n",
+      load.rate_hz, load.seconds, "engine", "batch", "robots", "Hz each", "Hz least", "images/s", "p50 ms", "p99 ms",
+      "batch mean", "CPU %", "device");
   for (const FleetResult& result : results) {
-    text += fmt::format("{:<16} {:>5} {:>6}", result.engine, result.batch, result.robots);
+    text += fmt::format("{:<16} {:>5} {:>6}", engine_label(result.engine), result.batch, result.robots);
     text += result.failure.empty()
-                ? fmt::format(" {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>10.1f}  {}\n", result.mean_hz, result.least_hz,
-                              result.latency_p50_ms, result.latency_p99_ms, result.batch_mean, result.device)
+                ? fmt::format(" {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>10.1f} {:>6.0f}  {}\n", result.mean_hz,
+                              result.least_hz, result.images_per_s(), result.latency_p50_ms, result.latency_p99_ms,
+                              result.batch_mean, result.cpu_percent, result.device)
                 : "  " + result.failure + "\n";
   }
   return text;

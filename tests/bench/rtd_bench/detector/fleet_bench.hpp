@@ -26,7 +26,10 @@ struct FleetResult {
   double least_hz = 0, mean_hz = 0;  ///< answers a second: of the robot that got least, of all robots
   double latency_p50_ms = 0, latency_p99_ms = 0;
   double batch_mean = 0;        ///< images computed together
+  double cpu_percent = 0;       ///< of a core: this process, which also sends
   std::string device, failure;  ///< why there are no figures; empty: there are
+
+  double images_per_s() const { return mean_hz * robots; }
 };
 
 /// All engines and batch sizes of the options with each number of robots, one after the other. An engine that is not

@@ -64,7 +64,7 @@ TEST_F(BatchDetectorTest, continues_on_the_cpu_without_the_engine_asked_for) {
   DetectorConfig without = config({.free_batch = true});
   without.engine = "opencl:no such device";
   BatchDetector detector(without, 4);
-  EXPECT_THAT(detector.fallback(), Not(IsEmpty()));
+  EXPECT_THAT(detector.guard().fallback(), Not(IsEmpty()));
   EXPECT_THAT(detector.device(), HasSubstr("CPU (OpenCV DNN) in place of the engine asked for: "));
   expect_both_answered(detector);
   without.engine = "abacus";
