@@ -133,15 +133,13 @@ class Run:
 
 
 def fill(folder):
-    """Leaves a few pages for SPAN_S, as a program with a leak would."""
-    place = os.statvfs(folder)
-    descriptor, path = tempfile.mkstemp(dir=folder, prefix="rtd_chaos_")
-    try:
-        os.posix_fallocate(descriptor, 0, max(place.f_bavail * place.f_frsize - 65536, 1))
-        time.sleep(SPAN_S)
-    finally:
-        os.close(descriptor)
-        os.unlink(path)
+    """Takes all room for SPAN_S, as a program with a leak would."""
+    with tempfile.NamedTemporaryFile(dir=folder, prefix="rtd_chaos_", buffering=0) as file:
+        try:
+            while True:  # others may take or free some meanwhile
+                file.write(bytes(1 << 20))
+        except OSError:
+            time.sleep(SPAN_S)
 
 
 def show_memory(run, when):
