@@ -22,7 +22,8 @@ import { SystemPanel } from "./system_panel.js";
 import { exposeHooks } from "./hooks.js";
 import { situation } from "./waiting.js";
 
-const kPanelPeriod_ms = 250;
+const kPanelPeriod_ms = 250, kFrugalPanelPeriod_ms = 1000;
+const kFrugalImagePause = 2;   // times the pause between two drawings of the map
 
 class App {
   constructor() {
@@ -32,7 +33,7 @@ class App {
     this.undecoded = { count: 0, reason: "" };
     this.calls = new Calls((message) => this.connection.send(message));
     this.header = new Header((index) => this.select(index));
-    this.image = new ImagePanel(this.settings);
+    this.image = new ImagePanel(this.settings, () => (this.scene?.frugal ? kFrugalImagePause * this.scene.pace.period_ms : 0));
     this.plots = new Plots();
     this.system = new SystemPanel();
     this.controls = new Controls(this.calls);
@@ -46,7 +47,7 @@ class App {
     byId("retry").addEventListener("click", () => this.connection.retryNow());
     bindShortcuts(this.actions());
     exposeHooks(this);
-    setInterval(() => this.updatePanels(), kPanelPeriod_ms);
+    setInterval(() => this.updatePanelsInTime(), kPanelPeriod_ms);
     document.addEventListener("visibilitychange", () => this.settingsChanged());
     this.settingsChanged();
     this.startScene();
@@ -133,7 +134,17 @@ class App {
     this.age.add(tracking.finished_ms, Date.now(), this.connection.clock.offset_ms);
   }
 
+  /** Less often where drawing takes time from the robot, unless tracking or a recording changes its state. */
+  updatePanelsInTime() {
+    const states = [this.connection.state, this.robot?.tracking?.state, this.robot?.playback?.state].join();
+    const period_ms = this.scene?.frugal && states === this.statesOfPanels ? kFrugalPanelPeriod_ms : 0;
+    if (performance.now() - this.panelsUpdated_ms < period_ms - kPanelPeriod_ms / 2) return;
+    this.statesOfPanels = states;
+    this.updatePanels();
+  }
+
   updatePanels() {
+    this.panelsUpdated_ms = performance.now();
     const { session, robot, connection } = this, now_ms = performance.now(), now_s = now_ms / 1000;
     const report = situation({
       connection: { state: connection.state, address: connection.shownAddress, retry_s: connection.retry_s },
@@ -149,11 +160,12 @@ class App {
     this.layers.update(session);
     if (!robot?.image) this.image.update(robot);
     const { count, reason } = this.undecoded;
-    setText(byId("undecoded"), count > 0 ? `${count} messages could not be read: ${reason}` : "");
+    setText(byId("undecoded"), count > 0 ? `${count} ${count === 1 ? "message" : "messages"} could not be read: ${reason}` : "");
   }
 
   settingsChanged() {
     this.frame.apply();
+    this.layers.applyTheme();
     this.scene?.applySettings();
     this.sendOptions();
     this.updatePanels();

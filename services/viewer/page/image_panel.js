@@ -13,8 +13,10 @@ const kFeatureRadius_px = 1.7;   // on the screen
 const kFont_px = 12;
 
 export class ImagePanel {
-  constructor(settings) {
+  /** pause_ms(): least time between two images. */
+  constructor(settings, pause_ms = () => 0) {
     this.settings = settings;
+    this.pause_ms = pause_ms;
     this.canvas = byId("image");
     this.context = this.canvas.getContext("2d", { willReadFrequently: true });   // drawn by the processor
     this.legend = { kept: byId("kept"), removed: byId("removed"), boxes: byId("boxes") };
@@ -27,10 +29,14 @@ export class ImagePanel {
     this.robot = robot;
     if (this.requested) return;
     this.requested = true;
-    requestAnimationFrame(() => {
+    const show = () => requestAnimationFrame((now_ms) => {
       this.requested = false;
+      this.shown_ms = now_ms;
       this.#show();
     });
+    const wait_ms = (this.shown_ms ?? -Infinity) + this.pause_ms() - performance.now();
+    if (wait_ms > 0) setTimeout(show, wait_ms);
+    else show();
   }
 
   #bindSwitch(name) {

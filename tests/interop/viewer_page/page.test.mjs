@@ -183,7 +183,7 @@ test("a message that cannot be read is counted, and the page goes on", async () 
   await open();
   await waitForMap(page, 5000);
   server.send(Buffer.from([3, 0, 0, 0, 9, 0, 0, 0, 1]));
-  await waitFor(page, () => /1 messages could not be read/.test(document.getElementById("undecoded").textContent));
+  await waitFor(page, () => /1 message could not be read/.test(document.getElementById("undecoded").textContent));
   const fresh = await page.evaluate(() => rtdViewer.state().robots[0].tracking.seq);
   await waitFor(page, (seq) => rtdViewer.state().robots[0].tracking.seq > seq + 5, fresh);
 });
