@@ -57,21 +57,30 @@ class App {
     return this.session.robots.get(this.selected);
   }
 
-  /** The 3D view is loaded last: without WebGL, or without three.js on the server, the panels work all the same. */
-  async startScene() {
+  /** The 3D view is loaded last: without WebGL, or without three.js on the server, the panels work all the same.
+      attempt: 2 and more after a server that was gone is back; a browser may remember that a module failed. */
+  async startScene(attempt = 1) {
+    this.sceneAttempt = attempt;
     try {
-      const { Scene } = await import("./scene.js");
+      const { Scene } = await import(attempt === 1 ? "./scene.js" : `./scene.js?attempt=${attempt}`);
+      byId("no-scene").hidden = true;
       this.scene = new Scene(byId("map"), this.settings, (tracking) => this.measureAge(tracking));
       this.frame.bindView(this.scene);
       this.showRobots();
     } catch (error) {
       byId("no-scene").hidden = false;
       setText(byId("no-scene-reason"), error.message);
+      this.sceneFailed = true;
     }
+    document.documentElement.classList.toggle("plain", this.scene?.software ?? true);
   }
 
   /** After a connection is opened the server sends everything again. */
   forget() {
+    if (this.sceneFailed) {
+      this.sceneFailed = false;
+      this.startScene(this.sceneAttempt + 1);
+    }
     this.session = new Session();
     this.age = new PoseAge();
     this.options = "";

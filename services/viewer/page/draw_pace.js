@@ -7,7 +7,7 @@
 import { percentile } from "./series.js";
 
 const kShortest_ms = 33, kLongest_ms = 1000;   // between two drawings; with the wait for the screen 20 to 30 per second
-const kCautious_ms = 150;                      // at first, on the robot's own computer
+const kCautious_ms = 250;                      // at first, on the robot's own computer
 const kLate = 1.6, kLater = 1.5;               // times a frame, from a frame to its pose; times what is usual here
 const kBack = 1.4, kNearer = 0.998;            // for each late pose, for each that is in time
 const kMemory = 0.9;

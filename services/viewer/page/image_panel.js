@@ -51,17 +51,21 @@ export class ImagePanel {
 
   #show() {
     const image = this.robot?.image;
-    byId("image-none").hidden = Boolean(image);
-    this.canvas.hidden = !image;
     if (!image) {
       this.decoded = null;
       this.bitmap = null;
+      this.#reveal();
       this.#describe();
     } else if (image === this.decoded) {
       this.#draw();
     } else if (!this.decoding) {
       this.#decode(image);
     }
+  }
+
+  #reveal() {
+    this.canvas.hidden = !this.bitmap;
+    byId("image-none").hidden = !this.canvas.hidden;
   }
 
   /** One at a time: while an image is decoded the next ones wait, and only the newest of them is shown. */
@@ -84,6 +88,7 @@ export class ImagePanel {
   #draw() {
     const image = this.robot?.image;
     if (!image || !this.bitmap) return;
+    this.#reveal();
     if (this.canvas.width !== image.width || this.canvas.height !== image.height) {
       this.canvas.width = image.width;
       this.canvas.height = image.height;

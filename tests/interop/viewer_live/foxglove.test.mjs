@@ -15,7 +15,7 @@ const { FoxgloveClient } = requirePackage("@foxglove/ws-protocol");
 const { parse } = requirePackage("@foxglove/rosmsg");
 const { MessageReader } = requirePackage("@foxglove/rosmsg2-serialization");
 const WebSocket = requirePackage("ws");
-const kPatience_ms = 30_000, kRecorded_ms = 4000;
+const kPatience_ms = 30_000, kRecorded_ms = 2500;
 
 let services = [], client, viewer;
 const complaints = [];   // of the client library about what it got

@@ -94,7 +94,7 @@ test("where drawing makes poses late, the page draws less often, and more often 
   run.seq = 0;
   const pace = new DrawPace(true), far = new DrawPace(false), slow = new DrawPace(true);
   assert.ok(pace.period_ms > 100, "slowly at first");
-  run(pace, 1000, 30);
+  run(pace, 1200, 30);
   assert.equal(pace.period_ms, 33);
   run(pace, 1, 50);
   assert.ok(pace.period_ms > 40, "later than usual, and than a frame takes");
@@ -104,7 +104,7 @@ test("where drawing makes poses late, the page draws less often, and more often 
   assert.equal(pace.period_ms, 1000);
   run(pace, 2500, 30);
   assert.equal(pace.period_ms, 33);
-  run(slow, 1000, 45);
+  run(slow, 1200, 45);
   assert.equal(slow.period_ms, 33, "what is usual here is in time, up to 1.6 frames");
   run(far, 60, 90);
   assert.equal(far.period_ms, 33);
