@@ -12,9 +12,11 @@ import subprocess
 import sys
 import tempfile
 import time
+import urllib.request
 
-PORT = 8797
-PATIENCE_S = 30
+PORT, DEBUG_PORT = 8797, 8798
+PATIENCE_S = 60
+SETTLED_S = 5  # a browser that has just started is still busy
 
 
 def arguments():
@@ -25,58 +27,81 @@ def arguments():
     parser.add_argument("--own-sessions", action="store_true",
                         help="each in a session of its own, to which Linux may give as much as to the whole pipeline")
     parser.add_argument("--browser", action="store_true",
-                        help="with the viewer, and headless Chromium that shows its page, drawing in software")
+                        help="with the viewer, and headless Chromium that shows its page, drawing in software; it waits for "
+                             "the run")
+    parser.add_argument("--compare", action="store_true", help="each run also without the browser, in turn")
     parser.add_argument("--runs", default=3, type=int, help="(%(default)s)")
     parser.add_argument("--domain", default=141, type=int, help="DDS domain (%(default)s)")
     parser.add_argument("options", nargs="*", metavar="-- OPTION", help="of rtd run")
     return parser.parse_args()
 
 
-def open_browser(profile):
-    """Chromium on the viewer's page, once that is there."""
-    until = time.monotonic() + PATIENCE_S
-    while time.monotonic() < until:
-        with socket.socket() as probe:
-            if probe.connect_ex(("127.0.0.1", PORT)) == 0:
-                break
-        time.sleep(0.1)
-    return subprocess.Popen(["chromium", "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--window-size=1280,800",
-                             "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--remote-debugging-port=0",
-                             f"--user-data-dir={profile}", f"http://127.0.0.1:{PORT}/"],
-                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+def page_waits():
+    """Whether the page is connected to the viewer, by its title."""
+    try:
+        with urllib.request.urlopen(f"http://127.0.0.1:{DEBUG_PORT}/json", timeout=5) as answer:
+            return any(page["title"].startswith("Waiting for a robot") for page in json.load(answer))
+    except OSError:
+        return False
 
 
-def run(args, out):
+class Browser:
+    """A viewer of its own, and Chromium that shows its page and waits for a run."""
+
+    def __init__(self, args, profile):
+        self.viewer = subprocess.Popen([str(args.bin / "rtd"), "viewer", "--port", str(PORT), "--domain", str(args.domain)],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        until = time.monotonic() + PATIENCE_S
+        self._wait(lambda: socket.socket().connect_ex(("127.0.0.1", PORT)) == 0, until, "the viewer does not listen")
+        self.chromium = subprocess.Popen(
+            ["chromium", "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--window-size=1280,800",
+             "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", f"--remote-debugging-port={DEBUG_PORT}",
+             f"--user-data-dir={profile}", f"http://127.0.0.1:{PORT}/"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self._wait(page_waits, until, "the page does not connect")
+        time.sleep(SETTLED_S)
+
+    @staticmethod
+    def _wait(condition, until, problem):
+        while not condition():
+            if time.monotonic() > until:
+                sys.exit(f"busy_runs: {problem}")
+            time.sleep(0.2)
+
+    def close(self):
+        for process in (self.chromium, self.viewer):
+            process.terminate()
+            process.wait()
+
+
+def run(args, out, with_browser):
     command = [str(args.bin / "rtd"), "run", "--source", args.source, "--pace", "realtime", "--out", out, "--domain",
                str(args.domain), "--quiet", *args.options]
-    if args.browser:
-        command += ["--viewer", "--set", f"viewer.port={PORT}"]
-    with tempfile.TemporaryDirectory(prefix="rtd_chromium_", ignore_cleanup_errors=True) as profile, subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
-        browser = open_browser(profile) if args.browser else None
-        output, _ = process.communicate()
+    with tempfile.TemporaryDirectory(prefix="rtd_chromium_", ignore_cleanup_errors=True) as profile:
+        browser = Browser(args, profile) if with_browser else None
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+            output, _ = process.communicate()
         if browser is not None:
-            browser.terminate()
-            browser.wait()
+            browser.close()
     if process.returncode != 0:
         sys.exit(f"busy_runs: rtd run ended with exit code {process.returncode}: {output.strip()}")
     report = json.loads(pathlib.Path(out, "report.json").read_text(encoding="utf-8"))
     steps = pathlib.Path(out, "logs", "filter.log").read_text(encoding="utf-8").count("event=load_shed")
     latency, ate = report["latency_ms"], report.get("ate_rmse_m")
-    print(f"coverage {report['coverage']:.3f}  ATE {'-' if ate is None else f'{ate:.4f} m'}  latency p50 "
+    print(f"{'browser  ' if with_browser else ''}coverage {report['coverage']:.3f}  ATE {'-' if ate is None else f'{ate:.4f} m'}  latency p50 "
           f"{latency['p50']:.0f} ms, p99 {latency['p99']:.0f} ms  load shed {steps} times", flush=True)
 
 
 def main():
     args = arguments()
-    if args.browser and shutil.which("chromium") is None:
+    if (args.browser or args.compare) and shutil.which("chromium") is None:
         sys.exit("busy_runs: no chromium: run deploy/setup.sh --viewers")
     busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"], start_new_session=args.own_sessions)
             for _ in range(args.busy)]
     try:
         for _ in range(args.runs):
-            with tempfile.TemporaryDirectory(prefix="rtd_busy_") as out:
-                run(args, out)
+            for with_browser in [False, True] if args.compare else [args.browser]:
+                with tempfile.TemporaryDirectory(prefix="rtd_busy_") as out:
+                    run(args, out, with_browser)
     finally:
         for process in busy:
             process.kill()

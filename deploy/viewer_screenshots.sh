@@ -10,6 +10,7 @@ source="${1:-synthetic:office?frames=500}" folder="${2:-$root/docs/images}"
 tools="$root/build/release/viewers" port=8799
 [ -d "$tools/node_modules/puppeteer-core" ] || { echo "puppeteer-core is missing: run deploy/setup.sh --viewers" >&2; exit 2; }
 
+mkdir -p "$folder"
 work="$(mktemp -d)"
 "$root/build/release/bin/rtd" run --source "$source" --out "$work/out" --domain 173 --viewer --set viewer.port=$port \
   >"$work/log" 2>&1 &

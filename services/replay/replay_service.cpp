@@ -395,6 +395,8 @@ void ReplayService::show(const PlayState& state) {
   shown_paused_ = state.paused;
   service::Heartbeat& heartbeat = runtime_.heartbeat;
   heartbeat.set_metric("messages_sent", static_cast<double>(state.sent));
+  heartbeat.set_metric("replay.begin_s", static_cast<double>(first_ns_) * 1e-9);
+  heartbeat.set_metric("replay.at_s", static_cast<double>(service::realtime_ns()) * 1e-9);
   heartbeat.set_metric("replay.position_s", static_cast<double>(state.recorded_ns - first_ns_) * 1e-9);
   heartbeat.set_metric("replay.length_s", static_cast<double>(end_ns_ - first_ns_) * 1e-9);
   heartbeat.set_metric("replay.speed", state.rate);

@@ -74,16 +74,26 @@ std::optional<SettingCall> call_for(const foxglove::Parameter& parameter) {
   return std::nullopt;
 }
 
-std::optional<page::Playback> playback_of(const std::vector<msg::ServiceStatus>& services) {
-  const auto metric = [&](const char* name) { return metric_of(services, "replay", name); };
+std::optional<page::Playback> playback_of(const std::vector<page::ServiceLine>& services) {
+  const auto service = [&](const char* name) {
+    return std::ranges::find(services, name, [](const page::ServiceLine& line) { return line.status.service; });
+  };
+  const auto ended = [](const page::ServiceLine& line) {
+    return line.status.state >= msg::ServiceState::kFinished || page::state_text(line) == std::string_view("gone");
+  };
+  const auto replay = service("replay"), camera = service("camera");
+  if (replay == services.end()) return std::nullopt;
+  const auto metric = [&](const char* name) { return metric_of({replay->status}, "replay", name); };
   const auto position = metric("replay.position_s"), length = metric("replay.length_s");
   if (!position || !length) return std::nullopt;
-  const auto status = std::ranges::find(services, "replay", &msg::ServiceStatus::service);
   return page::Playback{.position_s = *position,
                         .length_s = *length,
                         .speed = metric("replay.speed").value_or(1),
                         .paused = metric("replay.paused").value_or(0) != 0,
-                        .ended = status->state >= msg::ServiceState::kFinished};
+                        .ended = ended(*replay),
+                        .begin_s = metric("replay.begin_s").value_or(0),
+                        .at_s = metric("replay.at_s").value_or(1e-9 * static_cast<double>(replay->status.stamp_ns)),
+                        .replaced = ended(*replay) && camera != services.end() && !ended(*camera)};
 }
 
 }  // namespace rtd::viewer

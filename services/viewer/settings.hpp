@@ -25,6 +25,6 @@ struct SettingCall {
 std::optional<SettingCall> call_for(const foxglove::Parameter& parameter);
 
 /// What a replay among the services says of itself; empty without one.
-std::optional<page::Playback> playback_of(const std::vector<msg::ServiceStatus>& services);
+std::optional<page::Playback> playback_of(const std::vector<page::ServiceLine>& services);
 
 }  // namespace rtd::viewer

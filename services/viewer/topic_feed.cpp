@@ -171,8 +171,7 @@ void TopicFeed::listen(Entry& entry) {
   bus::RawHandlers handlers;
   handlers.on_sample = [this, channel = entry.channel](const bus::RawSample& sample) {
     mailbox_.deliver([this, channel, sample] {
-      if (hub_.wanted(channel))
-        hub_.publish(channel, static_cast<std::uint64_t>(sample.source_ns), copy_of(sample.cdr()));
+      if (hub_.wanted(channel)) hub_.publish(channel, sample.source_ns, copy_of(sample.cdr()));
     });
   };
   try {

@@ -71,6 +71,30 @@ bus::BusOptions raw_options(const service::Runtime& runtime) {
   return options;
 }
 
+std::uint64_t to_ns(double seconds) {
+  constexpr double kMost_s = 4e9;
+  return static_cast<std::uint64_t>(1e9 * std::max(0.0, std::min(kMost_s, seconds)));
+}
+
+/// For Foxglove clients; none when a camera has taken over.
+std::optional<Played> played(const page::Playback& playback) {
+  if (playback.replaced) return std::nullopt;
+  const std::uint64_t begin_ns = to_ns(playback.begin_s);
+  return Played{.begin_ns = begin_ns,
+                .end_ns = begin_ns + to_ns(playback.length_s),
+                .position_ns = begin_ns + to_ns(playback.position_s),
+                .speed = playback.speed,
+                .paused = playback.paused,
+                .ended = playback.ended,
+                .at_ns = static_cast<std::int64_t>(to_ns(playback.at_s))};
+}
+
+/// Seconds from the beginning, within the recording.
+std::string seek_argument(const Played& played, std::uint64_t to_ns) {
+  const std::uint64_t offset_ns = std::clamp(to_ns, played.begin_ns, played.end_ns) - played.begin_ns;
+  return fmt::format("{:.6f}", 1e-9 * static_cast<double>(offset_ns));
+}
+
 }  // namespace
 
 void ViewerService::add_options(CLI::App& app, Config& config) {
@@ -133,13 +157,20 @@ ViewerService::~ViewerService() {
 
 FoxgloveHooks ViewerService::foxglove_hooks() {
   FoxgloveHooks hooks;
+  hooks.realtime_ns = service::realtime_ns;
   hooks.on_wanted = [this](std::uint32_t channel, bool wanted) { topics_->want(channel, wanted); };
   if (!config_.read_only) {
     hooks.on_call = [this](const CommandInfo& command, const std::string& argument, auto answer) {
       call(command.name, argument, std::move(answer));
     };
-    hooks.on_set = [this](const foxglove::Parameter& parameter) { return set_parameter(parameter); };
-    hooks.on_playback = [this](const foxglove::PlaybackControl& control) { control_playback(control); };
+    hooks.on_set = [this](const foxglove::Parameter& parameter, auto answer) {
+      const auto setting = call_for(parameter);
+      if (!setting) return answer({false, "it does not exist, or does not take this kind of value"});
+      call(setting->command, setting->argument, std::move(answer));
+    };
+    hooks.on_playback = [this](const foxglove::PlaybackControl& control, auto answer) {
+      control_playback(control, std::move(answer));
+    };
   }
   if (config_.publish)
     hooks.on_publish = [this](const std::string& topic, const std::string& schema, std::span<const std::byte> cdr) {
@@ -149,7 +180,7 @@ FoxgloveHooks ViewerService::foxglove_hooks() {
 }
 
 std::unique_ptr<Session> ViewerService::open(const std::string& subprotocol) {
-  return subprotocol == page::kSubprotocol ? page_.open() : foxglove_.open();
+  return subprotocol == page::kSubprotocol ? page_.open() : foxglove_.open(subprotocol);
 }
 
 Reports ViewerService::reports() const {
@@ -196,7 +227,7 @@ void ViewerService::refresh(std::int64_t now) {
   refresh_commands();
   refresh_playback();
   if (foxglove_.clients() > 0) topics_->update_graph();
-  foxglove_.send_time(static_cast<std::uint64_t>(service::realtime_ns()));
+  foxglove_.send_time();
   report();
 }
 
@@ -205,21 +236,23 @@ void ViewerService::call(const std::string& name, const std::string& argument, C
   commands_->call(name, argument, std::move(answer));
 }
 
-/// The new value comes with a heartbeat once the service has it.
-std::string ViewerService::set_parameter(const foxglove::Parameter& parameter) {
-  const auto setting = call_for(parameter);
-  if (!setting) return fmt::format("parameter '{}' does not exist or does not take this kind of value", parameter.name);
-  call(setting->command, setting->argument, [](const CommandResult&) {});
-  return "";
-}
-
-void ViewerService::control_playback(const foxglove::PlaybackControl& control) {
-  const auto ignore = [](const CommandResult&) {};
+/// One call after the other, pausing first so that a position that is sought stays; the answer comes with the last
+/// one's.
+void ViewerService::control_playback(const foxglove::PlaybackControl& control, CommandCaller::Answer answer) {
+  const auto& played = foxglove_.played();
+  std::vector<std::pair<const char*, std::string>> calls;
+  if (control.pause) calls.emplace_back("/replay/pause", "true");
+  if (control.seek_ns) calls.emplace_back("/replay/seek", seek_argument(*played, *control.seek_ns));
+  if (control.speed != played->shown_speed()) calls.emplace_back("/replay/speed", fmt::format("{}", control.speed));
+  if (!control.pause) calls.emplace_back("/replay/pause", "false");
   const std::string robot = runtime_.bus.robot().empty() ? "" : '/' + runtime_.bus.robot();
-  if (control.seek_ns)
-    call(robot + "/replay/seek", fmt::format("{:.6f}", 1e-9 * static_cast<double>(*control.seek_ns)), ignore);
-  call(robot + "/replay/speed", fmt::format("{}", control.speed), ignore);
-  call(robot + "/replay/pause", control.pause ? "true" : "false", ignore);
+  const auto problem = std::make_shared<std::string>();
+  for (std::size_t place = 0; place < calls.size(); ++place)
+    call(robot + calls[place].first, calls[place].second,
+         [problem, answer, last = place + 1 == calls.size()](const CommandResult& result) {
+           if (!result.success && problem->empty()) *problem = result.message;
+           if (last) answer({problem->empty(), *problem});
+         });
 }
 
 void ViewerService::refresh_commands() {
@@ -242,18 +275,9 @@ void ViewerService::refresh_playback() {
     const std::vector<msg::ServiceStatus> services = feed->mirror().services();
     const auto settings = settings_of(name, services);
     parameters.insert(parameters.end(), settings.begin(), settings.end());
-    const auto playback = playback_of(services);
-    if (!playback) continue;
-    feed->mirror().set(Item::kPlayback, page::playback(feed->mirror().index(), *playback));
-    if (name != runtime_.bus.robot()) continue;
-    const auto ns = [](double seconds) { return static_cast<std::uint64_t>(1e9 * std::max(0.0, seconds)); };
-    using Status = foxglove::PlaybackStatus;
-    foxglove_.set_played(0, ns(playback->length_s));
-    foxglove_.set_playback({.status = playback->ended    ? Status::kEnded
-                                      : playback->paused ? Status::kPaused
-                                                         : Status::kPlaying,
-                            .now_ns = ns(playback->position_s),
-                            .speed = static_cast<float>(playback->speed)});
+    const auto playback = playback_of(feed->mirror().services(service::monotonic_ns()));
+    if (playback) feed->mirror().set(Item::kPlayback, page::playback(feed->mirror().index(), *playback));
+    if (name == runtime_.bus.robot()) foxglove_.set_played(playback ? played(*playback) : std::nullopt);
   }
   foxglove_.set_parameters(std::move(parameters));
 }

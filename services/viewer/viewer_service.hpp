@@ -72,8 +72,7 @@ class ViewerService {
  private:
   FoxgloveHooks foxglove_hooks();
   void call(const std::string& name, const std::string& argument, CommandCaller::Answer answer);
-  std::string set_parameter(const foxglove::Parameter& parameter);
-  void control_playback(const foxglove::PlaybackControl& control);
+  void control_playback(const foxglove::PlaybackControl& control, CommandCaller::Answer answer);
   std::unique_ptr<Session> open(const std::string& subprotocol);
   Reports reports() const;
   std::vector<WatchedService> watched_services() const;

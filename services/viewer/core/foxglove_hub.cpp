@@ -9,6 +9,16 @@ namespace rtd::viewer {
 
 using foxglove::Channel;
 
+std::uint64_t Played::position_at(std::int64_t realtime_ns) const {
+  if (ended) return end_ns;
+  const double passed_ns = paused ? 0.0 : speed * static_cast<double>(realtime_ns - at_ns);
+  constexpr double kMost_ns = 1e18;  // what other programs say may be anything
+  const auto position = static_cast<std::int64_t>(position_ns) +
+                        static_cast<std::int64_t>(std::max(-kMost_ns, std::min(kMost_ns, passed_ns)));
+  return static_cast<std::uint64_t>(
+      std::clamp(position, static_cast<std::int64_t>(begin_ns), static_cast<std::int64_t>(end_ns)));
+}
+
 FoxgloveHub::FoxgloveHub(std::string name, std::string session_id, std::map<std::string, std::string> metadata,
                          FoxgloveHooks hooks)
     : name_(std::move(name)),
@@ -16,8 +26,8 @@ FoxgloveHub::FoxgloveHub(std::string name, std::string session_id, std::map<std:
       metadata_(std::move(metadata)),
       hooks_(std::move(hooks)) {}
 
-std::unique_ptr<Session> FoxgloveHub::open() {
-  return std::make_unique<FoxgloveSession>(*this);
+std::unique_ptr<Session> FoxgloveHub::open(std::string_view subprotocol) {
+  return std::make_unique<FoxgloveSession>(*this, subprotocol);
 }
 
 foxglove::ServerInfo FoxgloveHub::server_info() const {
@@ -25,11 +35,11 @@ foxglove::ServerInfo FoxgloveHub::server_info() const {
                             .session_id = session_id_,
                             .capabilities = {"time", "parameters", "parametersSubscribe", "connectionGraph"},
                             .supported_encodings = {"json", "cdr"},
-                            .metadata = metadata_,
-                            .played_ns = played_ns_};
+                            .metadata = metadata_};
   if (hooks_.on_call) info.capabilities.emplace_back("services");
   if (hooks_.on_publish) info.capabilities.emplace_back("clientPublish");
-  if (played_ns_ && hooks_.on_playback) info.capabilities.emplace_back("playbackControl");
+  if (played_) info.played_ns.emplace(played_->begin_ns, played_->end_ns);
+  if (played_ && hooks_.on_playback) info.capabilities.emplace_back("playbackControl");
   return info;
 }
 
@@ -79,7 +89,10 @@ void FoxgloveHub::update_wanted(std::uint32_t channel) {
   if (hooks_.on_wanted) hooks_.on_wanted(channel, now);
 }
 
-void FoxgloveHub::publish(std::uint32_t channel, std::uint64_t log_time_ns, std::shared_ptr<const Bytes> payload) {
+void FoxgloveHub::publish(std::uint32_t channel, std::int64_t source_ns, std::shared_ptr<const Bytes> payload) {
+  auto log_time_ns = static_cast<std::uint64_t>(source_ns);
+  if (played_ && (log_time_ns < played_->begin_ns || log_time_ns > played_->end_ns))
+    log_time_ns = played_->position_at(source_ns);
   for (FoxgloveSession* session : sessions_) session->deliver(channel, log_time_ns, payload);
 }
 
@@ -137,18 +150,48 @@ void FoxgloveHub::set_graph(foxglove::ConnectionGraph graph) {
     if (session->watches_graph_) session->send(update);
 }
 
-void FoxgloveHub::set_played(std::uint64_t begin_ns, std::uint64_t end_ns) {
-  const std::pair played(begin_ns, end_ns);
-  if (std::exchange(played_ns_, played) != played) broadcast(foxglove::server_info(server_info()));
+void FoxgloveHub::set_played(const std::optional<Played>& played) {
+  if (played && played_ && played->at_ns < played_->at_ns) return;
+  const auto range = [](const std::optional<Played>& of) {
+    return of ? std::pair(of->begin_ns, of->end_ns) : std::pair<std::uint64_t, std::uint64_t>();
+  };
+  const bool other = played.has_value() != played_.has_value() || range(played) != range(played_);
+  played_ = played;
+  if (other) broadcast(foxglove::server_info(server_info()));
+  if (played_) send_playback();
 }
 
-void FoxgloveHub::set_playback(const foxglove::PlaybackState& state) {
+void FoxgloveHub::control_done(const foxglove::PlaybackControl& request) {
+  if (!played_) return;
+  const std::int64_t now_ns = hooks_.realtime_ns();
+  played_->position_ns =
+      request.seek_ns ? std::clamp(*request.seek_ns, played_->begin_ns, played_->end_ns) : played_->position_at(now_ns);
+  if (played_->speed > 0) played_->speed = request.speed;
+  played_->paused = request.pause;
+  played_->at_ns = now_ns;
+  send_playback(&request);
+}
+
+void FoxgloveHub::send_playback(const foxglove::PlaybackControl* answered) {
+  using Status = foxglove::PlaybackStatus;
+  if (!played_) return;
+  foxglove::PlaybackState state{.status = played_->ended    ? Status::kEnded
+                                          : played_->paused ? Status::kPaused
+                                                            : Status::kPlaying,
+                                .now_ns = played_->position_at(hooks_.realtime_ns()),
+                                .speed = played_->shown_speed()};
+  if (answered != nullptr) {
+    state.did_seek = answered->seek_ns.has_value();
+    state.request_id = answered->request_id;
+  }
   for (FoxgloveSession* session : sessions_)
-    session->outbox_.push_control(binary_frame(foxglove::playback_state(state)));
+    if (session->knows_playback_) session->outbox_.push_control(binary_frame(foxglove::playback_state(state)));
 }
 
-void FoxgloveHub::send_time(std::uint64_t now_ns) {
-  for (FoxgloveSession* session : sessions_) session->outbox_.push_data(binary_frame(foxglove::time(now_ns)));
+void FoxgloveHub::send_time() {
+  const std::int64_t now_ns = hooks_.realtime_ns();
+  const std::uint64_t time_ns = played_ ? played_->position_at(now_ns) : static_cast<std::uint64_t>(now_ns);
+  for (FoxgloveSession* session : sessions_) session->outbox_.push_data(binary_frame(foxglove::time(time_ns)));
 }
 
 std::uint64_t FoxgloveHub::dropped() const {

@@ -6,7 +6,8 @@
 
 namespace rtd::viewer {
 
-FoxgloveSession::FoxgloveSession(FoxgloveHub& hub) : hub_(hub) {
+FoxgloveSession::FoxgloveSession(FoxgloveHub& hub, std::string_view subprotocol)
+    : hub_(hub), knows_playback_(subprotocol == foxglove::kSubprotocols[0]) {
   hub_.sessions_.insert(this);
   send(foxglove::server_info(hub_.server_info()));
   send(foxglove::advertise(hub_.channels()));
@@ -115,14 +116,34 @@ void FoxgloveSession::answer(const foxglove::GetParameters& request) {
 }
 
 void FoxgloveSession::answer(const foxglove::SetParameters& request) {
+  if (!hub_.hooks_.on_set) return send_error("this viewer was started with --read-only");
+  struct Progress {
+    std::vector<foxglove::Parameter> accepted;
+    std::size_t answers = 0;
+  };
+  const auto progress = std::make_shared<Progress>();
+  for (const foxglove::Parameter& parameter : request.parameters)
+    hub_.hooks_.on_set(
+        parameter, [this, alive = std::weak_ptr(alive_), progress, request, parameter](const CommandResult& result) {
+          if (alive.expired()) return;
+          if (result.success) progress->accepted.push_back(parameter);
+          if (!result.success) send_error("parameter '" + parameter.name + "': " + result.message);
+          if (++progress->answers == request.parameters.size()) answer_parameters(progress->accepted, request);
+        });
+}
+
+/// What was accepted has its new value here: it comes with a heartbeat, later.
+void FoxgloveSession::answer_parameters(const std::vector<foxglove::Parameter>& accepted,
+                                        const foxglove::SetParameters& request) {
+  if (request.id.empty()) return;
   std::vector<std::string> names;
-  for (const foxglove::Parameter& parameter : request.parameters) {
-    names.push_back(parameter.name);
-    const std::string problem =
-        hub_.hooks_.on_set ? hub_.hooks_.on_set(parameter) : "this viewer was started with --read-only";
-    if (!problem.empty()) send_error(problem);
+  for (const foxglove::Parameter& parameter : request.parameters) names.push_back(parameter.name);
+  std::vector<foxglove::Parameter> values = hub_.parameters(names);
+  for (foxglove::Parameter& value : values) {
+    const auto found = std::ranges::find(accepted, value.name, &foxglove::Parameter::name);
+    if (found != accepted.end()) value = *found;
   }
-  if (!request.id.empty() && !names.empty()) send(foxglove::parameter_values(hub_.parameters(names), request.id));
+  send(foxglove::parameter_values(values, request.id));
 }
 
 void FoxgloveSession::answer(const foxglove::WatchParameters& request) {
@@ -170,8 +191,16 @@ void FoxgloveSession::answer(const foxglove::ServiceCall& request) {
 }
 
 void FoxgloveSession::answer(const foxglove::PlaybackControl& request) {
-  if (!hub_.hooks_.on_playback || !hub_.played_ns_) return send_error("nothing is being replayed");
-  hub_.hooks_.on_playback(request);
+  knows_playback_ = true;
+  if (!hub_.hooks_.on_playback || !hub_.played_) return send_error("nothing is being replayed");
+  hub_.hooks_.on_playback(request,
+                          [&hub = hub_, this, alive = std::weak_ptr(alive_), request](const CommandResult& result) {
+                            if (result.success) return hub.control_done(request);
+                            if (alive.expired()) return;
+                            send_error(result.message);
+                            const foxglove::PlaybackControl refused{.request_id = request.request_id};
+                            hub.send_playback(&refused);
+                          });
 }
 
 }  // namespace rtd::viewer

@@ -75,6 +75,8 @@ std::string movers(std::uint8_t robot, const msg::Movers& movers);
 struct Playback {
   double position_s = 0, length_s = 0, speed = 1;
   bool paused = false, ended = false;
+  double begin_s = 0, at_s = 0;  ///< Unix times: recorded one of the first message; when it was at that position
+  bool replaced = false;         ///< it has ended, and a camera runs
 };
 std::string playback(std::uint8_t robot, const Playback& playback);
 struct ServiceLine {

@@ -118,7 +118,7 @@ std::string movers(std::uint8_t robot, const msg::Movers& movers) {
 }
 
 std::string playback(std::uint8_t robot, const Playback& playback) {
-  const char* state = playback.paused ? "paused" : playback.ended ? "ended" : "playing";
+  const char* state = playback.ended ? "ended" : playback.paused ? "paused" : "playing";
   return json_line({{"type", "playback"},
                     {"robot", robot},
                     {"state", state},

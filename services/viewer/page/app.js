@@ -22,7 +22,8 @@ import { SystemPanel } from "./system_panel.js";
 import { exposeHooks } from "./hooks.js";
 import { situation } from "./waiting.js";
 
-const kPanelPeriod_ms = 250;
+const kPanelPeriod_ms = 250, kFrugalPanelPeriod_ms = 1000;
+const kFrugalImagePause = 2;   // times the pause between two drawings of the map
 
 class App {
   constructor() {
@@ -32,7 +33,7 @@ class App {
     this.undecoded = { count: 0, reason: "" };
     this.calls = new Calls((message) => this.connection.send(message));
     this.header = new Header((index) => this.select(index));
-    this.image = new ImagePanel(this.settings);
+    this.image = new ImagePanel(this.settings, () => (this.scene?.frugal ? kFrugalImagePause * this.scene.pace.period_ms : 0));
     this.plots = new Plots();
     this.system = new SystemPanel();
     this.controls = new Controls(this.calls);
@@ -46,7 +47,7 @@ class App {
     byId("retry").addEventListener("click", () => this.connection.retryNow());
     bindShortcuts(this.actions());
     exposeHooks(this);
-    setInterval(() => this.updatePanels(), kPanelPeriod_ms);
+    setInterval(() => this.updatePanelsInTime(), kPanelPeriod_ms);
     document.addEventListener("visibilitychange", () => this.settingsChanged());
     this.settingsChanged();
     this.startScene();
@@ -56,21 +57,30 @@ class App {
     return this.session.robots.get(this.selected);
   }
 
-  /** The 3D view is loaded last: without WebGL, or without three.js on the server, the panels work all the same. */
-  async startScene() {
+  /** The 3D view is loaded last: without WebGL, or without three.js on the server, the panels work all the same.
+      attempt: 2 and more after a server that was gone is back; a browser may remember that a module failed. */
+  async startScene(attempt = 1) {
+    this.sceneAttempt = attempt;
     try {
-      const { Scene } = await import("./scene.js");
+      const { Scene } = await import(attempt === 1 ? "./scene.js" : `./scene.js?attempt=${attempt}`);
+      byId("no-scene").hidden = true;
       this.scene = new Scene(byId("map"), this.settings, (tracking) => this.measureAge(tracking));
       this.frame.bindView(this.scene);
       this.showRobots();
     } catch (error) {
       byId("no-scene").hidden = false;
       setText(byId("no-scene-reason"), error.message);
+      this.sceneFailed = true;
     }
+    document.documentElement.classList.toggle("plain", this.scene?.software ?? true);
   }
 
   /** After a connection is opened the server sends everything again. */
   forget() {
+    if (this.sceneFailed) {
+      this.sceneFailed = false;
+      this.startScene(this.sceneAttempt + 1);
+    }
     this.session = new Session();
     this.age = new PoseAge();
     this.options = "";
@@ -133,7 +143,17 @@ class App {
     this.age.add(tracking.finished_ms, Date.now(), this.connection.clock.offset_ms);
   }
 
+  /** Less often where drawing takes time from the robot, unless tracking or a recording changes its state. */
+  updatePanelsInTime() {
+    const states = [this.connection.state, this.robot?.tracking?.state, this.robot?.playback?.state].join();
+    const period_ms = this.scene?.frugal && states === this.statesOfPanels ? kFrugalPanelPeriod_ms : 0;
+    if (performance.now() - this.panelsUpdated_ms < period_ms - kPanelPeriod_ms / 2) return;
+    this.statesOfPanels = states;
+    this.updatePanels();
+  }
+
   updatePanels() {
+    this.panelsUpdated_ms = performance.now();
     const { session, robot, connection } = this, now_ms = performance.now(), now_s = now_ms / 1000;
     const report = situation({
       connection: { state: connection.state, address: connection.shownAddress, retry_s: connection.retry_s },
@@ -149,11 +169,12 @@ class App {
     this.layers.update(session);
     if (!robot?.image) this.image.update(robot);
     const { count, reason } = this.undecoded;
-    setText(byId("undecoded"), count > 0 ? `${count} messages could not be read: ${reason}` : "");
+    setText(byId("undecoded"), count > 0 ? `${count} ${count === 1 ? "message" : "messages"} could not be read: ${reason}` : "");
   }
 
   settingsChanged() {
     this.frame.apply();
+    this.layers.applyTheme();
     this.scene?.applySettings();
     this.sendOptions();
     this.updatePanels();

@@ -67,7 +67,7 @@ export class Controls {
     const { success, message } = await this.calls.call(robot, command.name, argument);
     button.disabled = false;
     answer.className = `answer ${success ? "good" : "bad"}`;
-    setText(answer, message || (success ? "Done." : "It did not work."));
+    setText(answer, message || (success ? "Done." : "The command failed."));
     if (success && button.parentElement.classList.contains("segments")) press(button);
   }
 }

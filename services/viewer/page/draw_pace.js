@@ -1,19 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 
-// How often a processor that also draws may do so. Where it is the robot's own, drawing makes poses late: then the page
-// steps back at once, and comes nearer again slowly.
+// How often a processor that also draws may do so. Where it is the robot's own, drawing makes poses late: there the page
+// begins slowly, steps back at once when poses become late, and draws more often again while they are in time.
+
+import { percentile } from "./series.js";
 
 const kShortest_ms = 33, kLongest_ms = 1000;   // between two drawings; with the wait for the screen 20 to 30 per second
-const kLate = 1.6;                             // of the time between two frames, from a frame to its pose
-const kBack = 1.25, kNearer = 0.997;           // for each late pose, for each that is in time
+const kCautious_ms = 250;                      // at first, on the robot's own computer
+const kLate = 1.6, kLater = 1.5;               // times a frame, from a frame to its pose; times what is usual here
+const kBack = 1.4, kNearer = 0.998;            // for each late pose, for each that is in time
 const kMemory = 0.9;
+const kUsual = 150;                            // poses that tell what is usual
 
 export class DrawPace {
   /** sameHost: whether the page may run on the computer whose poses it shows. */
   constructor(sameHost) {
     this.sameHost = sameHost;
-    this.period_ms = kShortest_ms;
+    this.period_ms = sameHost ? kCautious_ms : kShortest_ms;
+    this.latencies_ms = [];
   }
 
   /** Of each pose: the frame's number, its stamp, and the time from the frame to its pose. */
@@ -23,8 +28,16 @@ export class DrawPace {
     if (!this.sameHost || !(frames > 0) || !(passed_ms > 0)) return;
     const frame_ms = passed_ms / frames;
     this.frame_ms = kMemory * (this.frame_ms ?? frame_ms) + (1 - kMemory) * frame_ms;
-    this.period_ms *= latency_ms > kLate * this.frame_ms ? kBack : kNearer;
+    this.period_ms *= this.#isLate(latency_ms) ? kBack : kNearer;
     this.period_ms = Math.min(kLongest_ms, Math.max(kShortest_ms, this.period_ms));
+  }
+
+  /** Later than the robot can afford, or than it usually is while less than a frame is no reason to hurry. */
+  #isLate(latency_ms) {
+    this.latencies_ms.push(latency_ms);
+    if (this.latencies_ms.length > kUsual) this.latencies_ms.shift();
+    const usual_ms = percentile(this.latencies_ms, 0.5);
+    return latency_ms > Math.min(kLate * this.frame_ms, Math.max(kLater * usual_ms, this.frame_ms));
   }
 }
 

@@ -31,6 +31,9 @@ export function clockTime(value_s) {
   return `${minutes}:${(value_s - 60 * minutes).toFixed(1).padStart(4, "0")}`;
 }
 
+/** As its makers write it. */
+export const vendorName = (vendor) => ({ fastdds: "Fast DDS", cyclonedds: "Cyclone DDS" })[vendor] ?? vendor;
+
 /** A metric of a service: whole numbers with separators, others with three digits. */
 export function metric(value) {
   return Number.isInteger(value) ? kThousands.format(value) : String(Number(value.toPrecision(3)));

@@ -33,9 +33,9 @@ export class Header {
   }
 
   /** In the middle while there is nothing to see, above the map afterwards; none while all is well. */
-  #notice({ level, title, detail }, robot) {
+  #notice({ level, title, detail, quiet }, robot) {
     const notice = byId("notice"), empty = !robot || robot.count("posedCount") === 0;
-    notice.hidden = level === "ok" && !empty;
+    notice.hidden = (level === "ok" || quiet) && !empty;
     setAttribute(notice, "data-level", level);
     setAttribute(notice, "class", empty ? "notice card" : "notice banner");
     setText(byId("notice-title"), level === "ok" ? "Waiting for the map" : title);

@@ -13,8 +13,10 @@ const kFeatureRadius_px = 1.7;   // on the screen
 const kFont_px = 12;
 
 export class ImagePanel {
-  constructor(settings) {
+  /** pause_ms(): least time between two images. */
+  constructor(settings, pause_ms = () => 0) {
     this.settings = settings;
+    this.pause_ms = pause_ms;
     this.canvas = byId("image");
     this.context = this.canvas.getContext("2d", { willReadFrequently: true });   // drawn by the processor
     this.legend = { kept: byId("kept"), removed: byId("removed"), boxes: byId("boxes") };
@@ -27,10 +29,14 @@ export class ImagePanel {
     this.robot = robot;
     if (this.requested) return;
     this.requested = true;
-    requestAnimationFrame(() => {
+    const show = () => requestAnimationFrame((now_ms) => {
       this.requested = false;
+      this.shown_ms = now_ms;
       this.#show();
     });
+    const wait_ms = (this.shown_ms ?? -Infinity) + this.pause_ms() - performance.now();
+    if (wait_ms > 0) setTimeout(show, wait_ms);
+    else show();
   }
 
   #bindSwitch(name) {
@@ -45,17 +51,21 @@ export class ImagePanel {
 
   #show() {
     const image = this.robot?.image;
-    byId("image-none").hidden = Boolean(image);
-    this.canvas.hidden = !image;
     if (!image) {
       this.decoded = null;
       this.bitmap = null;
+      this.#reveal();
       this.#describe();
     } else if (image === this.decoded) {
       this.#draw();
     } else if (!this.decoding) {
       this.#decode(image);
     }
+  }
+
+  #reveal() {
+    this.canvas.hidden = !this.bitmap;
+    byId("image-none").hidden = !this.canvas.hidden;
   }
 
   /** One at a time: while an image is decoded the next ones wait, and only the newest of them is shown. */
@@ -78,6 +88,7 @@ export class ImagePanel {
   #draw() {
     const image = this.robot?.image;
     if (!image || !this.bitmap) return;
+    this.#reveal();
     if (this.canvas.width !== image.width || this.canvas.height !== image.height) {
       this.canvas.width = image.width;
       this.canvas.height = image.height;

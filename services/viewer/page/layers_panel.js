@@ -5,9 +5,11 @@
 
 import { byId, el } from "./dom.js";
 import { count } from "./format.js";
+import { scenePalette } from "./palette.js";
 import { kLayers } from "./settings.js";
 
 const kColorings = ["height", "static probability", "one colour"];
+const kColors = { keyframes: "keyframe", edges: "covisibility", trajectory: "trajectory", movers: "moving", truth: "truth" };
 
 export class LayersPanel {
   /** onChange: a setting of the scene is another one now. */
@@ -20,6 +22,15 @@ export class LayersPanel {
     select.value = settings.coloring;
     select.addEventListener("change", () => this.#color(select.value));
     this.shown = "";
+    this.applyTheme();
+  }
+
+  /** The colours that things have on the map. */
+  applyTheme() {
+    const palette = scenePalette(this.settings.theme);
+    for (const [layer, color] of Object.entries(kColors)) {
+      byId(`layer-${layer}`).parentElement.querySelector(".mark").style.background = palette[color];
+    }
   }
 
   nextColoring() {
@@ -45,7 +56,9 @@ export class LayersPanel {
   }
 
   #kind(name, title) {
-    return this.#check(title, this.settings.layers[name], (checked) => { this.settings.layers[name] = checked; }, `layer-${name}`);
+    const label = this.#check(title, this.settings.layers[name], (checked) => { this.settings.layers[name] = checked; }, `layer-${name}`);
+    if (kColors[name]) label.append(el("i", { class: "mark" }));
+    return label;
   }
 
   #map(robot, map) {

@@ -18,7 +18,8 @@ export class Look {
     this.loop = color();
     this.trajectory = color();
     this.share = 1;   // of the points, see detail.js
-    this.textScale = { value: 1 };
+    this.textScale = 1;
+    this.unitsPerPixel = 0.003;   // of a sprite that is as large at any distance
     this.background = new THREE.Color();
     this.grid = new THREE.Color();
     this.truthMaterial = new THREE.LineBasicMaterial();
@@ -28,8 +29,8 @@ export class Look {
     this.denseMaterial = new THREE.PointsMaterial({ size: 2, sizeAttenuation: false, vertexColors: THREE.VertexColors });
   }
 
-  /** settings: {theme: light | dark, large, coloring}. pixelRatio: of the canvas. */
-  apply({ theme, large, coloring }, pixelRatio) {
+  /** settings: {theme: light | dark, large, coloring}. view: {pixelRatio, height_px, fov_deg} of the canvas. */
+  apply({ theme, large, coloring }, { pixelRatio, height_px, fov_deg }) {
     const palette = scenePalette(theme);
     this.background.set(palette.background);
     this.grid.set(palette.grid);
@@ -44,6 +45,7 @@ export class Look {
     this.points.coloring.value = kColorings[coloring] ?? 0;
     this.points.size.value = (large ? 3.5 : 2) * pixelRatio;
     this.denseMaterial.size = this.points.size.value;
-    this.textScale.value = large ? 1.3 : 1;
+    this.textScale = large ? 1.3 : 1;
+    this.unitsPerPixel = 2 * Math.tan(fov_deg * Math.PI / 360) / Math.max(1, height_px);
   }
 }

@@ -58,13 +58,16 @@ export class Plots {
     const { legend } = this.parts.stages;
     if (names.join() !== this.names) {
       this.names = names.join();
-      legend.replaceChildren(...names.map((name, i) => {
+      this.entries = names.map((name, i) => {
         const mark = el("i", { class: "mark" });
         mark.style.background = kSeriesColors[i % kSeriesColors.length];
-        return el("li", {}, mark, el("span", {}, name), el("b"));
-      }));
+        return el("li", {}, mark, el("span", { title: name }, name.slice(name.indexOf(" ") + 1)), el("b"));
+      });
+      const service = (name) => name.slice(0, name.indexOf(" "));
+      legend.replaceChildren(...this.entries.flatMap((entry, i) =>
+        (i > 0 && service(names[i]) === service(names[i - 1]) ? [entry] : [el("li", { class: "service-name" }, service(names[i])), entry])));
     }
-    names.forEach((name, i) => setText(legend.children[i].lastChild, ms(means.get(name))));
+    names.forEach((name, i) => setText(this.entries[i].lastChild, ms(means.get(name))));
   }
 
   #write(name, text) {

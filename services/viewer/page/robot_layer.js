@@ -11,7 +11,6 @@ import { textSprite } from "./text_sprite.js";
 const kCameraDepth_m = 0.22;
 const kVelocitySeconds = 1;     // an arrow shows the way of so long
 const kGap_m = 2;
-const kNameSize = 2.5;          // of the text at a moving object
 
 export class RobotLayer {
   constructor(robot, look) {
@@ -67,19 +66,23 @@ export class RobotLayer {
   /** The robot's name above its current map, if that is shown. */
   showName(shown) {
     const map = this.layers.get(this.#mapIds()[0]), there = shown && Boolean(map?.bounds && map.group.visible);
-    const color = this.look.cameraMaterial.color, scale = { value: kNameSize * this.look.textScale.value };
-    const key = there ? `${this.robot.title} ${color.getStyle()} ${scale.value}` : "";
+    const { cameraMaterial: { color }, textScale, unitsPerPixel } = this.look;
+    const key = there ? [this.robot.title, color.getStyle(), textScale, unitsPerPixel].join() : "";
     if (key !== this.drawnName) {
       this.group.remove(this.name);
-      this.name = there ? textSprite(this.robot.title, color, scale) : null;
+      this.name = there ? textSprite(this.robot.title, color, this.look) : null;
       if (there) this.group.add(this.name);
       this.drawnName = key;
     }
     if (!there) return;
-    const { min, max } = map.bounds;
-    const [x, y, z] = [0, 1, 2].map((axis) => (min[axis] + max[axis]) / 2);
-    if (this.robot.zUp) this.name.position.set(x, y, max[2] + this.name.scale.y);
-    else this.name.position.set(x, min[1] - this.name.scale.y, z);
+    this.#putAbove(this.name, map.bounds);
+  }
+
+  /** A label at the upper far edge of a box: above it both from behind and from above. */
+  #putAbove(label, { min, max }) {
+    const x = (min[0] + max[0]) / 2;
+    if (this.robot.zUp) label.position.set(x, max[1], max[2]);
+    else label.position.set(x, min[1], max[2]);
   }
 
   /** T_scene_camera of the newest pose, or null. */
@@ -91,6 +94,7 @@ export class RobotLayer {
 
   show(visible) {
     this.visible = visible;
+    this.drawnMovers = null;   // colours and sizes may be others
     for (const layer of this.layers.values()) layer.show(visible);
     this.movers.visible = visible.movers;
   }
@@ -157,8 +161,9 @@ export class RobotLayer {
     const box = new THREE.LineSegments(new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(...size)), this.look.moverMaterial);
     box.position.copy(at);
     const speed = `${(way.length() / kVelocitySeconds).toFixed(1)} m/s`;
-    const sprite = textSprite(`${label || "moves"} ${speed}`, this.look.moverMaterial.color, this.look.textScale);
-    sprite.position.set(at.x, at.y - size[1] / 2 - 0.08, at.z);
+    const sprite = textSprite(`${label || "moving"} ${speed}`, this.look.moverMaterial.color, this.look);
+    const half = size.map((length) => length / 2);
+    this.#putAbove(sprite, { min: center.map((middle, i) => middle - half[i]), max: center.map((middle, i) => middle + half[i]) });
     const parts = [box, sprite];
     if (way.length() > 0.02) {
       parts.push(new THREE.ArrowHelper(way.clone().normalize(), at, way.length(), this.look.moverMaterial.color.getHex(),

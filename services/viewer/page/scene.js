@@ -10,6 +10,7 @@ import { DrawPace, isLoopback } from "./draw_pace.js";
 import { FrameRate } from "./frame_rate.js";
 import { Look } from "./look.js";
 import { RobotLayer } from "./robot_layer.js";
+import { RobotState } from "./session.js";
 
 const kLargestPixelRatio = 2;
 const kLongestStep_s = 0.1;
@@ -42,10 +43,17 @@ export class Scene {
     this.bounds = new THREE.Box3();
     new ResizeObserver(() => this.#resize()).observe(container);
     this.applySettings();
+    this.#warmUp();
+  }
+
+  /** Whether everything that is drawn is drawn by the processor that also computes the poses. */
+  get frugal() {
+    return this.software && this.pace.sameHost;
   }
 
   applySettings() {
-    this.look.apply(this.settings, this.renderer.getPixelRatio());
+    this.look.apply(this.settings, { pixelRatio: this.renderer.getPixelRatio(), height_px: this.container.clientHeight,
+                                     fov_deg: this.camera.fov });
     this.renderer.setClearColor(this.look.background);
     if (this.grid) this.#drawGrid();
     this.forced = true;
@@ -83,6 +91,26 @@ export class Scene {
     const pause_ms = this.software && !this.#measuring() ? (this.drawn_ms ?? 0) + this.pace.period_ms - performance.now() : 0;
     if (pause_ms > 0) setTimeout(draw, pause_ms);
     else draw();
+  }
+
+  /** Draws one of everything and removes it: programs are compiled now and not in the middle of a run. */
+  #warmUp() {
+    const robot = new RobotState(0), map = robot.map(0);
+    map.setPoses({ ids: [0, 1], poses: Float32Array.of(0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1) });
+    map.setPoints({ blocks: [{ keyframe: 0, n: 1, total: 1, scale_m: 1, data: new Uint8Array(8) }] });
+    map.setCovisibility({ blocks: [{ keyframe: 0, others: Uint32Array.of(1) }] });
+    map.setTrajectory({ start: 0, keyframes: Uint32Array.of(0, 1), positions: new Float32Array(6) });
+    map.setTruth({ start: 0, positions: new Float32Array(6) });
+    map.setDense({ start: 0, total: 1, positions: new Float32Array(3), colors: new Uint8Array(3) });
+    robot.tracking = { state: "ok", pose: [0, 0, 0, 0, 0, 0, 1], map: 0 };
+    robot.movers = [{ center: [0, 0, 0], size: [1, 1, 1], velocity: [1, 0, 0], label: "" }];
+    const layer = new RobotLayer(robot, this.look);
+    layer.show(Object.fromEntries(Object.keys(this.settings.layers).map((name) => [name, true])));
+    layer.update(0);
+    this.root.add(layer.group);
+    this.renderer.render(this.three, this.camera);
+    layer.group.visible = false;   // kept: programs live as long as their materials
+    this.renderer.clear();
   }
 
   #measuring() {

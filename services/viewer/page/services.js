@@ -4,7 +4,7 @@
 // What the heartbeats of the services say: the metrics that people look for, and which host is how far off.
 
 const kHostName = "host_name.";
-const kHidden = /^(host_id$|host_name\.|clock\.|in:|out:|acknowledged:)/;
+const kHidden = /^(host_id$|host_name\.|clock\.|in:|out:|acknowledged:|replay\.(at|begin)_s$)/;
 const kDrops = /(dropped|lost|lost_in_transit|lost_in_queue|broken|defective|without_image|without_mask)$/;
 const kTroubles = /^(topic\.|peer\.|hung$)/;
 

@@ -10,7 +10,7 @@ const kTyping = "input[type=text], select, textarea, dialog[open] *";
 /** actions: name -> function; see kKeys. */
 export function bindShortcuts(actions) {
   byId("keys").append(...kKeys.map(([keys, , text]) =>
-    el("div", {}, el("dt", {}, ...keys.map((key) => el("kbd", {}, kNames[key] ?? key))), el("dd", {}, text))));
+    el("div", {}, el("dt", {}, ...keys.map((key) => el("kbd", {}, kNames[key] ?? key.toUpperCase()))), el("dd", {}, text))));
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey || event.target.matches(kTyping)) return;
     const onMap = event.target.closest?.("#map canvas"), onWidget = event.target.matches("button, input, summary");

@@ -4,7 +4,7 @@
 // The panel of services and hosts: state, drops, clocks, where objects are detected, what the links pass.
 
 import { byId, el, setAttribute, setText } from "./dom.js";
-import { count, metric, ms, rate } from "./format.js";
+import { count, metric, ms, rate, vendorName } from "./format.js";
 import { badness, byHost, detectorLine, linkTopics, summarize } from "./services.js";
 
 const kOld_ms = 2000;
@@ -70,7 +70,7 @@ export class SystemPanel {
     if (Math.abs(clock.offset_ms) >= 1) parts.push(`server's clock ${clock.offset_ms > 0 ? "+" : ""}${ms(clock.offset_ms)}`);
     if (reconnects > 0) parts.push(`${reconnects} ${reconnects === 1 ? "reconnect" : "reconnects"}`);
     setText(byId("page-link"), parts.join(" · ") || "–");
-    setText(byId("server"), hello ? `rtd-viewer ${hello.version}, DDS domain ${hello.domain}, ${hello.vendor}` : "–");
+    setText(byId("server"), hello ? `rtd-viewer ${hello.version}, DDS domain ${hello.domain}, ${vendorName(hello.vendor)}` : "–");
   }
 }
 

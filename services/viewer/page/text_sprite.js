@@ -1,27 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A label in the scene that always faces the viewer.
+// A label in the scene that always faces the viewer and is as large on the screen wherever it is.
 
 import * as THREE from "/three/build/three.module.js";
 
-const kHeight_px = 48;
-const kHeight_m = 0.14;
+const kHeight_px = 20;           // on the screen
+const kDetail = 2;               // pixels of the texture for one of the screen
 const kKept = 40;
-const textures = new Map();   // text and colour -> {texture, width_px}; movers keep their labels for long
+const textures = new Map();   // text and colours -> {texture, aspect}; moving objects keep their labels for long
 
-export function textSprite(text, color, scale) {
-  const { texture, width_px } = textureOf(text, color.getStyle());
-  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: texture, depthTest: false }));
-  sprite.scale.set(scale.value * kHeight_m * width_px / kHeight_px, scale.value * kHeight_m, 1);
+/** color: THREE.Color; look: see look.js. Stands above its position. */
+export function textSprite(text, color, look) {
+  const { texture, aspect } = textureOf(text, color.getStyle(), look.background.getStyle());
+  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: texture, depthTest: false, sizeAttenuation: false }));
+  const height = kHeight_px * look.textScale * look.unitsPerPixel;
+  sprite.scale.set(height * aspect, height, 1);
+  sprite.center.set(0.5, -0.2);
+  sprite.renderOrder = 1;
   return sprite;
 }
 
-function textureOf(text, style) {
-  const key = text + style;
+function textureOf(text, style, background) {
+  const key = `${text} ${style} ${background}`;
   if (!textures.has(key)) {
     if (textures.size >= kKept) forgetOldest();
-    textures.set(key, draw(text, style));
+    textures.set(key, draw(text, style, background));
   }
   return textures.get(key);
 }
@@ -32,18 +36,23 @@ function forgetOldest() {
   textures.delete(key);
 }
 
-function draw(text, style) {
-  const canvas = document.createElement("canvas"), font = `600 ${0.7 * kHeight_px}px system-ui, sans-serif`;
+/** On a plate in the colour of the background: points behind it would make it hard to read. */
+function draw(text, style, background) {
+  const canvas = document.createElement("canvas"), height = kDetail * kHeight_px, font = `600 ${0.66 * height}px system-ui, sans-serif`;
   let context = canvas.getContext("2d");
   context.font = font;
-  canvas.width = Math.ceil(context.measureText(text).width) + 8;
-  canvas.height = kHeight_px;
+  canvas.width = Math.ceil(context.measureText(text).width) + 0.6 * height;
+  canvas.height = height;
   context = canvas.getContext("2d");
+  context.globalAlpha = 0.78;
+  context.fillStyle = background;
+  context.fillRect(0, 0, canvas.width, height);
+  context.globalAlpha = 1;
   context.font = font;
   context.textBaseline = "middle";
   context.fillStyle = style;
-  context.fillText(text, 4, kHeight_px / 2);
+  context.fillText(text, 0.3 * height, 0.53 * height);
   const texture = new THREE.CanvasTexture(canvas);
   texture.minFilter = THREE.LinearFilter;
-  return { texture, width_px: canvas.width };
+  return { texture, aspect: canvas.width / height };
 }

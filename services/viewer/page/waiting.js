@@ -3,23 +3,26 @@
 
 // One sentence about where things stand, and one about what to do: the page is never blank without saying why.
 
+import { vendorName } from "./format.js";
+
 const kStale_ms = 3000;
 const kSources = ["camera", "replay"];
 const kEnded = ["finished", "gone"];
 
 const kStates = {
   ok: ["ok", "Tracking", ""],
-  initializing: ["wait", "Starting the map", "Move the camera slowly; show it something with texture."],
-  predicted: ["warn", "Predicted pose", "Nothing static is in view; the last motion continues for a moment."],
+  initializing: ["wait", "Starting the map", "Move the camera slowly, and show it something with texture."],
+  predicted: ["warn", "Predicted pose", "Nothing static is in view; the last motion is continued for a moment."],
   doubtful: ["warn", "Doubtful pose", "Much of the view contradicts it: a large object may be moving."],
   "recently lost": ["warn", "Tracking just lost", "Point the camera at something it has seen before."],
-  lost: ["bad", "Tracking lost", "Point the camera at a place it has seen before; the map stays."],
+  lost: ["bad", "Tracking lost", "Point the camera at a place it has seen before. The map is kept."],
   relocalizing: ["warn", "Place recognised", "The pose returns when the next frames confirm it."],
 };
 
 const report = (level, title, detail = "") => ({ level, title, detail });
 
-/** connection: {state, address, retry_s}; hello: or null; robot: RobotState or undefined. level: ok, wait, warn, bad. */
+/** connection: {state, address, retry_s}; hello: or null; robot: RobotState or undefined. level: ok, wait, warn, bad.
+    quiet: the line at the top says enough when a map is shown. */
 export function situation({ connection, hello, robot, now_ms }) {
   return ofConnection(connection, hello) ?? ofServices(robot, hello) ?? ofTracking(robot, now_ms);
 }
@@ -33,7 +36,7 @@ function ofConnection({ state, address, retry_s }, hello) {
   }
   if (!hello) return report("wait", "Connected", "The server has not introduced itself yet.");
   if (hello.protocol !== 1) {
-    return report("bad", "This page is of another version",
+    return report("bad", "Page and server do not match",
                   `The server speaks protocol ${hello.protocol}, the page protocol 1. Reload the page.`);
   }
   return null;
@@ -42,16 +45,16 @@ function ofConnection({ state, address, retry_s }, hello) {
 function ofServices(robot, hello) {
   if (!robot || (robot.services.length === 0 && !robot.tracking)) {
     return report("wait", "Waiting for a robot",
-                  `No service on DDS domain ${hello.domain} (${hello.vendor}) yet. Start "rtd run --source ..." in this domain.`);
+                  `No service on DDS domain ${hello.domain} (${vendorName(hello.vendor)}) yet. Start "rtd run --source ..." in this domain.`);
   }
   const failed = robot.services.find((service) => service.state === "failed");
   if (failed) return report("bad", `${failed.name} failed`, failed.message || "Its log says why.");
   if (robot.tracking) return null;
   const running = (name) => robot.services.some((service) => service.name === name && !kEnded.includes(service.state));
-  if (!kSources.some(running)) return report("wait", "Waiting for a camera", "No camera and no replay is running.");
+  if (!kSources.some(running)) return report("wait", "Waiting for a camera", "Neither a camera nor a replay is running.");
   if (!running("slam")) return report("wait", "Waiting for slam", "Images arrive, but rtd-slam is not running.");
   const busy = robot.services.filter((service) => service.state === "starting" || service.state === "ready");
-  const reasons = busy.map(({ name, message }) => (message ? `${name}: ${message}` : `${name} starts`));
+  const reasons = busy.map(({ name, message }) => (message ? `${name}: ${message}` : `${name} is starting`));
   return report("wait", "Waiting for the first pose", reasons.join("; "));
 }
 
@@ -64,10 +67,10 @@ function ofTracking(robot, now_ms) {
 
 function withoutPoses(robot, age_ms) {
   const { playback, services } = robot;
-  if (playback?.state === "paused") return report("wait", "Paused", `at ${playback.position_s.toFixed(1)} s of the recording`);
+  if (playback?.state === "paused") return { ...report("wait", "Paused", `at ${playback.position_s.toFixed(1)} s of the recording`), quiet: true };
   const sources = services.filter((service) => kSources.includes(service.name));
   if (playback?.state === "ended" || (sources.length > 0 && sources.every(({ state }) => kEnded.includes(state)))) {
-    return report("wait", "The source has ended", "The map stays until slam is restarted or the page is closed.");
+    return report("wait", "The source has ended", "The map is kept until slam is restarted or the page is closed.");
   }
   const slam = services.find((service) => service.name === "slam");
   if (!slam || kEnded.includes(slam.state)) return report("bad", "slam is gone", "Its last map is shown.");

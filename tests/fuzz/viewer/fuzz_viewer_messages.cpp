@@ -61,7 +61,7 @@ class Clients {
     foxglove_.add_channel("/b", {"cdr", "a/msg/B", "ros2msg", "uint8 b"});
     foxglove_.set_commands({{"/slam/reset", ArgumentKind::kNone}, {"/slam/save_map", ArgumentKind::kText}});
     foxglove_.set_parameters({{"a", 1.0}});
-    foxglove_.set_played(0, 1'000'000'000);
+    foxglove_.set_played(Played{.begin_ns = 0, .end_ns = 1'000'000'000});
     page_.robot("");
   }
 
@@ -90,8 +90,8 @@ class Clients {
   FoxgloveHooks hooks() {
     FoxgloveHooks hooks;
     hooks.on_call = [this](const auto&, const auto&, const auto& answer) { ++acted_, answer({true, "done"}); };
-    hooks.on_set = [this](const foxglove::Parameter&) { return ++acted_, std::string(); };
-    hooks.on_playback = [this](const foxglove::PlaybackControl&) { ++acted_; };
+    hooks.on_set = [this](const auto&, const auto& answer) { answer({++acted_ % 2 == 0, "why not"}); };
+    hooks.on_playback = [this](const auto&, const auto& answer) { answer({++acted_ % 2 == 0, "why not"}); };
     hooks.on_publish = [this](const auto&, const auto&, auto) { return ++acted_, std::string(); };
     return hooks;
   }

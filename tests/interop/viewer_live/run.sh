@@ -6,7 +6,7 @@
 #   run.sh RTD TOOLS_DIR live|foxglove|robots [SCREENSHOT_DIR]   TOOLS_DIR: where `deploy/setup.sh --viewers` put the npm packages
 # Exit code 77 = skipped: node, an npm package or Chromium is not there.
 set -euo pipefail
-rtd="$1" tools="$2" what="$3" screenshots="${4:-}"
+rtd="$(realpath -m "$1")" tools="$(realpath -m "$2")" what="$3" screenshots="${4:-}"
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 
 skip() {

@@ -136,6 +136,23 @@ test("the page comes back by itself after the server was killed", async () => {
   page.complaints = page.complaints.filter((line) => !/ERR_CONNECTION_REFUSED|WebSocket/.test(line));
 });
 
+test("a 3D view that could not be loaded comes once the server is back", async () => {
+  server = await new FakeServer().start();
+  const { port, address } = server;
+  page = await browser.newPage();
+  page.complaints = page.outside = [];
+  await page.setRequestInterception(true);
+  let refused = 0;
+  page.on("request", (request) => (request.url().endsWith("/scene.js") && ++refused === 1 ? request.abort() : request.continue()));
+  await page.goto(address);
+  await waitFor(page, () => !document.getElementById("no-scene").hidden && rtdViewer.counts.points === 5000);
+  await server.stop();
+  await waitFor(page, () => rtdViewer.state().connection !== "open");
+  server = await new FakeServer({ points: 3000, keyframes: 40 }).start(port);
+  await waitForMap(page, 3000);
+  assert.equal(await page.$eval("#no-scene", (node) => node.hidden), true);
+});
+
 test("the page says what it waits for", async () => {
   await open({ empty: true });
   await waitFor(page, () => document.getElementById("notice-title").textContent === "Waiting for a robot");
@@ -183,7 +200,7 @@ test("a message that cannot be read is counted, and the page goes on", async () 
   await open();
   await waitForMap(page, 5000);
   server.send(Buffer.from([3, 0, 0, 0, 9, 0, 0, 0, 1]));
-  await waitFor(page, () => /1 messages could not be read/.test(document.getElementById("undecoded").textContent));
+  await waitFor(page, () => /1 message could not be read/.test(document.getElementById("undecoded").textContent));
   const fresh = await page.evaluate(() => rtdViewer.state().robots[0].tracking.seq);
   await waitFor(page, (seq) => rtdViewer.state().robots[0].tracking.seq > seq + 5, fresh);
 });

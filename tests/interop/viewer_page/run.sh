@@ -6,7 +6,7 @@
 #   run.sh TOOLS_DIR [SCREENSHOT_DIR]     TOOLS_DIR: where `deploy/setup.sh --viewers` put the npm packages
 # Exit code 77 = skipped: node, an npm package, Chromium or three.js is not there.
 set -euo pipefail
-tools="$1" screenshots="${2:-}"
+tools="$(realpath -m "$1")" screenshots="${2:-}"
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 
 skip() {

@@ -4,7 +4,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cstring>
 #include <nlohmann/json.hpp>
+
+#include "services/viewer/core/byte_writer.hpp"
 
 namespace rtd::viewer {
 namespace {
@@ -47,13 +50,19 @@ class FoxgloveHubTest : public ::testing::Test {
       calls.push_back(command.name + " " + argument);
       answers.push_back(answer);
     };
-    hooks.on_set = [](const foxglove::Parameter& parameter) {
-      return parameter.name == "good" ? "" : "there is no parameter '" + parameter.name + "'";
+    hooks.on_set = [](const foxglove::Parameter& parameter, auto answer) {
+      answer({parameter.name == "good", "it does not exist"});
     };
-    hooks.on_playback = [](const foxglove::PlaybackControl&) {};
+    hooks.on_playback = [this](const foxglove::PlaybackControl& control, auto answer) {
+      controls.push_back(control);
+      answers.push_back(answer);
+    };
+    hooks.realtime_ns = [this] { return now_ns; };
     return hooks;
   }
   FoxgloveHub hub{"name", "session", {}, hooks()};
+  std::int64_t now_ns = 1'000'000'000'000;
+  std::vector<foxglove::PlaybackControl> controls;
   std::vector<std::pair<std::uint32_t, bool>> wanted;
   std::vector<std::string> calls;
   std::vector<std::function<void(CommandResult)>> answers;
@@ -159,20 +168,125 @@ TEST_F(FoxgloveHubTest, parameters_are_read_set_and_watched) {
   hub.set_parameters({{"good", 2.0}});
   EXPECT_EQ(take(*client).size(), 1U) << "only the change";
   client->on_text(R"({"op":"setParameters","parameters":[{"name":"bad","value":1}]})");
-  EXPECT_THAT(take(*client)[0]["message"].get<std::string>(), HasSubstr("no parameter 'bad'"));
+  EXPECT_EQ(take(*client)[0]["message"], "parameter 'bad': it does not exist");
+}
+
+TEST_F(FoxgloveHubTest, what_a_client_has_set_is_answered_with_its_new_value) {
+  hub.set_parameters({{"good", 1.0}, {"bad", 2.0}});
+  const auto client = hub.open();
+  take(*client);
+  client->on_text(
+      R"({"op":"setParameters","id":"7","parameters":[{"name":"good","value":5},{"name":"bad","value":5}]})");
+  const auto news = take(*client);
+  ASSERT_THAT(ops(news), ElementsAre("status", "parameterValues"));
+  EXPECT_EQ(news[1]["id"], "7");
+  EXPECT_EQ(news[1]["parameters"][0]["value"], 5.0) << "the heartbeat with it comes later";
+  EXPECT_EQ(news[1]["parameters"][1]["value"], 2.0) << "refused";
+}
+
+TEST(Played, goes_on_from_where_it_was) {
+  Played played{.begin_ns = 100, .end_ns = 1'000, .position_ns = 200, .speed = 2, .at_ns = 50};
+  EXPECT_EQ(played.position_at(150), 400U);
+  EXPECT_EQ(played.position_at(5'000), 1'000U);
+  EXPECT_EQ(played.position_at(-5'000), 100U);
+  played.paused = true;
+  EXPECT_EQ(played.position_at(150), 200U);
+  played.ended = true;
+  EXPECT_EQ(played.position_at(150), 1'000U);
 }
 
 TEST_F(FoxgloveHubTest, a_replay_that_begins_is_offered_to_clients_that_are_there) {
   const auto client = hub.open();
   const json before = take(*client)[0];
   EXPECT_THAT(before["capabilities"], Not(Contains("playbackControl")));
-  hub.set_played(0, 5'000'000'000);
-  hub.set_played(0, 5'000'000'000);
+  const Played played{.begin_ns = 0, .end_ns = 5'000'000'000, .at_ns = now_ns};
+  hub.set_played(played);
+  hub.set_played(played);
   const auto news = take(*client);
-  ASSERT_THAT(ops(news), ElementsAre("serverInfo")) << "once";
+  ASSERT_THAT(ops(news), ElementsAre("serverInfo", "binary 5", "binary 5")) << "the description once";
   EXPECT_THAT(news[0]["capabilities"], Contains("playbackControl"));
   EXPECT_EQ(news[0]["dataEndTime"]["sec"], 5);
   EXPECT_EQ(news[0]["sessionId"], before["sessionId"]) << "the client keeps what it has";
+  hub.set_played(std::nullopt);
+  const json live = take(*client)[0];
+  EXPECT_THAT(live["capabilities"], Not(Contains("playbackControl")));
+  EXPECT_FALSE(live.contains("dataEndTime"));
+}
+
+/// Binary messages of one kind, without their opcode.
+std::vector<Bytes> take_binary(Session& session, int opcode) {
+  std::vector<Bytes> found;
+  while (auto frame = session.next(0))
+    if (!frame->text && std::to_integer<int>(frame->head[0]) == opcode)
+      found.emplace_back(frame->head.begin() + 1, frame->head.end());
+  return found;
+}
+
+template <class T>
+T at(const Bytes& bytes, std::size_t place) {
+  T value;
+  std::memcpy(&value, bytes.data() + place, sizeof(T));
+  return value;
+}
+
+/// A request of a client; `seek_ns` 0: none.
+std::string control(bool pause, float speed, std::uint64_t seek_ns, const std::string& id) {
+  ByteWriter writer(std::uint8_t{3}, static_cast<std::uint8_t>(pause), speed, static_cast<std::uint8_t>(seek_ns > 0),
+                    seek_ns);
+  writer.put_text(id);
+  const Bytes bytes = writer.take();
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+TEST_F(FoxgloveHubTest, a_seek_is_answered_with_the_position_and_the_id_of_the_request) {
+  constexpr std::uint64_t kBegin = 7'000'000'000, kEnd = 17'000'000'000;
+  hub.set_played(Played{.begin_ns = kBegin, .end_ns = kEnd, .position_ns = kBegin, .at_ns = now_ns});
+  const auto client = hub.open();
+  take(*client);
+  const std::string seek = control(true, 2, 9'000'000'000, "req"), past = control(false, 1, kEnd + 5, "late");
+  client->on_binary(std::as_bytes(std::span(seek)));
+  ASSERT_EQ(controls.size(), 1U);
+  EXPECT_TRUE(take_binary(*client, 5).empty()) << "not done yet";
+  now_ns += 500;
+  answers[0]({true, ""});
+  const auto states = take_binary(*client, 5);
+  ASSERT_EQ(states.size(), 1U);
+  EXPECT_EQ(at<std::uint8_t>(states[0], 0), 1) << "paused";
+  EXPECT_EQ(at<std::uint64_t>(states[0], 1), 9'000'000'000U);
+  EXPECT_EQ(at<float>(states[0], 9), 2.0F);
+  EXPECT_EQ(at<std::uint8_t>(states[0], 13), 1) << "did seek";
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(states[0].data()) + 18, 3), "req");
+  hub.set_played(Played{.begin_ns = kBegin, .end_ns = kEnd, .position_ns = kBegin, .at_ns = now_ns - 1});
+  EXPECT_EQ(hub.played()->position_ns, 9'000'000'000U) << "a heartbeat of before the seek";
+  client->on_binary(std::as_bytes(std::span(past)));
+  answers[1]({false, "the replay has ended"});
+  EXPECT_EQ(take(*client)[0]["message"], "the replay has ended");
+}
+
+TEST_F(FoxgloveHubTest, a_client_without_playback_control_gets_no_state_of_it) {
+  const auto old = hub.open("foxglove.websocket.v1");
+  take(*old);
+  hub.set_played(Played{.begin_ns = 0, .end_ns = 10, .at_ns = now_ns});
+  EXPECT_THAT(ops(take(*old)), ElementsAre("serverInfo"));
+}
+
+TEST_F(FoxgloveHubTest, while_a_recording_is_played_all_times_are_recorded_ones) {
+  const auto id = hub.add_channel("/a", kSchema);
+  const auto client = hub.open();
+  client->on_text(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1}]})");
+  take(*client);
+  const auto log_time = [&](std::int64_t source_ns) {
+    hub.publish(id, source_ns, std::make_shared<const Bytes>(3));
+    return at<std::uint64_t>(take_binary(*client, 1).at(0), 4);
+  };
+  EXPECT_EQ(log_time(now_ns), static_cast<std::uint64_t>(now_ns)) << "live";
+  hub.set_played(Played{.begin_ns = 5'000, .end_ns = 9'000, .position_ns = 6'000, .speed = 1, .at_ns = now_ns});
+  EXPECT_EQ(log_time(5'500), 5'500U) << "played";
+  EXPECT_EQ(log_time(now_ns + 100), 6'100U) << "published while it is played";
+  now_ns += 200;
+  take(*client);
+  hub.send_time();
+  EXPECT_EQ(at<std::uint64_t>(take_binary(*client, 2).at(0), 0), 6'200U);
 }
 
 TEST_F(FoxgloveHubTest, the_graph_comes_whole_and_then_its_changes) {

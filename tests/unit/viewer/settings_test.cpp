@@ -37,12 +37,21 @@ TEST(Settings, setting_one_calls_a_command) {
 }
 
 TEST(Settings, a_replay_says_where_it_is) {
-  auto replay = status("replay", {{"replay.position_s", 3}, {"replay.length_s", 25}, {"replay.paused", 1}});
+  page::ServiceLine replay{status("replay", {{"replay.position_s", 3}, {"replay.length_s", 25}, {"replay.paused", 1}})};
+  page::ServiceLine camera{status("camera", {})};
+  replay.status.state = camera.status.state = msg::ServiceState::kRunning;
   EXPECT_TRUE(playback_of({replay})->paused);
   EXPECT_EQ(playback_of({replay})->length_s, 25);
-  EXPECT_FALSE(playback_of({status("replay", {})}));
-  replay.state = msg::ServiceState::kFinished;
+  EXPECT_FALSE(playback_of({camera}));
+  EXPECT_FALSE(playback_of({{status("replay", {})}}));
+  EXPECT_FALSE(playback_of({replay, camera})->replaced);
+  replay.status.state = msg::ServiceState::kFinished;
   EXPECT_TRUE(playback_of({replay})->ended);
+  EXPECT_FALSE(playback_of({replay})->replaced);
+  EXPECT_TRUE(playback_of({replay, camera})->replaced);
+  replay = {replay.status, 60'000};
+  replay.status.state = msg::ServiceState::kRunning;
+  EXPECT_TRUE(playback_of({replay})->ended) << "killed: no heartbeat for a minute";
 }
 
 }  // namespace

@@ -92,15 +92,20 @@ test("a recording cannot be begun twice, nor one be ended that does not run", ()
 test("where drawing makes poses late, the page draws less often, and more often again once they are in time", () => {
   const run = (pace, n, latency_ms) => { for (let i = 0; i < n; ++i) pace.pose({ seq: ++run.seq, stamp_s: run.seq / 30, latency_ms }); };
   run.seq = 0;
-  const pace = new DrawPace(true), far = new DrawPace(false);
-  run(pace, 60, 30);
+  const pace = new DrawPace(true), far = new DrawPace(false), slow = new DrawPace(true);
+  assert.ok(pace.period_ms > 100, "slowly at first");
+  run(pace, 1200, 30);
   assert.equal(pace.period_ms, 33);
+  run(pace, 1, 50);
+  assert.ok(pace.period_ms > 40, "later than usual, and than a frame takes");
   run(pace, 10, 90);
   assert.ok(pace.period_ms > 200);
   run(pace, 60, 90);
   assert.equal(pace.period_ms, 1000);
-  run(pace, 1500, 30);
+  run(pace, 2500, 30);
   assert.equal(pace.period_ms, 33);
+  run(slow, 1200, 45);
+  assert.equal(slow.period_ms, 33, "what is usual here is in time, up to 1.6 frames");
   run(far, 60, 90);
   assert.equal(far.period_ms, 33);
   assert.deepEqual(["localhost", "127.0.0.1", "[::1]", "robot", "127.example.org"].map(isLoopback), [true, true, true, false, false]);

@@ -30,7 +30,7 @@ test("from the connection to the first pose, each missing part is named", () => 
   assert.equal(title(robotWith([service("slam")])), "Waiting for a camera");
   assert.equal(title(robotWith([service("camera"), service("slam", "gone")])), "Waiting for slam");
   const waiting = robotWith([service("replay"), service("slam", "ready"), service("filter", "starting", "waits for the detector")]);
-  assert.match(situation({ connection: open, hello, robot: waiting, now_ms: 0 }).detail, /slam starts; filter: waits for the detector/);
+  assert.match(situation({ connection: open, hello, robot: waiting, now_ms: 0 }).detail, /slam is starting; filter: waits for the detector/);
 });
 
 test("a failed service comes before everything else", () => {
@@ -49,11 +49,13 @@ test("when no pose comes, the reason: paused, ended, slam gone, unknown", () => 
   const live = [service("camera"), service("slam")];
   assert.equal(title(robotWith(live, tracked("ok")), 10_000), "No pose");
   assert.equal(title(robotWith(live, { ...tracked("ok"), playback: { state: "paused", position_s: 1 } }), 10_000), "Paused");
+  assert.equal(situation({ connection: open, hello, robot: robotWith(live, { ...tracked("ok"), playback: { state: "paused", position_s: 1 } }),
+                           now_ms: 10_000 }).quiet, true);
   assert.equal(title(robotWith(live, { ...tracked("ok"), playback: { state: "ended" } }), 10_000), "The source has ended");
   assert.equal(title(robotWith([service("camera", "finished"), service("slam")], tracked("ok")), 10_000), "The source has ended");
   assert.equal(title(robotWith([service("camera"), service("slam", "gone")], tracked("ok")), 10_000), "slam is gone");
 });
 
 test("a server of another protocol is not tried", () => {
-  assert.equal(title(undefined, 0, open, { ...hello, protocol: 2 }), "This page is of another version");
+  assert.equal(title(undefined, 0, open, { ...hello, protocol: 2 }), "Page and server do not match");
 });
