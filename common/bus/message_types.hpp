@@ -20,11 +20,11 @@ template <class... T>
 struct TypeList {};
 
 /// Every message type that the bus carries.
-using MessageTypes =
-    TypeList<msg::RgbdFrame, msg::RgbdFrame848, msg::RgbdFrame1280, msg::RgbdFrame1920, msg::FeatureFrame,
-             msg::KeyframeEvent, msg::TrackingResult, msg::ServiceStatus, msg::CompressedImage, msg::Image,
-             msg::CameraInfo, msg::Detection2DArray, msg::Odometry, msg::PoseStamped, msg::TFMessage, msg::Path,
-             msg::PointCloud2, msg::DiagnosticArray, msg::MapUpdate, msg::Movers>;
+using MessageTypes = TypeList<msg::RgbdFrame, msg::RgbdFrame848, msg::RgbdFrame1280, msg::RgbdFrame1920,
+                              msg::FeatureFrame, msg::KeyframeEvent, msg::TrackingResult, msg::ServiceStatus,
+                              msg::CompressedImage, msg::Image, msg::CameraInfo, msg::Detection2DArray, msg::Odometry,
+                              msg::PoseStamped, msg::TFMessage, msg::Path, msg::PointCloud2, msg::DiagnosticArray,
+                              msg::MapUpdate, msg::Movers, msg::Detection3DArray, msg::MarkerArray>;
 
 /// The place of a type in the list.
 enum class MessageId : std::uint8_t {};

@@ -32,9 +32,14 @@ inline constexpr Topic<msg::CameraInfo> kCameraInfo{"rt/camera/color/camera_info
 inline constexpr Topic<msg::PoseStamped> kGroundTruth{"rt/camera/ground_truth", QosProfile::kPose};
 inline constexpr Topic<msg::Detection2DArray> kDetections{"rt/detector/detections", QosProfile::kDetections};
 inline constexpr Topic<msg::Image> kDynamicMask{"rt/filter/dynamic_mask", QosProfile::kDetections};
+inline constexpr Topic<msg::Detection3DArray> kMoverBoxes{"rt/filter/movers", QosProfile::kDetections};
+inline constexpr Topic<msg::MarkerArray> kMoverMarkers{"rt/filter/movers_markers", QosProfile::kDetections};
 inline constexpr Topic<msg::Odometry> kOdometry{"rt/slam/odometry", QosProfile::kPose};
 inline constexpr Topic<msg::PoseStamped> kPose{"rt/slam/pose", QosProfile::kPose};
 inline constexpr Topic<msg::TFMessage> kTf{"rt/tf", QosProfile::kPose};
+/// Where the parts of the robot are. Several nodes write it, each its own part: a reader must hold more than one
+/// message.
+inline constexpr Topic<msg::TFMessage> kTfStatic{"rt/tf_static", QosProfile::kKeyframes};
 inline constexpr Topic<msg::Path> kPath{"rt/slam/path", QosProfile::kPose};
 inline constexpr Topic<msg::PointCloud2> kMapPoints{"rt/slam/map_points", QosProfile::kLatched};
 inline constexpr Topic<msg::PointCloud2> kDensePoints{"rt/dense/points", QosProfile::kLatched};

@@ -174,6 +174,67 @@ struct Detection2DArray {
   std::vector<Detection2D> detections;
 };
 RTD_FIELDS(vision_msgs, Detection2DArray, header, detections)
+struct BoundingBox3D {
+  Pose center;
+  Vector3 size;
+};
+RTD_FIELDS(vision_msgs, BoundingBox3D, center, size)
+struct Detection3D {
+  Header header;
+  std::vector<ObjectHypothesisWithPose> results;
+  BoundingBox3D bbox;
+  std::string id;
+};
+RTD_FIELDS(vision_msgs, Detection3D, header, results, bbox, id)
+struct Detection3DArray {
+  Header header;
+  std::vector<Detection3D> detections;
+};
+RTD_FIELDS(vision_msgs, Detection3DArray, header, detections)
+
+struct Duration {
+  std::int32_t sec = 0;
+  std::uint32_t nanosec = 0;
+};
+RTD_FIELDS(builtin_interfaces, Duration, sec, nanosec)
+struct ColorRGBA {
+  float r = 0, g = 0, b = 0, a = 0;
+};
+RTD_FIELDS(std_msgs, ColorRGBA, r, g, b, a)
+struct UVCoordinate {
+  float u = 0, v = 0;
+};
+RTD_FIELDS(visualization_msgs, UVCoordinate, u, v)
+struct MeshFile {
+  std::string filename;
+  std::vector<std::uint8_t> data;
+};
+RTD_FIELDS(visualization_msgs, MeshFile, filename, data)
+struct Marker {
+  Header header;
+  std::string ns;
+  std::int32_t id = 0, type = 0, action = 0;
+  Pose pose;
+  Vector3 scale;
+  ColorRGBA color;
+  Duration lifetime;
+  bool frame_locked = false;
+  std::vector<Point> points;
+  std::vector<ColorRGBA> colors;
+  std::string texture_resource;
+  CompressedImage texture;
+  std::vector<UVCoordinate> uv_coordinates;
+  std::string text, mesh_resource;
+  MeshFile mesh_file;
+  bool mesh_use_embedded_materials = false;
+};
+RTD_FIELDS(visualization_msgs, Marker, header, ns, id, type, action, pose, scale, color, lifetime, frame_locked, points,
+           colors, texture_resource, texture, uv_coordinates, text, mesh_resource, mesh_file,
+           mesh_use_embedded_materials)
+struct MarkerArray {
+  std::vector<Marker> markers;
+};
+RTD_FIELDS(visualization_msgs, MarkerArray, markers)
 
 struct KeyValue {
   std::string key, value;

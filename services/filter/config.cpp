@@ -21,6 +21,7 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
   binder.field("feedback_timeout_ms", feedback_timeout_ms, {1, 600000},
                "lockstep: longest wait for slam's result of the previous frame");
   binder.field("shed_load", shed_load, "realtime: do less, in steps, while poses come late; false: never");
+  binder.field("map_frame", map_frame, "frame of rt/filter/movers: as slam.map_frame");
   core.bind(binder);
 }
 

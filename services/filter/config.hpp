@@ -21,6 +21,7 @@ struct ServiceConfig {
   int detections_timeout_ms = 5000;
   int feedback_timeout_ms = 3000;
   bool shed_load = true;
+  std::string map_frame = "map";
 
   void bind(service::ConfigBinder& binder);
   /// `core` with the mode as its enum. Throws service::ConfigError for an unknown motion level.

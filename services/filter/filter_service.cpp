@@ -37,7 +37,7 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
       filter_(config.core_config(), service::monotonic_ns),
-      movers_(runtime.bus),
+      movers_(runtime.bus, runtime.bus.frame(config.map_frame)),
       frames_(runtime.pace == service::Pace::kRealtime
                   ? std::make_shared<Frames>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
                   : std::make_shared<Frames>(kEveryFrameQueue, concurrency::Overflow::kBlock)),

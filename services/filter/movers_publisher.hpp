@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <string>
 #include <vector>
 
 #include "common/bus/bus.hpp"
@@ -11,13 +12,24 @@
 
 namespace rtd::filter {
 
-/// Publishes on `rtd/movers` where the objects of each frame are, once slam has said where the camera was: one frame
-/// later. Frames that slam did not track in frame `map` have no movers. Does nothing while nobody reads. One thread.
+/// The objects of one frame as vision_msgs has them: a box each, aligned with the axes of `map_frame`, with the
+/// covariance of its middle. The score fades while an object is hidden.
+msg::Detection3DArray make_boxes(const std::vector<WorldMover>& movers, std::int64_t stamp_ns,
+                                 const std::string& map_frame);
+/// The same for people who watch: box, arrow to where it is a second later, and text of each. They vanish by
+/// themselves.
+msg::MarkerArray make_markers(const std::vector<WorldMover>& movers, std::int64_t stamp_ns,
+                              const std::string& map_frame);
+
+/// Publishes where the objects of each frame are, once slam has said where the camera was: one frame later.
+/// `rtd/movers` says most; `rt/filter/movers` and `rt/filter/movers_markers` are for programs of ROS 2. Frames that
+/// slam did not track in frame `map` have no movers. Each topic costs nothing while nobody reads it. One thread.
 class MoversPublisher {
  public:
-  explicit MoversPublisher(bus::Bus& bus) : writer_(bus.writer(bus::topics::kMovers)) {}
+  /// `map_frame`: name on the wire.
+  MoversPublisher(bus::Bus& bus, std::string map_frame);
 
-  bool wanted() const { return writer_.matched() > 0; }
+  bool wanted() const { return writer_.matched() > 0 || boxes_.matched() > 0 || markers_.matched() > 0; }
   /// What a frame shows; kept until slam has answered.
   void add(std::uint64_t seq, std::int64_t stamp_ns, std::vector<ObjectSighting> sightings);
   void on_result(const msg::TrackingResult& result);
@@ -33,6 +45,9 @@ class MoversPublisher {
   static constexpr std::size_t kMaxWaiting = 32;
 
   bus::Writer<msg::Movers> writer_;
+  bus::Writer<msg::Detection3DArray> boxes_;
+  bus::Writer<msg::MarkerArray> markers_;
+  std::string map_frame_;
   std::deque<Waiting> waiting_;  ///< by seq
   WorldMovers movers_;
 };

@@ -180,8 +180,13 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--save-map", options.save_map, "Map file to write (default: map.rtdmap in the folder of --out)");
   command->add_option("--base-frame", options.base_frame, "Frame of the robot, with --camera-in-base (base_link)");
   command->add_option("--camera-in-base", options.camera_in_base,
-                      "Where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw; poses are then those of the "
-                      "base, in a map with z up");
+                      "Where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw, or tf: as rt/tf_static "
+                      "says; poses are then those of the base, in a map with z up");
+  command
+      ->add_option(
+          "--gravity", options.gravity,
+          "What is up in the map: told (as the base stands when it begins), floor (that the camera sees) or imu")
+      ->check(CLI::IsMember({"told", "floor", "imu"}));
   command->add_flag("--localize-only", options.localize_only,
                     "Only find poses in the map of --map, leave it unchanged");
   command->add_flag("--dense", options.dense, "Also fuse a dense static map: static_map.ply");

@@ -28,7 +28,11 @@ std::vector<std::byte> read_file(const std::string& path) {
 
 SlamConfig core_config(const ServiceConfig& config) {
   SlamConfig core = config.core;
+  if (config.base.gravity != "told") core.first_pose = level_camera();
   if (config.base.given()) core.first_pose = parse_mount(config.base.camera);
+  if (config.base.gravity == "floor") core.gravity = Gravity::kFloor;
+  if (config.base.gravity == "imu") core.gravity = Gravity::kGiven;
+  core.gravity_wait_frames = config.base.gravity_wait_frames;
   if (config.vocabulary_file.empty()) return core;
   try {
     core.place.vocabulary = std::make_shared<const Vocabulary>(Vocabulary::parse(read_file(config.vocabulary_file)));
@@ -39,7 +43,10 @@ SlamConfig core_config(const ServiceConfig& config) {
 }
 
 void ServiceConfig::validate() const {
-  if (base.given()) parse_mount(base.camera);
+  if (base.given() && !base.from_tf()) parse_mount(base.camera);
+  if (base.gravity == "imu")
+    throw service::ConfigError(
+        "slam.base.gravity=imu needs the topic of an IMU: --imu TOPIC; without one use floor or told");
   if (!core.localize_only) return;
   if (map.load.empty())
     throw service::ConfigError("slam.map.localize_only needs a map: name its file with --map (slam.map.load)");

@@ -24,16 +24,27 @@ struct MapFileConfig {
 struct BaseConfig {
   std::string frame = "base_link";
   std::string camera;
+  std::string gravity = "told";
+  int gravity_wait_frames = 30;
+  double tf_timeout_s = 10;
   bool publish_camera = true;
 
   void bind(auto& binder) {
     binder.field("frame", frame, "frame of the robot in odometry, poses and tf, when base.camera is given");
     binder.field("camera", camera,
-                 "where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw; empty: poses of the camera. The "
-                 "map then begins at the base, with z up");
+                 "where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw, or tf: as rt/tf_static says; "
+                 "empty: poses of the camera. The map then begins at the base, with z up");
+    binder.choice("gravity", gravity, {"told", "floor", "imu"},
+                  "what is up in a new map: as the base (or the camera) is turned when it begins, the floor that the "
+                  "camera sees, or an IMU. With floor and imu z is up also without a base");
+    binder.field("gravity_wait_frames", gravity_wait_frames, {0, 10000},
+                 "so many frames may pass before the first map begins without having seen what is up");
+    binder.field("tf_timeout_s", tf_timeout_s, {0.1, 3600.0}, "camera=tf: how long to wait for rt/tf_static");
     binder.field("publish_camera", publish_camera, "tf also has base -> camera; off where a robot description has it");
   }
   bool given() const { return !camera.empty(); }
+  bool from_tf() const { return camera == "tf"; }
+  bool z_up() const { return given() || gravity != "told"; }
 };
 
 /// Section `slam` of the configuration.
@@ -81,8 +92,9 @@ struct ServiceConfig {
   void validate() const;
 };
 
-/// The configuration of the core, with the vocabulary of `vocabulary_file` and the first pose that `base` gives. Throws
-/// service::ConfigError naming the file when it cannot be read or is damaged.
+/// The configuration of the core, with the vocabulary of `vocabulary_file` and the first pose that `base` gives, in
+/// which tf has been replaced by what it says. Throws service::ConfigError naming the file when it cannot be read or is
+/// damaged.
 SlamConfig core_config(const ServiceConfig& config);
 
 }  // namespace rtd::slam

@@ -53,6 +53,10 @@ void transform_covariance(std::array<double, 36>& covariance, const Matrix6d& J)
 
 }  // namespace
 
+Eigen::Isometry3d level_camera() {
+  return Eigen::Isometry3d(Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5));
+}
+
 Eigen::Isometry3d parse_mount(const std::string& text) {
   std::array<double, 7> values{};
   std::istringstream words(text);

@@ -16,6 +16,8 @@ struct RobotBase {
   bool publish_camera = true;                                       ///< tf also carries base -> camera
 };
 
+/// Of a camera that looks horizontally, in axes of its own with x forward and z up.
+Eigen::Isometry3d level_camera();
 /// "x,y,z,qx,qy,qz,qw" (m, Hamilton, made of unit length) as a transform. Throws service::ConfigError.
 Eigen::Isometry3d parse_mount(const std::string& text);
 

@@ -7,11 +7,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
+#include <numbers>
 
 #include "common/concurrency/thread_priority.hpp"
+#include "common/service/config.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_keeper.hpp"
+#include "services/slam/mount_from_tf.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -46,24 +49,27 @@ void SlamService::add_options(CLI::App& app, Config& config) {
   app.add_option("--base-frame", config.base.frame, "Frame of the robot, with --camera-in-base (slam.base.frame)");
   app.add_option(
       "--camera-in-base", config.base.camera,
-      "Where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw; poses are then those of the base, "
-      "in a map with z up (slam.base.camera)");
+      "Where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw, or tf: as rt/tf_static says; poses are "
+      "then those of the base, in a map with z up (slam.base.camera)");
+  app.add_option("--gravity", config.base.gravity,
+                 "What is up in a new map: told (as the base stands when it begins), floor (that the camera sees) or "
+                 "imu (slam.base.gravity)")
+      ->check(CLI::IsMember({"told", "floor", "imu"}));
   app.add_flag("--localize-only", config.core.localize_only,
                "Find poses in the map of --map and leave it as it is (slam.map.localize_only)");
 }
 
 SlamService::SlamService(const Config& config, service::Runtime& runtime)
-    : config_(config),
+    : config_(with_mount(config, runtime)),
       runtime_(runtime),
-      slam_(core_config(config), mapping_mode(runtime.pace), service::monotonic_ns, yield_to_tracking),
-      publisher_(config, runtime.bus, [this] { return slam_.map_points(); }),
+      slam_(core_config(config_), mapping_mode(runtime.pace), service::monotonic_ns, yield_to_tracking),
+      publisher_(config_, runtime.bus, [this] { return slam_.map_points(); }),
       map_publisher_(
-          runtime.bus, [this] { return slam_.map_view(); }, std::chrono::milliseconds(config.map_changes_period_ms)),
+          runtime.bus, [this] { return slam_.map_view(); }, std::chrono::milliseconds(config_.map_changes_period_ms)),
       arrivals_(runtime.pace == service::Pace::kRealtime
                     ? std::make_shared<Arrivals>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
                     : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
-      map_keeper_(config.map, slam_) {
-  config.validate();
+      map_keeper_(config_.map, slam_) {
   load_map();
   runtime.stop.on_stop([arrivals = arrivals_] { arrivals->close(); });
   runtime.heartbeat.on_status([this](const msg::ServiceStatus& status) {
@@ -208,7 +214,7 @@ void SlamService::count(const SlamOutput& output) {
   heartbeat.set_metric("frames_dropped", static_cast<double>(counters_.dropped));
   heartbeat.set_metric("features_invalid", static_cast<double>(counters_.invalid_features));
   heartbeat.set_metric("keyframes", output.result.keyframes);
-  if (config_.base.given()) heartbeat.set_metric("map_z_up", 1);
+  if (config_.base.z_up()) heartbeat.set_metric("map_z_up", 1);
   heartbeat.set_metric("loops_closed", static_cast<double>(counters_.loops));
   heartbeat.set_metric("landmarks", output.result.landmarks);
   heartbeat.set_metric("readout_ms", 1e3 * slam_.readout_s());
@@ -217,6 +223,7 @@ void SlamService::count(const SlamOutput& output) {
 }
 
 void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
+  if (output.up) log_gravity(*output.up);
   const FrameResult& result = output.result;
   const bool tracked = msg::is_measured(result.state), was_tracked = msg::is_measured(previous);
   if (tracked && counters_.tracked == 1 && !map_cameras_.empty()) {
@@ -260,6 +267,20 @@ void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
   if (counters_.dropped > dropped_logged_ && dropped_log_.pass()) {
     SPDLOG_WARN("event=frames_dropped count={} total={}", counters_.dropped - dropped_logged_, counters_.dropped);
     dropped_logged_ = counters_.dropped;
+  }
+}
+
+void SlamService::log_gravity(const UpFound& up) const {
+  constexpr double kDegPerRad = 180 / std::numbers::pi;
+  if (up.found) {
+    SPDLOG_INFO("event=gravity_found source={} turned_deg={:.2f} sigma_deg={:.2f} height_m={:.2f} waited_frames={}",
+                config_.base.gravity, kDegPerRad * up.turned_rad, kDegPerRad * up.sigma_rad, up.height_m, up.frames);
+  } else {
+    SPDLOG_WARN(
+        "event=gravity_unknown source={} waited_frames={} effect=\"up is as told: {}\" fix=\"begin where the camera "
+        "sees the floor, at most 40 degrees from what is told to be up\"",
+        config_.base.gravity, up.frames,
+        config_.base.given() ? "the base stands level" : "the camera looks horizontally");
   }
 }
 

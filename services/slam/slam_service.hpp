@@ -54,6 +54,7 @@ class SlamService {
   void trace(std::int64_t started_ns);
   void count(const SlamOutput& output);
   void log(const SlamOutput& output, msg::TrackingState previous);
+  void log_gravity(const UpFound& up) const;
   void watch_input(bool arrived);
   void report_state();
   std::string trouble() const;

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "services/camera/core/transform_log.hpp"
+#include "common/geometry/transform_log.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -41,11 +41,11 @@ bool named_as_registered(const std::string& topic) {
 }  // namespace
 
 bool names_a_place(const std::string& frame_id) {
-  return !bare_frame(frame_id).empty() && frame_id != "0";
+  return !geometry::bare_frame(frame_id).empty() && frame_id != "0";
 }
 
 bool same_place(const ImageOrigin& color, const ImageOrigin& depth) {
-  return names_a_place(color.frame_id) && bare_frame(color.frame_id) == bare_frame(depth.frame_id);
+  return names_a_place(color.frame_id) && geometry::bare_frame(color.frame_id) == geometry::bare_frame(depth.frame_id);
 }
 
 std::string why_unregistered(const ImageOrigin& color, const ImageOrigin& depth) {
@@ -58,7 +58,7 @@ std::string why_unregistered(const ImageOrigin& color, const ImageOrigin& depth)
                        text_of(*color.camera));
   }
   if (named_as_registered(depth.topic) || same_place(color, depth)) return {};
-  if (bare_frame(color.frame_id) == bare_frame(depth.frame_id)) {
+  if (geometry::bare_frame(color.frame_id) == geometry::bare_frame(depth.frame_id)) {
     return fmt::format("{} and {} are in frame '{}', which does not say where they were taken", depth.topic,
                        color.topic, color.frame_id);
   }

@@ -194,6 +194,7 @@ std::vector<std::string> slam_arguments(const RunSetup& setup) {
   if (!setup.save_map.empty()) arguments.insert(arguments.end(), {"--save-map", setup.save_map});
   if (!setup.base_frame.empty()) arguments.insert(arguments.end(), {"--base-frame", setup.base_frame});
   if (!setup.camera_in_base.empty()) arguments.push_back("--camera-in-base=" + setup.camera_in_base);
+  if (!setup.gravity.empty()) arguments.insert(arguments.end(), {"--gravity", setup.gravity});
   if (setup.localize_only) arguments.emplace_back("--localize-only");
   return arguments;
 }

@@ -254,6 +254,13 @@ struct LoopConfig {
   }
 };
 
+/// What says which way is up when a map begins; docs/frames.md.
+enum class Gravity {
+  kTold,   ///< first_pose
+  kFloor,  ///< the floor in the image
+  kGiven,  ///< SlamSystem::set_up(): an IMU
+};
+
 struct SlamConfig {
   Techniques techniques;
   SensorConfig sensor;
@@ -268,6 +275,9 @@ struct SlamConfig {
   LoopConfig loop;
   /// T_world_camera of the first frame of each map: says where the world is, and which way is up in it.
   Eigen::Isometry3d first_pose = Eigen::Isometry3d::Identity();
+  /// Otherwise: z of the world is up. It is turned about its origin from where first_pose has it.
+  Gravity gravity = Gravity::kTold;
+  int gravity_wait_frames = 30;  ///< the first map waits so long, then first_pose is right
 };
 
 }  // namespace rtd::slam

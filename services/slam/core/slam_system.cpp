@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "common/msg/sensor_time.hpp"
 
@@ -60,6 +61,7 @@ void SlamSystem::reset() {
   event_count_ = 0;
   loops_reported_ = 0;
   requested_centre_ = kNoKeyframe;
+  frames_without_up_ = 0;
 }
 
 void SlamSystem::load_map(MapContents contents) {
@@ -128,17 +130,59 @@ TrackOutcome SlamSystem::initialize(const FrameInput& input, SlamOutput& output)
         "initializing: fewer than " + std::to_string(config_.tracker.min_initial_points) + " features with depth";
     return {};
   }
-  return begin_map(input);
+  if (waits_for_up(*input.frame)) {
+    output.problem = "initializing: looks for what is up";
+    return {};
+  }
+  return begin_map(input, output);
 }
 
-TrackOutcome SlamSystem::begin_map(const FrameInput& input) {
+/// Only the first map waits: later ones begin at once, with what their first frame shows.
+bool SlamSystem::waits_for_up(const Frame& frame) {
+  if (config_.gravity == Gravity::kTold || frames_without_up_ >= config_.gravity_wait_frames || find_up(frame))
+    return false;
+  ++frames_without_up_;
+  return true;
+}
+
+/// What is up in the camera; the height above the floor only where a floor shows it.
+std::optional<FloorPlane> SlamSystem::find_up(const Frame& frame) const {
+  if (config_.gravity == Gravity::kGiven)
+    return given_up_camera_ ? std::optional(FloorPlane{*given_up_camera_}) : std::nullopt;
+  if (config_.gravity == Gravity::kTold) return std::nullopt;
+  std::vector<Eigen::Vector3d> points_camera;
+  for (std::size_t i = 0; i < frame.features.size(); ++i) {
+    if (frame.features[i].depth_m > 0) points_camera.push_back(frame.unproject(i));
+  }
+  return find_floor(points_camera, config_.first_pose.linear().transpose() * Eigen::Vector3d::UnitZ());
+}
+
+/// T_world_camera of the first frame of a map.
+Eigen::Isometry3d SlamSystem::turn_up(const std::optional<FloorPlane>& floor, SlamOutput& output) {
+  output.up = UpFound{floor.has_value(), 0, 0, 0, frames_without_up_};
+  if (!floor) return config_.first_pose;
+  const Eigen::AngleAxisd turn(
+      Eigen::Quaterniond::FromTwoVectors(config_.first_pose.linear() * floor->up_camera, Eigen::Vector3d::UnitZ()));
+  output.up->turned_rad = turn.angle();
+  output.up->sigma_rad = floor->sigma_rad;
+  output.up->height_m = floor->height_m;
+  return turn * config_.first_pose;
+}
+
+TrackOutcome SlamSystem::begin_map(const FrameInput& input, SlamOutput& output) {
   const std::int64_t start_ns = now_ns_();
+  Eigen::Isometry3d first_pose = config_.first_pose;
+  if (config_.gravity != Gravity::kTold) {
+    first_pose = turn_up(find_up(*input.frame), output);
+    tracker_->set_first_pose(first_pose);
+  }
   KeyframeProposal first;
   first.frame = input.frame;
   first.landmarks.assign(input.frame->features.size(), kNoLandmark);
-  first.T_reference_camera = config_.first_pose;
+  first.T_reference_camera = first_pose;
   const bool first_map = mapping_.snapshot() == nullptr;
-  const Eigen::Isometry3d before = first_map ? config_.first_pose : tracker_->T_world_camera();
+  const Eigen::Isometry3d told_or_found = std::exchange(begun_, true) ? config_.first_pose : first_pose;
+  const Eigen::Isometry3d before = first_map ? told_or_found : tracker_->T_world_camera();
   TrackOutcome outcome = tracker_->initialize(input.frame, mapping_.begin_map(std::move(first)));
   odometry_.correct(before, tracker_->T_world_camera());  // another world, the same odometry
   requested_centre_ = outcome.tracked.reference;
@@ -159,7 +203,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   follow_map(*snapshot);
   const Eigen::Isometry3d before = tracker_->T_world_camera();
   TrackOutcome outcome = tracker_->track(input.frame, snapshot);
-  if (wants_new_map(*input.frame, outcome)) return begin_map(input);
+  if (wants_new_map(*input.frame, outcome)) return begin_map(input, output);
   if (outcome.at_place()) {
     output.problem = "relocalizing: a place was recognised, the next frames have to agree";
     follow_reference(outcome);

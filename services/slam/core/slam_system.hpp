@@ -10,6 +10,7 @@
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
 #include "services/slam/core/corrections.hpp"
+#include "services/slam/core/floor_plane.hpp"
 #include "services/slam/core/map/map_view.hpp"
 #include "services/slam/core/map/trajectory.hpp"
 #include "services/slam/core/mapping/mapping_worker.hpp"
@@ -36,12 +37,22 @@ struct FrameResult {
   std::array<float, msg::kSlamStages> stage_ms{};
 };
 
+/// How the world of a new map was turned.
+struct UpFound {
+  bool found = false;     ///< false: nothing showed it, first_pose is taken to be right
+  double turned_rad = 0;  ///< away from first_pose
+  double sigma_rad = 0;   ///< 0 where not known
+  double height_m = 0;    ///< of the camera above the floor, 0 where not known
+  int frames = 0;         ///< that were waited for
+};
+
 /// What one frame led to.
 struct SlamOutput {
   FrameResult result;
   std::vector<KeyframeChange> changes;                           ///< to be published before the result
   Eigen::Isometry3d T_map_odom = Eigen::Isometry3d::Identity();  ///< takes up the jumps of a corrected map
   std::vector<LoopClosure> loops;                                ///< closed since the last frame
+  std::optional<UpFound> up;                                     ///< a map began with it; only if it was looked for
   std::uint32_t invalid_features = 0;  ///< left out because a value is not finite or out of range
   std::string problem;                 ///< one line for people when the frame is not tracked; else empty
 };
@@ -57,8 +68,8 @@ class SlamSystem {
   /// Goes on with a map that was saved, before the first frame: relocalizing until a frame is found in it.
   void restore(MapContents contents);
   /// Begins again, as after a start: the next frame makes a new map, in whose frame the poses are from then on. The
-  /// odometry continues. Keyframes that were announced are removed in the next outputs, whose events count from 0 again.
-  /// Waits for the keyframe in work and gives up a global adjustment.
+  /// odometry continues. Keyframes that were announced are removed in the next outputs, whose events count from 0
+  /// again. Waits for the keyframe in work and gives up a global adjustment.
   void reset();
   /// reset(), then restore(): replaces the map while running.
   void load_map(MapContents contents);
@@ -66,6 +77,8 @@ class SlamSystem {
   /// with the next frame.
   void set_localize_only(bool on) { localize_only_ = on; }
   bool localize_only() const { return localize_only_; }
+  /// With Gravity::kGiven: what is up in the camera, a unit vector; the next map begins with it.
+  void set_up(const Eigen::Vector3d& up_camera) { given_up_camera_ = up_camera; }
   /// Never throws for the content of the message. Frames are expected in order; a seq that jumps back means a
   /// source that started again: motion is forgotten, the map stays.
   SlamOutput process(const msg::FeatureFrame& message);
@@ -96,7 +109,10 @@ class SlamSystem {
   void start_tracker();
   void watch_source(const msg::FeatureFrame& message);
   TrackOutcome initialize(const FrameInput& input, SlamOutput& output);
-  TrackOutcome begin_map(const FrameInput& input);
+  std::optional<FloorPlane> find_up(const Frame& frame) const;
+  bool waits_for_up(const Frame& frame);
+  TrackOutcome begin_map(const FrameInput& input, SlamOutput& output);
+  Eigen::Isometry3d turn_up(const std::optional<FloorPlane>& floor, SlamOutput& output);
   bool wants_new_map(const Frame& frame, const TrackOutcome& outcome);
   TrackOutcome track(const FrameInput& input, SlamOutput& output);
   void record(const TrackedFrame& tracked);
@@ -119,6 +135,9 @@ class SlamSystem {
   DepthWeightEstimator depth_weight_;
   ShutterMotion shutter_;  ///< what the features of the frame in work were corrected with
   OdometryFrame odometry_;
+  std::optional<Eigen::Vector3d> given_up_camera_;
+  int frames_without_up_ = 0;
+  bool begun_ = false;     ///< a map, ever
   bool had_pose_ = false;  ///< the last frame
   MapId map_ = 0;          ///< component that it was tracked in
   KeyframeChangeQueue changes_;

@@ -63,7 +63,11 @@ TEST_F(FilterServiceTest, publishes_what_moves_while_there_is_a_subscriber) {
 
 TEST_F(FilterServiceTest, publishes_objects_in_the_world_once_slam_has_said_where_the_camera_was) {
   Inbox<msg::Movers> movers;
+  Inbox<msg::Detection3DArray> mover_boxes;
+  Inbox<msg::MarkerArray> markers;
   hear(bus::topics::kMovers, movers);
+  hear(bus::topics::kMoverBoxes, mover_boxes);
+  hear(bus::topics::kMoverMarkers, markers);
   start(service::Pace::kLockstep, true);
   for (std::uint64_t seq = 0; seq < 3; ++seq) {
     send_boxes(seq, true);
@@ -82,6 +86,16 @@ TEST_F(FilterServiceTest, publishes_objects_in_the_world_once_slam_has_said_wher
   EXPECT_NEAR(last.movers[0].center_m[2], test::MovingScene::kBlockM, 0.15) << "m";
   EXPECT_NEAR(last.movers[0].velocity_mps[0], 0, 0.1) << "m/s";
   EXPECT_LT(last.movers[0].static_probability, 0.5F);
+  EXPECT_GT(last.movers[0].covariance[0], 0);
+  ASSERT_TRUE(mover_boxes.wait_count(movers.all().size()));
+  const msg::Detection3DArray box = *mover_boxes.all().back();
+  EXPECT_EQ(msg::to_ns(box.header.stamp), last.stamp_ns);
+  EXPECT_EQ(box.header.frame_id, "map");
+  ASSERT_EQ(box.detections.size(), 1U);
+  EXPECT_EQ(box.detections[0].id, std::to_string(last.movers[0].id));
+  EXPECT_EQ(box.detections[0].bbox.center.position.z, last.movers[0].center_m[2]);
+  ASSERT_TRUE(markers.wait_count(movers.all().size()));
+  EXPECT_EQ(markers.all().back()->markers.size(), 3U);
 }
 
 TEST_F(FilterServiceTest, waits_for_boxes_that_arrive_late) {

@@ -56,6 +56,10 @@ class Truth {
   Eigen::Vector2d horizontal(const Eigen::Vector3d& v_first) const {
     return (T_first_world_.linear().transpose() * v_first).head<2>();
   }
+  Eigen::Matrix2d horizontal(const Eigen::Matrix3d& covariance_first) const {
+    const Eigen::Matrix3d turn = T_first_world_.linear().transpose();
+    return (turn * covariance_first * turn.transpose()).topLeftCorner<2, 2>();
+  }
   Eigen::Isometry3d T_first_camera(const Eigen::Isometry3d& T_world_camera) const {
     return T_first_world_ * T_world_camera;
   }
@@ -81,6 +85,7 @@ class Truth {
 struct Accuracy {
   std::size_t seen = 0, found = 0;  ///< objects of frames that are wholly in view
   double position_rmse_m = 0, velocity_rmse_m_s = 0;
+  double position_nees = 0, velocity_nees = 0;      ///< for each number: 1 where the covariance is right
   std::map<int, std::map<std::uint32_t, int>> ids;  ///< mover ids of each object
 };
 
@@ -135,14 +140,23 @@ Accuracy measure(const std::string& uri) {
       if (nearest == movers.end() || error_m(*nearest) > 0.5) continue;
       ++accuracy.found;
       ++accuracy.ids[object.id][nearest->id];
+      const Eigen::Vector2d off_m = truth.horizontal(nearest->extent_world.center() - extent.center());
+      const Eigen::Vector2d off_m_s = truth.horizontal(nearest->velocity_world_m_s - truth.velocity(object.id, t_s));
+      const Eigen::Matrix2d P_m = truth.horizontal(Eigen::Matrix3d(nearest->covariance.topLeftCorner<3, 3>()));
+      const Eigen::Matrix2d P_m_s = truth.horizontal(Eigen::Matrix3d(nearest->covariance.bottomRightCorner<3, 3>()));
+      accuracy.position_nees += off_m.dot(P_m.inverse() * off_m) / 2;
+      accuracy.velocity_nees += off_m_s.dot(P_m_s.inverse() * off_m_s) / 2;
       position_sum += std::pow(error_m(*nearest), 2);
-      velocity_sum += truth.horizontal(nearest->velocity_world_m_s - truth.velocity(object.id, t_s)).squaredNorm();
+      velocity_sum += off_m_s.squaredNorm();
     }
   }
   accuracy.position_rmse_m = std::sqrt(position_sum / static_cast<double>(accuracy.found));
   accuracy.velocity_rmse_m_s = std::sqrt(velocity_sum / static_cast<double>(accuracy.found));
-  std::printf("%s: %zu of %zu found, position %.3f m, velocity %.3f m/s", uri.c_str(), accuracy.found, accuracy.seen,
-              accuracy.position_rmse_m, accuracy.velocity_rmse_m_s);
+  accuracy.position_nees /= static_cast<double>(accuracy.found);
+  accuracy.velocity_nees /= static_cast<double>(accuracy.found);
+  std::printf("%s: %zu of %zu found, position %.3f m, velocity %.3f m/s, NEES %.2f, %.2f", uri.c_str(), accuracy.found,
+              accuracy.seen, accuracy.position_rmse_m, accuracy.velocity_rmse_m_s, accuracy.position_nees,
+              accuracy.velocity_nees);
   for (const auto& [object, ids] : accuracy.ids) std::printf(", object %d: %zu ids", object, ids.size());
   std::printf("\n");
   return accuracy;
@@ -155,7 +169,9 @@ TEST_P(WorldMoversIn, scenes_are_where_and_as_fast_as_they_are) {
   EXPECT_GE(accuracy.found, accuracy.seen * 9 / 10);
   EXPECT_GT(accuracy.found, 0U);
   EXPECT_LE(accuracy.position_rmse_m, 0.15);
-  EXPECT_LE(accuracy.velocity_rmse_m_s, 0.25);
+  EXPECT_LE(accuracy.velocity_rmse_m_s, 0.22);
+  EXPECT_LE(accuracy.position_nees, 3);
+  EXPECT_LE(accuracy.velocity_nees, 3);
   for (const auto& [object, ids] : accuracy.ids) EXPECT_EQ(ids.size(), 1U) << "object " << object;
 }
 

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "common/msg/transform_eigen.hpp"
+#include "common/service/config.hpp"
 #include "tests/support/feature_world.hpp"
 #include "tests/support/service_fixture.hpp"
 
@@ -111,6 +112,61 @@ TEST_F(SlamServiceTest, publishes_poses_of_the_robot_when_it_knows_where_the_cam
   ASSERT_EQ(tf.size(), 3U);
   EXPECT_EQ(tf[1].header.frame_id + tf[1].child_frame_id, "odombase_link");
   EXPECT_EQ(tf[2].header.frame_id + tf[2].child_frame_id, "base_linkcamera_color_optical_frame");
+}
+
+msg::TransformStamped transform(const char* parent, const char* child, const msg::RosTransform& T) {
+  return {{{}, parent}, child, T};
+}
+
+TEST_F(SlamServiceTest, takes_the_mount_of_the_camera_from_the_robots_description) {
+  config_.base.camera = "tf";
+  bus::Writer<msg::TFMessage> description = bus_->writer(bus::topics::kTfStatic);
+  description.write({{transform("base_link", "mast", {{0.2, 0, 0.3}, {}})}});
+  launch(service::Pace::kLockstep);
+  EXPECT_TRUE(wait_state(msg::ServiceState::kStarting, "camera_color_optical_frame")) << "says what is missing";
+  description.write({{transform("mast", "camera_link", {{0, 0, 0.2}, {}}),
+                      transform("camera_link", "camera_color_optical_frame", {{}, {-0.5, 0.5, -0.5, 0.5}})}});
+  ASSERT_TRUE(wait_state(msg::ServiceState::kReady));
+  for (std::uint64_t seq = 0; seq < 3; ++seq) {
+    step(seq);
+    ASSERT_TRUE(tf_.wait_count(seq + 1));
+  }
+  const Eigen::Isometry3d first = msg::to_isometry(results_.all().front()->T_world_camera);
+  EXPECT_TRUE(first.translation().isApprox(Eigen::Vector3d(0.2, 0, 0.5), 1e-9)) << first.translation().transpose();
+  EXPECT_TRUE(first.linear().col(2).isApprox(Eigen::Vector3d::UnitX(), 1e-9)) << "looks along x";
+  const std::vector<msg::TransformStamped> tf = tf_.all().back()->transforms;
+  ASSERT_EQ(tf.size(), 2U) << "the description has base to camera";
+  EXPECT_EQ(tf[1].child_frame_id, "base_link");
+}
+
+TEST_F(SlamServiceTest, ends_when_the_robots_description_does_not_come) {
+  config_.base.camera = "tf";
+  config_.base.tf_timeout_s = 0.2;
+  bus::Writer<msg::TFMessage> description = bus_->writer(bus::topics::kTfStatic);
+  description.write({{transform("base_link", "arm", {})}});
+  launch(service::Pace::kLockstep);
+  EXPECT_THAT([this] { running_code(); }, testing::ThrowsMessage<service::ConfigError>(testing::AllOf(
+                                              HasSubstr("'camera_color_optical_frame'"), HasSubstr("rt/tf_static"),
+                                              HasSubstr("--camera-in-base x,y,z"))));
+}
+
+TEST_F(SlamServiceTest, looks_for_the_floor_and_begins_without_one) {
+  config_.base.gravity = "floor";
+  config_.base.gravity_wait_frames = 2;
+  start(service::Pace::kLockstep);
+  for (std::uint64_t seq = 0; seq < 3; ++seq) step(seq);
+  const auto results = results_.all();
+  EXPECT_EQ(results[1]->state, msg::TrackingState::kInitializing);
+  ASSERT_EQ(results[2]->state, msg::TrackingState::kOk);
+  const Eigen::Isometry3d first = msg::to_isometry(results[2]->T_world_camera);
+  EXPECT_TRUE(first.linear().col(1).isApprox(-Eigen::Vector3d::UnitZ(), 1e-9)) << "z up as a level camera has it";
+  EXPECT_TRUE(wait_metric("map_z_up", 1));
+}
+
+TEST_F(SlamServiceTest, wants_a_topic_for_an_imu) {
+  config_.base.gravity = "imu";
+  launch(service::Pace::kLockstep);
+  EXPECT_THAT([this] { running_code(); }, testing::ThrowsMessage<service::ConfigError>(HasSubstr("--imu TOPIC")));
 }
 
 TEST_F(SlamServiceTest, publishes_keyframes_before_the_result_that_counts_them) {

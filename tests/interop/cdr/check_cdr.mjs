@@ -44,9 +44,9 @@ function closure(type, all, found = new Map()) {
   return found;
 }
 
+const kTimes = { "builtin_interfaces/Time": "time", "builtin_interfaces/Duration": "duration" };
 const shape = (definition) => definition.definitions.filter((field) => !field.isConstant)
-  .map((field) => [field.type.replace(/^builtin_interfaces\/Time$/, "time"), field.name, field.isArray ?? false,
-                   field.arrayLength ?? null]);
+  .map((field) => [kTimes[field.type] ?? field.type, field.name, field.isArray ?? false, field.arrayLength ?? null]);
 
 /** Typed arrays as plain ones, as JSON has them. */
 function plain(value) {
@@ -62,9 +62,11 @@ const kRandom = {
   uint8: () => below(256),
   int32: () => below(2 ** 32) - 2 ** 31,
   uint32: () => below(2 ** 32),
+  float32: () => Math.fround(kRandom.float64()),
   float64: () => (Math.random() - 0.5) * 10 ** below(9),
   string: () => "abcdefgh/_ 0123".repeat(3).slice(0, below(40)),
   time: () => ({ sec: kRandom.int32(), nanosec: below(1e9) }),
+  duration: () => kRandom.time(),
 };
 
 function randomValue(type, all) {

@@ -13,6 +13,7 @@
 #include <tf2_msgs.h>
 #include <unistd.h>
 #include <vision_msgs.h>
+#include <visualization_msgs.h>
 
 #include <cstdlib>
 
@@ -22,17 +23,28 @@
 namespace rtd::bus {
 namespace {
 
-const dds_topic_descriptor_t* const kGenerated[] = {
-    &rtd_msgs_msg_dds__RgbdFrame__desc,          &rtd_msgs_msg_dds__RgbdFrame848__desc,
-    &rtd_msgs_msg_dds__RgbdFrame1280__desc,      &rtd_msgs_msg_dds__RgbdFrame1920__desc,
-    &rtd_msgs_msg_dds__FeatureFrame__desc,       &rtd_msgs_msg_dds__KeyframeEvent__desc,
-    &rtd_msgs_msg_dds__TrackingResult__desc,     &rtd_msgs_msg_dds__ServiceStatus__desc,
-    &sensor_msgs_msg_dds__CompressedImage__desc, &sensor_msgs_msg_dds__Image__desc,
-    &sensor_msgs_msg_dds__CameraInfo__desc,      &vision_msgs_msg_dds__Detection2DArray__desc,
-    &nav_msgs_msg_dds__Odometry__desc,           &geometry_msgs_msg_dds__PoseStamped__desc,
-    &tf2_msgs_msg_dds__TFMessage__desc,          &nav_msgs_msg_dds__Path__desc,
-    &sensor_msgs_msg_dds__PointCloud2__desc,     &diagnostic_msgs_msg_dds__DiagnosticArray__desc,
-    &rtd_msgs_msg_dds__MapUpdate__desc,          &rtd_msgs_msg_dds__Movers__desc};
+const dds_topic_descriptor_t* const kGenerated[] = {&rtd_msgs_msg_dds__RgbdFrame__desc,
+                                                    &rtd_msgs_msg_dds__RgbdFrame848__desc,
+                                                    &rtd_msgs_msg_dds__RgbdFrame1280__desc,
+                                                    &rtd_msgs_msg_dds__RgbdFrame1920__desc,
+                                                    &rtd_msgs_msg_dds__FeatureFrame__desc,
+                                                    &rtd_msgs_msg_dds__KeyframeEvent__desc,
+                                                    &rtd_msgs_msg_dds__TrackingResult__desc,
+                                                    &rtd_msgs_msg_dds__ServiceStatus__desc,
+                                                    &sensor_msgs_msg_dds__CompressedImage__desc,
+                                                    &sensor_msgs_msg_dds__Image__desc,
+                                                    &sensor_msgs_msg_dds__CameraInfo__desc,
+                                                    &vision_msgs_msg_dds__Detection2DArray__desc,
+                                                    &nav_msgs_msg_dds__Odometry__desc,
+                                                    &geometry_msgs_msg_dds__PoseStamped__desc,
+                                                    &tf2_msgs_msg_dds__TFMessage__desc,
+                                                    &nav_msgs_msg_dds__Path__desc,
+                                                    &sensor_msgs_msg_dds__PointCloud2__desc,
+                                                    &diagnostic_msgs_msg_dds__DiagnosticArray__desc,
+                                                    &rtd_msgs_msg_dds__MapUpdate__desc,
+                                                    &rtd_msgs_msg_dds__Movers__desc,
+                                                    &vision_msgs_msg_dds__Detection3DArray__desc,
+                                                    &visualization_msgs_msg_dds__MarkerArray__desc};
 
 /// A participant that nobody outside of this process sees.
 class LocalDomain {

@@ -10,6 +10,7 @@
 #include <sensor_msgsPubSubTypes.h>
 #include <tf2_msgsPubSubTypes.h>
 #include <vision_msgsPubSubTypes.h>
+#include <visualization_msgsPubSubTypes.h>
 
 #include "common/bus/fastdds/codec.hpp"
 #include "common/bus/fastdds/message_type.hpp"
@@ -43,6 +44,8 @@ using Pairs = testing::Types<
     Pair<msg::Image, sensor_msgs::msg::dds_::Image_PubSubType>,
     Pair<msg::CameraInfo, sensor_msgs::msg::dds_::CameraInfo_PubSubType>,
     Pair<msg::Detection2DArray, vision_msgs::msg::dds_::Detection2DArray_PubSubType>,
+    Pair<msg::Detection3DArray, vision_msgs::msg::dds_::Detection3DArray_PubSubType>,
+    Pair<msg::MarkerArray, visualization_msgs::msg::dds_::MarkerArray_PubSubType>,
     Pair<msg::Odometry, nav_msgs::msg::dds_::Odometry_PubSubType>,
     Pair<msg::PoseStamped, geometry_msgs::msg::dds_::PoseStamped_PubSubType>,
     Pair<msg::TFMessage, tf2_msgs::msg::dds_::TFMessage_PubSubType>,

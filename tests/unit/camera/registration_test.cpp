@@ -4,9 +4,9 @@
 // Recordings whose depth was taken by another camera than colour: registered, or refused with the reason.
 #include <gmock/gmock.h>
 
+#include "common/geometry/transform_log.hpp"
 #include "services/camera/core/depth_alignment.hpp"
 #include "services/camera/core/depth_offsets.hpp"
-#include "services/camera/core/transform_log.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/mcap_file.hpp"
 #include "tests/unit/camera/played_frames.hpp"
@@ -219,7 +219,7 @@ TEST(TransformLog, joins_two_frames_by_the_frame_above_both) {
     transform.transform.translation.x = x;
     return transform;
   };
-  TransformLog log;
+  geometry::TransformLog log;
   log.add({{link("base", "left", 1), link("left", "left_optical", 0.1), link("base", "right", 5)}});
   const auto T_left_right = log.between("left_optical", "/right");
   ASSERT_TRUE(T_left_right);

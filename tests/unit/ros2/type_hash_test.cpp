@@ -28,6 +28,8 @@ constexpr Published kPublished[] = {
     {"sensor_msgs::msg::dds_::CameraInfo_", "b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275"},
     {"sensor_msgs::msg::dds_::PointCloud2_", "9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5"},
     {"vision_msgs::msg::dds_::Detection2DArray_", "214274120007f4a683866481336b70310268cfa107aebe9d594a6acf75bda968"},
+    {"vision_msgs::msg::dds_::Detection3DArray_", "793f5eab9595ac1c0da07873cc859db42eae51f0ee76056db8562515d830e018"},
+    {"visualization_msgs::msg::dds_::MarkerArray_", "86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf"},
     {"diagnostic_msgs::msg::dds_::DiagnosticArray_",
      "5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"}};
 

@@ -9,12 +9,12 @@
 #include <optional>
 #include <string>
 
+#include "common/geometry/transform_log.hpp"
 #include "common/vision/depth_registration.hpp"
 #include "services/camera/core/depth_alignment.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/recording/frame_pairer.hpp"
 #include "services/camera/core/recording/recording.hpp"
-#include "services/camera/core/transform_log.hpp"
 
 namespace rtd::camera {
 
@@ -124,7 +124,7 @@ class LiveSource final : public FrameSource {
   bool calibrated_ = false, waiting_ = false, opened_ = false;
   ImageOrigin color_origin_, depth_origin_;
   std::string unregistered_, lacking_;  ///< why depth must be registered, and what that lacks
-  TransformLog lasting_transforms_, transforms_;
+  geometry::TransformLog lasting_transforms_, transforms_;
   std::optional<vision::DepthRegistration> registration_;
   Images color_, depth_;
   std::int64_t last_pair_ns_ = 0, reported_ns_ = 0;

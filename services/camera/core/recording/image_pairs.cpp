@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <utility>
 
+#include "common/geometry/transform_log.hpp"
 #include "common/io/text.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
 #include "common/ros_codec/wire.hpp"
@@ -13,7 +14,6 @@
 #include "services/camera/core/recording/recorded_extrinsics.hpp"
 #include "services/camera/core/recording/recording_source.hpp"
 #include "services/camera/core/recording/ros_images.hpp"
-#include "services/camera/core/transform_log.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -63,7 +63,7 @@ class ImagePairs final : public RecordingSource {
   double float_unit_m_;  ///< of depth in floats
   std::optional<vision::DepthRegistration> registration_;
   FramePairer pairer_;
-  TransformLog transforms_;
+  geometry::TransformLog transforms_;
   std::optional<FramePairer::Pair> pair_;  ///< gone to
   std::optional<std::int64_t> first_ns_;
   std::int64_t last_ns_ = 0;

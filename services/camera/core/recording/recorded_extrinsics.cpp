@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string>
 
+#include "common/geometry/transform_log.hpp"
 #include "common/ros_codec/wire.hpp"
-#include "services/camera/core/transform_log.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -22,7 +22,7 @@ std::optional<Eigen::Isometry3d> sdk_transform(Recording& recording, const std::
   const RecordedTopic* const there = topic_named(recording, topic);
   if (there == nullptr || there->type != "geometry_msgs/Transform") return std::nullopt;
   const RecordedMessage message = first_of(recording, topic);
-  return to_isometry(ros::decode<msg::RosTransform>(message.wire, message.bytes));
+  return geometry::to_isometry(ros::decode<msg::RosTransform>(message.wire, message.bytes));
 }
 
 /// The SDK records for each stream how points come from a reference stream (of the number at the end of the topic) into
@@ -44,7 +44,7 @@ std::optional<Eigen::Isometry3d> sdk_extrinsics(Recording& recording, const Imag
 std::optional<Eigen::Isometry3d> tf_extrinsics(Recording& recording, const std::vector<std::string>& topics,
                                                const ImageOrigin& color, const ImageOrigin& depth) {
   if (topics.empty()) return std::nullopt;
-  TransformLog transforms;
+  geometry::TransformLog transforms;
   recording.play(topics);
   while (const std::optional<RecordedMessage> message = recording.next()) {
     try {

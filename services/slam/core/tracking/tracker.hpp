@@ -71,6 +71,8 @@ class Tracker {
   const Eigen::Isometry3d& T_world_camera() const { return last_.T_world_camera; }
   /// The source started again: no motion can be assumed between the last frame and the next.
   void forget_motion();
+  /// Where the map began, if not where the configuration says.
+  void set_first_pose(const Eigen::Isometry3d& T_world_camera) { config_.first_pose = T_world_camera; }
   /// Between the last two tracked frames; empty when they were too far apart.
   const std::optional<CameraMotion>& motion() const { return motion_; }
 

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/transform_log.hpp"
+#include "common/geometry/transform_log.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
-namespace rtd::camera {
+namespace rtd::geometry {
 namespace {
 
 constexpr const char* kWorld = "world";
@@ -64,9 +65,9 @@ Eigen::Isometry3d TransformLog::T_child_camera(const std::vector<const Link*>& c
   return T_child_camera;
 }
 
-geometry::Trajectory TransformLog::world_poses(const std::string& camera_frame) const {
+Trajectory TransformLog::world_poses(const std::string& camera_frame) const {
   const std::vector<const Link*> chain = chain_to_world(camera_frame);
-  geometry::Trajectory poses;
+  Trajectory poses;
   if (chain.empty()) return poses;
   for (const auto& [stamp_ns, T_world_child] : chain.back()->T_parent_child)
     poses.push_back({stamp_ns, T_world_child * T_child_camera(chain, stamp_ns)});
@@ -79,10 +80,10 @@ std::optional<Eigen::Isometry3d> TransformLog::world_pose(const std::string& cam
   if (chain.empty()) return std::nullopt;
   const auto& measured = chain.back()->T_parent_child;
   const auto after = measured.lower_bound(stamp_ns);
-  geometry::Trajectory around;
+  Trajectory around;
   if (after != measured.begin()) around.push_back({std::prev(after)->first, std::prev(after)->second});
   if (after != measured.end()) around.push_back({after->first, after->second});
-  const auto T_world_child = geometry::pose_at(around, stamp_ns, max_gap_ns);
+  const auto T_world_child = pose_at(around, stamp_ns, max_gap_ns);
   if (!T_world_child) return std::nullopt;
   return *T_world_child * T_child_camera(chain, stamp_ns);
 }
@@ -108,4 +109,10 @@ std::optional<Eigen::Isometry3d> TransformLog::between(const std::string& target
   return std::nullopt;
 }
 
-}  // namespace rtd::camera
+bool TransformLog::knows(const std::string& frame) const {
+  const std::string bare = bare_frame(frame);
+  return links_.contains(bare) ||
+         std::ranges::any_of(links_, [&](const auto& link) { return link.second.parent == bare; });
+}
+
+}  // namespace rtd::geometry

@@ -12,7 +12,7 @@
 #include "common/geometry/trajectory.hpp"
 #include "common/msg/ros.hpp"
 
-namespace rtd::camera {
+namespace rtd::geometry {
 
 /// tf of old wrote frames with a slash in front: "/kinect" -> "kinect".
 std::string bare_frame(const std::string& frame);
@@ -20,7 +20,7 @@ std::string bare_frame(const std::string& frame);
 /// T_parent_child of a transform; empty when it is not a rotation or not finite.
 std::optional<Eigen::Isometry3d> to_isometry(const msg::RosTransform& transform);
 
-/// The transforms (tf) of a camera. Not thread-safe.
+/// The transforms (tf) of a robot or a camera. Not thread-safe.
 class TransformLog {
  public:
   void add(const msg::TFMessage& message);
@@ -28,12 +28,14 @@ class TransformLog {
   /// were nearest in time (TUM's bags contain the motion capture as /world -> /kinect and the mounting below it down to
   /// the frame of the colour image). Empty when no chain leads from `world` to `camera_frame`: odometry is not ground
   /// truth.
-  geometry::Trajectory world_poses(const std::string& camera_frame) const;
+  Trajectory world_poses(const std::string& camera_frame) const;
   /// The same at one moment, between two measurements that are no farther away than `max_gap_ns`; empty without.
   std::optional<Eigen::Isometry3d> world_pose(const std::string& camera_frame, std::int64_t stamp_ns,
                                               std::int64_t max_gap_ns) const;
   /// T_target_source by the newest transforms; empty when no chain joins the two frames.
   std::optional<Eigen::Isometry3d> between(const std::string& target, const std::string& source) const;
+  /// Whether a transform begins or ends at this frame.
+  bool knows(const std::string& frame) const;
 
  private:
   /// A frame below its parent.
@@ -54,4 +56,4 @@ class TransformLog {
   std::map<std::string, Link> links_;  ///< by child
 };
 
-}  // namespace rtd::camera
+}  // namespace rtd::geometry
