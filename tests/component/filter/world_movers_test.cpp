@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -56,7 +57,7 @@ class Truth {
   Eigen::Vector2d horizontal(const Eigen::Vector3d& v_first) const {
     return (T_first_world_.linear().transpose() * v_first).head<2>();
   }
-  Eigen::Matrix2d horizontal(const Eigen::Matrix3d& covariance_first) const {
+  Eigen::Matrix2d horizontal_covariance(const Eigen::Matrix3d& covariance_first) const {
     const Eigen::Matrix3d turn = T_first_world_.linear().transpose();
     return (turn * covariance_first * turn.transpose()).topLeftCorner<2, 2>();
   }
@@ -142,8 +143,10 @@ Accuracy measure(const std::string& uri) {
       ++accuracy.ids[object.id][nearest->id];
       const Eigen::Vector2d off_m = truth.horizontal(nearest->extent_world.center() - extent.center());
       const Eigen::Vector2d off_m_s = truth.horizontal(nearest->velocity_world_m_s - truth.velocity(object.id, t_s));
-      const Eigen::Matrix2d P_m = truth.horizontal(Eigen::Matrix3d(nearest->covariance.topLeftCorner<3, 3>()));
-      const Eigen::Matrix2d P_m_s = truth.horizontal(Eigen::Matrix3d(nearest->covariance.bottomRightCorner<3, 3>()));
+      const Eigen::Matrix2d P_m =
+          truth.horizontal_covariance(Eigen::Matrix3d(nearest->covariance.topLeftCorner<3, 3>()));
+      const Eigen::Matrix2d P_m_s =
+          truth.horizontal_covariance(Eigen::Matrix3d(nearest->covariance.bottomRightCorner<3, 3>()));
       accuracy.position_nees += off_m.dot(P_m.inverse() * off_m) / 2;
       accuracy.velocity_nees += off_m_s.dot(P_m_s.inverse() * off_m_s) / 2;
       position_sum += std::pow(error_m(*nearest), 2);
