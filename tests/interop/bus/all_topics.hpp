@@ -25,7 +25,7 @@ void for_each_topic(Visitor visit) {
       visit(kTracking), visit(kStatus), visit(kColorJpeg);
   visit(kCameraInfo), visit(kDetections), visit(kDynamicMask), visit(kOdometry), visit(kPose), visit(kTf);
   visit(kPath), visit(kMapPoints), visit(kDensePoints), visit(kDiagnostics);
-  visit(kMap), visit(kMovers), visit(kGroundTruth);
+  visit(kMap), visit(kMovers), visit(kGroundTruth), visit(kOccupancyGrid);
 }
 
 /// Messages of one round: as many as the topic's history holds, three at most; one raw frame, as a camera writes them.

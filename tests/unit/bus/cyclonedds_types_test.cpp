@@ -32,7 +32,8 @@ const dds_topic_descriptor_t* const kGenerated[] = {
     &nav_msgs_msg_dds__Odometry__desc,           &geometry_msgs_msg_dds__PoseStamped__desc,
     &tf2_msgs_msg_dds__TFMessage__desc,          &nav_msgs_msg_dds__Path__desc,
     &sensor_msgs_msg_dds__PointCloud2__desc,     &diagnostic_msgs_msg_dds__DiagnosticArray__desc,
-    &rtd_msgs_msg_dds__MapUpdate__desc,          &rtd_msgs_msg_dds__Movers__desc};
+    &rtd_msgs_msg_dds__MapUpdate__desc,          &rtd_msgs_msg_dds__Movers__desc,
+    &nav_msgs_msg_dds__OccupancyGrid__desc};
 
 /// A participant that nobody outside of this process sees.
 class LocalDomain {

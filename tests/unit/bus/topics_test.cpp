@@ -34,7 +34,7 @@ std::vector<TopicFacts> all_topics() {
   return {facts(kFrame),       facts(kFeatures),   facts(kKeyframes),  facts(kTracking),    facts(kStatus),
           facts(kColorJpeg),   facts(kCameraInfo), facts(kDetections), facts(kOdometry),    facts(kPose),
           facts(kTf),          facts(kPath),       facts(kMapPoints),  facts(kDiagnostics), facts(kDynamicMask),
-          facts(kDensePoints), facts(kMap),        facts(kMovers),     facts(kGroundTruth)};
+          facts(kDensePoints), facts(kMap),        facts(kMovers),     facts(kGroundTruth), facts(kOccupancyGrid)};
 }
 
 TEST(Topics, have_names_of_their_own) {
