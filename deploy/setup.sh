@@ -32,6 +32,7 @@ packages=(
   libopencv-dev libeigen3-dev libceres-dev
   libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev libsystemd-dev nlohmann-json3-dev libtinyxml2-dev
   zlib1g-dev libdeflate-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libssl-dev
+  liboctomap-dev
   libopenni2-dev
   libboost-dev libjs-three
   python3 python3-numpy python3-onnx

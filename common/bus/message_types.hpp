@@ -24,7 +24,7 @@ using MessageTypes = TypeList<msg::RgbdFrame, msg::RgbdFrame848, msg::RgbdFrame1
                               msg::FeatureFrame, msg::KeyframeEvent, msg::TrackingResult, msg::ServiceStatus,
                               msg::CompressedImage, msg::Image, msg::CameraInfo, msg::Detection2DArray, msg::Odometry,
                               msg::PoseStamped, msg::TFMessage, msg::Path, msg::PointCloud2, msg::DiagnosticArray,
-                              msg::MapUpdate, msg::Movers, msg::Detection3DArray, msg::MarkerArray>;
+                              msg::MapUpdate, msg::Movers, msg::Detection3DArray, msg::MarkerArray, msg::OccupancyGrid>;
 
 /// The place of a type in the list.
 enum class MessageId : std::uint8_t {};

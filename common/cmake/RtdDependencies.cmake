@@ -19,6 +19,7 @@ find_library(RTD_DEFLATE_LIBRARY deflate REQUIRED)  # Debian's packages of these
 find_library(RTD_LZ4_LIBRARY lz4 REQUIRED)
 find_package(BZip2 REQUIRED)
 find_package(SQLite3 REQUIRED)
+find_package(octomap 1.9 REQUIRED)
 if(RTD_BUILD_TESTS)
   find_package(GTest REQUIRED)
 endif()

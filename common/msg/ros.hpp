@@ -88,6 +88,19 @@ struct Path {
   std::vector<PoseStamped> poses;
 };
 RTD_FIELDS(nav_msgs, Path, header, poses)
+struct MapMetaData {
+  Time map_load_time;
+  float resolution = 0;  ///< m
+  std::uint32_t width = 0, height = 0;
+  Pose origin;  ///< of the corner of cell (0, 0)
+};
+RTD_FIELDS(nav_msgs, MapMetaData, map_load_time, resolution, width, height, origin)
+struct OccupancyGrid {
+  Header header;
+  MapMetaData info;
+  std::vector<std::int8_t> data;  ///< row by row: 0 free .. 100 occupied, -1 unknown
+};
+RTD_FIELDS(nav_msgs, OccupancyGrid, header, info, data)
 
 struct CompressedImage {
   Header header;

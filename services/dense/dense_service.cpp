@@ -5,19 +5,24 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/io/text.hpp"
 #include "common/msg/transform_eigen.hpp"
+#include "common/service/config.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/rgbd_image.hpp"
 #include "services/dense/dense_messages.hpp"
+#include "services/dense/octomap_file.hpp"
 
 namespace rtd::dense {
 namespace {
 
 constexpr std::chrono::milliseconds kStatePeriod{50};
+constexpr std::size_t kMovesPerTick = 4;  // kept images that follow a correction while nothing else is to be done
 constexpr std::int64_t kMaskPatienceNs = 3'000'000'000;  // for a filter that sends no masks
 
 bool report_file(const std::string& path, bool written, const std::string& content) {
@@ -29,10 +34,30 @@ bool report_file(const std::string& path, bool written, const std::string& conte
   return written;
 }
 
+/// Three numbers, "x,y,z". Throws service::ConfigError.
+Eigen::Vector3d parse_up(const std::string& text) {
+  if (text.empty()) return -Eigen::Vector3d::UnitY();
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  const std::vector<io::TextLine> lines = io::split_lines(text, ",");
+  const bool three = lines.size() == 1 && lines[0].fields.size() == 3;
+  for (std::size_t i = 0; three && i < 3; ++i) {
+    up[static_cast<int>(i)] = io::parse_number(lines[0].fields[i]).value_or(std::nan(""));
+  }
+  if (three && up.allFinite() && up.norm() > 1e-3) return up;
+  throw service::ConfigError("dense.grid.up=" + text + ": must be x,y,z, what points up in the map, e.g. 0,0,1");
+}
+
 }  // namespace
 
+std::optional<NavigationMap> make_navigation(const GridConfig& config) {
+  const Eigen::Vector3d up = parse_up(config.up);
+  if (!config.enabled) return std::nullopt;
+  return NavigationMap(config.core, up);
+}
+
 void DenseService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--out", config.out_dir, "Folder for static_map.ply (dense.out)");
+  app.add_option("--out", config.out_dir, "Folder for static_map.ply, map.pgm, map.yaml and map.bt (dense.out)");
+  app.add_option("--up", config.grid.up, "What points up in the map: x,y,z (dense.grid.up)");
   app.add_flag("--background", config.background, "Also write background.png (dense.background)");
 }
 
@@ -41,9 +66,11 @@ DenseService::DenseService(const Config& config, service::Runtime& runtime)
       runtime_(runtime),
       map_(config.core),
       background_(config.core.fusion, static_cast<std::size_t>(config.background_views)),
+      navigation_(make_navigation(config.grid)),
       joiner_(std::make_shared<FrameJoiner>(
           FrameJoiner::Options{static_cast<std::uint64_t>(config.every), !config.without_masks})),
-      cloud_writer_(runtime.bus.writer(bus::topics::kDensePoints)) {
+      cloud_writer_(runtime.bus.writer(bus::topics::kDensePoints)),
+      grid_writer_(runtime.bus.writer(bus::topics::kOccupancyGrid)) {
   runtime.stop.on_stop([joiner = joiner_] { joiner->close(); });
   keyframe_reader_ = runtime.bus.reader<msg::KeyframeEvent>(bus::topics::kKeyframes,
                                                             [this](const auto& event) { joiner_->put(*event); });
@@ -60,8 +87,13 @@ service::ExitCode DenseService::run() {
   while (!runtime_.stop.stop_requested()) {
     runtime_.heartbeat.tick();
     report_state();
-    if (const auto joined = joiner_->take(kStatePeriod)) integrate(*joined);
+    if (const auto joined = joiner_->take(kStatePeriod)) {
+      integrate(*joined);
+    } else if (navigation_) {
+      navigation_->follow_corrections(kMovesPerTick);
+    }
     publish_cloud();
+    publish_grid();
   }
   finish();
   return write_files();
@@ -87,6 +119,8 @@ void DenseService::integrate(const JoinedFrame& joined) {
     }
     return;
   }
+  if (navigation_) navigation_->integrate(image, T_world_camera);
+  grid_stale_ = true;
   if (config_.background) background_.remember(image, mask, T_world_camera, map_.keyframes());
   newest_stamp_ns_ = joined.result.stamp_ns;
   count(report);
@@ -98,8 +132,10 @@ void DenseService::update(const std::vector<KeyframeUpdate>& updates) {
       SPDLOG_WARN("event=map_restarted voxels_forgotten={} cause=\"slam was restarted\"", map_.voxels());
       map_.clear();
       background_.clear();
+      if (navigation_) navigation_->clear();
     }
     map_.update(update.event);
+    if (navigation_) navigation_->update(update.event);
   }
 }
 
@@ -126,6 +162,21 @@ void DenseService::publish_cloud() {
   published_ns_ = now_ns;
   const auto points = map_.cloud(static_cast<std::size_t>(config_.publish_max_points));
   cloud_writer_.write(make_cloud(points, newest_stamp_ns_, runtime_.bus.frame(config_.map_frame)));
+}
+
+/// Costs nothing without subscribers, and nothing while nothing changes.
+void DenseService::publish_grid() {
+  const std::int64_t now_ns = service::monotonic_ns();
+  const bool due = now_ns - grid_published_ns_ >= std::int64_t{config_.grid.publish_period_ms} * 1'000'000;
+  if (!navigation_ || !due || !grid_stale_ || grid_writer_.matched() == 0) return;
+  const service::TraceSpan span(runtime_.trace, "grid", totals_.frames);
+  grid_published_ns_ = now_ns;
+  grid_stale_ = !navigation_->follow_corrections(kMovesPerTick);
+  std::optional<NavigationGrid> grid = navigation_->grid(map_);
+  if (!grid || grid->cells.empty() || *grid == published_grid_) return;
+  const std::string frame = runtime_.bus.frame(config_.map_frame);
+  grid_writer_.write(make_grid(*grid, navigation_->R_grid_map(), newest_stamp_ns_, frame));
+  published_grid_ = std::move(*grid);
 }
 
 /// What has come is worked off, and slam's last corrections are followed.
@@ -158,6 +209,9 @@ std::string DenseService::trouble() {
     return "no masks from the filter: nothing is fused (dense.without_masks: true fuses all)";
   }
   if (map_.full()) return "map full: only known surfaces are refined (dense.fusion.max_voxels)";
+  if (navigation_ && navigation_->space().full())
+    return "floor plan full: no more space becomes free (dense.grid.max_blocks, dense.grid.max_scans)";
+  if (published_grid_.cropped) return "floor plan cropped: it has no room for all (dense.grid.max_cells)";
   return {};
 }
 
@@ -186,7 +240,8 @@ service::ExitCode DenseService::write_files() {
   std::error_code ignored;  // an existing folder is fine, an impossible one shows when the files are written
   std::filesystem::create_directories(folder, ignored);
   const bool written = write_cloud((folder / "static_map.ply").string()) &&
-                       (!config_.background || write_background((folder / "background.png").string()));
+                       (!config_.background || write_background((folder / "background.png").string())) &&
+                       (!navigation_ || write_navigation_maps(folder.string()));
   return written ? service::kOk : service::kRunFailed;
 }
 
@@ -208,6 +263,31 @@ bool DenseService::write_background(const std::string& path) {
   } catch (const cv::Exception&) {  // reported below
   }
   return report_file(path, written, fmt::format("views={}", background_.views()));
+}
+
+/// No plan is written as long as the floor is unknown, and nothing when no frame was fused.
+bool DenseService::write_navigation_maps(const std::string& folder) {
+  if (totals_.frames == 0) return true;
+  navigation_->follow_corrections();
+  const Volume volume = navigation_->volume(map_);
+  const auto write = [&folder](const char* name, const std::string& content, const auto& write_to) {
+    const std::string path = folder + '/' + name;
+    std::ofstream file(path, std::ios::binary);
+    write_to(file);
+    file.close();
+    return report_file(path, static_cast<bool>(file), content);
+  };
+  bool written = write("map.bt", fmt::format("cell_m={} blocks={}", volume.cell_m, volume.cells.blocks()),
+                       [&](std::ostream& file) { write_octomap(file, volume); });
+  const std::optional<NavigationGrid> grid = navigation_->grid(volume);
+  if (!grid || grid->cells.empty()) {
+    SPDLOG_WARN("event=no_floor_plan cause=\"no floor was seen\" fix=\"dense.grid.find_floor, dense.grid.floor_m\"");
+    return written;
+  }
+  const std::string content =
+      fmt::format("columns={} rows={} floor_m={:.3f}", grid->columns, grid->rows, grid->floor_m);
+  written = write("map.pgm", content, [&](std::ostream& file) { write_pgm(file, *grid); }) && written;
+  return write("map.yaml", content, [&](std::ostream& file) { file << map_yaml(*grid, "map.pgm"); }) && written;
 }
 
 }  // namespace rtd::dense

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/bus/frame_topics.hpp"
@@ -11,6 +12,7 @@
 #include "common/service/runtime.hpp"
 #include "services/dense/core/background.hpp"
 #include "services/dense/core/dense_config.hpp"
+#include "services/dense/core/navigation_map.hpp"
 #include "services/dense/core/static_map.hpp"
 #include "services/dense/frame_joiner.hpp"
 
@@ -19,6 +21,26 @@ class App;
 }
 
 namespace rtd::dense {
+
+/// Maps for navigation: the floor plan and the voxel map.
+struct GridConfig {
+  bool enabled = true;
+  std::string up;
+  int publish_period_ms = 1000;
+  NavigationConfig core;
+
+  void bind(auto& binder) {
+    binder.field("enabled", enabled, "make a floor plan on rt/map and, at the end, map.pgm, map.yaml and map.bt");
+    binder.field("up", up,
+                 "what points up in the map: x,y,z; 0,0,1 where slam knows the base of the robot. Empty: 0,-1,0, up in "
+                 "the first image");
+    binder.field("publish_period_ms", publish_period_ms, {100, 600'000}, "between two plans on rt/map");
+    core.bind(binder);
+  }
+};
+
+/// Empty when it is not enabled. Throws service::ConfigError for an `up` that is no direction.
+std::optional<NavigationMap> make_navigation(const GridConfig& config);
 
 /// Section `dense` of the configuration.
 struct ServiceConfig {
@@ -30,10 +52,11 @@ struct ServiceConfig {
   std::string map_frame = "map";
   int publish_period_ms = 1000;
   int publish_max_points = 200000;
+  GridConfig grid;
   DenseConfig core;
 
   void bind(auto& binder) {
-    binder.field("out", out_dir, "folder for static_map.ply, written at the end; empty: none");
+    binder.field("out", out_dir, "folder for static_map.ply and the maps of grid, written at the end; empty: none");
     binder.field("every", every, {1, 10000}, "one frame in so many is fused, and each keyframe");
     binder.field("without_masks", without_masks,
                  "also fuse frames without a mask from the filter: moving objects leave ghosts");
@@ -43,12 +66,14 @@ struct ServiceConfig {
     binder.field("publish_period_ms", publish_period_ms, {100, 600'000}, "between two clouds on rt/dense/points");
     binder.field("publish_max_points", publish_max_points, {100, 500'000},
                  "of a published cloud, 16 bytes each; for more points the cells get larger");
+    binder.section("grid", grid);
     core.bind(binder);
   }
 };
 
 /// Images, the filter's masks and slam's poses in, a dense static cloud out. No other service ever waits for
-/// it; frames that it has no time for are counted. Writes static_map.ply (and background.png) when it is asked to stop.
+/// it; frames that it has no time for are counted. Writes static_map.ply (and background.png) when it is asked to stop,
+/// and the maps for navigation.
 class DenseService {
  public:
   static constexpr const char* kName = "dense";
@@ -66,6 +91,7 @@ class DenseService {
   void update(const std::vector<KeyframeUpdate>& updates);
   void count(const FusionReport& report);
   void publish_cloud();
+  void publish_grid();
   void finish();
   bool ready();
   std::string trouble();
@@ -73,13 +99,16 @@ class DenseService {
   service::ExitCode write_files();
   bool write_cloud(const std::string& path);
   bool write_background(const std::string& path);
+  bool write_navigation_maps(const std::string& folder);
 
   const Config config_;
   service::Runtime& runtime_;
   StaticMap map_;
   BackgroundPainter background_;
+  std::optional<NavigationMap> navigation_;
   std::shared_ptr<FrameJoiner> joiner_;
   bus::Writer<msg::PointCloud2> cloud_writer_;
+  bus::Writer<msg::OccupancyGrid> grid_writer_;
   bus::Reader<msg::KeyframeEvent> keyframe_reader_;
   bus::Reader<msg::TrackingResult> tracking_reader_;
   bus::Reader<msg::Image> mask_reader_;
@@ -88,8 +117,9 @@ class DenseService {
   struct Totals {
     std::uint64_t frames = 0, defective = 0, points = 0, masked = 0, refused = 0, carved = 0;
   } totals_;
-  std::int64_t newest_stamp_ns_ = 0, published_ns_ = 0, updated_ns_ = 0;
-  bool full_logged_ = false;
+  std::int64_t newest_stamp_ns_ = 0, published_ns_ = 0, updated_ns_ = 0, grid_published_ns_ = 0;
+  NavigationGrid published_grid_;
+  bool full_logged_ = false, grid_stale_ = false;
   service::RateLimit defect_log_{std::chrono::seconds(1)}, mask_log_{std::chrono::seconds(5)};
 };
 

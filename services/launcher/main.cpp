@@ -189,7 +189,9 @@ void add_run_command(CLI::App& app, RunOptions& options) {
       ->check(CLI::IsMember({"told", "floor", "imu"}));
   command->add_flag("--localize-only", options.localize_only,
                     "Only find poses in the map of --map, leave it unchanged");
-  command->add_flag("--dense", options.dense, "Also fuse a dense static map: static_map.ply");
+  command->add_flag(
+      "--dense", options.dense,
+      "Also fuse a dense static map, with floor plan and voxel map: static_map.ply, map.pgm, map.yaml, map.bt");
   command->add_flag("--viewer", options.viewer,
                     "Also show the run in the browser; the address is printed (--set viewer.port=...)");
   command->add_option("--record", options.record,

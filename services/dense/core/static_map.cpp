@@ -159,11 +159,8 @@ bool StaticMap::believed(const Voxel& voxel) const {
 }
 
 std::vector<CloudPoint> StaticMap::cloud(std::size_t max_points) {
-  follow_corrections();
   std::vector<CloudPoint> points;
-  for (const Voxel& voxel : map_.voxels()) {
-    if (believed(voxel)) points.push_back({voxel.p_world, voxel.bgr, voxel.weight});
-  }
+  for_each_believed([&](const Voxel& voxel) { points.push_back({voxel.p_world, voxel.bgr, voxel.weight}); });
   double cell_m = map_.voxel_m();
   points = merge_by_cell(points, cell_m);
   while (points.size() > max_points) points = merge_by_cell(points, cell_m *= 1.5);

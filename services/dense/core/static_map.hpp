@@ -71,6 +71,14 @@ class StaticMap {
   /// What is believed, after the corrections so far; in cells of the voxel size or, to keep to `max_points`,
   /// larger ones.
   std::vector<CloudPoint> cloud(std::size_t max_points = SIZE_MAX);
+  /// Calls visit(voxel) for each voxel that is believed, after the corrections so far.
+  template <class Visit>
+  void for_each_believed(Visit visit) {
+    follow_corrections();
+    for (const Voxel& voxel : map_.voxels()) {
+      if (believed(voxel)) visit(voxel);
+    }
+  }
   /// A believed voxel lies within one cell of the point.
   bool confirms(const Eigen::Vector3f& p_world) const;
   std::size_t voxels() const { return map_.voxels().size(); }

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <sstream>
 
 #include "common/service/bus_config.hpp"
 #include "common/service/model_locator.hpp"
@@ -80,8 +81,11 @@ std::string peek(const RunOptions& options, const std::string& section, const st
   }
   if (options.config_file.empty()) return {};
   try {
-    const YAML::Node root = YAML::LoadFile(options.config_file);
-    return root[section][key] ? root[section][key].as<std::string>() : std::string();
+    YAML::Node node = YAML::LoadFile(options.config_file)[section];
+    if (node[key]) return node[key].as<std::string>();
+    std::istringstream parts(key);  // "base.camera" may also be a section of its own
+    for (std::string part; std::getline(parts, part, '.');) node.reset(node[part]);
+    return node.as<std::string>();
   } catch (const YAML::Exception&) {
     return {};  // the service that owns the key reports the error
   }
@@ -199,6 +203,14 @@ std::vector<std::string> slam_arguments(const RunSetup& setup) {
   return arguments;
 }
 
+/// With the base of the robot slam's map has z up.
+std::vector<std::string> dense_arguments(const RunSetup& setup) {
+  std::vector<std::string> arguments = {"--out", setup.out_dir};
+  const bool z_up = !setup.camera_in_base.empty() || !peek(setup, "slam", "base.camera").empty();
+  if (z_up && peek(setup, "dense", "grid.up").empty()) arguments.emplace_back("--up=0,0,1");
+  return arguments;
+}
+
 std::vector<std::string> detector_arguments(const RunSetup& setup) {
   std::vector<std::string> arguments = {"--set", "detector.model=" + setup.model_path};
   if (!setup.engine.empty()) arguments.insert(arguments.end(), {"--engine", setup.engine});
@@ -253,9 +265,9 @@ void clear_out_dir(const RunSetup& setup) {
   const bool needed = !setup.map.empty() && fs::equivalent(setup.map, map, error);  // --map of an earlier run here
   error.clear();
   if (!needed) fs::remove(map, error);
-  for (const char* left :
-       {"logs", "trace", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "static_map.ply",
-        "background.png", "groundtruth.txt", "run.json", "report.json", "report.html"}) {
+  for (const char* left : {"logs", "trace", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply",
+                           "static_map.ply", "map.pgm", "map.yaml", "map.bt", "background.png", "groundtruth.txt",
+                           "run.json", "report.json", "report.html"}) {
     if (!error) fs::remove_all(out_dir / left, error);
   }
   if (!error) fs::create_directories(out_dir / "logs", error);
@@ -275,7 +287,7 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
   if (filter) plans.push_back(plan(setup, "filter", ServiceRole::kEssential, filter_arguments(setup)));
   plans.push_back(plan(setup, "slam", ServiceRole::kEssential, slam_arguments(setup)));
   plans.back().when_restarted = load_checkpoint(setup.save_map);
-  if (setup.dense) plans.push_back(plan(setup, "dense", ServiceRole::kOptional, {"--out", setup.out_dir}));
+  if (setup.dense) plans.push_back(plan(setup, "dense", ServiceRole::kOptional, dense_arguments(setup)));
   std::vector<std::string> wait_for;
   for (ServicePlan& service : plans) {
     wait_for.push_back(service.name);

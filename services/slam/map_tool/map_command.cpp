@@ -13,6 +13,7 @@
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
+#include "services/dense/octomap_file.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_tool/map_report.hpp"
 
@@ -61,25 +62,93 @@ const MapPart& choose(const MapReport& report, long long id, std::ostream& err) 
 
 void write_part(const slam::MapContents& contents, const MapPart& part, const std::string& format, std::ostream& out) {
   if (format == "tum") return geometry::write_tum_trajectory(out, poses_of(contents, part.id));
+  if (format == "bt") return dense::write_octomap(out, voxels_of(contents, part.id));
   const std::vector<slam::MapPoint> points = points_of(contents, part.id);
   format == "pcd" ? write_pcd(out, points) : slam::write_ply(out, points);
+}
+
+/// Writes with write_to(stream); nothing is left of a file that could not be written.
+bool write_file(const std::string& path, std::ostream& err, const auto& write_to) {
+  std::ofstream file(path, std::ios::binary);
+  write_to(file);
+  file.close();
+  if (file) return true;
+  std::error_code ignored;
+  fs::remove(path, ignored);
+  err << "rtd map export: cannot write " << path << ": check the folder and the free space\n";
+  return false;
+}
+
+bool is_octomap(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  return std::getline(file, line) && line.starts_with("# Octomap");
+}
+
+/// The middles of occupied cells.
+std::vector<slam::MapPoint> occupied_of(const dense::Volume& volume) {
+  std::vector<slam::MapPoint> points;
+  volume.cells.for_each([&](const Eigen::Vector3i& cell, dense::Space space) {
+    const Eigen::Vector3d middle = volume.cell_m * (cell.cast<double>().array() + 0.5);
+    if (space == dense::Space::kOccupied) points.push_back({middle.cast<float>(), 1.0F});
+  });
+  return points;
+}
+
+/// The floor plan of a voxel map, with its YAML file. Returns the exit code.
+int write_plan(const MapRequest& request, const dense::Volume& volume, const std::vector<slam::MapPoint>& occupied,
+               std::ostream& out, std::ostream& err) {
+  const std::string yaml = fs::path(request.out).replace_extension(".yaml").string();
+  if (yaml == request.out || fs::exists(yaml)) throw UsageError(yaml + " exists already: choose another name");
+  dense::FloorFinder finder;
+  for (const slam::MapPoint& point : occupied) finder.add(static_cast<double>(point.position.z()));
+  const std::optional<double> floor_m = request.floor_m ? request.floor_m : finder.floor_m(1e9);
+  if (!floor_m) throw UsageError(request.file + " has no occupied cell: give the height of the floor with --floor");
+  constexpr std::size_t kMostCells = 100'000'000;
+  const dense::NavigationGrid grid = dense::project(volume, *floor_m, request.heights, kMostCells);
+  if (grid.cells.empty())
+    throw UsageError(fmt::format("nothing is known just above the floor at {:.2f} m: --floor names another", *floor_m));
+  const auto name = fs::path(request.out).filename().string();
+  const bool written = write_file(request.out, err, [&](std::ostream& file) { dense::write_pgm(file, grid); }) &&
+                       write_file(yaml, err, [&](std::ostream& file) { file << dense::map_yaml(grid, name); });
+  if (!written) return service::kRunFailed;
+  out << fmt::format("{}, {}: {} x {} cells, floor at {:.2f} m\n", request.out, yaml, grid.columns, grid.rows,
+                     *floor_m);
+  return service::kOk;
+}
+
+/// Of a voxel map (.bt). Returns the exit code.
+int export_voxels(const MapRequest& request, std::ostream& out, std::ostream& err) {
+  if (request.format == "tum" || request.format == "bt")
+    throw UsageError(request.file + " is a voxel map: it is exported as pgm, ply or pcd");
+  std::ifstream file(request.file, std::ios::binary);
+  const dense::Volume volume = dense::read_octomap(file);
+  const std::vector<slam::MapPoint> occupied = occupied_of(volume);
+  if (request.format == "pgm") return write_plan(request, volume, occupied, out, err);
+  const bool written = write_file(request.out, err, [&](std::ostream& to) {
+    request.format == "pcd" ? write_pcd(to, occupied) : slam::write_ply(to, occupied);
+  });
+  if (!written) return service::kRunFailed;
+  out << fmt::format("{}: {} occupied cells\n", request.out, occupied.size());
+  return service::kOk;
 }
 
 /// Returns the exit code.
 int write_export(const MapRequest& request, std::ostream& out, std::ostream& err) {
   if (fs::exists(request.out)) throw UsageError(request.out + " exists already: choose another name");
+  if (is_octomap(request.file)) return export_voxels(request, out, err);
+  if (request.format == "pgm")
+    throw UsageError(request.file +
+                     " holds landmarks, which are too few for a floor plan: 'rtd run --dense' writes one, "
+                     "and map.bt, from which this command makes others");
   const slam::MapContents contents = read(request.file, err);
   const MapReport report = report_on(contents, 0);
   const MapPart& part = choose(report, request.map_id, err);
-  std::ofstream file(request.out);
-  write_part(contents, part, request.format, file);
-  file.close();
-  if (!file) {
-    std::error_code ignored;
-    fs::remove(request.out, ignored);
-    err << "rtd map export: cannot write " << request.out << ": check the folder and the free space\n";
-    return service::kRunFailed;
-  }
+  if (request.format == "bt")
+    err << "rtd map export: surfaces without landmarks are missing in this voxel map; 'rtd run --dense' writes a full "
+           "one, map.bt\n";
+  const auto write_to = [&](std::ostream& file) { write_part(contents, part, request.format, file); };
+  if (!write_file(request.out, err, write_to)) return service::kRunFailed;
   out << fmt::format("{}: {} of map {}\n", request.out,
                      request.format == "tum" ? fmt::format("{} keyframe poses", part.keyframes)
                                              : fmt::format("{} landmarks", part.landmarks),
@@ -100,14 +169,26 @@ void add_map_commands(CLI::App& app, MapRequest& request) {
   info->add_flag("--json", request.json, "Print JSON instead of text");
   info->callback([&request] { request.info = true; });
   info->footer(kExitCodes);
-  CLI::App* to_export = app.add_subcommand("export", "Export landmarks as PLY or PCD, keyframe poses in TUM format");
-  to_export->add_option("file", request.file, "Map file")->required();
-  to_export->add_option("--format", request.format, "ply, pcd (landmarks) or tum (keyframe poses)")
-      ->check(CLI::IsMember({"ply", "pcd", "tum"}))
+  CLI::App* to_export = app.add_subcommand("export",
+                                           "Export landmarks as PLY, PCD or OctoMap, keyframe poses in TUM "
+                                           "format; voxel maps (.bt) as floor plan, PLY or PCD");
+  to_export->add_option("file", request.file, "Map file, or a voxel map of rtd-dense (map.bt)")->required();
+  to_export
+      ->add_option("--format", request.format,
+                   "ply, pcd (landmarks, occupied cells), tum (keyframe poses), bt (OctoMap of the landmarks) or pgm "
+                   "(floor plan of a voxel map, with a YAML file beside it)")
+      ->check(CLI::IsMember({"ply", "pcd", "tum", "bt", "pgm"}))
       ->required();
   to_export->add_option("-o,--out", request.out, "New file; nothing is overwritten")->required();
   to_export->add_option("--map-id", request.map_id, "Map of the file (default: the one with most keyframes)")
       ->check(CLI::NonNegativeNumber);
+  to_export->add_option("--floor", request.floor_m, "Of pgm: height of the floor, m (default: found)");
+  to_export->add_option("--min-height", request.heights.min_height_m, "Of pgm: what is not higher is floor, m")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  to_export->add_option("--max-height", request.heights.max_height_m, "Of pgm: height of the robot, m")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
   to_export->callback([&request] { request.to_export = true; });
   to_export->footer(kExitCodes);
 }
@@ -119,6 +200,9 @@ int run_map(const MapRequest& request, std::ostream& out, std::ostream& err) {
       if (request.to_export) return write_export(request, out, err);
       print_info(request, out, err);
       return service::kOk;
+    } catch (const dense::OctomapError& error) {
+      err << name << ": " << request.file << ": " << error.what() << "\n";
+      return service::kPartialLoss;
     } catch (const slam::MapFileError& error) {
       err << name << ": " << error.what() << "\n";
       return error.defect() == slam::MapFileDefect::kDamaged ? service::kPartialLoss : service::kUsageOrConfig;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "services/dense/core/volume.hpp"
 #include "services/slam/core/map/map.hpp"
 #include "services/slam/core/map/trajectory.hpp"
 
@@ -41,6 +42,9 @@ nlohmann::ordered_json to_json(const MapReport& report, const std::string& name)
 std::vector<slam::MapPoint> points_of(const slam::MapContents& contents, slam::MapId map);
 /// The poses of its keyframes, by time.
 std::vector<slam::StampedPose> poses_of(const slam::MapContents& contents, slam::MapId map);
+
+/// What landmarks tell of space: they are occupied, and free is what lies between them and the keyframes that see them.
+dense::Volume voxels_of(const slam::MapContents& contents, slam::MapId map);
 
 /// ASCII PCD 0.7: x y z static_probability, as the Point Cloud Library reads it.
 void write_pcd(std::ostream& out, const std::vector<slam::MapPoint>& points);

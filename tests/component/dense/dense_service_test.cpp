@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -113,6 +115,51 @@ TEST_F(DenseServiceTest, publishes_the_wall_without_the_person_and_writes_it) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "run" / "background.png"));
 }
 
+TEST_F(DenseServiceTest, publishes_a_floor_plan_when_it_changes_and_writes_maps_for_navigation) {
+  Inbox<msg::OccupancyGrid> plans;
+  hear(bus::topics::kOccupancyGrid, plans);
+  config_.grid.publish_period_ms = 100;
+  config_.grid.core.find_floor = false;
+  config_.grid.core.floor_m = -1;
+  config_.out_dir = folder_.string();
+  with_filter();
+  start();
+  send_and_wait(4);
+  ASSERT_TRUE(plans.wait([](const auto& all) {
+    return !all.empty() && std::ranges::count(all.back()->data, std::int8_t{100}) > 50 &&
+           std::ranges::count(all.back()->data, std::int8_t{0}) > 500;
+  }));
+  const msg::OccupancyGrid plan = *plans.all().back();
+  EXPECT_EQ(plan.header.frame_id, "map");
+  EXPECT_EQ(plan.data.size(), std::size_t{plan.info.width} * plan.info.height);
+  EXPECT_FLOAT_EQ(plan.info.resolution, 0.05F);
+  EXPECT_NEAR(plan.info.origin.position.y, 1, 1e-9) << "on the floor, 1 m below the first camera, whose y is down";
+  const msg::Quaternion& q = plan.info.origin.orientation;  // a quarter turn about x takes z of the plan to -y
+  EXPECT_NEAR(q.x, std::sqrt(0.5), 1e-9);
+  EXPECT_NEAR(q.w, std::sqrt(0.5), 1e-9);
+  EXPECT_EQ(stop(), service::kOk);
+  for (const char* name : {"map.pgm", "map.yaml", "map.bt"}) {
+    EXPECT_GT(std::filesystem::file_size(folder_ / name), 50U) << name;
+  }
+}
+
+TEST_F(DenseServiceTest, fails_when_a_map_for_navigation_cannot_be_written) {
+  std::filesystem::create_directories(folder_ / "map.bt");  // a folder of that name
+  config_.out_dir = folder_.string();
+  with_filter();
+  start();
+  send_and_wait(2);
+  EXPECT_EQ(stop(), service::kRunFailed);
+}
+
+TEST_F(DenseServiceTest, reports_that_its_floor_plan_is_full) {
+  config_.grid.core.space.max_blocks = 10;
+  with_filter();
+  start();
+  send(0);
+  EXPECT_TRUE(wait_state(msg::ServiceState::kDegraded, "dense.grid.max_blocks"));
+}
+
 TEST_F(DenseServiceTest, fuses_nothing_without_masks_and_reports_it) {
   start();
   for (std::uint64_t seq = 0; seq < 10; ++seq) send(seq);
@@ -172,6 +219,13 @@ TEST(DenseConfig, is_bound_completely_and_refuses_what_is_out_of_range) {
   EXPECT_DOUBLE_EQ(config.core.fusion.voxel_m, 0.05);
   EXPECT_THROW(binder.set("dense.fusion.voxel_m=0"), service::ConfigError);
   EXPECT_THROW(binder.set("dense.every=0"), service::ConfigError);
+  EXPECT_TRUE(make_navigation(config.grid).has_value());
+  for (const char* up : {"0,0", "a,b,c", "0,0,0", "0,0,1,2", "nan,0,1", "0;0;1"}) {
+    config.grid.up = up;
+    EXPECT_THAT([&] { make_navigation(config.grid); },
+                testing::ThrowsMessage<service::ConfigError>(HasSubstr("dense.grid.up")))
+        << up;
+  }
   EXPECT_THAT([&] { binder.set("dense.carving.margn_m=1"); },
               testing::ThrowsMessage<service::ConfigError>(HasSubstr("margin_m")));
 }

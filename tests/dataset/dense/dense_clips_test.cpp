@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "tests/support/dense/dense_run.hpp"
+#include "tests/support/dense/grid_truth.hpp"
 
 namespace rtd::test_support {
 namespace {
@@ -44,9 +45,19 @@ TEST(DenseClips, boxes_that_are_carried_about_leave_few_ghosts) {
 TEST(DenseClips, a_synthetic_room_is_mapped_without_moving_objects) {
   DenseOptions synthetic = options("synthetic:office?frames=120", "rtd");
   synthetic.front_end.detector.kind = "truth";
+  synthetic.grid = true;
   const DenseReport with_masks = run_dense(synthetic);
   EXPECT_LT(with_masks.ghosts.ghost_share(), 0.01);
   EXPECT_GT(with_masks.ghosts.completeness, 0.8);
+
+  ASSERT_TRUE(with_masks.grid.has_value());
+  EXPECT_NEAR(with_masks.grid->floor_m, 0, 0.03) << "m";
+  const GridTruth truth(synthetic.source, with_masks.grid->cell_m, synthetic.navigation.heights);
+  const GridReport plan = truth.judge(*with_masks.grid);
+  EXPECT_GE(plan.share_right(), 0.99);
+  EXPECT_EQ(plan.ghosts, 0U) << "people were everywhere in the middle of the room";
+  EXPECT_GT(plan.free, 2000U);
+  EXPECT_GT(plan.occupied, 300U);
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ void for_each_topic(Visitor visit) {
   visit(kCameraInfo), visit(kDetections), visit(kDynamicMask), visit(kOdometry), visit(kPose), visit(kTf);
   visit(kPath), visit(kMapPoints), visit(kDensePoints), visit(kDiagnostics);
   visit(kMap), visit(kMovers), visit(kMoverBoxes), visit(kMoverMarkers), visit(kGroundTruth);
+  visit(kOccupancyGrid);
 }
 
 /// Messages of one round: as many as the topic's history holds, three at most; one raw frame, as a camera writes them.

@@ -73,16 +73,28 @@ GhostReport judge(const DenseOptions& options, const std::vector<dense::CloudPoi
   return measure.report();
 }
 
+void make_grid(dense::NavigationMap& navigation, dense::StaticMap& map, DenseReport& report) {
+  navigation.follow_corrections();
+  const double start_ms = cpu_ms();
+  report.volume = navigation.volume(map);
+  report.grid = navigation.grid(report.volume);
+  report.grid_ms = cpu_ms() - start_ms;
+  report.scans = navigation.space().scans();
+}
+
 }  // namespace
 
 DenseReport run_dense(const DenseOptions& options) {
   const auto source = camera::make_source(options.source);
   const auto front_end = make_front_end(options.front_end);
-  slam::SlamSystem slam({}, slam::MappingMode::kSynchronous, service::monotonic_ns);
+  slam::SlamConfig slam_config;
+  if (options.grid) slam_config.first_pose = source->groundtruth().front().T_world_body;
+  slam::SlamSystem slam(slam_config, slam::MappingMode::kSynchronous, service::monotonic_ns);
   dense::StaticMap map(options.map);
+  dense::NavigationMap navigation(options.navigation, Eigen::Vector3d::UnitZ());
   dense::BackgroundPainter background(options.map.fusion, 24);
   DenseReport report;
-  double total_ms = 0;
+  double total_ms = 0, total_grid_ms = 0;
   while (const auto frame = source->next()) {
     ++report.frames;
     const FrontEndOutput front = front_end->process(*frame);
@@ -91,6 +103,7 @@ DenseReport run_dense(const DenseOptions& options) {
     bool wanted = frame->image.seq % static_cast<std::uint64_t>(options.every) == 0;
     for (const msg::KeyframeEvent& event : slam::make_events(output)) {
       map.update(event);
+      navigation.update(event);
       wanted = wanted || (event.kind == msg::KeyframeEventKind::kCreated && event.frame_seq == frame->image.seq);
     }
     if (!wanted || output.result.state != msg::TrackingState::kOk) continue;
@@ -100,6 +113,11 @@ DenseReport run_dense(const DenseOptions& options) {
     const double start_ms = cpu_ms();
     const dense::FusionReport fusion = map.integrate(frame->image, mask, T_world_camera);
     total_ms += cpu_ms() - start_ms;
+    if (options.grid) {
+      const double grid_start_ms = cpu_ms();
+      navigation.integrate(frame->image, T_world_camera);
+      total_grid_ms += cpu_ms() - grid_start_ms;
+    }
     background.remember(frame->image, mask, T_world_camera, map.keyframes());
     ++report.integrated;
     report.fused += fusion.fused;
@@ -108,6 +126,8 @@ DenseReport run_dense(const DenseOptions& options) {
   }
   slam.finish();
   report.integrate_ms = total_ms / static_cast<double>(std::max<std::size_t>(1, report.integrated));
+  if (options.grid) make_grid(navigation, map, report);
+  report.grid_integrate_ms = total_grid_ms / static_cast<double>(std::max<std::size_t>(1, report.integrated));
   report.voxels = map.voxels();
   report.cloud = map.cloud();
   report.background = background.paint(map);

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "services/dense/core/background.hpp"
+#include "services/dense/core/navigation_map.hpp"
 #include "services/dense/core/static_map.hpp"
 #include "tests/support/dense/ghost_measure.hpp"
 #include "tests/support/offline_pipeline.hpp"
@@ -17,6 +19,8 @@ struct DenseOptions {
   FrontEndOptions front_end;  ///< mode true-mask: the map is given the true mask too
   bool use_masks = true;      ///< false: the map does not know what moves
   dense::DenseConfig map;
+  bool grid = false;  ///< make a floor plan too, in the world of the true poses: the first of them is told to slam
+  dense::NavigationConfig navigation;
   int every = 5;        ///< as dense.every
   int judge_every = 5;  ///< frames that judge the cloud; 0 = none
 };
@@ -28,6 +32,10 @@ struct DenseReport {
   std::size_t frames = 0, integrated = 0, voxels = 0;
   std::uint64_t fused = 0, masked = 0, carved = 0;
   double integrate_ms = 0;  ///< mean CPU time of a fused frame
+  std::optional<dense::NavigationGrid> grid;
+  dense::Volume volume;
+  std::size_t scans = 0;                      ///< that the plan keeps
+  double grid_integrate_ms = 0, grid_ms = 0;  ///< mean CPU time of a fused frame, CPU time of one plan
 };
 
 /// Filter, slam and static map on one source in one thread: what a lockstep run with rtd-dense computes when it keeps

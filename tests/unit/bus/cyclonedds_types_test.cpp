@@ -44,7 +44,8 @@ const dds_topic_descriptor_t* const kGenerated[] = {&rtd_msgs_msg_dds__RgbdFrame
                                                     &rtd_msgs_msg_dds__MapUpdate__desc,
                                                     &rtd_msgs_msg_dds__Movers__desc,
                                                     &vision_msgs_msg_dds__Detection3DArray__desc,
-                                                    &visualization_msgs_msg_dds__MarkerArray__desc};
+                                                    &visualization_msgs_msg_dds__MarkerArray__desc,
+                                                    &nav_msgs_msg_dds__OccupancyGrid__desc};
 
 /// A participant that nobody outside of this process sees.
 class LocalDomain {

@@ -6,13 +6,13 @@
 
 #include <limits>
 
-#include "common/msg/transform_eigen.hpp"
 #include "tests/unit/dense/wall_scene.hpp"
 
 namespace rtd::dense {
 namespace {
 
 using test::at_origin;
+using test::keyframe;
 using test::WallScene;
 using Outcome = FusionReport::Outcome;
 
@@ -23,18 +23,6 @@ std::size_t ghosts(StaticMap& map) {
   const auto cloud = map.cloud();
   return static_cast<std::size_t>(
       std::count_if(cloud.begin(), cloud.end(), [](const CloudPoint& point) { return point.p_world.z() < 2.2F; }));
-}
-
-msg::KeyframeEvent keyframe(std::uint32_t id, double x_m,
-                            msg::KeyframeEventKind kind = msg::KeyframeEventKind::kCreated) {
-  msg::KeyframeEvent event{};
-  event.keyframe_id = id;
-  event.stamp_ns = std::int64_t{id} * 1'000'000'000;
-  event.kind = kind;
-  Eigen::Isometry3d T_world_camera = at_origin();
-  T_world_camera.translation().x() = x_m;
-  event.T_world_camera = msg::to_message(T_world_camera);
-  return event;
 }
 
 TEST(StaticMap, fuses_a_noisy_wall_to_less_than_the_noise) {

@@ -6,10 +6,11 @@
 #include <random>
 
 #include "common/geometry/camera_model.hpp"
+#include "common/msg/tracking.hpp"
+#include "common/msg/transform_eigen.hpp"
+#include "common/vision/rgbd_image.hpp"
 #include "services/dense/core/dense_config.hpp"
 #include "services/dense/core/depth_view.hpp"
-
-#include "common/vision/rgbd_image.hpp"
 
 namespace rtd::dense::test {
 
@@ -71,6 +72,19 @@ class WallScene {
 
 inline Eigen::Isometry3d at_origin() {
   return Eigen::Isometry3d::Identity();
+}
+
+/// Of slam, at (x_m, 0, 0).
+inline msg::KeyframeEvent keyframe(std::uint32_t id, double x_m,
+                                   msg::KeyframeEventKind kind = msg::KeyframeEventKind::kCreated) {
+  msg::KeyframeEvent event{};
+  event.keyframe_id = id;
+  event.stamp_ns = std::int64_t{id} * 1'000'000'000;
+  event.kind = kind;
+  Eigen::Isometry3d T_world_camera = at_origin();
+  T_world_camera.translation().x() = x_m;
+  event.T_world_camera = msg::to_message(T_world_camera);
+  return event;
 }
 
 }  // namespace rtd::dense::test

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "services/dense/octomap_file.hpp"
 #include "services/slam/map_file.hpp"
 #include "tests/support/sample_map.hpp"
 
@@ -110,6 +111,49 @@ TEST_F(MapCommand, distinguishes_damage_from_other_files) {
   std::filesystem::resize_file(file_, std::filesystem::file_size(file_) - 100);
   EXPECT_EQ(run({"info", file_}), 3);
   EXPECT_THAT(err_.str(), HasSubstr("damaged at byte"));
+}
+
+TEST_F(MapCommand, exports_landmarks_as_voxels_with_the_free_rays_to_them) {
+  ASSERT_EQ(run({"export", file_, "--format", "bt", "-o", path("room.bt")}), 0) << err_.str();
+  EXPECT_THAT(err_.str(), HasSubstr("surfaces without landmarks are missing"));
+  std::ifstream file(path("room.bt"), std::ios::binary);
+  const dense::Volume volume = dense::read_octomap(file);
+  std::size_t free = 0, occupied = 0;
+  volume.cells.for_each(
+      [&](const Eigen::Vector3i&, dense::Space space) { ++(space == dense::Space::kFree ? free : occupied); });
+  EXPECT_GT(occupied, 10U);
+  EXPECT_GT(free, occupied);
+}
+
+TEST_F(MapCommand, exports_a_voxel_map_as_floor_plan_with_the_heights_asked_for) {
+  dense::Volume volume;
+  for (int i = 0; i < 400; ++i) {
+    volume.cells.set({i % 20, i / 20, 0}, dense::Space::kOccupied);  // the floor
+    volume.cells.set({i % 20, i / 20, 3}, dense::Space::kFree);
+  }
+  volume.cells.set({5, 5, 16}, dense::Space::kOccupied);  // 0.8 m above it
+  std::ofstream bt(path("map.bt"), std::ios::binary);
+  dense::write_octomap(bt, volume);
+  bt.close();
+  ASSERT_EQ(run({"export", path("map.bt"), "--format", "pgm", "-o", path("tall.pgm")}), 0) << err_.str();
+  ASSERT_EQ(run({"export", path("map.bt"), "--format", "pgm", "--max-height", "0.5", "-o", path("low.pgm")}), 0);
+  EXPECT_THAT(text_of("tall.yaml"), HasSubstr("image: tall.pgm"));
+  const auto blacks = [](const std::string& pgm) { return std::ranges::count(pgm.substr(pgm.size() - 400), '\0'); };
+  EXPECT_EQ(blacks(text_of("tall.pgm")), 1);
+  EXPECT_EQ(blacks(text_of("low.pgm")), 0);
+  EXPECT_EQ(run({"export", path("map.bt"), "--format", "pgm", "-o", path("tall.pgm")}), 2) << "exists";
+  EXPECT_EQ(run({"export", path("map.bt"), "--format", "pcd", "-o", path("map.pcd")}), 0);
+  EXPECT_THAT(text_of("map.pcd"), HasSubstr("POINTS 401"));
+  EXPECT_EQ(run({"export", path("map.bt"), "--format", "tum", "-o", path("map.txt")}), 2);
+  EXPECT_EQ(run({"export", path("map.bt"), "--format", "pgm", "-o", path("no_such_folder/x.pgm")}), 1);
+}
+
+TEST_F(MapCommand, says_why_there_is_no_floor_plan) {
+  EXPECT_EQ(run({"export", file_, "--format", "pgm", "-o", path("room.pgm")}), 2);
+  EXPECT_THAT(err_.str(), HasSubstr("rtd run --dense"));
+  std::ofstream(path("cut.bt")) << "# Octomap OcTree binary file\nid OcTree\nsize 9\nres 0.05\ndata\n";
+  EXPECT_EQ(run({"export", path("cut.bt"), "--format", "pgm", "-o", path("cut.pgm")}), 3);
+  EXPECT_THAT(err_.str(), HasSubstr("ends in the middle"));
 }
 
 }  // namespace

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/dense/octomap_file.hpp"
+
+#include <octomap/OcTree.h>
+
+#include <istream>
+#include <ostream>
+#include <string>
+
+#include "common/io/text.hpp"
+
+namespace rtd::dense {
+namespace {
+
+constexpr int kDepth = 16, kCenter = 1 << (kDepth - 1);  // of an OctoMap: cells from -32768 to 32767
+constexpr const char* kFirstLine = "# Octomap OcTree binary file";
+constexpr std::int64_t kMostCells = 200'000'000;
+
+/// The cells of the nodes of a .bt file: two bytes a node, two bits a child, children with children of their own
+/// behind it, first to last.
+class NodeReader {
+ public:
+  NodeReader(std::istream& in, CellBlocks<Space>& cells) : in_(in), cells_(cells) {}
+
+  void read(const Eigen::Vector3i& corner, int depth) {
+    if (depth >= kDepth) throw OctomapError("it is damaged: a node deeper than 16 levels");
+    const int low = in_.get(), high = in_.get();
+    if (!in_) throw OctomapError("it ends in the middle");
+    const int bits = low | high << 8, side = 1 << (kDepth - 1 - depth);
+    for (int child = 0; child < 8; ++child) {
+      const int kind = bits >> (2 * child) & 3;
+      const Eigen::Vector3i at = corner + side * Eigen::Vector3i(child & 1, child >> 1 & 1, child >> 2 & 1);
+      if (kind == 3) {
+        read(at, depth + 1);
+      } else if (kind != 0) {
+        fill(at, side, kind == 2 ? Space::kOccupied : Space::kFree);
+      }
+    }
+  }
+
+ private:
+  void fill(const Eigen::Vector3i& corner, std::int64_t side, Space space) {
+    filled_ += side * side * side;
+    if (filled_ > kMostCells) throw OctomapError("it has more than 200 million cells");
+    for (std::int64_t i = 0; i < side * side * side; ++i) {
+      cells_.set(corner + Eigen::Vector3i(static_cast<int>(i % side), static_cast<int>(i / side % side),
+                                          static_cast<int>(i / side / side)),
+                 space);
+    }
+  }
+
+  std::istream& in_;
+  CellBlocks<Space>& cells_;
+  std::int64_t filled_ = 0;
+};
+
+struct Header {
+  double cell_m = 0;
+  std::string id;
+  std::int64_t nodes = -1;
+};
+
+Header read_header(std::istream& in) {
+  std::string line;
+  if (!std::getline(in, line) || !line.starts_with(kFirstLine)) throw OctomapError("it is not a binary OctoMap (.bt)");
+  Header header;
+  constexpr int kMostLines = 100;
+  for (int i = 0; i < kMostLines && std::getline(in, line) && line != "data"; ++i) {
+    const std::string value = line.substr(std::min(line.size(), line.find(' ') + 1));
+    if (line.starts_with("id ")) header.id = value;
+    if (line.starts_with("res ")) header.cell_m = io::parse_number(value).value_or(0);
+    if (line.starts_with("size ")) header.nodes = static_cast<std::int64_t>(io::parse_number(value).value_or(-1));
+  }
+  if (line != "data") throw OctomapError("its header does not end");
+  if (header.id != "OcTree") throw OctomapError("it holds a tree of type '" + header.id + "', not OcTree");
+  if (!(header.cell_m >= 1e-3 && header.cell_m <= 100))
+    throw OctomapError("its resolution is not one of [0.001, 100] m");
+  return header;
+}
+
+}  // namespace
+
+void write_octomap(std::ostream& out, const Volume& volume) {
+  octomap::OcTree tree(volume.cell_m);
+  volume.cells.for_each([&](const Eigen::Vector3i& cell, Space space) {
+    const Eigen::Array3i key = cell.array() + kCenter;
+    if ((key < 0).any() || (key >= 2 * kCenter).any()) return;
+    tree.setNodeValue(
+        octomap::OcTreeKey(static_cast<octomap::key_type>(key.x()), static_cast<octomap::key_type>(key.y()),
+                           static_cast<octomap::key_type>(key.z())),
+        space == Space::kOccupied ? tree.getClampingThresMaxLog() : tree.getClampingThresMinLog(), true);
+  });
+  tree.updateInnerOccupancy();
+  tree.toMaxLikelihood();
+  tree.prune();
+  out << kFirstLine << "\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << volume.cell_m
+      << "\ndata\n";
+  tree.writeBinaryData(out);  // writeBinary() would also print to the console
+}
+
+Volume read_octomap(std::istream& in) {
+  const Header header = read_header(in);
+  Volume volume{header.cell_m, {}};
+  if (header.nodes == 0) return volume;
+  NodeReader(in, volume.cells).read(Eigen::Vector3i::Constant(-kCenter), 0);
+  return volume;
+}
+
+}  // namespace rtd::dense

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iosfwd>
+#include <stdexcept>
+
+#include "services/dense/core/volume.hpp"
+
+namespace rtd::dense {
+
+/// A file that is no OctoMap of occupied and free cells (.bt), or a damaged one; what() says why.
+class OctomapError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Binary OctoMap (.bt), written by liboctomap; z is up. The stream's state tells of errors.
+void write_octomap(std::ostream& out, const Volume& volume);
+
+/// Reads a .bt file of any origin. Large cells come as many small ones, 200 million at most. liboctomap's own reader
+/// trusts a file: a damaged one would make it recurse without end. Throws OctomapError.
+Volume read_octomap(std::istream& in);
+
+}  // namespace rtd::dense
