@@ -182,6 +182,10 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--camera-in-base", options.camera_in_base,
                       "Where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw; poses are then those of the "
                       "base, in a map with z up");
+  command->add_option("--imu", options.imu,
+                      "Topic of an IMU beside the camera, sensor_msgs/Imu: poses go on while nothing can be seen");
+  command->add_option("--wheel-odometry", options.wheel_odometry,
+                      "Topic of the wheels' odometry, nav_msgs/Odometry; with --camera-in-base");
   command->add_flag("--localize-only", options.localize_only,
                     "Only find poses in the map of --map, leave it unchanged");
   command->add_flag("--dense", options.dense, "Also fuse a dense static map: static_map.ply");

@@ -69,6 +69,7 @@ struct RunOptions {
   std::string save_map;                    ///< map file to write; empty: map.rtdmap in out_dir
   std::string base_frame;                  ///< of the robot; empty: as configured
   std::string camera_in_base;              ///< x,y,z,qx,qy,qz,qw; empty: as configured
+  std::string imu, wheel_odometry;         ///< ROS topics; empty: as configured
   bool localize_only = false;              ///< leave the map as it is
   bool dense = false;                      ///< also fuse a dense static map
   bool viewer = false;                     ///< also show the run in the browser

@@ -57,8 +57,8 @@ class SlamSystem {
   /// Goes on with a map that was saved, before the first frame: relocalizing until a frame is found in it.
   void restore(MapContents contents);
   /// Begins again, as after a start: the next frame makes a new map, in whose frame the poses are from then on. The
-  /// odometry continues. Keyframes that were announced are removed in the next outputs, whose events count from 0 again.
-  /// Waits for the keyframe in work and gives up a global adjustment.
+  /// odometry continues. Keyframes that were announced are removed in the next outputs, whose events count from 0
+  /// again. Waits for the keyframe in work and gives up a global adjustment.
   void reset();
   /// reset(), then restore(): replaces the map while running.
   void load_map(MapContents contents);
@@ -69,6 +69,11 @@ class SlamSystem {
   /// Never throws for the content of the message. Frames are expected in order; a seq that jumps back means a
   /// source that started again: motion is forgotten, the map stays.
   SlamOutput process(const msg::FeatureFrame& message);
+  /// What IMU and wheels measured up to the next frame, where SlamConfig::prior has them; else without effect.
+  void add(const ImuSample& sample);
+  void add(const WheelSample& sample);
+  /// Of IMU and wheels; null where there are none.
+  const MotionPrior* prior() const { return prior_ ? &*prior_ : nullptr; }
   /// Ends mapping: everything queued is worked off. The trajectories are final after it.
   /// `pending`: what happens to a global adjustment that is under way.
   void finish(PendingAdjustment pending = PendingAdjustment::kAwait) { mapping_.finish(pending); }
@@ -113,6 +118,7 @@ class SlamSystem {
   Clock now_ns_;
   std::atomic<bool> localize_only_;
   MappingWorker mapping_;
+  std::optional<MotionPrior> prior_;
   std::optional<Tracker> tracker_;  ///< another one after reset()
   UnknownViewClock unknown_view_;
   ReadoutEstimator readout_;
