@@ -10,6 +10,8 @@ Without a word: every scene with a perfect sensor. `faults`: one scene with a se
 "A sensor with faults"), each fault alone over its strengths and all combined, in the modes off, semantic, geometry,
 rtd and true-mask; names the worst ratio of rtd to the better of semantic and geometry.
 
+--parameters adds to every source, e.g. --parameters imu=1: the camera has an IMU (camera README).
+
 Each run is rtd_offline_run (the whole system in one process, lockstep). FOLDER/runs.jsonl keeps the results: a second
 start with the same program repeats no run. FOLDER/stress.md and stress.json contain the tables, of `faults`
 faults.md, faults.json and the drawing faults.svg (faults.png too where rsvg-convert is installed).
@@ -48,8 +50,9 @@ def command(program: pathlib.Path, source: str, mode: str, seed: int) -> list:
     return [os.path.relpath(program), "--source", source, *MODES[mode], "--detector-seed", str(seed)]
 
 
-def scene_command(program: pathlib.Path, scene: str, seed: int, mode: str) -> list:
-    return command(program, f"synthetic:{scene}?{SCENES[scene]}&seed={seed}", mode, seed)
+def scene_command(options, scene: str, seed: int, mode: str) -> list:
+    more = f"&{options.parameters}" if options.parameters else ""
+    return command(options.program, f"synthetic:{scene}?{SCENES[scene]}&seed={seed}{more}", mode, seed)
 
 
 def run(names: dict, task: list) -> dict:
@@ -65,7 +68,7 @@ def run(names: dict, task: list) -> dict:
 
 
 def key(result: dict) -> tuple:
-    return result["scene"], result["seed"], result["mode"]
+    return result["scene"], result["seed"], result["mode"], result.get("parameters", "")
 
 
 def earlier_results(file: pathlib.Path, build: str, key_of) -> dict:
@@ -165,6 +168,7 @@ def parse_scene_options(arguments: list):
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--scenes", type=choice(SCENES), default=DEFAULT_SCENES, help=", ".join(SCENES))
     parser.add_argument("--modes", type=choice(MODES), default=["rtd", "geometry"], help=", ".join(MODES))
+    parser.add_argument("--parameters", default="", help="of every source, joined by &")
     add_common_options(parser, "stress")
     parser.add_argument("--max-ate", type=float, default=0.03, help="m; a run with a larger ATE is listed as a failure")
     parser.add_argument("--min-coverage", type=float, default=0.95, help="a run with less is listed as a failure")
@@ -197,7 +201,8 @@ def build_of(program: pathlib.Path) -> str:
 
 
 def sweep_scenes(options) -> int:
-    tasks = [({"scene": scene, "seed": seed, "mode": mode}, scene_command(options.program, scene, seed, mode))
+    tasks = [({"scene": scene, "seed": seed, "mode": mode, "parameters": options.parameters},
+              scene_command(options, scene, seed, mode))
              for seed in range(options.first_seed, options.first_seed + options.seeds)
              for scene in options.scenes for mode in options.modes]
     build = build_of(options.program)
@@ -210,7 +215,7 @@ def sweep_scenes(options) -> int:
     text = table(summaries)
     if failures:
         text += "\n\nOutside the limits:\n\n" + "\n".join(
-            f"- {cause}: `{shlex.join(scene_command(options.program, *key(r)))}`" for r, cause in failures)
+            f"- {cause}: `{shlex.join(scene_command(options, *key(r)[:3]))}`" for r, cause in failures)
     print(text)
     (options.out / "stress.md").write_text(text + "\n")
     (options.out / "stress.json").write_text(json.dumps(

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/bus/topics.hpp"
+#include "common/msg/imu.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -65,6 +66,8 @@ const std::vector<TopicRoles>& topic_roles() {
       {kColorJpeg.name, {"camera", "link"}, Roles{"detector"} + kOnlookers},
       {kCameraInfo.name, {"camera", "link"}, kOnlookers},
       {kGroundTruth.name, {"camera"}, kOnlookers},
+      {msg::kImuTopic, {"camera"}, Roles{"slam"} + kOnlookers},
+      {msg::kWheelTopic, {"camera"}, Roles{"slam"} + kOnlookers},
       {kDetections.name, {"detector", "link"}, Roles{"filter"} + kOnlookers},
       {kDynamicMask.name, {"filter"}, Roles{"dense"} + kOnlookers},
       {kFeatures.name, {"filter"}, {"slam", "launcher", "viewer"}},

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "common/bus/message_types.hpp"
+#include "common/msg/imu.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros_codec/wire.hpp"
 
@@ -76,6 +77,7 @@ template <class... T>
 MessageFields fields_of_all(bus::TypeList<T...>) {
   Collector collector;
   (collector.add<T>(), ...);
+  collector.add<msg::Imu>();  // travels as raw samples only
   return collector.take();
 }
 

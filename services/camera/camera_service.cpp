@@ -98,6 +98,12 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
       tracking_(runtime.bus.reader<msg::TrackingResult>(
           bus::topics::kTracking, [results = results_](const auto& result) { results->push(result->seq); })) {
   cv::setNumThreads(1);
+  const SourceInfo& info = source_->info();
+  if (info.has_imu || info.has_wheels) {
+    motion_.emplace(runtime.bus_options, info,
+                    MotionFrames{runtime.bus.frame("camera_color_optical_frame"), runtime.bus.frame("wheel_odom"),
+                                 runtime.bus.frame("base_link")});
+  }
   if (!source_->info().live) open_publisher();
   std::erase(config_.wait_for, "none");
   runtime.heartbeat.on_status([changes = changes_](const auto&) { changes->push(true); });
@@ -214,6 +220,7 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
     if (decision.action == service::PaceAction::kSend) {
       runtime_.heartbeat.tick();
       const std::int64_t begin_ns = service::monotonic_ns();
+      if (motion_) motion_->publish(frame);
       send(frame.image);
       runtime_.trace.span("publish", begin_ns, service::monotonic_ns(), frame.image.seq);
       send_truth(frame);

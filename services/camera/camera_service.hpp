@@ -115,6 +115,7 @@ class CameraService {
   std::shared_ptr<concurrency::BoundedQueue<bool>> changes_;  ///< a service became ready or a reader matched
   FramePublisher publisher_;
   bus::Writer<msg::PoseStamped> truth_;
+  std::optional<MotionPublisher> motion_;  ///< of sources that have an IMU or wheels
   bus::Reader<msg::TrackingResult> tracking_;
   std::deque<vision::RgbdImage> in_flight_;  ///< kept for sending again; empty at pace realtime
   SourceCounters counters_;

@@ -11,6 +11,9 @@
 #include <utility>
 
 #include "common/concurrency/thread_priority.hpp"
+#include "common/msg/imu.hpp"
+#include "common/msg/transform_eigen.hpp"
+#include "common/ros_codec/wire.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/recording/ros_images.hpp"
 
@@ -101,6 +104,55 @@ bool FramePublisher::publish(const vision::RgbdImage& image) {
     infos_.write(to_camera_info(image.camera, image.stamp_ns, bus_.frame(kCameraFrame)));
   }
   return taken;
+}
+
+namespace {
+
+constexpr int kMotionDepth = 64;  // of samples: a camera at 4 Hz
+
+std::unique_ptr<bus::RawWriter> motion_writer(bus::RawBus& bus, const char* topic, const char* type) {
+  bus::RawWriterOptions options;
+  options.qos.depth = kMotionDepth;
+  return bus.writer({topic, type}, options);
+}
+
+msg::Vector3 to_vector(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+template <class Message>
+void write(bus::RawWriter& writer, const Message& message) {
+  const std::vector<std::uint8_t> bytes = ros::encode<ros::Wire::kCdr>(message);
+  writer.write(std::as_bytes(std::span(bytes)));
+}
+
+}  // namespace
+
+MotionPublisher::MotionPublisher(const bus::BusOptions& options, const SourceInfo& info, MotionFrames names)
+    : names_(std::move(names)), bus_(bus::connect_raw(options)) {
+  const auto name = [&](const char* topic) { return bus::topic_of_robot(topic, options.robot); };
+  if (info.has_imu) imu_ = motion_writer(*bus_, name(msg::kImuTopic).c_str(), msg::kImuDdsType);
+  if (info.has_wheels) wheels_ = motion_writer(*bus_, name(msg::kWheelTopic).c_str(), msg::kOdometryDdsType);
+}
+
+void MotionPublisher::publish(const SourceFrame& frame) {
+  for (const ImuReading& reading : frame.imu) {
+    msg::Imu imu;
+    imu.header = {msg::to_time(reading.stamp_ns), names_.camera};
+    imu.orientation_covariance[0] = -1;  // it has none
+    imu.angular_velocity = to_vector(reading.gyro_rad_s);
+    imu.linear_acceleration = to_vector(reading.accel_m_s2);
+    write(*imu_, imu);
+  }
+  for (const WheelReading& reading : frame.wheels) {
+    const auto [t, q] = msg::to_message(reading.T_odom_base);
+    msg::Odometry odometry;
+    odometry.header = {msg::to_time(reading.stamp_ns), names_.odom};
+    odometry.child_frame_id = names_.base;
+    odometry.pose.pose = {{t[0], t[1], t[2]}, {q[0], q[1], q[2], q[3]}};
+    odometry.twist.twist = {to_vector(reading.linear_m_s), to_vector(reading.angular_rad_s)};
+    write(*wheels_, odometry);
+  }
 }
 
 }  // namespace rtd::camera

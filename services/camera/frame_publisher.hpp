@@ -6,10 +6,13 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <opencv2/core/mat.hpp>
+#include <string>
 #include <thread>
 
 #include "common/bus/frame_topics.hpp"
+#include "common/bus/raw_bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "services/camera/core/frame_source.hpp"
 
@@ -53,6 +56,26 @@ class JpegPublisher {
   std::atomic<std::uint64_t> encoded_{0};
   concurrency::BoundedQueue<Waiting> waiting_;
   std::thread thread_;
+};
+
+/// Names of coordinate frames on the wire.
+struct MotionFrames {
+  std::string camera, odom, base;
+};
+
+/// Publishes what IMU and wheels of a source measured, on topics that only raw readers need (common/msg/imu.hpp), over
+/// a connection of its own. One thread.
+class MotionPublisher {
+ public:
+  /// Throws BusError when the bus refuses.
+  MotionPublisher(const bus::BusOptions& options, const SourceInfo& info, MotionFrames names);
+  /// To be called before the frame itself is published: who waits for samples up to its stamp then seldom waits.
+  void publish(const SourceFrame& frame);
+
+ private:
+  const MotionFrames names_;
+  std::shared_ptr<bus::RawBus> bus_;
+  std::unique_ptr<bus::RawWriter> imu_, wheels_;
 };
 
 /// Copies the rows packed and clears the rest of the `size` bytes of a message.

@@ -187,6 +187,10 @@ void add_run_command(CLI::App& app, RunOptions& options) {
           "--gravity", options.gravity,
           "What is up in the map: told (as the base stands when it begins), floor (that the camera sees) or imu")
       ->check(CLI::IsMember({"told", "floor", "imu"}));
+  command->add_option("--imu", options.imu,
+                      "Topic of an IMU beside the camera, sensor_msgs/Imu: poses go on while nothing can be seen");
+  command->add_option("--wheel-odometry", options.wheel_odometry,
+                      "Topic of the wheels' odometry, nav_msgs/Odometry; with --camera-in-base");
   command->add_flag("--localize-only", options.localize_only,
                     "Only find poses in the map of --map, leave it unchanged");
   command->add_flag(

@@ -24,15 +24,44 @@ std::vector<std::byte> read_file(const std::string& path) {
   return bytes;
 }
 
+void check_topic(const std::string& key, const std::string& topic) {
+  if (topic.empty() || (topic.size() > 1 && topic.starts_with('/'))) return;
+  throw service::ConfigError(key + "=" + topic + ": a ROS topic begins with a slash, e.g. /" + topic);
+}
+
+void check(const MotionTopics& motion, bool base_given) {
+  check_topic("slam.imu.topic", motion.imu);
+  check_topic("slam.wheel.topic", motion.wheels);
+  if (!motion.imu_mount.empty()) parse_mount(motion.imu_mount, "slam.imu.mount");
+  if (!motion.imu_mount_in_base.empty()) parse_mount(motion.imu_mount_in_base, "slam.imu.mount_in_base");
+  if (!motion.wheels.empty() && !base_given)
+    throw service::ConfigError("slam.wheel.topic=" + motion.wheels +
+                               ": wheels move the base: say where the camera is in it, --camera-in-base");
+  if (motion.imu_mount_in_base.empty()) return;
+  if (!base_given)
+    throw service::ConfigError("slam.imu.mount_in_base needs the camera's place in the base, --camera-in-base");
+  if (!motion.imu_mount.empty())
+    throw service::ConfigError("slam.imu.mount and slam.imu.mount_in_base: give one of the two");
+}
+
 }  // namespace
 
 SlamConfig core_config(const ServiceConfig& config) {
   SlamConfig core = config.core;
   if (config.base.gravity != "told") core.first_pose = level_camera();
-  if (config.base.given()) core.first_pose = parse_mount(config.base.camera);
+  if (config.base.given()) core.first_pose = core.prior.T_base_camera = parse_mount(config.base.camera);
   if (config.base.gravity == "floor") core.gravity = Gravity::kFloor;
   if (config.base.gravity == "imu") core.gravity = Gravity::kGiven;
   core.gravity_wait_frames = config.base.gravity_wait_frames;
+  core.prior.imu = !config.motion.imu.empty();
+  core.prior.wheels = !config.motion.wheels.empty();
+  if (!config.motion.imu_mount.empty()) {
+    core.prior.T_camera_imu = parse_mount(config.motion.imu_mount, "slam.imu.mount");
+  }
+  if (!config.motion.imu_mount_in_base.empty()) {
+    const Eigen::Isometry3d T_base_imu = parse_mount(config.motion.imu_mount_in_base, "slam.imu.mount_in_base");
+    core.prior.T_camera_imu = core.prior.T_base_camera.inverse() * T_base_imu;
+  }
   if (config.vocabulary_file.empty()) return core;
   try {
     core.place.vocabulary = std::make_shared<const Vocabulary>(Vocabulary::parse(read_file(config.vocabulary_file)));
@@ -44,9 +73,10 @@ SlamConfig core_config(const ServiceConfig& config) {
 
 void ServiceConfig::validate() const {
   if (base.given() && !base.from_tf()) parse_mount(base.camera);
-  if (base.gravity == "imu")
+  if (base.gravity == "imu" && motion.imu.empty())
     throw service::ConfigError(
         "slam.base.gravity=imu needs the topic of an IMU: --imu TOPIC; without one use floor or told");
+  check(motion, base.given());
   if (!core.localize_only) return;
   if (map.load.empty())
     throw service::ConfigError("slam.map.localize_only needs a map: name its file with --map (slam.map.load)");

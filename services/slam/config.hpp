@@ -47,12 +47,20 @@ struct BaseConfig {
   bool z_up() const { return given() || gravity != "told"; }
 };
 
+/// Where an IMU and the wheels are heard.
+struct MotionTopics {
+  std::string imu, wheels;  ///< ROS names; empty: none
+  std::string imu_mount, imu_mount_in_base;
+  bool given() const { return !imu.empty() || !wheels.empty(); }
+};
+
 /// Section `slam` of the configuration.
 struct ServiceConfig {
   SlamConfig core;  ///< without what core_config() adds
   std::string vocabulary_file;
   MapFileConfig map;
   BaseConfig base;
+  MotionTopics motion;
   std::string out_dir;
   std::string map_frame = "map";
   std::string odom_frame = "odom";
@@ -67,6 +75,16 @@ struct ServiceConfig {
     binder.section("sensor", core.sensor);
     binder.section("tracker", core.tracker);
     binder.section("prediction", core.prediction);
+    binder.section("prior", core.prior);
+    binder.section("imu", core.imu);
+    binder.field("imu.topic", motion.imu, "topic of an IMU beside the camera, sensor_msgs/Imu; empty: none");
+    binder.field("imu.mount", motion.imu_mount,
+                 "where the IMU is in the camera's optical frame: x,y,z,qx,qy,qz,qw; empty: in it, with its axes");
+    binder.field("imu.mount_in_base", motion.imu_mount_in_base,
+                 "the same in the robot's base, when base.camera is given; in place of imu.mount");
+    binder.section("wheel", core.wheel);
+    binder.field("wheel.topic", motion.wheels,
+                 "topic of a wheel odometry, nav_msgs/Odometry; needs base.camera; empty: none");
     binder.section("consistency", core.consistency);
     binder.section("belief", core.belief);
     binder.section("keyframe", core.keyframe);

@@ -57,7 +57,7 @@ Eigen::Isometry3d level_camera() {
   return Eigen::Isometry3d(Eigen::Quaterniond(0.5, -0.5, 0.5, -0.5));
 }
 
-Eigen::Isometry3d parse_mount(const std::string& text) {
+Eigen::Isometry3d parse_mount(const std::string& text, const std::string& key) {
   std::array<double, 7> values{};
   std::istringstream words(text);
   bool complete = std::ranges::count(text, ',') == static_cast<std::ptrdiff_t>(values.size()) - 1;
@@ -71,6 +71,12 @@ Eigen::Isometry3d parse_mount(const std::string& text) {
   const Eigen::Quaterniond q(values[6], values[3], values[4], values[5]);
   const Eigen::Vector3d t(values[0], values[1], values[2]);
   if (!complete || std::abs(q.norm() - 1) > kUnitTolerance || t.norm() > kFarthestMount_m) {
+    const bool of_camera = key == "slam.base.camera";
+    if (!of_camera) {
+      throw service::ConfigError(key + "=" + text +
+                                 ": must be x,y,z,qx,qy,qz,qw: where the IMU is, m, and how its axes are turned, a "
+                                 "quaternion of length 1. In the optical frame itself: 0,0,0,0,0,0,1");
+    }
     throw service::ConfigError(
         "slam.base.camera=" + text +
         ": must be x,y,z,qx,qy,qz,qw: where the camera is in the base, m, and how its optical frame (x right, y down, "

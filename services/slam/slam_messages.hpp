@@ -46,7 +46,7 @@ msg::PointCloud2 make_cloud(const std::vector<MapPoint>& points, std::int64_t st
 
 /// Counters of the adapter.
 struct SlamCounters {
-  std::uint64_t frames = 0, tracked = 0, doubtful = 0, dropped = 0, duplicates = 0, invalid_features = 0,
+  std::uint64_t frames = 0, tracked = 0, doubtful = 0, predicted = 0, dropped = 0, duplicates = 0, invalid_features = 0,
                 unusable_frames = 0, source_restarts = 0, loops = 0;
 };
 /// One status "rtd-slam: tracking".

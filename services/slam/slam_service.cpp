@@ -55,6 +55,9 @@ void SlamService::add_options(CLI::App& app, Config& config) {
                  "What is up in a new map: told (as the base stands when it begins), floor (that the camera sees) or "
                  "imu (slam.base.gravity)")
       ->check(CLI::IsMember({"told", "floor", "imu"}));
+  app.add_option("--imu", config.motion.imu, "Topic of an IMU beside the camera, sensor_msgs/Imu (slam.imu.topic)");
+  app.add_option("--wheel-odometry", config.motion.wheels,
+                 "Topic of the wheels' odometry, nav_msgs/Odometry; with --camera-in-base (slam.wheel.topic)");
   app.add_flag("--localize-only", config.core.localize_only,
                "Find poses in the map of --map and leave it as it is (slam.map.localize_only)");
 }
@@ -70,6 +73,7 @@ SlamService::SlamService(const Config& config, service::Runtime& runtime)
                     ? std::make_shared<Arrivals>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
                     : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
       map_keeper_(config_.map, slam_) {
+  if (config_.motion.given()) motion_.emplace(runtime.bus_options, config_.motion.imu, config_.motion.wheels);
   load_map();
   runtime.stop.on_stop([arrivals = arrivals_] { arrivals->close(); });
   runtime.heartbeat.on_status([this](const msg::ServiceStatus& status) {
@@ -165,6 +169,7 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
     publisher_.repeat(last_result_);
     return;
   }
+  if (motion_) take_motion(frame);
   const msg::TrackingState previous = last_result_.state;
   const std::int64_t started_ns = service::monotonic_ns();
   const SlamOutput output = slam_.process(frame);
@@ -176,6 +181,36 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
   last_problem_ = output.problem;
   count(output);
   log(output, previous);
+}
+
+/// In realtime slam goes by what has come; else the same samples always belong to a frame, as far as they come in time.
+void SlamService::take_motion(const msg::FeatureFrame& frame) {
+  constexpr std::chrono::milliseconds kMost{250};
+  if (runtime_.pace != service::Pace::kRealtime) motion_->await(frame.stamp_ns, kMost);
+  motion_->drain(slam_);
+}
+
+void SlamService::count_motion() {
+  service::Heartbeat& heartbeat = runtime_.heartbeat;
+  const auto set = [&heartbeat](const char* name, std::uint64_t value) {
+    heartbeat.set_metric(name, static_cast<double>(value));
+  };
+  const MotionPrior& prior = *slam_.prior();
+  if (!config_.motion.imu.empty()) {
+    const auto [received, undecodable, overflowed] = motion_->imu_counters();
+    set("imu_samples", received);
+    set("imu_dropped", prior.imu_counters().dropped() + undecodable + overflowed);
+    set("imu_gaps", prior.imu_counters().gaps);
+    set("imu_clock_jumps", prior.imu_counters().clock_jumps);
+    set("imu_ready", prior.filter() && prior.filter()->ready() ? 1 : 0);
+  }
+  if (!config_.motion.wheels.empty()) {
+    const auto [received, undecodable, overflowed] = motion_->wheel_counters();
+    set("wheel_samples", received);
+    set("wheel_dropped", prior.wheel_counters().dropped() + undecodable + overflowed);
+    set("wheel_jumps", prior.wheel_counters().jumps);
+  }
+  set("frames_predicted", counters_.predicted);
 }
 
 void SlamService::trace(std::int64_t started_ns) {
@@ -199,6 +234,7 @@ void SlamService::count(const SlamOutput& output) {
   ++counters_.frames;
   if (msg::is_measured(output.result.state)) ++counters_.tracked;
   if (output.result.state == msg::TrackingState::kDoubtful) ++counters_.doubtful;
+  if (output.result.state == msg::TrackingState::kPredicted) ++counters_.predicted;
   if (output.result.features_static == 0 && !output.problem.empty()) ++counters_.unusable_frames;
   counters_.invalid_features += output.invalid_features;
   counters_.loops += output.loops.size();
@@ -219,6 +255,7 @@ void SlamService::count(const SlamOutput& output) {
   heartbeat.set_metric("landmarks", output.result.landmarks);
   heartbeat.set_metric("readout_ms", 1e3 * slam_.readout_s());
   heartbeat.set_metric("localize_only", slam_.localize_only() ? 1 : 0);
+  if (motion_) count_motion();
   heartbeat.set_metric("slam_ms", static_cast<double>(output.result.stage_ms[msg::kStageSlamTotal]));
 }
 
@@ -312,6 +349,9 @@ std::string SlamService::trouble() const {
   }
   if (std::string unsaved = map_keeper_.trouble(); !unsaved.empty()) return unsaved;
   if (!refused_map_.empty()) return refused_map_;
+  if (motion_ && counters_.frames > 0) {
+    if (std::string silent = motion_->trouble(); !silent.empty()) return silent;
+  }
   return counters_.frames > 0 && last_result_.state != msg::TrackingState::kOk ? last_problem_ : std::string{};
 }
 

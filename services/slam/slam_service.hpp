@@ -16,6 +16,7 @@
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_keeper.hpp"
 #include "services/slam/map_publisher.hpp"
+#include "services/slam/motion_feed.hpp"
 #include "services/slam/slam_commands.hpp"
 #include "services/slam/slam_publisher.hpp"
 
@@ -51,6 +52,8 @@ class SlamService {
   /// False when the camera is not that of the map the service was started with. One taken by command is given up.
   bool check_camera(const msg::FeatureFrame& frame);
   void answer(const msg::FeatureFrame& frame);
+  void take_motion(const msg::FeatureFrame& frame);
+  void count_motion();
   void trace(std::int64_t started_ns);
   void count(const SlamOutput& output);
   void log(const SlamOutput& output, msg::TrackingState previous);
@@ -69,6 +72,7 @@ class SlamService {
   std::string refused_map_;  ///< why the map taken by command was given up, until the next one or a reset
   SlamPublisher publisher_;
   MapPublisher map_publisher_;
+  std::optional<MotionFeed> motion_;  ///< IMU and wheels
   std::shared_ptr<Arrivals> arrivals_;
   bus::Reader<msg::FeatureFrame> features_;
   std::atomic<bool> source_ended_{false};  ///< as the camera reports

@@ -37,21 +37,29 @@ std::optional<Eigen::Isometry3d> true_pose(const eval::Trajectory& groundtruth, 
   return found->T_world_body;
 }
 
+struct MeanNees {
+  double measured = 0, predicted = 0;  ///< NaN without such poses
+};
+
 /// Mean over the poses published in the first map, whose frame is that of its first pose.
-double mean_nees(const std::vector<slam::FrameResult>& published, const eval::Trajectory& groundtruth) {
+MeanNees mean_nees(const std::vector<slam::FrameResult>& published, const eval::Trajectory& groundtruth) {
   constexpr std::size_t kFirst = 5;  // the first covariances are those of a map that has just begun
   std::optional<Eigen::Isometry3d> T_truth_world;
-  double sum = 0;
-  std::size_t counted = 0;
+  struct {
+    double sum = 0;
+    std::size_t count = 0;
+    double mean() const { return count == 0 ? std::nan("") : sum / static_cast<double>(count); }
+  } measured, predicted;
   for (std::size_t i = 0; i < published.size(); ++i) {
     const auto truth = true_pose(groundtruth, published[i].stamp_ns);
     if (!truth) continue;
     if (!T_truth_world) T_truth_world = *truth * published[i].T_world_camera.inverse();
     if (i < kFirst) continue;
-    sum += nees(published[i], T_truth_world->inverse() * *truth);
-    ++counted;
+    auto& kind = msg::is_measured(published[i].state) ? measured : predicted;
+    kind.sum += nees(published[i], T_truth_world->inverse() * *truth);
+    ++kind.count;
   }
-  return counted == 0 ? std::nan("") : sum / static_cast<double>(counted);
+  return {measured.mean(), predicted.mean()};
 }
 
 void evaluate(const std::vector<slam::FrameResult>& published, OfflineReport& report) {
@@ -61,7 +69,9 @@ void evaluate(const std::vector<slam::FrameResult>& published, OfflineReport& re
   eval::Trajectory online;
   for (const slam::FrameResult& result : published) online.push_back({result.stamp_ns, result.T_world_camera});
   report.online_ate_rmse_m = eval::ate(online, report.groundtruth).error_m.rmse;
-  report.nees = mean_nees(published, report.groundtruth);
+  const MeanNees nees = mean_nees(published, report.groundtruth);
+  report.nees = nees.measured;
+  report.predicted_nees = nees.predicted;
   const eval::RpeResult rpe = eval::rpe(report.trajectory, report.groundtruth);
   report.rpe_trans_rmse_m = rpe.translation_m.rmse;
   report.rpe_rot_rmse_deg = rpe.rotation_rad.rmse * 180 / std::numbers::pi;
@@ -75,6 +85,24 @@ ClosedLoop judge(const slam::LoopClosure& closure, const eval::Trajectory& groun
   loop.error_m = T_error.translation().norm();
   loop.error_rad = geometry::rotation_angle_rad(T_error);
   return loop;
+}
+
+/// What slam is told before the frame.
+void add_motion(slam::SlamSystem& slam, const camera::SourceFrame& frame) {
+  for (const camera::ImuReading& reading : frame.imu) {
+    slam.add(slam::ImuSample{reading.stamp_ns, reading.gyro_rad_s, reading.accel_m_s2});
+  }
+  for (const camera::WheelReading& reading : frame.wheels) {
+    slam.add(slam::WheelSample{reading.stamp_ns, reading.T_odom_base});
+  }
+}
+
+/// With IMU and wheels where the source has them.
+slam::SlamConfig with_priors(slam::SlamConfig config, const camera::SourceInfo& info) {
+  config.prior.imu = info.has_imu;
+  config.prior.wheels = info.has_wheels;
+  if (info.has_wheels) config.prior.T_base_camera = info.T_base_camera;
+  return config;
 }
 
 }  // namespace
@@ -97,7 +125,7 @@ std::unique_ptr<msg::FeatureFrame> make_feature_frame(const vision::RgbdImage& i
 OfflineReport run_offline(const OfflineOptions& options) {
   const auto source = camera::make_source(options.source);
   const auto front_end = make_front_end(options.front_end);
-  slam::SlamSystem slam(options.slam, options.mapping, options.now_ns);
+  slam::SlamSystem slam(with_priors(options.slam, source->info()), options.mapping, options.now_ns);
   if (options.on_start) options.on_start(slam);
   OfflineReport report;
   std::vector<slam::FrameResult> published;
@@ -121,6 +149,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
     std::this_thread::sleep_until(next_frame);
     next_frame = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
                                                         std::chrono::duration<double>(options.min_period_s));
+    add_motion(slam, *frame);
     const slam::SlamOutput output = slam.process(*message);
     front_end->listen(output);
     add_stage_times(output.result, report);
@@ -128,7 +157,11 @@ OfflineReport run_offline(const OfflineOptions& options) {
     report.landmarks = output.result.landmarks;
     ++report.frames;
     if (output.result.state == msg::TrackingState::kDoubtful) ++report.doubtful_frames;
-    if (msg::is_measured(output.result.state) && output.result.map_id == 0) published.push_back(output.result);
+    const bool predicted = slam.prior() != nullptr && output.result.state == msg::TrackingState::kPredicted;
+    if (predicted) ++report.predicted_frames;
+    if ((predicted || msg::is_measured(output.result.state)) && output.result.map_id == 0) {
+      published.push_back(output.result);
+    }
     if (options.on_frame) options.on_frame(output);
     pass_over(options.frame_step - 1);
   }

@@ -81,7 +81,9 @@ struct OfflineReport {
   double nees = 0;  ///< mean of the published poses and covariances, 6 when they are true; NaN without ground truth
   double rpe_trans_rmse_m = 0, rpe_rot_rmse_deg = 0;  ///< per second
   double coverage = 0;                                ///< share of the frames that `trajectory` has
-  double disparity_px_m = 0, readout_s = 0;           ///< of the sensor, as slam knows it at the end
+  std::size_t predicted_frames = 0;                   ///< in the trajectory by IMU or wheels
+  double predicted_nees = 0;  ///< mean of those as they were published, 6 when their covariances are true
+  double disparity_px_m = 0, readout_s = 0;  ///< of the sensor, as slam knows it at the end
   std::vector<ClosedLoop> loops;
   eval::RemovalQuality removal;                         ///< after the first second; of sources with masks
   std::map<std::string, std::vector<double>> stage_ms;  ///< per frame, by name

@@ -67,6 +67,19 @@ struct SourceObject {
   bool moving = false;  ///< now, wholly or in part
 };
 
+/// What an IMU measured, in the camera's optical frame.
+struct ImuReading {
+  std::int64_t stamp_ns = 0;
+  Eigen::Vector3d gyro_rad_s = Eigen::Vector3d::Zero(), accel_m_s2 = Eigen::Vector3d::Zero();
+};
+
+/// What the wheels of the base say: pose since the start, and speed in the axes of the base.
+struct WheelReading {
+  std::int64_t stamp_ns = 0;
+  Eigen::Isometry3d T_odom_base = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d linear_m_s = Eigen::Vector3d::Zero(), angular_rad_s = Eigen::Vector3d::Zero();
+};
+
 /// One frame of a source.
 struct SourceFrame {
   vision::RgbdImage image;  ///< seq counts from 0 without gaps; depth 0 = no measurement
@@ -77,6 +90,8 @@ struct SourceFrame {
   bool has_depth = true;              ///< some pixel has a measurement
   /// Stamp of the depth image minus that of the colour image; empty where both have one stamp.
   std::optional<std::int64_t> depth_after_color_ns = {};
+  std::vector<ImuReading> imu = {};       ///< since the frame before, up to the first one that is not before this frame
+  std::vector<WheelReading> wheels = {};  ///< the same
 };
 
 /// What is known about a source before its first frame.
@@ -90,6 +105,8 @@ struct SourceInfo {
   double readout_s = 0;      ///< of the colour image's rolling shutter, first row to last, s; 0 = none or unknown
   /// What the device adds to the difference of the stamps of depth and colour, s; 0 = nothing or unknown.
   double depth_offset_s = 0;
+  bool has_imu = false, has_wheels = false;                         ///< frames come with what they measured
+  Eigen::Isometry3d T_base_camera = Eigen::Isometry3d::Identity();  ///< of the wheels' base; of synthetic sources
 };
 
 /// A sequence of RGB-D frames. Errors at opening throw SourceError; single bad frames are skipped and counted.

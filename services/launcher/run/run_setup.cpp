@@ -199,6 +199,8 @@ std::vector<std::string> slam_arguments(const RunSetup& setup) {
   if (!setup.base_frame.empty()) arguments.insert(arguments.end(), {"--base-frame", setup.base_frame});
   if (!setup.camera_in_base.empty()) arguments.push_back("--camera-in-base=" + setup.camera_in_base);
   if (!setup.gravity.empty()) arguments.insert(arguments.end(), {"--gravity", setup.gravity});
+  if (!setup.imu.empty()) arguments.insert(arguments.end(), {"--imu", setup.imu});
+  if (!setup.wheel_odometry.empty()) arguments.insert(arguments.end(), {"--wheel-odometry", setup.wheel_odometry});
   if (setup.localize_only) arguments.emplace_back("--localize-only");
   return arguments;
 }

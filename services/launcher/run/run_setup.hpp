@@ -70,6 +70,7 @@ struct RunOptions {
   std::string base_frame;                  ///< of the robot; empty: as configured
   std::string camera_in_base;              ///< x,y,z,qx,qy,qz,qw or tf; empty: as configured
   std::string gravity;                     ///< told, floor or imu; empty: as configured
+  std::string imu, wheel_odometry;         ///< ROS topics; empty: as configured
   bool localize_only = false;              ///< leave the map as it is
   bool dense = false;                      ///< also fuse a dense static map
   bool viewer = false;                     ///< also show the run in the browser

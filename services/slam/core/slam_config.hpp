@@ -258,7 +258,87 @@ struct LoopConfig {
 enum class Gravity {
   kTold,   ///< first_pose
   kFloor,  ///< the floor in the image
-  kGiven,  ///< SlamSystem::set_up(): an IMU
+  kGiven,  ///< the IMU of SlamConfig::prior, or SlamSystem::set_up()
+};
+
+/// An IMU beside the camera, as its data sheet says: docs/theory/inertial.md.
+struct ImuConfig {
+  double gyro_rad_s_rthz = 2e-4;
+  double accel_m_s2_rthz = 2e-3;
+  double gyro_walk_rad_s2_rthz = 2e-5;
+  double accel_walk_m_s3_rthz = 2e-4;
+  double gyro_bias_rad_s = 0.02;
+  double accel_bias_m_s2 = 0.05;
+  double gravity_m_s2 = 9.80665;
+  double time_offset_s = 0;
+  double ready_m_s = 0.1;
+  double ready_rad_s = 0.005;
+
+  void bind(auto& binder) {
+    binder.field("gyro_rad_s_rthz", gyro_rad_s_rthz, {1e-7, 1.0}, "noise density of the gyroscope, rad/s per root Hz");
+    binder.field("accel_m_s2_rthz", accel_m_s2_rthz, {1e-6, 10.0}, "of the accelerometer, m/s2 per root Hz");
+    binder.field("gyro_walk_rad_s2_rthz", gyro_walk_rad_s2_rthz, {0.0, 1.0},
+                 "how fast the gyroscope's bias wanders, rad/s2 per root Hz");
+    binder.field("accel_walk_m_s3_rthz", accel_walk_m_s3_rthz, {0.0, 10.0},
+                 "how fast the accelerometer's bias wanders, m/s3 per root Hz");
+    binder.field("gyro_bias_rad_s", gyro_bias_rad_s, {1e-6, 1.0}, "standard deviation of the gyroscope's first bias");
+    binder.field("accel_bias_m_s2", accel_bias_m_s2, {1e-5, 5.0}, "of the accelerometer's first bias");
+    binder.field("gravity_m_s2", gravity_m_s2, {9.7, 9.9}, "strength of gravity where the robot is");
+    binder.field("time_offset_s", time_offset_s, {-0.5, 0.5}, "added to the stamps of the samples");
+    binder.field("ready_m_s", ready_m_s, {0.001, 10.0},
+                 "predictions begin once the velocity is known to this standard deviation, and ...");
+    binder.field("ready_rad_s", ready_rad_s, {1e-5, 1.0}, "... the gyroscope's bias to this");
+  }
+};
+
+/// Odometry of the wheels: docs/theory/inertial.md, "Wheels".
+struct WheelConfig {
+  double way_share = 0.03;
+  double turn_share = 0.05;
+  double turn_rad_m = 0.02;
+  double still_m = 0.0005;
+  double off_plane_share = 0.01;
+
+  void bind(auto& binder) {
+    binder.field("way_share", way_share, {1e-4, 1.0}, "standard deviation of a way, share of its length");
+    binder.field("turn_share", turn_share, {1e-4, 1.0}, "standard deviation of a turn, share of its angle, and ...");
+    binder.field("turn_rad_m", turn_rad_m, {0.0, 1.0}, "... rad per metre of way");
+    binder.field("still_m", still_m, {1e-6, 0.1}, "standard deviation of the way between two frames at rest");
+    binder.field("off_plane_share", off_plane_share, {0.0, 1.0},
+                 "height, roll and pitch, which wheels do not show: m per m and rad per m of way");
+  }
+};
+
+/// Where a pose is expected when an IMU or wheels say how the camera moved.
+struct PriorConfig {
+  bool imu = false, wheels = false;  ///< which of them there are
+  Eigen::Isometry3d T_camera_imu = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_base_camera = Eigen::Isometry3d::Identity();  ///< of the wheels' base
+  double max_sigma_m = 0.10;
+  double max_hold_s = 10;
+  double contradiction = 8;
+  double weak_support = 0.4;
+  double visual_factor = 4;
+  double covered_share = 0.5;
+  double covered_factor = 25;
+
+  void bind(auto& binder) {
+    binder.field("max_sigma_m", max_sigma_m, {0.001, 10.0},
+                 "with an IMU or wheels a pose is predicted while its position is known to this, and ...");
+    binder.field("max_hold_s", max_hold_s, {0.0, 3600.0}, "... for at most so long");
+    binder.field("contradiction", contradiction, {3.0, 1000.0},
+                 "a measured pose so many standard deviations off the predicted one is not believed, unless ...");
+    binder.field("weak_support", weak_support, {0.0, 1.0},
+                 "... this share of the landmarks that should be seen, or of the features, agree with it");
+    binder.field("visual_factor", visual_factor, {0.1, 1000.0},
+                 "factor on the covariance of measured poses: their errors last for several frames");
+    binder.field("covered_share", covered_share, {0.0, 1.0},
+                 "a view with fewer than this share of the usual static features is covered: its pose is weighed "
+                 "against the expected one, and no keyframe is made of it");
+    binder.field("covered_factor", covered_factor, {0.1, 1000.0},
+                 "the factor for poses of covered views: what is left to be seen has the same errors for long");
+  }
+  bool given() const { return imu || wheels; }
 };
 
 struct SlamConfig {
@@ -266,6 +346,9 @@ struct SlamConfig {
   SensorConfig sensor;
   TrackerConfig tracker;
   PredictionConfig prediction;
+  PriorConfig prior;
+  ImuConfig imu;
+  WheelConfig wheel;
   ConsistencyConfig consistency;
   BeliefConfig belief;
   KeyframeConfig keyframe;

@@ -37,12 +37,24 @@ SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns,
       localize_only_(config.localize_only),
       mapping_(config, mode, std::move(on_mapping_thread)),
       odometry_(config.loop) {
+  if (config.prior.given()) prior_.emplace(config);
   start_tracker();
 }
 
 void SlamSystem::start_tracker() {
-  tracker_.emplace(config_, now_ns_,
-                   [this](const FramePtr& frame, std::size_t attempt) { return mapping_.places_like(frame, attempt); });
+  if (prior_) prior_->forget_world();
+  tracker_.emplace(
+      config_, now_ns_,
+      [this](const FramePtr& frame, std::size_t attempt) { return mapping_.places_like(frame, attempt); },
+      prior_ ? &*prior_ : nullptr);
+}
+
+void SlamSystem::add(const ImuSample& sample) {
+  if (prior_) prior_->add(sample);
+}
+
+void SlamSystem::add(const WheelSample& sample) {
+  if (prior_) prior_->add(sample);
 }
 
 void SlamSystem::reset() {
@@ -105,6 +117,7 @@ void SlamSystem::watch_source(const msg::FeatureFrame& message) {
       (message.seq <= *last_seq_ || message.stamp_ns <= last_stamp_ns_ || message.intrinsics != last_intrinsics_)) {
     ++source_restarts_;
     tracker_->forget_motion();
+    if (prior_) prior_->restart();
     if (message.intrinsics != last_intrinsics_) {  // another camera, or another mode of the same
       readout_ = {};
       depth_weight_ = DepthWeightEstimator();
@@ -147,8 +160,10 @@ bool SlamSystem::waits_for_up(const Frame& frame) {
 
 /// What is up in the camera; the height above the floor only where a floor shows it.
 std::optional<FloorPlane> SlamSystem::find_up(const Frame& frame) const {
-  if (config_.gravity == Gravity::kGiven)
-    return given_up_camera_ ? std::optional(FloorPlane{*given_up_camera_}) : std::nullopt;
+  if (config_.gravity == Gravity::kGiven) {
+    const auto up_camera = prior_ && !given_up_camera_ ? prior_->up_in_camera() : given_up_camera_;
+    return up_camera ? std::optional(FloorPlane{*up_camera}) : std::nullopt;
+  }
   if (config_.gravity == Gravity::kTold) return std::nullopt;
   std::vector<Eigen::Vector3d> points_camera;
   for (std::size_t i = 0; i < frame.features.size(); ++i) {
@@ -212,6 +227,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   if (!msg::is_measured(outcome.state)) {
     output.problem = std::string(failure_name(outcome.state)) + ": " +
                      why_without_pose(outcome.inliers, config_.tracker.min_inliers);
+    if (outcome.tracked.frame != nullptr) record(outcome.tracked);
     return outcome;
   }
   if (outcome.state == msg::TrackingState::kDoubtful) output.problem = why_doubtful(outcome.consistency);

@@ -77,11 +77,17 @@ class SlamSystem {
   /// with the next frame.
   void set_localize_only(bool on) { localize_only_ = on; }
   bool localize_only() const { return localize_only_; }
-  /// With Gravity::kGiven: what is up in the camera, a unit vector; the next map begins with it.
+  /// With Gravity::kGiven: what is up in the camera, a unit vector; the next map begins with it. Without, the IMU of
+  /// SlamConfig::prior says it once it has been at rest.
   void set_up(const Eigen::Vector3d& up_camera) { given_up_camera_ = up_camera; }
   /// Never throws for the content of the message. Frames are expected in order; a seq that jumps back means a
   /// source that started again: motion is forgotten, the map stays.
   SlamOutput process(const msg::FeatureFrame& message);
+  /// What IMU and wheels measured up to the next frame, where SlamConfig::prior has them; else without effect.
+  void add(const ImuSample& sample);
+  void add(const WheelSample& sample);
+  /// Of IMU and wheels; null where there are none.
+  const MotionPrior* prior() const { return prior_ ? &*prior_ : nullptr; }
   /// Ends mapping: everything queued is worked off. The trajectories are final after it.
   /// `pending`: what happens to a global adjustment that is under way.
   void finish(PendingAdjustment pending = PendingAdjustment::kAwait) { mapping_.finish(pending); }
@@ -129,6 +135,7 @@ class SlamSystem {
   Clock now_ns_;
   std::atomic<bool> localize_only_;
   MappingWorker mapping_;
+  std::optional<MotionPrior> prior_;
   std::optional<Tracker> tracker_;  ///< another one after reset()
   UnknownViewClock unknown_view_;
   ReadoutEstimator readout_;

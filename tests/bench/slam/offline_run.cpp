@@ -34,6 +34,9 @@ void print(const rtd::test_support::OfflineReport& report) {
               report.frames, report.coverage, report.ate_rmse_m, report.online_ate_rmse_m, report.nees,
               report.rpe_trans_rmse_m, report.rpe_rot_rmse_deg);
   std::printf("keyframes %zu  landmarks %zu\n", report.keyframes, report.landmarks);
+  if (report.predicted_frames > 0) {
+    std::printf("predicted by IMU or wheels: %zu frames, NEES %.1f\n", report.predicted_frames, report.predicted_nees);
+  }
   if (report.removal.removed_rightly + report.removal.kept_wrongly > 0) {
     std::printf("removed features after 1 s: precision %.3f  recall %.3f\n", report.removal.precision(),
                 report.removal.recall());
@@ -77,6 +80,8 @@ void print_json(const rtd::test_support::OfflineReport& report) {
                                {"doubtful", static_cast<double>(report.doubtful_frames) /
                                                 std::max<double>(1, static_cast<double>(report.frames))},
                                {"max_error_m", lost_m},
+                               {"predicted", report.predicted_frames},
+                               {"predicted_nees", report.predicted_nees},
                                {"rpe_m", report.rpe_trans_rmse_m},
                                {"rpe_deg", report.rpe_rot_rmse_deg},
                                {"keyframes", report.keyframes},

@@ -28,6 +28,7 @@ constexpr Published kPublished[] = {
     {"sensor_msgs::msg::dds_::Image_", "d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47"},
     {"sensor_msgs::msg::dds_::CompressedImage_", "15640771531571185e2efc8a100baf923961a4d15d5569652e6cb6691e8e371a"},
     {"sensor_msgs::msg::dds_::CameraInfo_", "b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275"},
+    {"sensor_msgs::msg::dds_::Imu_", "7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b"},
     {"sensor_msgs::msg::dds_::PointCloud2_", "9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5"},
     {"vision_msgs::msg::dds_::Detection2DArray_", "214274120007f4a683866481336b70310268cfa107aebe9d594a6acf75bda968"},
     {"vision_msgs::msg::dds_::Detection3DArray_", "793f5eab9595ac1c0da07873cc859db42eae51f0ee76056db8562515d830e018"},

@@ -19,7 +19,7 @@ constexpr double kRollingRad = 0.8;  ///< with the second sway up to 60 degrees
 constexpr double kTurnRateRadS = kTwoPi / 60.0;
 constexpr double kMeanYM = -1.5, kMeanZM = 1.3, kMeanPitchRad = -0.14;
 
-constexpr std::size_t kYaw = 3, kRoll = 5;  ///< indices of Sway
+constexpr std::size_t kZ = 2, kYaw = 3, kPitch = 4, kRoll = 5;  ///< indices of Sway
 struct Axis {
   double amplitude, rate_rad_s;
 };
@@ -52,6 +52,7 @@ CameraPath::CameraPath(CameraMotion motion, std::uint64_t seed) : motion_(motion
   }
   if (motion == CameraMotion::kWatching) sways_[kYaw].amplitude *= kWatchingYawShare;
   if (motion == CameraMotion::kRolling) sways_[kRoll].amplitude = kRollingRad;
+  if (motion == CameraMotion::kDriving) sways_[kZ].amplitude = sways_[kPitch].amplitude = sways_[kRoll].amplitude = 0;
   if (motion == CameraMotion::kSteady) {
     for (Sway& sway : sways_) sway.amplitude *= kSteadyShare;
   }
@@ -63,7 +64,8 @@ Eigen::Isometry3d CameraPath::T_world_camera(double t_s) const {
   const double turned_rad = motion_ == CameraMotion::kTour ? kTurnRateRadS * t_s : 0.0;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translation() = Eigen::Vector3d(x.at(t_s), kMeanYM + y.at(t_s), kMeanZM + z.at(t_s));
-  T.linear() = level_camera_rotation(yaw.at(t_s) + turned_rad, kMeanPitchRad + pitch.at(t_s), roll.at(t_s));
+  const double mean_pitch_rad = motion_ == CameraMotion::kDriving ? 0.0 : kMeanPitchRad;
+  T.linear() = level_camera_rotation(yaw.at(t_s) + turned_rad, mean_pitch_rad + pitch.at(t_s), roll.at(t_s));
   return T;
 }
 

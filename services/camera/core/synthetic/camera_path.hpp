@@ -16,6 +16,7 @@ enum class CameraMotion {
   kRolling,   ///< the same sway while rolling about the viewing axis by up to 60 degrees either way
   kSteady,    ///< nearly at rest, as held by a person who stands: 2 cm, 1 degree
   kFixed,     ///< on a tripod
+  kDriving,   ///< the same sway of a base that drives on the floor: level, at one height
 };
 
 /// A smooth, endless, hand-held-like path: slow sways of incommensurate periods and a small tremor. At most about

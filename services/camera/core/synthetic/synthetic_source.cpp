@@ -18,6 +18,7 @@ namespace {
 constexpr std::int64_t kFirstStampNs = 1'000'000'000'000;  // 1000 s: no stamp is near zero
 constexpr double kFocalShare = 525.0 / 640.0;              // focal length of a Kinect over the image width
 constexpr float kDepthUnitsPerM = 5000;
+constexpr double kDarkness = 0.02;                       // of the light: no corner is left
 constexpr double kShadowDifference = 1.0 / 2 - 1.0 / 4;  // 1/m, of SensorFaults::shadow_px
 
 synthetic::SceneSpec find_scene(const SourceUri& uri) {
@@ -94,6 +95,10 @@ std::vector<Parameter> parameters_of(SyntheticOptions& options) {
       {"boxes", 0, 20, [&](double v) { options.scene.boxes = static_cast<int>(v); }},
       {"flicker", 0, 1, [&](double v) { options.scene.flicker = v; }},
       {"sit", 0, 1e6, [&](double v) { options.scene.sit_s = v; }},
+      {"imu", 0, 1, [&](double v) { options.imu = v > 0; }},
+      {"wheel", 0, 1, [&](double v) { options.wheels = v > 0; }},
+      {"dark_from", 0, 1e6, [&](double v) { options.dark_from_s = v; }},
+      {"dark", 0, 1e6, [&](double v) { options.dark_s = v; }},
       {"fidget", 0, 0.5, [&](double v) { options.scene.fidget_rad = v; }},
       {"width", 64, 1920, [&](double v) { options.width = static_cast<int>(v); }},
       {"height", 48, 1200, [&](double v) { options.height = static_cast<int>(v); }}};
@@ -111,7 +116,8 @@ struct NamedMotion {
 const std::vector<NamedMotion>& camera_motions() {
   using enum synthetic::CameraMotion;
   static const std::vector<NamedMotion> motions = {{"handheld", kHandHeld}, {"watching", kWatching}, {"tour", kTour},
-                                                   {"rolling", kRolling},   {"steady", kSteady},     {"fixed", kFixed}};
+                                                   {"rolling", kRolling},   {"steady", kSteady},     {"fixed", kFixed},
+                                                   {"driving", kDriving}};
   return motions;
 }
 
@@ -171,6 +177,10 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
     if (known == parameters.end()) refuse_parameter(uri, key, parameters);
     known->assign(number_in(uri, key, value, known->min, known->max));
   }
+  if (options.wheels && (options.scene.motion != synthetic::CameraMotion::kDriving || options.scene.corridor)) {
+    throw SourceError("source '" + uri.text + "': wheel=1 needs a camera that drives on the floor; add motion=driving" +
+                      (options.scene.corridor ? " and take a scene in the room" : ""));
+  }
   return options;
 }
 
@@ -181,6 +191,11 @@ SyntheticSource::SyntheticSource(std::string uri, const SyntheticOptions& option
             arriving_frames(options, drops_)},
       scene_(options.scene, options.seed),
       camera_(scene_, {make_camera(options), make_sensor(options), options.faults, options.fps, options.seed}) {
+  const synthetic::PathOfCamera path = [this](double t_s) { return scene_.T_world_camera(t_s); };
+  if (options.imu) imu_.emplace(path, synthetic::SyntheticImu::Options(), options.seed);
+  if (options.wheels) wheels_.emplace(path, options.seed);
+  info_.has_imu = options.imu, info_.has_wheels = options.wheels;
+  if (options.wheels) info_.T_base_camera = synthetic::T_base_level_camera(path(0).translation().z());
   if (!options.timing_known) return;
   info_.readout_s = options.faults.rolling_shutter_ms / 1000;
   info_.depth_offset_s = options.faults.depth_lag_ms / 1000;
@@ -200,10 +215,13 @@ std::optional<SourceFrame> SyntheticSource::next() {
   const std::uint64_t exposure = drops_.exposure_of(seq);
   const double t_s = time_s(exposure);
   synthetic::Shot shot = camera_.shoot(exposure, t_s);
+  const bool dark = t_s >= options_.dark_from_s && t_s < options_.dark_from_s + options_.dark_s;
+  if (dark) shot.color_bgr *= kDarkness;
   SourceFrame frame = to_frame(stamp_ns(exposure), std::move(shot.color_bgr), std::move(shot.depth), info_);
   frame.image.seq = seq;
   frame.dynamic_mask = std::move(shot.moving_mask);
   frame.T_world_camera = scene_.T_world_camera(t_s);
+  add_motion(frame, t_s);
   const std::vector<std::string> classes = scene_.geometry_at(t_s).object_classes;
   for (const synthetic::ObjectView& seen : shot.objects) {
     const std::string& class_name = classes[static_cast<std::size_t>(seen.object)];
@@ -211,6 +229,29 @@ std::optional<SourceFrame> SyntheticSource::next() {
   }
   if (!frame.has_depth) ++counters_.frames_without_depth;
   return frame;
+}
+
+/// Up to the first reading that is not before the frame: what is needed at its stamp can be interpolated. After a pause
+/// only what a reader may still use.
+void SyntheticSource::add_motion(SourceFrame& frame, double t_s) {
+  constexpr double kLongest_s = 10;
+  constexpr double kRounding_s = 2e-6;  // of stamps
+  if (imu_) {
+    const double rate_hz = imu_->options().rate_hz;
+    next_imu_ = std::max(next_imu_, static_cast<std::int64_t>((t_s - kLongest_s) * rate_hz));
+    for (bool reached = false; !reached;) {
+      reached = static_cast<double>(next_imu_) / rate_hz >= t_s - kRounding_s;
+      frame.imu.push_back(imu_->reading(next_imu_++));
+      frame.imu.back().stamp_ns += kFirstStampNs;
+    }
+  }
+  if (wheels_) {
+    for (bool reached = false; !reached;) {
+      reached = wheels_->next_s() >= t_s - kRounding_s;
+      frame.wheels.push_back(wheels_->next());
+      frame.wheels.back().stamp_ns += kFirstStampNs;
+    }
+  }
 }
 
 std::uint64_t SyntheticSource::pass_over(std::int64_t stamp_ns) {

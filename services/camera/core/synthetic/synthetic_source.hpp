@@ -8,6 +8,7 @@
 #include "services/camera/core/source_factory.hpp"
 #include "services/camera/core/synthetic/faults.hpp"
 #include "services/camera/core/synthetic/frame_drops.hpp"
+#include "services/camera/core/synthetic/motion_sensors.hpp"
 #include "services/camera/core/synthetic/scene.hpp"
 #include "services/camera/core/synthetic/scene_camera.hpp"
 
@@ -22,6 +23,8 @@ struct SyntheticOptions {
   bool noise = true;
   int width = 640, height = 480;
   synthetic::SensorFaults faults;
+  bool imu = false, wheels = false;    ///< there is an IMU in the camera, wheels below it
+  double dark_from_s = 0, dark_s = 0;  ///< the light is off from this time on, for so long
   bool timing_known = false;  ///< frames say how the shutter rolls and how late depth is, as a calibrated camera's do
 };
 
@@ -44,6 +47,7 @@ class SyntheticSource final : public FrameSource {
  private:
   std::int64_t stamp_ns(std::uint64_t exposure) const;
   double time_s(std::uint64_t exposure) const;
+  void add_motion(SourceFrame& frame, double t_s);
   bool at_end() const { return info_.frames != 0 && counters_.frames >= info_.frames; }
 
   SyntheticOptions options_;
@@ -52,6 +56,9 @@ class SyntheticSource final : public FrameSource {
   SourceCounters counters_;
   synthetic::Scene scene_;
   synthetic::SceneCamera camera_;
+  std::optional<synthetic::SyntheticImu> imu_;
+  std::optional<synthetic::SyntheticWheels> wheels_;
+  std::int64_t next_imu_ = 0;  ///< reading that was not given yet
 };
 
 }  // namespace rtd::camera

@@ -31,6 +31,8 @@ struct PredictedPose {
 /// (10), (11).
 PredictedPose predict_motion(const CameraMotion& motion, double gap_s, const PredictionConfig& config);
 
+/// 99 % of chi2 with 6 degrees of freedom.
+inline constexpr double kMaxPoseDistance2 = 16.8;
 /// Squared Mahalanobis distance between two estimates of one pose.
 double pose_distance2(const PredictedPose& a, const PredictedPose& b);
 

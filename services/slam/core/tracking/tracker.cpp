@@ -16,6 +16,7 @@ constexpr double kNanosecondsPerSecond = 1e9;
 /// hardly have reached. Wrong matches agree by chance to 0.17, true ones to 0.3.
 constexpr double kMinShareOfJump = 0.25;
 constexpr double kMaxPredictionGap_s = 0.5;  ///< nothing is known of the motion over a longer gap
+constexpr double kFirstPoseVariance = 1e-8;  ///< of the pose that makes the world
 
 double seconds_between(const Frame& earlier, const Frame& later) {
   return static_cast<double>(later.stamp_ns - earlier.stamp_ns) / kNanosecondsPerSecond;
@@ -78,6 +79,10 @@ TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
   failing_since_ns_.reset();
   relocalizer_.settle(map);
   consistency_.reset();
+  if (prior_ != nullptr) {
+    prior_->advance(last_.frame->stamp_ns);
+    prior_->relocate({last_.T_world_camera, geometry::Matrix6d::Identity() * kFirstPoseVariance});
+  }
   outcome.map = std::move(map);
   return outcome;
 }
@@ -86,6 +91,7 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
   TrackOutcome outcome;
   outcome.map = relocalizer_.choose_map(snapshot, last_.reference);
   adopt(*outcome.map);
+  if (prior_ != nullptr) expect(*frame);
   LocalMapTracking tracking;
   std::int64_t optimizer_ns = 0;
   for (const Attempt attempt : {Attempt::kLastFrame, Attempt::kKeyframe, Attempt::kAround, Attempt::kRecovery}) {
@@ -101,18 +107,19 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
     if (!acceptable(tracking.guess) || !believable(*frame, guess, tracking)) continue;
     outcome.stage_ms[msg::kStagePose] = to_ms(optimizer_ns);
     outcome.inliers = tracking.guess.inliers;
+    if (covered(*frame)) weigh_against_prior(tracking.guess);
     accept(outcome, std::move(frame), tracking);
     return outcome;
   }
   outcome.stage_ms[msg::kStagePose] = to_ms(optimizer_ns);
   outcome.inliers = tracking.guess.inliers;
   const std::int64_t failed_ns = now_ns_();
-  auto found = relocalizer_.search(frame, msg::has_pose(state_), context());
+  auto found = follows_prior(*frame) ? std::nullopt : relocalizer_.search(frame, msg::has_pose(state_), context());
   outcome.stage_ms[msg::kStageRelocalize] = to_ms(now_ns_() - failed_ns);
   if (found) {
     enter_place(outcome, std::move(frame), std::move(*found));
   } else {
-    reject(outcome, *frame, tracking.guess);
+    reject(outcome, frame, tracking.guess);
   }
   return outcome;
 }
@@ -131,6 +138,12 @@ void Tracker::await_relocalization() {
 
 /// The map may have moved under the last frame, and the last frame may have become a keyframe with new landmarks.
 void Tracker::adopt(const LocalMap& map) {
+  const Eigen::Isometry3d T_before = last_.T_world_camera;
+  adopt_pose(map);
+  if (prior_ != nullptr && last_.frame != nullptr) prior_->move(last_.T_world_camera * T_before.inverse());
+}
+
+void Tracker::adopt_pose(const LocalMap& map) {
   for (const LocalKeyframe& keyframe : map.keyframes) {
     if (keyframe.frame != last_.frame) continue;
     last_.T_world_camera = keyframe.T_world_camera;
@@ -145,13 +158,14 @@ void Tracker::adopt(const LocalMap& map) {
 }
 
 /// Where to look: constant velocity, docs/theory/tracking.md Eq. (7); fading once frames have failed.
-Eigen::Isometry3d Tracker::predict(const Frame& frame) const {
+ExpectedPose Tracker::predict(const Frame& frame) const {
+  if (follows_prior(frame)) return {expected_->T_world_camera, expected_radius_px(frame)};
   if (const auto held = state_ == msg::TrackingState::kPredicted ? hold(frame) : std::nullopt) {
-    return held->T_world_camera;
+    return {held->T_world_camera};
   }
   const double gap_s = seconds_between(*last_.frame, frame);
-  if (!motion_ || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return last_.T_world_camera;
-  return last_.T_world_camera * geometry::se3_exp(gap_s * motion_->velocity_per_s);
+  if (!motion_ || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return {last_.T_world_camera};
+  return {last_.T_world_camera * geometry::se3_exp(gap_s * motion_->velocity_per_s)};
 }
 
 /// The pose that may be claimed though nothing was measured; empty when too long ago.
@@ -212,6 +226,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   count(*last_.frame, *outcome.map, tracking);
   failing_since_ns_.reset();
   scene_m_ = median_distance(*outcome.map, last_);
+  const bool had_pose = msg::has_pose(state_);
   state_ = msg::TrackingState::kOk;
   outcome.state = consistency_.doubtful() ? msg::TrackingState::kDoubtful : state_;
   outcome.consistency = consistency_.value();
@@ -219,6 +234,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
       config_.sensor.shared_error * tracking.guess.covariance + consistency_.covariance(scene_m_);
   covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
   map_covariance_ = covariance_ - local;
+  if (prior_ != nullptr && !weighed_) tell_prior(local, had_pose);
   outcome.covariance = covariance_ + calibration_covariance(since_first(last_.T_world_camera), scene_m_,
                                                             config_.sensor.calibration_error);
 }
@@ -226,6 +242,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
 /// Found by the reference keyframe's descriptors alone, or by hardly any landmark of the last frame, the camera may as
 /// well have been carried away to a place that looks alike.
 bool Tracker::believable(const Frame& frame, const PoseGuess& start, const LocalMapTracking& tracking) const {
+  if (contradicts_prior(frame, tracking)) return false;
   if (!config_.techniques.place_recognition) return true;
   if (continues_motion(frame, tracking.guess.T_world_camera)) return true;
   if (!start.guided) return is_convincing(frame, tracking, config_.place);
@@ -241,6 +258,9 @@ bool Tracker::believable(const Frame& frame, const PoseGuess& start, const Local
 bool Tracker::continues_motion(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const {
   constexpr double kMaxOff_m = 0.1, kMaxOff_rad = 0.2;  // however long the gap
   constexpr double kMaxSpeed_m_s = 2, kMaxSpeed_rad_s = 5;
+  if (follows_prior(frame) &&
+      pose_distance2(*expected_, {T_world_camera, geometry::Matrix6d::Zero()}) < kMaxPoseDistance2)
+    return true;
   const double gap_s = last_.frame == nullptr ? 0 : seconds_between(*last_.frame, frame);
   if (!msg::has_pose(state_) || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return false;
   const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * T_world_camera;
@@ -289,13 +309,14 @@ void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking
 
 /// Too little was found: predicts for a moment, or tracking is lost. A pose from few landmarks that agrees with the
 /// prediction is better than the prediction alone.
-void Tracker::reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess& weak) {
-  constexpr double kMaxDistance2 = 16.8;  // 99 % of chi2 with 6 degrees of freedom
+void Tracker::reject(TrackOutcome& outcome, const FramePtr& frame_in_work, const PoseGuess& weak) {
+  if (claim_prior(outcome, frame_in_work, weak)) return;
+  const Frame& frame = *frame_in_work;
   if (auto claimed = hold(frame)) {
     const PredictedPose measured{weak.T_world_camera, weak.covariance};
     const bool usable = weak.success && weak.inliers >= config_.prediction.min_weak_inliers;
     if (usable && measured.covariance.trace() < claimed->covariance.trace() &&
-        pose_distance2(*claimed, measured) < kMaxDistance2) {
+        pose_distance2(*claimed, measured) < kMaxPoseDistance2) {
       claimed = measured;
     }
     outcome.tracked.T_world_camera = claimed->T_world_camera;
@@ -339,6 +360,7 @@ KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_i
   situation.map_keyframes = static_cast<int>(map.component_keyframes);
   situation.inliers = inliers_;
   situation.mapper_idle = mapper_idle;
+  situation.covered = weighed_;
   if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
     situation.reference_landmarks = map.confirmed_landmarks(*reference);
   }
@@ -368,7 +390,7 @@ bool wants_keyframe(const KeyframeSituation& s, const KeyframeConfig& config) {
   const bool convenient = s.since_keyframe_s >= config.min_gap_s && s.mapper_idle;
   const bool weak = s.inliers < config.weak_ratio * s.reference_landmarks || starving_of_close;
   const bool new_view = s.inliers < ratio * s.reference_landmarks || starving_of_close;
-  return (overdue || convenient || weak) && new_view && s.inliers > config.min_inliers;
+  return (overdue || convenient || weak) && new_view && s.inliers > config.min_inliers && !s.covered;
 }
 
 }  // namespace rtd::slam

@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "common/msg/tracking.hpp"
+#include "services/slam/core/inertial/motion_prior.hpp"
 #include "services/slam/core/mapping/mapper.hpp"
 #include "services/slam/core/slam_config.hpp"
 #include "services/slam/core/tracking/consistency.hpp"
@@ -28,6 +29,7 @@ struct KeyframeSituation {
   int close_tracked = 0;        ///< close features that are landmarks
   int close_untracked = 0;      ///< close features that could become some
   bool mapper_idle = true;
+  bool covered = false;  ///< something hides most of the view, and IMU or wheels help out
 };
 
 /// Whether to insert a keyframe if the mapper has room: ORB-SLAM2's rule for RGB-D, docs/theory/tracking.md Eq. (6).
@@ -37,7 +39,7 @@ bool wants_keyframe(const KeyframeSituation& situation, const KeyframeConfig& co
 struct TrackOutcome {
   LocalMapPtr map;  ///< the part of the map that the frame was compared with
   msg::TrackingState state = msg::TrackingState::kInitializing;
-  TrackedFrame tracked;  ///< in state kPredicted the pose only
+  TrackedFrame tracked;  ///< in state kPredicted the pose only; by IMU or wheels also frame and reference
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
   int inliers = 0;
   double consistency = 1;  ///< Consistency::value()
@@ -52,10 +54,12 @@ struct TrackOutcome {
 /// thread-safe.
 class Tracker {
  public:
-  /// Without `places` a lost camera is found only around its last pose.
-  Tracker(const SlamConfig& config, Clock now_ns, PlaceSource places = {})
+  /// Without `places` a lost camera is found only around its last pose. `prior` is told every measured pose and must
+  /// outlive the tracker; null: neither IMU nor wheels.
+  Tracker(const SlamConfig& config, Clock now_ns, PlaceSource places = {}, MotionPrior* prior = nullptr)
       : config_(config),
         now_ns_(std::move(now_ns)),
+        prior_(prior),
         relocalizer_(config, std::move(places)),
         consistency_(config.consistency) {}
 
@@ -91,7 +95,15 @@ class Tracker {
   Eigen::Isometry3d since_first(const Eigen::Isometry3d& T_world_camera) const {
     return config_.first_pose.inverse() * T_world_camera;
   }
-  Eigen::Isometry3d predict(const Frame& frame) const;
+  void adopt_pose(const LocalMap& map);
+  ExpectedPose predict(const Frame& frame) const;
+  void expect(const Frame& frame);
+  double expected_radius_px(const Frame& frame) const;
+  bool follows_prior(const Frame& frame) const;
+  bool covered(const Frame& frame) const;
+  void weigh_against_prior(PoseGuess& guess);
+  bool contradicts_prior(const Frame& frame, const LocalMapTracking& tracking) const;
+  void tell_prior(const geometry::Matrix6d& covariance, bool had_pose);
   /// Ways to a first guess of the pose, in the order in which they are tried.
   enum class Attempt { kLastFrame, kKeyframe, kAround, kRecovery };
   PoseGuess find_pose(Attempt attempt, const Frame& frame, const LocalMap& map);
@@ -102,12 +114,17 @@ class Tracker {
   void enter_place(TrackOutcome& outcome, FramePtr frame, Relocalizer::Found found);
   void follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking);
   void accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking);
-  void reject(TrackOutcome& outcome, const Frame& frame, const PoseGuess& weak);
+  void reject(TrackOutcome& outcome, const FramePtr& frame, const PoseGuess& weak);
+  bool claim_prior(TrackOutcome& outcome, const FramePtr& frame, const PoseGuess& weak);
   std::optional<PredictedPose> hold(const Frame& frame) const;
   void count(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking);
 
   SlamConfig config_;
   Clock now_ns_;
+  MotionPrior* prior_;
+  std::optional<PredictedPose> expected_;  ///< of the frame in work, by the prior
+  bool weighed_ = false;                   ///< the pose of the frame in work is also by the prior
+  double usual_features_ = 0;              ///< static ones of the last seconds
   Relocalizer relocalizer_;
   msg::TrackingState state_ = msg::TrackingState::kInitializing;
   TrackedFrame last_;

@@ -116,14 +116,14 @@ std::vector<SearchPoint> predict_points(const Frame& frame, const TrackedFrame& 
 }  // namespace
 
 PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
-                           const Eigen::Isometry3d& T_world_camera_predicted, const TrackingContext& context) {
+                           const ExpectedPose& expected, const TrackingContext& context) {
   const SlamConfig& config = context.config;
   const std::vector<Association> points = points_of(last, map, context);
   const MatchRules rules{100, 1.0, RotationCheck::kOn};
-  const double radius_px = search_radius_px(frame, last, config.tracker);
+  const double radius_px = expected.radius_px.value_or(search_radius_px(frame, last, config.tracker));
   std::vector<Match> matches;
   for (const double widening : {1.0, 2.0}) {
-    const auto search = predict_points(frame, last, points, T_world_camera_predicted, widening * radius_px);
+    const auto search = predict_points(frame, last, points, expected.T_world_camera, widening * radius_px);
     matches = match_projected(frame, search, {}, rules);
     if (static_cast<int>(matches.size()) >= config.tracker.min_motion_matches) break;
   }
@@ -134,7 +134,7 @@ PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const L
     associations.push_back(points[match.tag]);
     associations.back().feature = match.feature;
   }
-  PoseGuess guess = optimize(frame, associations, T_world_camera_predicted, context);
+  PoseGuess guess = optimize(frame, associations, expected.T_world_camera, context);
   guess.success = guess.success && guess.inliers >= kMinLandmarks;
   return guess;
 }
@@ -165,16 +165,16 @@ PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, cons
   return guess;
 }
 
-PoseGuess track_around(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
-                       const Eigen::Isometry3d& T_world_camera_predicted, const TrackingContext& context) {
-  const double radius_px = search_radius_px(frame, last, context.config.tracker);
-  const Eigen::Isometry3d T_camera_world = T_world_camera_predicted.inverse();
+PoseGuess track_around(const Frame& frame, const TrackedFrame& last, const LocalMap& map, const ExpectedPose& expected,
+                       const TrackingContext& context) {
+  const double radius_px = expected.radius_px.value_or(search_radius_px(frame, last, context.config.tracker));
+  const Eigen::Isometry3d T_camera_world = expected.T_world_camera.inverse();
   std::vector<SearchPoint> search;
   search.reserve(map.landmarks.size());
   for (std::uint32_t i = 0; i < map.landmarks.size(); ++i) {
     const LocalLandmark& landmark = map.landmarks[i];
     const auto view =
-        predict_view(frame, T_world_camera_predicted, T_camera_world,
+        predict_view(frame, expected.T_world_camera, T_camera_world,
                      {landmark.position, landmark.normal, landmark.min_distance_m, landmark.max_distance_m});
     if (view) search.push_back(make_search_point(*view, radius_px, landmark.descriptor, i));
   }
@@ -183,7 +183,7 @@ PoseGuess track_around(const Frame& frame, const TrackedFrame& last, const Local
     associations.push_back(associate(match.feature, map.landmarks[match.tag], context));
   }
   if (static_cast<int>(associations.size()) < context.config.tracker.min_motion_matches) return {};
-  PoseGuess guess = optimize(frame, associations, T_world_camera_predicted, context);
+  PoseGuess guess = optimize(frame, associations, expected.T_world_camera, context);
   guess.success = guess.success && guess.inliers >= kMinLandmarks;
   return guess;
 }

@@ -52,20 +52,26 @@ struct TrackingContext {
   const StatisticsById& statistics;
 };
 
+/// Where the camera is looked for.
+struct ExpectedPose {
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  std::optional<double> radius_px = {};  ///< how far from there a landmark may be seen; else by the time that passed
+};
+
 /// Frame to frame: looks for the landmarks of the last frame, and for its close features as temporary points, around
-/// where `T_world_camera_predicted` shows them. docs/theory/tracking.md, "Motion model".
+/// where `expected` shows them. docs/theory/tracking.md, "Motion model".
 PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
-                           const Eigen::Isometry3d& T_world_camera_predicted, const TrackingContext& context);
+                           const ExpectedPose& expected, const TrackingContext& context);
 
 /// Frame to keyframe by descriptors alone, pose by RANSAC: after a jump or a loss. "Recovery".
 PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, const LocalMap& map,
                          const TrackingContext& context);
 
-/// Frame to local map without a guess: looks for every landmark of the local map as far around
-/// `T_world_camera_predicted` as the camera may have turned since the last frame; when hardly any landmark of the last
-/// frame is still in view, because something covers them now.
-PoseGuess track_around(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
-                       const Eigen::Isometry3d& T_world_camera_predicted, const TrackingContext& context);
+/// Frame to local map without a guess: looks for every landmark of the local map as far around `expected` as the camera
+/// may have turned since the last frame; when hardly any landmark of the last frame is still in view, because something
+/// covers them now.
+PoseGuess track_around(const Frame& frame, const TrackedFrame& last, const LocalMap& map, const ExpectedPose& expected,
+                       const TrackingContext& context);
 
 /// Frame to local map: looks for every landmark of the local map that should be visible from `guess`, and optimises
 /// the pose with all of them.

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/geometry/se3.hpp"
+#include "services/slam/core/inertial/preintegration.hpp"
+#include "services/slam/core/slam_config.hpp"
+#include "services/slam/core/tracking/pose_uncertainty.hpp"
+
+namespace rtd::slam {
+
+/// Where the IMU is and what it is wrong by.
+struct InertialState {
+  Eigen::Isometry3d T_world_imu = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();  ///< world
+  ImuBias bias;
+  Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();  ///< world, points down
+};
+
+/// Error-state Kalman filter over the pose of an IMU, its velocity, both biases and the direction of gravity in the
+/// world: predicted by preintegrated samples, corrected by poses that slam measured. docs/theory/inertial.md, "Filter".
+/// Errors are (rotation, position, velocity, gyro bias, accel bias, rotation of gravity), all but the biases in the
+/// axes of the world. Deterministic. Not thread-safe.
+class InertialFilter {
+ public:
+  using Matrix18d = Eigen::Matrix<double, 18, 18>;
+
+  /// At a measured pose; `accel_m_s2`: what the IMU shows on average there, in its own axes: mostly gravity.
+  InertialFilter(const ImuConfig& config, const Eigen::Isometry3d& T_imu_camera, const PredictedPose& camera,
+                 const Eigen::Vector3d& accel_m_s2);
+
+  /// The motion since the last call, integrated with bias().
+  void predict(const Preintegration& motion);
+  /// The samples since the last call are missing: `gap_s` later the camera may be where a hand has moved it.
+  void predict_blind(double gap_s);
+  /// slam measured the pose of the camera. Far off the prediction, it is weighed less.
+  void update(const PredictedPose& camera);
+  /// Mean velocity over the last `motion`, of a point of the IMU's body (IMU axes, m), in the world.
+  void update_way(const Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before,
+                  const Eigen::Vector3d& point_m, const Eigen::Vector3d& way_world_m,
+                  const Eigen::Matrix3d& covariance);
+  /// The map was corrected under the camera: the world moved by this.
+  void move(const Eigen::Isometry3d& T_new_old);
+  /// slam found the camera elsewhere: pose by measurement; motion, biases and gravity go with it.
+  void relocate(const PredictedPose& camera);
+
+  const InertialState& state() const { return state_; }
+  const ImuBias& bias() const { return state_.bias; }
+  const Matrix18d& covariance() const { return P_; }
+  /// Pose of the camera with its covariance.
+  PredictedPose camera() const;
+  /// Whether velocity and gyro bias have been known well enough since the last pause to say where the next frames are.
+  bool ready() const { return ready_; }
+
+ private:
+  Eigen::Matrix<double, 6, 18> camera_jacobian() const;
+  void correct(const Eigen::MatrixXd& H, const Eigen::VectorXd& residual, const Eigen::MatrixXd& R);
+
+  ImuConfig config_;
+  Eigen::Isometry3d T_imu_camera_;
+  InertialState state_;
+  Matrix18d P_ = Matrix18d::Zero();
+  int measured_ = 0;  ///< poses since velocity was unknown
+  bool ready_ = false;
+};
+
+}  // namespace rtd::slam

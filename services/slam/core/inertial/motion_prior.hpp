@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "services/slam/core/inertial/inertial_filter.hpp"
+#include "services/slam/core/inertial/wheel_stream.hpp"
+
+namespace rtd::slam {
+
+/// Where the camera is by IMU and wheels, from the poses that slam measured before: docs/theory/inertial.md. Tracking
+/// searches there, and while it measures nothing this is the pose. Deterministic. Not thread-safe.
+class MotionPrior {
+ public:
+  explicit MotionPrior(const SlamConfig& config);
+
+  void add(ImuSample sample);
+  void add(const WheelSample& sample) { wheels_.add(sample); }
+  /// Whether everything up to this stamp has come.
+  bool reaches(std::int64_t stamp_ns) const;
+
+  /// The frame in work. Its expected pose, once IMU or wheels can say one; the covariance is relative to the map.
+  std::optional<PredictedPose> advance(std::int64_t stamp_ns);
+  /// Its pose by the map, covariance relative to the map. The expected pose with it.
+  std::optional<PredictedPose> correct(const PredictedPose& measured);
+  /// The camera was found elsewhere than it was expected.
+  void relocate(const PredictedPose& measured);
+  /// The map was corrected under the camera.
+  void move(const Eigen::Isometry3d& T_new_old);
+  /// The next pose is in another world.
+  void forget_world() { elsewhere_ = true; }
+  /// Stamps begin again.
+  void restart();
+
+  /// The up direction in the camera's axes, of length 1: the mean of an accelerometer that rests just now, or what the
+  /// filter has learned; empty before either. Eq. (13).
+  std::optional<Eigen::Vector3d> up_in_camera() const;
+  const std::optional<InertialFilter>& filter() const { return filter_; }
+  const ImuCounters& imu_counters() const { return imu_.counters(); }
+  const WheelCounters& wheel_counters() const { return wheels_.counters(); }
+
+ private:
+  void advance_filter(std::int64_t stamp_ns);
+  void use_wheels(const Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before, std::int64_t from_ns);
+  std::optional<PredictedPose> by_wheels() const;
+  std::optional<PredictedPose> expected() const;
+  void begin_filter(const PredictedPose& measured);
+
+  SlamConfig config_;
+  Eigen::Isometry3d T_imu_camera_, T_imu_base_;
+  ImuStream imu_;
+  WheelStream wheels_;
+  std::optional<InertialFilter> filter_;
+  std::optional<PredictedPose> last_;  ///< measured, at last_ns_: where the wheels go on from
+  std::int64_t last_ns_ = 0;
+  std::int64_t now_ns_ = 0;     ///< the frame in work
+  std::int64_t before_ns_ = 0;  ///< the frame before
+  bool elsewhere_ = false;
+};
+
+}  // namespace rtd::slam

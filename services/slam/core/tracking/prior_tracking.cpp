@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "services/slam/core/tracking/tracker.hpp"
+
+/// What the tracker does with the pose that IMU or wheels expect. docs/theory/inertial.md, "Tracking".
+namespace rtd::slam {
+
+void Tracker::expect(const Frame& frame) {
+  constexpr double kForgotten = 0.003;  // of the usual number in each frame: ten seconds
+  expected_ = prior_->advance(frame.stamp_ns);
+  weighed_ = false;
+  usual_features_ = std::max((1 - kForgotten) * usual_features_, static_cast<double>(frame.features.size()));
+}
+
+/// Whether something hides most of what there was to see a moment ago.
+bool Tracker::covered(const Frame& frame) const {
+  return follows_prior(frame) &&
+         static_cast<double>(frame.features.size()) < config_.prior.covered_share * usual_features_;
+}
+
+/// Few landmarks, on one side of the view, leave a pose free in some directions: there the prior holds it.
+void Tracker::weigh_against_prior(PoseGuess& guess) {
+  const double factor = config_.prior.covered_factor * config_.sensor.shared_error;
+  const PredictedPose fused = prior_->correct({guess.T_world_camera, factor * guess.covariance}).value_or(*expected_);
+  guess.T_world_camera = fused.T_world_camera;
+  guess.covariance = fused.covariance / config_.sensor.shared_error;  // what the factor is applied to
+  weighed_ = true;
+}
+
+/// Whether IMU or wheels still know the pose well enough to claim it. docs/theory/inertial.md, "Predicted poses".
+bool Tracker::follows_prior(const Frame& frame) const {
+  if (!expected_ || !config_.techniques.prediction || !msg::has_pose(state_)) return false;
+  const double gap_s = seconds_between(last_.frame->stamp_ns, frame.stamp_ns);
+  const Eigen::Matrix3d position = expected_->covariance.topLeftCorner<3, 3>();
+  const double variance = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(position).eigenvalues().maxCoeff();
+  return gap_s > 0 && gap_s <= config_.prior.max_hold_s && std::sqrt(variance) <= config_.prior.max_sigma_m;
+}
+
+/// Three standard deviations of where a landmark at the usual distance is seen, and what a feature itself is off.
+double Tracker::expected_radius_px(const Frame& frame) const {
+  constexpr double kSigmas = 3, kOfFeature_px = 5, kMost_rad = 0.2;
+  const geometry::Vector6d variances = expected_->covariance.diagonal();
+  const double scene_m = std::max(scene_m_, 0.5);
+  const double seen_rad =
+      std::sqrt(variances.tail<3>().maxCoeff() + variances.head<3>().maxCoeff() / (scene_m * scene_m));
+  return kOfFeature_px + frame.camera.fx * std::min(kSigmas * seen_rad, kMost_rad);
+}
+
+/// A person who fills the view takes many matches along, but not the IMU: only a pose that most of the expected
+/// landmarks support is believed against it.
+bool Tracker::contradicts_prior(const Frame& frame, const LocalMapTracking& tracking) const {
+  if (!follows_prior(frame)) return false;
+  const PredictedPose measured{tracking.guess.T_world_camera, config_.sensor.shared_error * tracking.guess.covariance};
+  const double distance2 = pose_distance2(*expected_, measured);
+  const double most2 = covered(frame) ? kMaxPoseDistance2 : config_.prior.contradiction * config_.prior.contradiction;
+  return distance2 > most2 && !agrees_widely(frame, tracking, config_.prior.weak_support);
+}
+
+/// The prior learns from a measured pose; `covariance` is relative to the map.
+void Tracker::tell_prior(const geometry::Matrix6d& covariance, bool had_pose) {
+  const PredictedPose measured{last_.T_world_camera, config_.prior.visual_factor * covariance};
+  const bool found_again = !had_pose && (!expected_ || pose_distance2(*expected_, measured) > kMaxPoseDistance2);
+  if (found_again) {
+    prior_->relocate(measured);
+  } else {
+    prior_->correct(measured);
+  }
+}
+
+/// The pose is where IMU or wheels expect it. A pose from few landmarks that agrees with them corrects them.
+bool Tracker::claim_prior(TrackOutcome& outcome, const FramePtr& frame, const PoseGuess& weak) {
+  if (!follows_prior(*frame)) return false;
+  PredictedPose claimed = *expected_;
+  const PredictedPose measured{weak.T_world_camera,
+                               config_.prior.covered_factor * config_.sensor.shared_error * weak.covariance};
+  const bool usable = weak.success && weak.inliers >= config_.prediction.min_weak_inliers;
+  if (usable && pose_distance2(claimed, measured) < kMaxPoseDistance2)
+    claimed = prior_->correct(measured).value_or(claimed);
+  outcome.tracked.frame = frame;
+  outcome.tracked.T_world_camera = claimed.T_world_camera;
+  outcome.tracked.reference = last_.reference;
+  const Eigen::Isometry3d T_world_reference = last_.T_world_camera * last_.T_reference_camera.inverse();
+  outcome.tracked.T_reference_camera = T_world_reference.inverse() * claimed.T_world_camera;
+  outcome.covariance =
+      claimed.covariance + map_covariance_ +
+      calibration_covariance(since_first(claimed.T_world_camera), scene_m_, config_.sensor.calibration_error);
+  outcome.state = state_ = msg::TrackingState::kPredicted;
+  return true;
+}
+
+}  // namespace rtd::slam

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "common/bus/raw_bus.hpp"
+#include "services/slam/core/slam_system.hpp"
+
+namespace rtd::slam {
+
+/// Reads `sensor_msgs/Imu` and `nav_msgs/Odometry` on a connection of its own, as their writers offer them: best effort
+/// where a driver offers no more. Samples wait until the frame that needs them; the oldest go when too many do.
+class MotionFeed {
+ public:
+  /// ROS names of the topics; empty: none. Throws BusError when the bus refuses.
+  MotionFeed(const bus::BusOptions& options, const std::string& imu_topic, const std::string& wheel_topic);
+  ~MotionFeed();
+  MotionFeed(const MotionFeed&) = delete;
+  MotionFeed& operator=(const MotionFeed&) = delete;
+
+  /// Waits until every topic that is published has a sample of this stamp or later, but no longer than `most`. Once it
+  /// has waited in vain, it waits no more until samples come again.
+  void await(std::int64_t stamp_ns, std::chrono::milliseconds most);
+  /// Gives slam what has come.
+  void drain(SlamSystem& slam);
+
+  struct Counters {
+    std::uint64_t received = 0, undecodable = 0, overflowed = 0;
+  };
+  Counters imu_counters() const;
+  Counters wheel_counters() const;
+  /// What is wrong with a topic, with the fix; empty when samples come.
+  std::string trouble() const;
+
+ private:
+  template <class Sample>
+  struct Line {
+    std::string topic;  ///< ROS name; empty: not read
+    std::string dds_type;
+    std::unique_ptr<bus::TopicListener> listener;
+    std::deque<Sample> waiting;
+    std::int64_t newest_ns = 0;
+    bool silent = false;  ///< waited for in vain
+    Counters counters;
+    std::string other_type;  ///< of a writer that cannot be read
+  };
+
+  void take_note(const bus::TopicWriter& writer, bus::WriterChange change);
+  template <class Message, class Sample>
+  void subscribe(Line<Sample>& line, const bus::TopicWriter& writer);
+  template <class Message, class Sample>
+  void receive(Line<Sample>& line, const bus::RawSample& sample);
+
+  mutable std::mutex mutex_;
+  std::condition_variable arrived_;
+  Line<ImuSample> imu_;
+  Line<WheelSample> wheels_;
+  std::shared_ptr<bus::RawBus> bus_;
+};
+
+}  // namespace rtd::slam
