@@ -28,7 +28,7 @@ constexpr std::chrono::milliseconds kLongestWait{100};        // between two loo
 constexpr std::int64_t kLastResultTimeoutNs = 2'000'000'000;  // pace realtime
 constexpr std::chrono::milliseconds kFarewell{300};           // the last heartbeats reach their readers
 constexpr int kReportEvery = 10;                              // frames
-constexpr double kBuffered_s = 0.1;                           // three to four frames, as a camera's driver buffers
+constexpr double kBufferedFrames = 3, kBuffered_s = 0.1;      // as a camera's driver buffers; readers keep four
 constexpr std::size_t kOffsetsToLog = 30;                     // frames
 
 std::int64_t seconds_to_ns(double seconds) {
@@ -50,7 +50,7 @@ service::PacerConfig to_pacer_config(const ServiceConfig& config, service::Pace 
   service::PacerConfig pacer;
   pacer.window = realtime ? 0 : asap ? config.asap_window : 1;
   pacer.at_once = source.live;
-  pacer.late_after_ns = seconds_to_ns(std::max(kBuffered_s, 1.0 / source.fps));
+  pacer.late_after_ns = seconds_to_ns(std::max(std::min(kBufferedFrames / source.fps, kBuffered_s), 1.0 / source.fps));
   pacer.max_gap_ns = seconds_to_ns(config.max_gap_s);
   pacer.resend_after_ns = std::int64_t{config.resend_after_ms} * 1'000'000;
   pacer.result_timeout_ns = seconds_to_ns(config.result_timeout_s);
