@@ -144,6 +144,22 @@ struct Requests {
   DoctorOptions doctor;
 };
 
+void add_robot_options(CLI::App& command, RunOptions& options) {
+  command.add_option("--base-frame", options.base_frame, "Frame of the robot, with --camera-in-base (base_link)");
+  command.add_option("--camera-in-base", options.camera_in_base,
+                     "Where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw, or tf: as rt/tf_static "
+                     "says; poses are then those of the base, in a map with z up");
+  command
+      .add_option(
+          "--gravity", options.gravity,
+          "What is up in the map: told (as the base stands when it begins), floor (that the camera sees) or imu")
+      ->check(CLI::IsMember({"told", "floor", "imu"}));
+  command.add_option("--imu", options.imu,
+                     "Topic of an IMU beside the camera, sensor_msgs/Imu: poses go on while nothing can be seen");
+  command.add_option("--wheel-odometry", options.wheel_odometry,
+                     "Topic of the wheels' odometry, nav_msgs/Odometry; with --camera-in-base");
+}
+
 void add_run_command(CLI::App& app, RunOptions& options) {
   CLI::App* command = app.add_subcommand("run", "Run camera, detector, filter and slam on a source and report");
   command
@@ -178,19 +194,7 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--frames", options.frames, "End after this many frames");
   command->add_option("--map", options.map, "Continue the map in this file");
   command->add_option("--save-map", options.save_map, "Map file to write (default: map.rtdmap in the folder of --out)");
-  command->add_option("--base-frame", options.base_frame, "Frame of the robot, with --camera-in-base (base_link)");
-  command->add_option("--camera-in-base", options.camera_in_base,
-                      "Where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw, or tf: as rt/tf_static "
-                      "says; poses are then those of the base, in a map with z up");
-  command
-      ->add_option(
-          "--gravity", options.gravity,
-          "What is up in the map: told (as the base stands when it begins), floor (that the camera sees) or imu")
-      ->check(CLI::IsMember({"told", "floor", "imu"}));
-  command->add_option("--imu", options.imu,
-                      "Topic of an IMU beside the camera, sensor_msgs/Imu: poses go on while nothing can be seen");
-  command->add_option("--wheel-odometry", options.wheel_odometry,
-                      "Topic of the wheels' odometry, nav_msgs/Odometry; with --camera-in-base");
+  add_robot_options(*command, options);
   command->add_flag("--localize-only", options.localize_only,
                     "Only find poses in the map of --map, leave it unchanged");
   command->add_flag(
