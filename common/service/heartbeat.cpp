@@ -16,9 +16,10 @@ namespace rtd::service {
 namespace {
 
 constexpr std::chrono::milliseconds kPeriod{200}, kLookPeriod{100};
-constexpr std::int64_t kGoneAfterNs = 700'000'000;      // three heartbeats missed, with a margin for a busy host
-constexpr std::int64_t kNewcomerForNs = 5'000'000'000;  // a service that has run for longer never ends for a duplicate
-constexpr std::size_t kMostPeers = 100;                 // a writer could make up names without end
+constexpr std::int64_t kGoneAfterNs = 700'000'000;       // three heartbeats missed, with a margin for a busy host
+constexpr std::int64_t kNewcomerForNs = 5'000'000'000;   // a service that has run for longer never ends for a duplicate
+constexpr std::int64_t kBlockedAfterNs = 3'000'000'000;  // a write may wait for a slow reader, but not so long
+constexpr std::size_t kMostPeers = 100;                  // a writer could make up names without end
 
 bool is_name(const std::string& service) {
   constexpr std::size_t kLongest = 64;
@@ -67,6 +68,7 @@ Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, T
       stop_(stop),
       twins_(twins),
       started_ns_(realtime_ns()),
+      looked_ns_(monotonic_ns()),
       clocks_(service_name, PeerClocks::this_host_id()) {
   own_.service = std::move(service_name);
   own_.metrics.push_back({"host_id", PeerClocks::this_host_id()});
@@ -88,6 +90,7 @@ Heartbeat::~Heartbeat() {
 /// Checks the others twice as often as it publishes; changes are published at once.
 void Heartbeat::loop() {
   for (int turn = 0; !ended_.wait_for(kLookPeriod); ++turn) {
+    looked_ns_ = monotonic_ns();
     bool changed = check_peers();
     changed = check_progress() || changed;
     changed = check_topics() || changed;
@@ -208,6 +211,11 @@ void Heartbeat::idle() {
   progress_.idle();
 }
 
+void Heartbeat::frame_received() {
+  const std::lock_guard lock(mutex_);
+  frames_.received();
+}
+
 void Heartbeat::watch_progress(std::chrono::milliseconds limit) {
   const std::lock_guard lock(mutex_);
   progress_.set_limit(std::chrono::nanoseconds(limit).count());
@@ -216,7 +224,8 @@ void Heartbeat::watch_progress(std::chrono::milliseconds limit) {
 Heartbeat::Work Heartbeat::work() const {
   const std::lock_guard lock(mutex_);
   if (!begun_) return Work::kNotBegun;
-  return stuck_ ? Work::kStuck : Work::kGoesOn;
+  const bool blocked = monotonic_ns() - looked_ns_ > kBlockedAfterNs;
+  return !stuck_.empty() || blocked ? Work::kStuck : Work::kGoesOn;
 }
 
 /// True when the health of one has changed.
@@ -242,14 +251,20 @@ bool Heartbeat::check_peers() {
 
 /// True when the worker got stuck or free.
 bool Heartbeat::check_progress() {
+  const auto frames_sent = metric_on_this_host("camera", kFramesPublishedMetric);
   const std::lock_guard lock(mutex_);
-  const std::int64_t stuck_ns = stop_.stop_requested() ? 0 : progress_.stuck_ns(monotonic_ns());
-  if ((stuck_ns > 0) == stuck_) return false;
-  stuck_ = stuck_ns > 0;
-  if (stuck_) {
-    SPDLOG_ERROR("event=worker_stuck for_ms={}", stuck_ns / 1'000'000);
-  } else {
+  const std::int64_t now_ns = monotonic_ns(), stuck_ns = progress_.stuck_ns(now_ns);
+  const bool deaf = frames_.deaf(now_ns, frames_sent);
+  std::string cause;
+  if (deaf) cause = "it receives no frames, although the camera sends them";
+  if (stuck_ns > 0) cause = "its worker makes no progress";
+  if (stop_.stop_requested()) cause.clear();
+  if (cause.empty() == stuck_.empty()) return false;
+  stuck_ = std::move(cause);
+  if (stuck_.empty()) {
     SPDLOG_INFO("event=worker_goes_on");
+  } else {
+    SPDLOG_ERROR("event=worker_stuck for_ms={} cause=\"{}\"", stuck_ns / 1'000'000, stuck_);
   }
   return true;
 }
@@ -279,9 +294,9 @@ msg::ServiceStatus Heartbeat::current_status() {
     }
   }
   for (const auto& [topic, trouble] : troubles_) add_troubles(topic, trouble, status.metrics);
-  if (stuck_) {
+  if (!stuck_.empty()) {
     status.state = msg::ServiceState::kDegraded;
-    status.message = "hung: its worker makes no progress";
+    status.message = "hung: " + stuck_;
     status.metrics.push_back({"hung", 1});
   }
   return status;
@@ -293,7 +308,7 @@ void Heartbeat::publish_end() {
     const std::lock_guard lock(mutex_);
     if (own_.state == msg::ServiceState::kFailed || !duplicate_.empty()) return;
     own_.state = msg::ServiceState::kFinished;
-    stuck_ = false;
+    stuck_.clear();
   }
   publish();
   constexpr int kLongEnoughMs = 100;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -22,6 +23,9 @@
 
 namespace rtd::service {
 
+/// How many frames the camera has sent, in its heartbeat.
+inline constexpr char kFramesPublishedMetric[] = "frames_published";
+
 /// Publishes the heartbeat of one service (topic rtd/status, 5 Hz and at changes) and knows those of the others.
 /// Thread-safe.
 class Heartbeat {
@@ -41,9 +45,12 @@ class Heartbeat {
   void tick();
   /// The worker waits on purpose until the next tick.
   void idle();
+  /// A frame of the camera arrived. If no other follows although the camera sends them on this host, the worker counts
+  /// as stuck: its reader is lost.
+  void frame_received();
   /// 0, the default: a worker never counts as stuck.
   void watch_progress(std::chrono::milliseconds limit);
-  /// How the worker is, as the heartbeat sees it.
+  /// How the worker is, as the heartbeat sees it; stuck, too, when the bus lets no heartbeat out.
   enum class Work { kNotBegun, kGoesOn, kStuck };
   Work work() const;
   /// False for a service that is dead, hung, or sent no heartbeat for 0.7 s.
@@ -81,6 +88,7 @@ class Heartbeat {
   StopToken& stop_;
   const Twins twins_;
   const std::int64_t started_ns_;
+  std::atomic<std::int64_t> looked_ns_;  ///< when the last turn of the heartbeat's thread began
   mutable std::mutex mutex_;
   PeerClocks clocks_;
   msg::ServiceStatus own_;
@@ -89,7 +97,9 @@ class Heartbeat {
   std::function<void(const msg::ServiceStatus&)> callback_;
   std::string duplicate_;
   ProgressWatch progress_;
-  bool begun_ = false, stuck_ = false;
+  InputWatch frames_;
+  bool begun_ = false;
+  std::string stuck_;  ///< why the worker counts as stuck; empty: it does not
   std::map<std::string, bus::TopicTrouble> troubles_;
   std::pair<std::int64_t, std::int64_t> twin_{};  ///< pid and start of an older instance that was seen once
   std::mutex publish_mutex_;

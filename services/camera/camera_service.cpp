@@ -344,7 +344,7 @@ void CameraService::report_counters() {
     runtime_.heartbeat.set_metric(name, static_cast<double>(value));
   };
   set("frames_in", frames_in_);
-  set("frames_published", published_);
+  set(service::kFramesPublishedMetric, published_);
   set("frames_late", late());
   set("frames_skipped", counters_.skipped_total());
   set("frames_without_depth", counters_.frames_without_depth);

@@ -79,8 +79,10 @@ DenseService::DenseService(const Config& config, service::Runtime& runtime)
   mask_reader_ = runtime.bus.reader<msg::Image>(bus::topics::kDynamicMask, [this](const auto& message) {
     if (auto mask = from_message(*message)) joiner_->put(msg::to_ns(message->header.stamp), std::move(*mask));
   });
-  frame_reader_ = bus::FrameReader(
-      runtime.bus, [this](std::shared_ptr<const msg::FrameView> frame) { joiner_->put(std::move(frame)); });
+  frame_reader_ = bus::FrameReader(runtime.bus, [this](std::shared_ptr<const msg::FrameView> frame) {
+    runtime_.heartbeat.frame_received();
+    joiner_->put(std::move(frame));
+  });
 }
 
 service::ExitCode DenseService::run() {

@@ -20,9 +20,10 @@ ImageInput::ImageInput(service::Runtime& runtime, const std::string& input, OnIm
     read_jpegs();
     return;
   }
-  frames_ = bus::FrameReader(runtime.bus, [on_image = on_image_](std::shared_ptr<const msg::FrameView> frame) {
+  frames_ = bus::FrameReader(runtime.bus, [this](std::shared_ptr<const msg::FrameView> frame) {
+    runtime_.heartbeat.frame_received();
     const std::int64_t stamp_ns = frame->stamp_ns;
-    on_image({stamp_ns, std::move(frame), nullptr});
+    on_image_({stamp_ns, std::move(frame), nullptr});
   });
 }
 

@@ -21,8 +21,7 @@ namespace {
 constexpr std::size_t kRealtimeQueue = 2, kEveryFrameQueue = 8;
 constexpr std::chrono::milliseconds kStatePeriod{50};
 constexpr int kLastLoadStep = static_cast<int>(service::kLoadSteps.size()) - 1;
-constexpr double kFullWorkCores = 0.9;  // camera, filter and slam at 30 Hz, without a detector
-constexpr std::int64_t kSourceGoneAfterNs = 1'000'000'000;
+constexpr double kFullWorkCores = 0.9;                   // camera, filter and slam at 30 Hz, without a detector
 constexpr std::int64_t kDetectorSilentNs = 450'000'000;  // two heartbeats missed: reported within half a second
 constexpr std::int64_t kPatienceNs = 1'500'000'000;      // before a silent heartbeat ends the wait for detections
 
@@ -66,8 +65,10 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
       bus::topics::kDetections, [this](const std::shared_ptr<const msg::Detection2DArray>& message) {
         detections_->put(to_detection_batch(*message));
       });
-  frame_reader_ = bus::FrameReader(
-      runtime.bus, [this](std::shared_ptr<const msg::FrameView> frame) { frames_->push(std::move(frame)); });
+  frame_reader_ = bus::FrameReader(runtime.bus, [this](std::shared_ptr<const msg::FrameView> frame) {
+    runtime_.heartbeat.frame_received();
+    frames_->push(std::move(frame));
+  });
 }
 
 /// A reader waits for its running callback, which may be blocked on the full queue.
@@ -198,11 +199,15 @@ void FilterService::publish_no_features(const msg::FrameView& frame, const std::
   writer_.write(*message_);
 }
 
-/// Of two cameras on the topic, the first is followed as long as it sends.
+/// Of two cameras on the topic, the first is followed as long as it sends. The successor of one that died does not wait
+/// for long.
 bool FilterService::from_other_camera(const msg::FrameView& frame) {
+  constexpr std::int64_t kGonePeriods = 4, kGoneAtLeastNs = 300'000'000, kGoneAtMostNs = 1'000'000'000;
+  constexpr std::int64_t kAveraged = 8;
   const std::int64_t now_ns = service::monotonic_ns();
   const bool other = published_ > 0 && frame.source_id != source_id_;
-  if (other && now_ns - source_heard_ns_ < kSourceGoneAfterNs) {
+  const std::int64_t silent_ns = now_ns - source_heard_ns_;
+  if (other && silent_ns < std::clamp(kGonePeriods * source_period_ns_, kGoneAtLeastNs, kGoneAtMostNs)) {
     ++from_others_;
     if (other_camera_log_.pass()) {
       SPDLOG_ERROR("event=second_camera source={:x} followed={:x} fix=\"stop one, or give it another --domain\"",
@@ -214,6 +219,8 @@ bool FilterService::from_other_camera(const msg::FrameView& frame) {
     SPDLOG_INFO("event=camera_changed source={:x}", frame.source_id);
     filter_.reset();
     movers_.clear();
+  } else if (published_ > 0) {
+    source_period_ns_ += (silent_ns - source_period_ns_) / kAveraged;
   }
   source_id_ = frame.source_id;
   source_heard_ns_ = now_ns;

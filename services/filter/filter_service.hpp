@@ -96,7 +96,7 @@ class FilterService {
   std::unique_ptr<msg::FeatureFrame> message_ = std::make_unique<msg::FeatureFrame>();
   std::uint64_t published_ = 0, defective_ = 0, from_others_ = 0, unpaired_ = 0;
   std::uint64_t source_id_ = 0;
-  std::int64_t source_heard_ns_ = 0;
+  std::int64_t source_heard_ns_ = 0, source_period_ns_ = 0;
   bool detector_seen_ = false, detector_gone_ = false;
   std::atomic<std::int64_t> detector_alive_ns_{0};           ///< CLOCK_MONOTONIC of its last heartbeat, 0 = ended
   std::array<double, msg::kFilterStages> total_stage_ms_{};  ///< of all published frames

@@ -43,7 +43,7 @@ struct ChildPipes {
 };
 
 /// Runs in the new process between fork and exec: async-signal-safe calls only, the launcher has other threads.
-[[noreturn]] void become(char* const* argv, int niceness, ChildPipes pipes, pid_t parent) {
+[[noreturn]] void become(char* const* argv, char* const* environment, int niceness, ChildPipes pipes, pid_t parent) {
   setpgid(0, 0);
   [[maybe_unused]] const int priority = nice(niceness);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -59,7 +59,7 @@ struct ChildPipes {
   dup2(pipes.output_fd, STDOUT_FILENO);
   dup2(pipes.output_fd, STDERR_FILENO);
   close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);  // the bus's sockets of the launcher are not the child's
-  execv(argv[0], argv);
+  execve(argv[0], argv, environment);
   const int reason = errno;
   [[maybe_unused]] const ssize_t written = write(pipes.error_fd, &reason, sizeof(reason));
   _exit(127);
@@ -82,6 +82,15 @@ double cpu_s(const rusage& usage) {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+/// As exec wants them: with a null pointer at the end.
+std::vector<char*> pointers(const std::vector<std::string>& texts) {
+  std::vector<char*> result;
+  result.reserve(texts.size() + 1);
+  for (const std::string& text : texts) result.push_back(const_cast<char*>(text.c_str()));
+  result.push_back(nullptr);
+  return result;
+}
+
 }  // namespace
 
 void LineSplitter::feed(std::string_view bytes, const std::function<void(const std::string&)>& on_line) {
@@ -99,7 +108,10 @@ void LineSplitter::finish(const std::function<void(const std::string&)>& on_line
   rest_.clear();
 }
 
-PosixProcessHost::PosixProcessHost(OnLine on_line) : on_line_(std::move(on_line)) {}
+PosixProcessHost::PosixProcessHost(OnLine on_line, std::chrono::milliseconds longest_silence)
+    : on_line_(std::move(on_line)), longest_silence_(longest_silence) {
+  if (longest_silence_.count() > 0) signs_.emplace();
+}
 
 PosixProcessHost::~PosixProcessHost() {
   for (auto& [process, child] : children_) {
@@ -110,15 +122,18 @@ PosixProcessHost::~PosixProcessHost() {
 }
 
 ProcessId PosixProcessHost::start(const ProcessSpec& spec) {
-  std::vector<char*> argv;
-  argv.reserve(spec.command.size() + 1);
-  for (const std::string& argument : spec.command) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
+  const std::vector<char*> argv = pointers(spec.command);
+  std::vector<std::string> variables;
+  if (signs_) variables = signs_->environment(longest_silence_);
+  const std::vector<char*> environment = pointers(variables);
 
   const Pipe output = open_pipe(), failure = open_pipe();
   const pid_t parent = getpid();
   const pid_t pid = fork();
-  if (pid == 0) become(argv.data(), spec.niceness, {output.write_end, failure.write_end}, parent);
+  if (pid == 0) {
+    become(argv.data(), signs_ ? environment.data() : environ, spec.niceness, {output.write_end, failure.write_end},
+           parent);
+  }
   close(output.write_end);
   close(failure.write_end);
   const int reason = pid < 0 ? errno : exec_error(failure.read_end);
@@ -167,8 +182,22 @@ void PosixProcessHost::wait(std::chrono::milliseconds timeout, int wake_fd) {
     if (child.output_fd >= 0) fds.push_back({child.output_fd, POLLIN, 0});
   }
   if (wake_fd >= 0) fds.push_back({wake_fd, POLLIN, 0});
+  if (signs_) fds.push_back({signs_->fd(), POLLIN, 0});
   if (poll(fds.data(), fds.size(), static_cast<int>(timeout.count())) <= 0) return;
   for (auto& [process, child] : children_) read_output(child);
+  if (signs_) signs_->read([this](ProcessId sender, std::string_view text) { hear(sender, text); });
+}
+
+void PosixProcessHost::hear(ProcessId sender, std::string_view text) {
+  const auto found = children_.find(sender);
+  if (found == children_.end()) return;
+  if (text.starts_with("STOPPING=1")) found->second.ending = true;
+  ++found->second.signs_of_life;
+}
+
+std::uint64_t PosixProcessHost::signs_of_life(ProcessId process) const {
+  const auto found = children_.find(process);
+  return found == children_.end() || found->second.ending ? 0 : found->second.signs_of_life;
 }
 
 void PosixProcessHost::read_output(Child& child) {

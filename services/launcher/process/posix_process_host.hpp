@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "common/service/command_line.hpp"
 #include "services/evaluation/record/run_record.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
+#include "services/launcher/process/notify_socket.hpp"
 
 namespace rtd::launcher {
 
@@ -34,7 +36,9 @@ class PosixProcessHost : public ProcessHost {
  public:
   using OnLine = std::function<void(const std::string& name, const std::string& line)>;
 
-  explicit PosixProcessHost(OnLine on_line);
+  /// Children that know systemd's watchdog say at least so often that their work goes on (signs_of_life()). 0: they are
+  /// not asked to.
+  explicit PosixProcessHost(OnLine on_line, std::chrono::milliseconds longest_silence = {});
   ~PosixProcessHost() override;
   PosixProcessHost(const PosixProcessHost&) = delete;
   PosixProcessHost& operator=(const PosixProcessHost&) = delete;
@@ -43,6 +47,7 @@ class PosixProcessHost : public ProcessHost {
   std::optional<ProcessExit> poll_exit(ProcessId process) override;
   void terminate(ProcessId process) override;
   void kill(ProcessId process) override;
+  std::uint64_t signs_of_life(ProcessId process) const override;
 
   /// Waits until a child writes or ends, `wake_fd` becomes readable (-1: none) or the time is over; passes on complete
   /// lines.
@@ -53,11 +58,16 @@ class PosixProcessHost : public ProcessHost {
     std::string name;
     int output_fd = -1;
     LineSplitter lines;
+    std::uint64_t signs_of_life = 0;
+    bool ending = false;
   };
+  void hear(ProcessId sender, std::string_view text);
   void read_output(Child& child);
   void close_output(Child& child);
 
   OnLine on_line_;
+  std::chrono::milliseconds longest_silence_;
+  std::optional<NotifySocket> signs_;
   std::map<ProcessId, Child> children_;
 };
 

@@ -42,10 +42,12 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptS
       logs_(setup.out_dir + "/logs", terminal),
       collector_(bus, {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames,
                        eval::has_true_masks(setup.source)}),
-      host_([this](const std::string& service, const std::string& line) {
-        logs_.add(service, line);
-        if (service == "viewer" && line.starts_with("viewer: ")) terminal_.print("rtd: " + line);
-      }),
+      host_(
+          [this](const std::string& service, const std::string& line) {
+            logs_.add(service, line);
+            if (service == "viewer" && line.starts_with("viewer: ")) terminal_.print("rtd: " + line);
+          },
+          milliseconds(setup.launcher.hung_after_ms)),
       supervisor_(host_, setup.launcher.supervisor(), [this](const SupervisorEvent& event) { on_event(event); }),
       own_cpu_before_s_(own_usage().cpu_s) {}
 

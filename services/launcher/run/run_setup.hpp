@@ -19,6 +19,7 @@ namespace rtd::launcher {
 struct LauncherConfig {
   int max_restarts = 5;
   int first_backoff_ms = 200;
+  int hung_after_ms = 3000;
   int domain_check_ms = 500;
   int connect_timeout_ms = 15000;
   int interrupt_grace_ms = 1200;
@@ -29,6 +30,8 @@ struct LauncherConfig {
     binder.field("max_restarts", max_restarts, {0, 100}, "deaths of a service in a row before it is given up");
     binder.field("first_backoff_ms", first_backoff_ms, {0, 2000},
                  "pause before the restart of a service that lived for less than 5 s, doubled for each further one");
+    binder.field("hung_after_ms", hung_after_ms, {0, 3600000},
+                 "silence after which a service is killed and restarted, 0 = never: for a debugger");
     binder.field("domain_check_ms", domain_check_ms, {0, 10000},
                  "looking for another run in the same domain before anything starts");
     binder.field("connect_timeout_ms", connect_timeout_ms, {0, 60000},
@@ -42,6 +45,7 @@ struct LauncherConfig {
     SupervisorOptions options;
     options.max_restarts_in_row = max_restarts;
     options.first_backoff = std::chrono::milliseconds(first_backoff_ms);
+    options.hung_after = std::chrono::milliseconds(hung_after_ms);
     return options;
   }
 };

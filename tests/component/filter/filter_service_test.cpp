@@ -239,6 +239,16 @@ TEST_F(FilterServiceTest, keeps_to_the_first_of_two_cameras) {
   EXPECT_TRUE(wait_metric("frames_foreign", 2));
 }
 
+TEST_F(FilterServiceTest, follows_the_successor_of_a_camera_that_fell_silent) {
+  start(service::Pace::kAsap, false);
+  for (const std::uint64_t seq : {0U, 1U, 2U}) send_frame(seq, 7);
+  ASSERT_TRUE(answers_.wait_count(3));
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  send_frame(0, 8);
+  ASSERT_TRUE(answers_.wait_count(4));
+  EXPECT_EQ(answers_.at(3)->seq, 0U);
+}
+
 TEST_F(FilterServiceTest, accepts_time_that_goes_backwards) {
   start(service::Pace::kAsap, false);
   for (const std::uint64_t seq : {10U, 11U, 2U, 3U}) send_frame(seq);

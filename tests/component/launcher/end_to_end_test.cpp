@@ -148,6 +148,18 @@ TEST_F(EndToEndTest, a_filter_killed_during_the_run_is_restarted_and_the_run_com
   EXPECT_GT(json["frames_tracked"], 60) << "the restarted filter serves again";
 }
 
+TEST_F(EndToEndTest, a_slam_that_hangs_is_killed_and_finds_its_place_again) {
+  rtd_.start(arguments(141, "synthetic:office?frames=0",
+                       {"--detector", "off", "--set", "launcher.hung_after_ms=2000", "slam.map.checkpoint_s=0.2"}));
+  ASSERT_TRUE(wait_for_log("slam", "event=map_saved")) << rtd_.output();
+  ASSERT_EQ(::kill(pid_of("slam"), SIGSTOP), 0);
+  ASSERT_TRUE(rtd_.wait_for("slam hung for 2 s and was killed")) << rtd_.output();
+  EXPECT_TRUE(wait_for_log("slam", "event=relocalized")) << rtd_.output();
+  rtd_.interrupt();
+  EXPECT_EQ(rtd_.wait(), 130);
+  EXPECT_THAT(rtd_.output(), testing::Not(AnyOf(HasSubstr("filter hung"), HasSubstr("camera hung"))));
+}
+
 TEST_F(EndToEndTest, ctrl_c_ends_an_endless_run_within_two_seconds_with_its_results) {
   rtd_.start(arguments(123, "synthetic:office?frames=0", {"--detector", "off"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();

@@ -141,6 +141,22 @@ TEST_P(Health, a_stuck_worker_is_reported_by_its_own_heartbeat) {
   EXPECT_LT(seconds_until([&] { return newest_status("slam")->state == msg::ServiceState::kRunning; }), 15);
 }
 
+TEST_P(Health, a_service_that_hears_no_more_frames_counts_as_stuck) {
+  Heartbeat camera(*listener_, "camera", stop_), filter(*here_, "filter", stop_);
+  filter.tick();
+  filter.frame_received();  // and no more
+  double sent = 0;
+  const double hung_s = seconds_until([&] {
+    camera.set_metric(kFramesPublishedMetric, ++sent);
+    return reports("filter", "hung");
+  });
+  std::printf("%s: lost reader reported after %.2f s\n", GetParam().c_str(), hung_s);
+  EXPECT_GT(hung_s, 1.4);
+  EXPECT_LT(hung_s, kPatienceS);
+  EXPECT_EQ(filter.work(), Heartbeat::Work::kStuck);
+  EXPECT_NE(newest_status("filter")->message.find("receives no frames"), std::string::npos);
+}
+
 TEST_P(Health, an_orderly_end_is_not_a_death) {
   Heartbeat filter(*here_, "filter", stop_);
   {

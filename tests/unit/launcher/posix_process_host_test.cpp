@@ -97,6 +97,29 @@ TEST_F(PosixProcessHostTest, child_inherits_no_descriptor) {
   EXPECT_THAT(lines["a"], ElementsAre("4")) << "stdin, stdout, stderr and the folder that ls lists";
 }
 
+TEST_F(PosixProcessHostTest, counts_the_signs_of_life_of_each_child) {
+  setenv("WATCHDOG_PID", "1", 1);  // as systemd sets it for the launcher itself
+  PosixProcessHost watching([](const std::string&, const std::string&) {}, milliseconds(2000));
+  const std::string script =
+      "import os, socket, time\n"
+      "assert os.environ['WATCHDOG_USEC'] == '2000000' and 'WATCHDOG_PID' not in os.environ\n"
+      "s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)\n"
+      "s.connect(os.environ['NOTIFY_SOCKET'].replace('@', chr(0)))\n"
+      "s.send(b'READY=1'); s.send(b'WATCHDOG=1'); time.sleep(0.3); s.send(b'STOPPING=1'); time.sleep(60)\n";
+  const ProcessId process = watching.start({"a", {"/usr/bin/env", "python3", "-c", script}});
+  const ProcessId silent = watching.start({"b", {"/bin/sleep", "60"}});
+  unsetenv("WATCHDOG_PID");
+  const auto wait_for_signs = [&](std::uint64_t count) {
+    const milliseconds give_up = now() + milliseconds(10'000);
+    while (watching.signs_of_life(process) != count && now() < give_up) watching.wait(milliseconds(20));
+    EXPECT_EQ(watching.signs_of_life(process), count);
+  };
+  EXPECT_EQ(watching.signs_of_life(process), 0U);
+  wait_for_signs(2);
+  wait_for_signs(0);  // about to end
+  EXPECT_EQ(watching.signs_of_life(silent), 0U);
+}
+
 TEST_F(PosixProcessHostTest, nothing_outlives_the_launcher) {
   int told[2];
   ASSERT_EQ(pipe(told), 0);

@@ -43,6 +43,10 @@ class FakeHost : public ProcessHost {
     killed.push_back(names[process]);
     exits[process] = {0, 9};
   }
+  std::uint64_t signs_of_life(ProcessId process) const override {
+    const auto found = signs.find(names.at(process));
+    return found == signs.end() ? 0 : found->second;
+  }
   void end(const std::string& name, ProcessExit exit) {
     for (const auto& [process, process_name] : names) {
       if (process_name == name) newest = process;
@@ -54,6 +58,7 @@ class FakeHost : public ProcessHost {
   std::vector<std::string> started, terminated, killed;
   std::vector<std::string> arguments;  ///< of the last one started
   std::map<ProcessId, std::string> names;
+  std::map<std::string, std::uint64_t> signs;  ///< of life, by name
   std::map<ProcessId, ProcessExit> exits;
   ProcessId last_id = 0, newest = 0;
 };
@@ -83,6 +88,47 @@ class SupervisorTest : public testing::Test {
   milliseconds now{1000};
   Supervisor supervisor{host, SupervisorOptions{}, [this](const SupervisorEvent& e) { told.push_back(e.text); }};
 };
+
+TEST_F(SupervisorTest, one_that_falls_silent_is_killed_and_restarted_at_once) {
+  start_all();
+  advance(milliseconds(5000));
+  host.signs["slam"] = 1;
+  advance(milliseconds(100));
+  advance(milliseconds(2900));
+  host.signs["slam"] = 2;
+  advance(milliseconds(90));
+  advance(milliseconds(2990));
+  EXPECT_THAT(host.killed, IsEmpty());
+  advance(milliseconds(10));
+  EXPECT_THAT(host.killed, ElementsAre("slam"));
+  advance(milliseconds(10));
+  EXPECT_THAT(told, Contains("slam hung for 3 s and was killed, restart at once"));
+  EXPECT_EQ(restarts("slam"), 1);
+  EXPECT_THAT(restarts("detector"), 0) << "has never given a sign of life";
+}
+
+TEST_F(SupervisorTest, the_restarted_one_is_waited_for_as_the_first_was) {
+  start_all();
+  host.signs["slam"] = 1;
+  advance(milliseconds(0));
+  advance(milliseconds(5000));
+  host.signs["slam"] = 0;  // of the new process
+  advance(milliseconds(10));
+  advance(milliseconds(60'000));
+  EXPECT_EQ(restarts("slam"), 1);
+}
+
+TEST_F(SupervisorTest, one_that_takes_long_to_end_has_its_grace) {
+  start_all();
+  host.signs["slam"] = 1;
+  host.deaf.insert("slam");
+  advance(milliseconds(10));
+  supervisor.stop(now, milliseconds(20'000), RunOutcome::kComplete);
+  advance(milliseconds(19'000));
+  EXPECT_THAT(host.killed, IsEmpty());
+  advance(milliseconds(1000));
+  EXPECT_THAT(host.killed, ElementsAre("slam"));
+}
 
 TEST_F(SupervisorTest, is_complete_when_the_source_ends_by_itself) {
   start_all();

@@ -57,5 +57,49 @@ TEST(ProgressWatch, only_a_worker_that_has_begun_and_does_not_wait_gets_stuck) {
   EXPECT_EQ(watch.stuck_ns(9000 * kNsPerMs), 0);
 }
 
+/// Looks ten times a second.
+class InputWatchTest : public testing::Test {
+ protected:
+  /// Whether it was deaf at the last look; each look finds so many more sent and received.
+  bool look(int times, int sent, int received) {
+    bool deaf = false;
+    for (int i = 0; i < times; ++i) {
+      for (int j = 0; j < received; ++j) watch_.received();
+      deaf = watch_.deaf(now_ns_ += 100 * kNsPerMs, sent_ += sent);
+    }
+    return deaf;
+  }
+  InputWatch watch_;
+  std::int64_t now_ns_ = 0;
+  double sent_ = 0;
+};
+
+TEST_F(InputWatchTest, one_that_heard_before_and_hears_nothing_more_is_deaf) {
+  EXPECT_FALSE(look(10, 3, 3));
+  EXPECT_FALSE(look(15, 3, 0));
+  EXPECT_TRUE(look(1, 3, 0));
+  EXPECT_FALSE(look(1, 3, 1)) << "it hears again";
+}
+
+TEST_F(InputWatchTest, silence_of_the_sender_is_not_deafness) {
+  look(10, 3, 3);
+  EXPECT_FALSE(look(50, 0, 0));
+  EXPECT_FALSE(watch_.deaf(now_ns_ += 100 * kNsPerMs, std::nullopt)) << "the sender is gone";
+  sent_ = 0;
+  EXPECT_FALSE(look(10, 3, 0)) << "another one begins to count";
+  EXPECT_TRUE(look(10, 3, 0));
+}
+
+TEST_F(InputWatchTest, one_that_never_heard_may_not_be_meant) {
+  EXPECT_FALSE(look(50, 3, 0));
+}
+
+TEST_F(InputWatchTest, one_that_was_stopped_has_time_to_take_what_waits) {
+  look(10, 3, 3);
+  now_ns_ += 3000 * kNsPerMs;
+  EXPECT_FALSE(look(1, 90, 0));
+  EXPECT_FALSE(look(1, 3, 90));
+}
+
 }  // namespace
 }  // namespace rtd::service

@@ -44,15 +44,22 @@ void Supervisor::update(Clock now) {
       if (const auto exit = host_.poll_exit(child.process)) on_exit(child, *exit, now);
     }
     if (child.state == State::kWaiting && now >= child.restart_at) relaunch(child, now);
-    if (child.asked && child.state == State::kRunning && now >= child.kill_at && !child.killed) {
-      child.killed = true;
-      host_.kill(child.process);
-    }
+    if (child.state == State::kRunning && !child.killed) watch(child, now);
   }
   if (!stopping_ || !others_ended()) return;
   for (Child& child : children_) {
     if (!child.asked) ask_to_end(child, now + grace_);
   }
+}
+
+/// Kills one that hangs, or is still there although it was asked to end.
+void Supervisor::watch(Child& child, Clock now) {
+  const std::uint64_t signs = host_.signs_of_life(child.process);
+  if (std::exchange(child.signs_of_life, signs) != signs) child.last_sign = now;
+  const bool hung = options_.hung_after > Clock(0) && signs > 0 && now - child.last_sign >= options_.hung_after;
+  if (child.asked ? now < child.kill_at : !hung) return;
+  child.killed = true;
+  host_.kill(child.process);
 }
 
 void Supervisor::stop(Clock now, Clock grace, RunOutcome why) {
@@ -95,6 +102,7 @@ void Supervisor::launch(Child& child, Clock now, const std::vector<std::string>&
   child.state = State::kRunning;
   child.started = now;
   child.killed = false;
+  child.signs_of_life = 0;
 }
 
 void Supervisor::relaunch(Child& child, Clock now) {
@@ -132,7 +140,8 @@ void Supervisor::on_exit(Child& child, const ProcessExit& exit, Clock now) {
 }
 
 void Supervisor::on_death(Child& child, const ProcessExit& exit, Clock now) {
-  const std::string what = child.plan.name + " died: " + describe(exit);
+  const std::string hung = " hung for " + std::to_string(options_.hung_after.count() / 1000) + " s and was killed";
+  const std::string what = child.plan.name + (child.killed ? hung : " died: " + describe(exit));
   if (child.plan.role == ServiceRole::kSource) {
     report(SupervisorEvent::Kind::kGivenUp, child, what, exit);
     return decide(RunOutcome::kFailed);

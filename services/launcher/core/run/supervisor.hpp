@@ -49,6 +49,8 @@ class ProcessHost {
   virtual std::optional<ProcessExit> poll_exit(ProcessId process) = 0;
   virtual void terminate(ProcessId process) = 0;  ///< asks (SIGTERM)
   virtual void kill(ProcessId process) = 0;       ///< forces (SIGKILL)
+  /// How often the process has said that its work goes on. 0: it has not begun, is about to end, or never says it.
+  virtual std::uint64_t signs_of_life(ProcessId process) const = 0;
 };
 
 /// What the death of a service means for the run.
@@ -75,6 +77,7 @@ struct SupervisorOptions {
   std::chrono::milliseconds first_backoff{200};  ///< pause before the restart of one that died young, doubled
   std::chrono::milliseconds max_backoff{2000};
   std::chrono::milliseconds healthy_after{5000};  ///< a service that lived this long starts a new row, at once
+  std::chrono::milliseconds hung_after{3000};     ///< without a sign of life after the first: killed; 0 = never
 };
 
 enum class RunOutcome {
@@ -95,8 +98,8 @@ struct SupervisorEvent {
   ProcessExit exit{};  ///< kDied, kGivenUp, kRefused, kEnded, kKilled
 };
 
-/// Keeps the services of one run alive: restarts what dies, decides when the run is over, ends everything in bounded
-/// time. Time comes in as an argument (any monotonic clock). Not thread-safe.
+/// Keeps the services of one run alive: restarts what dies, kills what hangs, decides when the run is over, ends
+/// everything in bounded time. Time comes in as an argument (any monotonic clock). Not thread-safe.
 class Supervisor {
  public:
   using Clock = std::chrono::milliseconds;
@@ -105,7 +108,7 @@ class Supervisor {
 
   /// Starts a service. Throws ProcessError when its executable cannot be run.
   void start(const ServicePlan& plan, Clock now);
-  /// Looks for deaths, restarts services when due, kills those that outlive the grace of stop(). Call it often.
+  /// Looks for deaths, restarts services when due, kills those that hang or outlive the grace of stop(). Call it often.
   void update(Clock now);
   /// Asks every service to end, those with ends_last after the others; update() kills those still there `grace` after
   /// they were asked. The first outcome stays. A second stop asks all at once.
@@ -128,12 +131,15 @@ class Supervisor {
     Clock started{}, restart_at{};
     bool asked = false, killed = false;
     Clock kill_at{};
+    std::uint64_t signs_of_life = 0;
+    Clock last_sign{};
   };
 
   void launch(Child& child, Clock now, const std::vector<std::string>& more_arguments = {});
   void relaunch(Child& child, Clock now);
   void on_exit(Child& child, const ProcessExit& exit, Clock now);
   void on_death(Child& child, const ProcessExit& exit, Clock now);
+  void watch(Child& child, Clock now);
   void ask_to_end(Child& child, Clock kill_at);
   bool others_ended() const;
   void decide(RunOutcome outcome);
