@@ -175,13 +175,16 @@ class Trace:
     """What `rtd run --trace` wrote, one event a line: beginnings of processes, frames sent, poses."""
 
     def __init__(self, path):
-        self.first, self.frames, self.poses, names, begun = {}, [], [], {}, {}
+        self.first, self.joined, self.frames, self.poses, names, begun = {}, {}, [], [], {}, {}
         with path.open(encoding="utf-8") as lines:
             events = (json.loads(line.strip(",\n")) for line in lines if '"ph"' in line)
             for event in events:
                 pid, at_ns = event["pid"], event.get("ts", 0) * 1e3
                 if event["ph"] == "M":
                     names[pid] = event["args"]["name"]
+                    continue
+                if event["name"] == "join":
+                    self.joined[pid] = at_ns + event["dur"] * 1e3
                     continue
                 self.first[pid] = min(self.first.get(pid, float("inf")), at_ns)
                 if event["name"] == "publish" and names[pid] == "rtd-camera":
@@ -200,8 +203,9 @@ class Trace:
         return (min(ends) - at_ns) * 1e-9 if ends else float("inf")
 
     def back_after_s(self, service, pid, at_ns):
-        """Until another process of the service does something."""
-        times = [at for one, at in self.first.items() if self.names[one] == f"rtd-{service}" and one != pid and at > at_ns]
+        """Until another process of the service works on a frame; has joined the bus, where keyframes are rare work."""
+        begun = self.joined if service == "dense" else self.first
+        times = [at for one, at in begun.items() if self.names[one] == f"rtd-{service}" and one != pid and at > at_ns]
         return (min(times) - at_ns) * 1e-9 if times else float("inf")
 
     def share_with_pose(self, faults):

@@ -22,6 +22,7 @@
 #include "common/service/bus_config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/service/monotonic_clock.hpp"
 #include "common/service/systemd_link.hpp"
 
 namespace rtd::service {
@@ -120,6 +121,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   BusProblems problems;
   options.on_problem = [&problems](const std::string& problem) { problems.add(problem); };
   BoundedEnd end("rtd-" + definition.name, kEndOfBus);
+  const std::int64_t begin_ns = monotonic_ns();
   const std::shared_ptr<bus::Bus> bus = join_bus(options);
   options.on_problem = {};  // a further connection would say the same again
   std::jthread cleaner;     // beside the work: joining the bus is what a restarted service must be quick at
@@ -149,6 +151,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     Runtime runtime{*bus, heartbeat, stop, pace, options, bound_end, trace};
     SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), options.domain, to_string(pace),
                 getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");
+    trace.span("join", begin_ns, monotonic_ns(), 0);
     code = definition.run(runtime);
     bound_end(code);
   }

@@ -94,6 +94,7 @@ TEST_F(EndToEndTest, a_dense_map_a_recording_and_a_trace_change_nothing_of_the_r
     EXPECT_EQ(spans[process], 1) << process;
   for (const char* stage : {"extract", "judge", "wait for boxes", "slam"}) EXPECT_EQ(spans[stage], 30) << stage;
   EXPECT_GT(spans["integrate"], 5);
+  EXPECT_EQ(spans["join"], 5) << "the start of each process";
   for (const char* way : {"read", "camera to pose"}) EXPECT_EQ(spans[way], 60) << way << ": begin and end";
 }
 
