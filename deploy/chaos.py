@@ -93,8 +93,9 @@ class Run:
         environment = dict(os.environ)
         if "clock" in args.faults:
             environment |= {"LD_PRELOAD": str(args.clock_library.resolve()), "RTD_CLOCK_STEP_FILE": str(self.step)}
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                        env=environment)
+        self.output = pathlib.Path(folder, "output")
+        with self.output.open("w", encoding="utf-8") as output:
+            self.process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, env=environment)
 
     def log(self, service):
         return pathlib.Path(self.out, "logs", f"{service}.log").read_text(encoding="utf-8", errors="replace")
@@ -129,7 +130,8 @@ class Run:
 
     def stop(self):
         self.process.send_signal(signal.SIGINT)
-        return self.process.communicate(timeout=120)[0]
+        self.process.wait(timeout=120)
+        return self.output.read_text(encoding="utf-8", errors="replace")
 
 
 def fill(folder):
@@ -154,7 +156,7 @@ def inflict(args, run):
     while len(done) < args.count if args.minutes == 0 else time.monotonic() - started < 60 * args.minutes:
         if run.process.poll() is not None:
             sys.exit(f"chaos: rtd run ended after {len(done)} faults with exit code {run.process.returncode}:\n"
-                     f"{run.process.stdout.read()}")
+                     f"{run.output.read_text(encoding='utf-8', errors='replace')}")
         fault = chance.choice(args.faults)
         service = ""
         if fault in ("kill", "stop"):  # in turn: one that was killed twice within 5 s is restarted later

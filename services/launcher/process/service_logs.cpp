@@ -56,6 +56,7 @@ std::vector<std::string> reason_lines(const std::vector<std::string>& tail) {
 void ServiceLogs::add(const std::string& service, const std::string& line) {
   Log& log = logs_[service];
   if (!log.file.is_open()) log.file.open(path(service), std::ios::trunc);
+  log.file.clear();  // a disk that was full may have room again
   log.file << line << '\n' << std::flush;
   log.tail.add(line);
   if (!muted_ && level_of(line) != LogLevel::kInfo) show(service, log, line);

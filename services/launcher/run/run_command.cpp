@@ -3,6 +3,7 @@
 #include "services/launcher/run/run_command.hpp"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -28,10 +29,17 @@ namespace {
 
 constexpr std::chrono::milliseconds kEndOfBus{4000};
 
+/// A pipe that nobody reads is full after 64 kB, a terminal after Ctrl-S.
+bool takes_line(int fd) {
+  pollfd output{fd, POLLOUT, 0};
+  return poll(&output, 1, 0) != 0;
+}
+
 Terminal open_terminal(bool quiet) {
   Terminal::Options options;
   options.interactive = isatty(STDERR_FILENO) == 1;
   options.quiet = quiet;
+  options.has_room = [] { return takes_line(STDERR_FILENO); };
   winsize size{};
   if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20) options.columns = size.ws_col;
   return Terminal(std::cerr, options);

@@ -138,6 +138,20 @@ TEST_F(SupervisedRunTest, a_crashed_service_is_restarted_and_the_report_says_why
                             HasSubstr("filter restarted (1st time)")));
 }
 
+TEST_F(SupervisedRunTest, services_are_restarted_although_nobody_reads_what_the_run_prints) {
+  const std::string lives = scratch_ / "lives";
+  script("filter", "echo one >> " + lives + "; sleep 0.05; kill -SEGV $$");
+  script("camera", "sleep 6");
+  std::string line = "exec '" + (scratch_ / "bin/rtd") + "'";
+  for (const std::string& argument : arguments({"--set", "launcher.max_restarts=100", "launcher.first_backoff_ms=0"}))
+    line += " '" + argument + "'";
+  // A pipe that is full but for one page: dd fills it, and its reader sleeps.
+  line = "{ dd if=/dev/zero bs=4096 count=15 status=none >&2; " + line + "; } 2>&1 >/dev/null | sleep 10";
+  RtdCommand shell("/bin/sh");
+  EXPECT_EQ(shell.run({"-c", line}), 0);
+  EXPECT_GT(text_of(lives).size(), 20 * std::string("one\n").size());
+}
+
 TEST_F(SupervisedRunTest, a_service_that_keeps_dying_fails_the_run) {
   script("slam", "exit 3");
   script("camera", kServe);

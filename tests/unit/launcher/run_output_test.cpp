@@ -57,6 +57,20 @@ TEST(terminal, quiet_shows_warnings_only) {
   EXPECT_EQ(out.str(), "slam died\n");
 }
 
+TEST(terminal, leaves_out_what_nobody_reads_and_says_so) {
+  std::ostringstream out;
+  bool room = true;
+  Terminal terminal(out, {false, false, 80, [&] { return room; }});
+  terminal.warn("filter died");
+  room = false;
+  terminal.warn("slam died");
+  terminal.status("frame 1", milliseconds(0));
+  terminal.warn("dense died");
+  room = true;
+  terminal.warn("camera died");
+  EXPECT_EQ(out.str(), "filter died\n  (2 messages left out, because the output was not read)\ncamera died\n");
+}
+
 TEST(usage_book, adds_cpu_time_over_all_lives_and_keeps_the_highest_peak) {
   UsageBook book;
   book.add_sample("slam", 100);

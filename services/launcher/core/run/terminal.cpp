@@ -14,12 +14,22 @@ void Terminal::print(const std::string& line) {
 }
 
 void Terminal::warn(const std::string& line) {
+  if (!takes_line()) {
+    ++left_out_;
+    return;
+  }
   clear_status();
+  if (left_out_ > 0) out_ << "  (" << left_out_ << " messages left out, because the output was not read)\n";
+  left_out_ = 0;
   out_ << line << '\n' << std::flush;
 }
 
+bool Terminal::takes_line() {
+  return !options_.has_room || options_.has_room();
+}
+
 void Terminal::status(const std::string& line, std::chrono::milliseconds now) {
-  if (options_.quiet || now < next_ || line == shown_) return;
+  if (options_.quiet || now < next_ || line == shown_ || !takes_line()) return;
   next_ = now + (options_.interactive ? kRewriteEvery : kRepeatEvery);
   shown_ = line;
   if (options_.interactive) {

@@ -3,22 +3,26 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <ostream>
 #include <string>
+#include <utility>
 
 namespace rtd::launcher {
 
 /// Output of a run: messages, and one status line that is updated in place on a terminal and repeated every two seconds
-/// elsewhere. Time comes in as an argument. Not thread-safe.
+/// elsewhere. Lines that the stream has no room for are left out and counted: a run must not stand still because nobody
+/// reads what it prints. Time comes in as an argument. Not thread-safe.
 class Terminal {
  public:
   struct Options {
     bool interactive = false;  ///< the stream is a terminal
     bool quiet = false;        ///< only warnings
     std::size_t columns = 100;
+    std::function<bool()> has_room = {};  ///< whether the stream takes a line without a wait; empty: always
   };
 
-  Terminal(std::ostream& out, Options options) : out_(out), options_(options) {}
+  Terminal(std::ostream& out, Options options) : out_(out), options_(std::move(options)) {}
 
   void print(const std::string& line);  ///< not shown when quiet
   void warn(const std::string& line);   ///< always shown
@@ -27,10 +31,13 @@ class Terminal {
   void end_status();
 
  private:
+  bool takes_line();
   void clear_status();
+
   std::ostream& out_;
   Options options_;
   std::string shown_;
+  int left_out_ = 0;  ///< messages since the last one that was shown
   std::chrono::milliseconds next_{};
 };
 
