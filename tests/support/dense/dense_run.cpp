@@ -88,6 +88,7 @@ DenseReport run_dense(const DenseOptions& options) {
   const auto source = camera::make_source(options.source);
   const auto front_end = make_front_end(options.front_end);
   slam::SlamConfig slam_config;
+  slam_config.techniques.loop_closing = options.close_loops;
   if (options.grid) slam_config.first_pose = source->groundtruth().front().T_world_body;
   slam::SlamSystem slam(slam_config, slam::MappingMode::kSynchronous, service::monotonic_ns);
   dense::StaticMap map(options.map);

@@ -18,6 +18,7 @@ struct DenseOptions {
   std::string source;         ///< URI; with masks if ghosts are measured
   FrontEndOptions front_end;  ///< mode true-mask: the map is given the true mask too
   bool use_masks = true;      ///< false: the map does not know what moves
+  bool close_loops = true;    ///< slam does
   dense::DenseConfig map;
   bool grid = false;  ///< make a floor plan too, in the world of the true poses: the first of them is told to slam
   dense::NavigationConfig navigation;

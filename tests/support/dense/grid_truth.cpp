@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/dense/grid_truth.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 
@@ -17,19 +18,29 @@ using camera::synthetic::Geometry;
 constexpr int kAll = 25;
 constexpr float kWallsM = 1.0F;  // of the plan around the room
 
+Eigen::AlignedBox3f static_extent(const Geometry& geometry) {
+  Eigen::AlignedBox3f extent;
+  for (const Face& face : geometry.faces) {
+    if (face.moving) continue;
+    extent.extend(face.origin);
+    extent.extend(face.origin + face.width_m * face.axis_s + face.height_m * face.axis_t);
+  }
+  return extent;
+}
+
 }  // namespace
 
 GridTruth::GridTruth(const std::string& source, double cell_m, const dense::RobotHeights& heights)
     : cell_m_(cell_m), heights_(heights) {
   const camera::SyntheticOptions options = camera::parse_synthetic_options(camera::parse_source_uri(source));
   const camera::synthetic::Scene scene(options.scene, options.seed);
-  const float half_x = camera::synthetic::kRoomWidthM / 2 + kWallsM,
-              half_y = camera::synthetic::kRoomDepthM / 2 + kWallsM;
-  const auto cell = static_cast<float>(cell_m);
-  first_ = {static_cast<int>(std::floor(-half_x / cell)), static_cast<int>(std::floor(-half_y / cell))};
-  columns_ = -2 * first_.x(), rows_ = -2 * first_.y();
-  cells_.resize(static_cast<std::size_t>(columns_ * rows_));
   const Geometry room = scene.geometry_at(0);
+  const Eigen::AlignedBox3f extent = static_extent(room);
+  const auto cell = static_cast<float>(cell_m);
+  first_ = ((extent.min().head<2>().array() - kWallsM) / cell).floor().cast<int>();
+  const Eigen::Array2i end = ((extent.max().head<2>().array() + kWallsM) / cell).ceil().cast<int>();
+  columns_ = end.x() - first_.x(), rows_ = end.y() - first_.y();
+  cells_.resize(static_cast<std::size_t>(columns_ * rows_));
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
       for (int i = 0; i < kSamples * kSamples; ++i) {
