@@ -142,7 +142,7 @@ void FilterService::process(Work work) {
   writer_.write(*message_);
   // After the features: slam's pose waits for them, not for the mask. Costs nothing without a subscriber.
   if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result, runtime_.bus.frame(kCameraFrame)));
-  if (movers_.wanted()) movers_.add(frame.seq, frame.stamp_ns, filter_.sight_objects(result));
+  if (movers_.wanted()) movers_.add(frame.seq, frame.stamp_ns, filter_.sight_objects(image, result));
   ++published_;
   count(result);
 }

@@ -56,9 +56,10 @@ class DynamicFilter {
   Extraction extract(const vision::RgbdImage& image);
   FilterResult judge(const vision::RgbdImage& image, Extraction extraction, const DetectorUpdate& detector);
 
-  /// The objects of the frame that was judged last, with this result. For people who watch, not for features.
-  std::vector<ObjectSighting> sight_objects(const FilterResult& result) const {
-    return filter::sight_objects(result.objects, result, grid_, sampler_.rays());
+  /// The objects of the frame that was judged last, with its image and result. For people who watch, not for features.
+  std::vector<ObjectSighting> sight_objects(const vision::RgbdImage& image, const FilterResult& result) const {
+    const auto color_bgr = [&](std::size_t cell) { return sampler_.color_bgr(image, cell); };
+    return filter::sight_objects(result.objects, result, {grid_, sampler_.rays(), color_bgr});
   }
 
   /// slam's pose of an earlier frame: corrects the pose of its view and of later ones.

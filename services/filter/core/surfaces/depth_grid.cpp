@@ -91,4 +91,16 @@ DepthGrid DepthGridSampler::sample(const vision::RgbdImage& image) {
   return grid;
 }
 
+cv::Vec3b DepthGridSampler::color_bgr(const vision::RgbdImage& image, std::size_t cell) const {
+  cv::Vec3i sum(0, 0, 0);
+  int count = 0;
+  for (std::size_t k = 0; k < kSamples; ++k) {
+    const int pixel = pixels_[cell * kSamples + k];
+    if (pixel < 0) continue;
+    sum += cv::Vec3i(image.color_bgr.at<cv::Vec3b>(pixel / size_.width, pixel % size_.width));
+    ++count;
+  }
+  return count > 0 ? cv::Vec3b(sum / count) : cv::Vec3b(0, 0, 0);
+}
+
 }  // namespace rtd::filter

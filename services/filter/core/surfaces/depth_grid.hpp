@@ -57,6 +57,8 @@ class DepthGridSampler {
   DepthGridSampler(double min_depth_m, double max_depth_m) : min_depth_m_(min_depth_m), max_depth_m_(max_depth_m) {}
 
   DepthGrid sample(const vision::RgbdImage& image);
+  /// Mean colour of a cell, for an image like the last one; black outside of it.
+  cv::Vec3b color_bgr(const vision::RgbdImage& image, std::size_t cell) const;
   /// Viewing rays of the cell centres at z = 1, for the camera of the last image.
   const std::vector<Eigen::Vector3f>& rays() const { return rays_; }
 

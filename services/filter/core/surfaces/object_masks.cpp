@@ -20,12 +20,6 @@ bool is_box(const vision::Detection& box) {
   return box.width_px > 0 && box.height_px > 0;
 }
 
-/// A box in cells, ends excluded.
-struct CellBox {
-  int left, top, right, bottom;
-  bool contains(int column, int row) const { return column >= left && column < right && row >= top && row < bottom; }
-};
-
 std::optional<CellBox> to_cells(const vision::Detection& box, const geometry::CameraModel& camera,
                                 const GridShape& shape) {
   if (!is_box(box)) return std::nullopt;
@@ -259,7 +253,7 @@ std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const
     const std::optional<CellBox> box = level ? to_cells(detection, camera, grid.shape) : std::nullopt;
     if (!box) continue;
     SceneObject object{detection.class_name, detection.score,  *level,       {}, false,
-                       from.track_id,        from.track_age_s, from.carried, {}};
+                       from.track_id,        from.track_age_s, from.carried, {}, *box};
     const auto inside = config.whole_boxes ? std::vector<ClusterInBox>{} : clusters_in(*box, grid, clusters);
     const bool depth_known = from.carried && from.depth_m > 0;
     const ClusterInBox* cluster = depth_known ? cluster_at_depth(inside, from.depth_m, config.max_object_depth_m)

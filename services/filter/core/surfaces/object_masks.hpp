@@ -19,6 +19,12 @@ namespace rtd::filter {
 using vision::MotionLevel;
 using vision::MotionLevels;
 
+/// A box in cells, ends excluded.
+struct CellBox {
+  int left = 0, top = 0, right = 0, bottom = 0;
+  bool contains(int column, int row) const { return column >= left && column < right && row >= top && row < bottom; }
+};
+
 /// One object of this frame: a detection with the cells that it covers.
 struct SceneObject {
   std::string class_name;
@@ -30,6 +36,7 @@ struct SceneObject {
   double track_age_s = 0;  ///< since it was seen first
   bool carried = false;    ///< not detected in this frame, but carried by its track
   std::vector<int> holes;  ///< ascending; cells of its box that touch it and have no depth: hair, dark clothes
+  CellBox box;             ///< of the detection
 };
 
 /// Every cell that an object covers, measured or not.

@@ -1,28 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-/// What one frame shows of each object: sight_objects().
+#include "services/filter/core/tracks/object_sighting.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "services/filter/core/tracks/world_movers.hpp"
-
 namespace rtd::filter {
 namespace {
 
-constexpr std::size_t kEnoughPoints = 300;  // every n-th cell of a large surface
-constexpr double kSeenLatelyS = 0.2;        // movers without a class: longer out of sight is only expected
-constexpr double kMoves = 0.5;              // static probability below which an object of a lower level counts
+constexpr std::size_t kEnoughPoints = 300, kEnoughMoving = 600;  // every n-th cell of a large surface
+constexpr double kSeenLatelyS = 0.2;  // movers without a class: longer out of sight is only expected
+constexpr double kMoves = 0.5;        // static probability below which an object of a lower level counts
 
-std::vector<Eigen::Vector3d> points_of(const std::vector<int>& cells, const DepthGrid& grid,
-                                       const std::vector<Eigen::Vector3f>& rays) {
-  std::vector<Eigen::Vector3d> points_m;
-  const std::size_t step = 1 + cells.size() / kEnoughPoints;
+std::vector<SeenPoint> points_of(const std::vector<int>& cells, const SeenCells& seen, std::size_t enough) {
+  std::vector<SeenPoint> points;
+  const std::size_t step = 1 + cells.size() / enough;
   for (std::size_t i = 0; i < cells.size(); i += step) {
     const auto cell = static_cast<std::size_t>(cells[i]);
-    if (grid.depth_m[cell] > 0) points_m.push_back((rays[cell] * grid.depth_m[cell]).cast<double>());
+    const float depth_m = seen.grid.depth_m[cell];
+    if (depth_m > 0) points.push_back({(seen.rays[cell] * depth_m).cast<double>(), tint_of(seen.color_bgr(cell))});
   }
-  return points_m;
+  return points;
 }
 
 /// Of the features on an object; of its cells when it has none.
@@ -43,12 +42,26 @@ double static_probability_of(std::size_t index, const SceneObject& object, const
 
 /// Cells of which the depth lies within a box in space.
 std::vector<int> cells_in(const Eigen::AlignedBox3d& box_world, const Eigen::Isometry3d& T_world_camera,
-                          const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays) {
+                          const SeenCells& seen) {
+  const std::vector<float>& depth_m = seen.grid.depth_m;
   std::vector<int> cells;
-  for (std::size_t cell = 0; cell < grid.depth_m.size(); ++cell) {
-    if (grid.depth_m[cell] <= 0) continue;
-    const Eigen::Vector3d p_camera = (rays[cell] * grid.depth_m[cell]).cast<double>();
+  for (std::size_t cell = 0; cell < depth_m.size(); ++cell) {
+    if (depth_m[cell] <= 0) continue;
+    const Eigen::Vector3d p_camera = (seen.rays[cell] * depth_m[cell]).cast<double>();
     if (box_world.contains(T_world_camera * p_camera)) cells.push_back(static_cast<int>(cell));
+  }
+  return cells;
+}
+
+/// Cells in a box that move, or belong to something that may.
+std::vector<int> moving_cells_of(const CellBox& box, const GridShape& shape, const std::vector<CellMotion>& motion) {
+  std::vector<int> cells;
+  if (motion.empty()) return cells;
+  for (int row = box.top; row < box.bottom; ++row) {
+    for (int column = box.left; column < box.right; ++column) {
+      const int cell = shape.index(column, row);
+      if (motion[static_cast<std::size_t>(cell)] == CellMotion::kDynamic) cells.push_back(cell);
+    }
   }
   return cells;
 }
@@ -76,22 +89,19 @@ bool is_cut(const std::vector<int>& cells, int direction, const DepthGrid& grid)
   return cut > kShare * rows;
 }
 
-void see_surface(const std::vector<int>& cells, const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
-                 ObjectSighting& sighting) {
-  sighting.points_m = points_of(cells, grid, rays);
-  sighting.cut_left = is_cut(cells, -1, grid);
-  sighting.cut_right = is_cut(cells, 1, grid);
-}
-
 }  // namespace
 
 std::vector<ObjectSighting> sight_objects(const std::vector<SceneObject>& objects, const Verdict& verdict,
-                                          const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays) {
+                                          const SeenCells& seen) {
   constexpr double kMarginM = 0.05;
   std::vector<ObjectSighting> sightings;
-  const auto add = [&](ObjectSighting sighting, const std::vector<int>& cells) {
-    see_surface(cells, grid, rays, sighting);
-    if (!sighting.points_m.empty()) sightings.push_back(std::move(sighting));
+  const auto add = [&](ObjectSighting sighting, const std::vector<int>& cells, const std::vector<int>& moving) {
+    sighting.points = points_of(cells, seen, kEnoughPoints);
+    if (sighting.points.empty()) return;
+    sighting.moving = points_of(moving, seen, kEnoughMoving);
+    sighting.cut_left = is_cut(cells, -1, seen.grid);
+    sighting.cut_right = is_cut(cells, 1, seen.grid);
+    sightings.push_back(std::move(sighting));
   };
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const SceneObject& object = objects[i];
@@ -102,15 +112,15 @@ std::vector<ObjectSighting> sight_objects(const std::vector<SceneObject>& object
          .class_name = object.class_name,
          .score = static_cast<double>(object.score),
          .static_probability = probability},
-        object.cells);
+        object.cells, moving_cells_of(object.box, seen.grid.shape, verdict.motion));
   }
   for (const Mover& mover : verdict.movers) {
     if (mover.unseen_s > kSeenLatelyS) continue;
     Eigen::AlignedBox3d box = mover.extent_world;
     box.min().array() -= kMarginM;
     box.max().array() += kMarginM;
-    add({.source = 2 * static_cast<std::uint32_t>(mover.id) + 1, .score = 1},
-        cells_in(box, verdict.T_world_camera, grid, rays));
+    const std::vector<int> cells = cells_in(box, verdict.T_world_camera, seen);
+    add({.source = 2 * static_cast<std::uint32_t>(mover.id) + 1, .score = 1}, cells, cells);
   }
   return sightings;
 }

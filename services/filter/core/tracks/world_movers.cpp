@@ -4,11 +4,11 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "common/vision/samples.hpp"
 #include "services/filter/core/tracks/assignment.hpp"
 
 namespace rtd::filter {
@@ -16,11 +16,7 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Points = std::vector<Vector3d>;
-
-// How things are built: of the smaller side across the view, because no back is seen.
-constexpr double kThickness = 0.6, kBoxThickness = 1.3;
-constexpr double kUpperBody = 0.6;  // share of what is seen of a person, from above: legs swing
+using SeenPoints = std::vector<SeenPoint>;
 
 // How well they are seen, m; docs/theory/dynamic_points.md section 7.
 constexpr double kSigmaAcrossM = 0.04, kSigmaAlongM = 0.05;
@@ -32,36 +28,9 @@ constexpr double kSpeedShare = 0.5;  // of the filter's deviation: nobody turns 
 // How they move.
 constexpr double kAcceleration_m_s2 = 0.7, kFirstSpeed_m_s = 1;
 constexpr double kForgetS = 1.0;
-constexpr double kSamePlaceM = 0.25;  // two bodies are never so near
+constexpr double kSamePlaceM = 0.35;  // two bodies are never so near
 constexpr int kFewHits = 10;
-
-/// The interval without the outer twentieths of what lies along a direction.
-std::pair<double, double> spread_along(const Points& points, const Vector3d& direction) {
-  std::vector<double> values;
-  values.reserve(points.size());
-  for (const Vector3d& point : points) values.push_back(point.dot(direction));
-  return vision::spread(values);
-}
-
-double median_along(const Points& points, const Vector3d& direction) {
-  std::vector<double> values;
-  values.reserve(points.size());
-  for (const Vector3d& point : points) values.push_back(point.dot(direction));
-  return vision::median(std::move(values));
-}
-
-double width(const std::pair<double, double>& spread) {
-  return spread.second - spread.first;
-}
-
-Points upper_part(const Points& points_camera, const Points& points_world, double share) {
-  const auto [top, bottom] = spread_along(points_camera, Vector3d::UnitY());
-  Points upper;
-  for (std::size_t i = 0; i < points_camera.size(); ++i) {
-    if (points_camera[i].y() <= top + share * (bottom - top)) upper.push_back(points_world[i]);
-  }
-  return upper;
-}
+constexpr double kMost = 0.5;  // of the points of a surface
 
 /// Of a direction: more along it than across.
 Matrix3d noise(const Vector3d& along, double sigma_across_m, double sigma_along_m) {
@@ -69,101 +38,63 @@ Matrix3d noise(const Vector3d& along, double sigma_across_m, double sigma_along_
   return across * Matrix3d::Identity() + extra * along * along.transpose();
 }
 
-}  // namespace
+ObjectSighting without_points(const ObjectSighting& sighting) {
+  return {.source = sighting.source,
+          .class_name = sighting.class_name,
+          .score = sighting.score,
+          .static_probability = sighting.static_probability};
+}
 
-struct WorldMovers::Look {
-  Vector3d view;               ///< from the camera, unit
-  Vector3d right;              ///< across the view, unit
-  Vector3d surface;            ///< middle of what is seen
-  Vector3d body;               ///< middle of what moves as one, behind the surface
-  Eigen::AlignedBox3d extent;  ///< as thick as things of its size are
-  double width_m = 0;          ///< across
-  double thickness = 0;        ///< of its width
-  bool covers(const Vector3d& p) const {
-    constexpr double kMarginM = 0.1;
-    return extent.exteriorDistance(p) < kMarginM;
+/// Where the points of a body are expected. For a point, how far it lies from there: its distance from the surface in
+/// metres, more for a tint that the body hardly has, up to 0.4 m.
+struct Expectation {
+  Vector3d body;
+  Vector3d down = Vector3d::Zero();  ///< of somebody upright, else 0: heights do not count
+  double reach_m = 0;
+  std::array<double, kTints> far_m{};  ///< by tint
+  double away_m(const Vector3d& p_world, std::uint8_t tint) const {
+    const Vector3d away = p_world - body;
+    return (away - down * down.dot(away)).norm() - reach_m + far_m[tint];
   }
 };
 
-namespace {
-
-/// Without what lies far before or behind the middle of the others: the mask of an object also has cells of what it
-/// covers and of what covers it.
-Points one_surface(const Points& points_camera) {
-  constexpr double kLimitM = 0.4;  // a person with arms stretched out along the view
-  const double middle_m = median_along(points_camera, Vector3d::UnitZ());
-  Points surface;
-  for (const Vector3d& point : points_camera) {
-    if (std::abs(point.z() - middle_m) <= kLimitM) surface.push_back(point);
+/// Index of the one that a point belongs to; -1 = none.
+int owner_of(const Vector3d& p_world, std::uint8_t tint, const std::vector<Expectation>& expected) {
+  constexpr double kFarthestM = 0.4;
+  double nearest_m = kFarthestM;
+  int owner = -1;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const double away_m = expected[i].away_m(p_world, tint);
+    if (away_m >= nearest_m) continue;
+    nearest_m = away_m;
+    owner = static_cast<int>(i);
   }
-  return surface;
-}
-
-WorldMovers::Look look_at(const ObjectSighting& sighting, const Eigen::Isometry3d& T_world_camera) {
-  const bool person = !sighting.class_name.empty();
-  WorldMovers::Look look;
-  const Points surface = one_surface(sighting.points_m);
-  Points points;
-  points.reserve(surface.size());
-  for (const Vector3d& point : surface) points.emplace_back(T_world_camera * point);
-  for (int axis = 0; axis < 3; ++axis) look.surface[axis] = median_along(points, Vector3d::Unit(axis));
-  for (int axis = 0; axis < 3; ++axis)
-    std::tie(look.extent.min()[axis], look.extent.max()[axis]) = spread_along(points, Vector3d::Unit(axis));
-  look.view = (look.extent.center() - T_world_camera.translation()).normalized();
-  const Vector3d camera_right = T_world_camera.linear().col(0);
-  look.right = (camera_right - look.view * look.view.dot(camera_right)).normalized();
-  look.width_m = width(spread_along(points, look.right));
-  const double height_m = width(spread_along(points, look.view.cross(look.right)));
-  look.thickness = person ? kThickness : kBoxThickness;
-  const double thickness_m = look.thickness * std::min(look.width_m, height_m);
-  const double hidden_m = thickness_m - width(spread_along(points, look.view));
-  if (hidden_m > 0) look.extent.extend(look.extent.translated(hidden_m * look.view));
-  if (!person) {
-    look.body = look.extent.center();
-    return look;
-  }
-  const Points upper = upper_part(surface, points, kUpperBody);
-  for (int axis = 0; axis < 3; ++axis) look.body[axis] = median_along(upper, Vector3d::Unit(axis));
-  look.body += 0.5 * thickness_m * look.view;
-  return look;
+  return owner;
 }
 
 }  // namespace
+
+/// What a frame shows of the tracks.
+struct WorldMovers::View {
+  const std::vector<ObjectSighting>& sightings;
+  Eigen::Isometry3d T_world_camera;
+  std::vector<ObjectLook> looks;                ///< at the surface of each sighting
+  std::vector<std::vector<double>> share;       ///< [sighting][track]: of this surface's points
+  std::vector<std::vector<SeenPoints>> moving;  ///< [sighting][track]: of what moves in the box
+  std::vector<char> taken;                      ///< per sighting: a track has it
+};
 
 std::vector<WorldMover> WorldMovers::place(std::int64_t stamp_ns, const Eigen::Isometry3d& T_world_camera,
                                            const std::vector<ObjectSighting>& sightings) {
   predict(stamp_ns);
-  place_objects(T_world_camera, sightings);
+  View view = look_around(T_world_camera, sightings);
+  follow(view);
+  recognise(view);
+  start_others(view);
   std::erase_if(tracks_, forgotten);
   std::vector<WorldMover> movers;
   for (const Track& track : tracks_) movers.push_back(to_mover(track));
   return movers;
-}
-
-void WorldMovers::place_objects(const Eigen::Isometry3d& T_world_camera, const std::vector<ObjectSighting>& all) {
-  std::vector<ObjectSighting> sightings;
-  std::vector<Look> looks;
-  for (const ObjectSighting& sighting : all) {  // those with a class first
-    const Look look = look_at(sighting, T_world_camera);
-    const bool known = std::ranges::any_of(looks, [&](const Look& other) {
-      return (sighting.class_name.empty() && other.covers(look.surface)) ||
-             (other.body - look.body).norm() < kSamePlaceM;
-    });
-    if (known) continue;  // has a class too, or the mask of one behind it lies on it
-    looks.push_back(look);
-    sightings.push_back(sighting);
-  }
-  const std::vector<int> look_of = assign_looks(sightings, looks);
-  std::vector<char> taken(looks.size(), 0);
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (look_of[i] < 0) continue;
-    const auto j = static_cast<std::size_t>(look_of[i]);
-    taken[j] = 1;
-    update(tracks_[i], sightings[j], looks[j]);
-  }
-  for (std::size_t j = 0; j < looks.size(); ++j) {
-    if (taken[j] == 0) tracks_.push_back(start(now_ns_, sightings[j], looks[j]));
-  }
 }
 
 void WorldMovers::predict(std::int64_t stamp_ns) {
@@ -185,38 +116,154 @@ void WorldMovers::predict(std::int64_t stamp_ns) {
   }
 }
 
-/// By where each is expected; the filter's own tracks tell those apart that are near each other.
-std::vector<int> WorldMovers::assign_looks(const std::vector<ObjectSighting>& sightings,
-                                           const std::vector<Look>& looks) const {
-  constexpr double kMaxGateM = 1.5;
-  CostMatrix costs(static_cast<int>(tracks_.size()), static_cast<int>(looks.size()));
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    for (std::size_t j = 0; j < looks.size(); ++j)
-      costs.at(static_cast<int>(i), static_cast<int>(j)) = cost_of(tracks_[i], sightings[j], looks[j]);
-  }
-  return assign(costs, kMaxGateM);
+WorldMovers::View WorldMovers::look_around(const Eigen::Isometry3d& T_world_camera,
+                                           const std::vector<ObjectSighting>& sightings) const {
+  View view{sightings, T_world_camera, {}, {}, {}, std::vector<char>(sightings.size(), 0)};
+  for (const ObjectSighting& sighting : sightings) view.looks.push_back(look_at(sighting, T_world_camera));
+  share_out(view);
+  return view;
 }
 
-double WorldMovers::cost_of(const Track& track, const ObjectSighting& sighting, const Look& look) {
+/// Each point to the body that it is expected of.
+void WorldMovers::share_out(View& view) const {
+  constexpr double kFarPerDecadeM = 0.2, kHardly = 0.01;  // metres for a tenth as much of a tint
+  constexpr double kNotSeenM = 0.05, kLatelyS = 0.1;      // in doubt, a point is of somebody in view
+  std::vector<Expectation> expected;
+  for (const Track& track : tracks_) {
+    const bool upright = !track.last.class_name.empty();
+    Expectation& of = expected.emplace_back(Expectation{.body = track.state.head<3>()});
+    if (upright) of.down = view.T_world_camera.linear().col(1);
+    of.reach_m = 0.5 * (upright ? track.width_m : track.size_m.mean());
+    if (track.unseen_s() > kLatelyS) of.reach_m -= kNotSeenM;
+    for (int tint = 0; tint < kTints; ++tint)
+      of.far_m[static_cast<std::size_t>(tint)] = -kFarPerDecadeM * std::log10(track.tints[tint] + kHardly);
+  }
+  const auto owner = [&](const SeenPoint& point) {
+    return owner_of(view.T_world_camera * point.p_camera_m, point.tint, expected);
+  };
+  for (const ObjectSighting& sighting : view.sightings) {
+    std::vector<double>& share = view.share.emplace_back(tracks_.size(), 0.0);
+    for (const SeenPoint& point : sighting.points) {
+      if (const int of = owner(point); of >= 0)
+        share[static_cast<std::size_t>(of)] += 1.0 / static_cast<double>(sighting.points.size());
+    }
+    std::vector<SeenPoints>& moving = view.moving.emplace_back(tracks_.size());
+    for (const SeenPoint& point : sighting.moving) {
+      if (const int of = owner(point); of >= 0) moving[static_cast<std::size_t>(of)].push_back(point);
+    }
+  }
+}
+
+/// A track in a sighting: its surface, if that is where the track is expected and not of another one; else what the
+/// track has of the rest. Of two boxes that overlap in the image, both show the nearer body's surface.
+std::optional<ObjectLook> WorldMovers::look_for(std::size_t track, std::size_t sighting, const View& view) const {
+  constexpr double kLatelyS = 0.3;
+  constexpr int kSomeHits = 3;
+  constexpr std::size_t kFewPoints = 25;
+  const ObjectSighting& seen = view.sightings[sighting];
+  bool of_another = false;
+  for (std::size_t k = 0; k < view.share[sighting].size(); ++k) {
+    const bool in_view = tracks_[k].unseen_s() < kLatelyS && tracks_[k].hits >= kSomeHits;
+    of_another = of_another || (k != track && in_view && view.share[sighting][k] >= kMost);
+  }
+  if (!of_another && std::isfinite(cost_of(tracks_[track], seen, view.looks[sighting]))) return view.looks[sighting];
+  const SeenPoints& rest = view.moving[sighting][track];
+  if (rest.size() < kFewPoints) return std::nullopt;
+  return look_at(rest, !seen.class_name.empty(), view.T_world_camera);
+}
+
+/// Tracks where they are expected.
+void WorldMovers::follow(View& view) {
+  constexpr double kMaxGateM = 1.5;
+  const std::size_t tracks = tracks_.size(), sightings = view.sightings.size();
+  CostMatrix costs(static_cast<int>(tracks), static_cast<int>(sightings));
+  std::vector<std::vector<std::optional<ObjectLook>>> looks(tracks);
+  for (std::size_t i = 0; i < tracks; ++i) {
+    for (std::size_t j = 0; j < sightings; ++j) {
+      const auto& look = looks[i].emplace_back(look_for(i, j, view));
+      if (look) costs.at(static_cast<int>(i), static_cast<int>(j)) = cost_of(tracks_[i], view.sightings[j], *look);
+    }
+  }
+  const std::vector<int> sighting_of = assign(costs, kMaxGateM);
+  for (std::size_t i = 0; i < tracks; ++i) {
+    if (sighting_of[i] < 0) continue;
+    const auto j = static_cast<std::size_t>(sighting_of[i]);
+    view.taken[j] = 1;
+    update(tracks_[i], view.sightings[j], *looks[i][j]);
+  }
+}
+
+/// By place, colour and class; the filter's own tracks tell those apart that are near each other.
+double WorldMovers::cost_of(const Track& track, const ObjectSighting& sighting, const ObjectLook& look) {
   constexpr double kGateM = 0.4, kYoungM = 0.3, kGateGrowth_m_s = 0.8;
-  constexpr double kOtherSourceM = 0.2, kNoClassM = 0.1, kOtherClassM = 0.3;
+  constexpr double kOtherSourceM = 0.2, kNoClassM = 0.1, kOtherClassM = 0.3, kUnlikeM = 1;
   const double apart_m = (look.body - track.state.head<3>()).norm();
   const double gate_m = kGateM + (track.hits < kFewHits ? kYoungM : 0) + kGateGrowth_m_s * track.unseen_s();
   if (apart_m > gate_m) return std::numeric_limits<double>::infinity();
-  double cost = apart_m;
+  double cost = apart_m + kUnlikeM * unlike(look.tints, track.tints);
   if (sighting.source != track.last.source) cost += kOtherSourceM;
   const std::string &seen = sighting.class_name, &known = track.last.class_name;
   if (seen != known) cost += seen.empty() || known.empty() ? kNoClassM : kOtherClassM;
   return cost;
 }
 
-void WorldMovers::update(Track& track, const ObjectSighting& sighting, const Look& look) {
-  constexpr double kNewShare = 0.1, kSlowShare = 0.02;
+/// Tracks elsewhere: what would be new but has the colours of one that is missing and could have come here.
+void WorldMovers::recognise(View& view) {
+  constexpr double kUnlike = 0.2, kNearM = 1, kSpeed_m_s = 1.5;
+  constexpr double kCostPerM = 0.2, kNoLimit = 10;
+  CostMatrix costs(static_cast<int>(tracks_.size()), static_cast<int>(view.sightings.size()));
+  for (std::size_t j = 0; j < view.sightings.size(); ++j) {
+    if (!is_new(j, view)) continue;
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      const Track& track = tracks_[i];
+      if (track.unseen_s() <= 0 || track.hits < kFewHits) continue;
+      const double different = unlike(track.tints, view.looks[j].tints);
+      const double apart_m = (track.state.head<3>() - view.looks[j].body).norm();
+      if (different < kUnlike && apart_m < kNearM + kSpeed_m_s * track.unseen_s())
+        costs.at(static_cast<int>(i), static_cast<int>(j)) = different + kCostPerM * apart_m;
+    }
+  }
+  const std::vector<int> sighting_of = assign(costs, kNoLimit);
+  for (std::size_t i = 0; i < sighting_of.size(); ++i) {
+    if (sighting_of[i] < 0) continue;
+    const auto j = static_cast<std::size_t>(sighting_of[i]);
+    view.taken[j] = 1;
+    put(tracks_[i], view.looks[j]);
+    update(tracks_[i], view.sightings[j], view.looks[j]);
+  }
+}
+
+void WorldMovers::start_others(View& view) {
+  for (std::size_t j = 0; j < view.sightings.size(); ++j) {
+    if (is_new(j, view)) tracks_.push_back(start(view.sightings[j], view.looks[j]));
+  }
+}
+
+/// A surface that no track in view explains: it neither consists of points of theirs nor lies where one is, and a mover
+/// without a class is not part of something with one.
+bool WorldMovers::is_new(std::size_t sighting, const View& view) const {
+  if (view.taken[sighting] != 0) return false;
+  double known = 0;
+  for (std::size_t i = 0; i < view.share[sighting].size(); ++i) {
+    if (tracks_[i].unseen_s() <= 0) known += view.share[sighting][i];
+  }
+  const ObjectLook& look = view.looks[sighting];
+  const bool near = std::ranges::any_of(tracks_, [&](const Track& track) {
+    return track.unseen_s() <= 0 && (track.state.head<3>() - look.body).norm() < kSamePlaceM;
+  });
+  bool part = false;
+  for (std::size_t k = 0; k < view.sightings.size() && view.sightings[sighting].class_name.empty(); ++k)
+    part = part || (!view.sightings[k].class_name.empty() && view.looks[k].covers(look.surface));
+  return known <= kMost && !near && !part;
+}
+
+void WorldMovers::update(Track& track, const ObjectSighting& sighting, const ObjectLook& look) {
+  constexpr double kNewShare = 0.1, kSlowShare = 0.02, kTintShare = 0.1;
   constexpr double kWholeShare = 0.75;
-  const bool cut = sighting.cut_left || sighting.cut_right || look.width_m < kWholeShare * track.width_m;
+  const bool cut = look.cut_left || look.cut_right || look.width_m < kWholeShare * track.width_m;
   const double hidden_m = cut ? std::max(0.0, track.width_m - look.width_m) : 0;
   Vector3d body = look.body + 0.5 * look.thickness * hidden_m * look.view;
-  if (sighting.cut_left != sighting.cut_right) body += (sighting.cut_right ? 0.5 : -0.5) * hidden_m * look.right;
+  if (look.cut_left != look.cut_right) body += (look.cut_right ? 0.5 : -0.5) * hidden_m * look.right;
   const Vector3d jump = body - track.state.head<3>();
   const double far = jump.norm() / kUsualJumpM, loose = 1 + far * far * far * far;
   Matrix3d R = loose * noise(look.view, kSigmaAcrossM, kSigmaAlongM);
@@ -235,28 +282,34 @@ void WorldMovers::update(Track& track, const ObjectSighting& sighting, const Loo
     track.to_middle_m +=
         std::max(kSlowShare, 1.0 / (1 + track.hits)) * (look.extent.center() - body - track.to_middle_m);
   }
+  if (!cut || track.hits < kFewHits) track.tints += kTintShare * (look.tints - track.tints);
   track.view = look.view;
-  std::string class_name = sighting.class_name.empty() ? track.last.class_name : sighting.class_name;
-  track.last = sighting;
-  track.last.points_m.clear();
-  track.last.class_name = std::move(class_name);
+  const std::string class_name = sighting.class_name.empty() ? track.last.class_name : sighting.class_name;
+  track.last = without_points(sighting);
+  track.last.class_name = class_name;
   track.seen_ns = track.now_ns;
   ++track.hits;
 }
 
-WorldMovers::Track WorldMovers::start(std::int64_t stamp_ns, const ObjectSighting& sighting, const Look& look) {
-  Track track;
-  track.id = next_id_++;
-  track.last = sighting;
-  track.last.points_m.clear();
+/// Where it is seen, at any speed.
+void WorldMovers::put(Track& track, const ObjectLook& look) {
   track.state.head<3>() = look.body;
+  track.covariance.setZero();
   track.covariance.topLeftCorner<3, 3>() = noise(look.view, kSigmaAcrossM, kSigmaAlongM);
   track.covariance.bottomRightCorner<3, 3>() = kFirstSpeed_m_s * kFirstSpeed_m_s * Matrix3d::Identity();
+}
+
+WorldMovers::Track WorldMovers::start(const ObjectSighting& sighting, const ObjectLook& look) {
+  Track track;
+  track.id = next_id_++;
+  track.last = without_points(sighting);
+  put(track, look);
   track.size_m = look.extent.sizes();
   track.to_middle_m = look.extent.center() - look.body;
   track.view = look.view;
   track.width_m = look.width_m;
-  track.first_ns = track.now_ns = track.seen_ns = stamp_ns;
+  track.tints = look.tints;
+  track.first_ns = track.now_ns = track.seen_ns = now_ns_;
   track.hits = 1;
   return track;
 }

@@ -4,31 +4,16 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "services/filter/core/modes/mode_judge.hpp"
-#include "services/filter/core/surfaces/depth_grid.hpp"
-#include "services/filter/core/surfaces/object_masks.hpp"
+#include "services/filter/core/tracks/object_look.hpp"
+#include "services/filter/core/tracks/object_sighting.hpp"
 
 /// Moving objects for other programs and for people who watch: boxes in the world with velocities. Nothing here decides
 /// about a feature.
 namespace rtd::filter {
-
-/// What one frame shows of an object, in the frame of its camera.
-struct ObjectSighting {
-  std::uint32_t source = 0;               ///< the filter's own track: mostly the same in every frame
-  std::string class_name;                 ///< empty: found by its motion alone
-  double score = 0;                       ///< of the detector
-  std::vector<Eigen::Vector3d> points_m;  ///< p_camera, of its surface
-  double static_probability = 0;
-  bool cut_left = false, cut_right = false;  ///< goes on there behind something nearer, or beyond the border
-};
-
-/// Objects that are in view: tracked ones of a high level, others while they move, and movers without a class.
-std::vector<ObjectSighting> sight_objects(const std::vector<SceneObject>& objects, const Verdict& verdict,
-                                          const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays);
 
 /// Covariance of (position, velocity), m and m/s.
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -47,7 +32,8 @@ struct WorldMover {
 
 /// Places sightings by slam's poses and follows each body with a Kalman filter of constant velocity
 /// (docs/theory/dynamic_points.md section 7). Objects keep their numbers while they are hidden for up to a second:
-/// what comes into view is compared with what is expected there. Deterministic, bounded by the objects in view.
+/// what comes into view is compared, by place and by colour, with what is expected. Deterministic, bounded by the
+/// objects in view.
 class WorldMovers {
  public:
   /// Frames in order of time. Also objects that are hidden now.
@@ -55,9 +41,6 @@ class WorldMovers {
                                 const std::vector<ObjectSighting>& sightings);
   /// The next ones are others.
   void clear() { tracks_.clear(); }
-
-  /// What a sighting says about an object; world frame.
-  struct Look;
 
  private:
   struct Track {
@@ -68,17 +51,25 @@ class WorldMovers {
     Eigen::Vector3d size_m = Eigen::Vector3d::Zero(), to_middle_m = Eigen::Vector3d::Zero();  ///< of the extent
     Eigen::Vector3d view = Eigen::Vector3d::Zero();  ///< it was last seen along
     double width_m = 0;                              ///< across the view
+    TintShares tints = TintShares::Zero();
     std::int64_t first_ns = 0, now_ns = 0, seen_ns = 0;
     int hits = 0;
     double unseen_s() const { return 1e-9 * static_cast<double>(now_ns - seen_ns); }
     Eigen::Vector3d middle() const { return state.head<3>() + to_middle_m; }
   };
+  struct View;
   void predict(std::int64_t stamp_ns);
-  void place_objects(const Eigen::Isometry3d& T_world_camera, const std::vector<ObjectSighting>& all);
-  std::vector<int> assign_looks(const std::vector<ObjectSighting>& sightings, const std::vector<Look>& looks) const;
-  static double cost_of(const Track& track, const ObjectSighting& sighting, const Look& look);
-  static void update(Track& track, const ObjectSighting& sighting, const Look& look);
-  Track start(std::int64_t stamp_ns, const ObjectSighting& sighting, const Look& look);
+  View look_around(const Eigen::Isometry3d& T_world_camera, const std::vector<ObjectSighting>& sightings) const;
+  void share_out(View& view) const;
+  std::optional<ObjectLook> look_for(std::size_t track, std::size_t sighting, const View& view) const;
+  void follow(View& view);
+  void recognise(View& view);
+  void start_others(View& view);
+  bool is_new(std::size_t sighting, const View& view) const;
+  static double cost_of(const Track& track, const ObjectSighting& sighting, const ObjectLook& look);
+  static void update(Track& track, const ObjectSighting& sighting, const ObjectLook& look);
+  static void put(Track& track, const ObjectLook& look);
+  Track start(const ObjectSighting& sighting, const ObjectLook& look);
   static bool forgotten(const Track& track);
   static WorldMover to_mover(const Track& track);
 

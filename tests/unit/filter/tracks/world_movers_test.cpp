@@ -17,15 +17,18 @@ constexpr std::int64_t kFrameNs = 33'333'333;
 constexpr double kHalfWidthM = 0.22, kHalfDepthM = 0.13;  // of a body
 
 /// The front of an upright body as a camera at the origin sees it that looks along z, x to the right, y down.
-ObjectSighting sight_body(const Vector3d& middle, std::uint32_t source, double visible_from = -1) {
+ObjectSighting sight_body(const Vector3d& middle, std::uint32_t source, double visible_from = -1,
+                          std::uint8_t tint = 0) {
   ObjectSighting sighting{.source = source, .class_name = "person", .score = 0.9};
   for (int row = 0; row < 12; ++row) {
     for (double across = -0.95; across < 1; across += 0.1) {
       if (across < visible_from) continue;
-      sighting.points_m.emplace_back(
-          middle + Vector3d(kHalfWidthM * across, -0.8 + 0.14 * row, -kHalfDepthM * std::sqrt(1 - across * across)));
+      const Vector3d from_middle(kHalfWidthM * across, -0.8 + 0.14 * row,
+                                 -kHalfDepthM * std::sqrt(1 - across * across));
+      sighting.points.push_back({middle + from_middle, tint});
     }
   }
+  sighting.moving = sighting.points;
   sighting.cut_left = visible_from > -1;
   return sighting;
 }
@@ -110,6 +113,43 @@ TEST_F(WorldMoversTest, that_pass_each_other_are_not_swapped) {
     EXPECT_EQ(near_id, near) << "frame " << i;
     EXPECT_EQ(far_id, far) << "frame " << i;
   }
+}
+
+/// The boxes overlap in the image: both show the surface of the nearer body, and the other one in the background.
+TEST_F(WorldMoversTest, the_farther_of_two_whose_boxes_overlap_is_followed_in_its_box) {
+  constexpr std::uint8_t kBlue = 9, kYellow = 3;
+  std::uint32_t near = 0, far = 0;
+  for (int i = 0; i < 90; ++i) {
+    const Vector3d of_near(-0.6 + 0.4 * time_s(), 0, 1.8), of_far(0.6 - 0.4 * time_s(), 0, 2.7);
+    ObjectSighting first = sight_body(of_near, 1, -1, kBlue), second = sight_body(of_far, 2, -1, kYellow);
+    if (std::abs(of_near.x() / of_near.z() - of_far.x() / of_far.z()) < 0.2) {
+      second.moving.insert(second.moving.end(), first.points.begin(), first.points.end());
+      second.points = first.points;
+    }
+    const auto movers = step({first, second});
+    ASSERT_EQ(movers.size(), 2U) << "frame " << i;
+    const bool in_order = movers[0].extent_world.center().z() < movers[1].extent_world.center().z();
+    const WorldMover &nearer = movers[in_order ? 0 : 1], &farther = movers[in_order ? 1 : 0];
+    if (i == 0) near = nearer.id, far = farther.id;
+    EXPECT_EQ(nearer.id, near) << "frame " << i;
+    EXPECT_EQ(farther.id, far) << "frame " << i;
+    EXPECT_EQ(farther.unseen_s, 0) << "frame " << i;
+    EXPECT_LT(apart_m(farther, of_far), 0.15) << "frame " << i;
+  }
+}
+
+TEST_F(WorldMoversTest, who_turned_while_hidden_is_known_by_the_colours) {
+  constexpr std::uint8_t kBlue = 9, kYellow = 3;
+  std::uint32_t id = 0;
+  for (int i = 0; i < 45; ++i) id = step({sight_body({-1 + 0.8 * time_s(), 0, 2.5}, 1, -1, kBlue)}).at(0).id;
+  const Vector3d turned_at(-1 + 0.8 * time_s(), 0, 2.5);
+  for (int i = 0; i < 15; ++i) step({});
+  const auto movers = step({sight_body(turned_at - Vector3d(0.5, 0, 0), 5, -1, kBlue),
+                            sight_body(turned_at - Vector3d(0.5, 0, -1), 6, -1, kYellow)});
+  ASSERT_EQ(movers.size(), 2U);
+  EXPECT_EQ(movers[0].id, id);
+  EXPECT_LT(apart_m(movers[0], turned_at - Vector3d(0.5, 0, 0)), 0.15) << "m: at once";
+  EXPECT_NE(movers[1].id, id);
 }
 
 TEST_F(WorldMoversTest, a_body_that_leaves_the_image_bit_by_bit_goes_on) {
