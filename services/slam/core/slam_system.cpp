@@ -165,11 +165,8 @@ std::optional<FloorPlane> SlamSystem::find_up(const Frame& frame) const {
     return up_camera ? std::optional(FloorPlane{*up_camera}) : std::nullopt;
   }
   if (config_.gravity == Gravity::kTold) return std::nullopt;
-  std::vector<Eigen::Vector3d> points_camera;
-  for (std::size_t i = 0; i < frame.features.size(); ++i) {
-    if (frame.features[i].depth_m > 0) points_camera.push_back(frame.unproject(i));
-  }
-  return find_floor(points_camera, config_.first_pose.linear().transpose() * Eigen::Vector3d::UnitZ());
+  return find_floor(frame.unproject_all(), config_.first_pose.linear().transpose() * Eigen::Vector3d::UnitZ(),
+                    config_.sensor.calibration_error);
 }
 
 /// T_world_camera of the first frame of a map.
