@@ -160,11 +160,11 @@ bool SlamSystem::waits_for_up(const Frame& frame) {
 
 /// What is up in the camera; the height above the floor only where a floor shows it.
 std::optional<FloorPlane> SlamSystem::find_up(const Frame& frame) const {
-  if (config_.gravity == Gravity::kGiven) {
-    const auto up_camera = prior_ && !given_up_camera_ ? prior_->up_in_camera() : given_up_camera_;
-    return up_camera ? std::optional(FloorPlane{*up_camera}) : std::nullopt;
+  if (config_.gravity == Gravity::kImu) {
+    const auto up_camera = prior_ ? prior_->up_in_camera() : std::nullopt;
+    if (!up_camera) return std::nullopt;
+    return FloorPlane{*up_camera, 0, config_.imu.accel_bias_m_s2 / config_.imu.gravity_m_s2};
   }
-  if (config_.gravity == Gravity::kTold) return std::nullopt;
   return find_floor(frame.unproject_all(), config_.first_pose.linear().transpose() * Eigen::Vector3d::UnitZ(),
                     config_.sensor.calibration_error);
 }
