@@ -51,7 +51,7 @@ SlamConfig core_config(const ServiceConfig& config) {
   if (config.base.gravity != "told") core.first_pose = level_camera();
   if (config.base.given()) core.first_pose = core.prior.T_base_camera = parse_mount(config.base.camera);
   if (config.base.gravity == "floor") core.gravity = Gravity::kFloor;
-  if (config.base.gravity == "imu") core.gravity = Gravity::kGiven;
+  if (config.base.gravity == "imu") core.gravity = Gravity::kImu;
   core.gravity_wait_frames = config.base.gravity_wait_frames;
   core.prior.imu = !config.motion.imu.empty();
   core.prior.wheels = !config.motion.wheels.empty();

@@ -17,9 +17,11 @@ struct FloorPlane {
 };
 
 /// The lowest large plane whose normal is within 40 degrees of what is expected to be up: the floor, or a table where
-/// no floor is seen, which is as level. nullopt when there is none, or its direction is worse known than by
-/// half a degree. `points_camera`: m, any order, outliers welcome. Deterministic. docs/frames.md.
+/// no floor is seen, which is as level. nullopt when there is none, when things lie under it or close above much of it,
+/// or when its direction is worse known than by 0.6 degrees. `points_camera`: m, any order, outliers welcome.
+/// `calibration_error`: share of the image by which the camera's axis may be off; rad, for nothing seen shows it.
+/// Deterministic. docs/frames.md.
 std::optional<FloorPlane> find_floor(const std::vector<Eigen::Vector3d>& points_camera,
-                                     const Eigen::Vector3d& expected_up_camera);
+                                     const Eigen::Vector3d& expected_up_camera, double calibration_error = 0);
 
 }  // namespace rtd::slam

@@ -258,7 +258,7 @@ struct LoopConfig {
 enum class Gravity {
   kTold,   ///< first_pose
   kFloor,  ///< the floor in the image
-  kGiven,  ///< the IMU of SlamConfig::prior, or SlamSystem::set_up()
+  kImu,    ///< the IMU of SlamConfig::prior
 };
 
 /// An IMU beside the camera, as its data sheet says: docs/theory/inertial.md.

@@ -160,16 +160,13 @@ bool SlamSystem::waits_for_up(const Frame& frame) {
 
 /// What is up in the camera; the height above the floor only where a floor shows it.
 std::optional<FloorPlane> SlamSystem::find_up(const Frame& frame) const {
-  if (config_.gravity == Gravity::kGiven) {
-    const auto up_camera = prior_ && !given_up_camera_ ? prior_->up_in_camera() : given_up_camera_;
-    return up_camera ? std::optional(FloorPlane{*up_camera}) : std::nullopt;
+  if (config_.gravity == Gravity::kImu) {
+    const auto up_camera = prior_ ? prior_->up_in_camera() : std::nullopt;
+    if (!up_camera) return std::nullopt;
+    return FloorPlane{*up_camera, 0, config_.imu.accel_bias_m_s2 / config_.imu.gravity_m_s2};
   }
-  if (config_.gravity == Gravity::kTold) return std::nullopt;
-  std::vector<Eigen::Vector3d> points_camera;
-  for (std::size_t i = 0; i < frame.features.size(); ++i) {
-    if (frame.features[i].depth_m > 0) points_camera.push_back(frame.unproject(i));
-  }
-  return find_floor(points_camera, config_.first_pose.linear().transpose() * Eigen::Vector3d::UnitZ());
+  return find_floor(frame.unproject_all(), config_.first_pose.linear().transpose() * Eigen::Vector3d::UnitZ(),
+                    config_.sensor.calibration_error);
 }
 
 /// T_world_camera of the first frame of a map.
@@ -232,6 +229,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   }
   if (outcome.state == msg::TrackingState::kDoubtful) output.problem = why_doubtful(outcome.consistency);
   record(outcome.tracked);
+  if (prior_) correct_frames(prior_->take_corrections(), frames_);
   if (!had_pose_ && outcome.map->map != map_) odometry_.correct(before, tracker_->T_world_camera());
   observe_sensor(*outcome.map, outcome);
   maybe_insert_keyframe(outcome);

@@ -77,9 +77,6 @@ class SlamSystem {
   /// with the next frame.
   void set_localize_only(bool on) { localize_only_ = on; }
   bool localize_only() const { return localize_only_; }
-  /// With Gravity::kGiven: what is up in the camera, a unit vector; the next map begins with it. Without, the IMU of
-  /// SlamConfig::prior says it once it has been at rest.
-  void set_up(const Eigen::Vector3d& up_camera) { given_up_camera_ = up_camera; }
   /// Never throws for the content of the message. Frames are expected in order; a seq that jumps back means a
   /// source that started again: motion is forgotten, the map stays.
   SlamOutput process(const msg::FeatureFrame& message);
@@ -142,7 +139,6 @@ class SlamSystem {
   DepthWeightEstimator depth_weight_;
   ShutterMotion shutter_;  ///< what the features of the frame in work were corrected with
   OdometryFrame odometry_;
-  std::optional<Eigen::Vector3d> given_up_camera_;
   int frames_without_up_ = 0;
   bool begun_ = false;     ///< a map, ever
   bool had_pose_ = false;  ///< the last frame

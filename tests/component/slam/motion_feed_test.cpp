@@ -4,9 +4,13 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
+#include <sstream>
 
 #include "common/msg/imu.hpp"
+#include "common/msg/transform_eigen.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/config.hpp"
 #include "services/camera/core/synthetic/motion_sensors.hpp"
@@ -18,6 +22,7 @@ namespace rtd::slam {
 namespace {
 
 using camera::synthetic::SyntheticImu;
+using Eigen::Vector3d;
 using test_support::FeatureWorld;
 using test_support::Inbox;
 
@@ -49,13 +54,16 @@ class MotionFeedTest : public test_support::ServiceFixture<SlamService> {
     return imu;
   }
   /// One frame of lockstep: samples up to its stamp, the frame, its result.
+  void step(const msg::FeatureFrame& view) {
+    while (static_cast<double>(next_) / 200 < static_cast<double>(view.seq) / 30 + 0.005) publish(reading(next_++));
+    const std::size_t before = results_.all().size();
+    ASSERT_TRUE(features_.write(view));
+    ASSERT_TRUE(results_.wait_count(before + 1)) << "no result for frame " << view.seq;
+  }
   void step(std::uint64_t seq, bool covered) {
-    while (static_cast<double>(next_) / 200 < static_cast<double>(seq) / 30 + 0.005) publish(reading(next_++));
     auto view = world_.view(seq);
     for (std::uint32_t i = 0; covered && i < view->count; ++i) view->features[i].flags = msg::kFeatureRemoved;
-    const std::size_t before = results_.all().size();
-    ASSERT_TRUE(features_.write(*view));
-    ASSERT_TRUE(results_.wait_count(before + 1)) << "no result for frame " << seq;
+    step(*view);
   }
 
   const FeatureWorld world_ = FeatureWorld::noisy();
@@ -75,6 +83,42 @@ TEST_F(MotionFeedTest, pose_goes_on_by_the_topic_of_a_best_effort_driver) {
   EXPECT_TRUE(wait_metric("frames_predicted", 45));
   EXPECT_TRUE(wait_metric("imu_dropped", 0));
   EXPECT_TRUE(wait_metric("imu_ready", 1));
+}
+
+std::string text_of(const Eigen::Isometry3d& mount) {
+  const Eigen::Quaterniond q(mount.linear());
+  std::ostringstream text;
+  text << mount.translation().transpose().format(Eigen::IOFormat(Eigen::FullPrecision, 0, ",", ",")) << ',' << q.x()
+       << ',' << q.y() << ',' << q.z() << ',' << q.w();
+  return text.str();
+}
+
+/// The camera looks 20 degrees down from a robot that stands on a slope of 6 degrees.
+TEST_F(MotionFeedTest, the_map_of_a_robot_on_a_slope_has_z_up_by_gravity) {
+  const auto turn = [](double deg, const Eigen::Vector3d& axis) {
+    return Eigen::AngleAxisd(deg * std::numbers::pi / 180, axis);
+  };
+  const Eigen::Isometry3d T_base_camera = camera::synthetic::T_base_level_camera(0.8) * turn(-20, Vector3d::UnitX());
+  const Eigen::Isometry3d T_level_base(turn(6, Vector3d(1, 2, 0).normalized()));
+  const Eigen::Isometry3d T_level_camera = T_level_base * T_base_camera;
+  imu_ = SyntheticImu([T_level_camera](double /*t_s*/) { return T_level_camera; }, SyntheticImu::Options(), 1);
+  config_.base.gravity = "imu";
+  config_.base.camera = text_of(T_base_camera);
+  start(service::Pace::kLockstep);
+  for (std::uint64_t seq = 0; seq < 25; ++seq) step(*world_.view(seq, Eigen::Isometry3d::Identity()));
+  const auto results = results_.all();
+  EXPECT_EQ(results.front()->state, msg::TrackingState::kInitializing) << "half a second of rest shows gravity";
+  ASSERT_EQ(results.back()->state, msg::TrackingState::kOk);
+  const Eigen::Isometry3d T_map_camera = msg::to_isometry(results.back()->T_world_camera);
+  const Eigen::Isometry3d T_map_base = T_map_camera * T_base_camera.inverse();
+  const auto degrees = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::acos(std::min(1.0, a.dot(b))) * 180 / std::numbers::pi;
+  };
+  const Eigen::Vector3d up_camera = T_map_camera.linear().transpose() * Vector3d::UnitZ();
+  EXPECT_LT(degrees(up_camera, T_level_camera.linear().transpose() * Vector3d::UnitZ()), 1) << "the map is level";
+  EXPECT_NEAR(degrees(T_map_base.linear().col(2), Vector3d::UnitZ()), 6, 1) << "the base stands on the slope";
+  EXPECT_LT(T_map_base.translation().norm(), 0.02) << "m: the map begins at the base";
+  EXPECT_TRUE(wait_metric("map_z_up", 1));
 }
 
 TEST_F(MotionFeedTest, counts_what_it_cannot_use) {

@@ -108,6 +108,40 @@ TEST(FloorPlane, is_no_wall_and_not_found_without_a_floor) {
   EXPECT_FALSE(find_floor(std::vector<Vector3d>(500, Vector3d(0, 1, 2)), kLevelUp)) << "one place";
 }
 
+/// Books and cables on a desk, higher on one side: a plane through them slants.
+std::vector<Vector3d> full_desk(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const double highest_m = between(0.03, 0.12), bare = between(0.05, 0.3), slant = between(0, 1);
+  std::vector<Vector3d> points;
+  for (int i = 0; i < 600; ++i) {
+    const double x = between(-0.6, 0.6), z = between(0.8, 1.8);
+    const double heap_m = highest_m * (1 - slant + slant * (z - 0.8));
+    points.emplace_back(x, 0.8 - (between(0, 1) < bare ? 0 : between(0, heap_m)), z);
+  }
+  return points;
+}
+
+TEST(FloorPlane, through_the_things_on_a_desk_is_refused_or_says_how_wrong_it_is) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const auto floor = find_floor(full_desk(seed), kLevelUp);
+    if (!floor) continue;
+    EXPECT_LT(std::acos(std::min(1.0, floor->up_camera.dot(kLevelUp))), 3 * floor->sigma_rad) << seed;
+  }
+}
+
+TEST(FloorPlane, is_not_believed_with_things_under_it) {
+  const Room room = Room({0.5, 0, 0}, 0.001).table(300).floor(35);
+  EXPECT_FALSE(find_floor(room.points(), kLevelUp)) << "the floor has too few points, the table is not the lowest";
+}
+
+TEST(FloorPlane, knows_its_direction_no_better_than_the_camera_is_calibrated) {
+  const Room room = Room({0.3, 0, -0.2}, 0).floor(200);
+  EXPECT_GE(find_floor(room.points(), kLevelUp, 0.01)->sigma_rad, 0.01);
+}
+
 TEST(FloorPlane, is_not_found_where_up_is_told_far_off) {
   const Room room = Room({50 * kRadPerDeg, 0, 0}, 0.002).floor(300);
   EXPECT_FALSE(find_floor(room.points(), kLevelUp)) << "50 degrees";

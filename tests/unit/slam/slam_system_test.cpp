@@ -112,6 +112,7 @@ SlamSystem slam_with(Gravity gravity, int wait_frames = 3) {
   SlamConfig config;
   config.first_pose = kLevelCamera;
   config.gravity = gravity;
+  config.prior.imu = gravity == Gravity::kImu;
   config.gravity_wait_frames = wait_frames;
   return {config, MappingMode::kSynchronous, frozen_clock};
 }
@@ -151,12 +152,13 @@ TEST(SlamSystem, a_map_begins_as_told_when_no_floor_has_come_into_view) {
   EXPECT_TRUE(output.result.T_world_camera.isApprox(kLevelCamera, 1e-12));
 }
 
-TEST(SlamSystem, a_map_waits_for_the_one_who_knows_what_is_up) {
+TEST(SlamSystem, a_map_waits_for_an_imu_at_rest_that_knows_what_is_up) {
   const FeatureWorld world({});
   const Eigen::Vector3d up = Eigen::Vector3d(0.1, -1, 0.2).normalized();
-  SlamSystem slam = slam_with(Gravity::kGiven);
+  SlamSystem slam = slam_with(Gravity::kImu);
   EXPECT_EQ(slam.process(*world.view(0)).result.state, TrackingState::kInitializing);
-  slam.set_up(up);
+  for (std::int64_t i = 0; i <= 120; ++i)
+    slam.add(ImuSample{FeatureWorld::stamp_ns(1) + (i - 120) * 5'000'000, Eigen::Vector3d::Zero(), 9.81 * up});
   const SlamOutput output = slam.process(*world.view(1));
   EXPECT_EQ(output.result.state, TrackingState::kOk);
   EXPECT_LT((up_in_camera(output.result.T_world_camera) - up).norm(), 1e-9);

@@ -45,6 +45,14 @@ Eigen::Vector3d Frame::unproject(std::size_t feature) const {
   return {(f.u_px - camera.cx) / camera.fx * f.depth_m, (f.v_px - camera.cy) / camera.fy * f.depth_m, f.depth_m};
 }
 
+std::vector<Eigen::Vector3d> Frame::unproject_all() const {
+  std::vector<Eigen::Vector3d> points_camera;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    if (features[i].depth_m > 0) points_camera.push_back(unproject(i));
+  }
+  return points_camera;
+}
+
 FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config, RemovedFeatures removed,
                       const ShutterMotion& motion) {
   FrameInput input;

@@ -72,6 +72,8 @@ struct Frame {
   }
   /// p_camera (m) of a feature with depth.
   Eigen::Vector3d unproject(std::size_t feature) const;
+  /// p_camera (m) of all features with depth.
+  std::vector<Eigen::Vector3d> unproject_all() const;
 };
 using FramePtr = std::shared_ptr<const Frame>;
 
