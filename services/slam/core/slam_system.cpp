@@ -229,6 +229,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   }
   if (outcome.state == msg::TrackingState::kDoubtful) output.problem = why_doubtful(outcome.consistency);
   record(outcome.tracked);
+  if (prior_) correct_frames(prior_->take_corrections(), frames_);
   if (!had_pose_ && outcome.map->map != map_) odometry_.correct(before, tracker_->T_world_camera());
   observe_sensor(*outcome.map, outcome);
   maybe_insert_keyframe(outcome);

@@ -19,6 +19,7 @@ constexpr int kRotation = 0, kPosition = 3, kVelocity = 6, kGyroBias = 9, kAccel
 constexpr double kUnknownSpeed_m_s = 1.0;  ///< of a hand or a robot
 constexpr double kUnknownUp_rad = 0.3;     ///< of an accelerometer that moves
 constexpr int kFewPoses = 10;
+constexpr int kSmoothing = 30;  ///< poses that correct the predicted ones before
 
 Eigen::Isometry3d pose_of(const Matrix3& R, const Eigen::Vector3d& p) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -69,6 +70,9 @@ void InertialFilter::predict(const Preintegration& motion) {
   P_.diagonal().segment<3>(kGyroBias).array() += std::pow(config_.gyro_walk_rad_s2_rthz, 2) * dt_s;
   P_.diagonal().segment<3>(kAccelBias).array() += std::pow(config_.accel_walk_m_s3_rthz, 2) * dt_s;
 
+  for (PredictedFrame& frame : predicted_)
+    frame.covariance_with_state = (frame.covariance_with_state * F.transpose()).eval();
+
   const Eigen::Vector3d p =
       state_.T_world_imu.translation() + state_.velocity_m_s * dt_s + 0.5 * dt_s * dt_s * g + moved;
   state_.velocity_m_s += g * dt_s + gained;
@@ -86,6 +90,7 @@ void InertialFilter::predict_blind(double gap_s) {
   P_.diagonal().segment<3>(kGyroBias).array() += std::pow(config_.gyro_walk_rad_s2_rthz, 2) * gap_s;
   P_.diagonal().segment<3>(kAccelBias).array() += std::pow(config_.accel_walk_m_s3_rthz, 2) * gap_s;
   state_.velocity_m_s.setZero();
+  predicted_.clear();
   measured_ = 0;
   ready_ = false;
 }
@@ -107,8 +112,16 @@ PredictedPose InertialFilter::camera() const {
 /// The Kalman update in Joseph's form, and the error put into the state. Eq. (9).
 void InertialFilter::correct(const Eigen::MatrixXd& H, const Eigen::VectorXd& residual, const Eigen::MatrixXd& R) {
   const Eigen::MatrixXd S = H * P_ * H.transpose() + R;
-  const Eigen::MatrixXd K = S.ldlt().solve(H * P_).transpose();
+  const auto of_S = S.ldlt();
+  const Eigen::MatrixXd K = of_S.solve(H * P_).transpose();
   const Matrix18d keep = Matrix18d::Identity() - K * H;
+  const Eigen::VectorXd surprise = H.transpose() * of_S.solve(residual);
+  for (PredictedFrame& frame : predicted_) {
+    const geometry::Vector6d error = frame.covariance_with_state * surprise;
+    frame.T_world_camera = geometry::normalized(pose_of(so3_exp(error.tail<3>()) * frame.T_world_camera.linear(),
+                                                        frame.T_world_camera.translation() + error.head<3>()));
+    frame.covariance_with_state = (frame.covariance_with_state * keep.transpose()).eval();
+  }
   P_ = (keep * P_ * keep.transpose() + K * R * K.transpose()).eval();
   P_ = (0.5 * (P_ + P_.transpose())).eval();
   const Eigen::Matrix<double, 18, 1> error = K * residual;
@@ -120,7 +133,24 @@ void InertialFilter::correct(const Eigen::MatrixXd& H, const Eigen::VectorXd& re
   state_.gravity_m_s2 = so3_exp(error.segment<3>(kGravity)) * state_.gravity_m_s2;
 }
 
+void InertialFilter::remember(std::uint64_t seq) {
+  const Eigen::Isometry3d T_world_camera = state_.T_world_imu * T_imu_camera_;
+  predicted_.push_back({seq, T_world_camera, T_world_camera, camera_jacobian() * P_});
+  measured_since_predicted_ = 0;
+}
+
+std::vector<PoseCorrection> InertialFilter::take_corrections() {
+  std::vector<PoseCorrection> corrections;
+  for (PredictedFrame& frame : predicted_) {
+    corrections.push_back({frame.seq, geometry::normalized(frame.T_world_claimed.inverse() * frame.T_world_camera)});
+    frame.T_world_claimed = frame.T_world_camera;
+  }
+  if (measured_since_predicted_ >= kSmoothing) predicted_.clear();
+  return corrections;
+}
+
 void InertialFilter::update(const PredictedPose& measured) {
+  ++measured_since_predicted_;
   const PredictedPose expected = camera();
   const Matrix3 R_error = measured.T_world_camera.linear() * expected.T_world_camera.linear().transpose();
   geometry::Vector6d residual;
@@ -156,10 +186,17 @@ void InertialFilter::move(const Eigen::Isometry3d& T_new_old) {
   Matrix18d A = Matrix18d::Identity();
   for (const int place : {kRotation, kPosition, kVelocity, kGravity}) A.block<3, 3>(place, place) = R;
   P_ = (A * P_ * A.transpose()).eval();
+  for (PredictedFrame& frame : predicted_) {
+    frame.T_world_claimed = geometry::normalized(T_new_old * frame.T_world_claimed);
+    frame.T_world_camera = geometry::normalized(T_new_old * frame.T_world_camera);
+    frame.covariance_with_state =
+        (A.topLeftCorner<6, 6>() * frame.covariance_with_state * A.transpose()).eval();  // both rotations are R
+  }
 }
 
 void InertialFilter::relocate(const PredictedPose& measured) {
   const PredictedPose expected = camera();
+  predicted_.clear();
   move(measured.T_world_camera * expected.T_world_camera.inverse());
   // Errors of the pose are those of the measurement, and no longer those of the motion.
   P_.topRows<6>().setZero();

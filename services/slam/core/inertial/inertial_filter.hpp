@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "common/geometry/se3.hpp"
 #include "services/slam/core/inertial/preintegration.hpp"
+#include "services/slam/core/map/trajectory.hpp"
 #include "services/slam/core/slam_config.hpp"
 #include "services/slam/core/tracking/pose_uncertainty.hpp"
 
@@ -47,12 +51,21 @@ class InertialFilter {
   const InertialState& state() const { return state_; }
   const ImuBias& bias() const { return state_.bias; }
   const Matrix18d& covariance() const { return P_; }
+  /// The pose of this frame is predicted: what is measured during the next second corrects it. Eq. (14).
+  void remember(std::uint64_t seq);
+  /// What was found out since the last call.
+  std::vector<PoseCorrection> take_corrections();
   /// Pose of the camera with its covariance.
   PredictedPose camera() const;
   /// Whether velocity and gyro bias have been known well enough since the last pause to say where the next frames are.
   bool ready() const { return ready_; }
 
  private:
+  struct PredictedFrame {
+    std::uint64_t seq;
+    Eigen::Isometry3d T_world_claimed, T_world_camera;   ///< as taken last, and as known now
+    Eigen::Matrix<double, 6, 18> covariance_with_state;  ///< of (position, rotation) of the camera then
+  };
   Eigen::Matrix<double, 6, 18> camera_jacobian() const;
   void correct(const Eigen::MatrixXd& H, const Eigen::VectorXd& residual, const Eigen::MatrixXd& R);
 
@@ -60,6 +73,8 @@ class InertialFilter {
   Eigen::Isometry3d T_imu_camera_;
   InertialState state_;
   Matrix18d P_ = Matrix18d::Zero();
+  std::vector<PredictedFrame> predicted_;
+  int measured_since_predicted_ = 0;
   int measured_ = 0;  ///< poses since velocity was unknown
   bool ready_ = false;
 };

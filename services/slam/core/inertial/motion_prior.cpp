@@ -110,6 +110,14 @@ void MotionPrior::relocate(const PredictedPose& measured) {
   filter_ ? filter_->relocate(measured) : begin_filter(measured);
 }
 
+void MotionPrior::remember(std::uint64_t seq) {
+  if (filter_ && filter_->ready()) filter_->remember(seq);
+}
+
+std::vector<PoseCorrection> MotionPrior::take_corrections() {
+  return filter_ ? filter_->take_corrections() : std::vector<PoseCorrection>();
+}
+
 /// From the second frame on: until then nothing says which way is up.
 void MotionPrior::begin_filter(const PredictedPose& measured) {
   if (!config_.prior.imu || before_ns_ == 0) return;

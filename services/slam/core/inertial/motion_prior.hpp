@@ -26,6 +26,9 @@ class MotionPrior {
   std::optional<PredictedPose> correct(const PredictedPose& measured);
   /// The camera was found elsewhere than it was expected.
   void relocate(const PredictedPose& measured);
+  /// The pose of the frame in work is claimed as expected; what an IMU says of it later is a correction.
+  void remember(std::uint64_t seq);
+  std::vector<PoseCorrection> take_corrections();
   /// The map was corrected under the camera.
   void move(const Eigen::Isometry3d& T_new_old);
   /// The next pose is in another world.

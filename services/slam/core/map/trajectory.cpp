@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/core/map/trajectory.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <ostream>
@@ -23,6 +24,14 @@ void thin_out(std::vector<FrameRecord>& frames, std::size_t limit) {
     if (i >= half || i % 2 == 0) frames[kept++] = frames[i];
   }
   frames.resize(kept);
+}
+
+void correct_frames(std::span<const PoseCorrection> corrections, std::vector<FrameRecord>& frames) {
+  for (const auto& [seq, T_claimed_smoothed] : corrections) {
+    const auto frame =
+        std::find_if(frames.rbegin(), frames.rend(), [seq](const FrameRecord& record) { return record.seq == seq; });
+    if (frame != frames.rend()) frame->T_reference_camera = frame->T_reference_camera * T_claimed_smoothed;
+  }
 }
 
 void tie_to_living(std::vector<FrameRecord>& frames, const Map& map) {

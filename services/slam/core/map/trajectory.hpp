@@ -28,6 +28,15 @@ void thin_out(std::vector<FrameRecord>& frames, std::size_t limit);
 /// Ties frames of keyframes that were removed to those that still exist.
 void tie_to_living(std::vector<FrameRecord>& frames, const Map& map);
 
+/// What later poses say of one that was predicted: it is T_world_camera * T_claimed_smoothed.
+struct PoseCorrection {
+  std::uint64_t seq = 0;
+  Eigen::Isometry3d T_claimed_smoothed = Eigen::Isometry3d::Identity();
+};
+
+/// Corrects recent frames; those that are no longer there do not count.
+void correct_frames(std::span<const PoseCorrection> corrections, std::vector<FrameRecord>& frames);
+
 using geometry::StampedPose;
 
 struct MapPoint {

@@ -80,6 +80,7 @@ bool Tracker::claim_prior(TrackOutcome& outcome, const FramePtr& frame, const Po
   const bool usable = weak.success && weak.inliers >= config_.prediction.min_weak_inliers;
   if (usable && pose_distance2(claimed, measured) < kMaxPoseDistance2)
     claimed = prior_->correct(measured).value_or(claimed);
+  prior_->remember(frame->seq);
   outcome.tracked.frame = frame;
   outcome.tracked.T_world_camera = claimed.T_world_camera;
   outcome.tracked.reference = last_.reference;

@@ -80,6 +80,25 @@ TEST_F(InertialTracking, goes_on_for_three_seconds_without_a_view) {
   EXPECT_EQ(slam().trajectory().size(), 200U) << "predicted poses by IMU belong to the trajectory";
 }
 
+TEST_F(InertialTracking, the_view_that_comes_back_corrects_the_predicted_part_of_the_trajectory) {
+  config_.prior.imu = true;
+  constexpr std::uint64_t kFrom = 75, kTo = 165;  // covered
+  double published_m2 = 0, final_m2 = 0;
+  for (std::uint64_t seq = 0; seq < 200; ++seq) {
+    const bool hidden = seq >= kFrom && seq < kTo;
+    const FrameResult result = hidden ? show(seq, covered(seq, 0, FeatureWorld::T_world_camera(seq))) : show(seq);
+    if (hidden) published_m2 += std::pow(error_m(result), 2);
+  }
+  const std::vector<StampedPose> trajectory = slam().trajectory();
+  ASSERT_EQ(trajectory.size(), 200U);
+  for (std::uint64_t seq = kFrom; seq < kTo; ++seq) {
+    const Eigen::Vector3d p = trajectory[seq].T_world_body.translation();
+    final_m2 += (p - FeatureWorld::T_world_camera(seq).translation()).squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(final_m2 / 90), 0.0013) << "m";
+  EXPECT_GT(std::sqrt(published_m2 / 90), 0.01) << "m: published poses stay as they are";
+}
+
 TEST_F(InertialTracking, claims_nothing_once_the_position_is_uncertain) {
   config_.prior.imu = true;
   config_.prior.max_sigma_m = 0.02;
