@@ -105,7 +105,7 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
                                  runtime.bus.frame("base_link")});
   }
   if (!source_->info().live) open_publisher();
-  std::erase(config_.wait_for, "none");
+  if (std::ranges::count(config_.wait_for, "none") > 0) config_.wait_for.clear();
   runtime.heartbeat.on_status([changes = changes_](const auto&) { changes->push(true); });
   runtime.stop.on_stop([source = source_, results = results_, changes = changes_] {
     source->stop();

@@ -311,6 +311,7 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
     const bool endless = setup.total_frames == 0;
     plans.push_back(
         plan(setup, "camera", endless ? ServiceRole::kLive : ServiceRole::kSource, camera_arguments(setup, wait_for)));
+    plans.back().when_restarted = [] { return std::vector<std::string>{"--wait-for", "none"}; };  // the others run
   }
   return plans;
 }

@@ -128,6 +128,16 @@ TEST_F(SupervisedRunTest, a_killed_service_is_named_and_restarted_and_the_others
   EXPECT_THAT(rtd_.output(), Not(HasSubstr("filter died")));
 }
 
+TEST_F(SupervisedRunTest, a_live_camera_that_is_restarted_waits_for_nobody) {
+  const std::string marker = scratch_ / "died";
+  script("camera", "if [ ! -e " + marker + " ]; then touch " + marker + "; kill -KILL $$; fi; echo \"$@\"");
+  std::vector<std::string> endless = arguments();
+  endless[2] = "synthetic:office?frames=0";
+  rtd_.run(endless);
+  EXPECT_THAT(log("camera"), HasSubstr("--wait-for filter,slam"));
+  EXPECT_THAT(log("camera"), HasSubstr("--wait-for none"));
+}
+
 TEST_F(SupervisedRunTest, a_crashed_service_is_restarted_and_the_report_says_why) {
   const std::string marker = scratch_ / "crashed";
   script("filter", "if [ ! -e " + marker + " ]; then touch " + marker + "; kill -SEGV $$; fi; " + kServe);

@@ -279,10 +279,10 @@ void WorldMovers::update(Track& track, const ObjectSighting& sighting, const Obj
   if (!cut || track.hits < kFewHits) {
     track.size_m += share * (look.extent.sizes() - track.size_m);
     track.width_m += share * (look.width_m - track.width_m);
+    track.tints += kTintShare * (look.tints - track.tints);
     track.to_middle_m +=
         std::max(kSlowShare, 1.0 / (1 + track.hits)) * (look.extent.center() - body - track.to_middle_m);
   }
-  if (!cut || track.hits < kFewHits) track.tints += kTintShare * (look.tints - track.tints);
   track.view = look.view;
   const std::string class_name = sighting.class_name.empty() ? track.last.class_name : sighting.class_name;
   track.last = without_points(sighting);
