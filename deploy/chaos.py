@@ -97,6 +97,9 @@ class Run:
         with self.output.open("w", encoding="utf-8") as output:
             self.process = subprocess.Popen(command, stdout=output, stderr=subprocess.STDOUT, env=environment)
 
+    def printed(self):
+        return self.output.read_text(encoding="utf-8", errors="replace")
+
     def log(self, service):
         return pathlib.Path(self.out, "logs", f"{service}.log").read_text(encoding="utf-8", errors="replace")
 
@@ -131,7 +134,7 @@ class Run:
     def stop(self):
         self.process.send_signal(signal.SIGINT)
         self.process.wait(timeout=120)
-        return self.output.read_text(encoding="utf-8", errors="replace")
+        return self.printed()
 
 
 def fill(folder):
@@ -156,7 +159,7 @@ def inflict(args, run):
     while len(done) < args.count if args.minutes == 0 else time.monotonic() - started < 60 * args.minutes:
         if run.process.poll() is not None:
             sys.exit(f"chaos: rtd run ended after {len(done)} faults with exit code {run.process.returncode}:\n"
-                     f"{run.output.read_text(encoding='utf-8', errors='replace')}")
+                     f"{run.printed()}")
         fault = chance.choice(args.faults)
         service = ""
         if fault in ("kill", "stop"):  # in turn: one that was killed twice within 5 s is restarted later

@@ -157,6 +157,29 @@ bool is_in_view(const camera::SourceFrame& frame, const camera::SourceObject& ob
 /// Two thirds of a second after it has come into view alone: a velocity needs some frames.
 constexpr int kSettled = 20;
 
+/// A detector that misses nothing but the small.
+std::vector<vision::Detection> boxes_of(const camera::SourceFrame& frame) {
+  std::vector<vision::Detection> boxes;
+  for (const camera::SourceObject& object : frame.objects) {
+    if (object.class_name == "box" || object.visible_px < 900) continue;
+    const cv::Rect2f box = object.box_px;
+    boxes.push_back({object.class_name, 0.9F, box.x, box.y, box.width, box.height});
+  }
+  return boxes;
+}
+
+/// The objects of which changes of id count: IdSwitches.
+std::vector<int> countable_objects(const camera::SourceFrame& frame, const Truth& truth, double t_s,
+                                   const Eigen::Vector3d& camera_position) {
+  std::vector<int> objects;
+  for (const camera::SourceObject& object : frame.objects) {
+    const double far_m = truth.horizontal(truth.extent(object.id, t_s).center() - camera_position).norm();
+    if (object.class_name != "chair" && object.visible_px >= 3000 && far_m >= 1 && far_m <= 4)
+      objects.push_back(object.id);
+  }
+  return objects;
+}
+
 Accuracy measure(const std::string& uri) {
   const auto source = camera::make_source(uri);
   const Truth truth(uri);
@@ -169,13 +192,7 @@ Accuracy measure(const std::string& uri) {
   std::map<int, int> in_view_for;  // frames in a row
   double position_sum = 0, velocity_sum = 0;
   while (const auto frame = source->next()) {
-    std::vector<vision::Detection> boxes;
-    for (const camera::SourceObject& object : frame->objects) {
-      if (object.class_name == "box" || object.visible_px < 900) continue;
-      const cv::Rect2f box = object.box_px;
-      boxes.push_back({object.class_name, 0.9F, box.x, box.y, box.width, box.height});
-    }
-    const FilterResult result = filter.apply(frame->image, boxes);
+    const FilterResult result = filter.apply(frame->image, boxes_of(*frame));
     const Eigen::Isometry3d T_map_camera = truth.T_first_camera(*frame->T_world_camera);
     const auto movers = world.place(frame->image.stamp_ns, T_map_camera, filter.sight_objects(frame->image, result));
     filter.on_pose({frame->image.seq, 0, T_map_camera});
@@ -183,12 +200,7 @@ Accuracy measure(const std::string& uri) {
     const auto apart_m = [&](int object, const WorldMover& mover) {
       return truth.horizontal(mover.extent_world.center() - truth.extent(object, t_s).center()).norm();
     };
-    std::vector<int> visible;
-    for (const camera::SourceObject& object : frame->objects) {
-      const double far_m = truth.horizontal(truth.extent(object.id, t_s).center() - T_map_camera.translation()).norm();
-      if (object.class_name != "chair" && object.visible_px >= 3000 && far_m >= 1 && far_m <= 4)
-        visible.push_back(object.id);
-    }
+    const std::vector<int> visible = countable_objects(*frame, truth, t_s, T_map_camera.translation());
     ids.add(frame->image.seq, visible, movers, apart_m);
     accuracy.visible_min += static_cast<double>(visible.size()) / truth.fps() / 60;
     for (const camera::SourceObject& object : frame->objects) {

@@ -105,7 +105,7 @@ TEST_F(PosixProcessHostTest, counts_the_signs_of_life_of_each_child) {
       "assert os.environ['WATCHDOG_USEC'] == '2000000' and 'WATCHDOG_PID' not in os.environ\n"
       "s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)\n"
       "s.connect(os.environ['NOTIFY_SOCKET'].replace('@', chr(0)))\n"
-      "s.send(b'READY=1'); s.send(b'WATCHDOG=1'); time.sleep(0.3); s.send(b'STOPPING=1'); time.sleep(60)\n";
+      "s.send(b'READY=1'); s.send(b'WATCHDOG=1'); time.sleep(2); s.send(b'STOPPING=1'); time.sleep(60)\n";
   const ProcessId process = watching.start({"a", {"/usr/bin/env", "python3", "-c", script}});
   const ProcessId silent = watching.start({"b", {"/bin/sleep", "60"}});
   unsetenv("WATCHDOG_PID");
