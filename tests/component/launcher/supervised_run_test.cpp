@@ -155,8 +155,8 @@ TEST_F(SupervisedRunTest, services_are_restarted_although_nobody_reads_what_the_
   std::string line = "exec '" + (scratch_ / "bin/rtd") + "'";
   for (const std::string& argument : arguments({"--set", "launcher.max_restarts=100", "launcher.first_backoff_ms=0"}))
     line += " '" + argument + "'";
-  // A pipe that is full but for one page: dd fills it, and its reader sleeps.
-  line = "{ dd if=/dev/zero bs=4096 count=15 status=none >&2; " + line + "; } 2>&1 >/dev/null | sleep 10";
+  // A pipe that is full but for 512 bytes: dd fills it, and its reader sleeps.
+  line = "{ dd if=/dev/zero bs=512 count=127 status=none >&2; " + line + "; } 2>&1 >/dev/null | sleep 10";
   RtdCommand shell("/bin/sh");
   EXPECT_EQ(shell.run({"-c", line}), 0);
   EXPECT_GT(text_of(lives).size(), 20 * std::string("one\n").size());
