@@ -10,6 +10,7 @@
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
 
 #include "common/bus/fastdds/network_mapping.hpp"
+#include "common/bus/fastdds/robust_locks.hpp"
 #include "common/bus/network.hpp"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -35,12 +36,11 @@ void log_to_stderr_once() {
   });
 }
 
-/// Participant ids choose port numbers. A restarted process must not get the shared-memory port of its killed
-/// predecessor: the writers of others go on feeding the dead port for seconds. So the id follows the process id.
-std::int32_t next_participant_id() {
-  constexpr std::int32_t kIds = 60;  // more do not fit into the port range of domain 232
-  static std::atomic<std::int32_t> participants_so_far{0};
-  return (static_cast<std::int32_t>(getpid()) + participants_so_far++) % kIds;
+constexpr std::uint32_t kParticipantIds = 60;  // more do not fit into the port range of domain 232
+
+std::uint32_t next_participant_id(int domain) {
+  static std::atomic<std::uint32_t> participants_so_far{0};
+  return free_participant_id(domain, static_cast<std::uint32_t>(getpid()) + participants_so_far++);
 }
 
 dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope) {
@@ -63,7 +63,7 @@ dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factor
   const std::lock_guard lock(one_at_a_time);
   constexpr int kAttempts = 5;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {  // an id may be taken by another connection of this process
-    qos.wire_protocol().participant_id = next_participant_id();
+    qos.wire_protocol().participant_id = static_cast<std::int32_t>(next_participant_id(options.domain));
     if (auto* participant = factory.create_participant(options.domain, qos, listener, dds::StatusMask::none())) {
       return participant;
     }
@@ -75,12 +75,25 @@ dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factor
 
 }  // namespace
 
+std::uint32_t free_participant_id(int domain, std::uint32_t first, const std::filesystem::path& shm_dir) {
+  const eprosima::fastrtps::rtps::PortParameters ports;
+  for (std::uint32_t step = 0; step < kParticipantIds; ++step) {
+    const std::uint32_t id = (first + step) % kParticipantIds;
+    const std::uint32_t discovery_port = ports.getUnicastPort(static_cast<std::uint32_t>(domain), id);
+    const std::uint32_t port = discovery_port - ports.offsetd1 + ports.offsetd3;
+    std::error_code unreadable;
+    if (!std::filesystem::exists(shm_dir / ("fastrtps_port" + std::to_string(port)), unreadable)) return id;
+  }
+  return first % kParticipantIds;
+}
+
 Participant::Participant(const BusOptions& options, const HostLimits& limits, EndpointRegistry* registry)
     : secured_(options.security.enabled()), listener_(options, registry) {
   if (options.shm_segment_mib < kMinSegmentMib || options.shm_segment_mib > 1024) {
     throw BusError("shared-memory segment of " + std::to_string(options.shm_segment_mib) +
                    " MiB, allowed: " + std::to_string(kMinSegmentMib) + "..1024");
   }
+  link_robust_locks();
   log_to_stderr_once();
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
   const DiscoveryScope scope = registry == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;

@@ -7,6 +7,7 @@
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -18,6 +19,11 @@
 namespace rtd::bus::fastdds {
 
 namespace dds = eprosima::fastdds::dds;
+
+/// Participant ids choose port numbers. A restarted process must not get the shared-memory port of its killed
+/// predecessor: the writers of others go on feeding the dead port for seconds. So the id follows the process id, and
+/// the next one is taken while there is a port of that number in `shm_dir`, in use or left behind.
+std::uint32_t free_participant_id(int domain, std::uint32_t first, const std::filesystem::path& shm_dir = "/dev/shm");
 
 /// Our participant in a domain: transports, publisher, subscriber and topics. Thread-safe.
 class Participant {

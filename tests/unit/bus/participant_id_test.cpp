@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "common/bus/fastdds/participant.hpp"
+#include "common/bus/host/host_checks.hpp"
+
+namespace rtd::bus::fastdds {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kDomain = 187;
+
+class ParticipantId : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+  void add_port(std::uint32_t id) {
+    std::ofstream(folder_ / ("fastrtps_port" + std::to_string(7400 + 250 * kDomain + 11 + 2 * id)));
+  }
+  fs::path folder_ = fs::temp_directory_path() / ("rtd_participant_id_" + std::to_string(getpid()));
+};
+
+TEST_F(ParticipantId, follows_the_process_id_within_sixty) {
+  EXPECT_EQ(free_participant_id(kDomain, 0, folder_), 0U);
+  EXPECT_EQ(free_participant_id(kDomain, 59, folder_), 59U);
+  EXPECT_EQ(free_participant_id(kDomain, 4304, folder_), 44U);
+}
+
+TEST_F(ParticipantId, is_not_that_of_a_port_which_is_there) {
+  add_port(44);
+  add_port(45);
+  EXPECT_EQ(free_participant_id(kDomain, 4484, folder_), 46U);
+  EXPECT_EQ(free_participant_id(kDomain + 1, 4484, folder_), 44U) << "another domain has other ports";
+  add_port(59);
+  EXPECT_EQ(free_participant_id(kDomain, 59, folder_), 0U);
+}
+
+TEST_F(ParticipantId, is_the_first_one_when_all_ports_are_there) {
+  for (std::uint32_t id = 0; id < 60; ++id) add_port(id);
+  EXPECT_EQ(free_participant_id(kDomain, 61, folder_), 1U);
+}
+
+/// The names above are those that Fast DDS gives its files.
+TEST(ParticipantOnTheBus, has_a_port_in_shared_memory_that_the_next_one_avoids) {
+  BusOptions options;
+  options.domain = kDomain;
+  const auto first = static_cast<std::uint32_t>(getpid());
+  const std::uint32_t before = free_participant_id(kDomain, first);
+  {
+    const Participant participant(options, read_host_limits());
+    EXPECT_NE(free_participant_id(kDomain, first), before);
+  }
+  EXPECT_EQ(free_participant_id(kDomain, first), before);
+}
+
+}  // namespace
+}  // namespace rtd::bus::fastdds

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/fastdds/robust_locks.hpp"
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <ctime>
+
+namespace rtd::bus::fastdds {
+namespace {
+
+/// In memory that a forked process shares, set up as Fast DDS does.
+struct SharedLock {
+  pthread_mutex_t mutex;
+  pthread_cond_t condition;
+};
+
+SharedLock* make_lock() {
+  void* memory = mmap(nullptr, sizeof(SharedLock), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  auto* lock = static_cast<SharedLock*>(memory);
+  pthread_mutexattr_t attributes;
+  pthread_mutexattr_init(&attributes);
+  pthread_mutexattr_setpshared(&attributes, PTHREAD_PROCESS_SHARED);
+  pthread_mutex_init(&lock->mutex, &attributes);
+  pthread_condattr_t condition;
+  pthread_condattr_init(&condition);
+  pthread_condattr_setpshared(&condition, PTHREAD_PROCESS_SHARED);
+  pthread_cond_init(&lock->condition, &condition);
+  return lock;
+}
+
+timespec in_seconds(long seconds) {
+  timespec time{};
+  clock_gettime(CLOCK_REALTIME, &time);
+  time.tv_sec += seconds;
+  return time;
+}
+
+/// A process that takes the lock and is killed while it holds it.
+void die_in(SharedLock& lock) {
+  const pid_t child = fork();
+  if (child == 0) {
+    pthread_mutex_lock(&lock.mutex);
+    raise(SIGKILL);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+}
+
+class RobustLocks : public testing::Test {
+ protected:
+  void SetUp() override {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "not with a sanitizer, which replaces these functions itself";
+#endif
+    link_robust_locks();
+    lock_ = make_lock();
+  }
+  SharedLock* lock_ = nullptr;
+};
+
+TEST_F(RobustLocks, one_whose_owner_was_killed_is_free_at_once_and_stays_usable) {
+  const timespec until = in_seconds(5);
+  for (int round = 0; round < 3; ++round) {
+    die_in(*lock_);
+    ASSERT_EQ(pthread_mutex_timedlock(&lock_->mutex, &until), 0) << "round " << round;
+    ASSERT_EQ(pthread_mutex_unlock(&lock_->mutex), 0);
+  }
+  die_in(*lock_);
+  EXPECT_EQ(pthread_mutex_trylock(&lock_->mutex), 0);
+  EXPECT_EQ(pthread_mutex_unlock(&lock_->mutex), 0);
+}
+
+TEST_F(RobustLocks, a_wait_ends_although_the_owner_was_killed) {
+  ASSERT_EQ(pthread_mutex_trylock(&lock_->mutex), 0);
+  const pid_t child = fork();
+  if (child == 0) {  // holds the lock when the wait below ends
+    pthread_mutex_lock(&lock_->mutex);
+    usleep(300'000);
+    raise(SIGKILL);
+  }
+  const auto began = std::chrono::steady_clock::now();
+  timespec until = in_seconds(0);
+  until.tv_nsec += 100'000'000;
+  if (until.tv_nsec >= 1'000'000'000) {
+    ++until.tv_sec;
+    until.tv_nsec -= 1'000'000'000;
+  }
+  EXPECT_EQ(pthread_cond_timedwait(&lock_->condition, &lock_->mutex, &until), 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));
+  EXPECT_EQ(pthread_mutex_unlock(&lock_->mutex), 0);
+  EXPECT_EQ(pthread_mutex_trylock(&lock_->mutex), 0);
+  waitpid(child, nullptr, 0);
+}
+
+/// A library finds the functions of the program before those of the C library.
+TEST_F(RobustLocks, are_those_that_fast_dds_finds) {
+  Dl_info ours{}, found{};
+  ASSERT_NE(dladdr(reinterpret_cast<void*>(&link_robust_locks), &ours), 0);
+  for (const char* name : {"pthread_mutexattr_setpshared", "pthread_mutex_timedlock", "pthread_mutex_trylock",
+                           "pthread_cond_wait", "pthread_cond_timedwait"}) {
+    ASSERT_NE(dladdr(dlsym(RTLD_DEFAULT, name), &found), 0) << name;
+    EXPECT_STREQ(found.dli_fname, ours.dli_fname) << name;
+  }
+}
+
+}  // namespace
+}  // namespace rtd::bus::fastdds
