@@ -40,7 +40,7 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
       frames_(runtime.pace == service::Pace::kRealtime
                   ? std::make_shared<Frames>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
                   : std::make_shared<Frames>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
-      load_(LoadLimits{}, kLastLoadStep, first_load_step()) {
+      load_(watch_from(first_load_step())) {
   cv::setNumThreads(1);
   if (load_.step() > 0) follow_load_step();
   runtime.stop.on_stop([frames = frames_, prepared = prepared_, detections = detections_, feedback = feedback_] {
@@ -252,6 +252,11 @@ int FilterService::first_load_step() const {
   SPDLOG_WARN("event=load_shed step={} effect=\"{}\" cause=\"{:.2g} cores at most for this service\"", kLastLoadStep,
               service::kLoadSteps.back().name, cores);
   return kLastLoadStep;
+}
+
+/// The last step is for a computer that is known to be slow: on a busy one its error is larger than what it saves.
+LoadWatch FilterService::watch_from(int first_step) {
+  return {LoadLimits{}, first_step > 0 ? kLastLoadStep : kLastLoadStep - 1, first_step};
 }
 
 /// Only at pace realtime is a late pose a sign of too much work, and never a matter of results that must be repeatable.
