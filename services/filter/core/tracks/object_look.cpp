@@ -96,11 +96,10 @@ ObjectLook look_at(const std::vector<SeenPoint>& points, bool upright, const Eig
   look.right = (camera_right - look.view * look.view.dot(camera_right)).normalized();
   look.width_m = width(spread_along(seen, look.right));
   const double height_m = width(spread_along(seen, look.view.cross(look.right)));
-  look.thickness = upright ? kThickness : kBoxThickness;
-  const double thickness_m = look.thickness * std::min(look.width_m, height_m);
-  const double hidden_m = thickness_m - width(spread_along(seen, look.view));
+  look.thickness_m = (upright ? kThickness : kBoxThickness) * std::min(look.width_m, height_m);
+  const double hidden_m = look.thickness_m - width(spread_along(seen, look.view));
   if (hidden_m > 0) look.extent.extend(look.extent.translated(hidden_m * look.view));
-  look.body = upright ? Vector3d(median(to_world(upper, T_world_camera)) + 0.5 * thickness_m * look.view)
+  look.body = upright ? Vector3d(median(to_world(upper, T_world_camera)) + 0.5 * look.thickness_m * look.view)
                       : look.extent.center();
   return look;
 }

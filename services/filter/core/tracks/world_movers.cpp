@@ -38,6 +38,11 @@ Matrix3d noise(const Vector3d& along, double sigma_across_m, double sigma_along_
   return across * Matrix3d::Identity() + extra * along * along.transpose();
 }
 
+/// Of the body, for one of a known thickness: a person who turns looks narrower or wider but is as thick as before.
+Vector3d body_of(const ObjectLook& look, double thickness_m) {
+  return look.body + 0.5 * (thickness_m - look.thickness_m) * look.view;
+}
+
 ObjectSighting without_points(const ObjectSighting& sighting) {
   return {.source = sighting.source,
           .class_name = sighting.class_name,
@@ -262,7 +267,7 @@ void WorldMovers::update(Track& track, const ObjectSighting& sighting, const Obj
   constexpr double kWholeShare = 0.75;
   const bool cut = look.cut_left || look.cut_right || look.width_m < kWholeShare * track.width_m;
   const double hidden_m = cut ? std::max(0.0, track.width_m - look.width_m) : 0;
-  Vector3d body = look.body + 0.5 * look.thickness * hidden_m * look.view;
+  Vector3d body = body_of(look, track.thickness_m);
   if (look.cut_left != look.cut_right) body += (look.cut_right ? 0.5 : -0.5) * hidden_m * look.right;
   const Vector3d jump = body - track.state.head<3>();
   const double far = jump.norm() / kUsualJumpM, loose = 1 + far * far * far * far;
@@ -280,8 +285,9 @@ void WorldMovers::update(Track& track, const ObjectSighting& sighting, const Obj
     track.size_m += share * (look.extent.sizes() - track.size_m);
     track.width_m += share * (look.width_m - track.width_m);
     track.tints += kTintShare * (look.tints - track.tints);
-    track.to_middle_m +=
-        std::max(kSlowShare, 1.0 / (1 + track.hits)) * (look.extent.center() - body - track.to_middle_m);
+    const double slow_share = std::max(kSlowShare, 1.0 / (1 + track.hits));
+    track.thickness_m += slow_share * (look.thickness_m - track.thickness_m);
+    track.to_middle_m += slow_share * (look.extent.center() - body - track.to_middle_m);
   }
   track.view = look.view;
   const std::string class_name = sighting.class_name.empty() ? track.last.class_name : sighting.class_name;
@@ -308,6 +314,7 @@ WorldMovers::Track WorldMovers::start(const ObjectSighting& sighting, const Obje
   track.to_middle_m = look.extent.center() - look.body;
   track.view = look.view;
   track.width_m = look.width_m;
+  track.thickness_m = look.thickness_m;
   track.tints = look.tints;
   track.first_ns = track.now_ns = track.seen_ns = now_ns_;
   track.hits = 1;

@@ -51,6 +51,7 @@ class WorldMovers {
     Eigen::Vector3d size_m = Eigen::Vector3d::Zero(), to_middle_m = Eigen::Vector3d::Zero();  ///< of the extent
     Eigen::Vector3d view = Eigen::Vector3d::Zero();  ///< it was last seen along
     double width_m = 0;                              ///< across the view
+    double thickness_m = 0;                          ///< along it
     TintShares tints = TintShares::Zero();
     std::int64_t first_ns = 0, now_ns = 0, seen_ns = 0;
     int hits = 0;

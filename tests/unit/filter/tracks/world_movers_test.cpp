@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -165,6 +166,19 @@ TEST_F(WorldMoversTest, a_body_that_leaves_the_image_bit_by_bit_goes_on) {
 }
 
 /// Normalised squared errors of a body that turns at random: about one for each number.
+TEST_F(WorldMoversTest, who_turns_on_the_spot_is_as_thick_as_before_and_stays) {
+  const Vector3d middle(0, 0, 2.5);
+  for (int i = 0; i < 90; ++i) {
+    ObjectSighting sighting = sight_body(middle, 4);
+    const double narrower = i < 40 ? 1 : std::max(0.5, 1 - 0.05 * (i - 40));  // from the front, then from the side
+    for (SeenPoint& point : sighting.points) point.p_camera_m.x() *= narrower;
+    const auto movers = step({sighting});
+    if (i < 20) continue;
+    EXPECT_LT(apart_m(movers.at(0), middle), 0.06) << "m, frame " << i;
+    EXPECT_LT(movers.at(0).velocity_world_m_s.norm(), 0.1) << "m/s, frame " << i;
+  }
+}
+
 TEST_F(WorldMoversTest, know_how_well_they_know_it) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
