@@ -25,6 +25,11 @@ constexpr double kFullWorkCores = 0.9;                   // camera, filter and s
 constexpr std::int64_t kDetectorSilentNs = 450'000'000;  // two heartbeats missed: reported within half a second
 constexpr std::int64_t kPatienceNs = 1'500'000'000;      // before a silent heartbeat ends the wait for detections
 
+/// The last step is for a computer that is known to be slow: on a busy one its error is larger than what it saves.
+LoadWatch watch_from(int first_step) {
+  return {LoadLimits{}, first_step > 0 ? kLastLoadStep : kLastLoadStep - 1, first_step};
+}
+
 }  // namespace
 
 void FilterService::add_options(CLI::App& app, Config& config) {
@@ -252,11 +257,6 @@ int FilterService::first_load_step() const {
   SPDLOG_WARN("event=load_shed step={} effect=\"{}\" cause=\"{:.2g} cores at most for this service\"", kLastLoadStep,
               service::kLoadSteps.back().name, cores);
   return kLastLoadStep;
-}
-
-/// The last step is for a computer that is known to be slow: on a busy one its error is larger than what it saves.
-LoadWatch FilterService::watch_from(int first_step) {
-  return {LoadLimits{}, first_step > 0 ? kLastLoadStep : kLastLoadStep - 1, first_step};
 }
 
 /// Only at pace realtime is a late pose a sign of too much work, and never a matter of results that must be repeatable.

@@ -58,7 +58,6 @@ class FilterService {
   std::optional<Work> next_frame();
   void process(Work work);
   int first_load_step() const;
-  static LoadWatch watch_from(int first_step);
   bool sheds_load() const;
   void follow_load_step();
   void watch_load(const msg::TrackingResult& result);

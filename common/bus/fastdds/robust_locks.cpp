@@ -57,8 +57,7 @@ int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mutex) {
 
 int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex, const timespec* until) {
   static const auto original = next<int(pthread_cond_t*, pthread_mutex_t*, const timespec*)>("pthread_cond_timedwait");
-  const int result = original(condition, mutex, until);
-  return recover(mutex, result);
+  return recover(mutex, original(condition, mutex, until));
 }
 
 }  // extern "C"

@@ -11,6 +11,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <ctime>
 
 namespace rtd::bus::fastdds {
@@ -36,11 +37,10 @@ SharedLock* make_lock() {
   return lock;
 }
 
-timespec in_seconds(long seconds) {
-  timespec time{};
-  clock_gettime(CLOCK_REALTIME, &time);
-  time.tv_sec += seconds;
-  return time;
+timespec after(std::chrono::nanoseconds pause) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const std::int64_t ns = (std::chrono::system_clock::now().time_since_epoch() + pause).count();
+  return {ns / kSecond, ns % kSecond};
 }
 
 /// A process that takes the lock and is killed while it holds it.
@@ -68,7 +68,7 @@ class RobustLocks : public testing::Test {
 };
 
 TEST_F(RobustLocks, one_whose_owner_was_killed_is_free_at_once_and_stays_usable) {
-  const timespec until = in_seconds(5);
+  const timespec until = after(std::chrono::seconds(5));
   for (int round = 0; round < 3; ++round) {
     die_in(*lock_);
     ASSERT_EQ(pthread_mutex_timedlock(&lock_->mutex, &until), 0) << "round " << round;
@@ -88,12 +88,7 @@ TEST_F(RobustLocks, a_wait_ends_although_the_owner_was_killed) {
     raise(SIGKILL);
   }
   const auto began = std::chrono::steady_clock::now();
-  timespec until = in_seconds(0);
-  until.tv_nsec += 100'000'000;
-  if (until.tv_nsec >= 1'000'000'000) {
-    ++until.tv_sec;
-    until.tv_nsec -= 1'000'000'000;
-  }
+  const timespec until = after(std::chrono::milliseconds(100));
   EXPECT_EQ(pthread_cond_timedwait(&lock_->condition, &lock_->mutex, &until), 0);
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));
   EXPECT_EQ(pthread_mutex_unlock(&lock_->mutex), 0);

@@ -165,7 +165,6 @@ TEST_F(WorldMoversTest, a_body_that_leaves_the_image_bit_by_bit_goes_on) {
   }
 }
 
-/// Normalised squared errors of a body that turns at random: about one for each number.
 TEST_F(WorldMoversTest, who_turns_on_the_spot_is_as_thick_as_before_and_stays) {
   const Vector3d middle(0, 0, 2.5);
   for (int i = 0; i < 90; ++i) {
@@ -179,6 +178,7 @@ TEST_F(WorldMoversTest, who_turns_on_the_spot_is_as_thick_as_before_and_stays) {
   }
 }
 
+/// Normalised squared errors of a body that turns at random: about one for each number.
 TEST_F(WorldMoversTest, know_how_well_they_know_it) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
