@@ -6,6 +6,7 @@
 
 #include <atomic>
 
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
 
@@ -26,13 +27,18 @@ namespace {
 
 constexpr std::uint32_t kMinSegmentMib = 8;  // below it one image does not fit and is repaired in 20 ms instead
 
-/// Fast DDS logs to stdout by default, which belongs to our programs' results.
-void log_to_stderr_once() {
+/// Fast DDS logs to stdout by default, which belongs to our programs' results. Two participants of one process send
+/// each other their liveliness by direct calls by default, each under its own lock: when both do so at once, they wait
+/// for each other forever.
+void configure_library_once() {
   static std::once_flag once;
   std::call_once(once, [] {
     dds::Log::ClearConsumers();
     dds::Log::RegisterConsumer(std::make_unique<dds::StdoutErrConsumer>());
     dds::Log::SetVerbosity(dds::Log::Kind::Error);
+    eprosima::fastrtps::LibrarySettingsAttributes settings;
+    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
   });
 }
 
@@ -94,7 +100,7 @@ Participant::Participant(const BusOptions& options, const HostLimits& limits, En
                    " MiB, allowed: " + std::to_string(kMinSegmentMib) + "..1024");
   }
   link_robust_locks();
-  log_to_stderr_once();
+  configure_library_once();
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
   const DiscoveryScope scope = registry == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;
   participant_ = create_participant(*factory_, options, limits, scope, &listener_);

@@ -3,10 +3,16 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
+#include <future>
+#include <thread>
 
 #include "common/bus/fastdds/participant.hpp"
 #include "common/bus/host/host_checks.hpp"
+#include "common/bus/raw_bus.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
@@ -56,6 +62,24 @@ TEST(ParticipantOnTheBus, has_a_port_in_shared_memory_that_the_next_one_avoids) 
     EXPECT_NE(free_participant_id(kDomain, first), before);
   }
   EXPECT_EQ(free_participant_id(kDomain, first), before);
+}
+
+/// Fast DDS' direct calls between participants of one process block both for good within a fraction of a second.
+TEST(ParticipantOnTheBus, two_of_one_process_announce_their_liveliness_at_once_and_end) {
+  RawWriterOptions announces;
+  announces.qos.liveliness_lease_ns = 3'000'000;
+  BusOptions options;
+  options.domain = kDomain;
+  const auto end_in_time = std::async(std::launch::async, [&] {
+    const auto first = connect_raw(options), second = connect_raw(options);
+    const auto first_writer = first->writer({"rtd/first", "First"}, announces);
+    const auto second_writer = second->writer({"rtd/second", "Second"}, announces);
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+  });
+  if (end_in_time.wait_for(std::chrono::seconds(20)) != std::future_status::ready) {
+    std::fputs("the participants wait for each other forever\n", stderr);
+    std::_Exit(EXIT_FAILURE);
+  }
 }
 
 }  // namespace
