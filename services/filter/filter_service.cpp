@@ -264,10 +264,11 @@ bool FilterService::sheds_load() const {
   return runtime_.pace == service::Pace::kRealtime && config_.shed_load;
 }
 
-void FilterService::follow_load_step() {
+const service::LoadStep& FilterService::follow_load_step() {
   const service::LoadStep& step = service::kLoadSteps[static_cast<std::size_t>(load_.step())];
   filter_.set_effort({step.feature_share, step.coarse_depth_check, step.first_octave});
   runtime_.heartbeat.set_metric(service::kLoadStepMetric, load_.step());
+  return step;
 }
 
 void FilterService::watch_load(const msg::TrackingResult& result) {
@@ -275,8 +276,7 @@ void FilterService::watch_load(const msg::TrackingResult& result) {
   const int before = load_.step();
   const double latency_ms = static_cast<double>(result.finished_ns - result.published_ns) * 1e-6;
   if (!load_.add(result.seq, latency_ms, service::monotonic_ns())) return;
-  follow_load_step();
-  const service::LoadStep& step = service::kLoadSteps[static_cast<std::size_t>(load_.step())];
+  const service::LoadStep& step = follow_load_step();
   if (load_.step() > before) {
     SPDLOG_WARN("event=load_shed step={} effect=\"{}\" cause=\"{} of {} frames late or missing\"", load_.step(),
                 step.name, load_.burdened(), load_.window());

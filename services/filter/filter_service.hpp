@@ -16,6 +16,7 @@
 #include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/load_step.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
 #include "services/filter/config.hpp"
@@ -59,7 +60,7 @@ class FilterService {
   void process(Work work);
   int first_load_step() const;
   bool sheds_load() const;
-  void follow_load_step();
+  const service::LoadStep& follow_load_step();
   void watch_load(const msg::TrackingResult& result);
   bool accept(const msg::FrameView& frame);
   void publish_no_features(const msg::FrameView& frame, const std::string& cause);

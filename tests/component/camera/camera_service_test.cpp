@@ -43,19 +43,14 @@ class FakeTracker {
   }
 
   /// Whether the n-th frame message (from 0) gets a result. Set before the camera starts.
-  std::function<bool(std::uint64_t message, std::uint64_t seq)> answers = [](std::uint64_t, std::uint64_t) {
-    return true;
-  };
+  std::function<bool(std::uint64_t message, std::uint64_t seq)> answers = [](auto, auto) { return true; };
   /// Called instead of answering at once, when set: the test answers by itself.
   bool manual = false;
 
   void answer(std::uint64_t seq) {
     msg::TrackingResult result{};
     result.seq = seq;
-    {
-      const std::lock_guard lock(mutex_);
-      ++answered_;
-    }
+    ++answered_;
     results_.write(result);
   }
   std::vector<std::uint64_t> seqs() const {
@@ -90,7 +85,8 @@ class FakeTracker {
   std::condition_variable arrived_;
   std::vector<std::uint64_t> seqs_;
   std::unique_ptr<msg::RgbdFrame> last_ = std::make_unique<msg::RgbdFrame>();
-  int answered_ = 0, most_in_flight_ = 0;
+  std::atomic<int> answered_ = 0;
+  int most_in_flight_ = 0;
   bus::Writer<msg::TrackingResult> results_;
   bus::Reader<msg::RgbdFrame> frames_;
 };
@@ -98,9 +94,8 @@ class FakeTracker {
 /// Messages reach a reader on a thread of the bus.
 void wait_until(const std::function<bool()>& done) {
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (!done() && std::chrono::steady_clock::now() < deadline) {
+  while (!done() && std::chrono::steady_clock::now() < deadline)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
 }
 
 class CameraServiceTest : public ::testing::Test {
@@ -133,11 +128,7 @@ class CameraServiceTest : public ::testing::Test {
     const std::lock_guard lock(mutex_);
     return last_status_;
   }
-  double metric(const std::string& name) const {
-    for (const msg::Metric& metric : last_status().metrics)
-      if (metric.name == name) return metric.value;
-    return -1;
-  }
+  double metric(const std::string& name) const { return service::find_metric(last_status(), name).value_or(-1); }
 
   std::shared_ptr<bus::Bus> bus_;
   service::StopToken stop_;
