@@ -59,6 +59,7 @@ function plain(value) {
 const below = (limit) => Math.floor(Math.random() * limit);
 const kRandom = {
   bool: () => below(2) === 1,
+  int8: () => below(256) - 128,
   uint8: () => below(256),
   int32: () => below(2 ** 32) - 2 ** 31,
   uint32: () => below(2 ** 32),
