@@ -103,7 +103,7 @@ ParticipantId participant_of(const WriterId& endpoint);
 
 enum class WriterChange { kAppeared, kChanged, kGone };
 
-/// One sample as it came: 4 bytes of CDR header (byte order), the fields, and what RTPS fills up to four bytes.
+/// One sample as it came: 4 bytes of CDR header (byte order), the fields, and what Fast DDS may fill up to four.
 struct RawSample {
   WriterId writer{};
   std::int64_t sequence = 0;     ///< the writer counts its samples from 1

@@ -94,8 +94,9 @@ class FakeTracker {
 /// Messages reach a reader on a thread of the bus.
 void wait_until(const std::function<bool()>& done) {
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (!done() && std::chrono::steady_clock::now() < deadline)
+  while (!done() && std::chrono::steady_clock::now() < deadline) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
 }
 
 class CameraServiceTest : public ::testing::Test {

@@ -64,7 +64,7 @@ TEST(ParticipantOnTheBus, has_a_port_in_shared_memory_that_the_next_one_avoids) 
   EXPECT_EQ(free_participant_id(kDomain, first), before);
 }
 
-/// Fast DDS' direct calls between participants of one process block both for good within a fraction of a second.
+/// With Fast DDS' direct calls between participants of one process both wait forever within a fraction of a second.
 TEST(ParticipantOnTheBus, two_of_one_process_announce_their_liveliness_at_once_and_end) {
   RawWriterOptions announces;
   announces.qos.liveliness_lease_ns = 3'000'000;
