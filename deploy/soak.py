@@ -3,9 +3,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs an endless synthetic scene and prints the memory of each process over time.
 
-Usage: deploy/soak.py [--seconds 120] [--rtd build/release/bin/rtd] [--scene office] [--pace asap]
+Usage: deploy/soak.py [--seconds 120] [--rtd build/release/bin/rtd] [--scene office] [--pace asap] [RUN_OPTION ...]
+       deploy/soak.py --simulated-hours 8 --scene "office?fps=5" --dense
 
-slam's map and the launcher's record of the run grow with their content. The memory of all other processes must stay
+With --simulated-hours it ends when the scene has lasted that long; few frames a second of the scene are many hours a
+minute. Options that it does not know go to 'rtd run'. slam's map and the launcher's record of the run grow with their content. The memory of all other processes must stay
 constant.
 """
 import argparse
@@ -43,25 +45,38 @@ def sample(pid: int) -> dict:
         return {}
 
 
+def frames_per_s(scene_parameters: str) -> float:
+    values = dict(part.split("=", 1) for part in scene_parameters.split("&") if "=" in part)
+    return float(values.get("fps", 30))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=int, default=120)
+    parser.add_argument("--simulated-hours", type=float, default=0, help="of the scene, instead of --seconds")
     parser.add_argument("--rtd", default=str(ROOT / "build/release/bin/rtd"))
     parser.add_argument("--scene", default="office")
     parser.add_argument("--pace", default="asap")
     parser.add_argument("--domain", type=int, default=91)
-    options = parser.parse_args()
+    options, run_options = parser.parse_known_args()
 
+    scene, _, parameters = options.scene.partition("?")
+    frames = round(options.simulated_hours * 3600 * frames_per_s(parameters))
+    source = f"synthetic:{scene}?frames={frames}&{parameters}".rstrip("&")
     with tempfile.TemporaryDirectory(prefix="rtd-soak-") as folder:
-        run = subprocess.Popen([options.rtd, "run", "--quiet", "--source", f"synthetic:{options.scene}?frames=0",
-                                "--pace", options.pace, "--domain", str(options.domain), "--out", folder],
+        run = subprocess.Popen([options.rtd, "run", "--quiet", "--source", source, "--pace", options.pace,
+                                "--domain", str(options.domain), "--out", folder, *run_options],
                                env=os.environ, stdout=subprocess.DEVNULL)
         samples, started = [], time.monotonic()
-        while time.monotonic() - started < options.seconds and run.poll() is None:
+        while run.poll() is None and (frames > 0 or time.monotonic() - started < options.seconds):
             time.sleep(5)
             samples.append((time.monotonic() - started, sample(run.pid)))
-        run.send_signal(signal.SIGINT)
-        run.wait(timeout=30)
+            if len(samples) % 60 == 0:
+                print(f"soak: {samples[-1][0] / 60:.0f} minutes", file=sys.stderr)
+        if run.poll() is None:
+            run.send_signal(signal.SIGINT)
+        run.wait(timeout=120)
+        samples = [(elapsed, memory) for elapsed, memory in samples if len(memory) == len(samples[0][1])]
         report = json.loads((pathlib.Path(folder) / "report.json").read_text())
 
     names = sorted(samples[-1][1]) if samples else sys.exit("the run ended before the first sample")
@@ -69,7 +84,9 @@ def main() -> None:
     print("|---" * (len(names) + 1) + "|")
     for elapsed, memory in samples[:: max(1, len(samples) // 8)] + samples[-1:]:
         print(f"| {elapsed:.0f} | " + " | ".join(f"{memory.get(name, 0):.1f}" for name in names) + " |")
-    print(f"\n{report['frames_tracked']} frames tracked, {report['map']['keyframes']} keyframes, "
+    print(f"\n{report['frames_tracked']} frames tracked, coverage {report['coverage']:.4f}, "
+          f"ATE {report['ate_rmse_m']:.4f} m, {len(report['lost_spans'])} lost spans, {report['restarts']} restarts")
+    print(f"{report['map']['keyframes']} keyframes, "
           f"{report['map']['landmarks']} landmarks at the end, {report['frames_per_s']:.1f} frames/s")
 
 

@@ -13,7 +13,9 @@
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <iostream>
+#include <system_error>
 #include <utility>
 
 #include "common/service/exit_code.hpp"
@@ -38,7 +40,9 @@ int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>
 void restart_with(const char* variable, const char* value, char** argv) {
   if (std::getenv(variable) != nullptr) return;
   setenv(variable, value, 0);
-  execv("/proc/self/exe", argv);
+  std::error_code error;  // by its own path: the name in /proc/PID/comm, ps and top is that of the file
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  execv(error ? "/proc/self/exe" : program.c_str(), argv);
 }
 
 InterruptSignals::InterruptSignals() {

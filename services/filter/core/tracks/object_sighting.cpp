@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
+
+#include "common/vision/samples.hpp"
+#include "services/filter/core/surfaces/depth_clusters.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -38,6 +42,133 @@ double static_probability_of(std::size_t index, const SceneObject& object, const
   const auto dynamic = std::ranges::count_if(
       object.cells, [&](int cell) { return verdict.motion[static_cast<std::size_t>(cell)] == CellMotion::kDynamic; });
   return 1 - static_cast<double>(dynamic) / static_cast<double>(object.cells.size());
+}
+
+/// A surface without a depth step in it, of cells that move or belong to something that may.
+struct MovingSurface {
+  std::vector<int> cells;  ///< ascending
+  CellBox box;
+  double depth_m = 0;  ///< median
+};
+
+double area(const CellBox& box) {
+  return static_cast<double>(std::max(0, box.right - box.left)) * std::max(0, box.bottom - box.top);
+}
+
+CellBox join(const CellBox& a, const CellBox& b) {
+  return {std::min(a.left, b.left), std::min(a.top, b.top), std::max(a.right, b.right), std::max(a.bottom, b.bottom)};
+}
+
+/// Intersection over union.
+double overlap(const CellBox& a, const CellBox& b) {
+  const double both = area(
+      {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)});
+  return both / std::max(1.0, area(a) + area(b) - both);
+}
+
+/// Whether a cell lies in the mask without the rim by which it was grown.
+bool moves(int cell, const std::vector<CellMotion>& motion, const GridShape& shape) {
+  const int column = cell % shape.columns, row = cell / shape.columns;
+  for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+    const int x = std::clamp(column + dx, 0, shape.columns - 1), y = std::clamp(row + dy, 0, shape.rows - 1);
+    if (motion[static_cast<std::size_t>(shape.index(x, y))] != CellMotion::kDynamic) return false;
+  }
+  return true;
+}
+
+std::vector<MovingSurface> find_moving_surfaces(const std::vector<SceneObject>& objects, const Verdict& verdict,
+                                                const DepthGrid& seen) {
+  const GridShape& shape = seen.shape;
+  DepthGrid grid{shape, std::vector<float>(seen.depth_m.size(), 0.0F), {}, {}};
+  const auto keep = [&](int cell) {
+    grid.depth_m[static_cast<std::size_t>(cell)] = seen.depth_m[static_cast<std::size_t>(cell)];
+  };
+  for (int cell = 0; cell < static_cast<int>(verdict.motion.size()); ++cell) {
+    if (moves(cell, verdict.motion, shape)) keep(cell);
+  }
+  for (const SceneObject& object : objects) {
+    if (!object.flat) std::ranges::for_each(object.cells, keep);
+  }
+  const DepthClusters clusters = find_depth_clusters(grid, {});
+  std::vector<MovingSurface> surfaces(static_cast<std::size_t>(clusters.count()));
+  std::vector<std::vector<float>> depths_m(surfaces.size());
+  for (int cell = 0; cell < shape.size(); ++cell) {
+    const std::int32_t label = clusters.label[static_cast<std::size_t>(cell)];
+    if (label < 0) continue;
+    MovingSurface& surface = surfaces[static_cast<std::size_t>(label)];
+    const int column = cell % shape.columns, row = cell / shape.columns;
+    const CellBox of_cell{column, row, column + 1, row + 1};
+    surface.box = surface.cells.empty() ? of_cell : join(surface.box, of_cell);
+    surface.cells.push_back(cell);
+    depths_m[static_cast<std::size_t>(label)].push_back(grid.depth_m[static_cast<std::size_t>(cell)]);
+  }
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    surfaces[i].depth_m = static_cast<double>(vision::median(std::move(depths_m[i])));
+  return surfaces;
+}
+
+/// Surfaces at about one depth that together fill a box.
+struct Body {
+  std::vector<const MovingSurface*> surfaces;
+  CellBox bounds;
+  double fit = 0;  ///< overlap of the bounds with the box
+};
+
+/// The best one for a box, of the surfaces that lie mostly in it: the largest of it first.
+Body body_in(const CellBox& box, std::vector<const MovingSurface*> surfaces, const GridShape& shape) {
+  constexpr double kThickM = 0.35, kInside = 0.5;
+  std::erase_if(surfaces, [&](const MovingSurface* surface) {
+    const auto inside = std::ranges::count_if(
+        surface->cells, [&](int cell) { return box.contains(cell % shape.columns, cell / shape.columns); });
+    return static_cast<double>(inside) < kInside * static_cast<double>(surface->cells.size());
+  });
+  std::ranges::stable_sort(surfaces, std::greater{},
+                           [](const MovingSurface* surface) { return surface->cells.size(); });
+  Body best;
+  for (const MovingSurface* first : surfaces) {
+    Body body{{first}, first->box, overlap(first->box, box)};
+    for (const MovingSurface* more : surfaces) {
+      const CellBox larger = join(body.bounds, more->box);
+      const double fit = overlap(larger, box);
+      if (more == first || fit < body.fit || std::abs(more->depth_m - first->depth_m) > kThickM) continue;
+      body.surfaces.push_back(more);
+      body.bounds = larger;
+      body.fit = fit;
+    }
+    if (body.fit > best.fit) best = std::move(body);
+  }
+  return best;
+}
+
+/// Gives each surface to the object whose box it fills best. Of two boxes that overlap, both masks show the nearer
+/// body; here the farther one is found by its own size. Where nothing fits, the mask is left as it is.
+std::vector<std::vector<int>> share_out(const std::vector<MovingSurface>& surfaces,
+                                        const std::vector<SceneObject>& objects, const GridShape& shape) {
+  constexpr double kMinFit = 0.3;
+  std::vector<std::vector<int>> cells_of(objects.size());
+  std::vector<const MovingSurface*> free;
+  for (const MovingSurface& surface : surfaces) free.push_back(&surface);
+  for (;;) {
+    Body best;
+    std::size_t of = 0;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      if (!cells_of[i].empty() || objects[i].flat) continue;
+      Body body = body_in(objects[i].box, free, shape);
+      if (body.fit <= best.fit) continue;
+      best = std::move(body);
+      of = i;
+    }
+    if (best.fit < kMinFit) break;
+    for (const MovingSurface* surface : best.surfaces) {
+      cells_of[of].insert(cells_of[of].end(), surface->cells.begin(), surface->cells.end());
+      std::erase(free, surface);
+    }
+    std::ranges::sort(cells_of[of]);
+  }
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (cells_of[i].empty()) cells_of[i] = objects[i].cells;
+  }
+  return cells_of;
 }
 
 /// Cells of which the depth lies within a box in space.
@@ -94,15 +225,25 @@ bool is_cut(const std::vector<int>& cells, int direction, const DepthGrid& grid)
 std::vector<ObjectSighting> sight_objects(const std::vector<SceneObject>& objects, const Verdict& verdict,
                                           const SeenCells& seen) {
   constexpr double kMarginM = 0.05;
+  constexpr std::size_t kFewPoints = 12, kFewCells = 80;
+  const GridShape& shape = seen.grid.shape;
   std::vector<ObjectSighting> sightings;
+  CellMask explained(seen.grid.depth_m.size(), 0);
   const auto add = [&](ObjectSighting sighting, const std::vector<int>& cells, const std::vector<int>& moving) {
+    for (const int cell : cells) explained[static_cast<std::size_t>(cell)] = 1;
     sighting.points = points_of(cells, seen, kEnoughPoints);
-    if (sighting.points.empty()) return;
+    if (sighting.points.size() < kFewPoints) return;
     sighting.moving = points_of(moving, seen, kEnoughMoving);
     sighting.cut_left = is_cut(cells, -1, seen.grid);
     sighting.cut_right = is_cut(cells, 1, seen.grid);
     sightings.push_back(std::move(sighting));
   };
+  const auto erase_explained = [&](std::vector<int> cells) {
+    std::erase_if(cells, [&](int cell) { return explained[static_cast<std::size_t>(cell)] != 0; });
+    return cells;
+  };
+  const std::vector<MovingSurface> surfaces = find_moving_surfaces(objects, verdict, seen.grid);
+  const std::vector<std::vector<int>> cells_of = share_out(surfaces, objects, shape);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const SceneObject& object = objects[i];
     if (object.flat || object.track_id < 0) continue;
@@ -112,15 +253,19 @@ std::vector<ObjectSighting> sight_objects(const std::vector<SceneObject>& object
          .class_name = object.class_name,
          .score = static_cast<double>(object.score),
          .static_probability = probability},
-        object.cells, moving_cells_of(object.box, seen.grid.shape, verdict.motion));
+        cells_of[i], moving_cells_of(object.box, shape, verdict.motion));
   }
   for (const Mover& mover : verdict.movers) {
     if (mover.unseen_s > kSeenLatelyS) continue;
     Eigen::AlignedBox3d box = mover.extent_world;
     box.min().array() -= kMarginM;
     box.max().array() += kMarginM;
-    const std::vector<int> cells = cells_in(box, verdict.T_world_camera, seen);
+    const std::vector<int> cells = erase_explained(cells_in(box, verdict.T_world_camera, seen));
     add({.source = 2 * static_cast<std::uint32_t>(mover.id) + 1, .score = 1}, cells, cells);
+  }
+  for (const MovingSurface& surface : surfaces) {
+    const std::vector<int> cells = erase_explained(surface.cells);
+    if (cells.size() >= std::max(kFewCells, surface.cells.size() / 2)) add({.score = 1}, cells, cells);
   }
   return sightings;
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,9 @@ struct SeenPoint {
 
 /// What one frame shows of an object, in the frame of its camera.
 struct ObjectSighting {
-  std::uint32_t source = 0;       ///< the filter's own track: mostly the same in every frame
+  /// The filter's own track: mostly the same in every frame. None: a surface that moves, of nothing that is known; what
+  /// is followed may have come there, but nothing begins.
+  std::optional<std::uint32_t> source;
   std::string class_name;         ///< empty: found by its motion alone
   double score = 0;               ///< of the detector
   std::vector<SeenPoint> points;  ///< of its surface: the nearest in its box
@@ -38,7 +41,8 @@ struct SeenCells {
   std::function<cv::Vec3b(std::size_t)> color_bgr;  ///< of a cell
 };
 
-/// Objects that are in view: tracked ones of a high level, others while they move, and movers without a class.
+/// Objects that are in view: tracked ones of a high level, others while they move, movers without a class, and surfaces
+/// that move beside all of these.
 std::vector<ObjectSighting> sight_objects(const std::vector<SceneObject>& objects, const Verdict& verdict,
                                           const SeenCells& seen);
 

@@ -201,12 +201,12 @@ void WorldMovers::follow(View& view) {
 /// By place, colour and class; the filter's own tracks tell those apart that are near each other.
 double WorldMovers::cost_of(const Track& track, const ObjectSighting& sighting, const ObjectLook& look) {
   constexpr double kGateM = 0.4, kYoungM = 0.3, kGateGrowth_m_s = 0.8;
-  constexpr double kOtherSourceM = 0.2, kNoClassM = 0.1, kOtherClassM = 0.3, kUnlikeM = 1;
+  constexpr double kOtherSourceM = 0.2, kNoClassM = 0.6, kOtherClassM = 0.3, kUnlikeM = 1;
   const double apart_m = (look.body - track.state.head<3>()).norm();
   const double gate_m = kGateM + (track.hits < kFewHits ? kYoungM : 0) + kGateGrowth_m_s * track.unseen_s();
   if (apart_m > gate_m) return std::numeric_limits<double>::infinity();
   double cost = apart_m + kUnlikeM * unlike(look.tints, track.tints);
-  if (sighting.source != track.last.source) cost += kOtherSourceM;
+  if (sighting.source && sighting.source != track.last.source) cost += kOtherSourceM;
   const std::string &seen = sighting.class_name, &known = track.last.class_name;
   if (seen != known) cost += seen.empty() || known.empty() ? kNoClassM : kOtherClassM;
   return cost;
@@ -247,7 +247,7 @@ void WorldMovers::start_others(View& view) {
 /// A surface that no track in view explains: it neither consists of points of theirs nor lies where one is, and a mover
 /// without a class is not part of something with one.
 bool WorldMovers::is_new(std::size_t sighting, const View& view) const {
-  if (view.taken[sighting] != 0) return false;
+  if (view.taken[sighting] != 0 || !view.sightings[sighting].source) return false;
   double known = 0;
   for (std::size_t i = 0; i < view.share[sighting].size(); ++i) {
     if (tracks_[i].unseen_s() <= 0) known += view.share[sighting][i];
@@ -291,8 +291,10 @@ void WorldMovers::update(Track& track, const ObjectSighting& sighting, const Obj
   }
   track.view = look.view;
   const std::string class_name = sighting.class_name.empty() ? track.last.class_name : sighting.class_name;
+  const std::optional<std::uint32_t> source = sighting.source ? sighting.source : track.last.source;
   track.last = without_points(sighting);
   track.last.class_name = class_name;
+  track.last.source = source;
   track.seen_ns = track.now_ns;
   ++track.hits;
 }

@@ -87,6 +87,22 @@ TEST_F(WorldMoversTest, keep_their_number_while_they_are_hidden_for_a_second) {
   }
 }
 
+TEST_F(WorldMoversTest, continue_on_a_surface_without_a_source_which_begins_nothing) {
+  const auto sourceless = [this] {
+    ObjectSighting sighting = sight_body({0.3 * time_s(), 0, 2}, 1);
+    sighting.source.reset();
+    return sighting;
+  };
+  EXPECT_TRUE(step({sourceless()}).empty());
+  const std::uint32_t id = step({sight_body({0.3 * time_s(), 0, 2}, 1)}).at(0).id;
+  for (int i = 0; i < 45; ++i) {
+    const auto movers = step({sourceless()});
+    ASSERT_EQ(movers.size(), 1U) << "frame " << i;
+    EXPECT_EQ(movers[0].id, id);
+    EXPECT_EQ(movers[0].unseen_s, 0);
+  }
+}
+
 TEST_F(WorldMoversTest, that_were_hidden_for_longer_or_seen_but_once_are_others) {
   const Vector3d middle(0, 0, 2);
   const std::uint32_t first = step({sight_body(middle, 1)}).at(0).id;
