@@ -167,6 +167,8 @@ struct MapperConfig {
   int neighbours = 10;
   double min_found_ratio = 0.25;
   double redundant_ratio = 0.9;
+  double old_redundant_ratio = 0.7;
+  double old_after_s = 120.0;
   int ba_keyframes = 12;
   int ba_fixed_keyframes = 20;
   int ba_iterations_robust = 5;
@@ -180,6 +182,9 @@ struct MapperConfig {
                  "landmarks found less often than they should be seen are removed");
     binder.field("redundant_ratio", redundant_ratio, {0.5, 1.0},
                  "keyframes are removed when three others see this share of their landmarks");
+    binder.field("old_redundant_ratio", old_redundant_ratio, {0.5, 1.0},
+                 "the same for old keyframes, so that a map of one place does not grow for hours");
+    binder.field("old_after_s", old_after_s, {0.0, 1e9}, "a keyframe is old after that long");
     binder.field("ba_keyframes", ba_keyframes, {2, 200}, "keyframes that local bundle adjustment optimises");
     binder.field("ba_fixed_keyframes", ba_fixed_keyframes, {1, 200}, "keyframes that hold the gauge");
     binder.field("ba_iterations_robust", ba_iterations_robust, {1, 100},

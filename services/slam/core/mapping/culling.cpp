@@ -47,12 +47,13 @@ int RecentLandmarks::cull(Map& map, KeyframeId newest, double min_found_ratio) {
   return removed;
 }
 
-bool is_redundant_keyframe(const Map& map, KeyframeId id, double redundant_ratio) {
+bool is_redundant_keyframe(const Map& map, KeyframeId id, std::int64_t now_ns, const MapperConfig& config) {
   const Keyframe& keyframe = *map.find_keyframe(id);
   if (keyframe.is_origin()) return false;
+  const bool old = 1e-9 * static_cast<double>(now_ns - keyframe.frame->stamp_ns) > config.old_after_s;
   const auto landmarks = std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
                                        [](LandmarkId l) { return l != kNoLandmark; });
-  const double enough = redundant_ratio * static_cast<double>(landmarks);
+  const double enough = (old ? config.old_redundant_ratio : config.redundant_ratio) * static_cast<double>(landmarks);
   // Most keyframes are not redundant, which shows before all landmarks are checked.
   auto seen = static_cast<double>(landmarks);
   for (std::size_t i = 0; i < keyframe.landmarks.size() && seen > enough; ++i) {

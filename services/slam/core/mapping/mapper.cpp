@@ -95,8 +95,9 @@ void Mapper::create_landmarks(KeyframeId keyframe) {
 }
 
 void Mapper::cull_keyframes(KeyframeId newest) {
+  const std::int64_t now_ns = map_.find_keyframe(newest)->frame->stamp_ns;
   for (const KeyframeId id : map_.best_covisible(newest, kMaxRedundancyCandidates)) {
-    if (!is_redundant_keyframe(map_, id, config_.mapper.redundant_ratio)) continue;
+    if (!is_redundant_keyframe(map_, id, now_ns, config_.mapper)) continue;
     const Keyframe& keyframe = *map_.find_keyframe(id);
     if (announced_.erase(id) > 0) {
       changes_.push_back(

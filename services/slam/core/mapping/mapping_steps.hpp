@@ -8,6 +8,7 @@
 
 #include "services/slam/core/map/map.hpp"
 #include "services/slam/core/optimize/bundle_adjustment.hpp"
+#include "services/slam/core/slam_config.hpp"
 
 namespace rtd::slam {
 
@@ -57,9 +58,10 @@ class RecentLandmarks {
 /// Covisible keyframes of the newest one that are checked for redundancy.
 inline constexpr std::size_t kMaxRedundancyCandidates = 30;
 
-/// Whether nearly all (`redundant_ratio`) landmarks of a keyframe are seen by at least three others at the same
-/// or a finer scale. Never true for the first keyframe of a map.
-bool is_redundant_keyframe(const Map& map, KeyframeId keyframe, double redundant_ratio);
+/// Whether nearly all landmarks of a keyframe (`redundant_ratio`; `old_redundant_ratio` when it is old at the time
+/// `now_ns` of the newest frame) are seen by at least three others at the same or a finer scale. Never true for the
+/// first keyframe of a map.
+bool is_redundant_keyframe(const Map& map, KeyframeId keyframe, std::int64_t now_ns, const MapperConfig& config);
 
 /// Bundle adjustment of the newest keyframe, its best covisible ones and all landmarks they see; older keyframes that
 /// see these landmarks are fixed. Outlier observations are taken out of the map. docs/theory/mapping.md, "Local bundle

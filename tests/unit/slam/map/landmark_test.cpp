@@ -194,11 +194,30 @@ TEST(Culling, finds_keyframes_that_three_others_make_superfluous) {
     for (KeyframeId k = 1; k < 4; ++k) map.add_observation(id, {k, i});
     if (i % 5 == 0) map.add_observation(id, {4, i});  // a fifth of what the others see, nothing else
   }
-  EXPECT_TRUE(is_redundant_keyframe(map, 4, 0.9));
-  EXPECT_TRUE(is_redundant_keyframe(map, 2, 0.9)) << "0, 1 and 3 see all of it";
-  EXPECT_FALSE(is_redundant_keyframe(map, 0, 0.9)) << "the first is never removed";
+  EXPECT_TRUE(is_redundant_keyframe(map, 4, 0, {}));
+  EXPECT_TRUE(is_redundant_keyframe(map, 2, 0, {})) << "0, 1 and 3 see all of it";
+  EXPECT_FALSE(is_redundant_keyframe(map, 0, 0, {})) << "the first is never removed";
   map.remove_keyframe(2);
-  EXPECT_FALSE(is_redundant_keyframe(map, 1, 0.9)) << "most of it is left with two others";
+  EXPECT_FALSE(is_redundant_keyframe(map, 1, 0, {})) << "most of it is left with two others";
+}
+
+TEST(Culling, asks_less_of_old_keyframes) {
+  Map map;
+  const FeatureWorld world = make_world();
+  for (std::uint32_t k = 0; k < 4; ++k)
+    map.add_keyframe(view(world, k, shifted(0), 1.0), shifted(0), k == 0 ? kNoKeyframe : k - 1);
+  const std::size_t features = map.find_keyframe(1)->frame->features.size();
+  for (std::uint32_t i = 0; i < features; ++i) {
+    const LandmarkId id = map.add_landmark(map.find_keyframe(1)->frame->unproject(i), {1, i});
+    if (i % 4 == 0) continue;  // a quarter is seen by keyframe 1 alone
+    for (const KeyframeId other : {0, 2, 3}) map.add_observation(id, {other, i});
+  }
+  const MapperConfig config;
+  const std::int64_t then_ns = map.find_keyframe(1)->frame->stamp_ns;
+  const auto after_ns = [&](double seconds) { return then_ns + static_cast<std::int64_t>(1e9 * seconds); };
+  EXPECT_FALSE(is_redundant_keyframe(map, 1, after_ns(config.old_after_s - 1), config));
+  EXPECT_TRUE(is_redundant_keyframe(map, 1, after_ns(config.old_after_s + 1), config));
+  EXPECT_FALSE(is_redundant_keyframe(map, 1, after_ns(-1000), config)) << "of a map that another clock made";
 }
 
 const Eigen::Isometry3d kFarPose =
