@@ -171,7 +171,9 @@ int run_service(const ServiceDefinition& definition, int argc, char** argv) {
 
   try {
     // Options write straight into the config, so they are parsed twice: once to find --config, once to win over it.
-    CLI::App app{definition.description, "rtd-" + definition.name};
+    const std::string program = "rtd-" + definition.name;
+    CLI::App app{definition.description, program};
+    app.set_version_flag("--version", program + " " RTD_VERSION);
     add_common_options(app, common);
     definition.add_options(app);
     try {
@@ -180,11 +182,8 @@ int run_service(const ServiceDefinition& definition, int argc, char** argv) {
       common.config.overrides.clear();
       app.clear();
       app.parse(argc, argv);
-    } catch (const CLI::CallForHelp& help) {
-      return app.exit(help);
-    } catch (const CLI::ParseError& error) {
-      app.exit(error);
-      return kUsageOrConfig;
+    } catch (const CLI::ParseError& error) {  // or --help, --version
+      return app.exit(error) == 0 ? kOk : kUsageOrConfig;
     }
     if (common.print_config) {
       std::cout << binder.print();

@@ -65,6 +65,9 @@ TEST_F(FleetProcess, answers_robots_and_ends_with_zero) {
   detector.start(arguments());
   EXPECT_TRUE(anna->wait_answers(30));
   EXPECT_TRUE(ben->wait_answers(30));
+  std::string name;  // that ps and top show, although it has started itself anew
+  std::getline(std::ifstream("/proc/" + std::to_string(detector.process()) + "/comm"), name);
+  EXPECT_EQ(name, std::filesystem::path(RTD_EXECUTABLE).filename());
   detector.interrupt();
   EXPECT_EQ(detector.wait(), 0);
   EXPECT_THAT(detector.output(), HasSubstr("event=serves robot=\"anna\""));

@@ -296,5 +296,12 @@ TEST_F(RunServiceTest, print_config_does_not_run_the_service) {
   EXPECT_EQ(run({"--print-config"}), kOk);
 }
 
+TEST_F(RunServiceTest, names_its_version) {
+  body_ = [](Runtime&) -> ExitCode { throw std::runtime_error("must not run"); };
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(run({"--version"}), kOk);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), testing::MatchesRegex("rtd-[a-z]+ [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
 }  // namespace
 }  // namespace rtd::service
