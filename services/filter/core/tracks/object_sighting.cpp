@@ -114,20 +114,26 @@ struct Body {
   double fit = 0;  ///< overlap of the bounds with the box
 };
 
-/// The best one for a box, of the surfaces that lie mostly in it: the largest of it first.
-Body body_in(const CellBox& box, std::vector<const MovingSurface*> surfaces, const GridShape& shape) {
-  constexpr double kThickM = 0.35, kInside = 0.5;
-  std::erase_if(surfaces, [&](const MovingSurface* surface) {
-    const auto inside = std::ranges::count_if(
-        surface->cells, [&](int cell) { return box.contains(cell % shape.columns, cell / shape.columns); });
-    return static_cast<double>(inside) < kInside * static_cast<double>(surface->cells.size());
-  });
-  std::ranges::stable_sort(surfaces, std::greater{},
-                           [](const MovingSurface* surface) { return surface->cells.size(); });
+using SurfacesInBox = std::vector<const MovingSurface*>;
+
+/// Those that lie mostly in a box, the largest first.
+SurfacesInBox surfaces_in(const CellBox& box, const std::vector<MovingSurface>& surfaces, const GridShape& shape) {
+  SurfacesInBox inside;
+  for (const MovingSurface& surface : surfaces) {
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(
+        surface.cells, [&](int cell) { return box.contains(cell % shape.columns, cell / shape.columns); }));
+    if (2 * count >= surface.cells.size()) inside.push_back(&surface);
+  }
+  std::ranges::stable_sort(inside, std::greater{}, [](const MovingSurface* surface) { return surface->cells.size(); });
+  return inside;
+}
+
+Body best_body(const CellBox& box, const SurfacesInBox& inside) {
+  constexpr double kThickM = 0.35;
   Body best;
-  for (const MovingSurface* first : surfaces) {
+  for (const MovingSurface* first : inside) {
     Body body{{first}, first->box, overlap(first->box, box)};
-    for (const MovingSurface* more : surfaces) {
+    for (const MovingSurface* more : inside) {
       const CellBox larger = join(body.bounds, more->box);
       const double fit = overlap(larger, box);
       if (more == first || fit < body.fit || std::abs(more->depth_m - first->depth_m) > kThickM) continue;
@@ -145,30 +151,30 @@ Body body_in(const CellBox& box, std::vector<const MovingSurface*> surfaces, con
 std::vector<std::vector<int>> share_out(const std::vector<MovingSurface>& surfaces,
                                         const std::vector<SceneObject>& objects, const GridShape& shape) {
   constexpr double kMinFit = 0.3;
-  std::vector<std::vector<int>> cells_of(objects.size());
-  std::vector<const MovingSurface*> free;
-  for (const MovingSurface& surface : surfaces) free.push_back(&surface);
+  std::vector<std::vector<int>> cells_of;
+  std::vector<SurfacesInBox> inside;  // per object; without those that are given away
+  for (const SceneObject& object : objects) {
+    cells_of.push_back(object.cells);
+    inside.push_back(object.flat ? SurfacesInBox{} : surfaces_in(object.box, surfaces, shape));
+  }
   for (;;) {
     Body best;
     std::size_t of = 0;
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      if (!cells_of[i].empty() || objects[i].flat) continue;
-      Body body = body_in(objects[i].box, free, shape);
+      Body body = best_body(objects[i].box, inside[i]);
       if (body.fit <= best.fit) continue;
       best = std::move(body);
       of = i;
     }
-    if (best.fit < kMinFit) break;
+    if (best.fit < kMinFit) return cells_of;
+    cells_of[of].clear();
+    inside[of].clear();
     for (const MovingSurface* surface : best.surfaces) {
       cells_of[of].insert(cells_of[of].end(), surface->cells.begin(), surface->cells.end());
-      std::erase(free, surface);
+      for (SurfacesInBox& others : inside) std::erase(others, surface);
     }
     std::ranges::sort(cells_of[of]);
   }
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    if (cells_of[i].empty()) cells_of[i] = objects[i].cells;
-  }
-  return cells_of;
 }
 
 /// Cells of which the depth lies within a box in space.
