@@ -3,11 +3,13 @@
 #include "services/camera/frame_publisher.hpp"
 
 #include <sched.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 #include <random>
+#include <stdexcept>
 #include <utility>
 
 #include "common/concurrency/thread_priority.hpp"
@@ -15,6 +17,7 @@
 #include "common/msg/transform_eigen.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "services/camera/core/recording/ros_images.hpp"
 
 namespace rtd::camera {
@@ -73,7 +76,13 @@ void JpegPublisher::publish(const Waiting& image) {
   msg::CompressedImage message;
   message.header = {msg::to_time(image.stamp_ns), frame_id_};
   message.format = "bgr8; jpeg compressed bgr8";
-  if (!cv::imencode(".jpg", image.color_bgr, message.data, {cv::IMWRITE_JPEG_QUALITY, quality_})) return;
+  try {
+    if (!vision::image_codecs().encode(".jpg", image.color_bgr, message.data, {cv::IMWRITE_JPEG_QUALITY, quality_}))
+      return;
+  } catch (const std::runtime_error& error) {  // the installation is broken
+    if (!std::exchange(refused_, true)) SPDLOG_ERROR("event=no_jpeg cause=\"{}\"", error.what());
+    return;
+  }
   ++encoded_;
   writer_.write(message);
 }

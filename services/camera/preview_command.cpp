@@ -12,6 +12,7 @@
 #include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/core/preview.hpp"
 #include "services/camera/core/source_factory.hpp"
@@ -59,7 +60,7 @@ int preview(const PreviewOptions& options) {
     return service::kRunFailed;
   }
   std::cout << measured.text(source->info(), source->counters());
-  if (!cv::imwrite(options.picture, measured.picture())) {
+  if (!vision::image_codecs().write(options.picture, measured.picture(), {})) {
     std::cerr << "rtd-camera: " << options.picture << " cannot be written: choose another file with --picture\n";
     return service::kRunFailed;
   }

@@ -14,6 +14,7 @@
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "common/vision/rgbd_image.hpp"
 #include "services/dense/dense_messages.hpp"
 #include "services/dense/octomap_file.hpp"
@@ -261,8 +262,8 @@ bool DenseService::write_background(const std::string& path) {
   if (picture.empty()) return true;
   bool written = false;
   try {
-    written = cv::imwrite(path, picture);
-  } catch (const cv::Exception&) {  // reported below
+    written = vision::image_codecs().write(path, picture, {});
+  } catch (const std::exception&) {  // reported below
   }
   return report_file(path, written, fmt::format("views={}", background_.views()));
 }

@@ -15,6 +15,7 @@
 #include "common/service/load_step.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "common/vision/rgbd_image.hpp"
 
 namespace rtd::detector {
@@ -187,7 +188,7 @@ void DetectorService::publish_in_turn(std::uint64_t turn, const std::optional<ms
 std::optional<cv::Mat> DetectorService::image_of(const Arrival& arrival) {
   if (arrival.jpeg) {
     if (arrival.jpeg->data.empty()) return std::nullopt;
-    cv::Mat image = cv::imdecode(arrival.jpeg->data, cv::IMREAD_COLOR);
+    cv::Mat image = vision::image_codecs().decode(arrival.jpeg->data, cv::IMREAD_COLOR);
     return image.empty() ? std::nullopt : std::optional<cv::Mat>(std::move(image));
   }
   const cv::Mat image = vision::view_color(*arrival.frame);

@@ -13,6 +13,7 @@
 
 #include "common/service/exit_code.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "services/detector/core/detector.hpp"
 
 namespace rtd::detector {
@@ -28,7 +29,7 @@ int print_files(Detector& detector, const std::vector<std::string>& files) {
   std::cout << fmt::format("{:<32} {:<14} {:>5} {:>6} {:>6} {:>6} {:>6}\n", "file", "class", "score", "x_px", "y_px",
                            "width", "height");
   for (const std::string& file : files) {
-    const cv::Mat image = cv::imread(file);
+    const cv::Mat image = vision::image_codecs().read(file, cv::IMREAD_COLOR);
     if (image.empty()) {
       std::cerr << "rtd-detector: " << file << " is missing or not an image\n";
       code = service::kRunFailed;

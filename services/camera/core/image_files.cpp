@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string_view>
 #include <vector>
+#include "common/vision/image_codecs.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -49,7 +50,7 @@ ImageRead decode(Bytes bytes, const std::string& name, int flags, SkipReason unr
   ImageRead result;
   try {
     const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
-    result.image = cv::imdecode(encoded, flags);
+    result.image = vision::image_codecs().decode(encoded, flags);
   } catch (const cv::Exception&) {
     result.image.release();
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/service/monotonic_clock.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "common/vision/jpeg_size.hpp"
 
 namespace rtd::detector {
@@ -21,7 +22,7 @@ cv::Mat pixels_of(const msg::CompressedImage& jpeg) {
   const cv::Size size = vision::jpeg_size(jpeg.data);
   if (size.empty() || std::int64_t{size.width} * size.height > kMostPixels) return {};
   try {
-    return cv::imdecode(jpeg.data, cv::IMREAD_COLOR);
+    return vision::image_codecs().decode(jpeg.data, cv::IMREAD_COLOR);
   } catch (const std::exception&) {  // data from outside never ends the process
     return {};
   }

@@ -3,8 +3,10 @@
 #include "services/launcher/run/collector.hpp"
 
 #include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
 #include <utility>
 
+#include "common/vision/image_codecs.hpp"
 #include "common/vision/rgbd_image.hpp"
 
 namespace rtd::launcher {
@@ -16,7 +18,10 @@ std::vector<std::uint8_t> encode_jpeg(const msg::FrameView& frame) {
   const cv::Mat color = vision::view_color(frame);
   if (color.empty()) return {};
   std::vector<std::uint8_t> jpeg;
-  cv::imencode(".jpg", color, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  try {
+    vision::image_codecs().encode(".jpg", color, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  } catch (const std::runtime_error&) {  // without the library the report has no pictures
+  }
   return jpeg;
 }
 

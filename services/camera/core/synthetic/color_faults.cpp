@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
+#include "common/vision/image_codecs.hpp"
 #include "services/camera/core/synthetic/texture.hpp"
 
 namespace rtd::camera::synthetic {
@@ -71,8 +72,8 @@ cv::Mat ColorFaults::compressed(const cv::Mat& color_bgr) const {
   const int quality = static_cast<int>(faults_.jpeg);
   if (quality == 0) return color_bgr;
   std::vector<std::uint8_t> bytes;
-  cv::imencode(".jpg", color_bgr, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
-  return cv::imdecode(bytes, cv::IMREAD_COLOR);
+  vision::image_codecs().encode(".jpg", color_bgr, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
+  return vision::image_codecs().decode(bytes, cv::IMREAD_COLOR);
 }
 
 }  // namespace rtd::camera::synthetic

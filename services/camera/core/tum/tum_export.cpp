@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
+#include "common/vision/image_codecs.hpp"
 #include "services/camera/core/calibration.hpp"
 
 namespace rtd::camera {
@@ -22,7 +23,7 @@ void write_text(const fs::path& file, const std::string& text) {
 
 void write_png(const fs::path& file, const cv::Mat& image) {
   constexpr int kFastCompression = 1;
-  if (!cv::imwrite(file.string(), image, {cv::IMWRITE_PNG_COMPRESSION, kFastCompression})) {
+  if (!vision::image_codecs().write(file.string(), image, {cv::IMWRITE_PNG_COMPRESSION, kFastCompression})) {
     throw SourceError("cannot write " + file.string());
   }
 }

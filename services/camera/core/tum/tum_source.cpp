@@ -10,6 +10,7 @@
 
 #include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "services/camera/core/calibration.hpp"
 #include "services/camera/core/image_files.hpp"
 
@@ -203,7 +204,7 @@ cv::Mat TumSource::read_mask(const FilePair& pair) const {
   const std::filesystem::path name = std::filesystem::path(pair.color.file).filename().replace_extension(".png");
   const std::filesystem::path file = folder_ / "mask" / name;
   if (!std::filesystem::exists(file)) return {};
-  const cv::Mat mask = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
+  const cv::Mat mask = vision::image_codecs().read(file.string(), cv::IMREAD_GRAYSCALE);
   if (mask.empty()) return {};
   return mask > 0;
 }
