@@ -182,7 +182,8 @@ class App {
 
   /** What nobody looks at is not sent. */
   sendOptions() {
-    const { layers, overlays } = this.settings, image = this.frame.shows("image") && !document.hidden;
+    const { layers, overlays } = this.settings;
+    const image = this.selected !== undefined && this.frame.shows("image") && !document.hidden;
     const options = { op: "options", image, mask: image && overlays.mask, features: image && overlays.features,
                       points: layers.points, dense: layers.dense, robot: this.selected };
     const text = JSON.stringify(options);
