@@ -6,9 +6,9 @@
 Usage: deploy/soak.py [--seconds 120] [--rtd build/release/bin/rtd] [--scene office] [--pace asap] [RUN_OPTION ...]
        deploy/soak.py --simulated-hours 8 --scene "office?fps=5" --dense
 
-With --simulated-hours it ends when the scene has lasted that long; few frames a second of the scene are many hours a
-minute. Options that it does not know go to 'rtd run'. slam's map and the launcher's record of the run grow with their content. The memory of all other processes must stay
-constant.
+With --simulated-hours it ends when the scene has lasted that long; a scene of few frames a second gets through hours
+in minutes. Options that are not known here are passed to 'rtd run'. slam's map and the launcher's record of the run
+grow with their content. The memory of all other processes must stay constant.
 """
 import argparse
 import json
@@ -47,7 +47,10 @@ def sample(pid: int) -> dict:
 
 def frames_per_s(scene_parameters: str) -> float:
     values = dict(part.split("=", 1) for part in scene_parameters.split("&") if "=" in part)
-    return float(values.get("fps", 30))
+    try:
+        return float(values.get("fps", 30))
+    except ValueError:
+        sys.exit(f"soak: fps={values['fps']} is no number: --scene 'office?fps=2'")
 
 
 def main() -> None:
@@ -76,16 +79,20 @@ def main() -> None:
         if run.poll() is None:
             run.send_signal(signal.SIGINT)
         run.wait(timeout=120)
-        samples = [(elapsed, memory) for elapsed, memory in samples if len(memory) == len(samples[0][1])]
-        report = json.loads((pathlib.Path(folder) / "report.json").read_text())
+        report_file = pathlib.Path(folder) / "report.json"
+        if not report_file.exists():
+            sys.exit(f"soak: 'rtd run' ended with exit code {run.returncode} and left no report; its message is above")
+        report = json.loads(report_file.read_text())
 
+    most = max((len(memory) for _, memory in samples), default=0)
+    samples = [(elapsed, memory) for elapsed, memory in samples if most > 0 and len(memory) == most]
     names = sorted(samples[-1][1]) if samples else sys.exit("the run ended before the first sample")
     print("| time s | " + " | ".join(f"{name} MB" for name in names) + " |")
     print("|---" * (len(names) + 1) + "|")
     for elapsed, memory in samples[:: max(1, len(samples) // 8)] + samples[-1:]:
-        print(f"| {elapsed:.0f} | " + " | ".join(f"{memory.get(name, 0):.1f}" for name in names) + " |")
+        print(f"| {elapsed:.0f} | " + " | ".join(f"{memory[name]:.1f}" for name in names) + " |")
     print(f"\n{report['frames_tracked']} frames tracked, coverage {report['coverage']:.4f}, "
-          f"ATE {report['ate_rmse_m']:.4f} m, {len(report['lost_spans'])} lost spans, {report['restarts']} restarts")
+          f"ATE {report['ate_rmse_m']:.4f} m, {len(report['lost_spans'])} lost spans, {sum(report['restarts'].values())} restarts")
     print(f"{report['map']['keyframes']} keyframes, "
           f"{report['map']['landmarks']} landmarks at the end, {report['frames_per_s']:.1f} frames/s")
 

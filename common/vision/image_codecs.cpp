@@ -4,28 +4,27 @@
 
 #include <dlfcn.h>
 
-#include <filesystem>
 #include <stdexcept>
+#include <string>
+
+#include "common/io/own_library.hpp"
 
 namespace rtd::vision {
 namespace {
 
 const ImageCodecs& load() {
-  namespace fs = std::filesystem;
   constexpr const char* kLibrary = "librtd_image_codecs.so";
-  std::error_code error;
-  const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const fs::path& folder : {here, here / "../lib/rtd-slam", here / "../bin"}) {  // the last for tests
-    const fs::path file = folder / kLibrary;
-    if (!fs::exists(file, error)) continue;
-    void* const library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    if (library == nullptr) throw std::runtime_error(file.string() + " cannot be loaded: " + dlerror());
-    const auto entry = reinterpret_cast<const ImageCodecs* (*)()>(dlsym(library, kImageCodecsEntry));
-    if (entry == nullptr) throw std::runtime_error(file.string() + " is of another version: install RTD-SLAM again");
-    return *entry();
+  const std::string file = io::find_own_library(kLibrary).string();
+  if (file.empty()) {
+    throw std::runtime_error(
+        std::string("no image can be read or written: ") + kLibrary +
+        " is neither beside this program nor in ../lib/rtd-slam from there; install RTD-SLAM again");
   }
-  throw std::runtime_error(std::string("no image can be read or written: ") + kLibrary + " is neither in " +
-                           here.string() + " nor in ../lib/rtd-slam from there; install RTD-SLAM again");
+  void* const library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  if (library == nullptr) throw std::runtime_error(file + " cannot be loaded: " + dlerror());
+  const auto entry = reinterpret_cast<const ImageCodecs* (*)()>(dlsym(library, kImageCodecsEntry));
+  if (entry == nullptr) throw std::runtime_error(file + " is of another version: install RTD-SLAM again");
+  return *entry();
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "common/io/own_library.hpp"
 #include "services/detector/core/onnx_graph.hpp"
 #include "services/detector/core/torch/torch_module.hpp"
 
@@ -19,19 +20,12 @@ using torch_module::Module;
 
 constexpr const char* kLibrary = "librtd_engine_torch.so";
 
-std::vector<fs::path> candidates() {
-  if (const char* folder = std::getenv(kEngineFolder)) return {fs::path(folder) / kLibrary};
-  std::error_code error;
-  const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
-  return {here / kLibrary, here / "../lib/rtd-slam" / kLibrary, here / "../bin" / kLibrary};  // the last for tests
-}
-
 fs::path find_library() {
+  const char* const folder = std::getenv(kEngineFolder);
+  if (folder == nullptr) return io::find_own_library(kLibrary);
   std::error_code ignored;
-  for (const fs::path& file : candidates()) {
-    if (fs::exists(file, ignored)) return file;
-  }
-  return {};
+  const fs::path file = fs::path(folder) / kLibrary;
+  return fs::exists(file, ignored) ? file : fs::path();
 }
 
 /// Never unloaded: libtorch keeps threads.

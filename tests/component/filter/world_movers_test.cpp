@@ -205,6 +205,24 @@ std::vector<int> countable_objects(const camera::SourceFrame& frame, const Truth
   return objects;
 }
 
+/// Where the objects are that move, on the floor.
+std::map<int, Eigen::Vector2d> middles_of(const camera::SourceFrame& frame, const Truth& truth, double t_s) {
+  std::map<int, Eigen::Vector2d> middles;
+  for (const camera::SourceObject& object : frame.objects) {
+    if (object.class_name != "chair") middles[object.id] = truth.horizontal(truth.extent(object.id, t_s).center());
+  }
+  return middles;
+}
+
+void print(const std::string& uri, const Accuracy& accuracy) {
+  std::printf(
+      "%s: %zu of %zu found, position %.3f m, velocity %.3f m/s, NEES %.2f, %.2f, %d id switches in %.2f min, "
+      "%d of objects apart in %.2f min\n",
+      uri.c_str(), accuracy.found, accuracy.seen, accuracy.position_rmse_m, accuracy.velocity_rmse_m_s,
+      accuracy.position_nees, accuracy.velocity_nees, accuracy.id_switches, accuracy.visible_min,
+      accuracy.id_switches_apart, accuracy.apart_min);
+}
+
 Accuracy measure(const std::string& uri) {
   const auto source = camera::make_source(uri);
   const Truth truth(uri);
@@ -227,11 +245,7 @@ Accuracy measure(const std::string& uri) {
       return truth.horizontal(mover.extent_world.center() - truth.extent(object, t_s).center()).norm();
     };
     const std::vector<int> visible = countable_objects(*frame, truth, t_s, T_map_camera.translation());
-    std::map<int, Eigen::Vector2d> middles;
-    for (const camera::SourceObject& object : frame->objects) {
-      if (object.class_name != "chair") middles[object.id] = truth.horizontal(truth.extent(object.id, t_s).center());
-    }
-    apart.add(frame->image.seq, middles);
+    apart.add(frame->image.seq, middles_of(*frame, truth, t_s));
     const auto is_apart = [&](int object) { return apart.is_apart(object); };
     const std::vector<int> switched = ids.add(frame->image.seq, visible, movers, apart_m);
     accuracy.id_switches += static_cast<int>(switched.size());
@@ -265,19 +279,19 @@ Accuracy measure(const std::string& uri) {
   accuracy.velocity_rmse_m_s = std::sqrt(velocity_sum / static_cast<double>(accuracy.found));
   accuracy.position_nees /= static_cast<double>(accuracy.found);
   accuracy.velocity_nees /= static_cast<double>(accuracy.found);
-  std::printf(
-      "%s: %zu of %zu found, position %.3f m, velocity %.3f m/s, NEES %.2f, %.2f, %d id switches in %.2f min, "
-      "%d of objects apart in %.2f min\n",
-      uri.c_str(), accuracy.found, accuracy.seen, accuracy.position_rmse_m, accuracy.velocity_rmse_m_s,
-      accuracy.position_nees, accuracy.velocity_nees, accuracy.id_switches, accuracy.visible_min,
-      accuracy.id_switches_apart, accuracy.apart_min);
+  print(uri, accuracy);
   return accuracy;
 }
 
-class WorldMoversIn : public ::testing::TestWithParam<const char*> {};
+struct MovingScene {
+  const char* uri;
+  int id_switches = 0;  ///< of objects that pass through each other or are hidden by one that does
+};
+
+class WorldMoversIn : public ::testing::TestWithParam<MovingScene> {};
 
 TEST_P(WorldMoversIn, scenes_are_where_and_as_fast_as_they_are) {
-  const Accuracy accuracy = measure(GetParam());
+  const Accuracy accuracy = measure(GetParam().uri);
   EXPECT_GE(accuracy.found, accuracy.seen * 9 / 10);
   EXPECT_GT(accuracy.found, 0U);
   EXPECT_LE(accuracy.position_rmse_m, 0.15);
@@ -285,13 +299,16 @@ TEST_P(WorldMoversIn, scenes_are_where_and_as_fast_as_they_are) {
   EXPECT_LE(accuracy.position_nees, 3);
   EXPECT_LE(accuracy.velocity_nees, 3);
   EXPECT_EQ(accuracy.id_switches_apart, 0);
-  EXPECT_LE(accuracy.id_switches, 1);
+  EXPECT_LE(accuracy.id_switches, GetParam().id_switches);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, WorldMoversIn,
-                         ::testing::Values("synthetic:office?frames=300&seed=5", "synthetic:flicker?frames=200&seed=3",
-                                           "synthetic:sitting?frames=420", "synthetic:box?frames=240",
-                                           "synthetic:box?frames=300&seed=63", "synthetic:approach?frames=200"));
+                         ::testing::Values(MovingScene{"synthetic:office?frames=300&seed=5", 1},
+                                           MovingScene{"synthetic:flicker?frames=200&seed=3"},
+                                           MovingScene{"synthetic:sitting?frames=420"},
+                                           MovingScene{"synthetic:box?frames=240", 1},
+                                           MovingScene{"synthetic:box?frames=300&seed=63"},
+                                           MovingScene{"synthetic:approach?frames=200"}));
 
 }  // namespace
 }  // namespace rtd::filter

@@ -107,14 +107,14 @@ std::vector<MovingSurface> find_moving_surfaces(const std::vector<SceneObject>& 
   return surfaces;
 }
 
+using SurfacesInBox = std::vector<const MovingSurface*>;
+
 /// Surfaces at about one depth that together fill a box.
 struct Body {
-  std::vector<const MovingSurface*> surfaces;
+  SurfacesInBox surfaces;
   CellBox bounds;
   double fit = 0;  ///< overlap of the bounds with the box
 };
-
-using SurfacesInBox = std::vector<const MovingSurface*>;
 
 /// Those that lie mostly in a box, the largest first.
 SurfacesInBox surfaces_in(const CellBox& box, const std::vector<MovingSurface>& surfaces, const GridShape& shape) {
