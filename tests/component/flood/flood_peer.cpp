@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// An attacker without keys: flood_peer VENDOR DOMAIN RATE_HZ. Writes a message to every topic and sends a request to
+// every command RATE_HZ times a second until SIGTERM, then prints how many. What it writes is well-formed: in turn
+// random values in every field, and copies of what the real services have just sent with one thing changed.
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/bus/bus_factory.hpp"
+#include "common/bus/command_codec.hpp"
+#include "tests/interop/bus/all_topics.hpp"
+
+namespace rtd::flood {
+namespace {
+
+volatile std::sig_atomic_t stop = 0;
+
+/// One topic under attack. Larger messages than this are written at a tenth of the rate: memory bandwidth is no news.
+class Target {
+ public:
+  virtual ~Target() = default;
+  virtual void attack(std::uint64_t turn) = 0;
+  std::uint64_t written() const { return written_; }
+
+ protected:
+  std::uint64_t written_ = 0;
+};
+
+/// The newest message of somebody else's.
+template <class T>
+class Overheard {
+ public:
+  void put(std::shared_ptr<const T> message) {
+    const std::lock_guard lock(mutex_);
+    message_ = std::move(message);
+  }
+  std::shared_ptr<const T> get() const {
+    const std::lock_guard lock(mutex_);
+    return message_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<const T> message_;
+};
+
+/// What a copy pretends: to be the next message, or one of the far future, or of another state.
+void change(msg::FeatureFrame& frame, std::uint64_t turn) {
+  frame.seq += turn % 3 == 0 ? 1 : turn;
+  for (msg::Feature& feature : frame.features) feature.depth_m *= 1.5F;
+}
+void change(msg::TrackingResult& result, std::uint64_t turn) {
+  result.seq += turn % 3;
+  result.T_world_camera.translation_m[0] += 1;
+}
+void change(msg::KeyframeEvent& event, std::uint64_t turn) {
+  event.frame_seq += turn % 3;
+  event.T_world_camera.translation_m[turn % 3] += 1;
+}
+void change(msg::ServiceStatus& status, std::uint64_t turn) {
+  status.state = turn % 2 == 0 ? msg::ServiceState::kFinished : msg::ServiceState::kFailed;
+  status.started_ns -= 1'000'000'000;
+  status.pid += static_cast<std::int64_t>(turn % 5);
+  status.message = "forged \x1b[2J\nevent=forged";
+}
+void change(msg::Detection2DArray& detections, std::uint64_t) {
+  for (msg::Detection2D& detection : detections.detections) detection.bbox.size_x = detection.bbox.size_y = 2000;
+}
+template <std::uint32_t kWidth, std::uint32_t kHeight>
+void change(msg::SizedFrame<kWidth, kHeight>& frame, std::uint64_t turn) {
+  frame.seq = frame.seq + 1 + turn % 3;
+  frame.stamp_ns = frame.stamp_ns + 1'000'000;
+}
+template <class T>
+void change(T& message, std::uint64_t turn) {
+  std::mt19937_64 random(turn);
+  if constexpr (!bus::MessageTraits<T>::kPlain) bus::reflect::randomize(message, random);
+}
+
+template <class T>
+class TopicTarget final : public Target {
+ public:
+  TopicTarget(bus::Bus& bus, const bus::Topic<T>& topic)
+      : topic_(topic), writer_(bus.writer(topic)), message_(bus::interop::message_of(topic, 0)) {
+    reader_ = bus.template reader<T>(topic, [this](std::shared_ptr<const T> heard) { heard_.put(std::move(heard)); });
+  }
+  void attack(std::uint64_t turn) override {
+    constexpr std::size_t kLarge = 1'000'000;
+    if (sizeof(T) > kLarge && turn % 10 != 0) return;
+    const auto heard = heard_.get();
+    if (turn % 2 == 0 && heard) {
+      *message_ = *heard;
+      change(*message_, turn);
+    } else if (sizeof(T) <= kLarge && turn % 50 < 2) {  // random numbers take time that is the attacker's own
+      message_ = bus::interop::message_of(topic_, static_cast<int>(turn));
+    }
+    if (writer_.write(*message_)) ++written_;
+  }
+
+ private:
+  bus::Topic<T> topic_;
+  bus::Writer<T> writer_;
+  std::unique_ptr<T> message_;
+  Overheard<T> heard_;
+  bus::Reader<T> reader_;
+};
+
+/// Requests that must be refused, whoever sends them; those that do what they say (reset, localize only, a real filter
+/// mode) are for everybody who may call commands.
+class CommandTarget final : public Target {
+ public:
+  CommandTarget(bus::Bus& bus, const std::string& name, std::string argument)
+      : calls_(bus.calls(bus::call_topics(name, bus::CommandKind::kText), bus::CallRole::kClient, [](auto&&...) {})),
+        request_(bus::encode_request(bus::CommandKind::kText, {std::move(argument)})) {}
+  void attack(std::uint64_t) override {
+    if (calls_->matched_readers() > 0 && calls_->request(request_)) ++written_;
+  }
+
+ private:
+  std::unique_ptr<bus::CallEndpoint> calls_;
+  std::vector<std::byte> request_;
+};
+
+std::vector<std::unique_ptr<Target>> make_targets(bus::Bus& bus) {
+  std::vector<std::unique_ptr<Target>> targets;
+  bus::interop::for_each_topic([&]<class T>(const bus::Topic<T>& topic) {
+    targets.push_back(std::make_unique<TopicTarget<T>>(bus, topic));
+  });
+  for (const auto& [name, argument] : {std::pair("slam/save_map", "../../escaped"), {"slam/load_map", "/etc/passwd"},
+                                       {"filter/set_mode", "no such mode"}, {"recorder/start", "/tmp/escaped"}})
+    targets.push_back(std::make_unique<CommandTarget>(bus, name, argument));
+  return targets;
+}
+
+std::uint64_t flood(bus::Bus& bus, double rate_hz) {
+  const auto targets = make_targets(bus);
+  const auto period = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(1 / rate_hz));
+  auto next = std::chrono::steady_clock::now();
+  for (std::uint64_t turn = 0; stop == 0; ++turn) {
+    for (const auto& target : targets) target->attack(turn);
+    std::this_thread::sleep_until(next += period);
+  }
+  std::uint64_t written = 0;
+  for (const auto& target : targets) written += target->written();
+  return written;
+}
+
+}  // namespace
+}  // namespace rtd::flood
+
+int main(int argc, char** argv) {
+  if (argc != 4) {
+    std::fputs("usage: flood_peer VENDOR DOMAIN RATE_HZ\n", stderr);
+    return 2;
+  }
+  ::signal(SIGTERM, [](int) { rtd::flood::stop = 1; });
+  // An attacker on this host could take the processor without any bus: what counts is what its messages cost others.
+  ::setpriority(PRIO_PROCESS, 0, 19);
+  rtd::bus::BusOptions options;
+  options.vendor = argv[1];
+  options.domain = static_cast<std::uint32_t>(std::atoi(argv[2]));
+  options.participant_name = "flood";
+  const auto bus = rtd::bus::connect(options);
+  std::printf("%llu messages written\n", static_cast<unsigned long long>(rtd::flood::flood(*bus, std::atof(argv[3]))));
+}
