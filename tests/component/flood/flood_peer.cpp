@@ -22,11 +22,15 @@
 #include "tests/interop/bus/all_topics.hpp"
 
 namespace rtd::flood {
+
+volatile std::sig_atomic_t& stopped() {
+  static volatile std::sig_atomic_t value = 0;
+  return value;
+}
+
 namespace {
 
-volatile std::sig_atomic_t stop = 0;
-
-/// One topic under attack. Larger messages than this are written at a tenth of the rate: memory bandwidth is no news.
+/// One topic or command under attack.
 class Target {
  public:
   virtual ~Target() = default;
@@ -96,7 +100,7 @@ class TopicTarget final : public Target {
     reader_ = bus.template reader<T>(topic, [this](std::shared_ptr<const T> heard) { heard_.put(std::move(heard)); });
   }
   void attack(std::uint64_t turn) override {
-    constexpr std::size_t kLarge = 1'000'000;
+    constexpr std::size_t kLarge = 1'000'000;  // written at a tenth of the rate: memory bandwidth is no news
     if (sizeof(T) > kLarge && turn % 10 != 0) return;
     const auto heard = heard_.get();
     if (turn % 2 == 0 && heard) {
@@ -147,7 +151,7 @@ std::uint64_t flood(bus::Bus& bus, double rate_hz) {
   const auto targets = make_targets(bus);
   const auto period = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(1 / rate_hz));
   auto next = std::chrono::steady_clock::now();
-  for (std::uint64_t turn = 0; stop == 0; ++turn) {
+  for (std::uint64_t turn = 0; stopped() == 0; ++turn) {
     for (const auto& target : targets) target->attack(turn);
     std::this_thread::sleep_until(next += period);
   }
@@ -164,7 +168,7 @@ int main(int argc, char** argv) {
     std::fputs("usage: flood_peer VENDOR DOMAIN RATE_HZ\n", stderr);
     return 2;
   }
-  ::signal(SIGTERM, [](int) { rtd::flood::stop = 1; });
+  ::signal(SIGTERM, [](int) { rtd::flood::stopped() = 1; });
   // An attacker on this host could take the processor without any bus: what counts is what its messages cost others.
   ::setpriority(PRIO_PROCESS, 0, 19);
   rtd::bus::BusOptions options;
