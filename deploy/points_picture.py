@@ -5,7 +5,7 @@
 
 Usage: deploy/points_picture.py REPORT.html FRAME MASK.png OUT.svg [--dark]
 --dark: moving objects are black in the mask.
-This script made the images of docs/results.md. It needs python3-opencv.
+This script made the images of docs/lab/accuracy.md. It needs python3-opencv.
 """
 import re
 import sys

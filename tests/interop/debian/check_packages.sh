@@ -39,7 +39,9 @@ holds() { # PACKAGE FILE...
   done
 }
 
-make_packages 0.1.0 "$work/1"
+version="$(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$build/CMakeCache.txt")"
+[ -n "$version" ] || fail "$build/CMakeCache.txt names no version: is it a build folder?"
+make_packages "$version" "$work/1"
 holds rtd-slam usr/bin/rtd usr/bin/rtd-slam usr/bin/rtd-link usr/lib/systemd/system/rtd-slam@.service \
   usr/lib/systemd/system/rtd-slam@camera.service.d/devices.conf usr/lib/sysusers.d/rtd-slam.conf \
   usr/lib/udev/rules.d/60-rtd-cameras.rules etc/rtd-slam/rtd-slam.conf usr/share/doc/rtd-slam/copyright
@@ -78,10 +80,10 @@ inside rtd-viewer --help >/dev/null || fail "rtd-viewer does not run"
 echo "RTD_COMMON_OPTIONS=--profile lan" >"$work/root/etc/rtd-slam/rtd-slam.conf"
 echo "kept" >"$work/root/etc/rtd-slam/camera.conf"
 mkdir -p "$work/root/var/lib/rtd-slam" && echo map >"$work/root/var/lib/rtd-slam/room.rtdmap"
-make_packages 0.1.1 "$work/2"
+make_packages "$version.1" "$work/2"
 rm "$work"/root/packages/*.deb && cp "$work"/2/*.deb "$work/root/packages/"
 inside sh -c 'dpkg -i --force-confold /packages/*.deb' >"$work/dpkg.log" 2>&1 || fail "upgrade: $(cat "$work/dpkg.log")"
-[ "$(inside dpkg-query -W -f '${Version}' rtd-slam)" = 0.1.1 ] || fail "not upgraded"
+[ "$(inside dpkg-query -W -f '${Version}' rtd-slam)" = "$version.1" ] || fail "not upgraded"
 grep -q lan "$work/root/etc/rtd-slam/rtd-slam.conf" || fail "the upgrade replaced settings"
 
 inside dpkg --remove rtd-slam-viewer rtd-slam rtd-msgs-dev rtd-slam-doc >"$work/dpkg.log" 2>&1 ||

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that the documentation matches the repository: links, paths, test and event names, line length, words."""
+"""Checks that the documentation matches the repository: links, paths, names, version, line length, words."""
 import os
 import pathlib
 import re
@@ -13,6 +13,9 @@ TOP_FOLDERS = ("common", "config", "deploy", "docs", "idl", "services", "tests")
 SOURCE_SUFFIXES = (".cpp", ".hpp", ".c", ".h", ".py", ".sh", ".mjs", ".cmake", ".idl", ".md", ".supp")
 MAX_LINE = 120
 OUTPUT_AND_EXTERNAL_FILES = {"ablation.md", "associate.py"}
+LONGEST_RESULTS, LONGEST_CHANGES = 250, 60  # lines of the page, and of each version's section
+# colcon reads package.xml before CMake runs, so this copy has to be a literal; the test compares it.
+VERSION_COPIES = {"CMakeLists.txt", "CHANGELOG.md", "idl/ros2/rtd_msgs/package.xml"}
 
 PATH_IN_COMMENT = re.compile(rf"(?<![\w/.-])(?:{'|'.join(TOP_FOLDERS)})/[\w./-]*\w")
 
@@ -161,6 +164,21 @@ class Docs(unittest.TestCase):
         self.assert_none([f"{page}:{number}: {len(line)} characters" for page in PAGES
                           for number, line in enumerate(without_code_blocks(text_of(page)), 1)
                           if len(line) > MAX_LINE and not line.startswith("|") and "://" not in line])
+
+    def test_results_and_changes_are_short(self):
+        """Details and history belong in docs/lab; the changelog says what users can do."""
+        self.assertLessEqual(text_of("docs/results.md").count("\n"), LONGEST_RESULTS)
+        for section in re.split(r"^## ", text_of("CHANGELOG.md"), flags=re.MULTILINE):
+            self.assertLessEqual(section.count("\n"), LONGEST_CHANGES, section.split("\n")[0])
+
+    def test_version_stands_in_one_place(self):
+        version = re.search(r"^project\(\w+ VERSION ([\d.]+)", text_of("CMakeLists.txt"), re.MULTILINE).group(1)
+        self.assertIn(f"<version>{version}</version>", text_of("idl/ros2/rtd_msgs/package.xml"))
+        self.assertRegex(text_of("CHANGELOG.md"), rf"(?m)^## {re.escape(version)}$")
+        copy = re.compile(rf"(?<![\d.]){re.escape(version)}(?!\.?\d)")
+        self.assert_none([f"{path}: the version is written out; take it from CMake" for path in FILES
+                          if path.suffix in (*SOURCE_SUFFIXES, ".txt", ".in", ".xml", ".yaml", ".json")
+                          and path.as_posix() not in VERSION_COPIES and copy.search(text_of(path))])
 
     def test_tables_are_whole(self):
         """A line of dashes follows a heading with as many columns; no table has been joined into one line."""
