@@ -11,6 +11,7 @@
 #include "common/bus/calls.hpp"
 #include "common/bus/message_types.hpp"
 #include "common/bus/qos.hpp"
+#include "common/bus/writer_id.hpp"
 
 namespace rtd::bus {
 
@@ -53,6 +54,7 @@ class WriterBackend {
   virtual void discard_loan(void* slot) = 0;
   virtual int matched() const = 0;
   virtual bool wait_acknowledged(int timeout_ms) = 0;
+  virtual WriterId id() const = 0;
 };
 
 class ReaderBackend {
@@ -61,7 +63,7 @@ class ReaderBackend {
   virtual int matched() const = 0;
 };
 
-using ErasedCallback = std::function<void(std::shared_ptr<const void>)>;
+using ErasedCallback = std::function<void(std::shared_ptr<const void>, const WriterId& writer)>;
 
 class BusBackend : public CallBackend {
  public:

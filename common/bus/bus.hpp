@@ -59,6 +59,8 @@ class Writer {
   int matched() const { return backend_->matched(); }
   /// Blocks until every reliable reader has acknowledged what was written, at most timeout_ms. True when all did.
   bool wait_acknowledged(int timeout_ms) { return backend_->wait_acknowledged(timeout_ms); }
+  /// What readers get as the source of its messages.
+  WriterId id() const { return backend_->id(); }
 
  private:
   std::unique_ptr<WriterBackend> backend_;
@@ -121,12 +123,17 @@ class Bus {
                                              counters_.count(name, std::move(callbacks))));
   }
 
-  template <class T>
-  Reader<T> reader(const Topic<T>& topic,
-                   std::type_identity_t<std::function<void(std::shared_ptr<const T>)>> on_message,
-                   StatusCallbacks callbacks = {}) {
-    auto erased = [on_message = std::move(on_message)](std::shared_ptr<const void> message) {
-      on_message(std::static_pointer_cast<const T>(std::move(message)));
+  /// `on_message` takes the message, a shared_ptr<const T>, and if it wants to the WriterId of its source.
+  template <class T, class OnMessage>
+  Reader<T> reader(const Topic<T>& topic, OnMessage on_message, StatusCallbacks callbacks = {}) {
+    auto erased = [on_message = std::move(on_message)](std::shared_ptr<const void> message,
+                                                       const WriterId& writer) mutable {
+      auto typed = std::static_pointer_cast<const T>(std::move(message));
+      if constexpr (std::is_invocable_v<OnMessage&, std::shared_ptr<const T>, const WriterId&>) {
+        on_message(std::move(typed), writer);
+      } else {
+        on_message(std::move(typed));
+      }
     };
     const std::string name = topic_of_robot(topic.name, robot_);
     return Reader<T>(backend_->create_reader(MessageTraits<T>::kId, name, topic.profile, std::move(erased),

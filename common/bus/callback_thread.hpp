@@ -62,6 +62,7 @@ class StatusReporter {
   void report_deadline_missed() { post(callbacks_.on_deadline_missed); }
   void report_incompatible_qos(const std::string& policy) { post(callbacks_.on_incompatible_qos, policy); }
   void report_type_mismatch(const std::string& type) { post(callbacks_.on_type_mismatch, type); }
+  void report_writer(const WriterId& writer, bool matched) { post(callbacks_.on_writer, writer, matched); }
   void report_lost(int total) { post(callbacks_.on_samples_lost, total); }
   void report_rejected(int total) { post(callbacks_.on_samples_rejected, total); }
 

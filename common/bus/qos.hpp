@@ -6,6 +6,8 @@
 #include <functional>
 #include <string>
 
+#include "common/bus/writer_id.hpp"
+
 namespace rtd::bus {
 
 /// What a topic is for. Each backend maps a profile to its own QoS in one place (docs/topics.md lists them).
@@ -49,6 +51,10 @@ struct StatusCallbacks {
   std::function<void(int total)> on_samples_lost;      ///< readers: samples lost so far
   std::function<void(int total)> on_samples_rejected;  ///< readers: samples so far that did not fit into the history
   std::function<void(const std::string& type)> on_type_mismatch;  ///< a peer uses the topic's name with another type
+  /// Readers: a writer is matched, or no longer. What it has sent before may still come.
+  std::function<void(const WriterId& writer, bool matched)> on_writer;
+  /// Readers: whether messages of the writer are wanted, asked for each before its content is copied or looked at.
+  std::function<bool(const WriterId& writer)> accepts;
 };
 
 }  // namespace rtd::bus

@@ -6,22 +6,6 @@
 
 namespace rtd::bus {
 
-ParticipantId participant_of(const WriterId& endpoint) {
-  ParticipantId id{};
-  std::copy_n(endpoint.begin(), id.size(), id.begin());
-  return id;
-}
-
-std::string to_string(const WriterId& id) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const std::uint8_t byte : id) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
-  }
-  return text;
-}
-
 std::optional<RawLoss> SequenceGaps::next(const WriterId& writer, std::int64_t sequence) {
   const auto [known, is_first] = newest_.try_emplace(writer, sequence);
   const std::int64_t expected = is_first ? sequence : known->second + 1;
@@ -31,7 +15,8 @@ std::optional<RawLoss> SequenceGaps::next(const WriterId& writer, std::int64_t s
 }
 
 ErasedCallback raw_callback(RawHandlers handlers) {
-  return [handlers = std::move(handlers), gaps = SequenceGaps()](const std::shared_ptr<const void>& message) mutable {
+  return [handlers = std::move(handlers), gaps = SequenceGaps()](const std::shared_ptr<const void>& message,
+                                                                const WriterId&) mutable {
     const auto& sample = *std::static_pointer_cast<const RawSample>(message);
     const auto loss = gaps.next(sample.writer, sample.sequence);
     if (loss && handlers.on_lost) handlers.on_lost(*loss);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -18,6 +17,7 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/writer_id.hpp"
 
 /// Topics as bytes: recording, replaying and inspecting need no type. Beside Bus, on a connection of its own.
 namespace rtd::bus {
@@ -53,10 +53,6 @@ class ByteBlock {
 };
 
 static_assert(__STDCPP_DEFAULT_NEW_ALIGNMENT__ >= 16, "ByteBlock aligns by what new gives");
-
-/// Identity of a writer in the domain (its GUID); readers have such ids too.
-using WriterId = std::array<std::uint8_t, 16>;
-std::string to_string(const WriterId& id);  ///< hexadecimal, e.g. "010f5b2a..."
 
 inline constexpr std::int64_t kUnlimitedNs = std::numeric_limits<std::int64_t>::max();
 
@@ -96,10 +92,6 @@ struct TopicReader {
   RawTopic topic;
   bool own = false;  ///< belongs to this connection
 };
-
-/// Identity of a connection in the domain: the first bytes of its endpoints' ids.
-using ParticipantId = std::array<std::uint8_t, 12>;
-ParticipantId participant_of(const WriterId& endpoint);
 
 enum class WriterChange { kAppeared, kChanged, kGone };
 

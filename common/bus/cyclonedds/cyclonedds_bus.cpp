@@ -14,10 +14,12 @@ namespace {
 
 CycloneReader::Handlers typed_handlers(MessageId id, ErasedCallback on_message, StatusCallbacks callbacks) {
   CycloneReader::Handlers handlers;
-  handlers.on_sample = [id, on_message = std::move(on_message)](const TakenSample& sample) {
+  handlers.on_sample = [id, on_message = std::move(on_message),
+                        accepts = callbacks.accepts](const TakenSample& sample) {
+    if (accepts && !accepts(sample.origin.writer)) return true;
     std::shared_ptr<const void> message = decode(id, sample.bytes);
     if (message == nullptr) return false;
-    on_message(std::move(message));
+    on_message(std::move(message), sample.origin.writer);
     return true;
   };
   handlers.status = std::move(callbacks);

@@ -4,8 +4,10 @@
 
 #include <dds/ddsc/dds_loan_api.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "common/bus/cyclonedds/codec.hpp"
 #include "common/bus/cyclonedds/qos_mapping.hpp"
@@ -17,13 +19,10 @@ StatusReporter& status(void* reporter) {
   return *static_cast<StatusReporter*>(reporter);
 }
 
-/// `reporter` gets all but new data.
+/// `reporter` gets all but new data and matches.
 Listener reader_listener(StatusReporter& reporter) {
   Listener listener(dds_create_listener(&reporter));
   dds_listener_t* const l = listener.get();
-  dds_lset_subscription_matched(l, [](dds_entity_t, dds_subscription_matched_status_t matched, void* self) {
-    status(self).report_matched(static_cast<int>(matched.current_count));
-  });
   dds_lset_requested_deadline_missed(l, [](dds_entity_t, dds_requested_deadline_missed_status_t, void* self) {
     status(self).report_deadline_missed();
   });
@@ -37,6 +36,27 @@ Listener reader_listener(StatusReporter& reporter) {
     status(self).report_rejected(static_cast<int>(rejected.total_count));
   });
   return listener;
+}
+
+std::set<WriterId> matched_writers(dds_entity_t reader) {
+  constexpr std::size_t kFirstGuess = 16;
+  std::vector<dds_instance_handle_t> handles(kFirstGuess);
+  const dds_return_t count = dds_get_matched_publications(reader, handles.data(), handles.size());
+  if (count > static_cast<dds_return_t>(handles.size())) {
+    handles.resize(static_cast<std::size_t>(count));
+    dds_get_matched_publications(reader, handles.data(), handles.size());
+  }
+  handles.resize(std::min(handles.size(), static_cast<std::size_t>(std::max(0, count))));
+  std::set<WriterId> writers;
+  for (const dds_instance_handle_t handle : handles) {
+    dds_builtintopic_endpoint_t* const writer = dds_get_matched_publication_data(reader, handle);
+    if (writer == nullptr) continue;
+    WriterId id{};
+    std::copy_n(writer->key.v, id.size(), id.begin());
+    writers.insert(id);
+    dds_builtintopic_free_endpoint(writer);
+  }
+  return writers;
 }
 
 Listener writer_listener(StatusReporter& reporter) {
@@ -68,11 +88,18 @@ CycloneReader::CycloneReader(std::shared_ptr<Participant> participant, const Sam
   const Listener listener = reader_listener(status_);
   dds_lset_data_available_arg(
       listener.get(), [](dds_entity_t, void* self) { static_cast<CycloneReader*>(self)->thread_.wake(); }, this, true);
+  dds_lset_subscription_matched_arg(
+      listener.get(),
+      [](dds_entity_t, dds_subscription_matched_status_t matched, void* self) {
+        static_cast<CycloneReader*>(self)->note_matched(static_cast<int>(matched.current_count));
+      },
+      this, true);
   const dds_entity_t reader = dds_create_reader(participant_->handle(), vendor.handle, qos.get(), listener.get());
   if (reader < 0) throw BusError("Cyclone DDS refused a reader on topic " + topic + ": " + dds_strretcode(reader));
   reader_ = reader;
   if (status_.callbacks().on_type_mismatch) types_.emplace(participant_->types(), topic, type.name, status_);
   thread_.wake();  // a sample may have come before reader_ was known
+  if (status_.callbacks().on_writer) thread_.post([this] { note_writers(); });  // so may a match
 }
 
 CycloneReader::~CycloneReader() {
@@ -80,6 +107,25 @@ CycloneReader::~CycloneReader() {
   dds_set_listener(reader_, nullptr);  // waits for a running one
   thread_.stop();                      // waits for a running callback; only now nothing takes from the reader
   dds_delete(reader_);
+}
+
+/// In a listener, where Cyclone must not be asked.
+void CycloneReader::note_matched(int writers) {
+  status_.report_matched(writers);
+  if (status_.callbacks().on_writer) thread_.post([this] { note_writers(); });
+}
+
+/// Cyclone names a writer by a handle that means nothing once the writer is gone, so the present ones are compared.
+void CycloneReader::note_writers() {
+  const dds_entity_t reader = reader_;
+  if (reader == 0) return;
+  const std::set<WriterId> now = matched_writers(reader);
+  const auto& on_writer = status_.callbacks().on_writer;
+  for (const WriterId& writer : writers_)
+    if (!now.contains(writer)) on_writer(writer, false);
+  for (const WriterId& writer : now)
+    if (!writers_.contains(writer)) on_writer(writer, true);
+  writers_ = now;
 }
 
 bool CycloneReader::handle_one() {

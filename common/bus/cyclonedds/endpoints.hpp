@@ -35,12 +35,15 @@ class CycloneReader : public ReaderBackend {
  private:
   bool handle_one();
   void report_lost();
+  void note_matched(int writers);
+  void note_writers();
 
   std::shared_ptr<Participant> participant_;
   const std::function<bool(const TakenSample&)> on_sample_;
   const std::function<void(const RawLoss&)> on_gap_;
   SequenceGaps gaps_;                         // used by the callback thread
   std::uint64_t missing_ = 0, unusable_ = 0;  // as well
+  std::set<WriterId> writers_;                // as well
   std::atomic<dds_entity_t> reader_{0};
   StatusReporter status_;
   std::optional<TopicTypes::Watch> types_;
@@ -87,6 +90,7 @@ class TypedWriter : public WriterBackend {
   void discard_loan(void* slot) override;
   int matched() const override { return writer_.matched(); }
   bool wait_acknowledged(int timeout_ms) override { return writer_.wait_acknowledged(timeout_ms); }
+  WriterId id() const override { return guid_of(writer_.handle()); }
 
  private:
   const MessageId id_;

@@ -37,15 +37,15 @@ class CallCodec : public Codec {
     RawData data{output.cdr, nullptr};
     return writer.write(&data, output.params);
   }
-  TakenSample take(dds::DataReader& reader) override {
+  TakenSample take(dds::DataReader& reader, const Accepts&) override {
     auto sample = std::make_shared<CallSample>();
     RawData data{{}, &sample->bytes};
     dds::SampleInfo info;
     if (reader.take_next_sample(&data, &info) != ReturnCode_t::RETCODE_OK) return {};
-    if (!info.valid_data) return {TakenSample::Kind::kNoData, nullptr};
+    if (!info.valid_data) return {TakenSample::Kind::kNoData};
     sample->own = info.sample_identity;
     sample->related = info.related_sample_identity;
-    return {TakenSample::Kind::kMessage, std::move(sample)};
+    return {TakenSample::Kind::kMessage, std::move(sample), to_writer_id(info.sample_identity.writer_guid())};
   }
   std::shared_ptr<void> allocate() const override { throw BusError("a service lends no memory"); }
 
@@ -75,7 +75,7 @@ class FastddsCalls : public CallEndpoint {
         writer_(participant, std::make_unique<CallCodec>(sent), sent.name, raw_writer_qos(call_writer_options()), {}),
         reader_(participant, std::make_unique<CallCodec>(received), received.name,
                 raw_reader_qos(call_reader_options()),
-                [this](const std::shared_ptr<const void>& sample) {
+                [this](const std::shared_ptr<const void>& sample, const WriterId&) {
                   receive(*static_cast<const CallSample*>(sample.get()));
                 },
                 {}) {}

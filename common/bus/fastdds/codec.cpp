@@ -5,6 +5,7 @@
 #include <fastdds/rtps/common/WriteParams.h>
 
 #include <algorithm>
+#include <optional>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
 #include "common/bus/fastdds/message_type.hpp"
@@ -26,7 +27,7 @@ class MessageCodec : public Codec {
   bool write(dds::DataWriter& writer, const void* message) const override {
     return writer.write(const_cast<void*>(message));  // the vendor only reads it
   }
-  TakenSample take(dds::DataReader& reader) override;
+  TakenSample take(dds::DataReader& reader, const Accepts& accepts) override;
   bool in_place() const override { return kPlain && alignof(T) <= sizeof(kCdrHeader); }
   std::shared_ptr<void> allocate() const override {
     if (!kPlain) throw BusError(create_type().get_type_name() + " is of variable size and cannot be loaned");
@@ -48,17 +49,38 @@ class MessageCodec : public Codec {
   std::conditional_t<kPlain, MessagePool<T>, NoPool> pool_;
 };
 
+/// Whether the next sample is wanted, by its writer alone.
+class NextWanted {
+ public:
+  NextWanted(dds::DataReader& reader, const Codec::Accepts& accepts) : accepts_(accepts) {
+    dds::SampleInfo next;
+    if (!accepts_ || reader.get_first_untaken_info(&next) != ReturnCode_t::RETCODE_OK) return;
+    writer_ = to_writer_id(next.sample_identity.writer_guid());
+    wanted_ = accepts_(*writer_);
+  }
+  bool wanted() const { return wanted_; }
+  /// For the one that was taken then: a history that ran full meanwhile has dropped the next one for another.
+  bool wanted(const WriterId& taken) const { return !accepts_ || (taken == writer_ ? wanted_ : accepts_(taken)); }
+
+ private:
+  const Codec::Accepts& accepts_;
+  std::optional<WriterId> writer_;
+  bool wanted_ = true;
+};
+
 /// Copies the sample out, never takes it as a loan. With data sharing the sample lies in the writer's own ring, which
 /// the writer overwrites and at its end unmaps whenever it likes. Fast DDS copies under its lock, which keeps the ring
 /// mapped, and refuses the sample when it finds it overwritten after the copy.
 template <class T>
-TakenSample MessageCodec<T>::take(dds::DataReader& reader) {
-  std::shared_ptr<T> message = create();
+TakenSample MessageCodec<T>::take(dds::DataReader& reader, const Accepts& accepts) {
+  const NextWanted next(reader, accepts);
+  std::shared_ptr<T> message = next.wanted() ? create() : nullptr;
   dds::SampleInfo info;
   if (reader.take_next_sample(message.get(), &info) != ReturnCode_t::RETCODE_OK) return {};
-  if (!info.valid_data) return {TakenSample::Kind::kNoData, nullptr};
-  if (!msg::is_plausible(*message)) return {TakenSample::Kind::kUnusable, nullptr};
-  return {TakenSample::Kind::kMessage, std::move(message)};
+  const WriterId writer = to_writer_id(info.sample_identity.writer_guid());
+  if (!info.valid_data || !next.wanted(writer)) return {TakenSample::Kind::kNoData};
+  if (message == nullptr || !msg::is_plausible(*message)) return {TakenSample::Kind::kUnusable};
+  return {TakenSample::Kind::kMessage, std::move(message), writer};
 }
 
 class RawCodec : public Codec {
@@ -71,7 +93,7 @@ class RawCodec : public Codec {
     return dds::TypeSupport(new RawType(topic_, bounded_, fixed_bytes_));
   }
   bool write(dds::DataWriter& writer, const void* message) const override;
-  TakenSample take(dds::DataReader& reader) override;
+  TakenSample take(dds::DataReader& reader, const Accepts& accepts) override;
   std::shared_ptr<void> allocate() const override { throw BusError("a raw writer lends no memory"); }
 
  private:
@@ -103,7 +125,7 @@ std::int64_t now_ns() {
   return now.to_ns();
 }
 
-TakenSample RawCodec::take(dds::DataReader& reader) {
+TakenSample RawCodec::take(dds::DataReader& reader, const Accepts&) {
   auto block = pool_.acquire();
   RawData data{{}, block.get()};
   dds::SampleInfo info;
@@ -115,7 +137,7 @@ TakenSample RawCodec::take(dds::DataReader& reader) {
   sample->source_ns = known_or(info.source_timestamp, sample->received_ns);
   // A dispose or the like has a number too: without it the next sample would seem to be missing.
   if (info.valid_data) sample->bytes = std::move(block);
-  return {TakenSample::Kind::kMessage, std::move(sample)};
+  return {TakenSample::Kind::kMessage, std::move(sample)};  // it names its writer
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
+#include <functional>
 #include <memory>
 
 #include "common/bus/raw_bus.hpp"
@@ -16,6 +17,7 @@ struct TakenSample {
   enum class Kind { kNothing, kMessage, kNoData, kUnusable };
   Kind kind = Kind::kNothing;           ///< kNoData: a dispose or the like; kUnusable: absurd content
   std::shared_ptr<const void> message;  ///< plain struct of common/msg, for kMessage
+  WriterId writer{};                    ///< for kMessage; all zero where the message itself names it
 };
 
 /// The way of one message type between its plain struct and Fast DDS. One instance per endpoint.
@@ -26,8 +28,10 @@ class Codec {
   virtual eprosima::fastdds::dds::TypeSupport create_type() const = 0;
   /// Thread-safe.
   virtual bool write(eprosima::fastdds::dds::DataWriter& writer, const void* message) const = 0;
-  /// For one thread.
-  virtual TakenSample take(eprosima::fastdds::dds::DataReader& reader) = 0;
+  /// The next sample of a writer that `accepts` wants, if it is given; one of another writer gives kNoData and is not
+  /// copied. For one thread.
+  using Accepts = std::function<bool(const WriterId& writer)>;
+  virtual TakenSample take(eprosima::fastdds::dds::DataReader& reader, const Accepts& accepts) = 0;
   /// Whether a sample in the vendor's memory, 4 bytes behind a multiple of 8, may be used as the message itself.
   virtual bool in_place() const { return false; }
   /// An uninitialised message to fill in. Plain types only. Thread-safe.

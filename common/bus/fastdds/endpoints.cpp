@@ -41,7 +41,7 @@ FastddsReader::~FastddsReader() {
 bool FastddsReader::handle_one() {
   dds::DataReader* const reader = reader_;
   if (reader == nullptr) return false;
-  TakenSample taken = codec_->take(*reader);
+  TakenSample taken = codec_->take(*reader, status_.callbacks().accepts);
   switch (taken.kind) {
     case TakenSample::Kind::kNothing:
       return may_have_skipped_one(*reader);
@@ -53,7 +53,7 @@ bool FastddsReader::handle_one() {
       break;
     case TakenSample::Kind::kMessage:
       skipped_ = 0;
-      on_message_(std::move(taken.message));
+      on_message_(std::move(taken.message), taken.writer);
       break;
   }
   return true;

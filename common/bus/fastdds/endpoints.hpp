@@ -37,6 +37,8 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
   void on_data_available(dds::DataReader*) override { thread_.wake(); }
   void on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) override {
     status_.report_matched(status.current_count);
+    const auto writer = eprosima::fastrtps::rtps::iHandle2GUID(status.last_publication_handle);
+    status_.report_writer(to_writer_id(writer), status.current_count_change > 0);
   }
   void on_requested_deadline_missed(dds::DataReader*, const dds::RequestedDeadlineMissedStatus&) override {
     status_.report_deadline_missed();
@@ -84,6 +86,7 @@ class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
   int matched() const override { return status_.matched(); }
   bool wait_acknowledged(int timeout_ms) override;
   eprosima::fastrtps::rtps::GUID_t guid() const { return writer_->guid(); }
+  WriterId id() const override { return to_writer_id(guid()); }
 
  private:
   void on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus& status) override {

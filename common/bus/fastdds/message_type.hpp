@@ -70,8 +70,9 @@ class MessageType : public eprosima::fastdds::dds::TopicDataType {
     payload->length = static_cast<std::uint32_t>(written);
     return written > 0;
   }
+  /// Without `data` the sample is not wanted and stays unread.
   bool deserialize(Payload* payload, void* data) override {
-    return read_cdr({payload->data, payload->length}, *static_cast<T*>(data));
+    return data == nullptr || read_cdr({payload->data, payload->length}, *static_cast<T*>(data));
   }
   std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
     return [data] { return static_cast<std::uint32_t>(cdr_size(*static_cast<const T*>(data))); };

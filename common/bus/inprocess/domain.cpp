@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <map>
+#include <tuple>
 #include <utility>
 
 namespace rtd::bus::inprocess {
@@ -39,6 +40,7 @@ bool match(WriterEndpoint& writer, ReaderEndpoint& reader) {
   change_matched(writer, 1);
   change_matched(reader, 1);
   reader.status.report_liveliness(reader.status.matched());
+  reader.status.report_writer(writer.id, true);
   return true;
 }
 
@@ -87,6 +89,14 @@ WriterId Domain::new_id() {
   return next_id();
 }
 
+WriterId Domain::new_id(const WriterId& connection) {
+  const std::lock_guard lock(mutex_);
+  WriterId id = connection;
+  ++ids_;
+  std::memcpy(id.data() + std::tuple_size<ParticipantId>(), &ids_, sizeof(ids_));
+  return id;
+}
+
 WriterId Domain::next_id() {
   WriterId id{};
   ++ids_;
@@ -133,6 +143,7 @@ void Domain::remove(WriterEndpoint& writer) {
     if (!connected(writer, *reader)) continue;
     change_matched(*reader, -1);
     reader->status.report_liveliness(reader->status.matched());
+    reader->status.report_writer(writer.id, false);
   }
 }
 
@@ -151,7 +162,8 @@ std::vector<TopicReader> Domain::readers() const {
   return all;
 }
 
-void Domain::publish(WriterEndpoint& writer, const Message& message) {
+void Domain::publish(WriterEndpoint& writer, std::shared_ptr<const void> content) {
+  const Message message{std::move(content), writer.id};
   const std::lock_guard lock(mutex_);
   if (writer.kind.qos.transient_local) {
     writer.retained.push_back(message);

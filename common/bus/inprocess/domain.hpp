@@ -16,7 +16,11 @@
 
 namespace rtd::bus::inprocess {
 
-using Message = std::shared_ptr<const void>;
+/// What crosses: the message and the id of its writer.
+struct Message {
+  std::shared_ptr<const void> content;
+  WriterId writer{};
+};
 
 /// What waits for one reader: at most `depth` messages; one more pushes the oldest out, as a keep-last history does.
 /// Thread-safe.
@@ -51,6 +55,7 @@ struct EndpointKind {
 struct WriterEndpoint {
   EndpointKind kind;
   StatusReporter status;
+  WriterId id{};
   std::optional<TopicWriter> discovered = {};  ///< as the registries get it; empty: not at all
   std::deque<Message> retained = {};           ///< transient-local history, guarded by the domain
 };
@@ -75,7 +80,10 @@ class Domain {
   /// The domain of that number; lives as long as a connection holds it.
   static std::shared_ptr<Domain> join(std::uint32_t number, Content content);
 
+  /// The id of a connection, or of an endpoint that stands for one.
   WriterId new_id();
+  /// The id of an endpoint of a connection.
+  WriterId new_id(const WriterId& connection);
   /// A registry gets the writers known now, then all changes.
   void add(EndpointRegistry& registry);
   void add(WriterEndpoint& writer);
@@ -85,7 +93,7 @@ class Domain {
   void remove(WriterEndpoint& writer);
   void remove(ReaderEndpoint& reader);
   std::vector<TopicReader> readers() const;
-  void publish(WriterEndpoint& writer, const Message& message);
+  void publish(WriterEndpoint& writer, std::shared_ptr<const void> content);
 
  private:
   WriterId next_id();

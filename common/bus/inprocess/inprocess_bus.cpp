@@ -15,9 +15,10 @@
 namespace rtd::bus::inprocess {
 namespace {
 
-Message copy_message(MessageId id, const void* message) {
-  return visit_message_type(
-      id, [message]<class T>() -> Message { return std::make_shared<const T>(*static_cast<const T*>(message)); });
+std::shared_ptr<const void> copy_message(MessageId id, const void* message) {
+  return visit_message_type(id, [message]<class T>() -> std::shared_ptr<const void> {
+    return std::make_shared<const T>(*static_cast<const T*>(message));
+  });
 }
 
 std::shared_ptr<void> allocate_plain(MessageId id) {
@@ -33,10 +34,11 @@ std::shared_ptr<void> allocate_plain(MessageId id) {
 class InprocessWriter : public WriterBackend {
  public:
   InprocessWriter(std::shared_ptr<Domain> domain, MessageId id, const std::string& topic, QosProfile profile,
-                  StatusCallbacks callbacks)
+                  StatusCallbacks callbacks, const WriterId& connection)
       : domain_(std::move(domain)),
         id_(id),
-        endpoint_{{topic, dds_type_name(id), qos_settings(profile)}, StatusReporter(std::move(callbacks))} {
+        endpoint_{{topic, dds_type_name(id), qos_settings(profile)}, StatusReporter(std::move(callbacks)),
+                  domain_->new_id(connection)} {
     domain_->add(endpoint_);
   }
   ~InprocessWriter() override { domain_->remove(endpoint_); }
@@ -58,6 +60,7 @@ class InprocessWriter : public WriterBackend {
   void discard_loan(void* slot) override { loans_.erase(slot); }
   int matched() const override { return endpoint_.status.matched(); }
   bool wait_acknowledged(int) override { return true; }  // readers have a message when write() returns
+  WriterId id() const override { return endpoint_.id; }
 
  private:
   std::shared_ptr<Domain> domain_;
@@ -66,11 +69,19 @@ class InprocessWriter : public WriterBackend {
   std::map<void*, std::shared_ptr<void>> loans_;
 };
 
+std::function<void(Message)> wanted_messages(ErasedCallback on_message,
+                                             std::function<bool(const WriterId&)> accepts) {
+  return [on_message = std::move(on_message), accepts = std::move(accepts)](Message message) {
+    if (!accepts || accepts(message.writer)) on_message(std::move(message.content), message.writer);
+  };
+}
+
 class InprocessReader : public ReaderBackend {
  public:
   InprocessReader(std::shared_ptr<Domain> domain, EndpointKind kind, ErasedCallback on_message,
                   StatusCallbacks callbacks)
-      : domain_(std::move(domain)), endpoint_(std::move(kind), std::move(callbacks), std::move(on_message)) {
+      : domain_(std::move(domain)),
+        endpoint_(std::move(kind), callbacks, wanted_messages(std::move(on_message), callbacks.accepts)) {
     domain_->add(endpoint_);
   }
   ~InprocessReader() override { domain_->remove(endpoint_); }
@@ -92,7 +103,8 @@ class InprocessRawWriter : public RawWriter {
     if (qos.depth <= 0) qos.depth = 10;
     const bool keeps_history = qos.durability != RawQos::Durability::kVolatile;
     endpoint_.kind = {topic.name, topic.type, {qos.depth, keeps_history}, qos.reliable};
-    endpoint_.discovered = TopicWriter{domain_->new_id(), topic, qos};
+    endpoint_.id = domain_->new_id();
+    endpoint_.discovered = TopicWriter{endpoint_.id, topic, qos};
     domain_->add(endpoint_);
   }
   ~InprocessRawWriter() override { domain_->remove(endpoint_); }
@@ -102,7 +114,7 @@ class InprocessRawWriter : public RawWriter {
     block->assign(cdr);
     const std::lock_guard lock(mutex_);
     const std::int64_t now_ns = realtime_ns();
-    domain_->publish(endpoint_, std::make_shared<const RawSample>(RawSample{endpoint_.discovered->id, ++sequence_,
+    domain_->publish(endpoint_, std::make_shared<const RawSample>(RawSample{endpoint_.id, ++sequence_,
                                                                             source_ns == 0 ? now_ns : source_ns, now_ns,
                                                                             std::move(block)}));
     return true;
@@ -139,11 +151,12 @@ class InprocessBackend : public BusBackend {
   explicit InprocessBackend(const BusOptions& options)
       : BusBackend("inprocess"),
         domain_(Domain::join(options.domain, Domain::Content::kTyped)),
-        calls_(Domain::join(options.domain, Domain::Content::kRaw)) {}
+        calls_(Domain::join(options.domain, Domain::Content::kRaw)),
+        connection_(domain_->new_id()) {}
 
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                StatusCallbacks callbacks) override {
-    return std::make_unique<InprocessWriter>(domain_, id, topic, profile, std::move(callbacks));
+    return std::make_unique<InprocessWriter>(domain_, id, topic, profile, std::move(callbacks), connection_);
   }
   std::unique_ptr<ReaderBackend> create_reader(MessageId id, const std::string& topic, QosProfile profile,
                                                ErasedCallback on_message, StatusCallbacks callbacks) override {
@@ -156,6 +169,7 @@ class InprocessBackend : public BusBackend {
 
  private:
   std::shared_ptr<Domain> domain_, calls_;
+  const WriterId connection_;
 };
 
 class InprocessRawBus : public RegistryRawBus {

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/bus/source_gate.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace rtd::bus {
+namespace {
+
+constexpr std::size_t kMostClaims = 8, kMostDeparted = 32;
+constexpr std::int64_t kHeardLatelyNs = 50'000'000;  // nobody needs to be asked whether it lives
+
+}  // namespace
+
+bool SourceGate::accepts(const WriterId& writer) {
+  Verdict verdict;
+  {
+    const std::lock_guard lock(mutex_);
+    verdict = judge(writer, options_.clock());
+    if (!verdict.passes) ++refused_;
+  }
+  if (verdict.event && options_.report) options_.report(*verdict.event, verdict.source, verdict.other);
+  return verdict.passes;
+}
+
+SourceGate::Verdict SourceGate::judge(const WriterId& writer, std::int64_t now_ns) {
+  const ParticipantId source = participant_of(writer);
+  const std::size_t place = place_of(source);
+  const bool departed = std::ranges::find(departed_, writer) != departed_.end();
+  if (place != kNone && place == holder_) {
+    claims_[place].heard_ns = now_ns;
+    claims_[place].present = claims_[place].present || !departed;
+    return {true};
+  }
+  if (holder_ == kNone) return departed ? Verdict{true} : take(claim(source), now_ns, Event::kFirst);
+  const bool gone = holder_gone(now_ns), vacant = gone || holder_silent(now_ns);
+  if (departed) return {vacant};
+  if (place != kNone && (place < holder_ || vacant)) return take(place, now_ns, Event::kBack);
+  if (!vacant) return {false, Event::kRefused, claims_[holder_].source, source};
+  return take(claim(source), now_ns, gone ? Event::kTaken : Event::kSilent);
+}
+
+SourceGate::Verdict SourceGate::take(std::size_t place, std::int64_t now_ns, Event event) {
+  Verdict verdict{true, event, claims_[place].source};
+  if (holder_ != kNone) {
+    verdict.other = claims_[holder_].source;
+    ++changes_;
+  }
+  holder_ = place;
+  claims_[place].heard_ns = now_ns;
+  claims_[place].present = true;
+  return verdict;
+}
+
+bool SourceGate::holder_gone(std::int64_t now_ns) const {
+  const Claim& holder = claims_[holder_];
+  if (!holder.present) return true;
+  return options_.gone && now_ns - holder.heard_ns > kHeardLatelyNs && options_.gone(holder.source);
+}
+
+bool SourceGate::holder_silent(std::int64_t now_ns) const {
+  return now_ns - claims_[holder_].heard_ns > options_.silence_ns;
+}
+
+std::size_t SourceGate::place_of(const ParticipantId& source) const {
+  const auto found = std::ranges::find(claims_, source, &Claim::source);
+  return found == claims_.end() ? kNone : static_cast<std::size_t>(found - claims_.begin());
+}
+
+/// A new last one. What is full forgets the last that is absent, or else the last that does not hold the place.
+std::size_t SourceGate::claim(const ParticipantId& source) {
+  if (claims_.size() >= kMostClaims) {
+    std::size_t leaves = kNone;
+    for (std::size_t i = 0; i < claims_.size(); ++i) {
+      if (i != holder_ && (leaves == kNone || claims_[leaves].present || !claims_[i].present)) leaves = i;
+    }
+    claims_.erase(claims_.begin() + static_cast<std::ptrdiff_t>(leaves));
+    if (holder_ != kNone && leaves < holder_) --holder_;
+  }
+  claims_.push_back({source});
+  return claims_.size() - 1;
+}
+
+void SourceGate::note(const WriterId& writer, bool matched) {
+  const std::lock_guard lock(mutex_);
+  std::erase(departed_, writer);
+  if (!matched) {
+    departed_.push_back(writer);
+    if (departed_.size() > kMostDeparted) departed_.pop_front();
+  }
+  const std::size_t place = place_of(participant_of(writer));
+  if (place != kNone) claims_[place].present = matched;
+}
+
+StatusCallbacks SourceGate::callbacks() {
+  StatusCallbacks callbacks;
+  callbacks.on_writer = [this](const WriterId& writer, bool matched) { note(writer, matched); };
+  callbacks.accepts = [this](const WriterId& writer) { return accepts(writer); };
+  return callbacks;
+}
+
+std::uint64_t SourceGate::changes() const {
+  const std::lock_guard lock(mutex_);
+  return changes_;
+}
+
+std::uint64_t SourceGate::refused() const {
+  const std::lock_guard lock(mutex_);
+  return refused_;
+}
+
+std::optional<ParticipantId> SourceGate::source() const {
+  const std::lock_guard lock(mutex_);
+  return holder_ == kNone ? std::nullopt : std::optional(claims_[holder_].source);
+}
+
+}  // namespace rtd::bus

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "common/bus/qos.hpp"
+#include "common/bus/writer_id.hpp"
+
+namespace rtd::bus {
+
+/// Lets the messages of one source pass: of the connection that came first. It keeps its place while its writer is
+/// matched, whatever others send, and loses it when its writer or its process is gone, or after a long silence. One
+/// that only fell silent has its place back with its next message. Sources are told apart by their writers' ids, not by
+/// what their messages say.
+///
+/// Thread-safe; several readers may share a gate, then all their messages come from one connection.
+class SourceGate {
+ public:
+  using Clock = std::function<std::int64_t()>;
+  /// What happens to the place; `source` has it now, `other` does not.
+  enum class Event {
+    kFirst,    ///< the first source of all
+    kTaken,    ///< by `source`, for `other` has gone
+    kSilent,   ///< by `source`, for `other` fell silent
+    kBack,     ///< by `source`, which had it before `other`
+    kRefused,  ///< `other` sends, too
+  };
+  using Report = std::function<void(Event event, const ParticipantId& source, const ParticipantId& other)>;
+
+  struct Options {
+    /// So long does a matched source that sends nothing keep its place.
+    std::int64_t silence_ns = kSilenceNs;
+    Clock clock;  ///< monotonic, ns
+    /// Whether the process of a connection is known to have ended before its writers are given up. May be empty.
+    std::function<bool(const ParticipantId&)> gone;
+    /// Called under no lock, on the thread of the message. May be empty.
+    Report report;
+  };
+  static constexpr std::int64_t kSilenceNs = 10'000'000'000;
+
+  explicit SourceGate(Options options) : options_(std::move(options)) {}
+
+  /// Whether a message of this writer passes.
+  bool accepts(const WriterId& writer);
+  /// As StatusCallbacks::on_writer.
+  void note(const WriterId& writer, bool matched);
+  /// The callbacks of a reader behind this gate, which must outlive the reader.
+  StatusCallbacks callbacks();
+  /// Grows whenever messages begin to come from another source, the first not counted: what was learned from the one
+  /// before may not fit.
+  std::uint64_t changes() const;
+  /// Messages that did not pass.
+  std::uint64_t refused() const;
+  std::optional<ParticipantId> source() const;
+
+ private:
+  struct Claim {
+    ParticipantId source{};
+    std::int64_t heard_ns = 0;
+    bool present = true;
+  };
+  struct Verdict {
+    bool passes = false;
+    std::optional<Event> event;
+    ParticipantId source{}, other{};
+  };
+  Verdict judge(const WriterId& writer, std::int64_t now_ns);
+  Verdict take(std::size_t place, std::int64_t now_ns, Event event);
+  std::size_t place_of(const ParticipantId& source) const;
+  std::size_t claim(const ParticipantId& source);
+  bool holder_gone(std::int64_t now_ns) const;
+  bool holder_silent(std::int64_t now_ns) const;
+
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  const Options options_;
+  mutable std::mutex mutex_;
+  std::vector<Claim> claims_;      ///< sources that had the place, by their first message
+  std::size_t holder_ = kNone;     ///< in claims_
+  std::deque<WriterId> departed_;  ///< writers that are gone, newest last: their last messages claim nothing
+  std::uint64_t changes_ = 0, refused_ = 0;
+};
+
+}  // namespace rtd::bus
