@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/bus/message_screen.hpp"
+
 namespace rtd::bus {
 namespace {
 
@@ -53,6 +55,18 @@ StatusCallbacks TopicCounters::count(const std::string& topic, StatusCallbacks c
   counted.on_type_mismatch =
       events(&TopicTrouble::type_mismatch, &TopicTrouble::other_type, callbacks.on_type_mismatch);
   return counted;
+}
+
+ErasedCallback TopicCounters::screen(MessageId id, const std::string& topic, ErasedCallback on_message) {
+  return [book = book_, screen = MessageScreen(id), topic, on_message = std::move(on_message)](
+             std::shared_ptr<const void> message, const WriterId& writer) mutable {
+    const msg::ImplausibleField bad = screen.implausible_field(message.get(), writer);
+    if (!bad) return on_message(std::move(message), writer);
+    const std::lock_guard lock(book->mutex);
+    TopicTrouble& trouble = book->troubles[topic];
+    ++trouble.implausible;
+    trouble.implausible_field = to_string(bad);
+  };
 }
 
 std::map<std::string, TopicTrouble> TopicCounters::troubles() const {

@@ -68,7 +68,8 @@ class Writer {
 
 /// Receives T from one topic until destroyed. The callback runs on a bus thread, one call at a time per reader: push to
 /// a queue and return. Messages are immutable and may be kept. Frames are copied out of shared memory and checked for
-/// having been overwritten meanwhile before the callback sees them, so no torn frame is ever delivered.
+/// having been overwritten meanwhile before the callback sees them, so no torn frame is ever delivered. Messages whose
+/// content no honest program sends are counted (Bus::troubles()) and never delivered, whatever the backend.
 /// After the destructor returns, no callback runs.
 template <class T>
 class Reader {
@@ -90,6 +91,8 @@ struct TopicTrouble {
   std::uint64_t type_mismatch = 0;     ///< peers that use the name with another type
   std::string policy;                  ///< of the last peer refused, e.g. "RELIABILITY"
   std::string other_type;              ///< of the last mismatch
+  std::uint64_t implausible = 0;       ///< messages refused for their content (common/msg/plausible.hpp)
+  std::string implausible_field;       ///< of the last message refused, e.g. "rtd_msgs/Feature.octave"
   friend bool operator==(const TopicTrouble&, const TopicTrouble&) = default;
 };
 
@@ -98,6 +101,8 @@ class TopicCounters {
  public:
   /// The callbacks of one endpoint, counted before they are called.
   StatusCallbacks count(const std::string& topic, StatusCallbacks callbacks);
+  /// The edge of the bus: hands on what is plausible and counts the rest.
+  ErasedCallback screen(MessageId id, const std::string& topic, ErasedCallback on_message);
   /// Topics with trouble, by name.
   std::map<std::string, TopicTrouble> troubles() const;
 
@@ -136,7 +141,8 @@ class Bus {
       }
     };
     const std::string name = topic_of_robot(topic.name, robot_);
-    return Reader<T>(backend_->create_reader(MessageTraits<T>::kId, name, topic.profile, std::move(erased),
+    constexpr MessageId kId = MessageTraits<T>::kId;
+    return Reader<T>(backend_->create_reader(kId, name, topic.profile, counters_.screen(kId, name, std::move(erased)),
                                              counters_.count(name, std::move(callbacks))));
   }
 
@@ -152,7 +158,7 @@ class Bus {
   std::string frame(const std::string& name) const { return frame_of_robot(name, robot_); }
   /// The same connection for the topics of another robot. Counts its troubles for itself.
   std::shared_ptr<Bus> of_robot(const std::string& robot) const { return std::make_shared<Bus>(backend_, robot); }
-  /// Topics on which samples were lost or rejected or peers refused since the connection began.
+  /// Topics on which samples were lost or rejected or peers or messages refused since the connection began.
   std::map<std::string, TopicTrouble> troubles() const { return counters_.troubles(); }
 
  private:

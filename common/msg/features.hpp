@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <type_traits>
 
 #include "common/msg/fields.hpp"
+#include "common/msg/frame_size.hpp"
 
 namespace rtd::msg {
 
@@ -59,6 +62,9 @@ enum FilterStage : std::uint32_t {
 
 /// How the filter used the detector for this frame.
 enum class DetectionUse : std::uint32_t { kNone = 0, kExact = 1, kCarried = 2, kDetectorGone = 3 };
+constexpr DetectionUse last_value(TypeOf<DetectionUse>) {
+  return DetectionUse::kDetectorGone;
+}
 
 /// The features of one frame: topic `rtd/features`. Plain and of fixed size; entries after `count` are zero.
 struct FeatureFrame {
@@ -78,8 +84,13 @@ struct FeatureFrame {
 static_assert(std::is_trivially_copyable_v<FeatureFrame> && std::is_standard_layout_v<FeatureFrame>);
 RTD_FIELDS(rtd_msgs, FeatureFrame, seq, stamp_ns, published_ns, intrinsics, readout_s, width, height, count, removed,
            objects, detection_use, stage_ms, features)
-inline bool is_plausible(const FeatureFrame& features) {
-  return features.count <= kMaxFeatures;
+inline std::span<const Feature> used_part(const FeatureFrame& frame, const std::array<Feature, kMaxFeatures>& all) {
+  return std::span(all).first(std::min(frame.count, kMaxFeatures));
+}
+inline const char* broken_rule(const FeatureFrame& frame) {
+  if (!is_frame_size(frame.width, frame.height)) return "width and height";
+  if (!is_camera(frame.intrinsics, frame.width, frame.height)) return "intrinsics";
+  return frame.removed <= frame.count ? nullptr : "removed";
 }
 
 }  // namespace rtd::msg

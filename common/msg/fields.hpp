@@ -19,12 +19,6 @@ concept Message = requires {
   type_name(TypeOf<T>());
 };
 
-/// Whether the counts in a fixed-size message from outside stay within its arrays. Overloads stand beside the messages.
-template <class T>
-bool is_plausible(const T&) {
-  return true;
-}
-
 /// Calls visit(name, field) with each field of the message, which may be const.
 template <class T, class Visit>
 requires Message<std::remove_const_t<T>>

@@ -28,6 +28,11 @@ struct MapKeyframe {
   std::vector<std::uint32_t> covisible;  ///< keyframe ids; each edge is listed once, by its younger keyframe
 };
 RTD_FIELDS(rtd_msgs, MapKeyframe, keyframe_id, map_id, stamp_ns, T_world_camera, content, points_m, covisible)
+inline const char* broken_rule(const MapKeyframe& keyframe) {
+  const bool removed = (keyframe.content & kMapRemoved) != 0;
+  if (!removed && !is_rotation(keyframe.T_world_camera.rotation_xyzw)) return "T_world_camera";
+  return keyframe.points_m.size() % 3 == 0 ? nullptr : "points_m";
+}
 
 /// What changed in the map since the last update: topic `rtd/map`, from slam to viewers. Points lie in the frames of
 /// their keyframes, so that a corrected map costs poses only. Each landmark belongs to one keyframe.
@@ -39,5 +44,8 @@ struct MapUpdate {
   std::vector<std::uint32_t> loop_edges;  ///< all closed loops: pairs of keyframe ids, older and newer
 };
 RTD_FIELDS(rtd_msgs, MapUpdate, session_ns, revision, keyframes, loop_edges)
+inline const char* broken_rule(const MapUpdate& update) {
+  return update.loop_edges.size() % 2 == 0 ? nullptr : "loop_edges";
+}
 
 }  // namespace rtd::msg

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "common/msg/fields.hpp"
+#include "common/msg/frame_size.hpp"
 
 namespace rtd::msg {
 
@@ -50,11 +51,6 @@ std::array<Unaligned<T>, kSize> unaligned(const std::array<T, kSize>& numbers) {
   return copy;
 }
 
-/// The largest frame that can be sent: either side may be as long as this, and no frame has more pixels than the
-/// largest size class.
-inline constexpr std::uint32_t kMaxFrameSide = 1920;
-inline constexpr std::size_t kMaxFramePixels = std::size_t{1920} * 1200;
-
 /// One colour image with its registered depth image.
 ///
 /// Plain and of fixed size, so that it can be loaned from shared memory; the member order leaves no padding, and any
@@ -74,8 +70,8 @@ struct SizedFrame {
   /// all rows at once, or unknown.
   Unaligned<double> readout_s;
   Unaligned<double> depth_offset_s;    ///< time of the depth image minus that of the colour image, s; 0 = same, unknown
-  std::uint32_t width;                 ///< px, <= kMaxFrameSide; width * height <= kPixels
-  std::uint32_t height;                ///< px, <= kMaxFrameSide
+  std::uint32_t width;                 ///< px, is_frame_size(); width * height <= kPixels
+  std::uint32_t height;                ///< px
   std::uint32_t lens;                  ///< geometry::Lens
   std::uint32_t reserved;              ///< 0
   Unaligned<std::uint64_t> source_id;  ///< random per camera process: distinguishes two cameras on one topic
@@ -109,12 +105,13 @@ constexpr void for_each_frame_type(Visit&& visit) {
 
 /// Whether an image of this size fits into `pixels` pixels of a message.
 constexpr bool fits(std::uint64_t width, std::uint64_t height, std::size_t pixels) {
-  return width > 0 && height > 0 && width <= kMaxFrameSide && height <= kMaxFrameSide && width * height <= pixels;
+  return is_frame_size(width, height) && width * height <= pixels;
 }
 
 template <std::uint32_t kWidth, std::uint32_t kHeight>
-bool is_plausible(const SizedFrame<kWidth, kHeight>& frame) {
-  return fits(frame.width, frame.height, SizedFrame<kWidth, kHeight>::kPixels);
+const char* broken_rule(const SizedFrame<kWidth, kHeight>& frame) {
+  if (!fits(frame.width, frame.height, SizedFrame<kWidth, kHeight>::kPixels)) return "width and height";
+  return is_camera(aligned(frame.intrinsics), frame.width, frame.height) ? nullptr : "intrinsics";
 }
 
 /// A frame of any size class as its receivers see it: the fields of SizedFrame, and where its pixels are.

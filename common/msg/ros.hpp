@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <vector>
 
 #include "common/msg/fields.hpp"
+#include "common/msg/rotation.hpp"
 
 /// Plain mirrors of the standard ROS 2 messages that we publish, field for field, in the order of their .msg files.
 /// They carry no type of a DDS vendor.
@@ -36,6 +39,9 @@ struct Quaternion {
   double x = 0, y = 0, z = 0, w = 1;
 };
 RTD_FIELDS(geometry_msgs, Quaternion, x, y, z, w)
+constexpr const char* broken_rule(const Quaternion& q) {
+  return is_rotation_or_unset({q.x, q.y, q.z, q.w}) ? nullptr : "x y z w";
+}
 struct Pose {
   Point position;
   Quaternion orientation;
@@ -101,6 +107,9 @@ struct OccupancyGrid {
   std::vector<std::int8_t> data;  ///< row by row: 0 free .. 100 occupied, -1 unknown
 };
 RTD_FIELDS(nav_msgs, OccupancyGrid, header, info, data)
+inline const char* broken_rule(const OccupancyGrid& grid) {
+  return std::uint64_t{grid.info.width} * grid.info.height == grid.data.size() ? nullptr : "data";
+}
 
 struct CompressedImage {
   Header header;
@@ -117,6 +126,10 @@ struct Image {
   std::vector<std::uint8_t> data;
 };
 RTD_FIELDS(sensor_msgs, Image, header, height, width, encoding, is_bigendian, step, data)
+inline const char* broken_rule(const Image& image) {
+  if (image.step < image.width) return "step";  // no encoding has less than a byte for a pixel
+  return std::uint64_t{image.step} * image.height == image.data.size() ? nullptr : "data";
+}
 struct RegionOfInterest {
   std::uint32_t x_offset = 0, y_offset = 0, height = 0, width = 0;
   bool do_rectify = false;
@@ -150,6 +163,19 @@ struct PointCloud2 {
   bool is_dense = true;
 };
 RTD_FIELDS(sensor_msgs, PointCloud2, header, height, width, fields, is_bigendian, point_step, row_step, data, is_dense)
+/// Bytes of one number of a PointField::datatype, 1 to 8.
+constexpr std::uint64_t size_of(std::uint8_t datatype) {
+  constexpr std::uint8_t kSizes[] = {0, 1, 1, 2, 2, 4, 4, 4, 8};
+  return datatype < std::size(kSizes) ? kSizes[datatype] : 0;
+}
+inline const char* broken_rule(const PointCloud2& cloud) {
+  for (const PointField& field : cloud.fields) {
+    const std::uint64_t end = field.offset + size_of(field.datatype) * std::max(field.count, 1U);
+    if (end > cloud.point_step) return "fields";
+  }
+  if (std::uint64_t{cloud.point_step} * cloud.width > cloud.row_step) return "row_step";
+  return std::uint64_t{cloud.row_step} * cloud.height == cloud.data.size() ? nullptr : "data";
+}
 
 struct Point2D {
   double x = 0, y = 0;

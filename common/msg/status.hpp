@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/msg/fields.hpp"
@@ -18,6 +20,9 @@ enum class ServiceState : std::uint32_t {
   kFinished = 4,
   kFailed = 5
 };
+constexpr ServiceState last_value(TypeOf<ServiceState>) {
+  return ServiceState::kFailed;
+}
 
 /// A named number of a service: a counter, a queue length, a mean time.
 struct Metric {
@@ -37,5 +42,16 @@ struct ServiceStatus {
   std::vector<Metric> metrics;
 };
 RTD_FIELDS(rtd_msgs, ServiceStatus, service, pid, started_ns, stamp_ns, state, message, metrics)
+/// "camera", "detector/anna": letters, digits and - _ / ..
+constexpr bool is_service_name(std::string_view name) {
+  const auto is_part = [](char c) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    return letter || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '/' || c == '.';
+  };
+  return !name.empty() && std::all_of(name.begin(), name.end(), is_part);
+}
+inline const char* broken_rule(const ServiceStatus& status) {
+  return is_service_name(status.service) ? nullptr : "service";
+}
 
 }  // namespace rtd::msg

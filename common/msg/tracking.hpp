@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "common/msg/fields.hpp"
+#include "common/msg/rotation.hpp"
 
 namespace rtd::msg {
 
@@ -17,8 +18,14 @@ struct Transform {
   std::array<double, 4> rotation_xyzw;  ///< Hamilton unit quaternion
 };
 RTD_FIELDS(rtd_msgs, Transform, translation_m, rotation_xyzw)
+constexpr const char* broken_rule(const Transform& T) {
+  return is_rotation_or_unset(T.rotation_xyzw) ? nullptr : "rotation_xyzw";
+}
 
 enum class KeyframeEventKind : std::uint32_t { kCreated = 0, kCorrected = 1, kRemoved = 2 };
+constexpr KeyframeEventKind last_value(TypeOf<KeyframeEventKind>) {
+  return KeyframeEventKind::kRemoved;
+}
 
 /// "Frame 812 is keyframe 57": topic `rtd/keyframes`, from slam to the filter.
 struct KeyframeEvent {
@@ -31,6 +38,10 @@ struct KeyframeEvent {
   KeyframeEventKind kind;
 };
 RTD_FIELDS(rtd_msgs, KeyframeEvent, event_index, frame_seq, stamp_ns, T_world_camera, keyframe_id, kind)
+constexpr const char* broken_rule(const KeyframeEvent& event) {
+  const bool needs_pose = event.kind != KeyframeEventKind::kRemoved;
+  return needs_pose && !is_rotation(event.T_world_camera.rotation_xyzw) ? "T_world_camera" : nullptr;
+}
 
 enum class TrackingState : std::uint32_t {
   kInitializing = 0,
@@ -41,6 +52,10 @@ enum class TrackingState : std::uint32_t {
   kPredicted = 5,     ///< nothing static in view: the last motion continues for a moment, without measurement
   kDoubtful = 6,      ///< measured, but much of what is seen contradicts the pose: something may take it along
 };
+
+constexpr TrackingState last_value(TypeOf<TrackingState>) {
+  return TrackingState::kDoubtful;
+}
 
 /// For logs, diagnostics and the live line.
 constexpr const char* to_string(TrackingState state) {
@@ -93,6 +108,9 @@ struct TrackingResult {
 };
 RTD_FIELDS(rtd_msgs, TrackingResult, seq, stamp_ns, published_ns, finished_ns, T_world_camera, covariance, event_count,
            state, inliers, features_static, features_removed, keyframes, landmarks, map_id, maps, stage_ms)
+constexpr const char* broken_rule(const TrackingResult& result) {
+  return has_pose(result.state) && !is_rotation(result.T_world_camera.rotation_xyzw) ? "T_world_camera" : nullptr;
+}
 
 /// Whether the result is a measured pose in frame `map`.
 constexpr bool is_measured_in_map(const TrackingResult& result) {

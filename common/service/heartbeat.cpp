@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "common/service/host_name.hpp"
@@ -21,14 +20,6 @@ constexpr std::int64_t kNewcomerForNs = 5'000'000'000;   // a service that has r
 constexpr std::int64_t kBlockedAfterNs = 3'000'000'000;  // a write may wait for a slow reader, but not so long
 constexpr std::size_t kMostPeers = 100;                  // a writer could make up names without end
 
-bool is_name(const std::string& service) {
-  constexpr std::size_t kLongest = 64;
-  return !service.empty() && service.size() <= kLongest &&
-         std::all_of(service.begin(), service.end(), [](unsigned char c) {
-           return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '/' || c == '.';
-         });
-}
-
 void add_troubles(const std::string& topic, const bus::TopicTrouble& trouble, std::vector<msg::Metric>& metrics) {
   const auto add = [&](const char* what, std::uint64_t count) {
     if (count > 0) metrics.push_back({"topic." + topic + '.' + what, static_cast<double>(count)});
@@ -37,6 +28,7 @@ void add_troubles(const std::string& topic, const bus::TopicTrouble& trouble, st
   add("rejected", trouble.rejected);
   add("incompatible_qos", trouble.incompatible_qos);
   add("type_mismatch", trouble.type_mismatch);
+  add("implausible", trouble.implausible);
 }
 
 void log_refusals(const std::string& topic, const bus::TopicTrouble& before, const bus::TopicTrouble& now) {
@@ -46,6 +38,12 @@ void log_refusals(const std::string& topic, const bus::TopicTrouble& before, con
   if (now.type_mismatch > before.type_mismatch) {
     SPDLOG_ERROR("event=type_mismatch topic={} other_type={} fix=\"another program uses this topic's name\"", topic,
                  now.other_type);
+  }
+  if (before.implausible == 0 && now.implausible > 0) {
+    SPDLOG_ERROR(
+        "event=implausible_message topic={} field={} fix=\"a program sends what none of RTD-SLAM does: find it with "
+        "'rtd topics info', stop it, or keep it out with keys (docs/security.md)\"",
+        topic, now.implausible_field);
   }
 }
 
@@ -130,7 +128,6 @@ void Heartbeat::set(const msg::Metric& metric) {
 }
 
 void Heartbeat::receive(const msg::ServiceStatus& status) {
-  if (!is_name(status.service)) return;
   const std::int64_t arrival_ns = realtime_ns();
   bool refused = false, known = false;
   {
@@ -277,7 +274,8 @@ bool Heartbeat::check_topics() {
   for (const auto& [topic, now] : troubles) {
     const bus::TopicTrouble before = troubles_[topic];
     log_refusals(topic, before, now);
-    changed = changed || now.incompatible_qos != before.incompatible_qos || now.type_mismatch != before.type_mismatch;
+    changed = changed || now.incompatible_qos != before.incompatible_qos || now.type_mismatch != before.type_mismatch ||
+              (before.implausible == 0 && now.implausible > 0);
   }
   troubles_ = std::move(troubles);
   return changed;

@@ -79,7 +79,7 @@ TakenSample MessageCodec<T>::take(dds::DataReader& reader, const Accepts& accept
   if (reader.take_next_sample(message.get(), &info) != ReturnCode_t::RETCODE_OK) return {};
   const WriterId writer = to_writer_id(info.sample_identity.writer_guid());
   if (!info.valid_data || !next.wanted(writer)) return {TakenSample::Kind::kNoData};
-  if (message == nullptr || !msg::is_plausible(*message)) return {TakenSample::Kind::kUnusable};
+  if (message == nullptr) return {TakenSample::Kind::kUnusable};
   return {TakenSample::Kind::kMessage, std::move(message), writer};
 }
 

@@ -111,7 +111,9 @@ void answer_frames(Bus& bus, int number) {
 void leave_history(Bus& bus, int count) {
   auto keyframes = bus.writer(topics::kKeyframes);
   auto info = bus.writer(topics::kCameraInfo);
-  for (int i = 0; i < count; ++i) keyframes.write(msg::KeyframeEvent{.event_index = static_cast<std::uint64_t>(i)});
+  for (int i = 0; i < count; ++i) {
+    keyframes.write({.event_index = static_cast<std::uint64_t>(i), .kind = msg::KeyframeEventKind::kRemoved});
+  }
   info.write(msg::CameraInfo{.header = {{12, 34}, "camera"}, .height = 480, .width = 640});
   stay();
 }

@@ -132,7 +132,7 @@ TEST_P(DdsBus, reports_a_missing_heartbeat) {
   const auto reader = there->reader(topics::kStatus, status.callback(), callbacks);
   auto writer = here->writer(topics::kStatus);
   wait_for_reader(writer);
-  writer.write(msg::ServiceStatus{});
+  writer.write(msg::ServiceStatus{.service = "camera"});
   status.next();
   EXPECT_EQ(*missed.next(3s), 1);
 }

@@ -6,11 +6,14 @@
 #include <gtest/gtest.h>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/msg/plausible.hpp"
 #include "tests/component/bus/collector.hpp"
+#include "tests/support/frame_header.hpp"
 
 namespace rtd::bus {
 namespace {
 
+using test_support::fill_header;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
@@ -27,7 +30,7 @@ class FrameTopics : public testing::Test {
   void send(std::uint32_t width, std::uint32_t height) {
     FrameWriter writer(*bus_, width, height);
     EXPECT_TRUE(writer.write([&](auto& frame) {
-      frame.width = width, frame.height = height;
+      fill_header(frame, width, height);
       frame.color_bgr[3 * std::size_t{width} * height - 1] = 77;
       frame.depth[std::size_t{width} * height - 1] = 1234;
     }));

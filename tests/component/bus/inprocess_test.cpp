@@ -10,6 +10,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "tests/component/bus/collector.hpp"
+#include "tests/component/bus/patterns.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -57,7 +58,7 @@ TEST(InprocessBus, passes_a_loaned_frame_on_without_copying) {
 
   auto loan = writer.loan();
   const msg::RgbdFrame* slot = &*loan;
-  loan->seq = 12;
+  fill_frame(*loan, 12);
   EXPECT_TRUE(writer.write(std::move(loan)));
 
   const auto frame = frames.next();
@@ -78,7 +79,8 @@ TEST(InprocessBus, replays_the_last_of_a_transient_local_topic_to_a_late_reader)
   const auto bus = connect_inprocess();
   auto keyframes = bus->writer(topics::kKeyframes);
   auto info = bus->writer(topics::kCameraInfo);
-  for (std::uint64_t i = 0; i < 70; ++i) keyframes.write(msg::KeyframeEvent{.event_index = i});
+  for (std::uint64_t i = 0; i < 70; ++i)
+    keyframes.write(msg::KeyframeEvent{.event_index = i, .kind = msg::KeyframeEventKind::kRemoved});
   info.write(msg::CameraInfo{.height = 240});
   info.write(msg::CameraInfo{.height = 480});
 
@@ -110,7 +112,7 @@ TEST(InprocessBus, a_slow_reader_loses_the_oldest_and_gets_a_report) {
   auto writer = bus->writer(topics::kFrame);
   const auto write = [&](std::uint64_t seq) {
     auto loan = writer.loan();
-    loan->seq = seq;
+    fill_frame(*loan, seq);
     writer.write(std::move(loan));
   };
 

@@ -36,9 +36,16 @@ inline bool equals_pattern(const msg::RgbdFrame& frame) {
 }
 
 inline void fill_features(msg::FeatureFrame& features, std::uint64_t seq) {
-  std::memset(static_cast<void*>(&features), static_cast<int>(seq % 127), sizeof(features));
+  features = {};
   features.seq = seq;
+  features.intrinsics = {525.0, 525.0, 319.5, 239.5};
+  features.width = 640;
+  features.height = 480;
   features.count = msg::kMaxFeatures;
+  for (msg::Feature& feature : features.features) {
+    feature.u_px = feature.v_px = static_cast<float>(seq % 127);
+    feature.descriptor.fill(static_cast<std::uint8_t>(seq % 127));
+  }
 }
 
 inline bool equals_pattern(const msg::FeatureFrame& features) {

@@ -15,6 +15,7 @@
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/peer_clocks.hpp"
 #include "tests/support/detector/tiny_network.hpp"
+#include "tests/support/frame_header.hpp"
 #include "tests/support/service_fixture.hpp"
 
 namespace rtd::detector {
@@ -45,8 +46,8 @@ class DetectorServiceTest : public test_support::ServiceFixture<DetectorService>
   void send_frame(std::int64_t stamp_ns, bool white_cell = false) {
     auto frame = std::make_unique<msg::RgbdFrame>();
     *frame = {};
+    test_support::fill_header(*frame, 64, 64);
     frame->stamp_ns = stamp_ns;
-    frame->width = frame->height = 64;
     if (white_cell) white_cell_of({64, 64, CV_8UC3, frame->color_bgr.data()});
     frames_.write(*frame);
   }
@@ -220,13 +221,12 @@ TEST_F(DetectorServiceTest, skips_and_counts_a_frame_of_impossible_size) {
   start(service::Pace::kLockstep);
   auto frame = std::make_unique<msg::RgbdFrame>();
   *frame = {};
-  frame->width = 100'000;
-  frame->height = 2;
+  test_support::fill_header(*frame, 100'000, 2);
   frames_.write(*frame);
   send_frame(5);
   ASSERT_TRUE(answer_box_.wait_count(1));
   EXPECT_THAT(answered_stamps(), ElementsAre(5));
-  EXPECT_TRUE(wait_metric("frames_broken", 1));
+  EXPECT_TRUE(wait_metric("topic.rtd/frame.implausible", 1));
 }
 
 TEST_F(DetectorServiceTest, turns_the_image_upright_by_the_pose_of_the_frame_before_in_lockstep) {

@@ -20,18 +20,19 @@ class CollectorTest : public testing::Test {
  protected:
   void publish(std::uint64_t seq) {
     auto frame = frames_.loan();
+    test_support::fill_header(*frame, 64, 48);
     frame->seq = seq;
-    frame->width = 64;
-    frame->height = 48;
     frame->color_bgr.fill(static_cast<std::uint8_t>(seq));
     frames_.write(std::move(frame));
     auto features = std::make_unique<msg::FeatureFrame>();
+    test_support::fill_camera(*features, 64, 48);
     features->seq = seq;
     features->count = 5;
     features_.write(*features);
     msg::TrackingResult result{};
     result.seq = seq;
     result.state = msg::TrackingState::kOk;
+    result.T_world_camera.rotation_xyzw = {0, 0, 0, 1};
     result.finished_ns = 20'000'000;
     tracking_.write(result);
   }
@@ -105,9 +106,7 @@ TEST_F(CollectorTest, shows_the_known_length_and_what_services_complain_about) {
 
 TEST_F(CollectorTest, a_frame_with_an_impossible_size_leaves_no_picture) {
   auto frame = frames_.loan();
-  frame->seq = 0;
-  frame->width = 100'000;
-  frame->height = 48;
+  test_support::fill_header(*frame, 100'000, 48);
   frames_.write(std::move(frame));
   publish(5);
   eval::RunRecord record;

@@ -13,7 +13,7 @@
 #include "common/bus/qos.hpp"
 #include "common/bus/topics.hpp"
 #include "common/ros_codec/wire.hpp"
-#include "tests/unit/bus/random_message.hpp"
+#include "tests/unit/bus/message_walk.hpp"
 
 /// Messages for every topic that two processes can both make: from the topic's name and a number.
 namespace rtd::bus::interop {
@@ -40,33 +40,30 @@ inline int kept(QosProfile profile) {
 }
 constexpr int kForgotten = 5;
 
+/// Gives the fields that may hold anything random values, also each pixel.
 template <class T>
-void make_plausible(T&) {}
-template <std::uint32_t kWidth, std::uint32_t kHeight>
-void make_plausible(msg::SizedFrame<kWidth, kHeight>& frame) {
-  frame.width = kWidth;
-  frame.height = kHeight;
-}
-inline void make_plausible(msg::FeatureFrame& features) {
-  features.count = msg::kMaxFeatures;
+void scatter(T& value, const msg::FieldRule& rule, std::mt19937_64& random) {
+  if constexpr (std::is_same_v<T, std::string>) {
+    for (char& letter : value) letter = static_cast<char>('a' + random() % 26);
+  } else if constexpr (walk::kSequence<T> || walk::kArray<T>) {
+    for (auto& element : value) scatter(element, rule, random);
+  } else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+    if (rule.free) value = static_cast<T>(random());
+  } else if constexpr (msg::Message<T>) {
+    std::size_t place = 0;
+    msg::for_each_field(value,
+                        [&](const char*, auto& field) { scatter(field, msg::plausible::kRules<T>[place++], random); });
+    walk::complete(value);
+  }
 }
 
-/// The message of that number on the topic: every byte of it is random, but the same in all processes.
+/// The message of that number on the topic: random, but the same in all processes, and one that the bus lets pass.
 template <class T>
 std::unique_ptr<T> message_of(const Topic<T>& topic, int number) {
   std::seed_seq seed{std::hash<std::string>{}(topic.name), static_cast<std::size_t>(number)};
   std::mt19937_64 random(seed);
-  auto message = std::make_unique<T>();
-  if constexpr (MessageTraits<T>::kPlain) {
-    static_assert(sizeof(T) % sizeof(std::uint64_t) == 0);
-    for (std::size_t at = 0; at < sizeof(T); at += sizeof(std::uint64_t)) {
-      const std::uint64_t bytes = random();
-      std::memcpy(reinterpret_cast<unsigned char*>(message.get()) + at, &bytes, sizeof(bytes));
-    }
-    make_plausible(*message);
-  } else {
-    reflect::randomize(*message, random);
-  }
+  auto message = walk::plausible_message<T>();
+  scatter(*message, {}, random);
   return message;
 }
 

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/printable.hpp"
+
+#include <algorithm>
+
+#include "common/io/utf8.hpp"
+
+namespace rtd::io {
+namespace {
+
+/// Bytes at the begin of the text that can be shown.
+std::size_t shown_bytes(std::string_view text, LineEnds line_ends) {
+  std::size_t shown = 0;
+  while (shown < text.size()) {
+    const Utf8Character character = first_character(text.substr(shown));
+    const bool kept = line_ends == LineEnds::kKeep && (character.code == '\n' || character.code == '\t');
+    const bool hidden = is_control(character.code) || is_disguise(character.code);
+    if (character.bytes == 0 || (hidden && !kept)) break;
+    shown += character.bytes;
+  }
+  return shown;
+}
+
+void append_escaped(std::string& output, std::string_view bytes) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  for (const char c : bytes) {
+    const auto byte = static_cast<unsigned char>(c);
+    output += {'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 15U]};
+  }
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, LineEnds line_ends) {
+  std::string output;
+  while (!text.empty()) {
+    const std::size_t shown = shown_bytes(text, line_ends);
+    output += text.substr(0, shown);
+    text.remove_prefix(shown);
+    const std::size_t hidden = std::min(std::max<std::size_t>(1, first_character(text).bytes), text.size());
+    append_escaped(output, text.substr(0, hidden));
+    text.remove_prefix(hidden);
+  }
+  return output;
+}
+
+bool is_printable(std::string_view text, LineEnds line_ends) {
+  return shown_bytes(text, line_ends) == text.size();
+}
+
+}  // namespace rtd::io
