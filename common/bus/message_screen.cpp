@@ -9,8 +9,7 @@
 namespace rtd::bus {
 
 bool SequenceGuard::goes_on(const WriterId& writer, std::uint64_t sequence) {
-  const auto found =
-      std::ranges::find_if(last_, [&](const Last& last) { return last.known && last.writer == writer; });
+  const auto found = std::ranges::find_if(last_, [&](const Last& last) { return last.known && last.writer == writer; });
   if (found == last_.end()) {
     last_[oldest_] = {writer, sequence, true};
     oldest_ = (oldest_ + 1) % kMostWriters;

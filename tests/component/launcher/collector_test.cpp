@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
+#include "tests/support/frame_header.hpp"
 
 namespace rtd::launcher {
 namespace {
