@@ -114,6 +114,7 @@ inline constexpr FieldRule kFieldRules[] = {
     text_field("diagnostic_msgs/*", TextRule::kLines, 65'536),
     free_field("std_srvs/Trigger_Request.structure_needs_at_least_one_member"),
     // ours
+    text_field("rtd_msgs/WireSchema.text", TextRule::kLines, 1 << 20),
     text_field("rtd_msgs/Command_Request.argument", TextRule::kLine, 4096),
     text_field("rtd_msgs/Command_Response.message", TextRule::kLines, 65'536),
     between("rtd_msgs/RgbdFrame*.seq", 0, kMostSequence),

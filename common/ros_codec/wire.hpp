@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/msg/plausible.hpp"
 #include "common/msg/ros.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
 
@@ -134,7 +135,9 @@ class WireReader {
   ByteCursor cursor_;
 };
 
-/// The message that the bytes hold; bytes behind it are ignored, as DDS pads. Throws WireError.
+/// The message that the bytes hold; bytes behind it are ignored, as DDS pads. Throws WireError, also for a message that
+/// no honest program sends (common/msg/plausible.hpp): this is the edge for what comes past bus::Reader, as raw samples
+/// and recordings do.
 template <class Message>
 Message decode(Wire wire, Bytes bytes) {
   Message message;
@@ -142,6 +145,9 @@ Message decode(Wire wire, Bytes bytes) {
     WireReader<Wire::kRos1>{bytes}(message);
   } else {
     WireReader<Wire::kCdr>{bytes}(message);
+  }
+  if (const msg::ImplausibleField bad = msg::implausible_field(message)) {
+    throw WireError(to_string(bad) + " has a value that no honest program sends");
   }
   return message;
 }

@@ -56,7 +56,8 @@ bool LinkRules::passes(Direction direction, const std::string& dds_topic, std::s
   if (direction == Direction::kToFleet || !is_heartbeat(dds_topic)) return true;
   msg::ServiceStatus status;
   const ros::Bytes bytes{reinterpret_cast<const std::uint8_t*>(cdr.data()), cdr.size()};
-  return bus::read_cdr(bytes, status) && (status.service == "detector" || status.service == "link");
+  return bus::read_cdr(bytes, status) && msg::is_plausible(status) &&
+         (status.service == "detector" || status.service == "link");
 }
 
 }  // namespace rtd::link

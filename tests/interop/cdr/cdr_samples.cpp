@@ -95,7 +95,9 @@ std::string difference(const Json& sample) {
   const Cdr theirs = from_hex(sample.at("cdr"));
   const Cdr ours = ros::encode<ros::Wire::kCdr>(sample.at("value").get<T>());
   if (ours != theirs) return "we write\n  " + to_hex(ours) + "\nthey write\n  " + to_hex(theirs);
-  const Json read = ros::decode<T>(ros::Wire::kCdr, theirs);
+  T message;
+  ros::WireReader<ros::Wire::kCdr>{theirs}(message);  // whatever it holds
+  const Json read = message;
   if (read != sample.at("value")) return "we read " + read.dump();
   return {};
 }

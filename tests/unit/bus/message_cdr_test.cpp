@@ -130,7 +130,8 @@ TYPED_TEST(MessageCdr, survives_any_change_of_its_bytes) {
 
 TEST(Cdr, of_a_large_image_is_taken_in_one_piece) {
   msg::Image image;
-  image.data.resize(8 << 20, 7);
+  image.width = image.step = image.height = 4096;
+  image.data.resize(image.step * image.height, 7);
   const Cdr cdr = ros::encode<ros::Wire::kCdr>(image);
   EXPECT_EQ(cdr.capacity(), cdr.size()) << "reserved at once";
   EXPECT_EQ(ros::decode<msg::Image>(ros::Wire::kCdr, cdr).data, image.data);
