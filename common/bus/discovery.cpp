@@ -2,9 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/discovery.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "common/io/printable.hpp"
+
 namespace rtd::bus {
+namespace {
+
+/// Names of topics and types stand in logs and on terminals. DDS allows no others than visible ASCII; an endpoint with
+/// another one takes part in nothing.
+bool is_wire_name(const std::string& name) {
+  constexpr std::size_t kLongest = 512;
+  return !name.empty() && name.size() <= kLongest &&
+         std::ranges::all_of(name, [](char c) { return c > ' ' && c <= '~' && c != '"' && c != '\\'; });
+}
+
+}  // namespace
 
 TopicTypes::Watch::Watch(TopicTypes& types, const std::string& topic, const std::string& type, StatusReporter& status)
     : types_(types), topic_(topic), type_(type), status_(status) {
@@ -25,6 +39,7 @@ void TopicTypes::Watch::compare(const std::string& other_type) const {
 }
 
 void TopicTypes::appeared(const std::string& endpoint, const std::string& topic, const std::string& type) {
+  if (!is_wire_name(type)) return;
   const std::lock_guard lock(mutex_);
   if (!endpoints_.try_emplace(endpoint, Endpoint{topic, type}).second) return;  // its QoS changed
   for (const Watch* watch : watches_) {
@@ -70,6 +85,7 @@ void EndpointRegistry::watch(RawBus::Watcher watcher) {
 }
 
 void EndpointRegistry::note(const TopicWriter& writer) {
+  if (!is_wire_name(writer.topic.name) || !is_wire_name(writer.topic.type)) return;
   const std::lock_guard lock(mutex_);
   const auto [known, is_new] = writers_.try_emplace(writer.id, writer);
   if (is_new) return report(writer, WriterChange::kAppeared);
@@ -79,6 +95,7 @@ void EndpointRegistry::note(const TopicWriter& writer) {
 }
 
 void EndpointRegistry::note(const TopicReader& reader) {
+  if (!is_wire_name(reader.topic.name) || !is_wire_name(reader.topic.type)) return;
   const std::lock_guard lock(mutex_);
   readers_.insert_or_assign(reader.id, reader);
 }
@@ -91,7 +108,7 @@ void EndpointRegistry::note_gone(const WriterId& id) {
 
 void EndpointRegistry::note(const ParticipantId& participant, const std::string& name) {
   const std::lock_guard lock(mutex_);
-  if (!name.empty()) participants_.insert_or_assign(participant, name);
+  if (!name.empty()) participants_.insert_or_assign(participant, io::printable(name));
 }
 
 void EndpointRegistry::note_gone(const ParticipantId& participant) {

@@ -49,4 +49,23 @@ bool is_printable(std::string_view text, LineEnds line_ends) {
   return shown_bytes(text, line_ends) == text.size();
 }
 
+PrintableBuf::int_type PrintableBuf::overflow(int_type c) {
+  if (traits_type::eq_int_type(c, traits_type::eof())) return traits_type::not_eof(c);
+  const char character = traits_type::to_char_type(c);
+  return xsputn(&character, 1) == 1 ? c : traits_type::eof();
+}
+
+std::streamsize PrintableBuf::xsputn(const char* text, std::streamsize size) {
+  const std::string_view added(text, static_cast<std::size_t>(size));
+  line_ += added;
+  return added.find('\n') == std::string_view::npos || sync() == 0 ? size : 0;
+}
+
+int PrintableBuf::sync() {
+  const std::string shown = printable(line_, LineEnds::kKeep);
+  line_.clear();
+  const auto size = static_cast<std::streamsize>(shown.size());
+  return target_.sputn(shown.data(), size) == size && target_.pubsync() == 0 ? 0 : -1;
+}
+
 }  // namespace rtd::io

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <ostream>
+#include <streambuf>
 #include <string>
 #include <string_view>
 
@@ -17,5 +19,37 @@ std::string printable(std::string_view text, LineEnds line_ends = LineEnds::kEsc
 
 /// Whether printable() would return the text as it is.
 bool is_printable(std::string_view text, LineEnds line_ends = LineEnds::kEscape);
+
+/// Passes text on line by line, made printable; line ends stay.
+class PrintableBuf : public std::streambuf {
+ public:
+  explicit PrintableBuf(std::streambuf& target) : target_(target) {}
+  ~PrintableBuf() override { sync(); }
+
+ protected:
+  int_type overflow(int_type c) override;
+  std::streamsize xsputn(const char* text, std::streamsize size) override;
+  int sync() override;
+
+ private:
+  std::streambuf& target_;
+  std::string line_;  ///< a character may come in parts
+};
+
+/// While it lives, all that is written to a stream is printable.
+class PrintableOutput {
+ public:
+  explicit PrintableOutput(std::ostream& stream) : stream_(stream), target_(*stream.rdbuf()), buffer_(target_) {
+    stream.rdbuf(&buffer_);
+  }
+  ~PrintableOutput() { stream_.flush().rdbuf(&target_); }
+  PrintableOutput(const PrintableOutput&) = delete;
+  PrintableOutput& operator=(const PrintableOutput&) = delete;
+
+ private:
+  std::ostream& stream_;
+  std::streambuf& target_;
+  PrintableBuf buffer_;
+};
 
 }  // namespace rtd::io

@@ -13,7 +13,7 @@ namespace rtd::msg {
 
 /// Either side of a frame may be as short and as long as this, and no frame has more pixels than the largest size
 /// class.
-inline constexpr std::uint32_t kMinFrameSide = 16, kMaxFrameSide = 1920;
+inline constexpr std::uint32_t kMinFrameSide = 8, kMaxFrameSide = 1920;
 inline constexpr std::size_t kMaxFramePixels = std::size_t{1920} * 1200;
 
 constexpr bool is_frame_size(std::uint64_t width, std::uint64_t height) {

@@ -18,6 +18,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/io/printable.hpp"
 #include "common/service/exit_code.hpp"
 
 namespace rtd::service {
@@ -34,6 +35,7 @@ int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kOk : kUsageOrConfig;
   }
+  const io::PrintableOutput out(std::cout);  // names and texts of other programs are among what tools print
   return work();
 }
 

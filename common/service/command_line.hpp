@@ -11,6 +11,7 @@
 #include <ostream>
 #include <string>
 
+#include "common/io/printable.hpp"
 #include "common/service/exit_code.hpp"
 
 namespace CLI {
@@ -35,7 +36,7 @@ int report_errors(const std::string& program, std::ostream& err, const std::func
   try {
     return work();
   } catch (const std::exception& error) {
-    err << program << ": " << error.what() << '\n';
+    err << program << ": " << io::printable(error.what(), io::LineEnds::kKeep) << '\n';
     return (... || (dynamic_cast<const Usage*>(&error) != nullptr)) ? kUsageOrConfig : kRunFailed;
   }
 }

@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "common/io/printable.hpp"
 #include "common/service/host_name.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
@@ -44,6 +46,18 @@ void log_refusals(const std::string& topic, const bus::TopicTrouble& before, con
         "event=implausible_message topic={} field={} fix=\"a program sends what none of RTD-SLAM does: find it with "
         "'rtd topics info', stop it, or keep it out with keys (docs/security.md)\"",
         topic, now.implausible_field);
+  }
+}
+
+void make_plausible(msg::ServiceStatus& status) {
+  constexpr std::size_t kMostMessage = 4096, kMostName = 384;
+  if (!io::is_printable(status.message)) status.message = io::printable(status.message);
+  if (status.message.size() > kMostMessage) status.message = io::printable(status.message.substr(0, kMostMessage / 4));
+  for (auto& [name, value] : status.metrics) {
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c <= ' ' || c > '~'; }, '?');
+    if (name.size() > kMostName) name.resize(kMostName);
+    if (!std::isfinite(value)) value = 0;
   }
 }
 
@@ -281,7 +295,8 @@ bool Heartbeat::check_topics() {
   return changed;
 }
 
-/// State and metrics of the service, and what is wrong with it, its peers and its topics.
+/// State and metrics of the service, and what is wrong with it, its peers and its topics. Texts of exceptions and names
+/// of topics of others may hold anything; no receiver takes such a heartbeat (common/msg/plausible.hpp).
 msg::ServiceStatus Heartbeat::current_status() {
   const std::lock_guard lock(mutex_);
   own_.stamp_ns = realtime_ns();
@@ -297,6 +312,7 @@ msg::ServiceStatus Heartbeat::current_status() {
     status.message = "hung: " + stuck_;
     status.metrics.push_back({"hung", 1});
   }
+  make_plausible(status);
   return status;
 }
 

@@ -10,7 +10,8 @@
 
 namespace rtd::service {
 
-/// Sends spdlog to stderr as `LEVEL service event=... key=value`, one event a line. Adapters only, cores return facts.
+/// Sends spdlog to stderr as `LEVEL service event=... key=value`, one event a line: control characters of quoted texts
+/// are escaped (io::printable()). Adapters only, cores return facts.
 void init_logging(const std::string& service, const std::string& level);
 
 /// Lets one message through per period and counts the rest, for events that can come with every frame. Thread-safe

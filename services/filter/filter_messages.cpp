@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/msg/plausible.hpp"
 #include "common/msg/transform_eigen.hpp"
 
 namespace rtd::filter {
@@ -70,7 +71,7 @@ void fill_message(const msg::FrameView& frame, const FilterResult& result, msg::
   const bool overfull = result.features.size() > msg::kMaxFeatures;
   for (const msg::Feature& feature : result.features) {
     if (message.count == msg::kMaxFeatures) break;
-    if (overfull && removed(feature)) continue;
+    if ((overfull && removed(feature)) || !msg::is_plausible(feature)) continue;
     message.features[message.count++] = feature;
     if (removed(feature)) ++message.removed;
   }

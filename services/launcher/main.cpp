@@ -235,6 +235,7 @@ void add_doctor_command(CLI::App& app, DoctorOptions& options) {
 }
 
 int dispatch(const CLI::App& app, const Requests& requests) {
+  const io::PrintableOutput out(std::cout);
   if (app.got_subcommand("run")) return run(requests.run).code;
   if (app.got_subcommand("demo")) return demo(requests.demo);
   if (app.got_subcommand("doctor")) return doctor(requests.doctor, std::cout, std::cerr);

@@ -13,6 +13,7 @@
 
 #include "common/bus/commands.hpp"
 #include "common/bus/host/port_check.hpp"
+#include "common/io/printable.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/json_text.hpp"
 
@@ -94,9 +95,9 @@ int call(const CallRequest& request, const bus::BusOptions& options, std::ostrea
   if (request.json) {
     out << service::json_text(nlohmann::json{{"success", answer.success}, {"message", answer.message}}) << '\n';
   } else if (answer.success) {
-    out << (answer.message.empty() ? "done" : answer.message) << '\n';
+    out << (answer.message.empty() ? "done" : io::printable(answer.message)) << '\n';
   } else {
-    err << "rtd call: " << request.service << " failed: " << answer.message << '\n';
+    err << "rtd call: " << request.service << " failed: " << io::printable(answer.message) << '\n';
   }
   return answer.success ? service::kOk : service::kRunFailed;
 }
@@ -107,7 +108,7 @@ int call_or_report(const CallRequest& request, const bus::BusOptions& options, s
     return call(request, options, out, err);
   } catch (const bus::CommandError& error) {
     if (error.cause() == Cause::kWrongArgument) throw;
-    err << "rtd call: " << error.what() << '\n';
+    err << "rtd call: " << io::printable(error.what()) << '\n';
     return service::kRunFailed;
   }
 }

@@ -9,6 +9,7 @@
 #include "common/bus/network.hpp"
 #include "common/bus/robot.hpp"
 #include "common/bus/topics.hpp"
+#include "common/msg/plausible.hpp"
 #include "common/msg/status.hpp"
 #include "common/ros2/names.hpp"
 

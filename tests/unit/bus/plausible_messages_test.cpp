@@ -101,6 +101,7 @@ TEST(PlausibleMessages, each_entry_of_the_list_of_rules_is_about_a_field) {
       if (rule != nullptr) unused.erase(rule->field);
     });
   });
+  unused.erase("rtd_msgs/WireSchema.text");  // common/ros2/schema_texts.cpp has that type for itself
   for (const std::string_view field : unused) ADD_FAILURE() << "no field is called " << field;
 }
 

@@ -176,6 +176,14 @@ TEST(record_builder, tells_refused_endpoints_by_service_and_topic) {
   EXPECT_EQ(builder.take_notice(), std::nullopt);
 }
 
+TEST(record_builder, tells_implausible_messages_once_by_service_and_topic) {
+  RecordBuilder builder;
+  builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.implausible", 1}}});
+  builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.implausible", 900}}});
+  EXPECT_EQ(builder.take_notice(), "slam: rtd/features: implausible");
+  EXPECT_EQ(builder.take_notice(), std::nullopt);
+}
+
 TEST(record_builder, tells_a_degraded_service_once) {
   RecordBuilder builder;
   msg::ServiceStatus status = status_of("filter", 7, {});

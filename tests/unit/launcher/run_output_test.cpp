@@ -48,6 +48,21 @@ TEST(terminal, repeats_plain_lines_every_two_seconds_without_a_terminal) {
   EXPECT_EQ(out.str(), "frame 0\nframe 20\nframe 40\nslam died\n");
 }
 
+TEST(terminal, shows_the_message_of_a_hostile_heartbeat_without_obeying_it) {
+  std::ostringstream out;
+  Terminal terminal(out, {true, false, 200});
+  RecordBuilder builder;
+  builder.add(msg::ServiceStatus{.service = "camera",
+                                 .state = msg::ServiceState::kDegraded,
+                                 .message = "gone\033[2J\nrtd: slam was killed\xc2\x9b"
+                                            "31m"});
+  terminal.warn(*builder.take_notice());
+  EXPECT_EQ(out.str(), "camera: gone\\x1b[2J\\x0artd: slam was killed\\xc2\\x9b31m\n");
+  terminal.status(format_live_status(builder.live()), milliseconds(0));
+  EXPECT_EQ(out.str().find("\033[2J"), std::string::npos);
+  EXPECT_NE(out.str().find("waiting"), 0U);
+}
+
 TEST(terminal, quiet_shows_warnings_only) {
   std::ostringstream out;
   Terminal terminal(out, {false, true, 80});

@@ -97,7 +97,7 @@ void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
       const std::string peer = name.substr(5, name.size() - 6 - what.size());
       report_once(peer, peer + " is " + what + ": no heartbeat");
     } else if (name.starts_with("topic.") &&
-               (what == "rejected" || what == "incompatible_qos" || what == "type_mismatch")) {
+               (what == "rejected" || what == "incompatible_qos" || what == "type_mismatch" || what == "implausible")) {
       const std::string topic = name.substr(6, name.size() - 7 - what.size());
       report_once(status.service + ' ' + name, status.service + ": " + topic + ": " + what);
     }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/core/run/terminal.hpp"
 
+#include "common/io/printable.hpp"
+
 namespace rtd::launcher {
 namespace {
 
@@ -21,14 +23,15 @@ void Terminal::warn(const std::string& line) {
   clear_status();
   if (left_out_ > 0) out_ << "  (" << left_out_ << " messages left out, because the output was not read)\n";
   left_out_ = 0;
-  out_ << line << '\n' << std::flush;
+  out_ << io::printable(line) << '\n' << std::flush;
 }
 
 bool Terminal::takes_line() {
   return !options_.has_room || options_.has_room();
 }
 
-void Terminal::status(const std::string& line, std::chrono::milliseconds now) {
+void Terminal::status(const std::string& text, std::chrono::milliseconds now) {
+  const std::string line = io::printable(text);
   if (options_.quiet || now < next_ || line == shown_ || !takes_line()) return;
   next_ = now + (options_.interactive ? kRewriteEvery : kRepeatEvery);
   shown_ = line;
