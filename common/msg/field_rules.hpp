@@ -179,7 +179,7 @@ inline constexpr FieldRule kFieldRules[] = {
     free_field("rtd_msgs/Mover.id"),
     within("rtd_msgs/Mover.center_m", kMostPosition_m),
     within("rtd_msgs/Mover.size_m", kMostPosition_m),
-    between("rtd_msgs/Mover.static_probability", 0, 1),
+    between("rtd_msgs/Mover.static_probability", 0, 1.001),  // a mean, rounded
     within("rtd_msgs/Mover.covariance", std::numeric_limits<double>::max()),
 };
 

@@ -44,7 +44,7 @@ void log_refusals(const std::string& topic, const bus::TopicTrouble& before, con
   if (before.implausible == 0 && now.implausible > 0) {
     SPDLOG_ERROR(
         "event=implausible_message topic={} field={} fix=\"a program sends what none of RTD-SLAM does: find it with "
-        "'rtd topics info', stop it, or keep it out with keys (docs/security.md)\"",
+        "'rtd topics list', stop it, or keep it out with keys (docs/security.md)\"",
         topic, now.implausible_field);
   }
 }

@@ -42,7 +42,10 @@ msg::TrackingResult make_result(const FrameResult& result) {
   message.seq = result.seq;
   message.stamp_ns = result.stamp_ns;
   message.T_world_camera = msg::to_message(result.T_world_camera);
-  Eigen::Map<RowMajor6d>(message.covariance.data()) = result.covariance;
+  constexpr double kUnknown = 1e6;  // m2 and rad2: receivers take no message with numbers that are none
+  const bool known = result.covariance.allFinite();
+  Eigen::Map<RowMajor6d>(message.covariance.data()) =
+      known ? RowMajor6d(result.covariance) : RowMajor6d(kUnknown * RowMajor6d::Identity());
   message.event_count = result.event_count;
   message.state = result.state;
   message.inliers = result.inliers;
