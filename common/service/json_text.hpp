@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -25,7 +26,7 @@ inline std::string escape_controls(const std::string& json) {
     const bool line_end = character.code == '\n';
     if (!line_end && (io::is_control(character.code) || io::is_disguise(character.code))) {
       std::array<char, 8> code{};
-      std::snprintf(code.data(), code.size(), "\\u%04x", static_cast<unsigned>(character.code));
+      std::snprintf(code.data(), code.size(), "\\u%04x", static_cast<std::uint16_t>(character.code));
       escaped += code.data();
     } else {
       escaped += rest.substr(0, bytes);
