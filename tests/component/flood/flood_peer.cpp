@@ -153,7 +153,8 @@ std::uint64_t flood(bus::Bus& bus, double rate_hz) {
   const auto period = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(1 / rate_hz));
   auto next = std::chrono::steady_clock::now();
   for (std::uint64_t turn = 0; stopped() == 0; ++turn) {
-    for (const auto& target : targets) target->attack(turn);
+    for (const auto& target : targets)
+      if (stopped() == 0) target->attack(turn);
     std::this_thread::sleep_until(next += period);
   }
   std::uint64_t written = 0;
