@@ -292,6 +292,9 @@ void ViewerService::report() {
   runtime_.heartbeat.set_metric("requests", static_cast<double>(counts.requests));
   runtime_.heartbeat.set_metric("requests_refused", static_cast<double>(counts.refused));
   runtime_.heartbeat.set_metric("clients_too_slow", static_cast<double>(counts.closed_slow));
+  std::uint64_t left_out = 0;
+  for (const auto& [name, feed] : robots_) left_out += feed->mirror().map().left_out();
+  runtime_.heartbeat.set_metric("map_items_left_out", static_cast<double>(left_out));
   runtime_.heartbeat.set_metric("messages_dropped", static_cast<double>(mailbox_->dropped() + foxglove_.dropped()));
 }
 

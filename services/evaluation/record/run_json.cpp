@@ -51,38 +51,19 @@ void from_value(const Json& json, std::array<T, N>& values) {
   for (std::size_t i = 0; i < N; ++i) from_value(json.at(i), values[i]);
 }
 
-/// The columns of the frame table, named once for writer and reader. `frame`: FrameRecord, const or not.
-void each_column(auto& frame, const auto& visit) {
-  auto& tracking = frame.tracking;
-  visit("seq", tracking.seq);
-  visit("stamp_ns", tracking.stamp_ns);
-  visit("published_ns", tracking.published_ns);
-  visit("finished_ns", tracking.finished_ns);
-  visit("state", tracking.state);
-  visit("translation_m", tracking.T_world_camera.translation_m);
-  visit("rotation_xyzw", tracking.T_world_camera.rotation_xyzw);
-  visit("inliers", tracking.inliers);
-  visit("features_static", tracking.features_static);
-  visit("features_removed", tracking.features_removed);
-  visit("keyframes", tracking.keyframes);
-  visit("landmarks", tracking.landmarks);
-  visit("slam_stage_ms", tracking.stage_ms);
-  visit("filter_stage_ms", frame.filter_stage_ms);
-}
-
 Json frames_json(const std::vector<FrameRecord>& frames) {
   Json table;
   const FrameRecord none;
-  each_column(none, [&](const char* name, const auto&) { table[name] = Json::array(); });
+  for_each_column(none, [&](const char* name, const auto&) { table[name] = Json::array(); });
   for (const FrameRecord& frame : frames)
-    each_column(frame, [&](const char* name, const auto& value) { table[name].push_back(to_value(value)); });
+    for_each_column(frame, [&](const char* name, const auto& value) { table[name].push_back(to_value(value)); });
   return table;
 }
 
 std::vector<FrameRecord> read_frames(const Json& table) {
   std::vector<FrameRecord> frames(table.at("seq").size());
   for (std::size_t i = 0; i < frames.size(); ++i)
-    each_column(frames[i], [&](const char* name, auto& value) { from_value(table.at(name).at(i), value); });
+    for_each_column(frames[i], [&](const char* name, auto& value) { from_value(table.at(name).at(i), value); });
   return frames;
 }
 

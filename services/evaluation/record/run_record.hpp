@@ -26,6 +26,26 @@ struct FrameRecord {
   std::array<float, msg::kFilterStages> filter_stage_ms{};
 };
 
+/// Calls visit(name, value) with what a report needs of a frame: the columns of the frame table, named once for all who
+/// write and read them. `frame`: FrameRecord, const or not.
+void for_each_column(auto& frame, const auto& visit) {
+  auto& tracking = frame.tracking;
+  visit("seq", tracking.seq);
+  visit("stamp_ns", tracking.stamp_ns);
+  visit("published_ns", tracking.published_ns);
+  visit("finished_ns", tracking.finished_ns);
+  visit("state", tracking.state);
+  visit("translation_m", tracking.T_world_camera.translation_m);
+  visit("rotation_xyzw", tracking.T_world_camera.rotation_xyzw);
+  visit("inliers", tracking.inliers);
+  visit("features_static", tracking.features_static);
+  visit("features_removed", tracking.features_removed);
+  visit("keyframes", tracking.keyframes);
+  visit("landmarks", tracking.landmarks);
+  visit("slam_stage_ms", tracking.stage_ms);
+  visit("filter_stage_ms", frame.filter_stage_ms);
+}
+
 /// A feature as the report needs it: where it is in the camera's own image, and what the filter decided.
 struct JudgedFeature {
   float u_raw_px = 0, v_raw_px = 0;

@@ -27,8 +27,9 @@ std::vector<std::uint8_t> encode_jpeg(const msg::FrameView& frame) {
 
 }  // namespace
 
-Collector::Collector(bus::Bus& bus, const Options& options)
+Collector::Collector(bus::Bus& bus, FrameStore& store, const Options& options)
     : bus_(bus),
+      builder_(store),
       samples_(options.samples, options.total),
       total_(options.total),
       keep_features_(options.keep_features),

@@ -24,7 +24,8 @@ class Collector {
     bool keep_features = false;  ///< for RunRecord::judged_frames
   };
 
-  Collector(bus::Bus& bus, const Options& options);
+  /// `store` outlives this and is used by it alone.
+  Collector(bus::Bus& bus, FrameStore& store, const Options& options);
   ~Collector();
 
   /// Connected to slam, and to the filter if there is one: from now on no frame is missed.

@@ -40,7 +40,9 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptS
       signals_(signals),
       terminal_(terminal),
       logs_(setup.out_dir + "/logs", terminal),
-      collector_(bus, {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames,
+      frames_(setup.out_dir),
+      collector_(bus, frames_,
+                 {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames,
                        eval::has_true_masks(setup.source)}),
       host_(
           [this](const std::string& service, const std::string& line) {

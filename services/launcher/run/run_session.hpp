@@ -11,6 +11,7 @@
 #include "common/service/exit_code.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
 #include "services/launcher/core/run/terminal.hpp"
+#include "services/launcher/process/frame_file.hpp"
 #include "services/launcher/process/posix_process_host.hpp"
 #include "services/launcher/process/service_logs.hpp"
 #include "services/launcher/run/collector.hpp"
@@ -50,6 +51,7 @@ class RunSession {
   Terminal& terminal_;
   ServiceLogs logs_;
   UsageBook usage_;
+  FrameFile frames_;
   Collector collector_;
   PosixProcessHost host_;
   Supervisor supervisor_;

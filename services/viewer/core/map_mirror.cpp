@@ -10,8 +10,6 @@
 namespace rtd::viewer {
 namespace {
 
-constexpr std::size_t kMostKeyframes = 1'000'000, kMostTrajectory = 4'000'000;
-
 bool is_finite(const msg::Transform& transform) {
   const auto finite = [](double value) { return std::isfinite(value); };
   return std::ranges::all_of(transform.translation_m, finite) && std::ranges::all_of(transform.rotation_xyzw, finite);
@@ -24,7 +22,7 @@ void MapMirror::reset() {
   for (ChangeLog<std::uint32_t>* log : {&poses_, &points_, &edges_}) log->clear();
   loop_edges_.clear();
   trajectory_.clear();
-  point_count_ = 0;
+  point_count_ = edge_count_ = 0;
   next_event_ = 0;
   ++loop_revision_;
   ++epoch_;
@@ -45,11 +43,15 @@ void MapMirror::add(const msg::MapUpdate& update) {
       points_.touch(keyframe.keyframe_id);
     }
     if ((keyframe.content & msg::kMapEdges) != 0) {
-      mirrored.covisible = keyframe.covisible;
+      set_edges(mirrored, keyframe.covisible);
       edges_.touch(keyframe.keyframe_id);
     }
   }
   if (update.loop_edges == loop_edges_) return;
+  if (update.loop_edges.size() > limits_.edges) {
+    ++left_out_;
+    return;
+  }
   loop_edges_ = update.loop_edges;
   ++loop_revision_;
 }
@@ -66,7 +68,11 @@ void MapMirror::add(const msg::KeyframeEvent& event) {
 }
 
 bool MapMirror::move(std::uint32_t id, std::uint32_t map_id, const msg::Transform& T_world_camera) {
-  if (!is_finite(T_world_camera) || (keyframes_.size() >= kMostKeyframes && !keyframes_.contains(id))) return false;
+  if (!is_finite(T_world_camera)) return false;
+  if (keyframes_.size() >= limits_.keyframes && !keyframes_.contains(id)) {
+    ++left_out_;
+    return false;
+  }
   const auto [place, added] = keyframes_.try_emplace(id);
   MirroredKeyframe& keyframe = place->second;
   const Eigen::Isometry3f pose = msg::to_isometry(T_world_camera).cast<float>();
@@ -85,22 +91,37 @@ void MapMirror::remove(std::uint32_t id) {
   if (known == keyframes_.end() || known->second.removed) return;
   known->second.removed = true;
   set_points(known->second, {});
-  known->second.covisible.clear();
+  set_edges(known->second, {});
   poses_.touch(id);
 }
 
 void MapMirror::set_points(MirroredKeyframe& keyframe, const std::vector<float>& points_m) {
   point_count_ -= keyframe.points_m.size();
-  keyframe.points_m.clear();
-  for (std::size_t first = 0; first + 2 < points_m.size(); first += 3) {
+  keyframe.points_m = {};  // gives the memory back, too
+  const std::size_t room = std::min(points_m.size() / 3, limits_.points - point_count_);
+  left_out_ += points_m.size() / 3 - room;
+  keyframe.points_m.reserve(room);
+  for (std::size_t first = 0; first < 3 * room; first += 3) {
     const Eigen::Vector3f point(points_m[first], points_m[first + 1], points_m[first + 2]);
     if (point.allFinite()) keyframe.points_m.push_back(point);
   }
   point_count_ += keyframe.points_m.size();
 }
 
+void MapMirror::set_edges(MirroredKeyframe& keyframe, const std::vector<std::uint32_t>& covisible) {
+  edge_count_ -= keyframe.covisible.size();
+  const std::size_t room = std::min(covisible.size(), limits_.edges - edge_count_);
+  left_out_ += covisible.size() - room;
+  keyframe.covisible.assign(covisible.begin(), covisible.begin() + static_cast<std::ptrdiff_t>(room));
+  edge_count_ += room;
+}
+
 void MapMirror::add_position(std::uint32_t map_id, const Eigen::Vector3d& position_m) {
-  if (map_id != 0 || trajectory_.size() >= kMostTrajectory || !position_m.allFinite()) return;
+  if (map_id != 0 || !position_m.allFinite()) return;
+  if (trajectory_.size() >= limits_.trajectory) {
+    ++left_out_;
+    return;
+  }
   const Eigen::Vector3f position = position_m.cast<float>();
   for (auto newest = keyframes_.rbegin(); newest != keyframes_.rend(); ++newest) {
     if (newest->second.removed || newest->second.map_id != 0) continue;

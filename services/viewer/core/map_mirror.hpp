@@ -28,9 +28,17 @@ struct TrajectoryPoint {
   static constexpr std::uint32_t kNone = UINT32_MAX;  ///< in the world frame
 };
 
-/// The map of one robot as slam publishes it, and what has changed since any revision. One thread.
+/// The map of one robot as slam publishes it, and what has changed since any revision. Memory is bounded: what does not
+/// fit into the limits is left out and counted. One thread.
 class MapMirror {
  public:
+  struct Limits {
+    std::size_t keyframes = 50'000, points = 2'000'000, edges = 1'000'000, trajectory = 4'000'000;
+  };
+
+  MapMirror() : MapMirror(Limits{}) {}
+  explicit MapMirror(const Limits& limits) : limits_(limits) {}
+
   /// Counts the maps: another number means that everything before is void.
   std::uint64_t epoch() const { return epoch_; }
 
@@ -52,20 +60,25 @@ class MapMirror {
   std::uint64_t loop_revision() const { return loop_revision_; }
   const std::vector<TrajectoryPoint>& trajectory() const { return trajectory_; }
   std::size_t point_count() const { return point_count_; }
+  /// Keyframes, points, edges and positions for which there was no room.
+  std::uint64_t left_out() const { return left_out_; }
 
  private:
   /// What belongs to a keyframe's pose: nothing moves less than a viewer can show.
   bool move(std::uint32_t id, std::uint32_t map_id, const msg::Transform& T_world_camera);
   void remove(std::uint32_t id);
   void set_points(MirroredKeyframe& keyframe, const std::vector<float>& points_m);
+  void set_edges(MirroredKeyframe& keyframe, const std::vector<std::uint32_t>& covisible);
 
+  Limits limits_;
   std::map<std::uint32_t, MirroredKeyframe> keyframes_;
   ChangeLog<std::uint32_t> poses_, points_, edges_;
   std::vector<std::uint32_t> loop_edges_;
   std::vector<TrajectoryPoint> trajectory_;
   std::uint64_t epoch_ = 1, loop_revision_ = 0, next_event_ = 0;
   std::int64_t session_ns_ = 0;
-  std::size_t point_count_ = 0;
+  std::size_t point_count_ = 0, edge_count_ = 0;
+  std::uint64_t left_out_ = 0;
 };
 
 }  // namespace rtd::viewer

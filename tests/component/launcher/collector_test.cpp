@@ -10,6 +10,7 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "tests/support/frame_header.hpp"
+#include "tests/support/frame_list.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -53,7 +54,8 @@ class CollectorTest : public testing::Test {
   bus::Writer<msg::FeatureFrame> features_ = bus_->writer(bus::topics::kFeatures);
   bus::Writer<msg::TrackingResult> tracking_ = bus_->writer(bus::topics::kTracking);
   bus::Writer<msg::ServiceStatus> status_ = bus_->writer(bus::topics::kStatus);
-  Collector collector_{*bus_, {6, kFrames}};
+  FrameList store_;
+  Collector collector_{*bus_, store_, {6, kFrames}};
 };
 
 TEST_F(CollectorTest, keeps_every_frame_and_a_few_pictures) {

@@ -3,8 +3,14 @@
 #include "services/launcher/core/run/record_builder.hpp"
 
 #include <gmock/gmock.h>
+#include <malloc.h>
 
+#include <limits>
 #include <memory>
+
+#include "services/launcher/process/frame_file.hpp"
+#include "tests/support/frame_list.hpp"
+#include "tests/support/sanitizers.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -52,7 +58,8 @@ std::vector<std::uint64_t> seqs(const eval::RunRecord& record) {
 }
 
 TEST(record_builder, joins_both_streams_by_seq_in_any_order) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   builder.add(result_of(1));
   builder.add(*features_of(1));
   builder.add(*features_of(0));
@@ -67,7 +74,8 @@ TEST(record_builder, joins_both_streams_by_seq_in_any_order) {
 }
 
 TEST(record_builder, counts_frames_without_result_as_dropped) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   builder.add(result_of(0));
   builder.add(*features_of(1));
   builder.add(result_of(4));
@@ -79,7 +87,8 @@ TEST(record_builder, counts_frames_without_result_as_dropped) {
 }
 
 TEST(record_builder, the_cameras_own_count_wins_when_it_saw_more) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   builder.add(result_of(0));
   builder.add(status_of("camera", 7, {{"frames_in", 10}}));
   eval::RunRecord record;
@@ -89,7 +98,8 @@ TEST(record_builder, the_cameras_own_count_wins_when_it_saw_more) {
 }
 
 TEST(record_builder, the_first_answer_counts_when_a_frame_was_sent_again) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   builder.add(result_of(0));
   msg::TrackingResult again = result_of(0);
   again.finished_ns += 2000 * kMs;
@@ -101,7 +111,8 @@ TEST(record_builder, the_first_answer_counts_when_a_frame_was_sent_again) {
 }
 
 TEST(record_builder, drops_are_named_by_place_and_survive_a_restart) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   builder.add(status_of("filter", 7, {{"queue_dropped", 4}, {"frames_processed", 90}}));
   builder.add(status_of("filter", 8, {{"queue_dropped", 1}}));
   builder.add(status_of("filter", 8, {{"queue_dropped", 2}}));
@@ -116,7 +127,8 @@ TEST(record_builder, drops_are_named_by_place_and_survive_a_restart) {
 }
 
 TEST(record_builder, frames_of_a_restarted_camera_follow_those_before) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   builder.add(status_of("camera", 7, {{"frames_in", 3}}));
   for (const std::uint64_t seq : {0, 1, 2}) builder.add(result_of(seq));
   builder.add(status_of("camera", 8, {}));
@@ -133,7 +145,8 @@ TEST(record_builder, frames_of_a_restarted_camera_follow_those_before) {
 }
 
 TEST(record_builder, knows_whether_anything_was_tracked) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   EXPECT_FALSE(builder.live().tracking);
   builder.add(result_of(0, msg::TrackingState::kLost));
   EXPECT_FALSE(builder.tracked_any());
@@ -143,7 +156,8 @@ TEST(record_builder, knows_whether_anything_was_tracked) {
 }
 
 TEST(record_builder, live_status_follows_the_newest_frame) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   for (std::uint64_t seq = 0; seq < 60; ++seq) builder.add(result_of(seq));
   builder.add(status_of("camera", 7, {{"frames_total", 210}}));
   const LiveStatus status = builder.live();
@@ -155,7 +169,8 @@ TEST(record_builder, live_status_follows_the_newest_frame) {
 }
 
 TEST(record_builder, tells_a_dead_peer_once_until_it_is_heard_again) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   msg::ServiceStatus filter{.service = "filter"}, slam{.service = "slam"};
   filter.metrics = slam.metrics = {{"peer.detector.dead", 1}};
   builder.add(filter);
@@ -169,7 +184,8 @@ TEST(record_builder, tells_a_dead_peer_once_until_it_is_heard_again) {
 }
 
 TEST(record_builder, tells_refused_endpoints_by_service_and_topic) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.incompatible_qos", 1}}});
   builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.incompatible_qos", 2}}});
   EXPECT_EQ(builder.take_notice(), "slam: rtd/features: incompatible_qos");
@@ -185,7 +201,8 @@ TEST(record_builder, tells_implausible_messages_once_by_service_and_topic) {
 }
 
 TEST(record_builder, tells_a_degraded_service_once) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   msg::ServiceStatus status = status_of("filter", 7, {});
   status.state = msg::ServiceState::kDegraded;
   status.message = "detector gone, geometry only";
@@ -196,7 +213,8 @@ TEST(record_builder, tells_a_degraded_service_once) {
 }
 
 TEST(record_builder, names_the_services_that_are_heard_and_have_not_finished) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   EXPECT_EQ(builder.active_services(), "");
   builder.add(status_of("slam", 8, {}));
   builder.add(status_of("filter", 7, {}));
@@ -216,7 +234,8 @@ TEST(record_builder, names_the_services_that_are_heard_and_have_not_finished) {
 
 TEST(record_builder, tolerates_a_replay_that_plays_no_topic_of_a_run) {
   const Tolerated live{.harmless_replay = true}, at_first{.harmless_replay = true, .silent_replay = true};
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   builder.add(status_of("replay", 7, {}));
   EXPECT_EQ(builder.active_services(at_first), "") << "it may still report what it plays";
   EXPECT_EQ(builder.active_services(live), "replay (pid 7)");
@@ -228,7 +247,8 @@ TEST(record_builder, tolerates_a_replay_that_plays_no_topic_of_a_run) {
 }
 
 TEST(record_builder, knows_the_clocks_of_other_hosts_from_slam) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   builder.add(status_of("slam", 8, {{"clock.detector.offset_ms", 250.5}, {"clock.detector.round_trip_ms", 0.75}}));
   builder.add(status_of("detector", 9, {{"clock.slam.offset_ms", -250.5}, {"clock.slam.round_trip_ms", 0.75}}));
   eval::RunRecord record;
@@ -279,6 +299,115 @@ TEST(sample_keeper, believes_no_count_beyond_the_message) {
   keeper.add_image(0, {1});
   keeper.add_features(0, *features_of(0, 4'000'000'000U));
   EXPECT_EQ(keeper.samples().at(0).features.size(), msg::kMaxFeatures);
+}
+
+TEST(record_builder, keeps_the_frames_of_a_long_run_in_the_store_in_their_order) {
+  FrameList store;
+  RecordBuilder builder(store);
+  constexpr std::uint64_t kFrames = 3 * RecordBuilder::kJoined;
+  for (std::uint64_t seq = 0; seq < kFrames; seq += 2) {
+    builder.add(result_of(seq + 1));  // out of order
+    builder.add(result_of(seq));
+  }
+  EXPECT_EQ(store.frames.size(), kFrames - RecordBuilder::kJoined);
+  builder.add(result_of(3, msg::TrackingState::kLost));  // an answer to a frame that was sent again
+  eval::RunRecord record;
+  builder.fill(record);
+  ASSERT_EQ(record.frames.size(), kFrames);
+  for (std::uint64_t seq = 0; seq < kFrames; ++seq) ASSERT_EQ(record.frames[seq].tracking.seq, seq);
+  EXPECT_EQ(record.frames[3].tracking.state, msg::TrackingState::kOk);
+  EXPECT_EQ(record.frames_dropped, 0U);
+}
+
+TEST(record_builder, says_once_that_frames_could_not_be_kept) {
+  FrameList store;
+  store.room = 10;
+  RecordBuilder builder(store);
+  for (std::uint64_t seq = 0; seq < 2 * RecordBuilder::kJoined; ++seq) builder.add(result_of(seq));
+  EXPECT_EQ(builder.frames_not_kept(), RecordBuilder::kJoined - 10);
+  EXPECT_THAT(builder.take_notice(), testing::Optional(testing::HasSubstr("the disk is full")));
+  EXPECT_EQ(builder.take_notice(), std::nullopt);
+}
+
+TEST(record_builder, ignores_a_forged_number_and_reports_it) {
+  FrameList store;
+  RecordBuilder builder(store);
+  builder.add(result_of(0));
+  builder.add(result_of(UINT64_MAX - 1));
+  builder.add(*features_of(RecordBuilder::kFarthestAhead + 1));
+  builder.add(result_of(1));
+  EXPECT_EQ(builder.frames_in(), 2U);
+  EXPECT_THAT(builder.take_notice(), testing::Optional(testing::HasSubstr("claims to be number 18446744073709551614")));
+  EXPECT_EQ(builder.take_notice(), std::nullopt);
+}
+
+TEST(record_builder, a_forged_first_number_counts_no_frames) {
+  FrameList store;
+  RecordBuilder builder(store);
+  builder.add(result_of(UINT64_MAX));
+  EXPECT_EQ(builder.frames_in(), 0U);
+}
+
+TEST(record_builder, counters_that_claim_too_much_saturate) {
+  for (const double claimed : {1e300, -5.0, std::numeric_limits<double>::quiet_NaN()}) {
+    FrameList store;
+    RecordBuilder builder(store);
+    builder.add(status_of("camera", 7, {{"frames_in", claimed}, {"frames_total", claimed}, {"frames_late", claimed}}));
+    EXPECT_LE(builder.frames_in(), std::uint64_t{1} << 53U);
+    EXPECT_LE(builder.live().total, std::uint64_t{1} << 53U);
+  }
+}
+
+TEST(record_builder, made_up_services_counters_and_troubles_have_a_largest_number) {
+  FrameList store;
+  RecordBuilder builder(store);
+  builder.add(status_of("slam", 1, {{"frames_lost", 1}}));
+  for (int i = 0; i < 20'000; ++i) {
+    const std::string name = "forged" + std::to_string(i);
+    builder.add(status_of(name, i, {{"x_lost", 1}}));
+    msg::ServiceStatus forged = status_of("slam", 1, {{name + "_lost", 1}, {"peer." + name + ".dead", 1}});
+    forged.state = msg::ServiceState::kDegraded;
+    forged.message = name;
+    builder.add(forged);
+  }
+  std::size_t notices = 0;
+  while (builder.take_notice()) ++notices;
+  EXPECT_EQ(notices, RecordBuilder::kMostNotices);
+  eval::RunRecord record;
+  builder.fill(record);
+  EXPECT_LE(record.drops.size(), RecordBuilder::kMostServices + RecordBuilder::kMostCounters);
+  EXPECT_EQ(record.drops.at("slam.lost"), 1.0) << "the real counter stays";
+}
+
+/// Bytes that are allocated now.
+std::size_t allocated() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+TEST(record_builder, memory_is_level_after_five_minutes_of_an_hour_at_30_hz) {
+  if (test_support::kSanitized) GTEST_SKIP() << "sanitizers count their own memory";
+  const std::string folder = testing::TempDir();
+  FrameFile store(folder);
+  RecordBuilder builder(store);
+  SampleKeeper samples;
+  constexpr std::uint64_t kFrames = 3600 * 30, kSettled = 300 * 30;
+  std::size_t after_five_minutes = 0;
+  const auto features = features_of(0);
+  for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
+    features->seq = seq;
+    builder.add(*features);
+    builder.add(result_of(seq));
+    samples.add_features(seq, *features);
+    if (samples.wants(seq)) samples.add_image(seq, std::vector<std::uint8_t>(50'000));
+    if (seq % 6 == 0) builder.add(status_of("slam", 1, {{"frames_tracked", static_cast<double>(seq)}}));
+    if (seq == kSettled) after_five_minutes = allocated();
+  }
+  EXPECT_LT(allocated(), after_five_minutes + 5'000'000);
+  eval::RunRecord record;
+  builder.fill(record);
+  ASSERT_EQ(record.frames.size(), kFrames) << "nothing is missing in the report";
+  EXPECT_EQ(record.frames[kFrames - 1].tracking.inliers, 100 + kFrames - 1);
 }
 
 }  // namespace

@@ -3,9 +3,11 @@
 #include "services/viewer/core/map_mirror.hpp"
 
 #include <gmock/gmock.h>
+#include <malloc.h>
 
 #include "common/msg/transform_eigen.hpp"
 #include "services/viewer/core/truth_track.hpp"
+#include "tests/support/sanitizers.hpp"
 
 namespace rtd::viewer {
 namespace {
@@ -129,6 +131,39 @@ TEST(TruthTrack, is_aligned_to_the_estimate_and_gives_its_error) {
   EXPECT_EQ(track.revision(), 1U);
   track.align_if_grown();
   EXPECT_EQ(track.revision(), 1U);
+}
+
+TEST(MapMirror, what_does_not_fit_is_left_out_and_counted) {
+  MapMirror mirror({.keyframes = 2, .points = 3, .edges = 2, .trajectory = 1});
+  msg::MapKeyframe first = keyframe(1, 0, msg::kMapPoints | msg::kMapEdges, {1, 2, 3, 4, 5, 6});
+  first.covisible = {5, 6, 7};
+  mirror.add(update({first, keyframe(2, 1, msg::kMapPoints, {1, 2, 3, 4, 5, 6}), keyframe(3, 2)}));
+  EXPECT_EQ(mirror.keyframes().size(), 2U);
+  EXPECT_EQ(mirror.point_count(), 3U);
+  EXPECT_THAT(mirror.keyframe(1).covisible, ElementsAre(5U, 6U));
+  for (int i = 0; i < 2; ++i) mirror.add_position(0, {1, 2, 3});
+  EXPECT_EQ(mirror.trajectory().size(), 1U);
+  EXPECT_EQ(mirror.left_out(), 4U) << "a keyframe, a point, an edge, a position";
+  msg::MapKeyframe gone = keyframe(1, 0, msg::kMapRemoved);
+  mirror.add(update({gone, keyframe(2, 1, msg::kMapPoints, {1, 2, 3, 4, 5, 6})}));
+  EXPECT_EQ(mirror.point_count(), 2U) << "a removed keyframe makes room";
+}
+
+TEST(MapMirror, memory_stays_below_64_mb_whatever_updates_claim) {
+  if (test_support::kSanitized) GTEST_SKIP() << "sanitizers count their own memory";
+  const std::size_t before = mallinfo2().uordblks + mallinfo2().hblkhd;
+  MapMirror mirror;
+  std::uint32_t id = 0;
+  for (int message = 0; message < 1000; ++message) {
+    std::vector<msg::MapKeyframe> forged;
+    for (int i = 0; i < 100; ++i) {
+      forged.push_back(keyframe(id++, message, msg::kMapPoints | msg::kMapEdges, std::vector<float>(600, 1.0F)));
+      forged.back().covisible.assign(100, id);
+    }
+    mirror.add(update(std::move(forged)));
+  }
+  EXPECT_LT(mallinfo2().uordblks + mallinfo2().hblkhd, before + 64'000'000);
+  EXPECT_GT(mirror.left_out(), 0U);
 }
 
 }  // namespace

@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::size_t kRecentFrames = 30;
 constexpr std::uint64_t kStrideOfUnknownLength = 4;
+constexpr std::uint64_t kFirstAtMost = std::uint64_t{1} << 48U;
+constexpr double kMostCounted = 9e15;  // beyond, a double counts no single frames
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
 constexpr std::array<const char*, 5> kLossNames = {"dropped", "late", "skipped", "lost", "refused"};
 
@@ -26,6 +28,11 @@ bool counts_losses(const std::string& metric) {
 std::string place_of(const std::string& service, const std::string& metric) {
   const std::string prefix = "frames_";
   return service + "." + (metric.starts_with(prefix) ? metric.substr(prefix.size()) : metric);
+}
+
+/// Whatever a metric claims.
+std::uint64_t counted(double value) {
+  return value > 0 ? static_cast<std::uint64_t>(std::min(value, kMostCounted)) : 0;
 }
 
 double median_latency_ms(const std::deque<msg::TrackingResult>& results) {
@@ -46,48 +53,83 @@ double frames_per_second(const std::deque<msg::TrackingResult>& results) {
 
 }  // namespace
 
-void RecordBuilder::add(const msg::FeatureFrame& features) {
-  const std::uint64_t seq = run_seq(features.seq);
+RecordBuilder::Frame* RecordBuilder::frame_of(std::uint64_t seq) {
+  if (seq < end_of_stored_) return nullptr;
+  const bool first = end_of_seen_ == 0;  // a replay may begin anywhere
+  if (seq >= (first ? kFirstAtMost : end_of_seen_ + kFarthestAhead)) {
+    if (!named_forged_) notify(fmt::format("a frame claims to be number {}: ignored, {} were seen", seq, end_of_seen_));
+    named_forged_ = true;
+    return nullptr;
+  }
   end_of_seen_ = std::max(end_of_seen_, seq + 1);
   Frame& frame = frames_[seq];
-  if (frame.has_features) return;
-  frame.has_features = true;
-  frame.record.filter_stage_ms = features.stage_ms;
+  return &frame;
+}
+
+/// Frames without a result are not part of the record.
+void RecordBuilder::store_oldest() {
+  while (frames_.size() > kJoined) {
+    const auto oldest = frames_.begin();
+    if (oldest->second.has_result && !store_.append(oldest->second.record) && ++not_kept_ == 1)
+      notify("the disk is full: of the frames from now on the report has only the newest");
+    end_of_stored_ = oldest->first + 1;
+    frames_.erase(oldest);
+  }
+}
+
+void RecordBuilder::add(const msg::FeatureFrame& features) {
+  Frame* const frame = frame_of(run_seq(features.seq));
+  if (frame == nullptr || frame->has_features) return;
+  frame->has_features = true;
+  frame->record.filter_stage_ms = features.stage_ms;
+  store_oldest();
 }
 
 void RecordBuilder::add(const msg::TrackingResult& result) {
   const std::uint64_t seq = run_seq(result.seq);
-  end_of_seen_ = std::max(end_of_seen_, seq + 1);
-  Frame& frame = frames_[seq];
-  if (frame.has_result) return;
-  frame.has_result = true;
-  frame.record.tracking = result;
+  Frame* const frame = frame_of(seq);
+  if (frame == nullptr || frame->has_result) return;
+  frame->has_result = true;
+  frame->record.tracking = result;
   tracked_any_ = tracked_any_ || msg::is_measured(result.state);
   recent_.push_back(result);
   if (recent_.size() > kRecentFrames) recent_.pop_front();
+  store_oldest();
 }
 
 void RecordBuilder::add(const msg::ServiceStatus& status) {
+  if (services_.size() >= kMostServices && !services_.contains(status.service)) return;
   Service& service = services_[status.service];
   if (service.pid != status.pid) {
     if (status.service == "camera" && service.pid != 0) first_of_camera_ = end_of_seen_;
     service.pid = status.pid;
     for (auto& [name, counter] : service.counters) counter = {0, counter.total()};
   }
-  for (const msg::Metric& metric : status.metrics) service.counters[metric.name].current = metric.value;
+  for (const msg::Metric& metric : status.metrics) set_counter(service, metric);
 
   note_troubles(status);
   const bool degraded = status.state == msg::ServiceState::kDegraded;  // a failed one ends and gives the reason itself
   const bool news = service.state != status.state || service.message != status.message;
-  if (degraded && news && !status.message.empty()) notices_.push_back(status.service + ": " + status.message);
+  if (degraded && news && !status.message.empty()) notify(status.service + ": " + status.message);
   service.state = status.state;
   service.message = status.message;
+}
+
+void RecordBuilder::set_counter(Service& service, const msg::Metric& metric) {
+  if (service.counters.size() >= kMostCounters && !service.counters.contains(metric.name)) return;
+  service.counters[metric.name].current = metric.value;
+}
+
+void RecordBuilder::notify(const std::string& text) {
+  if (notices_given_ == kMostNotices) return;
+  const bool last = ++notices_given_ == kMostNotices;
+  notices_.push_back(last ? "further notices are left out: the logs of the services have them" : text);
 }
 
 /// Several services may report the same about a peer; it counts as new again after the peer was seen.
 void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
   const auto report_once = [this](const std::string& about, const std::string& text) {
-    if (troubles_.emplace(about, text).second) notices_.push_back(text);
+    if (troubles_.size() < kMostNotices && troubles_.emplace(about, text).second) notify(text);
   };
   troubles_.erase(status.service);
   for (const msg::Metric& metric : status.metrics) {
@@ -105,17 +147,17 @@ void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
 }
 
 std::uint64_t RecordBuilder::frames_in() const {
-  return std::max(static_cast<std::uint64_t>(camera_counter("frames_in").total()), end_of_seen_);
+  return std::max(counted(camera_counter("frames_in").total()), end_of_seen_);
 }
 
 LiveStatus RecordBuilder::live() const {
   LiveStatus status;
   status.frames = end_of_seen_;
-  status.total = static_cast<std::uint64_t>(camera_counter("frames_total").current);
+  status.total = counted(camera_counter("frames_total").current);
   for (const auto& [place, count] : drops()) {
     const bool before_the_pose = !place.starts_with("detector.") &&
                                  place.find(".topic.") == std::string::npos;  // it only needs the newest frame
-    if (before_the_pose) status.dropped += static_cast<std::uint64_t>(count);
+    if (before_the_pose) status.dropped += counted(count);
   }
   if (const auto camera = services_.find("camera"); camera != services_.end()) {
     status.camera_message = camera->second.message;
@@ -159,7 +201,7 @@ std::string RecordBuilder::active_services(const Tolerated& tolerated) const {
 }
 
 void RecordBuilder::fill(eval::RunRecord& record) const {
-  record.frames.clear();
+  record.frames = store_.read();
   for (const auto& [seq, frame] : frames_) {
     if (frame.has_result) record.frames.push_back(frame.record);
   }

@@ -41,11 +41,28 @@ struct Tolerated {
   bool silent_replay = false;    ///< one that has not reported yet what it plays
 };
 
+/// Where the frames of a run are kept until its report is made, in the order of their numbers.
+class FrameStore {
+ public:
+  virtual ~FrameStore() = default;
+  /// False: it could not be kept.
+  virtual bool append(const eval::FrameRecord& frame) = 0;
+  virtual std::vector<eval::FrameRecord> read() = 0;
+};
+
 /// Joins the message streams of a run into its record. Messages may be missing, doubled or out of order: the first
 /// message of a frame counts, because later ones answer a frame that was sent again. Frames of a camera that was
-/// restarted follow those that it sent before. Not thread-safe.
+/// restarted follow those that it sent before. Memory is bounded: of the frames the newest kJoined are in memory, the ones
+/// before in the store; services, counters and notices have a largest number. Not thread-safe.
 class RecordBuilder {
  public:
+  static constexpr std::size_t kJoined = 512;  ///< frames whose features or result may still come
+  /// A frame that claims to be farther ahead of all frames seen is not one of this run.
+  static constexpr std::uint64_t kFarthestAhead = 1'000'000;
+  static constexpr std::size_t kMostServices = 64, kMostCounters = 256, kMostNotices = 1000;
+
+  /// `store` outlives this.
+  explicit RecordBuilder(FrameStore& store) : store_(store) {}
   /// Number of a frame within the run, from its number within the present life of the camera.
   std::uint64_t run_seq(std::uint64_t seq) const { return first_of_camera_ + seq; }
   void add(const msg::FeatureFrame& features);
@@ -65,6 +82,8 @@ class RecordBuilder {
   /// none.
   std::string active_services(const Tolerated& tolerated = {}) const;
 
+  /// Frames that were not kept for the report: the store was full.
+  std::uint64_t frames_not_kept() const { return not_kept_; }
   /// Writes frames, frames_in, frames_dropped and drops.
   void fill(eval::RunRecord& record) const;
 
@@ -90,7 +109,17 @@ class RecordBuilder {
     eval::FrameRecord record;
     bool has_features = false, has_result = false;
   };
-  std::map<std::uint64_t, Frame> frames_;  ///< by run_seq()
+  /// The frame of this number; none where it cannot be one of this run, or is in the store already.
+  Frame* frame_of(std::uint64_t seq);
+  void store_oldest();
+  void set_counter(Service& service, const msg::Metric& metric);
+  void notify(const std::string& text);
+
+  FrameStore& store_;
+  std::map<std::uint64_t, Frame> frames_;  ///< by run_seq(), the newest
+  std::uint64_t end_of_stored_ = 0, not_kept_ = 0;
+  std::size_t notices_given_ = 0;
+  bool named_forged_ = false;
   std::map<std::string, Service> services_;
   std::deque<std::string> notices_;
   std::map<std::string, std::string> troubles_;  ///< already reported, by service or counter
