@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <string_view>
 
@@ -193,12 +194,13 @@ constexpr bool concerns(const FieldRule& rule, std::string_view type, std::strin
   return fits(rule.field.substr(0, point), type) && fits(rule.field.substr(point + 1), field);
 }
 
-/// nullptr for a field without an entry.
-constexpr const FieldRule* find_rule(std::string_view type, std::string_view field) {
-  for (const FieldRule& rule : kFieldRules) {
-    if (concerns(rule, type, field)) return &rule;
-  }
-  return nullptr;
+inline constexpr std::size_t kNoRule = std::size(kFieldRules);
+
+/// The place of a field's entry in kFieldRules, or kNoRule.
+constexpr std::size_t find_rule(std::string_view type, std::string_view field) {
+  std::size_t place = 0;
+  while (place < kNoRule && !concerns(kFieldRules[place], type, field)) ++place;
+  return place;
 }
 
 }  // namespace rtd::msg

@@ -69,7 +69,7 @@ inline constexpr bool kWhole = std::is_integral_v<T> && !std::is_same_v<T, bool>
 template <class Field>
 constexpr FieldRule rule_of(std::string_view type, std::string_view name) {
   using Value = typename Element<Field>::Type;
-  if (const FieldRule* const rule = find_rule(type, name)) return *rule;
+  if (const std::size_t place = find_rule(type, name); place != kNoRule) return kFieldRules[place];
   if (!kWhole<Value>) return {};
   const bool time = std::is_same_v<Value, std::int64_t> && name.ends_with("_ns");
   if (!time) throw "a field of whole numbers has no entry in common/msg/field_rules.hpp";  // does not compile
