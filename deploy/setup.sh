@@ -42,7 +42,7 @@ test_packages=(
   fastddsgen default-jre-headless cyclonedds-tools
   libgtest-dev libgmock-dev libbenchmark-dev
   python3-opencv python3-rosbag python3-sensor-msgs
-  pocl-opencl-icd libtorch-dev
+  pocl-opencl-icd
   python3-websockets
   iproute2 nftables
 )

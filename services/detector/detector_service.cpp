@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "common/msg/engine_names.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
@@ -89,10 +90,8 @@ void DetectorService::add_options(CLI::App& app, Config& config) {
   app.add_option("--model", config.model, "ONNX file (detector.model)");
   app.add_option("--input", config.input, "auto, frame or jpeg (detector.input)")
       ->check(CLI::IsMember({"auto", "frame", "jpeg"}));
-  app.add_option(
-      "--engine", config.core.engine,
-      "What computes the network: cpu, opencl[:DEVICE], torch[:cuda[/fp16]], onnxruntime:LIBRARY[@cuda], or auto: a "
-      "GPU if there is one (detector.engine)");
+  app.add_option("--engine", config.core.engine,
+                 std::string("What computes the network: ") + msg::kEngineNames + " (detector.engine)");
   app.add_flag("--verify-engine", config.verify_engine,
                "Compare the first ten images with the CPU, and go on with the CPU if they differ");
   app.add_option("--max-rate", config.max_rate_hz, "Realtime pace: at most this many detections a second, 0 = no limit")

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/msg/engine_names.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
@@ -189,8 +190,7 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--model", options.model,
                       "Detector weights, ONNX (default: RTD_MODEL_DIR, then the user's cache)");
   command->add_option("--engine", options.engine,
-                      "What computes the detector's network: cpu, opencl[:DEVICE], torch[:cuda[/fp16]], or auto: a GPU "
-                      "if there is one");
+                      std::string("What computes the detector's network: ") + msg::kEngineNames);
   command->add_option("--frames", options.frames, "End after this many frames");
   command->add_option("--map", options.map, "Continue the map in this file");
   command->add_option("--save-map", options.save_map, "Map file to write (default: map.rtdmap in the folder of --out)");

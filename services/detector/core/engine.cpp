@@ -9,16 +9,16 @@
 #include <opencv2/core/ocl.hpp>
 #include <optional>
 
+#include "common/msg/engine_names.hpp"
 #include "services/detector/core/onnxruntime_engine.hpp"
 #include "services/detector/core/opencv_engine.hpp"
-#include "services/detector/core/torch_engine.hpp"
 
 namespace rtd::detector {
 namespace {
 
 using Kind = EngineChoice::Kind;
 
-constexpr std::string_view kOpenClPrefix = "opencl:", kTorchPrefix = "torch:", kOnnxRuntimePrefix = "onnxruntime:";
+constexpr std::string_view kOpenClPrefix = "opencl:", kOnnxRuntimePrefix = "onnxruntime:";
 
 struct FoundDevice {
   std::string name;
@@ -109,21 +109,15 @@ EngineChoice parse_engine(const std::string& text) {
   if (text == "auto") return {Kind::kAuto, {}};
   if (text == "cpu") return {Kind::kCpu, {}};
   if (text == "opencl") return {Kind::kOpenCl, {}};
-  if (text == "torch") return {Kind::kTorch, "cpu"};
   if (text.starts_with(kOpenClPrefix)) return {Kind::kOpenCl, text.substr(kOpenClPrefix.size())};
-  if (text.starts_with(kTorchPrefix)) return {Kind::kTorch, text.substr(kTorchPrefix.size())};
   if (text == "onnxruntime") return onnxruntime_choice({});
   if (text.starts_with(kOnnxRuntimePrefix)) return onnxruntime_choice(text.substr(kOnnxRuntimePrefix.size()));
-  throw EngineError("'" + text +
-                    "' is not an engine: use auto, cpu, opencl, opencl:DEVICE, torch, torch:DEVICE, "
-                    "onnxruntime:LIBRARY or onnxruntime:LIBRARY@DEVICE");
+  throw EngineError("'" + text + "' is not an engine: use " + msg::kEngineNames);
 }
 
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice, const EngineModel& model) {
-  if (choice.kind == Kind::kTorch) return halve_when_full(make_torch_engine(model, choice.device));
   if (choice.kind == Kind::kOnnxRuntime)
     return halve_when_full(make_onnxruntime_engine(model, choice.library, choice.device));
-  if (choice.kind == Kind::kAuto && torch_sees_gpu()) return halve_when_full(make_torch_engine(model, "cuda"));
   if (choice.kind != Kind::kCpu) {
     if (const auto device = choose_device(choice.device, choice.kind == Kind::kAuto))
       return make_opencl(*device, model);

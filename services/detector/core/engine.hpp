@@ -32,21 +32,19 @@ class OutOfDeviceMemory : public EngineError {
 /// Which engine is asked for.
 struct EngineChoice {
   enum class Kind {
-    kAuto,    ///< CUDA by libtorch, else OpenCL where a GPU has a driver for it, else the CPU
+    kAuto,    ///< OpenCL where a GPU has a driver for it, else the CPU
     kCpu,     ///< OpenCV DNN
     kOpenCl,  ///< OpenCV DNN, any OpenCL device
-    kTorch,   ///< libtorch
     kOnnxRuntime,
   };
   Kind kind = Kind::kCpu;
-  /// OpenCL: part of the device's name; empty: the first one. libtorch: "cpu", "cuda", "cuda:1", with "/fp16".
-  /// ONNX Runtime: "cpu", "cuda", "cuda:1".
+  /// OpenCL: part of the device's name; empty: the first one. ONNX Runtime: "cpu", "cuda", "cuda:1".
   std::string device;
   std::string library;  ///< ONNX Runtime's
 };
 
-/// "auto", "cpu", "opencl", "opencl:DEVICE", "torch", "torch:DEVICE", "onnxruntime:LIBRARY" or
-/// "onnxruntime:LIBRARY@DEVICE". Throws EngineError naming these.
+/// "auto", "cpu", "opencl", "opencl:DEVICE", "onnxruntime:LIBRARY" or "onnxruntime:LIBRARY@DEVICE"
+/// (common/msg/engine_names.hpp). Throws EngineError naming these.
 EngineChoice parse_engine(const std::string& text);
 
 /// A network as an engine takes it.
@@ -84,7 +82,7 @@ class Engine {
 };
 
 /// Loads a network. Throws EngineError when the engine or its device is not there or the engine lacks an operator,
-/// cv::Exception and OnnxGraphError for a network that is not understood. A batch that is too large for the memory of
+/// cv::Exception for a network that is not understood. A batch that is too large for the memory of
 /// the device is computed in parts; device() then says so.
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice, const EngineModel& model);
 

@@ -57,15 +57,4 @@ std::string text_of(const std::optional<Span>& span) {
   return span ? std::string(span->begin(), span->end()) : std::string();
 }
 
-bool append_numbers(const Field& field, std::vector<std::int64_t>& numbers) {
-  if (field.bytes.data() == nullptr) numbers.push_back(static_cast<std::int64_t>(field.varint));
-  Span packed = field.bytes;
-  while (!packed.empty()) {
-    const std::optional<std::uint64_t> number = take_varint(packed);
-    if (!number) return false;
-    numbers.push_back(static_cast<std::int64_t>(*number));
-  }
-  return true;
-}
-
 }  // namespace rtd::detector::protobuf

@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 /// Protobuf's wire format, without its library. Nothing here reads outside the bytes, whatever they hold.
 namespace rtd::detector::protobuf {
@@ -27,8 +26,5 @@ std::optional<Field> take_field(Span& span);
 /// The first field of this number that is no number itself.
 std::optional<Span> find_message(Span span, int number);
 std::string text_of(const std::optional<Span>& span);
-
-/// Appends a repeated number, which comes packed or one at a time. False when it is malformed.
-bool append_numbers(const Field& field, std::vector<std::int64_t>& numbers);
 
 }  // namespace rtd::detector::protobuf

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "services/detector/core/detector_config.hpp"
-#include "services/detector/core/onnx_graph.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -91,8 +90,6 @@ YoloNetwork::YoloNetwork(DetectorConfig config) : config_(std::move(config)) {
     infer(cv::Mat(std::vector<int>{1, 3, input_.height_px, input_.width_px}, CV_32F, cv::Scalar(0)));
   } catch (const cv::Exception& error) {
     fail(config_.model_path, "is broken or not understood by OpenCV (" + std::string(error.err) + ")");
-  } catch (const OnnxGraphError& error) {
-    fail(config_.model_path, error.what());
   }
 }
 

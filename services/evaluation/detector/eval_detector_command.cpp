@@ -8,6 +8,7 @@
 #include <fstream>
 #include <ostream>
 
+#include "common/msg/engine_names.hpp"
 #include "common/service/json_text.hpp"
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/detector/detector_report.hpp"
@@ -80,9 +81,7 @@ CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& optio
       ->capture_default_str();
   command->add_option("--names", options.names_file, "Class names, one per line (default: those of the model)");
   command->add_option("--model", options.models, "ONNX files, compared side by side (default: the usual model)");
-  command
-      ->add_option("--engine", options.engines,
-                   "cpu, opencl[:DEVICE], torch[:DEVICE], onnxruntime:LIBRARY or auto; several: compared side by side")
+  command->add_option("--engine", options.engines, std::string(msg::kEngineNames) + "; several: compared side by side")
       ->delimiter(',')
       ->capture_default_str();
   command->add_option("--recall", options.wanted_recall, "Wanted recall of the high motion level")

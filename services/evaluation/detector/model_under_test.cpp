@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// All threads: OpenCL and libtorch compute in threads of their own.
+/// All threads: OpenCL computes in threads of their own.
 double process_cpu_ms() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);

@@ -21,7 +21,6 @@
 #include "services/camera/realsense_device.hpp"
 #include "services/detector/core/engine.hpp"
 #include "services/detector/core/onnxruntime_engine.hpp"
-#include "services/detector/core/torch_engine.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/process/executable.hpp"
 
@@ -139,8 +138,6 @@ void check_weights(Findings& findings) {
 void check_engines(Findings& findings) {
   std::string text = "detector engines: cpu";
   for (const std::string& device : detector::opencl_devices()) text += ", opencl:" + device;
-  if (const std::string devices = detector::torch_devices(); !devices.empty())
-    text += ", torch (libtorch " + devices + ")";
   if (detector::knows_onnxruntime()) text += ", onnxruntime:LIBRARY";
   findings.push_back({Verdict::kOk, text});
 }

@@ -8,13 +8,16 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <set>
 #include <span>
+#include <string>
 
+#include "common/msg/engine_names.hpp"
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/agreement.hpp"
 #include "services/detector/core/engine_guard.hpp"
 #include "services/detector/core/onnxruntime_engine.hpp"
-#include "services/detector/core/torch_engine.hpp"
 #include "services/detector/core/yolo_network.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 
@@ -25,6 +28,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::ThrowsMessage;
+using ::testing::UnorderedElementsAre;
 using vision::Detection;
 
 /// With the library that the tests were built for.
@@ -35,7 +39,6 @@ std::string full_name(const std::string& engine) {
 /// Why an engine cannot be tested here; empty when it can.
 std::string absent(const std::string& engine) {
   if (engine == "opencl" && opencl_devices().empty()) return "needs an OpenCL device: apt-get install pocl-opencl-icd";
-  if (engine == "torch" && torch_devices().empty()) return "needs the torch engine: apt-get install libtorch-dev";
   if (engine == "onnxruntime" && (!knows_onnxruntime() || !std::filesystem::exists(ONNXRUNTIME_LIBRARY)))
     return "needs ONNX Runtime: deploy/setup.sh --onnxruntime, then configure again";
   return {};
@@ -57,7 +60,7 @@ class EngineTest : public ::testing::Test {
     DetectorConfig other = config;
     other.engine = full_name(engine);
     YoloNetwork cpu(config), compared(other);
-    const char* const device = engine == "torch" ? "libtorch" : engine == "opencl" ? "OpenCL" : "ONNX Runtime 1.";
+    const char* const device = engine == "opencl" ? "OpenCL" : "ONNX Runtime 1.";
     EXPECT_THAT(compared.device(), HasSubstr(device));
     cv::Mat blob(std::vector<int>{1, 3, cpu.input().height_px, cpu.input().width_px}, CV_32F);
     cv::RNG(5).fill(blob, cv::RNG::UNIFORM, 0.0, 1.0);
@@ -84,8 +87,6 @@ class EngineTest : public ::testing::Test {
 TEST_F(EngineTest, names_are_read_and_wrong_ones_refused) {
   EXPECT_EQ(parse_engine("auto").kind, EngineChoice::Kind::kAuto);
   EXPECT_EQ(parse_engine("opencl:H200").device, "H200");
-  EXPECT_EQ(parse_engine("torch").device, "cpu");
-  EXPECT_EQ(parse_engine("torch:cuda:1/fp16").device, "cuda:1/fp16");
   EXPECT_EQ(parse_engine("onnxruntime:/opt/a@b/libonnxruntime.so").library, "/opt/a@b/libonnxruntime.so");
   EXPECT_EQ(parse_engine("onnxruntime:/opt/libonnxruntime.so").device, "cpu");
   EXPECT_EQ(parse_engine("onnxruntime:/opt/libonnxruntime.so@cuda:1").library, "/opt/libonnxruntime.so");
@@ -93,22 +94,22 @@ TEST_F(EngineTest, names_are_read_and_wrong_ones_refused) {
   for (const char* without : {"onnxruntime", "onnxruntime:", "onnxruntime:@cuda"})
     EXPECT_THAT([&] { parse_engine(without); }, ThrowsMessage<EngineError>(HasSubstr("needs the path of its library")));
   EXPECT_THAT([] { parse_engine("cuda"); },
-              ThrowsMessage<EngineError>(HasSubstr("'cuda' is not an engine: use auto, cpu, opencl, ")));
+              ThrowsMessage<EngineError>(HasSubstr("'cuda' is not an engine: use cpu, opencl[:DEVICE], ")));
 }
 
-TEST_F(EngineTest, a_torch_library_that_does_not_fit_is_refused) {
-  const auto refusal = [this](const std::string& folder) -> std::string {
-    setenv(kEngineFolder, folder.c_str(), 1);
-    config_.engine = "torch";
-    const EngineGuard guard(config_, false);
-    unsetenv(kEngineFolder);
-    EXPECT_EQ(guard.detector().device(), "CPU (OpenCV DNN)");
-    return guard.fallback();
-  };
-  EXPECT_THAT(refusal(folder_.string()), HasSubstr("there is no torch engine"));
-  std::ofstream(folder_ / "librtd_engine_torch.so") << "no library";
-  EXPECT_THAT(refusal(folder_.string()), HasSubstr("cannot be loaded"));
-  EXPECT_THAT(refusal(OLD_ENGINE_FOLDER), HasSubstr("is of another version (0, needed is "));
+/// The names in a list such as "cpu, opencl[:DEVICE] or auto (...)", each with all its parts: "opencl:DEVICE".
+std::set<std::string> listed(const std::string& list) {
+  const std::string names = std::regex_replace(list, std::regex(R"( \(.*\)|[\[\]])"), "");
+  const std::regex separator(", | or ");
+  return {std::sregex_token_iterator(names.begin(), names.end(), separator, -1), std::sregex_token_iterator()};
+}
+
+TEST_F(EngineTest, the_names_in_help_texts_are_those_that_are_read) {
+  std::set<EngineChoice::Kind> kinds;
+  for (const std::string& name : listed(msg::kEngineNames)) kinds.insert(parse_engine(name).kind);
+  using Kind = EngineChoice::Kind;
+  EXPECT_THAT(kinds, UnorderedElementsAre(Kind::kAuto, Kind::kCpu, Kind::kOpenCl, Kind::kOnnxRuntime));
+  EXPECT_THAT([] { parse_engine("torch"); }, ThrowsMessage<EngineError>(HasSubstr(msg::kEngineNames)));
 }
 
 TEST_F(EngineTest, an_onnxruntime_library_that_does_not_fit_is_refused) {
@@ -124,8 +125,7 @@ TEST_F(EngineTest, an_onnxruntime_library_that_does_not_fit_is_refused) {
   }
   EXPECT_THAT(refusal("/nowhere.so"), HasSubstr("cannot be loaded: /nowhere.so"));
   EXPECT_THAT(refusal("libdl.so.2"), HasSubstr("is not ONNX Runtime"));
-  EXPECT_THAT(refusal(OLD_ENGINE_FOLDER "/librtd_engine_torch.so"),
-              HasSubstr("is ONNX Runtime 1.2.0: version 1.11 or later is needed"));
+  EXPECT_THAT(refusal(OLD_ONNXRUNTIME), HasSubstr("is ONNX Runtime 1.2.0: version 1.11 or later is needed"));
 }
 
 TEST_F(EngineTest, onnxruntime_names_a_device_that_is_not_there) {
@@ -180,7 +180,7 @@ class EachEngine : public EngineTest, public ::testing::WithParamInterface<const
     if (const std::string why = absent(GetParam()); !why.empty()) GTEST_SKIP() << why;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Engines, EachEngine, ::testing::Values("opencl", "torch", "onnxruntime"),
+INSTANTIATE_TEST_SUITE_P(Engines, EachEngine, ::testing::Values("opencl", "onnxruntime"),
                          [](const auto& engine) { return std::string(engine.param); });
 
 TEST_P(EachEngine, computes_what_the_cpu_computes) {
@@ -216,26 +216,6 @@ TEST_P(EachEngine, batches_hold_what_single_images_hold) {
     for (std::size_t i = 0; i < size; ++i)
       EXPECT_EQ(disagreement(alone[i], together[i], 0.25), "") << i << " of " << size;
   }
-}
-
-TEST_F(EngineTest, torch_names_an_operator_that_it_does_not_know) {
-  if (const std::string why = absent("torch"); !why.empty()) GTEST_SKIP() << why;
-  std::string onnx = test::tiny_network_onnx({});
-  for (std::size_t at = onnx.find("Conv"); at != std::string::npos; at = onnx.find("Conv", at))
-    onnx.replace(at, 4, "Cunv");
-  std::ofstream(config_.model_path, std::ios::binary) << onnx;
-  config_.engine = "torch";
-  EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<EngineError>(HasSubstr("the operator Cunv")));
-}
-
-TEST_F(EngineTest, torch_names_a_device_that_is_not_there) {
-  if (const std::string why = absent("torch"); !why.empty()) GTEST_SKIP() << why;
-  config_.engine = "torch:tpu";
-  EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<EngineError>(HasSubstr("use cpu, cuda or cuda:N")));
-  config_.engine = "torch:cpu/fp16";
-  EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<EngineError>(HasSubstr("needs a GPU")));
-  config_.engine = "torch:cuda:7";
-  EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<EngineError>(HasSubstr("CUDA")));
 }
 
 TEST_P(EachEngine, is_verified_with_ten_images) {

@@ -4,8 +4,10 @@
 #include <signal.h>
 
 #include <fstream>
+#include <regex>
 #include <thread>
 
+#include "common/msg/engine_names.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
 
 namespace rtd::launcher {
@@ -36,6 +38,11 @@ TEST_F(FrontTest, help_names_commands_and_installed_services) {
 TEST_F(FrontTest, without_arguments_it_prints_the_help) {
   EXPECT_EQ(rtd_.run({}), 0);
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("Commands:"), HasSubstr("Tools:"), HasSubstr("Services:")));
+}
+
+TEST_F(FrontTest, help_of_a_run_names_every_engine_of_the_detector) {
+  EXPECT_EQ(rtd_.run({"run", "--help"}), 0);
+  EXPECT_THAT(std::regex_replace(rtd_.output(), std::regex("\\s+"), " "), HasSubstr(msg::kEngineNames));
 }
 
 TEST_F(FrontTest, tells_its_version) {

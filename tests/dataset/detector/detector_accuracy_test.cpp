@@ -20,7 +20,6 @@
 #include "services/detector/core/evaluation/average_precision.hpp"
 #include "services/detector/core/evaluation/mask_recall.hpp"
 #include "services/detector/core/onnxruntime_engine.hpp"
-#include "services/detector/core/torch_engine.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -171,8 +170,6 @@ INSTANTIATE_TEST_SUITE_P(
     Engines, EngineQuality,
     ::testing::Values(EngineTrial{"opencl", "v5lite-e-raw-320x320.onnx", [] { return !opencl_devices().empty(); },
                                   "needs an OpenCL device: apt-get install pocl-opencl-icd"},
-                      EngineTrial{"torch", "v5lite-s-raw-480x640.onnx", [] { return !torch_devices().empty(); },
-                                  "needs the torch engine: apt-get install libtorch-dev"},
                       EngineTrial{"onnxruntime:" ONNXRUNTIME_LIBRARY, "v5lite-s-raw-480x640.onnx",
                                   [] { return knows_onnxruntime() && fs::exists(ONNXRUNTIME_LIBRARY); },
                                   "needs ONNX Runtime: deploy/setup.sh --onnxruntime, then configure again"}),

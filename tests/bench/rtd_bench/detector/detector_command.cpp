@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <ostream>
 
+#include "common/msg/engine_names.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
@@ -94,9 +95,7 @@ int compare_engines(DetectorRequest& request, std::ostream& out, std::ostream& e
 void add_detector_command(CLI::App& app, DetectorRequest& request) {
   DetectorOptions& options = request.options;
   CLI::App* bench = app.add_subcommand("detector", "Time of the detector's engines by batch size, and their boxes");
-  bench->add_option("--engines", options.engines, "cpu, opencl[:DEVICE], torch[:DEVICE], onnxruntime:LIBRARY, auto")
-      ->delimiter(',')
-      ->capture_default_str();
+  bench->add_option("--engines", options.engines, msg::kEngineNames)->delimiter(',')->capture_default_str();
   bench->add_option("--batch", options.batches, "Images that are computed at once; more than 1 needs a free batch")
       ->delimiter(',')
       ->check(CLI::Range(1, 64))

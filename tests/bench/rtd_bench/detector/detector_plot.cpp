@@ -47,8 +47,8 @@ BarLayout layout_of(const std::vector<DetectorResult>& cases) {
 }
 
 const char* engine_colour(const std::string& engine) {
-  static constexpr std::array kColours = {std::pair{"cpu", palette::kBlue}, std::pair{"opencl", palette::kAmber},
-                                          std::pair{"torch", palette::kPurple}};  // others: green
+  static constexpr std::array kColours = {std::pair{"cpu", palette::kBlue},
+                                          std::pair{"opencl", palette::kAmber}};  // others: green
   for (const auto& [name, colour] : kColours)
     if (engine.starts_with(name)) return colour;
   return palette::kGreen;

@@ -1,0 +1,11 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace rtd::msg {
+
+/// The engines of the detector, as they are written on a command line: for help and error messages.
+inline constexpr const char* kEngineNames =
+    "cpu, opencl[:DEVICE], onnxruntime:LIBRARY[@DEVICE] or auto (OpenCL if there is a GPU)";
+
+}  // namespace rtd::msg
