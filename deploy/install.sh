@@ -11,7 +11,7 @@ usage() {
 Usage: deploy/install.sh [--packages FOLDER] [--source CAMERA] [--no-models] [--no-viewer] | --remove | --purge
   (none)             installs rtd-slam, rtd-slam-viewer and the detector's weights
   --packages FOLDER  where the .deb files are (default: build/release/packages, built if there are none)
-  --source CAMERA    also starts camera, detector, filter and slam now and at each boot, e.g. --source v4l2:/dev/video0
+  --source CAMERA    also starts camera, detector, filter and slam now and at each boot, e.g. --source openni2:
   --no-models        without weights: geometry only
   --no-viewer        without rtd-slam-viewer
   --remove           removes the packages; settings and maps stay

@@ -44,7 +44,7 @@ struct ServiceConfig {
     binder.field(
         "source", source,
         "where frames come from: tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE, ros2:COLOR,DEPTH[,INFO], openni2:[URI], "
-        "v4l2:DEVICE[,DEPTH], realsense-dds:[SERIAL] or synthetic:SCENE[?key=value&...]");
+        "realsense-dds:[SERIAL] or synthetic:SCENE[?key=value&...]");
     binder.field("frames", frames, {0, 1e9}, "play at most this many frames, 0 = all");
     binder.field("jpeg_quality", jpeg_quality, {1, 100}, "of the compressed topic, encoded only while it has readers");
     binder.field("asap_window", asap_window, {1, 3}, "pace asap: frames without a result at a time");

@@ -166,7 +166,7 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command
       ->add_option("--source", options.source,
                    "tum:FOLDER, bag:FILE, mcap:FILE, db3:FILE [?color=TOPIC&depth=TOPIC&calibration=FILE], "
-                   "ros2:COLOR,DEPTH[,INFO], openni2:[URI], v4l2:DEVICE[,DEPTH], realsense-dds:[SERIAL] or "
+                   "ros2:COLOR,DEPTH[,INFO], openni2:[URI], realsense-dds:[SERIAL] or "
                    "synthetic:NAME[?seed=..&frames=..]")
       ->required();
   command->add_option("--out", options.out_dir, "Folder for trajectory, map, logs and report")->required();

@@ -17,14 +17,25 @@
 
 namespace rtd::camera {
 
+namespace {
+
+/// Video nodes give depth that is not registered to colour, and no calibration that could register it.
+void refuse_video_nodes(const std::string& text) {
+  if (!text.starts_with("v4l2:")) return;
+  throw SourceError("source '" + text +
+                    "': V4L2 cameras give no depth that is registered to colour; use the camera through openni2:, "
+                    "realsense-dds: or its ROS 2 driver (ros2:COLOR,DEPTH)");
+}
+
+}  // namespace
+
 SourceUri parse_source_uri(const std::string& text) {
+  refuse_video_nodes(text);
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos || colon == 0) {
-    throw SourceError(
-        "source '" + text +
-        "' has no scheme; write tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE, ros2:TOPICS, openni2:[URI], v4l2:DEVICE, "
-        "realsense-dds:[SERIAL] or "
-        "synthetic:NAME[?key=value&...]");
+    throw SourceError("source '" + text +
+                      "' has no scheme; write tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE, ros2:TOPICS, openni2:[URI], "
+                      "realsense-dds:[SERIAL] or synthetic:NAME[?key=value&...]");
   }
   SourceUri uri{text, text.substr(0, colon), text.substr(colon + 1), {}};
   const std::size_t question = uri.path.find('?');
@@ -156,7 +167,7 @@ std::unique_ptr<FrameSource> make_source(const std::string& text) {
         "' is a running camera: only `rtd run` and rtd-camera play it; record it first (rtd record) and use mcap:FILE");
   }
   throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme +
-                    "'; known: bag, db3, mcap, openni2, realsense-dds, ros2, synthetic, tum, v4l2");
+                    "'; known: bag, db3, mcap, openni2, realsense-dds, ros2, synthetic, tum");
 }
 
 }  // namespace rtd::camera

@@ -43,7 +43,7 @@ std::string complete_uri(const std::string& source);
 ///   mcap:FILE[?...]   the same of a recording of any form; frames that we recorded ourselves come first
 ///   synthetic:SCENE[?seed=1&frames=300&fps=30&noise=1&people=N&boxes=N&width=640&height=480]   frames=0: endless;
 ///   more keys, and the faults of the sensor (sensor=kinect&holes=0.2&...): services/camera/README.md
-/// A running camera (ros2:, openni2:, v4l2:) is opened by the service
+/// A running camera (ros2:, openni2:) is opened by the service
 /// (services/camera/live_camera.hpp). Throws SourceError for an unknown scheme or parameter (with those known) and for
 /// what the source itself refuses.
 std::unique_ptr<FrameSource> make_source(const std::string& uri);

@@ -19,14 +19,14 @@ struct FoundCamera {
   std::string problem;  ///< why it cannot be used now; empty when it can
 };
 
-/// The device of an openni2: or v4l2: URI (realsense-dds: needs a bus, realsense_device.hpp), not opened. Throws SourceError when this build has no support for it, naming
-/// the package.
+/// The device of an openni2: URI (realsense-dds: needs a bus, realsense_device.hpp), not opened. Throws SourceError
+/// when this build has no support for it, naming the package.
 std::unique_ptr<LiveDevice> make_device(const DeviceUri& uri);
 
 /// The cameras of this host. Opens each for its modes, starts none.
 std::vector<FoundCamera> find_cameras();
 
-/// "openni2, v4l2": what this build supports of them, and what is missing.
+/// "openni2": what this build supports of them, and what is missing.
 std::string supported_devices();
 
 }  // namespace rtd::camera

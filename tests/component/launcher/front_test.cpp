@@ -113,7 +113,7 @@ TEST_F(FrontTest, wrong_usage_is_exit_code_2) {
 }
 
 TEST_F(FrontTest, bad_input_of_a_run_is_exit_code_2_and_leaves_no_folder) {
-  for (const char* source : {"tum:/nonexistent", "nonsense", "film:x", "synthetic:nowhere"}) {
+  for (const char* source : {"tum:/nonexistent", "nonsense", "film:x", "synthetic:nowhere", "v4l2:/dev/video0"}) {
     EXPECT_EQ(rtd_.run({"run", "--source", source, "--out", scratch_ / "out"}), 2) << source;
     EXPECT_FALSE(fs::exists(scratch_ / "out")) << source;
   }

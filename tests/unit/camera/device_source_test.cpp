@@ -21,7 +21,7 @@ constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 class DeviceSourceTest : public ::testing::Test {
  protected:
-  std::unique_ptr<DeviceSource> source(const std::string& uri = "v4l2:/dev/video9") {
+  std::unique_ptr<DeviceSource> source(const std::string& uri = "openni2:1d27/0609@1/9") {
     DeviceOptions options;
     options.uri = parse_device_uri(uri);
     options.on_wait = [this](const std::string& what) { reports_.push_back(what); };
@@ -216,12 +216,12 @@ TEST_F(DeviceSourceTest, refuses_modes_sizes_and_lenses_that_cannot_be_used) {
   const auto refusal = [this](const std::string& uri, const char* text) {
     EXPECT_THAT([&] { source(uri)->open(); }, ThrowsMessage<SourceError>(HasSubstr(text))) << uri;
   };
-  refusal("v4l2:/dev/video9?width=640", "no colour mode of 640 x any px that can be used");
-  refusal("v4l2:/dev/video9?fps=60", "it has: 32 x 24 BGR8 30 Hz");
+  refusal("openni2:1d27/0609@1/9?width=640", "no colour mode of 640 x any px that can be used");
+  refusal("openni2:1d27/0609@1/9?fps=60", "it has: 32 x 24 BGR8 30 Hz");
   script_.knows_lens = false;
-  refusal("v4l2:/dev/video9", "?calibration=FILE");
+  refusal("openni2:1d27/0609@1/9", "?calibration=FILE");
   script_.size_px = {4096, 2160};
-  refusal("v4l2:/dev/video9", "it has: 4096 x 2160 BGR8 30 Hz");
+  refusal("openni2:1d27/0609@1/9", "it has: 4096 x 2160 BGR8 30 Hz");
 }
 
 TEST_F(DeviceSourceTest, another_camera_in_its_place_is_refused_until_the_first_is_back) {
@@ -293,7 +293,7 @@ TEST(DeviceUriTest, names_device_mode_and_calibration) {
   EXPECT_EQ(uri.calibration_file, "/c.yaml");
   EXPECT_EQ(complete_uri("walk.oni"), "openni2:walk.oni");
   EXPECT_TRUE(is_live("openni2:"));
-  for (const char* bad : {"v4l2:", "openni2:?width=x", "openni2:?fps=0", "openni2:?tolerance_ms=0", "v4l2:/d?speed=1"})
+  for (const char* bad : {"openni2:?width=x", "openni2:?fps=0", "openni2:?tolerance_ms=0", "openni2:?speed=1"})
     EXPECT_THROW(parse_device_uri(bad), SourceError) << bad;
 }
 

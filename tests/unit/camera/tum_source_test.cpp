@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "services/camera/core/live/live_source.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"
 
@@ -230,9 +231,16 @@ TEST(TumSource, refuses_broken_groundtruth_by_line) {
 
 TEST(MakeSource, names_the_schemes_it_knows) {
   EXPECT_THAT([] { make_source("folder"); }, ThrowsMessage<SourceError>(HasSubstr("tum:FOLDER")));
-  EXPECT_THAT([] { make_source("rosbag:x"); },
-              ThrowsMessage<SourceError>(
-                  HasSubstr("known: bag, db3, mcap, openni2, realsense-dds, ros2, synthetic, tum, v4l2")));
+  EXPECT_THAT(
+      [] { make_source("rosbag:x"); },
+      ThrowsMessage<SourceError>(HasSubstr("known: bag, db3, mcap, openni2, realsense-dds, ros2, synthetic, tum")));
+  for (const char* video_nodes : {"v4l2:", "v4l2:/dev/video0,/dev/video2?calibration=c.yaml"}) {
+    EXPECT_FALSE(is_live(video_nodes));
+    EXPECT_THAT(
+        [&] { make_source(video_nodes); },
+        ThrowsMessage<SourceError>(AllOf(HasSubstr("registered to colour"), HasSubstr("openni2:, realsense-dds:"),
+                                         HasSubstr("ros2:COLOR,DEPTH"))));
+  }
   EXPECT_THAT([] { make_source("tum:"); }, ThrowsMessage<SourceError>(HasSubstr("needs a folder")));
   EXPECT_THAT([] { make_source("tum:x?mask=1"); }, ThrowsMessage<SourceError>(HasSubstr("unknown parameter 'mask'")));
   EXPECT_THAT([] { make_source("tum:x?masks"); }, ThrowsMessage<SourceError>(HasSubstr("not key=value")));

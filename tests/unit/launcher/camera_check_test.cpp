@@ -16,16 +16,16 @@ TEST(CameraCheckTest, lists_cameras_with_their_modes_and_what_keeps_them_from_be
                                          {Stream::kDepth, {640, 480}, 30, "Z16"}};
   Findings findings;
   describe_cameras({{"openni2:1d27/0609@1/5", "PrimeSense", modes, ""},
-                    {"v4l2:/dev/video0", "Webcam", {modes[0]}, "it gives no depth"},
-                    {"v4l2:/dev/video1", "/dev/video1", {}, "no permission"}},
+                    {"realsense-dds:1234", "RealSense", {modes[0]}, "it streams no depth"},
+                    {"openni2:2bc5/0401@1/6", "Astra", {}, "no permission"}},
                    findings);
   ASSERT_EQ(findings.size(), 3U);
   EXPECT_EQ(findings[0].verdict, Verdict::kOk);
   EXPECT_EQ(
       findings[0].text,
       "camera: --source openni2:1d27/0609@1/5 (PrimeSense): colour 640 x 480 RGB8 30 Hz; depth 640 x 480 Z16 30 Hz");
-  EXPECT_EQ(findings[1].verdict, Verdict::kOk) << "a webcam is no fault";
-  EXPECT_THAT(findings[1].text, HasSubstr("it gives no depth"));
+  EXPECT_EQ(findings[1].verdict, Verdict::kOk) << "a camera of another program is no fault";
+  EXPECT_THAT(findings[1].text, HasSubstr("it streams no depth"));
   EXPECT_EQ(findings[2].verdict, Verdict::kWarn);
 }
 

@@ -14,7 +14,7 @@
 namespace rtd::camera {
 namespace {
 
-constexpr std::array kSchemes = {"openni2", "v4l2", "realsense-dds"};
+constexpr std::array kSchemes = {"openni2", "realsense-dds"};
 
 double parse_mode_value(const std::string& uri, const std::string& key, const std::string& value, double most) {
   const std::optional<double> number = io::parse_number(value);
@@ -51,10 +51,6 @@ DeviceUri parse_device_uri(const std::string& text) {
   DeviceUri uri{text, parsed.scheme, parsed.path, {}, {}, kPairingToleranceNs, false};
   uri.recorded = uri.scheme == "openni2" && uri.device.ends_with(".oni");
   for (const auto& [key, value] : parsed.parameters) take_parameter(uri, key, value);
-  if (uri.scheme == "v4l2" && uri.device.empty()) {
-    throw SourceError("source '" + text +
-                      "' does not name its device: v4l2:/dev/video0[,/dev/video2] (`rtd doctor` lists cameras)");
-  }
   return uri;
 }
 

@@ -9,11 +9,11 @@
 
 namespace rtd::camera {
 
-/// `openni2:[URI]`, `v4l2:DEVICE[,DEPTH_DEVICE]`, `realsense-dds:[SERIAL]`, each with
+/// `openni2:[URI]` or `realsense-dds:[SERIAL]`, each with
 /// [?calibration=FILE&tolerance_ms=20&width=640&height=480&fps=30].
 struct DeviceUri {
   std::string text;
-  std::string scheme;  ///< "openni2", "v4l2" or "realsense-dds"
+  std::string scheme;  ///< "openni2" or "realsense-dds"
   std::string device;  ///< what follows it; empty = the first that is found
   ModeRequest mode;
   std::string calibration_file;  ///< replaces the device's own calibration and depth unit

@@ -63,7 +63,7 @@ struct DeviceImage {
 class LiveDevice {
  public:
   virtual ~LiveDevice() = default;
-  /// "v4l2:/dev/video0": for messages, known before it is opened.
+  /// "openni2:1d27/0609@1/5": for messages, known before it is opened.
   virtual std::string name() const = 0;
   virtual void open() = 0;
   /// All modes that it has, readable or not; it is open.
