@@ -86,7 +86,6 @@ struct ServiceConfig {
     binder.field("wheel.topic", motion.wheels,
                  "topic of a wheel odometry, nav_msgs/Odometry; needs base.camera; empty: none");
     binder.section("consistency", core.consistency);
-    binder.section("belief", core.belief);
     binder.section("keyframe", core.keyframe);
     binder.section("mapper", core.mapper);
     binder.section("place", core.place);

@@ -91,7 +91,6 @@ class Maker {
     landmark.max_distance_m = 2 + unit();
     landmark.min_distance_m = 0.5;
     landmark.static_probability = unit();
-    landmark.log_odds = unit();
     landmark.descriptor.fill(static_cast<std::uint8_t>(random_()));
     landmark.reference = landmark.first_keyframe = keyframe.id;
     landmark.visible = 7;

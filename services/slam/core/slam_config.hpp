@@ -13,7 +13,6 @@ class Vocabulary;
 
 /// One switch for each technique beyond ORB-SLAM2's tracking and mapping, so that its worth can be measured.
 struct Techniques {
-  bool landmark_belief = false;
   bool adaptive_kernel = true;
   bool rolling_shutter = true;
   bool prediction = true;
@@ -21,8 +20,6 @@ struct Techniques {
   bool loop_closing = true;
 
   void bind(auto& binder) {
-    binder.field("landmark_belief", landmark_belief,
-                 "landmarks gather a static probability over time; off: the mean of their observations");
     binder.field("adaptive_kernel", adaptive_kernel,
                  "the robust loss is fitted to the residuals; off: Huber with a fixed threshold");
     binder.field("rolling_shutter", rolling_shutter,
@@ -117,26 +114,6 @@ struct ConsistencyConfig {
         "share of the matched landmarks that agree with the pose, less if they agree loosely; 0: never doubtful");
     binder.field("usual", usual, {0.05, 1.0}, "below this share the covariance grows");
     binder.field("memory_s", memory_s, {0.01, 60.0}, "time constant of the share");
-  }
-};
-
-/// What a frame says about a landmark's static probability, as log odds: docs/theory/tracking.md, "Belief".
-struct BeliefConfig {
-  double found = 0.4;  ///< of a feature that is surely static; -0.4: surely dynamic
-  double rejected = 0.5;
-  double removed = 1.5;
-  double seen_through = 0.5;
-  double max_log_odds = 4.0;
-  double min_probability = 0.1;
-
-  void bind(auto& binder) {
-    binder.field("found", found, {0.0, 5.0}, "log odds for a landmark that is found where it should be");
-    binder.field("rejected", rejected, {0.0, 5.0}, "against one that does not fit a pose that its neighbours fit");
-    binder.field("removed", removed, {0.0, 5.0}, "against one that looks like a feature which the filter removed");
-    binder.field("seen_through", seen_through, {0.0, 5.0},
-                 "against one that is not found, with depth measured behind it");
-    binder.field("max_log_odds", max_log_odds, {2.0, 20.0}, "bound of the log odds: limits how long the past counts");
-    binder.field("min_probability", min_probability, {0.0, 0.5}, "landmarks below leave the map");
   }
 };
 
@@ -355,7 +332,6 @@ struct SlamConfig {
   ImuConfig imu;
   WheelConfig wheel;
   ConsistencyConfig consistency;
-  BeliefConfig belief;
   KeyframeConfig keyframe;
   MapperConfig mapper;
   bool localize_only = false;  ///< the map stays as it was loaded

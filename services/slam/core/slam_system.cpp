@@ -98,8 +98,7 @@ SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
   shutter_ = shutter_motion();
   SensorConfig sensor = config_.sensor;
   sensor.disparity_px_m = disparity_px_m();
-  const FrameInput input = make_frame(
-      message, sensor, config_.techniques.landmark_belief ? RemovedFeatures::kKeep : RemovedFeatures::kDrop, shutter_);
+  const FrameInput input = make_frame(message, sensor, shutter_);
   output.invalid_features = input.invalid;
   const TrackOutcome outcome = mapping_.snapshot() == nullptr ? initialize(input, output) : track(input, output);
   had_pose_ = msg::has_pose(outcome.state);

@@ -49,8 +49,7 @@ std::optional<PlaceMeeting> meet_place(const Map& map, KeyframeId id, KeyframeId
   const Frame& frame = *map.find_keyframe(id)->frame;
   const LocalMapPtr place = make_local_map(map, candidate, 0, kPlaceKeyframes);
   const Clock no_clock = [] { return std::int64_t{0}; };
-  const StatisticsById no_statistics;
-  const TrackingContext context{config, no_clock, no_statistics};
+  const TrackingContext context{config, no_clock};
   const auto tracking = track_place(frame, *place, context);
   if (!tracking || !tracking->guess.success || tracking->guess.inliers < config.loop.min_inliers) return std::nullopt;
   const double share = found_share(*tracking);

@@ -53,8 +53,7 @@ std::vector<Eigen::Vector3d> Frame::unproject_all() const {
   return points_camera;
 }
 
-FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config, RemovedFeatures removed,
-                      const ShutterMotion& motion) {
+FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config, const ShutterMotion& motion) {
   FrameInput input;
   if (!usable_intrinsics(message)) {
     input.error = "intrinsics are zero or not finite";
@@ -86,7 +85,6 @@ FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& conf
     }
     if ((feature.flags & msg::kFeatureRemoved) != 0) {
       ++input.removed;
-      if (removed == RemovedFeatures::kKeep && usable(feature)) frame->removed.push_back(feature);
     } else if (!usable(feature)) {
       ++input.invalid;
     } else {
@@ -96,8 +94,6 @@ FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& conf
     }
   }
   frame->grid = vision::FeatureGrid(frame->features, frame->width_px, frame->height_px);
-  if (removed == RemovedFeatures::kKeep)
-    frame->removed_grid = vision::FeatureGrid(frame->removed, frame->width_px, frame->height_px);
   input.frame = std::move(frame);
   return input;
 }

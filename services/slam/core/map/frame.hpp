@@ -60,9 +60,6 @@ struct Frame {
   double readout_s = 0;                ///< of a rolling shutter, undone in the features; 0 = none
   std::vector<msg::Feature> features;  ///< usable ones only; depth_m is 0 where not measured or beyond max_depth_m
   vision::FeatureGrid grid;
-  std::vector<msg::Feature>
-      removed;  ///< judged dynamic by the filter: never tracked, only evidence against landmarks; may be dropped
-  vision::FeatureGrid removed_grid;
 
   bool contains(const Eigen::Vector2d& pixel) const {
     return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() < width_px && pixel.y() < height_px;
@@ -79,9 +76,6 @@ using FramePtr = std::shared_ptr<const Frame>;
 
 /// Whether all values of a feature are finite and in their ranges.
 bool usable(const msg::Feature& feature);
-
-/// Whether a frame keeps the features that the filter removed: only the landmark belief needs them.
-enum class RemovedFeatures { kDrop, kKeep };
 
 /// The pixels that a frame's positions are given in: those of the image that the features were found in, which is the
 /// doubled one of a small image (docs/theory/orb.md), because windows and deviations in pixels belong to them.
@@ -110,8 +104,7 @@ struct ShutterMotion {
 
 /// Takes the usable features out of a message, each where it would be had all rows been exposed at once. Data from
 /// outside: never throws for its content.
-FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config,
-                      RemovedFeatures removed = RemovedFeatures::kDrop, const ShutterMotion& motion = {});
+FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config, const ShutterMotion& motion = {});
 
 /// Time of a row relative to the middle one, in units of the readout time. Eq. (1).
 double row_time(double v_px, int height_px);

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -40,8 +38,7 @@ struct Landmark {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< p_world, m
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< mean viewing direction, camera -> landmark, world frame
   double min_distance_m = 0, max_distance_m = 0;       ///< from where the pyramid can show it
-  double static_probability = 1.0;                     ///< by the map's ProbabilityRule
-  double log_odds = 0.0;                               ///< of the same, with ProbabilityRule::kBelief
+  double static_probability = 1.0;                     ///< mean over the features that it was seen as
   msg::Descriptor descriptor{};                        ///< the observation that is nearest to all others
   std::vector<Observation> observations;               ///< ordered by keyframe, one per keyframe
 };
@@ -50,26 +47,8 @@ struct Landmark {
 struct LandmarkStatistics {
   LandmarkId landmark = kNoLandmark;
   std::uint32_t visible = 0, found = 0;  ///< frames that should have seen it / did
-  double log_odds = 0;                   ///< change of its static probability
 };
 using StatisticsById = std::pmr::unordered_map<LandmarkId, LandmarkStatistics>;
-
-/// A landmark's static probability as log odds: evidence adds up. docs/theory/tracking.md, "Belief".
-inline double to_probability(double log_odds) {
-  return 1 / (1 + std::exp(-log_odds));
-}
-
-/// From the first observation; a single one proves little.
-inline double initial_log_odds(double feature_probability) {
-  constexpr double kMaxInitial = 2.0;
-  const double p = std::clamp(feature_probability, 1e-3, 1 - 1e-3);
-  return std::clamp(std::log(p / (1 - p)), -kMaxInitial, kMaxInitial);
-}
-
-/// `change`, cut so that `log_odds` + change stays within +-`bound`: the past counts only so much.
-inline double bounded_change(double log_odds, double change, double bound) {
-  return std::clamp(log_odds + change, -bound, bound) - log_odds;
-}
 
 /// Values by id, for ids that count up and most of which are soon removed: a lookup is two loads, and pages without
 /// a value take no memory, wherever the ids lie. `kNone` is the value of ids that have none.

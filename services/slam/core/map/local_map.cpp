@@ -35,7 +35,6 @@ LocalLandmark copy_landmark(const Landmark& landmark) {
           landmark.min_distance_m,
           landmark.max_distance_m,
           landmark.static_probability,
-          landmark.log_odds,
           landmark.observation_weight,
           landmark.descriptor,
           0,

@@ -68,13 +68,8 @@ LandmarkId Map::add_landmark(const Eigen::Vector3d& p_world, Observation observa
   landmark.id = id;
   landmark.position = p_world;
   landmark.reference = landmark.first_keyframe = observation.keyframe;
-  Landmark& added = landmarks_.emplace(id, std::move(landmark));
+  landmarks_.emplace(id, std::move(landmark));
   add_observation(id, observation);
-  if (probability_rule_ == ProbabilityRule::kBelief) {
-    added.log_odds =
-        initial_log_odds(keyframe_at(observation.keyframe).frame->features[observation.feature].static_probability);
-    added.static_probability = to_probability(added.log_odds);
-  }
   return id;
 }
 
@@ -121,10 +116,6 @@ void Map::replace_landmark(LandmarkId lost_id, LandmarkId kept_id) {
   Landmark& kept = landmarks_.at(kept_id);
   kept.visible += lost.visible;
   kept.found += lost.found;
-  if (probability_rule_ == ProbabilityRule::kBelief && lost.log_odds < kept.log_odds) {
-    kept.log_odds = lost.log_odds;  // the doubt stays
-    kept.static_probability = lost.static_probability;
-  }
   refresh_landmark(kept_id);
 }
 
@@ -218,9 +209,7 @@ void Map::refresh_appearance(Landmark& landmark) {
     probability_sum += feature.static_probability;
     if (count < descriptors.size()) descriptors[count++] = &feature.descriptor;
   }
-  if (probability_rule_ == ProbabilityRule::kMeanOfObservations) {
-    landmark.static_probability = probability_sum / static_cast<double>(landmark.observations.size());
-  }
+  landmark.static_probability = probability_sum / static_cast<double>(landmark.observations.size());
   std::array<std::array<int, kMaxComparedDescriptors>, kMaxComparedDescriptors> all_distances{};
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < i; ++j) {

@@ -46,15 +46,8 @@ struct LoopEdge {
   int inliers = 0;  ///< landmarks of the old place that the newer keyframe was found to see
 };
 
-/// Where a landmark's static probability comes from.
-enum class ProbabilityRule : std::uint8_t {
-  kMeanOfObservations,  ///< of the features that it was seen as
-  kBelief,              ///< the first observation, then what tracking gathers (LandmarkStatistics)
-};
-
 /// All of a map that cannot be recomputed: what a map file holds.
 struct MapContents {
-  ProbabilityRule probability_rule = ProbabilityRule::kMeanOfObservations;
   std::vector<Keyframe> keyframes;                              ///< by id; without `covisible` and `children`
   std::vector<Landmark> landmarks;                              ///< by id
   std::vector<std::pair<KeyframeId, RemovedKeyframe>> removed;  ///< by id
@@ -72,7 +65,7 @@ struct MapContents {
 /// belong to the same component and know their children.
 class Map {
  public:
-  explicit Map(ProbabilityRule rule = ProbabilityRule::kMeanOfObservations) : probability_rule_(rule) {}
+  Map() = default;
   /// A map as it was saved. The contents are sound: every cross reference holds (store/map_reader.hpp checks it).
   explicit Map(MapContents contents);
   /// Ids count up from 0 and are never reused. Without parent (kNoKeyframe) the keyframe starts a new component.
@@ -128,7 +121,6 @@ class Map {
   std::size_t component_count() const { return component_sizes_.size(); }
   std::size_t landmark_count() const { return landmarks_.size(); }
   bool empty() const { return keyframes_.empty(); }
-  ProbabilityRule probability_rule() const { return probability_rule_; }
   const std::map<KeyframeId, RemovedKeyframe>& removed_keyframes() const { return removed_; }
   KeyframeId next_keyframe() const { return next_keyframe_; }
   LandmarkId next_landmark() const { return next_landmark_; }
@@ -137,7 +129,6 @@ class Map {
   std::string check_invariants() const;
 
  private:
-  ProbabilityRule probability_rule_;
   /// Throw std::out_of_range when unknown.
   const Keyframe& keyframe_at(KeyframeId id) const;
   Keyframe& keyframe_at(KeyframeId id);

@@ -39,8 +39,7 @@ class SharedLandmarks {
 }  // namespace
 
 Map::Map(MapContents contents)
-    : probability_rule_(contents.probability_rule),
-      removed_(contents.removed.begin(), contents.removed.end()),
+    : removed_(contents.removed.begin(), contents.removed.end()),
       loops_(std::move(contents.loops)),
       next_map_(contents.next_map),
       next_keyframe_(contents.next_keyframe),

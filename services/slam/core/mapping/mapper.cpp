@@ -20,17 +20,11 @@ std::shared_ptr<const Vocabulary> choose_vocabulary(const SlamConfig& config) {
 
 Mapper::Mapper(const SlamConfig& config)
     : config_(config),
-      map_(config.techniques.landmark_belief ? ProbabilityRule::kBelief : ProbabilityRule::kMeanOfObservations),
       vocabulary_(choose_vocabulary(config)),
       loop_closer_(config),
       adjuster_(GlobalBundleOptions{config.loop.global_iterations, 1, {}}) {}
 
 void Mapper::restore(MapContents contents) {
-  const ProbabilityRule rule = map_.probability_rule();
-  if (rule == ProbabilityRule::kBelief && contents.probability_rule != rule) {
-    for (Landmark& landmark : contents.landmarks) landmark.log_odds = initial_log_odds(landmark.static_probability);
-  }
-  contents.probability_rule = rule;
   map_ = Map(std::move(contents));
   if (vocabulary_ == nullptr) return;
   for (const auto& [id, keyframe] : map_.keyframes()) places_.add(id, vocabulary_->describe(keyframe.frame->features));
@@ -80,10 +74,6 @@ void Mapper::count_statistics(const std::vector<LandmarkStatistics>& statistics)
     if (landmark == nullptr) continue;
     landmark->visible += entry.visible;
     landmark->found += entry.found;
-    if (!config_.techniques.landmark_belief) continue;
-    landmark->log_odds += bounded_change(landmark->log_odds, entry.log_odds, config_.belief.max_log_odds);
-    landmark->static_probability = to_probability(landmark->log_odds);
-    if (landmark->static_probability < config_.belief.min_probability) map_.remove_landmark(entry.landmark);
   }
 }
 

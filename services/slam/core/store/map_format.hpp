@@ -84,7 +84,7 @@ struct Head {
   KeyframeId next_keyframe = 0;
   LandmarkId next_landmark = 0;
   MapId next_map = 0;
-  ProbabilityRule probability_rule = ProbabilityRule::kMeanOfObservations;
+  std::uint8_t probability_origin = 0;  ///< 0: mean of the observations; 1: of an earlier version
   std::vector<StoredCamera> cameras;
 };
 
@@ -106,7 +106,7 @@ inline bool is_sound(const geometry::Matrix6d& covariance) {
 inline bool is_sound(const Landmark& landmark) {
   return landmark.position.allFinite() && landmark.normal.allFinite() && std::isfinite(landmark.min_distance_m) &&
          std::isfinite(landmark.max_distance_m) && landmark.min_distance_m >= 0 && landmark.max_distance_m >= 0 &&
-         landmark.static_probability >= 0 && landmark.static_probability <= 1 && std::isfinite(landmark.log_odds);
+         landmark.static_probability >= 0 && landmark.static_probability <= 1;
 }
 
 inline bool is_sound(const StoredCamera& camera) {

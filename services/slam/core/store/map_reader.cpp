@@ -35,13 +35,11 @@ auto find_by_id(const std::vector<Keyframe>& keyframes, KeyframeId id) {
 /// Block HEAD. Throws Unsound or ros::WireError, as all that follows.
 Head read_head(FieldReader fields) {
   Head head;
-  std::uint8_t rule = 0;
   std::uint16_t cameras = 0;
   fields(head.keyframes, head.landmarks, head.removed, head.loops, head.next_keyframe, head.next_landmark,
-         head.next_map, rule, cameras);
-  require(rule <= static_cast<std::uint8_t>(ProbabilityRule::kBelief), "the map", "has an unknown probability rule");
+         head.next_map, head.probability_origin, cameras);
+  require(head.probability_origin <= 1, "the map", "has probabilities of an unknown origin");
   require(head.keyframes > 0, "the map", "holds no keyframe");
-  head.probability_rule = static_cast<ProbabilityRule>(rule);
   for (std::uint16_t i = 0; i < cameras; ++i) {
     StoredCamera camera;
     std::uint32_t width_px = 0, height_px = 0;
@@ -93,7 +91,6 @@ ContentsBuilder::ContentsBuilder(const Head& head, StoredFeatures features, std:
     : head_(head), features_(features), memory_left_(kMemoryPerByte * file_bytes + kMemoryBase) {
   reserve_memory(head.next_keyframe * kTablesPerIdBytes, "keyframe ids");
   reserve_memory(head.next_landmark / kIdsPerTableByte, "landmark ids");
-  contents_.probability_rule = head.probability_rule;
   contents_.next_keyframe = head.next_keyframe;
   contents_.next_landmark = head.next_landmark;
   contents_.next_map = head.next_map;
@@ -105,7 +102,8 @@ ContentsBuilder::ContentsBuilder(const Head& head, StoredFeatures features, std:
 
 void ContentsBuilder::add_landmark(FieldReader& fields) {
   Landmark l;
-  fields(l.id, l.position, l.normal, l.min_distance_m, l.max_distance_m, l.static_probability, l.log_odds, l.descriptor,
+  double reserved = 0;
+  fields(l.id, l.position, l.normal, l.min_distance_m, l.max_distance_m, l.static_probability, reserved, l.descriptor,
          l.reference, l.first_keyframe, l.visible, l.found);
   const std::string name = "landmark " + std::to_string(l.id);
   require(contents_.landmarks.empty() || contents_.landmarks.back().id < l.id, name, "comes behind a later one");

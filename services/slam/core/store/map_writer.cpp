@@ -14,6 +14,8 @@ namespace {
 using map_format::FieldWriter;
 using map_format::StoredCamera;
 
+constexpr double kReserved = 0;  ///< a field of each landmark
+
 /// Index of the camera of a frame, added when it is new. Nearly always all frames have one camera.
 std::uint16_t find_camera(std::vector<StoredCamera>& cameras, const Frame& frame) {
   const auto found =
@@ -32,8 +34,8 @@ void copy_landmarks(const Map& map, MapSnapshot& snapshot) {
     const Landmark& l = *map.find_landmark(id);
     if (!map_format::is_sound(l)) continue;
     snapshot.landmark_ids.push_back(id);
-    write(l.id, l.position, l.normal, l.min_distance_m, l.max_distance_m, l.static_probability, l.log_odds,
-          l.descriptor, l.reference, l.first_keyframe, l.visible, l.found);
+    write(l.id, l.position, l.normal, l.min_distance_m, l.max_distance_m, l.static_probability, kReserved, l.descriptor,
+          l.reference, l.first_keyframe, l.visible, l.found);
   }
 }
 
@@ -68,7 +70,7 @@ io::Bytes encode_head(const Head& head) {
   io::Bytes bytes;
   FieldWriter write(bytes);
   write(head.keyframes, head.landmarks, head.removed, head.loops, head.next_keyframe, head.next_landmark, head.next_map,
-        static_cast<std::uint8_t>(head.probability_rule), static_cast<std::uint16_t>(head.cameras.size()));
+        head.probability_origin, static_cast<std::uint16_t>(head.cameras.size()));
   for (const StoredCamera& camera : head.cameras) {
     const auto& [fx, fy, cx, cy, disparity_px_m] = camera.projection;
     write(fx, fy, cx, cy, disparity_px_m, static_cast<std::uint32_t>(camera.width_px),
@@ -153,7 +155,6 @@ MapSnapshot take_snapshot(const Map& map) {
   snapshot.head.next_keyframe = map.next_keyframe();
   snapshot.head.next_landmark = map.next_landmark();
   snapshot.head.next_map = map.next_map();
-  snapshot.head.probability_rule = map.probability_rule();
   return snapshot;
 }
 

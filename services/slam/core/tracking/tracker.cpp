@@ -223,7 +223,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
     outcome.state = msg::TrackingState::kRelocalizing;
     return;
   }
-  count(*last_.frame, *outcome.map, tracking);
+  count(tracking);
   failing_since_ns_.reset();
   scene_m_ = median_distance(*outcome.map, last_);
   const bool had_pose = msg::has_pose(state_);
@@ -335,7 +335,7 @@ void Tracker::reject(TrackOutcome& outcome, const FramePtr& frame_in_work, const
   outcome.state = relocalizer_.located() ? state_ : msg::TrackingState::kRelocalizing;
 }
 
-void Tracker::count(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking) {
+void Tracker::count(const LocalMapTracking& tracking) {
   const auto entry = [&](LandmarkId id) -> LandmarkStatistics& {
     LandmarkStatistics& statistics = statistics_[id];
     statistics.landmark = id;
@@ -344,13 +344,6 @@ void Tracker::count(const Frame& frame, const LocalMap& map, const LocalMapTrack
   for (const LandmarkId id : tracking.visible) ++entry(id).visible;
   for (const LandmarkId id : tracking.guess.landmarks) {
     if (id != kNoLandmark) ++entry(id).found;
-  }
-  if (!config_.techniques.landmark_belief) return;
-  for (const LandmarkEvidence& evidence : judge_landmarks(frame, map, tracking, config_.belief)) {
-    const LocalLandmark* landmark = map.find_landmark(evidence.landmark);
-    if (landmark == nullptr) continue;
-    double& change = entry(evidence.landmark).log_odds;
-    change = bounded_change(landmark->log_odds, change + evidence.log_odds, config_.belief.max_log_odds);
   }
 }
 

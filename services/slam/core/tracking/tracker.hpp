@@ -90,7 +90,7 @@ class Tracker {
   KeyframeProposal propose_keyframe();
 
  private:
-  TrackingContext context() const { return {config_, now_ns_, statistics_}; }
+  TrackingContext context() const { return {config_, now_ns_}; }
   /// The way from where the map began.
   Eigen::Isometry3d since_first(const Eigen::Isometry3d& T_world_camera) const {
     return config_.first_pose.inverse() * T_world_camera;
@@ -117,7 +117,7 @@ class Tracker {
   void reject(TrackOutcome& outcome, const FramePtr& frame, const PoseGuess& weak);
   bool claim_prior(TrackOutcome& outcome, const FramePtr& frame, const PoseGuess& weak);
   std::optional<PredictedPose> hold(const Frame& frame) const;
-  void count(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking);
+  void count(const LocalMapTracking& tracking);
 
   SlamConfig config_;
   Clock now_ns_;

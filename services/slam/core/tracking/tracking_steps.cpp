@@ -14,14 +14,9 @@ namespace {
 
 constexpr int kMinLandmarks = 10;  ///< of a first guess of the pose
 
-/// A landmark as the world point of a feature, believed as much as the frames since the last keyframe let us.
-Association associate(std::uint32_t feature, const LocalLandmark& landmark, const TrackingContext& context) {
-  double probability = landmark.static_probability;
-  const auto news = context.statistics.find(landmark.id);
-  if (context.config.techniques.landmark_belief && news != context.statistics.end()) {
-    probability = to_probability(landmark.log_odds + news->second.log_odds);
-  }
-  return {feature, landmark.id, landmark.position, probability};
+/// A landmark as the world point of a feature.
+Association associate(std::uint32_t feature, const LocalLandmark& landmark) {
+  return {feature, landmark.id, landmark.position, landmark.static_probability};
 }
 
 vision::PoseObservation make_observation(const Frame& frame, const Association& association) {
@@ -63,7 +58,7 @@ std::vector<Association> points_of(const TrackedFrame& last, const LocalMap& map
     const LocalLandmark* landmark = map.find_landmark(last.landmarks[i]);
     if (landmark == nullptr) continue;
     known[i] = landmark->id;
-    points.push_back(associate(i, *landmark, context));
+    points.push_back(associate(i, *landmark));
   }
   for (const std::uint32_t i : select_close_features(*last.frame, known, context.config.sensor.close_depth_m)) {
     points.push_back(
@@ -152,7 +147,7 @@ PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, cons
   std::vector<vision::PoseObservation> observations;
   for (const Match& match : matches) {
     const LocalLandmark& landmark = *map.find_landmark(keyframe.landmarks[match.tag]);
-    associations.push_back(associate(match.feature, landmark, context));
+    associations.push_back(associate(match.feature, landmark));
     observations.push_back(make_observation(frame, associations.back()));
   }
   PoseRansacOptions options;
@@ -180,7 +175,7 @@ PoseGuess track_around(const Frame& frame, const TrackedFrame& last, const Local
   }
   std::vector<Association> associations;
   for (const Match& match : match_projected(frame, search, {}, {100, 0.8, RotationCheck::kOff})) {
-    associations.push_back(associate(match.feature, map.landmarks[match.tag], context));
+    associations.push_back(associate(match.feature, map.landmarks[match.tag]));
   }
   if (static_cast<int>(associations.size()) < context.config.tracker.min_motion_matches) return {};
   PoseGuess guess = optimize(frame, associations, expected.T_world_camera, context);
@@ -204,7 +199,7 @@ LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const 
     if (landmark == nullptr) continue;
     taken[i] = 1;
     known.push_back(landmark->id);
-    associations.push_back(associate(i, *landmark, context));
+    associations.push_back(associate(i, *landmark));
   }
   result.visible = known;
   std::sort(known.begin(), known.end());
@@ -226,7 +221,7 @@ LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const 
   }
   for (const Match& match : match_projected(frame, search, taken, {100, 0.8, RotationCheck::kOff})) {
     const LocalLandmark& landmark = map.landmarks[match.tag];
-    associations.push_back(associate(match.feature, landmark, context));
+    associations.push_back(associate(match.feature, landmark));
   }
   result.guess = optimize(frame, associations, guess.T_world_camera, context);
   for (const Association& association : associations) {

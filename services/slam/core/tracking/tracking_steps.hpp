@@ -49,7 +49,6 @@ struct Association {
 struct TrackingContext {
   const SlamConfig& config;
   const Clock& now_ns;
-  const StatisticsById& statistics;
 };
 
 /// Where the camera is looked for.
@@ -86,17 +85,5 @@ LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const 
 /// Frame to a recognised place: track_keyframe() with its centre, then twice track_local_map(), because from a coarse
 /// pose many landmarks are missed. Empty when one of the first two fails.
 std::optional<LocalMapTracking> track_place(const Frame& frame, const LocalMap& place, const TrackingContext& context);
-
-/// What one tracked frame shows about a landmark.
-struct LandmarkEvidence {
-  LandmarkId landmark = kNoLandmark;
-  double log_odds = 0;  ///< above 0: static
-};
-
-/// Evidence of a tracked frame: found where it should be; matched elsewhere while its neighbours fit; removed
-/// as dynamic by the filter; or not found, and what is measured there lies behind it. docs/theory/tracking.md,
-/// "Belief".
-std::vector<LandmarkEvidence> judge_landmarks(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking,
-                                              const BeliefConfig& config);
 
 }  // namespace rtd::slam

@@ -151,20 +151,5 @@ TEST_F(LoadedMap, grows_when_mapping_continues) {
   EXPECT_GE(slam.trajectory().size(), 58U);
 }
 
-TEST_F(LoadedMap, saved_with_mean_probabilities_starts_belief_from_them) {
-  SlamConfig config;
-  config.techniques.landmark_belief = true;
-  SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);
-  slam.restore(read_bytes(file_));
-  slam.read_map([](const Map& map) {
-    EXPECT_EQ(map.probability_rule(), ProbabilityRule::kBelief);
-    EXPECT_GT(map.find_landmark(map.landmark_ids().front())->log_odds, 0);
-  });
-  std::uint64_t seq = kMapped;
-  find_back(slam, seq);
-  for (; seq < kMapped + 20; ++seq)
-    EXPECT_EQ(slam.process(*view(seq)).result.state, TrackingState::kOk) << "frame " << seq;
-}
-
 }  // namespace
 }  // namespace rtd::slam

@@ -56,6 +56,15 @@ TEST(MapFile, gives_the_same_map_back) {
   EXPECT_EQ(restored.T_world_keyframe(2).matrix(), map.T_world_keyframe(2).matrix()) << "removed, but not forgotten";
 }
 
+TEST(MapFile, of_an_earlier_version_keeps_its_probabilities) {
+  const Map map = sample_map();
+  MapSnapshot snapshot = take_snapshot(map);
+  snapshot.head.probability_origin = 1;
+  const Map restored(read_bytes(bytes_of_map(snapshot)));
+  for (const LandmarkId id : map.landmark_ids())
+    ASSERT_EQ(restored.find_landmark(id)->static_probability, map.find_landmark(id)->static_probability);
+}
+
 TEST(MapFile, gives_features_a_grid_to_be_found_in) {
   const Map restored(read_bytes(bytes_of_map(sample_map())));
   const Frame& frame = *restored.keyframes().begin()->second.frame;
@@ -194,7 +203,7 @@ const Lie kLies[] = {
     {"fewer_keyframes", [](MapSnapshot& s) { --s.head.keyframes; }, "more records than announced"},
     {"more_keyframes", [](MapSnapshot& s) { ++s.head.keyframes; }, "missing or in another order"},
     {"most_landmarks", [](MapSnapshot& s) { s.head.landmarks = 0xFFFFFFFF; }, "missing or in another order"},
-    {"probability_rule", [](MapSnapshot& s) { s.head.probability_rule = ProbabilityRule{7}; }, "probability rule"},
+    {"probability_origin", [](MapSnapshot& s) { s.head.probability_origin = 7; }, "unknown origin"},
     {"focal_length", [](MapSnapshot& s) { s.head.cameras[0].projection.fx = std::nan(""); }, "intrinsics"},
     {"image_size", [](MapSnapshot& s) { s.head.cameras[0].width_px = 2000000000; }, "intrinsics"},
     {"many_keyframe_ids", [](MapSnapshot& s) { s.head.next_keyframe = 0xFFFFFFF0; }, "far more memory"},
