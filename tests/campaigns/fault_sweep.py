@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""The faults of `deploy/stress.py faults`: what is swept, the tables and the drawing. Standard library only."""
+"""The faults of `tests/campaigns/stress.py faults`: what is swept, the tables and the drawing. Standard library only."""
 import dataclasses
 import math
 import statistics

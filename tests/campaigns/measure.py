@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the clips of docs/results.md several times and prints tables for that page.
 
-Usage: deploy/measure.py [--runs 5] [--rtd build/release/bin/rtd] [--data DIR] [--only NAME ...]
+Usage: tests/campaigns/measure.py [--runs 5] [--rtd build/release/bin/rtd] [--data DIR] [--only NAME ...]
 
 Every figure comes from the report.json of `rtd run`.
 """
@@ -17,7 +17,7 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 CLIPS = ("fr1_xyz", "walk_xyz", "walk_rpy", "walk_box")
 
 # name: (arguments of `rtd run`, kind of table)

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs clips several times, each time with another first frame, feature count and boxes a little off.
 
-Usage: deploy/perturbed_runs.py CLIP [CLIP ...] [--modes rtd,semantic] [--runs 9] [--set KEY=VALUE] [--jobs N]
+Usage: tests/campaigns/perturbed_runs.py CLIP [CLIP ...] [--modes rtd,semantic] [--runs 9] [--set KEY=VALUE] [--jobs N]
 
 Prints median and spread. One run says little: a landmark more or less changes a trajectory by tens of percent. CLIP is
 a TUM folder or a source URI. Each run is rtd_offline_run (the whole system in one process, lockstep); the boxes of the

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws kept and removed points of one frame of a report over the true mask, as SVG without the photograph.
 
-Usage: deploy/points_picture.py REPORT.html FRAME MASK.png OUT.svg [--dark]
+Usage: tests/campaigns/points_picture.py REPORT.html FRAME MASK.png OUT.svg [--dark]
 --dark: moving objects are black in the mask.
 This script made the images of docs/lab/accuracy.md. It needs python3-opencv.
 """

@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs an endless synthetic scene and prints the memory of each process over time.
 
-Usage: deploy/soak.py [--seconds 120] [--rtd build/release/bin/rtd] [--scene office] [--pace asap] [RUN_OPTION ...]
-       deploy/soak.py --simulated-hours 8 --scene "office?fps=5" --dense
+Usage: tests/campaigns/soak.py [--seconds 120] [--rtd build/release/bin/rtd] [--scene office] [--pace asap] [RUN_OPTION ...]
+       tests/campaigns/soak.py --simulated-hours 8 --scene "office?fps=5" --dense
 
 With --simulated-hours it ends when the scene has lasted that long; a scene of few frames a second gets through hours
 in minutes. Options that are not known here are passed to 'rtd run'. slam's map and the launcher's record of the run
@@ -20,7 +20,7 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def anonymous_mb(pid: int) -> float:

@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs synthetic scenes with many seeds and reports the worst case of each.
 
-Usage: deploy/stress.py [--seeds 20] [--scenes fill,slow] [--modes rtd,geometry] [--jobs N] [--out FOLDER]
-       deploy/stress.py faults [--seeds 5] [--faults holes,rolling] [--quick] [--jobs N] [--out FOLDER]
+Usage: tests/campaigns/stress.py [--seeds 20] [--scenes fill,slow] [--modes rtd,geometry] [--jobs N] [--out FOLDER]
+       tests/campaigns/stress.py faults [--seeds 5] [--faults holes,rolling] [--quick] [--jobs N] [--out FOLDER]
 
 Without a word: every scene with a perfect sensor. `faults`: one scene with a sensor that has faults (camera README,
 "A sensor with faults"), each fault alone over its strengths and all combined, in the modes off, semantic, geometry,
@@ -32,7 +32,7 @@ import time
 
 import fault_sweep
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "build/release/bench/rtd_offline_run"
 # Long enough for the plot of each scene, short enough for many seeds.
 SCENES = {"sitting": "frames=270&sit=3", "crowd": "frames=180", "fill": "frames=240", "approach": "frames=180",

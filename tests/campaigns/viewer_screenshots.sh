@@ -2,10 +2,10 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Makes the pictures of docs/viewer.md from a real run: deploy/viewer_screenshots.sh [SOURCE] [FOLDER]
+# Makes the pictures of docs/viewer.md from a real run: tests/campaigns/viewer_screenshots.sh [SOURCE] [FOLDER]
 # Needs a build, Chromium and node packages: deploy/setup.sh --viewers.
 set -euo pipefail
-root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 source="${1:-synthetic:office?frames=500}" folder="${2:-$root/docs/images}"
 tools="$root/build/release/viewers" port=8799
 [ -d "$tools/node_modules/puppeteer-core" ] || { echo "puppeteer-core is missing: run deploy/setup.sh --viewers" >&2; exit 2; }
@@ -16,7 +16,7 @@ work="$(mktemp -d)"
   >"$work/log" 2>&1 &
 run=$!
 trap 'kill $run 2>/dev/null || true; wait $run 2>/dev/null || true; rm -rf "$work"' EXIT
-RTD_NODE_TOOLS="$tools" node "$root/deploy/viewer_screenshots.mjs" "http://127.0.0.1:$port/" "$folder" || {
+RTD_NODE_TOOLS="$tools" node "$root/tests/campaigns/viewer_screenshots.mjs" "http://127.0.0.1:$port/" "$folder" || {
   cat "$work/log" >&2
   exit 1
 }

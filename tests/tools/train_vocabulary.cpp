@@ -11,7 +11,7 @@
 
 #include "services/camera/core/source_factory.hpp"
 #include "services/filter/core/orb/orb_extractor.hpp"
-#include "services/slam/core/place/vocabulary_training.hpp"
+#include "tests/tools/vocabulary_training.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/place/vocabulary_training.hpp"
+#include "tests/tools/vocabulary_training.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Preloaded into the processes of a run (deploy/chaos.py): shifts their CLOCK_REALTIME by the 64-bit number of
+// Preloaded into the processes of a run (tests/campaigns/chaos.py): shifts their CLOCK_REALTIME by the 64-bit number of
 // nanoseconds in the file that RTD_CLOCK_STEP_FILE names, which may change at any time. So a clock can be stepped without
 // touching that of the host.
 #define _GNU_SOURCE

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Rendered scenes with an IMU or wheels, in which a person fills the view or the light goes out. docs/results.md has
-// all seeds: deploy/stress.py --sensors imu.
+// all seeds: tests/campaigns/stress.py --sensors imu.
 #include <gtest/gtest.h>
 
 #include <cstdio>

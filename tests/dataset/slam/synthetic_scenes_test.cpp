@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-/// The whole system on rendered scenes that are not the clips: few seeds here, many in deploy/stress.py.
+/// The whole system on rendered scenes that are not the clips: few seeds here, many in tests/campaigns/stress.py.
 #include <gtest/gtest.h>
 
 #include <algorithm>

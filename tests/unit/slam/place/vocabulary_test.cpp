@@ -9,8 +9,8 @@
 #include <set>
 
 #include "common/vision/features.hpp"
-#include "services/slam/core/place/vocabulary_training.hpp"
 #include "tests/support/sanitizers.hpp"
+#include "tests/tools/vocabulary_training.hpp"
 
 namespace rtd::slam {
 namespace {
