@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/printable.hpp"
 #include "common/msg/engine_names.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/config.hpp"
