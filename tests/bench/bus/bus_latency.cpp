@@ -22,6 +22,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
+#include "tests/support/frame_header.hpp"
 
 extern char** environ;
 
@@ -101,10 +102,10 @@ Percentiles measure_memcpy(int messages) {
 
 template <std::uint32_t kWidth, std::uint32_t kHeight>
 void make_plausible(msg::SizedFrame<kWidth, kHeight>& frame) {
-  frame.width = kWidth;
-  frame.height = kHeight;
+  test_support::fill_header(frame, kWidth, kHeight);
 }
 void make_plausible(msg::FeatureFrame& features) {
+  test_support::fill_camera(features, 640, 480);
   features.count = msg::kMaxFeatures;
 }
 
@@ -112,9 +113,9 @@ template <class T>
 Percentiles measure_loan(int messages, Results& results, Writer<T>& writer) {
   return measure(messages, results, [&](std::uint64_t seq) {
     auto message = writer.loan();
-    std::memset(static_cast<void*>(&*message), static_cast<int>(seq), sizeof(T));
-    message->seq = seq;
+    std::memset(static_cast<void*>(&*message), 0, sizeof(T));
     make_plausible(*message);
+    message->seq = seq;
     const std::int64_t sent_ns = now_ns();
     writer.write(std::move(message));
     return sent_ns;

@@ -26,6 +26,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/host/shm_leftovers.hpp"
 #include "common/concurrency/bounded_queue.hpp"
+#include "tests/support/frame_header.hpp"
 
 extern char** environ;
 
@@ -59,8 +60,7 @@ int publish(const Options& options) {
   auto frames = bus->writer(topics::kFrame);
   for (auto next = Clock::now();; next += 33'333us) {
     auto frame = frames.loan();
-    frame->width = 640;
-    frame->height = 480;
+    test_support::fill_header(*frame, 640, 480);
     frame->source_id = static_cast<std::uint64_t>(getpid());
     frames.write(std::move(frame));
     std::this_thread::sleep_until(next);

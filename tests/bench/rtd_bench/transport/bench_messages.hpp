@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/bench/rtd_bench/transport/transport_case.hpp"
+#include "tests/support/frame_header.hpp"
 
 namespace rtd::bench {
 
@@ -19,9 +20,9 @@ struct Tag {
   std::uint64_t number = 0;
   std::int64_t sent_ns = 0;  ///< CLOCK_MONOTONIC
 
-  std::uint64_t packed() const { return (static_cast<std::uint64_t>(phase) << 48U) | number; }
+  std::uint64_t packed() const { return number << 2U | static_cast<std::uint64_t>(phase); }
   static Tag unpack(std::uint64_t packed, std::int64_t sent_ns) {
-    return {static_cast<Phase>(packed >> 48U), packed & 0xFFFFFFFFFFFFU, sent_ns};
+    return {static_cast<Phase>(packed & 3U), packed >> 2U, sent_ns};
   }
 };
 
@@ -68,14 +69,15 @@ inline Tag tag_of(const msg::PoseStamped& pose) {
 /// New content for every message, as a producer writes it.
 template <std::uint32_t kWidth, std::uint32_t kHeight>
 void fill(msg::SizedFrame<kWidth, kHeight>& frame, std::uint64_t number) {
-  frame.width = kWidth;
-  frame.height = kHeight;
+  test_support::fill_header(frame, kWidth, kHeight);
   std::memset(frame.color_bgr.data(), static_cast<int>(number), sizeof(frame.color_bgr));
   std::memset(frame.depth.data(), static_cast<int>(number), sizeof(frame.depth));
 }
 inline void fill(msg::FeatureFrame& features, std::uint64_t number) {
+  features = {};
+  test_support::fill_camera(features, 640, 480);
   features.count = msg::kMaxFeatures;
-  std::memset(static_cast<void*>(features.features.data()), static_cast<int>(number), sizeof(features.features));
+  for (msg::Feature& feature : features.features) feature.descriptor.fill(static_cast<std::uint8_t>(number));
 }
 inline void fill(msg::CompressedImage& image, std::uint64_t number) {
   image.format = "jpeg";
