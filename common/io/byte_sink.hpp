@@ -62,10 +62,12 @@ enum class IfExists { kFail, kReplace };
 enum class Cached { kKeep, kDrop };
 
 /// A file, written with writev(2) from where the caller has the bytes: no copy of its own. It is locked (flock) while
-/// open, so that a second writer fails and a reader can tell that it grows (FileSource::being_written).
+/// open, so that a second writer fails and a reader can tell that it grows (FileSource::being_written). For what grows
+/// for long and may be read meanwhile: recordings, logs. Results that are whole or nothing: AtomicFile.
 class FileSink final : public ByteSink {
  public:
-  /// Creates the file. Throws IoError: it exists (kFail), another process writes it, no such folder, read-only, ...
+  /// Creates the file. Throws IoError: it exists (kFail), it is a symbolic link, another process writes it, no such
+  /// folder, read-only, ...
   explicit FileSink(std::filesystem::path path, IfExists if_exists = IfExists::kFail, Cached cached = Cached::kKeep);
   ~FileSink() override;  ///< closes, does not sync
   FileSink(const FileSink&) = delete;
@@ -74,15 +76,12 @@ class FileSink final : public ByteSink {
   void append(std::initializer_list<ByteView> parts) override;
   std::uint64_t position() const override { return position_.load(std::memory_order_acquire); }
   std::uint64_t sync() override;
-  /// Makes everything durable and gives the file another name, in one step replacing what has it: after a crash there
-  /// is the one or the other, whole. Same file system. Throws IoError.
-  void replace(const std::filesystem::path& path);
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  void sync_folder();
+  void sync_own_folder();
 
-  std::filesystem::path path_;
+  const std::filesystem::path path_;
   const Cached cached_;
   int fd_ = -1;
   bool broken_ = false;

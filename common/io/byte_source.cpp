@@ -21,8 +21,8 @@ std::size_t MemorySource::read(std::uint64_t offset, std::span<std::byte> into) 
   return found.size();
 }
 
-FileSource::FileSource(const std::filesystem::path& path)
-    : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+FileSource::FileSource(const std::filesystem::path& path, Links links)
+    : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | (links == Links::kRefuse ? O_NOFOLLOW : 0))) {
   struct stat status {};
   int error_number = 0;
   if (fd_ < 0 || ::fstat(fd_, &status) != 0)

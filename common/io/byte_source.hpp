@@ -28,12 +28,15 @@ class MemorySource final : public ByteSource {
   ByteView bytes_;
 };
 
+/// Whether a symbolic link in place of a file is followed. Not where the name came over the network.
+enum class Links { kFollow, kRefuse };
+
 /// A file, read with pread(2): a file that is cut while it is read gives short reads, where a mapping would give
 /// SIGBUS. Its size is that at the time of opening.
 class FileSource final : public ByteSource {
  public:
   /// Throws IoError (byte_sink.hpp) with path and reason.
-  explicit FileSource(const std::filesystem::path& path);
+  explicit FileSource(const std::filesystem::path& path, Links links = Links::kFollow);
   ~FileSource() override;
   FileSource(const FileSource&) = delete;
   FileSource& operator=(const FileSource&) = delete;

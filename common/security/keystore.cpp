@@ -2,21 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/security/keystore.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 
+#include "common/io/atomic_file.hpp"
 
 namespace rtd::security {
 
 namespace fs = std::filesystem;
 namespace {
 
-constexpr ::mode_t kPublic = 0644, kPrivate = 0600;
+constexpr unsigned kPublic = 0644, kPrivate = 0600;
 
 void create_folder(const fs::path& folder, fs::perms perms = fs::perms::none) {
   std::error_code error;
@@ -25,17 +24,10 @@ void create_folder(const fs::path& folder, fs::perms perms = fs::perms::none) {
   if (error) throw SecurityError(folder.string() + " cannot be created: " + error.message());
 }
 
-/// Whole or not at all: written beside and renamed.
-void write_file(const fs::path& file, const std::string& content, ::mode_t mode) {
-  const std::string beside = file.string() + ".new";
-  ::unlink(beside.c_str());
-  const int fd = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-  const bool written = fd >= 0 && ::write(fd, content.data(), content.size()) == static_cast<::ssize_t>(content.size());
-  const int cause = errno;
-  if (fd >= 0) ::close(fd);
-  if (written && ::rename(beside.c_str(), file.c_str()) == 0) return;
-  ::unlink(beside.c_str());
-  throw SecurityError(file.string() + " cannot be written: " + std::strerror(cause));
+void write_file(const fs::path& file, const std::string& content, unsigned mode) try {
+  io::write_file(file, content, {.mode = mode, .keep_mode = false});
+} catch (const io::IoError& error) {
+  throw SecurityError(std::string("cannot write ") + error.what());
 }
 
 void link_to(const fs::path& target, const fs::path& link) {

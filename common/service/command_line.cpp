@@ -20,6 +20,7 @@
 
 #include "common/io/printable.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/standard_streams.hpp"
 
 namespace rtd::service {
 namespace {
@@ -30,6 +31,7 @@ constexpr std::size_t kBarCells = 20;
 }  // namespace
 
 int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
+  hold_standard_streams();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

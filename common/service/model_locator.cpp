@@ -58,6 +58,11 @@ std::string kernel_cache_folder(const EnvironmentReader& environment) {
   return home && !home->empty() ? *home + "/.cache/rtd-slam/opencl" : std::string();
 }
 
+std::string state_folder(const EnvironmentReader& environment) {
+  const std::string folders = environment("STATE_DIRECTORY").value_or("");
+  return folders.substr(0, folders.find(':'));  // of several the first
+}
+
 EnvironmentReader process_environment() {
   return [](const std::string& name) -> std::optional<std::string> {
     const char* const value = std::getenv(name.c_str());

@@ -23,6 +23,7 @@
 #include "common/service/log.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/standard_streams.hpp"
 #include "common/service/systemd_link.hpp"
 
 namespace rtd::service {
@@ -163,6 +164,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
 }  // namespace
 
 int run_service(const ServiceDefinition& definition, int argc, char** argv) {
+  outlive_readers();
   CommonOptions common;
   BusConfig bus_config;
   ConfigBinder binder;

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "common/io/byte_sink.hpp"
 #include "common/service/monotonic_clock.hpp"
 
 namespace rtd::service {
@@ -29,11 +30,13 @@ std::string span_line(const char* name, std::int64_t begin_ns, double duration_n
 Trace::Trace(const std::string& folder, const std::string& service) {
   if (folder.empty()) return;
   const std::string path = fmt::format("{}/{}.{}.jsonl", folder, service, getpid());
-  file_.open(path, std::ios::app);
-  if (!file_) {
-    SPDLOG_WARN("event=no_trace file={} cause=\"cannot be written\"", path);
+  try {
+    const io::FileSink made(path);  // a new file, not what somebody else has put there
+  } catch (const io::IoError& error) {
+    SPDLOG_WARN("event=no_trace cause=\"{}\"", error.what());
     return;
   }
+  file_.open(path, std::ios::app);
   write(fmt::format(R"({{"name":"process_name","ph":"M","pid":{},"tid":0,"args":{{"name":"rtd-{}"}}}})"
                     "\n",
                     getpid(), service));

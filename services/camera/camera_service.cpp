@@ -7,10 +7,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <fstream>
 #include <opencv2/core/utility.hpp>
 #include <utility>
 
+#include "common/io/atomic_file.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
@@ -362,10 +362,15 @@ void CameraService::write_groundtruth() {
     SPDLOG_INFO("event=no_groundtruth uri={}", source_->info().uri);
     return;
   }
-  std::ofstream file(config_.groundtruth_out, std::ios::binary);
-  geometry::write_tum_trajectory(file, poses, geometry::TumStyle::kGroundtruth);
-  if (!file.flush()) {
-    SPDLOG_ERROR("event=groundtruth_not_written file={}", config_.groundtruth_out);
+  try {
+    io::write_file(
+        config_.groundtruth_out,
+        [&](std::ostream& file) {
+          geometry::write_tum_trajectory(file, poses, geometry::TumStyle::kGroundtruth);
+        },
+        {.named_by = io::NamedBy::kOperator});
+  } catch (const io::IoError& error) {
+    SPDLOG_ERROR("event=groundtruth_not_written cause=\"{}\"", error.what());
   }
 }
 

@@ -13,6 +13,7 @@
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/vision/image_codecs.hpp"
+#include "common/vision/image_file.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/core/preview.hpp"
 #include "services/camera/core/source_factory.hpp"
@@ -60,7 +61,7 @@ int preview(const PreviewOptions& options) {
     return service::kRunFailed;
   }
   std::cout << measured.text(source->info(), source->counters());
-  if (!vision::image_codecs().write(options.picture, measured.picture(), {})) {
+  if (!vision::write_image(options.picture, measured.picture(), {}, {.named_by = io::NamedBy::kOperator})) {
     std::cerr << "rtd-camera: " << options.picture << " cannot be written: choose another file with --picture\n";
     return service::kRunFailed;
   }

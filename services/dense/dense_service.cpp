@@ -7,14 +7,14 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/io/atomic_file.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "common/vision/image_codecs.hpp"
+#include "common/vision/image_file.hpp"
 #include "common/vision/rgbd_image.hpp"
 #include "services/dense/dense_messages.hpp"
 #include "services/dense/octomap_file.hpp"
@@ -26,13 +26,14 @@ constexpr std::chrono::milliseconds kStatePeriod{50};
 constexpr std::size_t kMovesPerTick = 4;  // kept images that follow a correction while nothing else is to be done
 constexpr std::int64_t kMaskPatienceNs = 3'000'000'000;  // for a filter that sends no masks
 
-bool report_file(const std::string& path, bool written, const std::string& content) {
-  if (written) {
-    SPDLOG_INFO("event=file_written path={} {}", path, content);
-  } else {
-    SPDLOG_ERROR("event=file_not_written path={} fix=\"check the folder and the free space\"", path);
-  }
-  return written;
+/// Calls write(); a failure is reported and false.
+bool report_file(const std::string& path, const std::string& content, const std::function<void()>& write) try {
+  write();
+  SPDLOG_INFO("event=file_written path={} {}", path, content);
+  return true;
+} catch (const std::exception& error) {
+  SPDLOG_ERROR("event=file_not_written path={} cause=\"{}\"", path, error.what());
+  return false;
 }
 
 /// Three numbers, "x,y,z". Throws service::ConfigError.
@@ -250,22 +251,17 @@ service::ExitCode DenseService::write_files() {
 
 bool DenseService::write_cloud(const std::string& path) {
   const std::vector<CloudPoint> points = map_.cloud();
-  std::ofstream file(path, std::ios::binary);
-  write_ply(file, points);
-  file.close();
-  return report_file(path, static_cast<bool>(file), fmt::format("points={}", points.size()));
+  return report_file(path, fmt::format("points={}", points.size()),
+                     [&] { io::write_file(path, [&](std::ostream& file) { write_ply(file, points); }); });
 }
 
 /// Nothing is written when no frame was fused.
 bool DenseService::write_background(const std::string& path) {
   const cv::Mat picture = background_.paint(map_);
   if (picture.empty()) return true;
-  bool written = false;
-  try {
-    written = vision::image_codecs().write(path, picture, {});
-  } catch (const std::exception&) {  // reported below
-  }
-  return report_file(path, written, fmt::format("views={}", background_.views()));
+  return report_file(path, fmt::format("views={}", background_.views()), [&] {
+    if (!vision::write_image(path, picture)) throw std::runtime_error("the picture cannot be encoded");
+  });
 }
 
 /// No plan is written as long as the floor is unknown, and nothing when no frame was fused.
@@ -275,10 +271,7 @@ bool DenseService::write_navigation_maps(const std::string& folder) {
   const Volume volume = navigation_->volume(map_);
   const auto write = [&folder](const char* name, const std::string& content, const auto& write_to) {
     const std::string path = folder + '/' + name;
-    std::ofstream file(path, std::ios::binary);
-    write_to(file);
-    file.close();
-    return report_file(path, static_cast<bool>(file), content);
+    return report_file(path, content, [&] { io::write_file(path, std::function<void(std::ostream&)>(write_to)); });
   };
   bool written = write("map.bt", fmt::format("cell_m={} blocks={}", volume.cell_m, volume.cells.blocks()),
                        [&](std::ostream& file) { write_octomap(file, volume); });

@@ -12,6 +12,7 @@
 #include "common/service/bus_config.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/standard_streams.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/process/executable.hpp"
@@ -195,6 +196,8 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--frames", options.frames, "End after this many frames");
   command->add_option("--map", options.map, "Continue the map in this file");
   command->add_option("--save-map", options.save_map, "Map file to write (default: map.rtdmap in the folder of --out)");
+  command->add_option("--maps-dir", options.maps_dir,
+                      "Folder of the maps that /slam/save_map and /slam/load_map may name (default: that of the map file)");
   add_robot_options(*command, options);
   command->add_flag("--localize-only", options.localize_only,
                     "Only find poses in the map of --map, leave it unchanged");
@@ -281,5 +284,6 @@ int front(int argc, char** argv) {
 }  // namespace rtd::launcher
 
 int main(int argc, char** argv) {
+  rtd::service::hold_standard_streams();
   return rtd::launcher::front(argc, argv);
 }

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "common/io/atomic_file.hpp"
 #include "common/io/byte_sink.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/writer.hpp"
@@ -137,12 +138,11 @@ class Copy {
 
 CopiedRecording copy_recording(const recordings::Opened& source, const std::filesystem::path& file,
                                mcap::Compression compression, const std::function<void(std::uint64_t)>& progress) {
-  if (std::filesystem::exists(file)) throw io::IoError(EEXIST, file.string());
+  io::AtomicFile sink(file, {.named_by = io::NamedBy::kOperator, .if_exists = io::IfExists::kFail});
   CopiedRecording result;
   result.damages = source.damages;
-  io::FileSink sink(file.string() + ".partial", io::IfExists::kReplace);
   Copy(*source.source, sink, compression, result).run(progress);
-  sink.replace(file);
+  sink.commit();
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/io/atomic_file.hpp"
 #include "common/mcap/copy.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
@@ -37,8 +38,10 @@ void add_output_options(CLI::App& app, FileOptions& options) {
   app.add_flag("--json", options.json, "Report as JSON");
 }
 
-io::FileSink open_sink(const FileOptions& options) {
-  return io::FileSink(options.output, options.force ? io::IfExists::kReplace : io::IfExists::kFail);
+/// The new file; it gets its name when it is whole.
+io::AtomicOptions output_options(const FileOptions& options) {
+  return {.named_by = io::NamedBy::kOperator,
+          .if_exists = options.force ? io::IfExists::kReplace : io::IfExists::kFail};
 }
 
 /// The same for both commands: a file that cannot be used is exit code 2, another failure 1.
@@ -85,12 +88,12 @@ int recover(const FileOptions& options) {
     std::cerr << "rtd record: " << options.input << " is still being written: stop its recorder first\n";
     return service::kUsageOrConfig;
   }
-  io::FileSink sink = open_sink(options);
+  io::AtomicFile sink(options.output, output_options(options));
   service::Progress progress(std::cerr, "recovering", source.size());
   mcap::RecoverOptions recovering;
   recovering.progress = [&](std::uint64_t bytes) { progress.reach(bytes); };
   const mcap::RecoverReport report = mcap::recover(source, sink, recovering);
-  sink.sync();
+  sink.commit();
   print(report, options);
   return report.data_lost ? service::kPartialLoss : service::kOk;
 }
@@ -153,12 +156,12 @@ int join(const FileOptions& options) {
     sources.push_back(part.source.get());
     bytes += part.source->size();
   }
-  io::FileSink sink = open_sink(options);
+  io::AtomicFile sink(options.output, output_options(options));
   service::Progress progress(std::cerr, "joining", bytes);
   mcap::JoinOptions joining;
   joining.progress = [&](std::uint64_t done) { progress.reach(done); };
   const mcap::JoinReport report = mcap::join(sources, sink, joining);
-  sink.sync();
+  sink.commit();
   const std::uint64_t messages = report.joined.message_count;
   print(report, options, {{"parts", parts.size()}, {"messages", messages}},
         std::to_string(messages) + " messages of " + std::to_string(parts.size()) + " parts in " + options.output);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/io/atomic_file.hpp"
 #include "common/mcap/writer.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/type_description.hpp"
@@ -65,7 +66,7 @@ msg::TFMessage truth_message(const geometry::StampedPose& pose) {
 class Recorder {
  public:
   Recorder(const fs::path& file, mcap::Compression compression, double depth_scale_m)
-      : sink_(file, io::IfExists::kReplace), writer_(sink_, {.profile = "ros2", .compression = compression}) {
+      : sink_(file, {.named_by = io::NamedBy::kOperator, .if_exists = io::IfExists::kFail}), writer_(sink_, {.profile = "ros2", .compression = compression}) {
     const mcap::SchemaId image = schema("sensor_msgs/msg/Image");
     color_ = channel("/camera/color/image_raw", image);
     depth_ = channel("/camera/aligned_depth_to_color/image_raw", image,
@@ -86,7 +87,7 @@ class Recorder {
   }
   void close() {
     writer_.close();
-    sink_.sync();
+    sink_.commit();
   }
 
  private:
@@ -105,7 +106,7 @@ class Recorder {
     writer_.write(mcap::Message{channel, sequence_[channel]++, time, time, std::as_bytes(std::span(bytes))});
   }
 
-  io::FileSink sink_;
+  io::AtomicFile sink_;
   mcap::Writer writer_;
   mcap::ChannelId color_ = 0, depth_ = 0, info_ = 0, truth_ = 0;
   std::map<mcap::ChannelId, std::uint32_t> sequence_;
@@ -117,8 +118,7 @@ std::uint64_t export_mcap(camera::FrameSource& source, const fs::path& file, mca
                           std::uint64_t max_frames, const camera::OnFrame& on_frame) {
   camera::check_end(source, max_frames);
   if (fs::exists(file)) throw camera::SourceError(file.string() + " exists; name a new file or remove it");
-  const fs::path partial = file.string() + ".partial";
-  Recorder recorder(partial, compression, source.info().depth_scale_m);
+  Recorder recorder(file, compression, source.info().depth_scale_m);
   std::uint64_t frames = 0;
   while (max_frames == 0 || frames < max_frames) {
     const std::optional<camera::SourceFrame> frame = source.next();
@@ -129,7 +129,6 @@ std::uint64_t export_mcap(camera::FrameSource& source, const fs::path& file, mca
   }
   recorder.write(source.groundtruth());
   recorder.close();
-  fs::rename(partial, file);
   return frames;
 }
 

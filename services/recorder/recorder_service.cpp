@@ -8,14 +8,25 @@
 #include <algorithm>
 
 #include "common/bus/raw_bus.hpp"
+#include "common/mcap/records.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/log.hpp"
+#include "common/service/model_locator.hpp"
 
 namespace rtd::recorder {
 namespace {
 
 constexpr std::chrono::milliseconds kIdle{20};
+constexpr io::FileKind kRecordings{"recording", ".mcap", mcap::kMagic, "--recordings-dir"};
+
+/// Of the recordings that a command may name.
+std::string folder_of(const ServiceConfig& config) {
+  if (!config.folder.empty()) return config.folder;
+  if (!config.output.empty()) return OutputFiles(config.output, true).folder().string();
+  const std::string state = service::state_folder(service::process_environment());
+  return state.empty() ? "." : state;
+}
 
 }  // namespace
 
@@ -23,6 +34,9 @@ void RecorderService::add_options(CLI::App& app, Config& config) {
   app.add_option("--topics", config.topics, "Patterns of DDS or ROS 2 names: 'rtd/*' /slam/odometry (default: all)");
   app.add_option("-o,--output", config.output,
                  "FILE.mcap, or a folder in the layout of rosbag2 (default: rtd_DATE-TIME)");
+  app.add_option("--recordings-dir", config.folder,
+                 "Folder of the recordings that /recorder/start may name; default: that of --output, else the working "
+                 "folder");
   app.add_option("--split", config.split, "Begin a new file at this size or duration: 500MB, 1GB, 60s, 5min");
   app.add_option("--compress", config.compression, "none, lz4 or zstd (default none)")
       ->check(CLI::IsMember({"none", "lz4", "zstd"}));
@@ -36,7 +50,8 @@ void RecorderService::add_options(CLI::App& app, Config& config) {
       "Exit code 3: recorded, but messages were lost; the report, the log and the file list them.");
 }
 
-RecorderService::RecorderService(const Config& config, service::Runtime& runtime) : config_(config), runtime_(runtime) {
+RecorderService::RecorderService(const Config& config, service::Runtime& runtime)
+    : config_(config), recordings_(folder_of(config), kRecordings), runtime_(runtime) {
   if (!config_.wait) session_.emplace(config_, runtime_);
 }
 
@@ -70,13 +85,22 @@ void RecorderService::offer_commands() {
   commands_->offer("recorder/stop", CommandKind::kTrigger, [this](const CommandRequest&) { return stop(); });
 }
 
-bus::CommandAnswer RecorderService::start(const std::string& path) {
+/// What the operator has configured, once; a name of its own, or the one that a command gives, in the folder of
+/// recordings.
+std::string RecorderService::output_of(const std::string& name) const {
+  if (!name.empty()) return recordings_.to_write(name).string();
+  return config_.output.empty() ? (recordings_.folder() / dated_name()).string() : config_.output;
+}
+
+bus::CommandAnswer RecorderService::start(const std::string& name) {
   if (session_) return {false, "already recording to " + session_->path() + ": end it first with /recorder/stop"};
   Config config = config_;
-  if (!path.empty()) config.output = path;
   try {
+    config.output = output_of(name);
     session_.emplace(config, runtime_);
   } catch (const service::ConfigError& error) {
+    return {false, error.what()};
+  } catch (const io::NameError& error) {
     return {false, error.what()};
   }
   config_.output.clear();  // the next one gets a name of its own

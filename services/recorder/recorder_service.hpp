@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/bus/command_desk.hpp"
+#include "common/io/named_files.hpp"
 #include "services/recorder/recording_session.hpp"
 
 namespace CLI {
@@ -32,12 +33,14 @@ class RecorderService {
 
  private:
   void offer_commands();
-  bus::CommandAnswer start(const std::string& path);
+  bus::CommandAnswer start(const std::string& name);
+  std::string output_of(const std::string& name) const;
   bus::CommandAnswer stop();
   void end_session();
   void show_recording();
 
   Config config_;
+  const io::NamedFiles recordings_;
   service::Runtime& runtime_;
   std::shared_ptr<bus::RawBus> bus_;
   std::optional<RecordingSession> session_;   ///< none while nothing is recorded

@@ -8,12 +8,14 @@
 
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "common/bus/raw_bus.hpp"
 #include "common/concurrency/thread_priority.hpp"
+#include "common/io/atomic_file.hpp"
+#include "common/io/named_files.hpp"
+#include "common/mcap/records.hpp"
 #include "common/service/config.hpp"
 #include "common/service/json_text.hpp"
 #include "common/service/log.hpp"
@@ -31,8 +33,7 @@ constexpr std::int64_t kReportPeriodNs = 200'000'000, kProgressPeriodNs = 1'000'
 constexpr std::uint64_t kMib = 1024 * 1024;
 
 std::string output_of(const ServiceConfig& config) {
-  if (!config.output.empty()) return config.output;
-  return fmt::format("rtd_{:%Y_%m_%d-%H_%M_%S}", fmt::localtime(std::time(nullptr)));
+  return config.output.empty() ? dated_name() : config.output;
 }
 
 SplitPolicy split_of(const ServiceConfig& config) {
@@ -62,6 +63,10 @@ void prepare(const OutputFiles& files, bool force) {
   if (!earlier.empty() && !force) {
     throw ConfigError(earlier.front().string() +
                       " exists already: choose another name with -o, or replace it with --force");
+  }
+  for (const fs::path& file : earlier) {
+    if (io::look_at(file, mcap::kMagic) == io::Found::kOther)
+      throw ConfigError(file.string() + " exists and is not a recording, so it is not replaced: choose another name");
   }
   std::error_code error;
   fs::create_directories(files.folder(), error);
@@ -138,6 +143,10 @@ std::string size_text(std::uint64_t bytes) {
 }
 
 }  // namespace
+
+std::string dated_name() {
+  return fmt::format("rtd_{:%Y_%m_%d-%H_%M_%S}", fmt::localtime(std::time(nullptr)));
+}
 
 RecordingSession::RecordingSession(const ServiceConfig& config, service::Runtime& runtime)
     : config_(config),
@@ -285,6 +294,20 @@ void RecordingSession::watch_disk() {
   }
 }
 
+/// Beside the files, unless another file has the name.
+void RecordingSession::write_metadata(const std::string& text) const {
+  std::string cause = "it is not of this recording";
+  try {
+    if (files_.owns_metadata()) return io::write_file(files_.metadata(), text);
+  } catch (const io::IoError& error) {
+    cause = error.what();
+  }
+  SPDLOG_WARN(
+      "event=metadata_not_written path={} cause=\"{}\" "
+      "fix=\"give each recording a folder of its own: -o NAME without .mcap\"",
+      files_.metadata().string(), cause);
+}
+
 service::ExitCode RecordingSession::conclude() {
   const Acknowledged acknowledged = sync_->acknowledged();
   book_.count_acknowledged(acknowledged.messages);
@@ -297,14 +320,7 @@ service::ExitCode RecordingSession::conclude() {
   report.duration_s = static_cast<double>(service::monotonic_ns() - started_ns_) * 1e-9;
   report.failure = failure_;
   for (std::size_t i = 0; i < report.files.size(); ++i) report.names.push_back(files_.file(i).filename());
-  if (files_.owns_metadata()) {
-    std::ofstream(files_.metadata()) << bag_metadata_text(report.names, report.files, report.topics);
-  } else {
-    SPDLOG_WARN(
-        "event=metadata_not_written path={} cause=\"it describes another recording in this folder\" "
-        "fix=\"give each recording a folder of its own: -o NAME without .mcap\"",
-        files_.metadata().string());
-  }
+  write_metadata(bag_metadata_text(report.names, report.files, report.topics));
   if (interactive_) std::cerr << "\r\x1b[K";
   for (const RecordedTopic& topic : report.topics) {
     SPDLOG_INFO("event=topic topic={} messages={} lost_in_transit={} lost_in_queue={}", topic.name,

@@ -19,6 +19,7 @@ namespace rtd::recorder {
 struct ServiceConfig {
   std::vector<std::string> topics{"*"};
   std::string output;
+  std::string folder;
   std::string split;
   std::string compression = "none";
   bool force = false;
@@ -36,6 +37,9 @@ struct ServiceConfig {
   void bind(auto& binder) {
     binder.field("topics", topics, "shell patterns of DDS or ROS 2 names: rt/slam/*, /slam/odometry");
     binder.field("output", output, "FILE.mcap, or a folder in the layout of rosbag2; empty: rtd_DATE-TIME");
+    binder.field("folder", folder,
+                 "folder of the recordings that recorder/start may name (--recordings-dir); empty: that of output, else "
+                 "$STATE_DIRECTORY, else the working folder");
     binder.field("split", split, "size or duration after which a new file begins, e.g. 1GB or 60s; empty: one file");
     binder.choice("compression", compression, {"none", "lz4", "zstd"}, "compression of chunks");
     binder.field("force", force, "replace an earlier recording");
@@ -52,6 +56,9 @@ struct ServiceConfig {
     binder.field("in_place", in_place, "read images in the camera's shared memory instead of having them sent");
   }
 };
+
+/// "rtd_DATE-TIME": of a recording without a name, local time.
+std::string dated_name();
 
 /// One recording from its first file to its last. For one thread.
 class RecordingSession {
@@ -82,6 +89,7 @@ class RecordingSession {
   void set_state(const TopicCounts& totals);
   void show_progress(std::int64_t now_ns, const TopicCounts& totals);
   void watch_disk();
+  void write_metadata(const std::string& text) const;
   service::ExitCode conclude();
 
   const ServiceConfig config_;

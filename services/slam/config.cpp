@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 
+#include "common/io/fd_writing.hpp"
 #include "common/service/config.hpp"
 #include "services/slam/core/place/vocabulary.hpp"
 #include "services/slam/robot_base.hpp"
@@ -45,6 +46,12 @@ void check(const MotionTopics& motion, bool base_given) {
 }
 
 }  // namespace
+
+std::string maps_folder(const ServiceConfig& config, const std::string& state_folder) {
+  if (!config.map.folder.empty()) return config.map.folder;
+  if (!config.map.save.empty()) return io::folder_of(config.map.save).string();
+  return config.out_dir.empty() ? state_folder : config.out_dir;
+}
 
 SlamConfig core_config(const ServiceConfig& config) {
   SlamConfig core = config.core;

@@ -11,11 +11,15 @@ namespace rtd::slam {
 /// Where the map comes from and goes to.
 struct MapFileConfig {
   std::string load, save;
+  std::string folder;
   double checkpoint_s = 30;
 
   void bind(auto& binder) {
     binder.field("load", load, "map file to continue; empty: a new map");
     binder.field("save", save, "map file to write at checkpoints and at the end; empty: none");
+    binder.field("folder", folder,
+                 "folder of the maps that slam/save_map and slam/load_map may name (--maps-dir); empty: that of "
+                 "map.save, else out, else $STATE_DIRECTORY");
     binder.field("checkpoint_s", checkpoint_s, {0.0, 86400.0}, "time between two checkpoints; 0: only at the end");
   }
 };
@@ -108,6 +112,9 @@ struct ServiceConfig {
   /// Throws service::ConfigError for keys that contradict each other.
   void validate() const;
 };
+
+/// The folder of the maps that commands may name; "": none. `state_folder`: of a service of systemd, or "".
+std::string maps_folder(const ServiceConfig& config, const std::string& state_folder);
 
 /// The configuration of the core, with the vocabulary of `vocabulary_file` and the first pose that `base` gives, in
 /// which tf has been replaced by what it says. Throws service::ConfigError naming the file when it cannot be read or is

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/slam/core/store/map_format.hpp"
+
 namespace rtd::slam {
 namespace {
 
@@ -24,23 +26,15 @@ std::string text(int width, int height, double fx, double fy, double cx, double 
 
 }  // namespace
 
-std::uint64_t save_map_file(const std::filesystem::path& path, const MapSnapshot& snapshot) {
-  std::filesystem::path unfinished = path;
-  unfinished += ".tmp";
-  io::FileSink sink(unfinished, io::IfExists::kReplace);
-  try {
-    write_map(snapshot, sink);
-    sink.replace(path);
-  } catch (...) {
-    std::error_code ignored;  // the first failure is the one to report
-    std::filesystem::remove(unfinished, ignored);
-    throw;
-  }
-  return sink.position();
+std::uint64_t save_map_file(const std::filesystem::path& path, const MapSnapshot& snapshot, io::NamedBy named_by) {
+  io::AtomicFile file(path, {.named_by = named_by});
+  write_map(snapshot, file);
+  file.commit();
+  return file.position();
 }
 
-MapContents load_map_file(const std::filesystem::path& path, const MapReadOptions& options) {
-  const io::FileSource source(path);
+MapContents load_map_file(const std::filesystem::path& path, const MapReadOptions& options, io::Links links) {
+  const io::FileSource source(path, links);
   try {
     return read_map(source, options);
   } catch (const MapFileError& error) {

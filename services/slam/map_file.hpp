@@ -6,18 +6,21 @@
 #include <string>
 #include <vector>
 
-#include "common/io/byte_sink.hpp"
+#include "common/io/atomic_file.hpp"
+#include "common/io/byte_source.hpp"
 #include "services/slam/core/map/map.hpp"
 #include "services/slam/core/store/map_store.hpp"
 
 namespace rtd::slam {
 
-/// Writes FILE.tmp, makes it durable and gives it the name FILE: whatever happens on the way, FILE is the old map or
-/// the new one, whole. Returns its bytes. Throws io::IoError naming file and reason; FILE.tmp is gone then.
-std::uint64_t save_map_file(const std::filesystem::path& path, const MapSnapshot& snapshot);
+/// Writes the map as io::AtomicFile does: whatever happens on the way, the file is the old map or the new one, whole.
+/// Returns its bytes. Throws io::IoError naming file and reason.
+std::uint64_t save_map_file(const std::filesystem::path& path, const MapSnapshot& snapshot,
+                            io::NamedBy named_by = io::NamedBy::kOperator);
 
 /// Throws io::IoError when it cannot be read, MapFileError when it is no map; both name the file.
-MapContents load_map_file(const std::filesystem::path& path, const MapReadOptions& options = {});
+MapContents load_map_file(const std::filesystem::path& path, const MapReadOptions& options = {},
+                          io::Links links = io::Links::kFollow);
 
 using MapCamera = map_format::StoredCamera;
 using MapCameras = std::vector<MapCamera>;

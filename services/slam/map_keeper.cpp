@@ -3,12 +3,11 @@
 #include "services/slam/map_keeper.hpp"
 
 #include <fmt/format.h>
-#include <fstream>
-#include <functional>
 #include <stdexcept>
 #include <string>
 
 #include "common/concurrency/thread_priority.hpp"
+#include "common/io/atomic_file.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/slam/map_file.hpp"
@@ -20,16 +19,10 @@ double ms_since(std::int64_t start_ns) {
   return static_cast<double>(service::monotonic_ns() - start_ns) * 1e-6;
 }
 
-void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write) {
-  std::ofstream file(path);
-  write(file);
-  file.close();
-  if (!file) throw std::runtime_error("cannot write " + path.string() + ": check the folder and the free space");
-}
-
 }  // namespace
 
 MapKeeper::MapKeeper(const MapFileConfig& config, const SlamSystem& slam) : config_(config), slam_(slam) {
+  if (!config.save.empty()) io::remove_unfinished(io::folder_of(config.save));  // of a process that was killed
   if (!config.save.empty() && config.checkpoint_s > 0) thread_ = std::thread([this] { loop(); });
 }
 
@@ -72,7 +65,7 @@ bool MapKeeper::save(const char* occasion) {
     return true;
   }
   try {
-    write(config_.save, occasion);
+    write(config_.save, occasion, io::NamedBy::kOperator);
   } catch (const std::exception& error) {
     SPDLOG_ERROR("event=map_not_saved file={} occasion={} cause=\"{}\" kept=\"what the file held before\"",
                  config_.save, occasion, error.what());
@@ -83,24 +76,28 @@ bool MapKeeper::save(const char* occasion) {
   return true;
 }
 
-SavedMap MapKeeper::save_to(const std::filesystem::path& path) {
-  const SavedMap saved = write(path, "request");
-  if (path == config_.save) note_trouble({});
+SavedMap MapKeeper::save_to(const std::filesystem::path& path, io::NamedBy named_by) {
+  const SavedMap saved = write(path, "request", named_by);
+  if (is_configured(path)) note_trouble({});
   return saved;
 }
 
-SavedMap MapKeeper::write(const std::filesystem::path& path, const char* occasion) {
+bool MapKeeper::is_configured(const std::filesystem::path& path) const {
+  return path.lexically_normal() == std::filesystem::path(config_.save).lexically_normal();
+}
+
+SavedMap MapKeeper::write(const std::filesystem::path& path, const char* occasion, io::NamedBy named_by) {
   const std::lock_guard lock(file_mutex_);
   const std::int64_t start_ns = service::monotonic_ns();
   MapSnapshot snapshot;
   slam_.read_map([&](const Map& map) { snapshot = take_snapshot(map); });
   const double copy_ms = ms_since(start_ns);
   if (snapshot.keyframes.empty()) throw std::runtime_error("nothing was mapped: there is no map to save");
-  const std::uint64_t bytes = save_map_file(path, snapshot);
+  const std::uint64_t bytes = save_map_file(path, snapshot, named_by);
   SPDLOG_INFO("event=map_saved file={} occasion={} keyframes={} landmarks={} bytes={} copy_ms={:.0f} ms={:.0f}",
               path.string(), occasion, snapshot.head.keyframes, snapshot.head.landmarks, bytes, copy_ms,
               ms_since(start_ns));
-  if (path == config_.save) saved_ = {snapshot.head.next_keyframe, snapshot.head.next_landmark};
+  if (is_configured(path)) saved_ = {snapshot.head.next_keyframe, snapshot.head.next_landmark};
   return {snapshot.head.keyframes, snapshot.head.landmarks, bytes};
 }
 
@@ -112,16 +109,16 @@ void MapKeeper::note_trouble(std::string trouble) {
 void write_run_files(const SlamSystem& slam, const std::filesystem::path& folder) {
   std::error_code ignored;  // an existing folder is fine, an impossible one shows when the file is written
   std::filesystem::create_directories(folder, ignored);
-  write_file(folder / "trajectory.txt",
+  io::write_file(folder / "trajectory.txt",
              [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.trajectory()); });
-  write_file(folder / "keyframes.txt",
+  io::write_file(folder / "keyframes.txt",
              [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.keyframes()); });
   for (const MapId map : slam.maps()) {
     if (map == 0) continue;
-    write_file(folder / ("trajectory_map_" + std::to_string(map) + ".txt"),
+    io::write_file(folder / ("trajectory_map_" + std::to_string(map) + ".txt"),
                [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.trajectory(map)); });
   }
-  write_file(folder / "map.ply", [&](std::ostream& out) { write_ply(out, slam.map_points()); });
+  io::write_file(folder / "map.ply", [&](std::ostream& out) { write_ply(out, slam.map_points()); });
 }
 
 }  // namespace rtd::slam

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "common/io/atomic_file.hpp"
 #include "common/service/stop_token.hpp"
 #include "services/slam/config.hpp"
 #include "services/slam/core/slam_system.hpp"
@@ -36,7 +37,7 @@ class MapKeeper {
   /// Saves the map as it is now, whatever the configuration says; checkpoints go on. Any thread; the mapper waits while
   /// the map is copied. Throws std::runtime_error with file and cause: nothing was mapped, or the file cannot be
   /// written, which then keeps what it held.
-  SavedMap save_to(const std::filesystem::path& path);
+  SavedMap save_to(const std::filesystem::path& path, io::NamedBy named_by = io::NamedBy::kOperator);
 
  private:
   /// Tells one state of the map from a later one.
@@ -48,7 +49,8 @@ class MapKeeper {
 
   void loop();
   bool save(const char* occasion);
-  SavedMap write(const std::filesystem::path& path, const char* occasion);
+  bool is_configured(const std::filesystem::path& path) const;
+  SavedMap write(const std::filesystem::path& path, const char* occasion, io::NamedBy named_by);
   void note_trouble(std::string trouble);
 
   const MapFileConfig config_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/service/log.hpp"
+#include "services/slam/core/store/map_format.hpp"
 #include "services/slam/map_file.hpp"
 
 namespace rtd::slam {
@@ -29,9 +30,10 @@ std::string full_path(const std::string& path) {
 
 }  // namespace
 
-SlamCommands::SlamCommands(bus::Bus& bus, const MapFileConfig& files, SlamSystem& slam, MapKeeper& keeper,
-                           TakeMap take_map, Forget forget)
+SlamCommands::SlamCommands(bus::Bus& bus, const MapFileConfig& files, const std::string& maps_folder, SlamSystem& slam,
+                           MapKeeper& keeper, TakeMap take_map, Forget forget)
     : files_(files),
+      maps_(maps_folder, {"map", ".rtdmap", map_format::kMagic, "--maps-dir"}),
       slam_(slam),
       keeper_(keeper),
       take_map_(std::move(take_map)),
@@ -56,18 +58,20 @@ bus::CommandAnswer SlamCommands::reset() {
                             before.keyframes, before.landmarks)};
 }
 
-bus::CommandAnswer SlamCommands::save(const std::string& path) {
-  const std::string& file = path.empty() ? files_.save : path;
-  if (file.empty()) return {false, "name a file: slam was started without --save-map"};
-  const SavedMap saved = keeper_.save_to(file);
+/// The configured file, or that of a name.
+bus::CommandAnswer SlamCommands::save(const std::string& name) {
+  if (name.empty() && files_.save.empty()) return {false, "name a map: slam was started without --save-map"};
+  const std::string file = name.empty() ? files_.save : maps_.to_write(name).string();
+  const SavedMap saved =
+      keeper_.save_to(file, name.empty() ? io::NamedBy::kOperator : io::NamedBy::kProgram);
   return {true, fmt::format("{} keyframes and {} landmarks, {:.1f} MB, saved to {}", saved.keyframes, saved.landmarks,
                             static_cast<double>(saved.bytes) * 1e-6, full_path(file))};
 }
 
-bus::CommandAnswer SlamCommands::load(const std::string& path) {
-  const std::string& file = path.empty() ? files_.load : path;
-  if (file.empty()) return {false, "name a file: slam was started without --map"};
-  MapContents contents = load_map_file(file);
+bus::CommandAnswer SlamCommands::load(const std::string& name) {
+  if (name.empty() && files_.load.empty()) return {false, "name a map: slam was started without --map"};
+  const std::string file = name.empty() ? files_.load : maps_.to_read(name).string();
+  MapContents contents = load_map_file(file, {}, name.empty() ? io::Links::kFollow : io::Links::kRefuse);
   const std::size_t keyframes = contents.keyframes.size(), landmarks = contents.landmarks.size();
   return desk_.run([&]() -> bus::CommandAnswer {
     if (std::string difference = take_map_(std::move(contents)); !difference.empty()) return {false, difference};

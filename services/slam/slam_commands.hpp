@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/bus/command_desk.hpp"
+#include "common/io/named_files.hpp"
 #include "services/slam/config.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "services/slam/map_keeper.hpp"
@@ -21,19 +22,21 @@ class SlamCommands {
   using Forget = std::function<void()>;
 
   /// The others outlive this. `forget` resets the system in the worker's thread.
-  SlamCommands(bus::Bus& bus, const MapFileConfig& files, SlamSystem& slam, MapKeeper& keeper, TakeMap take_map,
-               Forget forget);
+  /// `maps_folder`: of the maps that may be named; "": only those of `files` are saved and loaded.
+  SlamCommands(bus::Bus& bus, const MapFileConfig& files, const std::string& maps_folder, SlamSystem& slam,
+               MapKeeper& keeper, TakeMap take_map, Forget forget);
   /// Carries out what waits. By the worker, between frames.
   void serve() { desk_.serve(); }
   void close() { desk_.close(); }
 
  private:
   bus::CommandAnswer reset();
-  bus::CommandAnswer save(const std::string& path);
-  bus::CommandAnswer load(const std::string& path);
+  bus::CommandAnswer save(const std::string& name);
+  bus::CommandAnswer load(const std::string& name);
   bus::CommandAnswer localize_only(bool on);
 
   const MapFileConfig files_;
+  const io::NamedFiles maps_;
   SlamSystem& slam_;
   MapKeeper& keeper_;
   const TakeMap take_map_;

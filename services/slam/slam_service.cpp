@@ -11,6 +11,7 @@
 
 #include "common/concurrency/thread_priority.hpp"
 #include "common/service/config.hpp"
+#include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_keeper.hpp"
@@ -46,6 +47,9 @@ void SlamService::add_options(CLI::App& app, Config& config) {
   app.add_option("--map", config.map.load, "Map file to go on with (slam.map.load)")->multi_option_policy(last);
   app.add_option("--save-map", config.map.save, "Map file to write at the end and at checkpoints (slam.map.save)")
       ->multi_option_policy(last);
+  app.add_option("--maps-dir", config.map.folder,
+                 "Folder of the maps that /slam/save_map and /slam/load_map may name; default: that of --save-map, else "
+                 "--out (slam.map.folder)");
   app.add_option("--base-frame", config.base.frame, "Frame of the robot, with --camera-in-base (slam.base.frame)");
   app.add_option(
       "--camera-in-base", config.base.camera,
@@ -142,7 +146,8 @@ void SlamService::forget_map() {
 
 service::ExitCode SlamService::run() {
   commands_.emplace(
-      runtime_.bus, config_.map, slam_, map_keeper_,
+      runtime_.bus, config_.map, maps_folder(config_, service::state_folder(service::process_environment())), slam_,
+      map_keeper_,
       [this](MapContents contents) { return take_map(std::move(contents)); }, [this] { forget_map(); });
   while (!runtime_.stop.stop_requested()) {
     runtime_.heartbeat.tick();

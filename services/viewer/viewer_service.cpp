@@ -41,16 +41,25 @@ std::string random_text() {
   return hexadecimal(bytes);
 }
 
-/// On other interfaces than loopback every client must know it.
+/// On loopback any program and, through a browser, many a page can connect: without a token of the operator's own they
+/// may look. On other interfaces every client must know the token.
+bool look_freely(const ServiceConfig& config) {
+  return config.token.empty() && is_loopback(config.bind_address);
+}
+
+/// None where everybody may look and nobody do more.
 std::string token_of(const ServiceConfig& config) {
-  return config.token.empty() && !is_loopback(config.bind_address) ? random_text() : config.token;
+  const bool nothing_to_do = config.read_only && !config.publish;
+  if (!config.token.empty() || (look_freely(config) && nothing_to_do)) return config.token;
+  return random_text();
 }
 
 WebOptions web_options(const ServiceConfig& config, const std::string& token) {
   WebOptions options;
   options.address = config.bind_address;
   options.port = static_cast<std::uint16_t>(config.port);
-  options.access = {.hosts = config.hosts, .origins = config.origins, .token = token};
+  options.access = {.hosts = config.hosts, .origins = config.origins, .token = token,
+                    .look_freely = look_freely(config)};
   if (is_loopback(config.bind_address) && options.access.hosts.empty()) options.access.hosts = {"localhost"};
   if (config.publish) options.longest_message_bytes = 16U << 20U;
   return options;
@@ -102,7 +111,7 @@ void ViewerService::add_options(CLI::App& app, Config& config) {
   app.add_option("--bind", config.bind_address, "Address to listen on; 0.0.0.0: all interfaces, with a token")
       ->capture_default_str();
   app.add_option("--token", config.token,
-                 "Asked of every client; without it one is made up unless the viewer listens on loopback only");
+                 "Asked of every client. Without it one is made up, and on loopback it is asked only for commands");
   app.add_option("--host", config.hosts, "Further names by which browsers may address this host")->delimiter(',');
   app.add_option("--origin", config.origins, "Sites whose pages may connect, e.g. a Foxglove of your own")
       ->delimiter(',');
@@ -134,7 +143,7 @@ ViewerService::ViewerService(const Config& config, service::Runtime& runtime)
              .now_ms = wall_clock_ms}) {
   try {
     server_.emplace(
-        web_options(config_, token_), site_, [this](const std::string& subprotocol) { return open(subprotocol); },
+        web_options(config_, token_), site_, [this](const std::string& subprotocol, Rights rights) { return open(subprotocol, rights); },
         reports());
   } catch (const WebError& error) {
     throw ConfigError(error.what());
@@ -179,8 +188,8 @@ FoxgloveHooks ViewerService::foxglove_hooks() {
   return hooks;
 }
 
-std::unique_ptr<Session> ViewerService::open(const std::string& subprotocol) {
-  return subprotocol == page::kSubprotocol ? page_.open() : foxglove_.open(subprotocol);
+std::unique_ptr<Session> ViewerService::open(const std::string& subprotocol, Rights rights) {
+  return subprotocol == page::kSubprotocol ? page_.open(rights) : foxglove_.open(subprotocol, rights);
 }
 
 Reports ViewerService::reports() const {
@@ -306,7 +315,7 @@ void ViewerService::print_address() const {
   const std::string token = token_.empty() ? "" : "?token=" + token_;
   std::cout << fmt::format("viewer: http://{}/{}   Foxglove: ws://{}/{}\n", place, token, place, token) << std::flush;
   SPDLOG_INFO("event=listening address={} port={} token={} commands={}", config_.bind_address, server_->port(),
-              token_.empty() ? "none" : "asked", config_.read_only ? "off" : "on");
+              token_.empty() ? "none" : look_freely(config_) ? "for commands" : "asked", config_.read_only ? "off" : "on");
 }
 
 service::ExitCode ViewerService::run() {

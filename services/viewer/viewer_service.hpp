@@ -42,7 +42,8 @@ struct ServiceConfig {
   void bind(auto& binder) {
     binder.field("bind", bind_address, "address to listen on (--bind)");
     binder.field("port", port, {0, 65535}, "port; 0: any free one (--port)");
-    binder.field("token", token, "asked of every client (--token); empty: none on loopback, else one is made up");
+    binder.field("token", token, "asked of every client (--token); empty: one is made up, on loopback it is asked only for "
+                 "commands");
     binder.field("hosts", hosts, "names by which browsers may address this host (--host)");
     binder.field("origins", origins, "sites whose pages may connect (--origin)");
     binder.field("topics", topics, "patterns of topics that Foxglove clients are offered");
@@ -73,7 +74,7 @@ class ViewerService {
   FoxgloveHooks foxglove_hooks();
   void call(const std::string& name, const std::string& argument, CommandCaller::Answer answer);
   void control_playback(const foxglove::PlaybackControl& control, CommandCaller::Answer answer);
-  std::unique_ptr<Session> open(const std::string& subprotocol);
+  std::unique_ptr<Session> open(const std::string& subprotocol, Rights rights);
   Reports reports() const;
   std::vector<WatchedService> watched_services() const;
   void find_robots();

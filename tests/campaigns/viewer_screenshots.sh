@@ -12,11 +12,11 @@ tools="$root/build/release/viewers" port=8799
 
 mkdir -p "$folder"
 work="$(mktemp -d)"
-"$root/build/release/bin/rtd" run --source "$source" --out "$work/out" --domain 173 --viewer --set viewer.port=$port \
+"$root/build/release/bin/rtd" run --source "$source" --out "$work/out" --domain 173 --viewer --set viewer.port=$port --set viewer.token=pictures \
   >"$work/log" 2>&1 &
 run=$!
 trap 'kill $run 2>/dev/null || true; wait $run 2>/dev/null || true; rm -rf "$work"' EXIT
-RTD_NODE_TOOLS="$tools" node "$root/tests/campaigns/viewer_screenshots.mjs" "http://127.0.0.1:$port/" "$folder" || {
+RTD_NODE_TOOLS="$tools" node "$root/tests/campaigns/viewer_screenshots.mjs" "http://127.0.0.1:$port/?token=pictures" "$folder" || {
   cat "$work/log" >&2
   exit 1
 }

@@ -7,8 +7,8 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fstream>
 
+#include "common/io/atomic_file.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/filter/core/orb/orb_extractor.hpp"
 #include "tests/tools/vocabulary_training.hpp"
@@ -49,18 +49,13 @@ std::vector<std::vector<msg::Descriptor>> describe_images(const Options& options
   return images;
 }
 
-/// Written beside and renamed, so that an interrupted build leaves no half vocabulary.
+/// An interrupted build leaves no half vocabulary.
 void write(const slam::Vocabulary& vocabulary, const std::filesystem::path& path) {
   const std::vector<std::byte> bytes = vocabulary.serialize();
   if (bytes.size() > slam::Vocabulary::kMaxBytes) {
     throw std::runtime_error(fmt::format("{} bytes are more than 2 MB: lower --branching or --depth", bytes.size()));
   }
-  const std::filesystem::path beside = path.string() + ".part";
-  std::ofstream file(beside, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) throw std::runtime_error("cannot write " + beside.string());
-  std::filesystem::rename(beside, path);
+  io::write_file(path, io::ByteView(bytes), {.named_by = io::NamedBy::kOperator});
 }
 
 }  // namespace

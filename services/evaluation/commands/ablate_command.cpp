@@ -13,17 +13,20 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/io/atomic_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/standard_streams.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/ablation/ablation.hpp"
 #include "services/evaluation/core/report/report.hpp"
 #include "services/launcher/process/executable.hpp"
+#include "services/launcher/process/out_folder.hpp"
 #include "services/launcher/process/posix_process_host.hpp"
 
 namespace rtd::eval {
@@ -98,7 +101,6 @@ Ablation prepare(const AblateOptions& options) {
   if (options.runs > 1 && options.pace == "lockstep")
     ablation.notes.emplace_back(
         "lockstep gives the same bytes each time: more than one run is a check, not a statistic");
-  make_out_folder(options.out_dir);
   return ablation;
 }
 
@@ -194,8 +196,8 @@ VariantRun run_variant(const AblateOptions& options, const VariantTask& task) {
   if (code != service::kOk) {
     measurement.failure = last_event(folder).value_or("exit code " + std::to_string(code));
   } else {  // only a complete run may be kept
-    std::ofstream(folder / kTaskFile) << service::json_text(
-        nlohmann::json{{"settings", settings}, {"duration_s", duration_s}});
+    io::write_file(folder / kTaskFile,
+                   service::json_text(nlohmann::json{{"settings", settings}, {"duration_s", duration_s}}));
   }
   return {measurement, false, false};
 }
@@ -251,6 +253,7 @@ bool measure_all(const AblateOptions& options, Ablation& ablation) {
 
 service::ExitCode run_ablation(const AblateOptions& options) {
   Ablation ablation = prepare(options);
+  const io::FolderLock folder = launcher::take_out_folder(options.out_dir);
   const bool finished = measure_all(options, ablation);
   write_results(ablation, options.out_dir);
   if (options.json) {
@@ -298,6 +301,7 @@ void add_ablate_command(CLI::App& app, AblateOptions& options) {
 }
 
 int run_ablate(const AblateOptions& options) {
+  service::outlive_readers();
   return guarded("rtd ablate", std::cerr, [&] { return run_ablation(options); });
 }
 

@@ -13,6 +13,7 @@
 #include <optional>
 #include <ostream>
 
+#include "common/io/atomic_file.hpp"
 #include "common/service/json_text.hpp"
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
@@ -97,11 +98,13 @@ void write_plot(const Evaluation& evaluation, const Inputs& inputs, const EvalOp
   Trajectory groundtruth = inputs.groundtruth;  // on the estimate's clock, which is the plot's
   const std::int64_t offset_ns = std::llround(options.offset_s * 1e9);
   for (StampedPose& pose : groundtruth) pose.stamp_ns -= offset_ns;
-  std::ofstream output(path);
-  output << evaluation_svg(evaluation.ate, groundtruth, std::filesystem::path(options.estimate).filename().string());
-  output.flush();
-  if (!output)
-    throw service::ConfigError("--plot " + options.plot + ": cannot be written; check that its folder exists");
+  try {
+    io::write_file(
+        path, evaluation_svg(evaluation.ate, groundtruth, std::filesystem::path(options.estimate).filename().string()),
+        {.named_by = io::NamedBy::kOperator});
+  } catch (const io::IoError& error) {
+    throw service::ConfigError(std::string("--plot ") + error.what());
+  }
 }
 
 std::string evaluation_table(const Evaluation& e, const EvalOptions& options) {

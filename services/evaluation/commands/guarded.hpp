@@ -3,24 +3,18 @@
 #pragma once
 
 #include <exception>
-#include <filesystem>
 #include <ostream>
-#include <string>
 
 #include "common/geometry/trajectory.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/evaluation/record/run_record.hpp"
+#include "services/launcher/process/out_folder.hpp"
 
 namespace rtd::eval {
 
-/// Throws service::ConfigError.
-inline void make_out_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw service::ConfigError("--out " + folder + ": cannot be created: " + error.message());
-}
+using launcher::make_out_folder;
 
 /// Runs `work`, which returns an exit code. What it throws becomes a line "<command>: <reason>" and an exit code: 2 for
 /// what the user named wrong, else 1.

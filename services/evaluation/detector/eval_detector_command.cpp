@@ -5,9 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <ostream>
 
+#include "common/io/atomic_file.hpp"
 #include "common/msg/engine_names.hpp"
 #include "common/service/json_text.hpp"
 #include "services/evaluation/commands/guarded.hpp"
@@ -31,18 +31,18 @@ RollRange parse_roll(const std::string& text) {
   return roll;
 }
 
-void write_file(const std::filesystem::path& path, const std::string& content, const std::string& option) {
-  std::ofstream file(path, std::ios::binary);
-  file << content;
-  file.flush();
-  if (!file)
-    throw service::ConfigError(option + " " + path.string() + ": cannot be written; check that its folder exists");
+void write_file(const std::filesystem::path& path, const std::string& content, const std::string& option) try {
+  io::write_file(path, content, {.named_by = io::NamedBy::kOperator});
+} catch (const io::IoError& error) {
+  throw service::ConfigError(option + " " + error.what());
 }
 
 /// Runs before the long work, so that a wrong path does not waste it.
-void check_outputs(const EvalDetectorOptions& options) {
+void check_outputs(const EvalDetectorOptions& options) try {
   if (!options.out_dir.empty()) make_out_folder(options.out_dir);
-  if (!options.json.empty()) write_file(options.json, "", "--json");
+  if (!options.json.empty()) const io::AtomicFile begun(options.json, {.named_by = io::NamedBy::kOperator});
+} catch (const io::IoError& error) {
+  throw service::ConfigError(std::string("--json ") + error.what());
 }
 
 void write_results(const EvalDetectorOptions& options, const auto& results, const std::string& plot_name,

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
+#include "common/io/atomic_file.hpp"
 #include "common/service/json_text.hpp"
 #include "services/evaluation/record/run_record.hpp"
 
@@ -181,10 +182,11 @@ RunRecord read_record(const Json& json) {
 }  // namespace
 
 void write_run_json(const RunRecord& record, const std::filesystem::path& file) {
-  std::ofstream output(file, std::ios::binary);
-  output << service::json_line(record_json(record)) << '\n';
-  output.flush();
-  if (!output) throw RunFileError(file.string() + ": cannot be written; check that the folder exists and has room");
+  try {
+    io::write_file(file, service::json_line(record_json(record)) + '\n');
+  } catch (const io::IoError& error) {
+    throw RunFileError(error.what());
+  }
 }
 
 RunRecord read_run_json(const std::filesystem::path& file) {

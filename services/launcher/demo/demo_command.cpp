@@ -12,7 +12,9 @@
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/standard_streams.hpp"
 #include "services/launcher/process/executable.hpp"
+#include "services/launcher/process/out_folder.hpp"
 #include "services/launcher/run/run_command.hpp"
 
 namespace rtd::launcher {
@@ -109,8 +111,12 @@ int run_both(const DemoOptions& options, const std::string& source) {
 }  // namespace
 
 int demo(const DemoOptions& options) {
+  service::outlive_readers();
   return service::report_errors<service::ConfigError>("rtd demo", std::cerr,
-                                                      [&] { return run_both(options, choose_source(options)); });
+                                                      [&]() -> int {
+    const io::FolderLock folder = take_out_folder(options.out_dir);
+    return run_both(options, choose_source(options));
+  });
 }
 
 std::string demo_data_folder() {

@@ -55,9 +55,11 @@ std::vector<std::string> reason_lines(const std::vector<std::string>& tail) {
 
 void ServiceLogs::add(const std::string& service, const std::string& line) {
   Log& log = logs_[service];
-  if (!log.file.is_open()) log.file.open(path(service), std::ios::trunc);
-  log.file.clear();  // a disk that was full may have room again
-  log.file << line << '\n' << std::flush;
+  try {
+    if (!log.file) log.file.emplace(path(service), io::IfExists::kReplace);
+    log.file->append({io::bytes_of(line), io::bytes_of("\n")});
+  } catch (const io::IoError&) {  // a disk that is full may have room again for a later line
+  }
   log.tail.add(line);
   if (!muted_ && level_of(line) != LogLevel::kInfo) show(service, log, line);
 }

@@ -4,12 +4,13 @@
 
 #include <cstddef>
 #include <deque>
-#include <fstream>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "common/io/byte_sink.hpp"
 #include "services/launcher/core/run/terminal.hpp"
 
 namespace rtd::launcher {
@@ -49,7 +50,7 @@ class ServiceLogs {
 
  private:
   struct Log {
-    std::ofstream file;
+    std::optional<io::FileSink> file;
     LogTail tail;
     int shown = 0;
   };

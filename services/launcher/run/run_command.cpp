@@ -8,12 +8,13 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/io/atomic_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/run_service.hpp"
+#include "common/service/standard_streams.hpp"
 #include "common/service/trace.hpp"
 #include "services/camera/core/frame_source.hpp"
 #include "services/evaluation/record/run_record.hpp"
@@ -21,6 +22,7 @@
 #include "services/launcher/core/run/trace_file.hpp"
 #include "services/launcher/process/executable.hpp"
 #include "services/launcher/process/lost_lock.hpp"
+#include "services/launcher/process/out_folder.hpp"
 #include "services/launcher/run/run_session.hpp"
 #include "services/launcher/run/run_setup.hpp"
 
@@ -62,7 +64,7 @@ service::ExitCode exit_code(RunOutcome outcome, bool tracked_any) {
 
 /// What the launcher leaves in the folder of the run beside what the services wrote.
 void write_record(const eval::RunRecord& record, const std::string& out_dir) {
-  std::ofstream(out_dir + "/trajectory_online.txt") << online_trajectory_text(record.frames);
+  io::write_file(out_dir + "/trajectory_online.txt", online_trajectory_text(record.frames));
   eval::write_run_json(record, out_dir + "/run.json");
 }
 
@@ -130,9 +132,11 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
 
 RunResult run(const RunOptions& options) {
   RunResult result;
+  service::outlive_readers();
   const int code = service::report_errors<service::ConfigError, camera::SourceError, bus::BusError>(
       "rtd run", std::cerr, [&]() -> int {
         const RunSetup setup = prepare_run(options);
+        const io::FolderLock folder = take_out_folder(setup.out_dir);
         result = run_prepared(setup, plan_services(setup));
         return result.code;
       });

@@ -8,17 +8,18 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <sstream>
 
+#include "common/io/atomic_file.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/pacer.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/core/source_factory.hpp"
 #include "services/launcher/process/executable.hpp"
+#include "services/launcher/process/out_folder.hpp"
 
 namespace rtd::launcher {
 namespace fs = std::filesystem;
@@ -142,12 +143,6 @@ void choose_detector(RunSetup& setup) {
   setup.detector_note = model ? fs::path(model.path).filename().string() : "off (no weights)";
 }
 
-void create_out_dir(const std::string& out_dir) {
-  std::error_code error;
-  fs::create_directories(out_dir, error);
-  if (error) throw ConfigError("--out " + out_dir + ": cannot be created: " + error.message());
-}
-
 ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole role,
                  const std::vector<std::string>& own_arguments) {
   ServicePlan plan{name, {require_executable("rtd-" + name), "--pace", setup.pace}, role};
@@ -196,6 +191,7 @@ std::vector<std::string> slam_arguments(const RunSetup& setup) {
   std::vector<std::string> arguments = {"--out", setup.out_dir};
   if (!setup.map.empty()) arguments.insert(arguments.end(), {"--map", setup.map});
   if (!setup.save_map.empty()) arguments.insert(arguments.end(), {"--save-map", setup.save_map});
+  if (!setup.maps_dir.empty()) arguments.insert(arguments.end(), {"--maps-dir", setup.maps_dir});
   if (!setup.base_frame.empty()) arguments.insert(arguments.end(), {"--base-frame", setup.base_frame});
   if (!setup.camera_in_base.empty()) arguments.push_back("--camera-in-base=" + setup.camera_in_base);
   if (!setup.gravity.empty()) arguments.insert(arguments.end(), {"--gravity", setup.gravity});
@@ -239,7 +235,11 @@ std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vect
 void check_trace_file(const std::string& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw ConfigError("--trace " + path + ": this is a folder: name a file in it");
-  if (!std::ofstream(path, std::ios::app)) throw ConfigError("--trace " + path + ": cannot be written");
+  try {
+    const io::AtomicFile begun(path, {.named_by = io::NamedBy::kOperator});
+  } catch (const io::IoError& error) {
+    throw ConfigError(std::string("--trace ") + error.what());
+  }
 }
 
 }  // namespace
@@ -256,7 +256,7 @@ RunSetup prepare_run(const RunOptions& options) {
   setup.total_frames = setup.replay ? setup.replay.frames : count_frames(setup.source, setup.frames);
   choose_detector(setup);
   choose_map(setup);
-  create_out_dir(setup.out_dir);
+  make_out_folder(setup.out_dir);
   if (!setup.trace.empty()) check_trace_file(setup.trace);
   if (fs::exists(setup.record)) throw ConfigError("--record " + setup.record + " exists already: choose another name");
   return setup;
@@ -264,6 +264,7 @@ RunSetup prepare_run(const RunOptions& options) {
 
 void clear_out_dir(const RunSetup& setup) {
   const fs::path out_dir = setup.out_dir;
+  io::remove_unfinished(out_dir);
   std::error_code error;
   const fs::path map = out_dir / "map.rtdmap";
   const bool needed = !setup.map.empty() && fs::equivalent(setup.map, map, error);  // --map of an earlier run here

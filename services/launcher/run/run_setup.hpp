@@ -71,6 +71,7 @@ struct RunOptions {
   std::string out_dir;
   std::string map;                         ///< map file to continue; empty: a new map
   std::string save_map;                    ///< map file to write; empty: map.rtdmap in out_dir
+  std::string maps_dir;                    ///< of maps that commands name; empty: as slam chooses
   std::string base_frame;                  ///< of the robot; empty: as configured
   std::string camera_in_base;              ///< x,y,z,qx,qy,qz,qw or tf; empty: as configured
   std::string gravity;                     ///< told, floor or imu; empty: as configured

@@ -67,12 +67,21 @@ std::vector<fs::path> OutputFiles::existing() const {
 
 bool OutputFiles::owns_metadata() const {
   static const std::regex kFile(R"(^ *- ([^ ]+\.mcap)$)");
+  std::error_code ignored;
+  const fs::file_status status = fs::symlink_status(metadata(), ignored);
+  if (!fs::exists(status)) return true;
+  if (!fs::is_regular_file(status)) return false;
   std::ifstream file(metadata());
-  for (std::string line; std::getline(file, line);) {
+  std::string line;
+  if (!std::getline(file, line) || line != "rosbag2_bagfile_information:") return false;
+  bool any = false;
+  while (std::getline(file, line)) {
     std::smatch match;
-    if (std::regex_match(line, match, kFile) && !is_ours(match[1])) return false;
+    if (!std::regex_match(line, match, kFile)) continue;
+    if (!is_ours(match[1])) return false;
+    any = true;
   }
-  return true;
+  return any;
 }
 
 bool SplitPolicy::has_room(std::uint64_t file_bytes, std::uint64_t message_bytes, std::uint64_t first_ns,

@@ -24,7 +24,7 @@ class OutputFiles {
   std::filesystem::path metadata() const { return folder_ / "metadata.yaml"; }
   /// The files of an earlier recording under this name.
   std::vector<std::filesystem::path> existing() const;
-  /// True when metadata.yaml does not exist or lists only files of this recording.
+  /// True when metadata.yaml does not exist, or is that of a rosbag2 recording and lists only files of this one.
   bool owns_metadata() const;
 
  private:

@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <ostream>
 
+#include "common/io/atomic_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
@@ -68,14 +70,11 @@ void write_part(const slam::MapContents& contents, const MapPart& part, const st
 }
 
 /// Writes with write_to(stream); nothing is left of a file that could not be written.
-bool write_file(const std::string& path, std::ostream& err, const auto& write_to) {
-  std::ofstream file(path, std::ios::binary);
-  write_to(file);
-  file.close();
-  if (file) return true;
-  std::error_code ignored;
-  fs::remove(path, ignored);
-  err << "rtd map export: cannot write " << path << ": check the folder and the free space\n";
+bool write_file(const std::string& path, std::ostream& err, const std::function<void(std::ostream&)>& write_to) try {
+  io::write_file(path, write_to, {.named_by = io::NamedBy::kOperator});
+  return true;
+} catch (const io::IoError& error) {
+  err << "rtd map export: cannot write " << error.what() << '\n';
   return false;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "services/viewer/core/session.hpp"
+
 namespace rtd::viewer {
 namespace {
 
@@ -76,13 +78,16 @@ Access check_host(const AccessRules& rules, std::string_view host) {
 Access check_access(const AccessRules& rules, const AccessRequest& request) {
   if (check_host(rules, request.host) != Access::kGranted) return Access::kWrongHost;
   if (!right_origin(rules, request)) return Access::kWrongOrigin;
-  return right_token(rules, request) ? Access::kGranted : Access::kNoToken;
+  if (right_token(rules, request)) return Access::kGranted;
+  return rules.look_freely ? Access::kToLook : Access::kNoToken;
 }
 
 const char* explain(Access access) {
   switch (access) {
     case Access::kGranted:
       return "granted";
+    case Access::kToLook:
+      return kOnlyLooks;
     case Access::kWrongHost:
       return "this viewer is not addressed by that host name; start it with --host NAME to allow it\n";
     case Access::kWrongOrigin:

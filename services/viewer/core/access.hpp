@@ -14,6 +14,8 @@ struct AccessRules {
   std::vector<std::string> hosts;    ///< names by which this server may be addressed, beside loopback; empty: any
   std::vector<std::string> origins;  ///< of other sites whose pages may connect: "https://app.foxglove.dev"
   std::string token;                 ///< empty: none is asked for
+  bool look_freely = false;          ///< a client without the token may look, and only that: also a page that
+                                     ///< outlives the viewer and has the token of the one before
 };
 
 /// The parts of a request that matter.
@@ -21,10 +23,14 @@ struct AccessRequest {
   std::string_view host, origin, target, authorization;
 };
 
-enum class Access { kGranted, kWrongHost, kWrongOrigin, kNoToken };
+enum class Access { kGranted, kToLook, kWrongHost, kWrongOrigin, kNoToken };
 
-/// Whether a WebSocket may be opened. A request without Origin is not of a browser.
+/// Whether a WebSocket may be opened, and for what. A request without Origin is not of a browser.
 Access check_access(const AccessRules& rules, const AccessRequest& request);
+/// Granted, or to look only.
+inline bool may_look(Access access) {
+  return access == Access::kGranted || access == Access::kToLook;
+}
 /// Whether a page may be read: no token is asked for.
 Access check_host(const AccessRules& rules, std::string_view host);
 /// Of a host as requests name it ("localhost", "[::1]"), or an address ("127.0.0.1", "::1").

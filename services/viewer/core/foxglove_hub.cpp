@@ -24,22 +24,23 @@ FoxgloveHub::FoxgloveHub(std::string name, std::string session_id, std::map<std:
     : name_(std::move(name)),
       session_id_(std::move(session_id)),
       metadata_(std::move(metadata)),
-      hooks_(std::move(hooks)) {}
+      hooks_(std::move(hooks)),
+      looking_{.on_wanted = hooks_.on_wanted, .realtime_ns = hooks_.realtime_ns} {}
 
-std::unique_ptr<Session> FoxgloveHub::open(std::string_view subprotocol) {
-  return std::make_unique<FoxgloveSession>(*this, subprotocol);
+std::unique_ptr<Session> FoxgloveHub::open(std::string_view subprotocol, Rights rights) {
+  return std::make_unique<FoxgloveSession>(*this, subprotocol, rights);
 }
 
-foxglove::ServerInfo FoxgloveHub::server_info() const {
+foxglove::ServerInfo FoxgloveHub::server_info(const FoxgloveHooks& hooks) const {
   foxglove::ServerInfo info{.name = name_,
                             .session_id = session_id_,
                             .capabilities = {"time", "parameters", "parametersSubscribe", "connectionGraph"},
                             .supported_encodings = {"json", "cdr"},
                             .metadata = metadata_};
-  if (hooks_.on_call) info.capabilities.emplace_back("services");
-  if (hooks_.on_publish) info.capabilities.emplace_back("clientPublish");
+  if (hooks.on_call) info.capabilities.emplace_back("services");
+  if (hooks.on_publish) info.capabilities.emplace_back("clientPublish");
   if (played_) info.played_ns.emplace(played_->begin_ns, played_->end_ns);
-  if (played_ && hooks_.on_playback) info.capabilities.emplace_back("playbackControl");
+  if (played_ && hooks.on_playback) info.capabilities.emplace_back("playbackControl");
   return info;
 }
 
@@ -115,9 +116,11 @@ void FoxgloveHub::set_commands(const std::vector<CommandInfo>& commands) {
                      .response = {"cdr", type + "_Response", "ros2msg", response_schema()}});
     services_.emplace(id, std::pair(command, added.back()));
   }
-  if (!hooks_.on_call) return;
-  if (!gone.empty()) broadcast(foxglove::unadvertise_services(gone));
-  if (!added.empty()) broadcast(foxglove::advertise_services(added));
+  for (FoxgloveSession* session : sessions_) {
+    if (!session->hooks_.on_call) continue;
+    if (!gone.empty()) session->send(foxglove::unadvertise_services(gone));
+    if (!added.empty()) session->send(foxglove::advertise_services(added));
+  }
 }
 
 void FoxgloveHub::set_parameters(std::vector<foxglove::Parameter> parameters) {
@@ -157,7 +160,8 @@ void FoxgloveHub::set_played(const std::optional<Played>& played) {
   };
   const bool other = played.has_value() != played_.has_value() || range(played) != range(played_);
   played_ = played;
-  if (other) broadcast(foxglove::server_info(server_info()));
+  if (!other) return;
+  for (FoxgloveSession* session : sessions_) session->send(foxglove::server_info(server_info(session->hooks_)));
   if (played_) send_playback();
 }
 

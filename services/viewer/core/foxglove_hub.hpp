@@ -56,7 +56,8 @@ class FoxgloveHub {
               FoxgloveHooks hooks);
 
   /// A client joins. The hub outlives it. `subprotocol`: one of kSubprotocols.
-  std::unique_ptr<Session> open(std::string_view subprotocol = foxglove::kSubprotocols[0]);
+  std::unique_ptr<Session> open(std::string_view subprotocol = foxglove::kSubprotocols[0],
+                                Rights rights = Rights::kControl);
 
   /// The id of the channel; the same topic and type get the same id again.
   std::uint32_t add_channel(const std::string& topic, const foxglove::Schema& schema);
@@ -90,7 +91,8 @@ class FoxgloveHub {
     bool offered = true;
   };
 
-  foxglove::ServerInfo server_info() const;
+  const FoxgloveHooks& hooks_of(Rights rights) const { return rights == Rights::kControl ? hooks_ : looking_; }
+  foxglove::ServerInfo server_info(const FoxgloveHooks& hooks) const;
   std::vector<foxglove::Channel> channels() const;
   const foxglove::Service* service(std::uint32_t id) const;
   std::vector<foxglove::Parameter> parameters(const std::vector<std::string>& names) const;
@@ -100,7 +102,7 @@ class FoxgloveHub {
 
   const std::string name_, session_id_;
   const std::map<std::string, std::string> metadata_;
-  const FoxgloveHooks hooks_;
+  const FoxgloveHooks hooks_, looking_;  ///< looking_: of clients that cause nothing
   std::set<FoxgloveSession*> sessions_;
   std::map<std::uint32_t, Offer> channels_;
   std::set<std::uint32_t> wanted_;
@@ -114,7 +116,7 @@ class FoxgloveHub {
 /// One Foxglove client.
 class FoxgloveSession : public Session {
  public:
-  FoxgloveSession(FoxgloveHub& hub, std::string_view subprotocol);
+  FoxgloveSession(FoxgloveHub& hub, std::string_view subprotocol, Rights rights);
   ~FoxgloveSession() override;
   FoxgloveSession(const FoxgloveSession&) = delete;
   FoxgloveSession& operator=(const FoxgloveSession&) = delete;
@@ -151,6 +153,7 @@ class FoxgloveSession : public Session {
   bool watches(const std::string& parameter) const;
 
   FoxgloveHub& hub_;
+  const FoxgloveHooks& hooks_;  ///< of the hub, for this client's rights
   Outbox outbox_;
   bool knows_playback_;  ///< clients of foxglove.websocket.v1 take the state of playback for an error
   std::map<std::uint32_t, std::uint32_t> subscriptions_;  ///< channel by the client's id

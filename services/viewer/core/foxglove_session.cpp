@@ -6,12 +6,12 @@
 
 namespace rtd::viewer {
 
-FoxgloveSession::FoxgloveSession(FoxgloveHub& hub, std::string_view subprotocol)
-    : hub_(hub), knows_playback_(subprotocol == foxglove::kSubprotocols[0]) {
+FoxgloveSession::FoxgloveSession(FoxgloveHub& hub, std::string_view subprotocol, Rights rights)
+    : hub_(hub), hooks_(hub.hooks_of(rights)), knows_playback_(subprotocol == foxglove::kSubprotocols[0]) {
   hub_.sessions_.insert(this);
-  send(foxglove::server_info(hub_.server_info()));
+  send(foxglove::server_info(hub_.server_info(hooks_)));
   send(foxglove::advertise(hub_.channels()));
-  if (!hub_.hooks_.on_call || hub_.services_.empty()) return;
+  if (!hooks_.on_call || hub_.services_.empty()) return;
   std::vector<foxglove::Service> services;
   for (const auto& [id, entry] : hub_.services_) services.push_back(entry.second);
   send(foxglove::advertise_services(services));
@@ -85,7 +85,7 @@ void FoxgloveSession::answer(const foxglove::Unsubscribe& request) {
 }
 
 void FoxgloveSession::answer(const foxglove::ClientAdvertise& request) {
-  if (!hub_.hooks_.on_publish)
+  if (!hooks_.on_publish)
     return send_error("this viewer only listens: start it with --publish to let clients publish");
   for (const foxglove::Channel& channel : request.channels) {
     if (channel.schema.encoding != "cdr") {
@@ -107,7 +107,7 @@ void FoxgloveSession::answer(const foxglove::ClientMessage& request) {
   if (channel == published_.end())
     return send_error("channel " + std::to_string(request.channel) + " is not advertised");
   const std::string problem =
-      hub_.hooks_.on_publish(channel->second.topic, channel->second.schema.name, request.payload);
+      hooks_.on_publish(channel->second.topic, channel->second.schema.name, request.payload);
   if (!problem.empty()) send_error(problem);
 }
 
@@ -116,14 +116,14 @@ void FoxgloveSession::answer(const foxglove::GetParameters& request) {
 }
 
 void FoxgloveSession::answer(const foxglove::SetParameters& request) {
-  if (!hub_.hooks_.on_set) return send_error("this viewer was started with --read-only");
+  if (!hooks_.on_set) return send_error(kOnlyLooks);
   struct Progress {
     std::vector<foxglove::Parameter> accepted;
     std::size_t answers = 0;
   };
   const auto progress = std::make_shared<Progress>();
   for (const foxglove::Parameter& parameter : request.parameters)
-    hub_.hooks_.on_set(
+    hooks_.on_set(
         parameter, [this, alive = std::weak_ptr(alive_), progress, request, parameter](const CommandResult& result) {
           if (alive.expired()) return;
           if (result.success) progress->accepted.push_back(parameter);
@@ -174,14 +174,14 @@ void FoxgloveSession::answer(const foxglove::ServiceCall& request) {
   const auto fail = [&](const std::string& why) {
     send(foxglove::service_call_failure(request.service, request.call, why));
   };
-  if (!hub_.hooks_.on_call) return fail("this viewer was started with --read-only");
+  if (!hooks_.on_call) return fail(kOnlyLooks);
   const auto known = hub_.services_.find(request.service);
   if (known == hub_.services_.end()) return fail("service " + std::to_string(request.service) + " does not exist");
   const CommandInfo command = known->second.first;
   const auto argument = read_command_request(command.kind, request.encoding, request.payload);
   if (!argument)
     return fail("'" + command.name + "': the request is not a " + service_type(command.kind) + " in json or cdr");
-  hub_.hooks_.on_call(command, *argument,
+  hooks_.on_call(command, *argument,
                       [this, alive = std::weak_ptr(alive_), service = request.service, call = request.call,
                        encoding = request.encoding](const CommandResult& result) {
                         if (alive.expired()) return;
@@ -192,8 +192,9 @@ void FoxgloveSession::answer(const foxglove::ServiceCall& request) {
 
 void FoxgloveSession::answer(const foxglove::PlaybackControl& request) {
   knows_playback_ = true;
-  if (!hub_.hooks_.on_playback || !hub_.played_) return send_error("nothing is being replayed");
-  hub_.hooks_.on_playback(request,
+  if (!hooks_.on_playback) return send_error(kOnlyLooks);
+  if (!hub_.played_) return send_error("nothing is being replayed");
+  hooks_.on_playback(request,
                           [&hub = hub_, this, alive = std::weak_ptr(alive_), request](const CommandResult& result) {
                             if (result.success) return hub.control_done(request);
                             if (alive.expired()) return;

@@ -14,8 +14,8 @@ PageHub::PageHub(PageGreeting greeting, PageLimits limits, Hooks hooks)
 
 PageHub::~PageHub() = default;
 
-std::unique_ptr<Session> PageHub::open() {
-  return std::make_unique<PageSession>(*this);
+std::unique_ptr<Session> PageHub::open(Rights rights) {
+  return std::make_unique<PageSession>(*this, rights);
 }
 
 RobotMirror* PageHub::robot(const std::string& name) {

@@ -56,7 +56,7 @@ class PageHub {
   ~PageHub();
 
   /// A page connects. The hub outlives the session.
-  std::unique_ptr<Session> open();
+  std::unique_ptr<Session> open(Rights rights = Rights::kControl);
   /// The mirror of a robot; known ones keep their index. Null when there are too many.
   RobotMirror* robot(const std::string& name);
   /// What any page wants of a robot; nothing without pages.

@@ -35,13 +35,13 @@ std::uint64_t number(const json& message, const char* name) {
   return found != message.end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : 0;
 }
 
-std::string hello(const PageGreeting& greeting, double now_ms) {
+std::string hello(const PageGreeting& greeting, bool control, double now_ms) {
   return json_line({{"type", "hello"},
                     {"protocol", 1},
                     {"version", greeting.version},
                     {"domain", greeting.domain},
                     {"vendor", greeting.vendor},
-                    {"control", greeting.control},
+                    {"control", control},
                     {"server_ms", now_ms}});
 }
 
@@ -75,12 +75,13 @@ ChangedKeyframes changed_after(const ChangeLog<std::uint32_t>& log, const MapMir
 
 }  // namespace
 
-PageSession::PageSession(PageHub& hub)
+PageSession::PageSession(PageHub& hub, Rights rights)
     : hub_(hub),
+      may_control_(rights == Rights::kControl && hub.greeting_.control),
       all_(hub.limits_.bytes_per_s, hub.limits_.burst_bytes),
       views_(hub.limits_.view_bytes_per_s, hub.limits_.view_bytes_per_s / 4) {
   hub_.sessions_.insert(this);
-  outbox_.push_control(text_frame(hello(hub_.greeting_, hub_.hooks_.now_ms())));
+  outbox_.push_control(text_frame(hello(hub_.greeting_, may_control_, hub_.hooks_.now_ms())));
 }
 
 PageSession::~PageSession() {
@@ -120,8 +121,7 @@ void PageSession::call(std::uint64_t id, std::size_t robot, const std::string& n
   const auto answer = [this, id, alive = std::weak_ptr(alive_)](const CommandResult& result) {
     if (!alive.expired()) outbox_.push_control(text_frame(page::answer(id, result)));
   };
-  if (!hub_.greeting_.control || !hub_.hooks_.on_call)
-    return answer({false, "this viewer was started with --read-only"});
+  if (!may_control_ || !hub_.hooks_.on_call) return answer({false, kOnlyLooks});
   if (robot >= hub_.names_.size()) return answer({false, "this robot is unknown"});
   hub_.hooks_.on_call(hub_.names_[robot], name, argument, answer);
 }

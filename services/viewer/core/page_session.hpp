@@ -35,7 +35,7 @@ class TokenBucket {
 /// page gets fewer and newer messages, and nothing waits in a queue but answers. One thread.
 class PageSession : public Session {
  public:
-  explicit PageSession(PageHub& hub);
+  PageSession(PageHub& hub, Rights rights);
   ~PageSession() override;
   PageSession(const PageSession&) = delete;
   PageSession& operator=(const PageSession&) = delete;
@@ -73,6 +73,7 @@ class PageSession : public Session {
   void call(std::uint64_t id, std::size_t robot, const std::string& name, const std::string& argument);
 
   PageHub& hub_;
+  const bool may_control_;
   Outbox outbox_;
   PageWishes wishes_;
   std::optional<std::uint64_t> watched_;      ///< whose images the page shows; none: those of all robots

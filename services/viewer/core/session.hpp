@@ -11,6 +11,14 @@
 
 namespace rtd::viewer {
 
+/// What a client may do.
+enum class Rights { kLook, kControl };  ///< kControl: also call commands, set parameters, publish
+
+/// The answer to a client without them: cause and fix.
+inline constexpr const char* kOnlyLooks =
+    "commands are off: the viewer was started with --read-only, or this client does not know the token of the address "
+    "that the viewer has printed (?token=...)";
+
 /// One connected client, without its socket. One thread.
 class Session {
  public:

@@ -13,14 +13,14 @@ const kKnown = {
     group: "Map", kind: "button", label: "Reset map", danger: true,
     confirm: "Reset the map? Keyframes, landmarks and the trajectory are deleted. Save the map first if you need it.",
   },
-  "/slam/save_map": { group: "Map", kind: "text", label: "Save map", placeholder: "file (optional)" },
+  "/slam/save_map": { group: "Map", kind: "text", label: "Save map", placeholder: "name (optional)" },
   "/slam/load_map": {
-    group: "Map", kind: "text", label: "Load map", placeholder: "file on the robot's host", danger: true, required: true,
+    group: "Map", kind: "text", label: "Load map", placeholder: "name of a saved map", danger: true, required: true,
     confirm: "Load the map? It replaces the current one. Save the current map first if you need it.",
   },
   "/slam/localize_only": { group: "Map", kind: "switch", label: "Mode", off: "Map and localise", on: "Localise only" },
   "/filter/set_mode": { group: "Filter", kind: "choice", label: "Mode", choices: kFilterModes },
-  "/recorder/start": { group: "Recording", kind: "text", label: "Start recording", placeholder: "file (optional)",
+  "/recorder/start": { group: "Recording", kind: "text", label: "Start recording", placeholder: "name (optional)",
                        idle: "Recording …" },
   "/recorder/stop": { group: "Recording", kind: "button", label: "Stop recording", idle: "Not recording" },
 };

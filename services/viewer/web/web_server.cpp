@@ -95,7 +95,7 @@ class WebServer::Implementation {
   void close_oldest_visitor();
   void forget(Visitor* visitor);
   void forget(Client* client);
-  void upgrade(beast::tcp_stream stream, Request request);
+  void upgrade(beast::tcp_stream stream, Request request, Rights rights);
 
   const WebOptions options_;
   const Site& site_;
@@ -137,7 +137,9 @@ class WebServer::Implementation::Visitor : public std::enable_shared_from_this<V
     ++server_.counts_.requests;
     Request request = parser_->release();
     if (websocket::is_upgrade(request)) {
-      if (may_upgrade(request)) server_.upgrade(std::move(stream_), std::move(request));
+      const Access access = access_of(request);
+      const Rights rights = access == Access::kGranted ? Rights::kControl : Rights::kLook;
+      if (may_upgrade(request, access)) server_.upgrade(std::move(stream_), std::move(request), rights);
       return;
     }
     serve(request);
@@ -150,9 +152,8 @@ class WebServer::Implementation::Visitor : public std::enable_shared_from_this<V
                                                   .authorization = view(request[http::field::authorization])});
   }
 
-  bool may_upgrade(const Request& request) {
-    const Access access = access_of(request);
-    if (access != Access::kGranted) {
+  bool may_upgrade(const Request& request, Access access) {
+    if (!may_look(access)) {
       refuse(access == Access::kNoToken ? http::status::unauthorized : http::status::forbidden, explain(access));
       return false;
     }
@@ -186,14 +187,13 @@ class WebServer::Implementation::Visitor : public std::enable_shared_from_this<V
   /// A page cannot see why a WebSocket was refused; here it can.
   void answer_access(const Request& request) {
     const Access access = access_of(request);
-    const bool granted = access == Access::kGranted;
-    answer(granted ? http::status::ok : http::status::unauthorized, explain(access), "text/plain; charset=utf-8", false,
+    answer(may_look(access) ? http::status::ok : http::status::unauthorized, explain(access), "text/plain; charset=utf-8", false,
            request.keep_alive(), false);
   }
 
   void answer_report(const Request& request, const std::function<Report()>& make) {
     const Access access = access_of(request);
-    if (access != Access::kGranted) return refuse(http::status::unauthorized, explain(access));
+    if (!may_look(access)) return refuse(http::status::unauthorized, explain(access));
     const Report report = make();
     answer(report.well ? http::status::ok : http::status::service_unavailable, report.content, report.type, false,
            request.keep_alive(), request.method() == http::verb::head);
@@ -243,7 +243,7 @@ class WebServer::Implementation::Client : public std::enable_shared_from_this<Cl
   }
   ~Client() { server_.forget(this); }
 
-  void accept(Request request) {
+  void accept(Request request, Rights rights) {
     const std::string subprotocol = choose_subprotocol(view(request[http::field::sec_websocket_protocol]));
     beast::get_lowest_layer(socket_).expires_never();
     websocket::stream_base::timeout timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
@@ -256,8 +256,8 @@ class WebServer::Implementation::Client : public std::enable_shared_from_this<Cl
     }));
     socket_.read_message_max(server_.options_.longest_message_bytes);
     request_ = std::move(request);
-    socket_.async_accept(request_, [self = shared_from_this(), subprotocol](beast::error_code error) {
-      if (!error) self->begin(subprotocol);
+    socket_.async_accept(request_, [self = shared_from_this(), subprotocol, rights](beast::error_code error) {
+      if (!error) self->begin(subprotocol, rights);
     });
   }
 
@@ -287,8 +287,8 @@ class WebServer::Implementation::Client : public std::enable_shared_from_this<Cl
   }
 
  private:
-  void begin(const std::string& subprotocol) {
-    session_ = server_.open_(subprotocol);
+  void begin(const std::string& subprotocol, Rights rights) {
+    session_ = server_.open_(subprotocol, rights);
     if (!session_) return drop();
     read();
     pump();
@@ -399,8 +399,8 @@ void WebServer::Implementation::forget(Client* client) {
   clients_.erase(client);
 }
 
-void WebServer::Implementation::upgrade(beast::tcp_stream stream, Request request) {
-  std::make_shared<Client>(*this, std::move(stream))->accept(std::move(request));
+void WebServer::Implementation::upgrade(beast::tcp_stream stream, Request request, Rights rights) {
+  std::make_shared<Client>(*this, std::move(stream))->accept(std::move(request), rights);
 }
 
 void WebServer::Implementation::pump() {

@@ -50,7 +50,7 @@ struct WebCounts {
 class WebServer {
  public:
   /// A client of this subprotocol connects; null refuses it.
-  using Open = std::function<std::unique_ptr<Session>(const std::string& subprotocol)>;
+  using Open = std::function<std::unique_ptr<Session>(const std::string& subprotocol, Rights rights)>;
 
   /// Listens from now on. Throws WebError. `site` outlives the server; so does what `open` and the reports use. Reports
   /// are made in the thread of run_for(); they ask for the token as a WebSocket does.

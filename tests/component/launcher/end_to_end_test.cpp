@@ -100,7 +100,51 @@ TEST_F(EndToEndTest, a_dense_map_a_recording_and_a_trace_change_nothing_of_the_r
 
 TEST_F(EndToEndTest, a_trace_that_cannot_be_written_is_refused_before_the_run) {
   EXPECT_EQ(rtd_.run(arguments(129, "synthetic:office?frames=5", {"--trace", scratch_ / "none/trace.json"})), 2);
-  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("--trace"), HasSubstr("cannot be written")));
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("--trace"), HasSubstr("no such folder")));
+}
+
+TEST_F(EndToEndTest, a_second_run_into_the_same_folder_is_refused_and_deletes_nothing) {
+  rtd_.start(arguments(132, "synthetic:office?frames=0", {"--detector", "off"}));
+  ASSERT_TRUE(wait_for_frames()) << rtd_.output();
+  const std::string pid = std::to_string(rtd_.process());
+  RtdCommand second, ablation;
+  EXPECT_EQ(second.run(arguments(133, "synthetic:office?frames=5")), 2);
+  EXPECT_THAT(second.output(), AllOf(HasSubstr("--out " + out_), HasSubstr("process " + pid), HasSubstr("another folder")));
+  EXPECT_EQ(ablation.run({"ablate", "--source", "synthetic:office?frames=5", "--out", out_, "--domain", "133"}), 2);
+  EXPECT_THAT(ablation.output(), HasSubstr("process " + pid));
+  EXPECT_TRUE(fs::exists(out_ + "/logs/slam.log"));
+  rtd_.interrupt();
+  EXPECT_EQ(rtd_.wait(), 130) << rtd_.output();
+  EXPECT_TRUE(fs::exists(out_ + "/report.json"));
+  RtdCommand third;
+  EXPECT_EQ(third.run(arguments(132, "synthetic:office?frames=10", {"--pace", "lockstep", "--detector", "off"})), 0)
+      << third.output();
+}
+
+TEST_F(EndToEndTest, files_that_a_run_clears_are_not_reached_through_links) {
+  fs::create_directories(scratch_ / "elsewhere");
+  std::ofstream(scratch_ / "elsewhere/notes") << "mine";
+  fs::create_directories(out_);
+  fs::create_symlink(scratch_ / "elsewhere", out_ + "/logs");
+  fs::create_symlink(scratch_ / "elsewhere/notes", out_ + "/trajectory.txt");
+  ASSERT_EQ(rtd_.run(arguments(132, "synthetic:office?frames=10", {"--pace", "lockstep", "--detector", "off"})), 0)
+      << rtd_.output();
+  EXPECT_EQ(text_of(scratch_ / "elsewhere/notes"), "mine");
+  EXPECT_EQ(std::distance(fs::directory_iterator(scratch_ / "elsewhere"), fs::directory_iterator()), 1);
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(out_ + "/trajectory.txt")));
+}
+
+TEST_F(EndToEndTest, a_run_whose_output_nobody_reads_goes_on_to_its_report) {
+  RtdCommand shell("/bin/sh");
+  const std::string rtd = RTD_EXECUTABLE;
+  const std::string run = rtd + " run --source 'synthetic:office?frames=20' --pace lockstep --detector off --domain 134 --out " +
+                          out_;
+  ASSERT_EQ(shell.run({"-c", "{ " + run + " 2>&1; echo $? >" + out_ + "/code; } | head -1"}), 0) << shell.output();
+  EXPECT_EQ(text_of(out_ + "/code"), "0\n");
+  EXPECT_EQ(report()["frames_in"], 20);
+  EXPECT_TRUE(fs::exists(out_ + "/report.html"));
+  ASSERT_EQ(shell.run({"-c", run + " >&- 2>&-"}), 0) << "closed, not only unread";
+  EXPECT_EQ(report()["frames_in"], 20);
 }
 
 TEST_F(EndToEndTest, a_slam_killed_during_the_run_goes_on_with_its_last_checkpoint) {

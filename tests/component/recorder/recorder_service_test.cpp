@@ -72,9 +72,9 @@ TEST_F(RecorderTest, commands_end_a_recording_and_begin_another) {
   EXPECT_FALSE(client.call("recorder/stop", "", 10'000).success);
   pose->write(cdr(99));  // nobody records it
 
-  EXPECT_FALSE(client.call("recorder/start", config_.output, 10'000).success) << "it exists";
-  const std::string second = folder_ / "second" / "run.mcap";
-  const bus::CommandAnswer started = client.call("recorder/start", second, 10'000);
+  EXPECT_FALSE(client.call("recorder/start", "run", 10'000).success) << "it exists";
+  const std::string second = folder_ / "second.mcap";
+  const bus::CommandAnswer started = client.call("recorder/start", "second", 10'000);
   EXPECT_TRUE(started.success) << started.message;
   EXPECT_EQ(started.message, "recording to " + second);
   wait_heard(*pose);
@@ -86,6 +86,48 @@ TEST_F(RecorderTest, commands_end_a_recording_and_begin_another) {
   ASSERT_EQ(again.topics.at("/slam/pose").size(), 1U);
   EXPECT_EQ(again.topics.at("/slam/pose")[0].cdr, cdr(7));
   EXPECT_EQ(again.topics.size(), 1U) << "no commands";
+}
+
+TEST_F(RecorderTest, a_command_writes_only_recordings_and_only_in_their_folder) {
+  config_.wait = config_.force = true;
+  config_.folder = folder_ / "recordings";
+  std::filesystem::create_directories(config_.folder);
+  const auto put = [](const std::filesystem::path& file) { std::ofstream(file) << "mine"; };
+  const auto is_mine = [](const std::filesystem::path& file) {
+    std::string text;
+    std::getline(std::ifstream(file), text);
+    return text == "mine";
+  };
+  put(folder_ / ".profile");
+  const std::filesystem::path recordings = config_.folder;
+  put(recordings / "metadata.yaml");
+  put(recordings / "notes.mcap");
+  std::filesystem::create_symlink(folder_ / ".profile", recordings / "link.mcap");
+  std::filesystem::create_symlink(folder_ / "made", recordings / "dangling.mcap");
+  start(service::Pace::kRealtime);
+  EXPECT_TRUE(wait_state(msg::ServiceState::kReady, "not recording"));
+  bus::CommandClient client(bus_options_);
+  const auto begin = [&](const std::string& name) { return client.call("recorder/start", name, 10'000); };
+  for (const std::string& name : {(folder_ / "made").string(), (folder_ / "made.mcap").string(), std::string("../made"),
+                                  std::string("sub/made"), std::string(".profile"), std::string("/etc/none/x")}) {
+    const bus::CommandAnswer answer = begin(name);
+    EXPECT_FALSE(answer.success) << name;
+    EXPECT_THAT(answer.message, HasSubstr("this is not a name of a recording")) << name;
+  }
+  for (const char* name : {"notes", "link", "dangling"}) {
+    const bus::CommandAnswer answer = begin(name);
+    EXPECT_FALSE(answer.success) << name;
+    EXPECT_THAT(answer.message, HasSubstr("exists and is not a recording")) << name;
+  }
+  const bus::CommandAnswer good = begin("run");
+  EXPECT_EQ(good.message, "recording to " + (recordings / "run.mcap").string());
+  EXPECT_TRUE(client.call("recorder/stop", "", 10'000).success);
+  const bus::CommandAnswer unnamed = begin("");
+  EXPECT_THAT(unnamed.message, HasSubstr("recording to " + folder_.string())) << "as configured";
+  EXPECT_EQ(stop(), service::kOk);
+  EXPECT_TRUE(is_mine(folder_ / ".profile") && is_mine(recordings / "notes.mcap"));
+  EXPECT_TRUE(is_mine(recordings / "metadata.yaml")) << "it is not of rosbag2";
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "made") || std::filesystem::exists(folder_ / "made.mcap"));
 }
 
 TEST_F(RecorderTest, that_waits_writes_nothing_until_it_is_started) {

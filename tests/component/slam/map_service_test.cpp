@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "common/bus/commands.hpp"
+#include "common/io/text.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
 #include "services/slam/map_file.hpp"
@@ -80,14 +81,15 @@ TEST_F(MapServiceTest, saves_its_map_at_the_end) {
 }
 
 TEST_F(MapServiceTest, obeys_commands_between_frames_and_answers_every_frame) {
+  config_.map.folder = folder_;
   start(service::Pace::kLockstep);
-  EXPECT_THAT(call("slam/save_map"), HasSubstr("failed: name a file"));
-  EXPECT_THAT(call("slam/save_map", file_), HasSubstr("failed: nothing was mapped"));
+  EXPECT_THAT(call("slam/save_map"), HasSubstr("failed: name a map"));
+  EXPECT_THAT(call("slam/save_map", "room"), HasSubstr("failed: nothing was mapped"));
   EXPECT_THAT(call("slam/localize_only", "true"), HasSubstr("failed: there is no map"));
   std::uint64_t seq = 0;
   for (; seq < 30; ++seq) step(seq);
   const std::uint32_t keyframes = results_.all().back()->keyframes;
-  EXPECT_THAT(call("slam/save_map", file_),
+  EXPECT_THAT(call("slam/save_map", "room"),
               AllOf(HasSubstr(std::to_string(keyframes) + " keyframes"), HasSubstr(file_)));
   EXPECT_EQ(load_map_file(file_).keyframes.size(), keyframes);
 
@@ -99,11 +101,92 @@ TEST_F(MapServiceTest, obeys_commands_between_frames_and_answers_every_frame) {
   EXPECT_THAT(call("slam/reset"), HasSubstr(std::to_string(keyframes) + " keyframes"));
   step(seq++);
   EXPECT_EQ(results_.all().back()->keyframes, 1U) << "a new map";
-  EXPECT_THAT(call("slam/load_map", file_ + ".missing"), HasSubstr("failed: "));
-  EXPECT_THAT(call("slam/load_map", file_), HasSubstr(std::to_string(keyframes) + " keyframes"));
+  EXPECT_THAT(call("slam/load_map", "missing"), HasSubstr("failed: there is no readable map missing.rtdmap"));
+  EXPECT_THAT(call("slam/load_map", "room.rtdmap"), HasSubstr(std::to_string(keyframes) + " keyframes"));
   for (const std::uint64_t end = seq + 5; seq < end; ++seq) step(seq);
   EXPECT_GE(results_.all().back()->keyframes, keyframes);
   EXPECT_EQ(results_.all().size(), seq) << "one result for each frame";
+}
+
+/// What a peer may try with the name of a map. Nothing but "maps" may change.
+class MapAttackTest : public MapServiceTest {
+ protected:
+  MapAttackTest() {
+    std::filesystem::create_directories(maps_);
+    std::ofstream(startup_) << "export PATH\n";
+    config_.map.folder = maps_;
+  }
+  void map_something() {
+    start(service::Pace::kLockstep);
+    for (std::uint64_t seq = 0; seq < 3; ++seq) step(seq);
+  }
+  std::string startup() const { return io::read_text(startup_).value_or("gone"); }
+
+  const std::filesystem::path maps_ = folder_ / "maps", startup_ = folder_ / ".profile";
+};
+
+TEST_F(MapAttackTest, a_path_is_never_written) {
+  map_something();
+  const std::string beside = (folder_ / "made.rtdmap").string();
+  for (const std::string& name : {startup_.string(), std::string("../.profile"), beside, std::string("../made"),
+                                  std::string("maps/../../made"), std::string(".profile")})
+    EXPECT_THAT(call("slam/save_map", name), HasSubstr("failed: this is not a name of a map")) << name;
+  EXPECT_EQ(startup(), "export PATH\n");
+  EXPECT_FALSE(std::filesystem::exists(beside));
+  EXPECT_TRUE(std::filesystem::is_empty(maps_));
+}
+
+TEST_F(MapAttackTest, prepared_links_lead_nowhere) {
+  map_something();
+  std::filesystem::create_symlink(startup_, maps_ / "room.rtdmap.tmp");
+  EXPECT_THAT(call("slam/save_map", "room"), HasSubstr("saved to"));
+  EXPECT_EQ(load_map_file(maps_ / "room.rtdmap", {}, io::Links::kRefuse).keyframes.size(),
+            results_.all().back()->keyframes);
+  std::filesystem::create_symlink(startup_, maps_ / "link.rtdmap");
+  EXPECT_THAT(call("slam/save_map", "link"), HasSubstr("failed: link.rtdmap exists and is not a map"));
+  std::filesystem::create_symlink(folder_ / "made", maps_ / "dangling.rtdmap");
+  EXPECT_THAT(call("slam/save_map", "dangling"), HasSubstr("failed: dangling.rtdmap exists and is not a map"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "made"));
+  EXPECT_EQ(startup(), "export PATH\n");
+}
+
+TEST_F(MapAttackTest, only_maps_are_replaced) {
+  map_something();
+  std::ofstream(maps_ / "notes.rtdmap") << "mine";
+  EXPECT_THAT(call("slam/save_map", "notes"), HasSubstr("failed: notes.rtdmap exists and is not a map"));
+  EXPECT_EQ(io::read_text(maps_ / "notes.rtdmap"), "mine");
+  EXPECT_THAT(call("slam/save_map", "room"), HasSubstr("saved to"));
+  EXPECT_THAT(call("slam/save_map", "room"), HasSubstr("saved to")) << "its own map it may replace";
+}
+
+TEST_F(MapAttackTest, load_does_not_tell_which_files_exist) {
+  map_something();
+  make_map();  // outside, readable, a map
+  const std::string there = call("slam/load_map", file_), not_there = call("slam/load_map", file_ + "x");
+  EXPECT_THAT(there, HasSubstr("failed: this is not a name of a map"));
+  EXPECT_EQ(there, not_there);
+  for (const char* name : {"/etc/passwd", "/etc/none", "../room", "../.profile"})
+    EXPECT_EQ(call("slam/load_map", name), there) << name;
+  std::filesystem::create_symlink(startup_, maps_ / "a.rtdmap");
+  std::filesystem::create_symlink(file_, maps_ / "b.rtdmap");
+  std::filesystem::create_symlink(folder_ / "none", maps_ / "c.rtdmap");
+  for (const std::string name : {"a", "b", "c", "d"})
+    EXPECT_EQ(call("slam/load_map", name),
+              "failed: there is no readable map " + name + ".rtdmap in the folder of --maps-dir");
+}
+
+TEST_F(MapServiceTest, the_folder_of_maps_is_that_of_the_configured_file_else_of_the_run) {
+  ServiceConfig config;
+  EXPECT_EQ(maps_folder(config, ""), "");
+  EXPECT_EQ(maps_folder(config, "/var/lib/rtd-slam"), "/var/lib/rtd-slam");
+  config.out_dir = "run";
+  EXPECT_EQ(maps_folder(config, "/var/lib/rtd-slam"), "run");
+  config.map.save = "maps/room.rtdmap";
+  EXPECT_EQ(maps_folder(config, ""), "maps");
+  config.map.save = "room.rtdmap";
+  EXPECT_EQ(maps_folder(config, ""), ".");
+  config.map.folder = "/srv/maps";
+  EXPECT_EQ(maps_folder(config, ""), "/srv/maps");
 }
 
 TEST_F(MapServiceTest, saves_its_map_while_it_runs) {
@@ -196,8 +279,9 @@ TEST_F(MapServiceTest, refuses_another_camera) {
 
 TEST_F(MapServiceTest, gives_up_a_map_taken_before_the_first_frame_that_another_camera_made) {
   make_map();
+  config_.map.folder = folder_;
   start(service::Pace::kLockstep);
-  EXPECT_THAT(call("slam/load_map", file_), HasSubstr("keyframes"));
+  EXPECT_THAT(call("slam/load_map", "room"), HasSubstr("keyframes"));
   const auto step_with_other_camera = [&](std::uint64_t seq) {
     auto frame = world_.view(seq, FeatureWorld::T_world_camera(seq));
     frame->intrinsics[0] = frame->intrinsics[1] = 365;

@@ -27,7 +27,7 @@ before(async () => {
   viewer = await startViewer();
   services = [viewer, new Service("slam"), new Service("filter", "--set", "filter.detector=off"),
               new Service("camera", "--source", "synthetic:office?frames=0", "--wait-for", "filter,slam")];
-  client = new FoxgloveClient({ ws: new WebSocket(`ws://127.0.0.1:${viewer.port}`, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
+  client = new FoxgloveClient({ ws: new WebSocket(viewer.socket, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
   client.on("serverInfo", (message) => { info = message; });
   client.on("error", (error) => complaints.push(error.message));
   client.on("advertise", (list) => list.forEach((channel) => channels.set(channel.topic, channel)));
@@ -132,12 +132,12 @@ test("a parameter that is set acts, is answered with its new value, and is repor
 
 /** A client of foxglove.sdk.v1, which knows playback control; Foxglove's library of above does not. */
 class PlaybackClient {
-  constructor(port) {
+  constructor(address) {
     this.states = [];
     this.times_ns = [];
     this.messages = [];
     this.channels = new Map();
-    this.socket = new WebSocket(`ws://127.0.0.1:${port}`, ["foxglove.sdk.v1"]);
+    this.socket = new WebSocket(address, ["foxglove.sdk.v1"]);
     this.socket.on("message", (data, binary) => (binary ? this.#binary(data) : this.#text(JSON.parse(data))));
   }
   control({ pause, speed = 1, seek_ns, id }) {
@@ -180,7 +180,7 @@ test("Foxglove's playback controls act on a replay, in recorded time", async () 
   await stopAll(services.filter((service) => service !== viewer));
   const replay = new Service("replay", recording, "--loop");
   services = [viewer, replay];
-  const player = new PlaybackClient(viewer.port);
+  const player = new PlaybackClient(viewer.socket);
   try {
     await eventually(() => player.info?.capabilities.includes("playbackControl"), "playback control");
     const begin_ns = ns(player.info.dataStartTime), end_ns = ns(player.info.dataEndTime);

@@ -97,8 +97,8 @@ test("buttons act: save the map, change the filter's mode, reset the map", async
   await startRun();
   startCamera();
   await waitForWholeMap();
-  const file = join(folder, "button.rtdmap");
-  await press("/slam/save_map", "button", file);
+  const file = join(folder, "out", "button.rtdmap");
+  await press("/slam/save_map", "button", "button");
   assert.match(await answerOf("/slam/save_map"), /saved/);
   assert.ok(existsSync(file));
   await press("/filter/set_mode", "button:nth-child(1)");

@@ -29,11 +29,11 @@ export class Service {
   }
 }
 
-/** A viewer on a port of its own; address: of its page. */
+/** A viewer on a port of its own; address: of its page, socket: for clients; both with the token for commands. */
 export async function startViewer(...args) {
   const viewer = new Service("viewer", ...(args.length > 0 ? args : ["--port", "0"]));
-  const [, address, port] = await viewer.waitFor(/viewer: (http:\/\/[^/]*:(\d+)\/)/);
-  return Object.assign(viewer, { address, port });
+  const [, address, port] = await viewer.waitFor(/viewer: (http:\/\/[^/]*:(\d+)\/\S*)/);
+  return Object.assign(viewer, { address, port, socket: address.replace("http:", "ws:") });
 }
 
 export const stopAll = (services) => Promise.all(services.filter(Boolean).map((service) => service.stop()));

@@ -229,6 +229,28 @@ class ViewerTest(unittest.TestCase):
 
         asyncio.run(check())
 
+    def test_only_who_knows_the_token_calls_commands_on_loopback(self):
+        token = self.viewer.wait_for(r"token=(\w+)").group(1)
+
+        async def check():
+            for path, control in (("/live", False), ("/live?token=wrong", False), (f"/live?token={token}", True)):
+                async with self.viewer.connect(PAGE, path) as page:
+                    hello = json.loads(await page.recv())
+                    self.assertEqual((hello["type"], hello["control"]), ("hello", control), path)
+                    call = {"op": "call", "id": 1, "robot": 99, "name": "/slam/save_map", "argument": "room"}
+                    await page.send(json.dumps(call))
+                    answer = ""
+                    while '"answer"' not in answer:
+                        answer = await asyncio.wait_for(page.recv(), 10)
+                        answer = answer if isinstance(answer, str) else ""
+                    self.assertIn("this robot is unknown" if control else "?token=", answer)
+            for path, offered in (("/", False), (f"/?token={token}", True)):
+                async with self.viewer.connect(FOXGLOVE, path) as client:
+                    info = json.loads(await client.recv())
+                    self.assertEqual("services" in info["capabilities"], offered, path)
+
+        asyncio.run(check())
+
     def test_a_token_is_asked_for_on_other_interfaces(self):
         viewer = Viewer("--bind", "0.0.0.0", "--robot", "tokentest")
         token = viewer.wait_for(r"token=(\w+)").group(1)

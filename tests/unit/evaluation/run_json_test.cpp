@@ -165,7 +165,7 @@ TEST_F(ReportCommand, without_a_run_is_exit_code_2_and_without_room_1) {
   EXPECT_THAT(err_.str(), HasSubstr("nowhere/run.json: cannot be opened"));
   std::filesystem::create_directory(folder_.file("report.json"));
   EXPECT_EQ(report(), 1);
-  EXPECT_THAT(err_.str(), HasSubstr("report.json: cannot be written"));
+  EXPECT_THAT(err_.str(), HasSubstr("report.json: this is a folder"));
 }
 
 TEST_F(ReportCommand, compares_runs_on_one_page) {

@@ -62,6 +62,13 @@ TEST_F(OutputFolder, leaves_the_metadata_of_others_alone) {
   EXPECT_TRUE(files.owns_metadata());
   put("metadata.yaml", "rosbag2_bagfile_information:\n  relative_file_paths:\n    - other_0.mcap\n");
   EXPECT_FALSE(files.owns_metadata());
+  for (const char* unrelated : {"name: my site\n", "", "rosbag2_bagfile_information:\n  storage_identifier: mcap\n"}) {
+    put("metadata.yaml", unrelated);
+    EXPECT_FALSE(files.owns_metadata()) << unrelated;
+  }
+  fs::remove(folder_ / "metadata.yaml");
+  fs::create_symlink("nowhere", folder_ / "metadata.yaml");
+  EXPECT_FALSE(files.owns_metadata());
 }
 
 }  // namespace

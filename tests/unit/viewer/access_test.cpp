@@ -38,6 +38,18 @@ TEST(Access, a_token_is_asked_for_when_there_is_one) {
     EXPECT_EQ(check_access(rules, {.host = "robot", .target = target}), Access::kNoToken) << target;
 }
 
+TEST(Access, without_the_token_a_client_of_loopback_only_looks) {
+  const AccessRules rules{.hosts = {"localhost"}, .token = "s3cret", .look_freely = true};
+  const AccessRequest page{.host = "localhost:8765", .origin = "http://localhost:8765", .target = "/live"};
+  EXPECT_EQ(check_access(rules, page), Access::kToLook);
+  EXPECT_TRUE(may_look(Access::kToLook));
+  EXPECT_EQ(check_access(rules, {.host = "localhost", .target = "/?token=s3cret"}), Access::kGranted);
+  EXPECT_EQ(check_access(rules, {.host = "localhost", .target = "/?token=guess"}), Access::kToLook);
+  EXPECT_EQ(check_access(rules, {.host = "localhost", .target = "/", .authorization = "Bearer x"}), Access::kToLook);
+  EXPECT_EQ(check_access(rules, {.host = "localhost", .origin = "https://evil.example", .target = "/?token=s3cret"}),
+            Access::kWrongOrigin);
+}
+
 TEST(Access, a_query_is_taken_apart) {
   EXPECT_EQ(query_value("/?a=1&b=%41%zz%4", "b"), "A%zz%4");
   EXPECT_EQ(query_value("/?a=1&&b=2&", "b"), "2");

@@ -157,6 +157,23 @@ TEST_F(FoxgloveHubTest, commands_are_services) {
   EXPECT_THAT(ops(take(*other)), ElementsAre("serviceCallFailure"));
 }
 
+TEST_F(FoxgloveHubTest, a_client_that_only_looks_causes_nothing) {
+  hub.set_commands({{"/slam/save_map", ArgumentKind::kText}});
+  const auto looker = hub.open(foxglove::kSubprotocols[0], Rights::kLook), other = hub.open();
+  const auto greeting = take(*looker);
+  ASSERT_THAT(ops(greeting), ElementsAre("serverInfo", "advertise")) << "no services";
+  EXPECT_THAT(greeting[0]["capabilities"].dump(), testing::Not(HasSubstr("services")));
+  const std::string call(std::string_view("\x02\x01\x00\x00\x00\x09\x00\x00\x00\x04\x00\x00\x00json{}", 19));
+  looker->on_binary(std::as_bytes(std::span(call)));
+  looker->on_text(R"({"op":"setParameters","parameters":[{"name":"good","value":1}]})");
+  EXPECT_THAT(ops(take(*looker)), ElementsAre("serviceCallFailure", "status"));
+  EXPECT_THAT(calls, IsEmpty());
+  take(*other);
+  hub.set_commands({{"/slam/reset", ArgumentKind::kNone}});
+  EXPECT_THAT(take(*looker), IsEmpty());
+  EXPECT_EQ(take(*other).size(), 2U) << "one is gone, one is new";
+}
+
 TEST_F(FoxgloveHubTest, parameters_are_read_set_and_watched) {
   hub.set_parameters({{"good", 1.0}});
   const auto client = hub.open();

@@ -58,6 +58,26 @@ class PageSessionTest : public ::testing::Test {
   std::vector<std::function<void(CommandResult)>> answers;
 };
 
+TEST_F(PageSessionTest, a_page_without_the_token_sees_everything_and_calls_nothing) {
+  hub.robot("");
+  const auto page = hub.open(Rights::kLook);
+  const auto hello = page->next(kSecond);
+  ASSERT_TRUE(hello);
+  const auto text_of = [](const Frame& frame) {
+    const Bytes& bytes = frame.head.empty() ? *frame.payload : frame.head;
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  EXPECT_FALSE(json::parse(text_of(*hello))["control"]);
+  take(*page, kSecond);
+  page->on_text(R"({"op":"call","id":7,"robot":0,"name":"/slam/save_map","argument":"a"})");
+  const auto refused = page->next(2 * kSecond);
+  ASSERT_TRUE(refused);
+  EXPECT_THAT(text_of(*refused), ::testing::HasSubstr("?token="));
+  EXPECT_THAT(calls, IsEmpty());
+  hub.open()->on_text(R"({"op":"call","id":7,"robot":0,"name":"/slam/save_map","argument":"a"})");
+  EXPECT_THAT(calls, ElementsAre("/slam/save_map(a)"));
+}
+
 TEST_F(PageSessionTest, a_late_page_gets_the_whole_state_and_then_changes) {
   RobotMirror& robot = *hub.robot("");
   robot.map().add(map_of(50, 100));

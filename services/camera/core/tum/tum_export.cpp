@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "common/vision/image_codecs.hpp"
+#include "common/io/atomic_file.hpp"
+#include "common/vision/image_file.hpp"
 #include "services/camera/core/calibration.hpp"
 
 namespace rtd::camera {
@@ -16,16 +16,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_text(const fs::path& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  if (!(stream << text) || !stream.flush()) throw SourceError("cannot write " + file.string());
+void write_text(const fs::path& file, const std::string& text) try {
+  io::write_file(file, text);
+} catch (const io::IoError& error) {
+  throw SourceError(std::string("cannot write ") + error.what());
 }
 
-void write_png(const fs::path& file, const cv::Mat& image) {
+void write_png(const fs::path& file, const cv::Mat& image) try {
   constexpr int kFastCompression = 1;
-  if (!vision::image_codecs().write(file.string(), image, {cv::IMWRITE_PNG_COMPRESSION, kFastCompression})) {
-    throw SourceError("cannot write " + file.string());
-  }
+  if (!vision::write_image(file, image, {cv::IMWRITE_PNG_COMPRESSION, kFastCompression}, {.durable = false}))
+    throw SourceError("cannot encode " + file.string());
+} catch (const io::IoError& error) {
+  throw SourceError(std::string("cannot write ") + error.what());
 }
 
 void prepare(const fs::path& folder) {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "common/geometry/ply.hpp"
+#include "common/io/atomic_file.hpp"
 #include "common/service/json_text.hpp"
 
 namespace rtd::eval {
@@ -204,11 +205,7 @@ RunSummary write_report(const Run& run, const std::filesystem::path& folder) {
 }
 
 void write_file(const std::filesystem::path& path, const std::string& content) {
-  std::ofstream output(path, std::ios::binary);
-  output << content;
-  output.flush();
-  if (!output)
-    throw std::runtime_error(path.string() + ": cannot be written; check that the folder exists and has room");
+  io::write_file(path, content);
 }
 
 Json report_json(const Run& run, const RunSummary& summary) {

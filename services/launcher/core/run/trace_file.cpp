@@ -4,18 +4,19 @@
 
 #include <filesystem>
 #include <fstream>
+#include <ostream>
 #include <set>
+
+#include "common/io/atomic_file.hpp"
 
 namespace rtd::launcher {
 namespace fs = std::filesystem;
 
-std::string join_trace(const std::string& folder, const std::string& path) {
-  std::ofstream joined(path);
+namespace {
+
+/// Lines that are whole: a killed process leaves half a line.
+void join_parts(const std::set<fs::path>& parts, std::ostream& joined) {
   joined << R"({"displayTimeUnit":"ms","traceEvents":[)";
-  std::error_code error;
-  std::set<fs::path> parts;  // by name: the same order each time
-  for (const auto& entry : fs::directory_iterator(folder, error)) parts.insert(entry.path());
-  if (error) return folder + ": " + error.message();
   const char* separator = "\n";
   for (const fs::path& part : parts) {
     std::ifstream lines(part);
@@ -26,8 +27,21 @@ std::string join_trace(const std::string& folder, const std::string& path) {
     }
   }
   joined << "\n]}\n";
-  joined.close();
-  if (!joined) return path + ": cannot be written";
+}
+
+}  // namespace
+
+std::string join_trace(const std::string& folder, const std::string& path) {
+  std::error_code error;
+  std::set<fs::path> parts;  // by name: the same order each time
+  for (const auto& entry : fs::directory_iterator(folder, error)) parts.insert(entry.path());
+  if (error) return folder + ": " + error.message();
+  try {
+    io::write_file(
+        path, [&](std::ostream& joined) { join_parts(parts, joined); }, {.named_by = io::NamedBy::kOperator});
+  } catch (const io::IoError& failure) {
+    return failure.what();
+  }
   fs::remove_all(folder, error);
   return error ? folder + ": " + error.message() : "";
 }
