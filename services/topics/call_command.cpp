@@ -126,7 +126,10 @@ void add_call_options(CLI::App& app, CallRequest& request) {
   app.add_flag("--list", request.list, "Show the commands of all running programs")->excludes(name);
   service::add_bus_options(app, request.bus);
   app.add_flag("--json", request.json, "Print JSON instead of text");
-  app.footer("Exit code: 0 done; 1 the answer says that it failed, or there is none; 2 wrong arguments");
+  app.footer(
+      "/slam/save_map, /slam/load_map and /recorder/start take the name of a file, not a path: its folder is that of\n"
+      "--maps-dir or --recordings-dir of the service (docs/topics.md#commands).\n"
+      "Exit code: 0 done; 1 the answer says that it failed, or there is none; 2 wrong arguments");
 }
 
 int run_call(const CallRequest& request, std::ostream& out, std::ostream& err) {

@@ -22,8 +22,6 @@ int call_main(int argc, char** argv) {
   rtd::topics::CallRequest request;
   CLI::App app{"Call a command of a running service, as 'ros2 service call' does", "rtd call"};
   rtd::topics::add_call_options(app, request);
-  app.footer("/slam/save_map, /slam/load_map and /recorder/start take the name of a file, not a path: it is in the folder\n"
-             "that the service was given with --maps-dir or --recordings-dir (docs/topics.md#commands).");
   return rtd::service::run_command(app, argc, argv,
                                    [&] { return rtd::topics::run_call(request, std::cout, std::cerr); });
 }

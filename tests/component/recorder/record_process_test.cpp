@@ -113,12 +113,12 @@ TEST_F(RecordProcess, four_topics_with_raw_frames_are_complete_to_the_byte) {
 
 /// Whatever its vendor (RTD_DDS) and ours are.
 TEST_F(RecordProcess, begins_and_ends_recordings_by_command) {
-  RecorderProcess recorder(test_domain(), {"--wait"});
+  RecorderProcess recorder(test_domain(), {"--wait", "--recordings-dir", folder_});
   const auto raw = bus::connect_raw(options_);
   const auto laser = raw->writer({"rt/laser", "vendor_msgs::msg::dds_::Laser_"}, {});
   bus::CommandClient client(options_);
   for (const char* name : {"first.mcap", "second.mcap"}) {
-    const bus::CommandAnswer started = client.call("recorder/start", folder_ / name, 20'000);
+    const bus::CommandAnswer started = client.call("recorder/start", name, 20'000);
     ASSERT_TRUE(started.success) << started.message;
     wait_heard(*laser);
     ASSERT_TRUE(laser->write(some_bytes(1, 40)));

@@ -144,7 +144,7 @@ class Target {
   FoxgloveHub foxglove_{"fuzz", "1", {}, {}};
   PageHub page_{{}, {}, {.on_call = {}, .now_ms = [] { return 0.0; }}};
   Site site_{"/usr/share/javascript/three"};
-  WebServer server_{{.port = 0, .access = {.hosts = {"localhost"}}}, site_, [this](const std::string& subprotocol) {
+  WebServer server_{{.port = 0, .access = {.hosts = {"localhost"}}}, site_, [this](const std::string& subprotocol, Rights) {
                       return subprotocol == page::kSubprotocol ? page_.open() : foxglove_.open();
                     }};
   std::unique_ptr<Connection> client_;
