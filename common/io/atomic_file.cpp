@@ -20,20 +20,20 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kHead = ".rtd-", kTail = ".tmp";
-constexpr std::size_t kDigits = 16;
+constexpr std::size_t kRandomDigits = 16;
 
 std::string temporary_name(const fs::path& path) {
   std::uint64_t number = 0;
   if (::getrandom(&number, sizeof number, 0) != static_cast<ssize_t>(sizeof number)) fail_writing(path, EIO);
-  std::array<char, kDigits + 1> digits{};
+  std::array<char, kRandomDigits + 1> digits{};
   std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(number));
   return std::string(kHead) + digits.data() + std::string(kTail);
 }
 
 bool is_temporary(std::string_view name) {
-  if (name.size() != kHead.size() + kDigits + kTail.size() || !name.starts_with(kHead) || !name.ends_with(kTail))
+  if (name.size() != kHead.size() + kRandomDigits + kTail.size() || !name.starts_with(kHead) || !name.ends_with(kTail))
     return false;
-  return name.substr(kHead.size(), kDigits).find_first_not_of("0123456789abcdef") == std::string_view::npos;
+  return name.substr(kHead.size(), kRandomDigits).find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }
 
 /// A pipe, a device or another open file of this process (/dev/stdout): nothing that a rename could replace.
