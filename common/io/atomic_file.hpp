@@ -29,8 +29,8 @@ struct AtomicOptions {
   bool durable = true;     ///< survives a power cut from commit() on; off for one of thousands of files
 };
 
-/// A file that appears whole or not at all, and in one step takes the place of what had its name: written under a random
-/// name beside it (O_EXCL), made durable and renamed by commit(). Without commit() nothing is left. For one thread.
+/// A file that appears whole or not at all, and in one step takes the place of what had its name: written under a
+/// random name beside it (O_EXCL), made durable and renamed by commit(). Without commit() nothing is left. For one thread.
 class AtomicFile final : public ByteSink {
  public:
   /// Throws IoError naming file, cause and fix: no such folder, read-only, a symbolic link, it exists (kFail), ...

@@ -49,8 +49,8 @@ fs::path NamedFiles::path(const std::string& name) const {
     throw NameError("there is no folder for a named " + what + ": start this service with " + option + " FOLDER");
   const std::string full = name.ends_with(extension) ? name : name + extension;
   if (!is_name(full))
-    throw NameError("this is not a name of a " + what + ": give a name, not a path: letters, digits, '-', '_' and '.', " +
-                    "at most 100; the folder is that of " + option);
+    throw NameError("this is not a name of a " + what + ": give a name, not a path: letters, digits, '-', '_' and " +
+                    "'.', at most 100; the folder is that of " + option);
   return folder_ / full;
 }
 

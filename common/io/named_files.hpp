@@ -9,8 +9,8 @@
 
 namespace rtd::io {
 
-/// A name that a command may not use, or a file that it may not have; what() is for the answer of the command: cause and
-/// fix, and nothing about files that are not in the folder.
+/// A name that a command may not use, or a file that it may not have; what() is for the answer of the command: cause
+/// and fix, and nothing about files that are not in the folder.
 class NameError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
