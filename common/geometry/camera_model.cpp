@@ -7,6 +7,16 @@
 #include <cmath>
 
 namespace rtd::geometry {
+namespace {
+
+/// A calibration from outside may bend a pixel to where no number is: it then lies far outside.
+Eigen::Vector2d bounded(const Eigen::Vector2d& pixel) {
+  constexpr double kFarthest_px = 1e6;
+  const auto bound = [](double px) { return px > -kFarthest_px ? std::min(px, +kFarthest_px) : -kFarthest_px; };
+  return {bound(pixel.x()), bound(pixel.y())};
+}
+
+}  // namespace
 
 CameraModel::CameraModel(const Parameters& parameters)
     : parameters_(parameters),
@@ -51,7 +61,7 @@ Eigen::Vector2d CameraModel::distort(const Eigen::Vector2d& pixel) const {
   if (!distorted_) return pixel;
   const auto& p = parameters_;
   const Eigen::Vector2d d = distort_normalized({(pixel.x() - p.cx) / p.fx, (pixel.y() - p.cy) / p.fy});
-  return {p.fx * d.x() + p.cx, p.fy * d.y() + p.cy};
+  return bounded({p.fx * d.x() + p.cx, p.fy * d.y() + p.cy});
 }
 
 Eigen::Vector2d CameraModel::undistort(const Eigen::Vector2d& raw_pixel) const {
@@ -60,7 +70,7 @@ Eigen::Vector2d CameraModel::undistort(const Eigen::Vector2d& raw_pixel) const {
   const Eigen::Vector2d target((raw_pixel.x() - p.cx) / p.fx, (raw_pixel.y() - p.cy) / p.fy);
   if (p.lens == Lens::kFisheye) {
     const Eigen::Vector2d n = undistort_fisheye(target);
-    return {p.fx * n.x() + p.cx, p.fy * n.y() + p.cy};
+    return bounded({p.fx * n.x() + p.cx, p.fy * n.y() + p.cy});
   }
   Eigen::Vector2d n = target;
   constexpr int kMaxIterations = 20;
@@ -77,7 +87,7 @@ Eigen::Vector2d CameraModel::undistort(const Eigen::Vector2d& raw_pixel) const {
         (2 * kStep);
     n -= jacobian.inverse() * residual;
   }
-  return {p.fx * n.x() + p.cx, p.fy * n.y() + p.cy};
+  return bounded({p.fx * n.x() + p.cx, p.fy * n.y() + p.cy});
 }
 
 }  // namespace rtd::geometry

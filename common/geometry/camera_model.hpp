@@ -45,7 +45,7 @@ class CameraModel {
   /// Pixel of the camera's own image -> pixel of the ideal pinhole image (Newton on Eq. (2)). What a fisheye lens sees
   /// farther off the axis than kWidestView_rad comes to lie at that angle.
   Eigen::Vector2d undistort(const Eigen::Vector2d& raw_pixel) const;
-  /// Pixel of the ideal pinhole image -> pixel of the camera's own image, Eq. (2).
+  /// Pixel of the ideal pinhole image -> pixel of the camera's own image, Eq. (2). Both stay within 10^6 px.
   Eigen::Vector2d distort(const Eigen::Vector2d& pixel) const;
   /// Inside the image, `margin_px` away from its border.
   bool contains(const Eigen::Vector2d& pixel, double margin_px = 0.0) const {

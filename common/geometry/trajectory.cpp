@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "common/io/text.hpp"
+#include "common/msg/stamps.hpp"
 
 namespace rtd::geometry {
 namespace {
@@ -69,7 +70,7 @@ std::ifstream open_or_throw(const std::filesystem::path& path) {
 /// Rounded to microseconds. From the integer: a double would lose the last digits of today's stamps.
 std::string rounded_stamp(std::int64_t stamp_ns) {
   const bool negative = stamp_ns <= -500;
-  return (negative ? "-" : "") + tum_stamp((stamp_ns < 0 ? -stamp_ns : stamp_ns) + 500);
+  return (negative ? "-" : "") + tum_stamp(msg::plus_ns(msg::apart_ns(stamp_ns, 0), 500));
 }
 
 }  // namespace
@@ -101,9 +102,10 @@ std::optional<Eigen::Isometry3d> pose_at(const Trajectory& trajectory, std::int6
   if (after->stamp_ns == stamp_ns) return after->T_world_body;
   if (after == trajectory.begin()) return std::nullopt;
   const StampedPose& before = *std::prev(after);
-  if (stamp_ns - before.stamp_ns > max_gap_ns || after->stamp_ns - stamp_ns > max_gap_ns) return std::nullopt;
-  const double share =
-      static_cast<double>(stamp_ns - before.stamp_ns) / static_cast<double>(after->stamp_ns - before.stamp_ns);
+  if (msg::minus_ns(stamp_ns, before.stamp_ns) > max_gap_ns || msg::minus_ns(after->stamp_ns, stamp_ns) > max_gap_ns)
+    return std::nullopt;
+  const double share = static_cast<double>(msg::minus_ns(stamp_ns, before.stamp_ns)) /
+                       static_cast<double>(msg::minus_ns(after->stamp_ns, before.stamp_ns));
   const Eigen::Isometry3d& a = before.T_world_body;
   const Eigen::Isometry3d& b = after->T_world_body;
   Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();
@@ -117,9 +119,9 @@ std::vector<StampPair> associate(const std::vector<std::int64_t>& first_ns, cons
                                  std::int64_t max_difference_ns) {
   std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;  // |difference|, first, second
   for (std::size_t i = 0; i < second_ns.size(); ++i) {
-    auto it = std::ranges::upper_bound(first_ns, second_ns[i] - max_difference_ns);
-    for (; it != first_ns.end() && *it < second_ns[i] + max_difference_ns; ++it) {
-      candidates.emplace_back(std::abs(*it - second_ns[i]), static_cast<std::size_t>(it - first_ns.begin()), i);
+    auto it = std::ranges::upper_bound(first_ns, msg::minus_ns(second_ns[i], max_difference_ns));
+    for (; it != first_ns.end() && *it < msg::plus_ns(second_ns[i], max_difference_ns); ++it) {
+      candidates.emplace_back(msg::apart_ns(*it, second_ns[i]), static_cast<std::size_t>(it - first_ns.begin()), i);
     }
   }
   std::ranges::sort(candidates);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "common/msg/stamps.hpp"
+
 namespace rtd::geometry {
 namespace {
 
@@ -42,7 +44,8 @@ Eigen::Isometry3d TransformLog::Link::at(std::int64_t stamp_ns) const {
   const auto after = T_parent_child.lower_bound(stamp_ns);
   if (after == T_parent_child.begin()) return after->second;
   const auto before = std::prev(after);
-  const bool later = after != T_parent_child.end() && after->first - stamp_ns < stamp_ns - before->first;
+  const bool later =
+      after != T_parent_child.end() && msg::minus_ns(after->first, stamp_ns) < msg::minus_ns(stamp_ns, before->first);
   return later ? after->second : before->second;
 }
 

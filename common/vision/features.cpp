@@ -8,11 +8,20 @@
 
 namespace rtd::vision {
 
+namespace {
+
+int cells_along(int side_px, int cell_px) {
+  const std::int64_t cells = (std::int64_t{side_px} + cell_px - 1) / cell_px;
+  return static_cast<int>(std::clamp<std::int64_t>(cells, 1, FeatureGrid::kMostCells));
+}
+
+}  // namespace
+
 FeatureGrid::FeatureGrid(std::span<const msg::Feature> features, int width_px, int height_px, int cell_px)
     : features_(features),
       inverse_cell_px_(1.0F / static_cast<float>(cell_px)),
-      columns_(std::max(1, (width_px + cell_px - 1) / cell_px)),
-      rows_(std::max(1, (height_px + cell_px - 1) / cell_px)),
+      columns_(cells_along(width_px, cell_px)),
+      rows_(cells_along(height_px, cell_px)),
       starts_(static_cast<std::size_t>(columns_) * rows_ + 1, 0),
       indices_(features.size()) {
   if (features.size() > std::numeric_limits<std::uint16_t>::max()) {

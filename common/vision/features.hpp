@@ -25,10 +25,11 @@ struct SearchWindow {
 ///
 /// Buckets the undistorted positions in square cells; positions outside the image go to the nearest border cell, so
 /// none is lost. Visits in a fixed order (row of cells, column, index). At most 65535 features (std::length_error).
-/// Refers to `features`, which must outlive the
-/// grid.
+/// At most kMostCells cells a side, whatever the size says. Refers to `features`, which must outlive the grid.
 class FeatureGrid {
  public:
+  static constexpr int kMostCells = 256;
+
   FeatureGrid() = default;
   FeatureGrid(std::span<const msg::Feature> features, int width_px, int height_px, int cell_px = 20);
 
@@ -58,7 +59,8 @@ class FeatureGrid {
   int column_of(float u_px) const { return bucket(u_px, columns_); }
   int row_of(float v_px) const { return bucket(v_px, rows_); }
   int bucket(float position_px, int count) const {
-    return static_cast<int>(std::clamp(position_px * inverse_cell_px_, 0.0F, static_cast<float>(count - 1)));
+    const float cell = position_px * inverse_cell_px_;
+    return cell > 0 ? static_cast<int>(std::min(cell, static_cast<float>(count - 1))) : 0;  // 0 for NaN
   }
   std::uint32_t cell_begin(int row, int column) const {
     return starts_[static_cast<std::size_t>(row * columns_ + column)];

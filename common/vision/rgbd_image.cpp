@@ -13,9 +13,7 @@
 namespace rtd::vision {
 namespace {
 
-bool positive(double value) {
-  return std::isfinite(value) && value > 0;
-}
+constexpr double kMostDepthScale_m = 1;  // a metre per unit
 
 }  // namespace
 
@@ -25,7 +23,7 @@ std::string defect(const msg::FrameView& frame) {
                        frame.pixels);
   }
   const auto [fx, fy, cx, cy] = frame.intrinsics;
-  if (!positive(fx) || !positive(fy) || !std::isfinite(cx) || !std::isfinite(cy)) {
+  if (!msg::is_camera(frame.intrinsics, frame.width, frame.height)) {
     return fmt::format("intrinsics fx {} fy {} cx {} cy {} are not a camera", fx, fy, cx, cy);
   }
   const bool finite =
@@ -33,7 +31,8 @@ std::string defect(const msg::FrameView& frame) {
   if (!finite) return "distortion is not finite";
   if (frame.lens > static_cast<std::uint32_t>(geometry::Lens::kFisheye))
     return fmt::format("lens model {} is unknown", frame.lens);
-  if (!positive(frame.depth_scale_m)) return fmt::format("depth scale {} m is not positive", frame.depth_scale_m);
+  if (!(frame.depth_scale_m > 0 && frame.depth_scale_m <= kMostDepthScale_m))
+    return fmt::format("depth scale {} m is not in (0, {:g}] m", frame.depth_scale_m, kMostDepthScale_m);
   if (!msg::is_sensor_time(frame.readout_s) || !msg::is_sensor_time(frame.depth_offset_s)) {
     return fmt::format("readout time {} s or depth offset {} s is not within +-{:g} s", frame.readout_s,
                        frame.depth_offset_s, msg::kMaxSensorTime_s);

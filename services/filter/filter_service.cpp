@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <opencv2/core/utility.hpp>
 
+#include "common/msg/stamps.hpp"
 #include "common/service/load_step.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/rgbd_image.hpp"
@@ -274,7 +275,7 @@ const service::LoadStep& FilterService::follow_load_step() {
 void FilterService::watch_load(const msg::TrackingResult& result) {
   if (!sheds_load()) return;
   const int before = load_.step();
-  const double latency_ms = static_cast<double>(result.finished_ns - result.published_ns) * 1e-6;
+  const double latency_ms = static_cast<double>(msg::minus_ns(result.finished_ns, result.published_ns)) * 1e-6;
   if (!load_.add(result.seq, latency_ms, service::monotonic_ns())) return;
   const service::LoadStep& step = follow_load_step();
   if (load_.step() > before) {

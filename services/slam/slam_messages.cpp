@@ -6,6 +6,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/msg/point_cloud.hpp"
+#include "common/msg/stamps.hpp"
 #include "common/msg/transform_eigen.hpp"
 
 namespace rtd::slam {
@@ -109,7 +110,7 @@ msg::Odometry make_odometry(const OdometryPose& pose, const std::optional<Odomet
   odometry.child_frame_id = names.camera;
   odometry.pose = {to_pose(result.T_world_camera), result.covariance};
   if (!previous || previous->result.stamp_ns >= result.stamp_ns) return odometry;
-  const double gap_s = static_cast<double>(result.stamp_ns - previous->result.stamp_ns) / kNsPerS;
+  const double gap_s = static_cast<double>(msg::minus_ns(result.stamp_ns, previous->result.stamp_ns)) / kNsPerS;
   const Eigen::Isometry3d T_previous_camera = previous->T_odom_camera.inverse() * pose.T_odom_camera;
   const geometry::Vector6d twist = geometry::se3_log(T_previous_camera) / gap_s;
   odometry.twist.twist = {{twist[0], twist[1], twist[2]}, {twist[3], twist[4], twist[5]}};

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/bus/robot.hpp"
+#include "common/msg/stamps.hpp"
 #include "common/ros2/schema_texts.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
@@ -16,7 +17,7 @@ namespace {
 
 /// When a pose was ready, ms since 1970: known on the same host only, else now.
 double finished_ms(const msg::TrackingResult& result) {
-  const double age_ms = 1e-6 * static_cast<double>(service::monotonic_ns() - result.finished_ns);
+  const double age_ms = 1e-6 * static_cast<double>(msg::minus_ns(service::monotonic_ns(), result.finished_ns));
   constexpr double kOldest_ms = 10'000;
   return wall_clock_ms() - (age_ms >= 0 && age_ms < kOldest_ms ? age_ms : 0);
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/msg/stamps.hpp"
+
 namespace rtd::dense {
 namespace {
 
@@ -49,7 +51,7 @@ void FreeSpace::update(const msg::KeyframeEvent& event) {
 void FreeSpace::add(const vision::RgbdImage& image, const Eigen::Isometry3d& T_map_camera) {
   std::vector<std::uint32_t>& view = views_[viewpoint(T_map_camera)];
   const bool known = view.size() >= kScansOfView;
-  if (known && image.stamp_ns - scans_[view.back()].stamp_ns < kRenewNs) return;
+  if (known && msg::minus_ns(image.stamp_ns, scans_[view.back()].stamp_ns) < kRenewNs) return;
   full_ = full_ || (!known && scans_.size() >= static_cast<std::size_t>(config_.max_scans));
   if (!known && scans_.size() >= static_cast<std::size_t>(config_.max_scans)) return;
   Scan scan = decimate(image);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 
+#include "common/msg/stamps.hpp"
 #include "common/msg/transform_eigen.hpp"
 
 namespace rtd::dense {
@@ -37,15 +39,18 @@ std::optional<KeyframePoses::Removed> KeyframePoses::update(const msg::KeyframeE
     if (found == keyframes_.end()) return std::nullopt;
     const std::int64_t stamp_ns = found->second.stamp_ns;
     keyframes_.erase(found);
+    by_time_.erase({stamp_ns, id});
     const AnchorId follows = nearest_in_time(stamp_ns);
     if (newest_ == id) newest_ = follows;
     return Removed{id, follows};
   }
   const Eigen::Isometry3d T_world_keyframe = msg::to_isometry(event.T_world_camera);
   if (!T_world_keyframe.matrix().allFinite()) return std::nullopt;
+  if (keyframes_.size() >= kMost && !keyframes_.contains(id)) return std::nullopt;
   const auto [keyframe, created] =
       keyframes_.try_emplace(id, Keyframe{event.stamp_ns, T_world_keyframe, T_world_keyframe});
   keyframe->second.T_world_keyframe = T_world_keyframe;
+  if (created) by_time_.emplace(event.stamp_ns, id);
   if (created && (newest_ == kNoAnchor || event.stamp_ns >= keyframes_.at(newest_).stamp_ns)) newest_ = id;
   return std::nullopt;
 }
@@ -65,16 +70,17 @@ std::map<AnchorId, Eigen::Isometry3f> KeyframePoses::take_motions() {
   return motions;
 }
 
+/// Of several as near, the one with the lowest number.
 AnchorId KeyframePoses::nearest_in_time(std::int64_t stamp_ns) const {
-  AnchorId nearest = kNoAnchor;
-  std::int64_t gap_ns = 0;
-  for (const auto& [id, keyframe] : keyframes_) {
-    const std::int64_t other_ns = std::abs(keyframe.stamp_ns - stamp_ns);
-    if (nearest != kNoAnchor && other_ns >= gap_ns) continue;
-    nearest = id;
-    gap_ns = other_ns;
-  }
-  return nearest;
+  if (by_time_.empty()) return kNoAnchor;
+  const auto later = by_time_.lower_bound({stamp_ns, 0});
+  if (later == by_time_.begin()) return later->second;
+  const auto earlier = by_time_.lower_bound({std::prev(later)->first, 0});
+  if (later == by_time_.end()) return earlier->second;
+  const std::int64_t ahead_ns = msg::minus_ns(later->first, stamp_ns),
+                     behind_ns = msg::minus_ns(stamp_ns, earlier->first);
+  if (ahead_ns == behind_ns) return std::min(later->second, earlier->second);
+  return ahead_ns < behind_ns ? later->second : earlier->second;
 }
 
 StaticMap::StaticMap(const DenseConfig& config) : config_(config), map_(limits(config)) {}

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "common/msg/tracking.hpp"
@@ -23,6 +25,8 @@ class KeyframePoses {
   struct Removed {
     AnchorId keyframe = kNoAnchor, follows = kNoAnchor;
   };
+  /// So many live keyframes are followed, 30 MB: those of a day and more. Later ones are as if they were none.
+  static constexpr std::size_t kMost = 100'000;
   /// Applies one event of slam. Poses that are not finite are ignored.
   std::optional<Removed> update(const msg::KeyframeEvent& event);
   /// The keyframe that new points move with: the newest; kNoAnchor before the first.
@@ -41,6 +45,7 @@ class KeyframePoses {
   AnchorId nearest_in_time(std::int64_t stamp_ns) const;
 
   std::map<AnchorId, Keyframe> keyframes_;
+  std::set<std::pair<std::int64_t, AnchorId>> by_time_;  ///< stamps of the same keyframes
   AnchorId newest_ = kNoAnchor;
 };
 

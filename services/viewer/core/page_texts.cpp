@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/msg/stamps.hpp"
 #include "common/service/json_text.hpp"
 #include "services/viewer/core/page_messages.hpp"
 
@@ -56,22 +57,23 @@ const char* state_text(const ServiceLine& line) {
 
 std::string tracking(std::uint8_t robot, const msg::TrackingResult& result, double finished_ms,
                      const std::optional<std::array<float, msg::kFilterStages>>& filter_stage_ms) {
-  json message = {{"type", "tracking"},
-                  {"robot", robot},
-                  {"seq", result.seq},
-                  {"stamp_s", 1e-9 * static_cast<double>(result.stamp_ns)},
-                  {"state", to_string(result.state)},
-                  {"pose", nullptr},
-                  {"map", result.map_id},
-                  {"maps", result.maps},
-                  {"inliers", result.inliers},
-                  {"static", result.features_static},
-                  {"removed", result.features_removed},
-                  {"keyframes", result.keyframes},
-                  {"landmarks", result.landmarks},
-                  {"latency_ms", rounded(1e-6 * static_cast<double>(result.finished_ns - result.published_ns), 1e2)},
-                  {"finished_ms", rounded(finished_ms, 10)},
-                  {"stage_ms", stages(kSlamStageNames, result.stage_ms)}};
+  json message = {
+      {"type", "tracking"},
+      {"robot", robot},
+      {"seq", result.seq},
+      {"stamp_s", 1e-9 * static_cast<double>(result.stamp_ns)},
+      {"state", to_string(result.state)},
+      {"pose", nullptr},
+      {"map", result.map_id},
+      {"maps", result.maps},
+      {"inliers", result.inliers},
+      {"static", result.features_static},
+      {"removed", result.features_removed},
+      {"keyframes", result.keyframes},
+      {"landmarks", result.landmarks},
+      {"latency_ms", rounded(1e-6 * static_cast<double>(msg::minus_ns(result.finished_ns, result.published_ns)), 1e2)},
+      {"finished_ms", rounded(finished_ms, 10)},
+      {"stage_ms", stages(kSlamStageNames, result.stage_ms)}};
   if (has_pose(result.state)) message["pose"] = pose(result.T_world_camera);
   if (filter_stage_ms) message["filter_stage_ms"] = stages(kFilterStageNames, *filter_stage_ms);
   return json_line(message);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "common/msg/stamps.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/viewer/core/byte_writer.hpp"
 #include "services/viewer/core/page_messages.hpp"
@@ -36,7 +37,9 @@ std::optional<std::array<std::uint32_t, 4>> layout_of(const msg::PointCloud2& cl
   std::array<std::uint32_t, 4> offsets{};
   for (std::size_t place = 0; place < offsets.size(); ++place) {
     const auto field = std::ranges::find(cloud.fields, kNames[place], &msg::PointField::name);
-    if (field == cloud.fields.end() || field->datatype != kFloat32 || field->offset + 4 > cloud.point_step) return {};
+    if (field == cloud.fields.end() || field->datatype != kFloat32) return {};
+    if (std::uint64_t{field->offset} + sizeof(float) > cloud.point_step)
+      return {};  // in 64 bits: it is anyone's number
     offsets[place] = field->offset;
   }
   return offsets;
@@ -146,7 +149,7 @@ std::vector<msg::ServiceStatus> RobotMirror::services() const {
 std::vector<page::ServiceLine> RobotMirror::services(std::int64_t now_ns) const {
   std::vector<page::ServiceLine> lines;
   for (const auto& [name, known] : services_)
-    lines.push_back({known.status, 1e-6 * static_cast<double>(now_ns - known.received_ns)});
+    lines.push_back({known.status, 1e-6 * static_cast<double>(msg::minus_ns(now_ns, known.received_ns))});
   return lines;
 }
 
@@ -167,8 +170,8 @@ void RobotMirror::keep(Overlays& overlays, std::int64_t stamp_ns, Payload payloa
 /// The newest one not after the stamp and at most this much before.
 Payload RobotMirror::at(const Overlays& overlays, std::int64_t stamp_ns, std::int64_t tolerance_ns) {
   for (auto overlay = overlays.rbegin(); overlay != overlays.rend(); ++overlay)
-    if (overlay->stamp_ns <= stamp_ns + kSameFrameNs)
-      return stamp_ns - overlay->stamp_ns <= tolerance_ns ? overlay->payload : nullptr;
+    if (overlay->stamp_ns <= msg::plus_ns(stamp_ns, kSameFrameNs))
+      return msg::minus_ns(stamp_ns, overlay->stamp_ns) <= tolerance_ns ? overlay->payload : nullptr;
   return nullptr;
 }
 
@@ -177,7 +180,7 @@ std::optional<View> RobotMirror::newest_view() const {
   const std::int64_t newest_ns = images_.empty() ? features_.back().stamp_ns : images_.back().stamp_ns;
   View view;
   for (auto image = images_.rbegin(); image != images_.rend() && !view.features; ++image) {
-    if (newest_ns - image->stamp_ns > kPatienceNs) break;
+    if (msg::minus_ns(newest_ns, image->stamp_ns) > kPatienceNs) break;
     view = {
         .stamp_ns = image->stamp_ns, .image = image->payload, .features = at(features_, image->stamp_ns, kSameFrameNs)};
   }

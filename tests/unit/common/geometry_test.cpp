@@ -68,6 +68,20 @@ TEST(CameraModel, what_a_fisheye_lens_sees_behind_it_stays_finite) {
   EXPECT_NEAR((corner - Eigen::Vector2d(p.cx, p.cy)).norm(), 150 * std::tan(CameraModel::kWidestView_rad), 1e-6);
 }
 
+TEST(CameraModel, no_distortion_bends_a_pixel_to_where_no_number_is) {
+  for (const Lens lens : {Lens::kBrownConrady, Lens::kFisheye}) {
+    for (const double k : {1e300, -1e300, 1e30, -1e5, 3.0}) {
+      CameraModel::Parameters p = tum_fr1().parameters();
+      p.lens = lens;
+      p.distortion.fill(k);
+      for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(0, 0), {639, 479}, {320, 5}}) {
+        EXPECT_LE(CameraModel(p).undistort(pixel).cwiseAbs().maxCoeff(), 1e6) << k;
+        EXPECT_LE(CameraModel(p).distort(pixel).cwiseAbs().maxCoeff(), 1e6) << k;
+      }
+    }
+  }
+}
+
 TEST(CameraModel, unproject_inverts_project) {
   const CameraModel camera = tum_fr1();
   const Eigen::Vector3d p_camera(0.3, -0.2, 1.7);

@@ -4,7 +4,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <limits>
 #include <random>
+#include <utility>
 
 namespace rtd::vision {
 namespace {
@@ -45,6 +48,23 @@ TEST(FeatureGrid, keeps_features_that_undistortion_moved_out_of_the_image) {
 TEST(FeatureGrid, is_empty_without_features) {
   EXPECT_TRUE(FeatureGrid().find({10, 10, 100}).empty());
   EXPECT_TRUE(FeatureGrid({}, 640, 480).find({10, 10, 1000}).empty());
+}
+
+TEST(FeatureGrid, stays_small_and_finds_everything_whatever_the_size_of_the_image_says) {
+  constexpr int kMost = std::numeric_limits<int>::max();
+  const std::vector<msg::Feature> features{feature_at(10, 10), feature_at(2e9F, 10), feature_at(10, 2e9F)};
+  for (const auto& [width_px, height_px] :
+       {std::pair(kMost, kMost), {1'000'000'000, 1'000'000'000}, {kMost, 1}, {1, kMost}, {-5, 0}}) {
+    const FeatureGrid grid(features, width_px, height_px);
+    EXPECT_THAT(grid.find({10, 10, 5}), testing::ElementsAre(0)) << width_px << "x" << height_px;
+    EXPECT_THAT(grid.find({2e9F, 10, 5}), testing::ElementsAre(1)) << width_px << "x" << height_px;
+    EXPECT_THAT(grid.find({10, 2e9F, 5}), testing::ElementsAre(2)) << width_px << "x" << height_px;
+  }
+}
+
+TEST(FeatureGrid, finds_nothing_around_a_position_that_is_no_number) {
+  const std::vector<msg::Feature> features{feature_at(10, 10)};
+  EXPECT_TRUE(FeatureGrid(features, 640, 480).find({std::nanf(""), 10, 5}).empty());
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
@@ -47,6 +49,38 @@ TEST(SlamSystem, follows_the_camera_through_an_exact_world) {
     const SlamOutput output = slam.process(*world.view(seq));
     ASSERT_EQ(output.result.state, TrackingState::kOk) << "frame " << seq << ": " << output.problem;
     EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 1e-3) << "frame " << seq;
+  }
+}
+
+TEST(SlamSystem, refuses_images_and_cameras_that_cannot_be) {
+  const FeatureWorld world({});
+  SlamSystem slam = make_slam();
+  constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+  std::uint64_t seq = 0;
+  for (const auto& [width, height] : {std::pair(kMost, kMost), {0x7FFFFFFFU, 1U}, {1U, 0x80000000U}, {1921U, 10U}}) {
+    const auto frame = world.view(seq++);
+    frame->width = width;
+    frame->height = height;
+    EXPECT_THAT(slam.process(*frame).problem, testing::HasSubstr("image size")) << width << "x" << height;
+  }
+  for (const double focal_px : {1e300, 1e-300, std::nan("")}) {
+    const auto frame = world.view(seq++);
+    frame->intrinsics[0] = focal_px;
+    EXPECT_THAT(slam.process(*frame).problem, testing::HasSubstr("intrinsics")) << focal_px;
+  }
+  EXPECT_EQ(slam.process(*world.view(seq)).result.state, TrackingState::kOk) << "goes on with good ones";
+}
+
+TEST(SlamSystem, follows_stamps_that_jump_to_the_ends_of_time) {
+  const FeatureWorld world({});
+  SlamSystem slam = make_slam();
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max(),
+                         kMin = std::numeric_limits<std::int64_t>::min();
+  const std::array<std::int64_t, 8> stamps{0, kMax, kMin, 0, kMin + 1, kMax - 1, -4'000'000'000'000'000'000, kMax};
+  for (std::uint64_t seq = 0; seq < 5 * stamps.size(); ++seq) {
+    const auto frame = world.view(seq);
+    frame->stamp_ns = stamps[seq % stamps.size()];
+    EXPECT_TRUE(slam.process(*frame).result.T_world_camera.matrix().allFinite()) << seq;
   }
 }
 

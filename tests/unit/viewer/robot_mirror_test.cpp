@@ -4,7 +4,10 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cstring>
+#include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 namespace rtd::viewer {
@@ -156,6 +159,33 @@ TEST(RobotMirror, dense_points_keep_place_and_colour) {
   cloud.point_step = 8;
   mirror.add(cloud);
   EXPECT_EQ(mirror.dense().revision, 1U) << "fields beyond a point are refused";
+  cloud.point_step = 16;
+  for (const std::uint32_t offset : {0xFFFFFFFCU, 0xFFFFFFFFU, 13U}) {
+    cloud.fields[2].offset = offset;
+    mirror.add(cloud);
+    EXPECT_EQ(mirror.dense().revision, 1U) << "an offset of " << offset;
+  }
+}
+
+TEST(RobotMirror, stamps_of_any_size_are_only_very_old_or_new) {
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max(),
+                         kMin = std::numeric_limits<std::int64_t>::min();
+  RobotMirror mirror(0);
+  msg::CompressedImage image;
+  image.data = {1, 2, 3};
+  mirror.add(image);
+  const auto frame = std::make_unique<msg::FeatureFrame>();
+  for (const std::int64_t stamp_ns : {kMax, kMin, kMax - 1, kMin + 1}) {
+    frame->stamp_ns = stamp_ns;
+    mirror.add(*frame);
+    ASSERT_TRUE(mirror.newest_view());
+    EXPECT_EQ(mirror.newest_view()->features, nullptr);
+  }
+  msg::TrackingResult result{};
+  result.finished_ns = kMax;
+  result.published_ns = kMin;
+  mirror.add(result, 0);
+  EXPECT_NE(mirror.item(Item::kTracking).payload, nullptr);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/msg/stamps.hpp"
 #include "services/filter/core/motion/guided_matching.hpp"
 
 namespace rtd::filter {
@@ -122,7 +123,7 @@ RefinedPose PaperJudge::find_pose(const Scene& scene, const std::vector<msg::Fea
   const auto& p = scene.image.camera.parameters();
   const vision::FeatureGrid grid(features, p.width, p.height);
   const double window_px =
-      search_window_px(scene.image.camera, scene.image.stamp_ns - views_.newest().stamp_ns, ego_motion_);
+      search_window_px(scene.image.camera, msg::minus_ns(scene.image.stamp_ns, views_.newest().stamp_ns), ego_motion_);
   const Eigen::Isometry3d T_world_predicted = views_.predict_pose(scene.image.stamp_ns);
   std::vector<PointSighting> sightings;
   for (const FeatureMatch& match : match_by_projection(views_.newest(), {features, grid, scene.image.camera},

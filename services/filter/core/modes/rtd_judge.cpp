@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/msg/stamps.hpp"
 #include "services/filter/core/belief/static_probability.hpp"
 
 namespace rtd::filter {
@@ -108,7 +109,7 @@ RememberedMotion RtdJudge::recall_movers(const Scene& scene, const Foreground& f
       std::clamp<std::int64_t>(scene.image.stamp_ns / kCentisecondNs - newest.stamp_ns / kCentisecondNs, 1, 255));
   remembered.hold_cs =
       memory_.recall(scene.surfaces.grid, scene.image.camera, T_world_camera.inverse() * newest.T_world_camera,
-                     1e-9 * static_cast<double>(scene.image.stamp_ns - newest.stamp_ns));
+                     msg::minus_s(scene.image.stamp_ns, newest.stamp_ns));
   forget_what_is_known_to_rest(scene, foreground, T_world_camera, remembered.hold_cs);
   if (!config_.techniques.mover_tracks) return remembered;
   const auto expected_cs = static_cast<std::uint8_t>(std::min(255, kExpectedCs + remembered.elapsed_cs));
@@ -189,8 +190,7 @@ std::vector<msg::Feature> RtdJudge::weigh(const Scene& scene, const EgoMotion& e
   const MotionEvidence motion{regions, evidence, ego.votes};
   const std::vector<std::int16_t> object_on = objects_on_cells(scene.shape(), scene.objects);
   const std::vector<ObjectMotion> motions = judge_objects(scene.objects, motion, config_.belief);
-  const double elapsed_s =
-      views_.empty() ? 0.0 : 1e-9 * static_cast<double>(scene.image.stamp_ns - views_.newest().stamp_ns);
+  const double elapsed_s = views_.empty() ? 0.0 : msg::minus_s(scene.image.stamp_ns, views_.newest().stamp_ns);
   CellBeliefs beliefs =
       update_beliefs(recall_beliefs(scene, ego.T_world_camera), {scene.objects, motions, object_on, motion, elapsed_s},
                      config_.belief, config_.techniques);

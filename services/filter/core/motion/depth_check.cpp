@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/msg/stamps.hpp"
+
 namespace rtd::filter {
 namespace {
 
@@ -40,8 +42,8 @@ class ReferenceCheck {
   ReferenceCheck(const View& view, const CameraPose& pose, const geometry::CameraModel& camera,
                  const GeometryConfig& config)
       : view_(view),
-        old_(pose.stamp_ns - view.stamp_ns >= kOldNs),
-        recent_(pose.stamp_ns - view.stamp_ns <= kRecentNs),
+        old_(msg::minus_ns(pose.stamp_ns, view.stamp_ns) >= kOldNs),
+        recent_(msg::minus_ns(pose.stamp_ns, view.stamp_ns) <= kRecentNs),
         fx_(static_cast<float>(camera.parameters().fx)),
         fy_(static_cast<float>(camera.parameters().fy)),
         cx_(static_cast<float>(camera.parameters().cx)),

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "common/msg/stamps.hpp"
 #include "common/vision/samples.hpp"
 #include "services/filter/core/motion/static_consensus.hpp"
 
@@ -23,7 +24,7 @@ std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& 
   const Eigen::Isometry3d& T_world_camera = input.T_world_camera_predicted;
   const std::size_t enough = 4 * static_cast<std::size_t>(config.min_inliers);
   const auto window_px = [&](const View& view) {
-    return search_window_px(input.current.camera, input.stamp_ns - view.stamp_ns, config);
+    return search_window_px(input.current.camera, msg::minus_ns(input.stamp_ns, view.stamp_ns), config);
   };
   std::vector<FeatureMatch> matches = match_by_projection(near, input.current, T_world_camera, window_px(near), config);
   if (matches.size() < enough && previous.seq != near.seq) {
@@ -70,7 +71,7 @@ std::vector<FeatureMatch> usable(const std::vector<FeatureMatch>& matches, const
 FeatureVotes count_slow_votes(const EgoMotionInput& input, const Eigen::Isometry3d& T_world_camera,
                               const EgoMotionConfig& config, const GeometryConfig& geometry) {
   const View& old = input.views.long_ago(input.stamp_ns, input.look_back_ns);
-  const std::int64_t age_ns = input.stamp_ns - old.stamp_ns;
+  const std::int64_t age_ns = msg::minus_ns(input.stamp_ns, old.stamp_ns);
   if (age_ns < kMinSlowAgeNs) return {};
   const double reach_m = kSlowMS * 1e-9 * static_cast<double>(age_ns);
   const auto matches = match_by_projection(old, input.current, T_world_camera,
@@ -113,7 +114,7 @@ EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig
   const RefinedPose refined = refine_pose(sightings, camera, consensus.T_world_camera, config.min_inliers);
   if (!refined.success) return ego;
   ego.reliable = true;
-  ego.settled = input.stamp_ns - near.stamp_ns >= kMinSettledAgeNs;
+  ego.settled = msg::minus_ns(input.stamp_ns, near.stamp_ns) >= kMinSettledAgeNs;
   ego.T_world_camera = refined.T_world_camera;
   ego.inliers = refined.inliers;
   ego.votes = count_votes(all_near, camera, refined.T_world_camera, input.clusters, geometry);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/geometry/se3.hpp"
+#include "common/msg/stamps.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -26,14 +27,14 @@ auto find_seq(std::deque<View>& views, std::uint64_t seq) {
 void ViewStore::add(View view) {
   recent_.push_back(std::move(view));
   const auto outdated = [this] {
-    return recent_.size() > kMinRecent && recent_.back().stamp_ns - recent_.front().stamp_ns > kRecentNs;
+    return recent_.size() > kMinRecent && msg::minus_ns(recent_.back().stamp_ns, recent_.front().stamp_ns) > kRecentNs;
   };
   while (recent_.size() > kMaxRecent || outdated()) retire_oldest();
 }
 
 void ViewStore::retire_oldest() {
   View& oldest = recent_.front();
-  if (oldest.settled && (past_.empty() || oldest.stamp_ns - past_.back().stamp_ns >= kPastStepNs)) {
+  if (oldest.settled && (past_.empty() || msg::minus_ns(oldest.stamp_ns, past_.back().stamp_ns) >= kPastStepNs)) {
     past_.push_back(std::move(oldest));
     if (past_.size() > kMaxPast) past_.pop_front();
   }
@@ -103,14 +104,16 @@ const View* ViewStore::at(std::int64_t stamp_ns) const {
 }
 
 const View& ViewStore::of_age(std::int64_t now_ns, std::int64_t age_ns) const {
+  const std::int64_t then_ns = msg::minus_ns(now_ns, age_ns);
   return *std::min_element(recent_.begin(), recent_.end(), [&](const View& a, const View& b) {
     if (a.settled != b.settled) return a.settled;
-    return std::abs(now_ns - age_ns - a.stamp_ns) < std::abs(now_ns - age_ns - b.stamp_ns);
+    return msg::apart_ns(then_ns, a.stamp_ns) < msg::apart_ns(then_ns, b.stamp_ns);
   });
 }
 
 const View& ViewStore::long_ago(std::int64_t now_ns, std::int64_t age_ns) const {
-  const auto off_by = [&](const View& view) { return std::abs(now_ns - age_ns - view.stamp_ns); };
+  const std::int64_t then_ns = msg::minus_ns(now_ns, age_ns);
+  const auto off_by = [&](const View& view) { return msg::apart_ns(then_ns, view.stamp_ns); };
   const View* best = &of_age(now_ns, age_ns);
   for (const View& view : past_) {
     if (off_by(view) < off_by(*best)) best = &view;
@@ -156,7 +159,8 @@ Eigen::Isometry3d ViewStore::predict_pose(std::int64_t stamp_ns) const {
   const View* before = second_newest();
   const Eigen::Isometry3d& T_world_newest = newest().T_world_camera;
   if (before == nullptr) return T_world_newest;
-  const std::int64_t known_ns = newest().stamp_ns - before->stamp_ns, ahead_ns = stamp_ns - newest().stamp_ns;
+  const std::int64_t known_ns = msg::minus_ns(newest().stamp_ns, before->stamp_ns);
+  const std::int64_t ahead_ns = msg::minus_ns(stamp_ns, newest().stamp_ns);
   if (known_ns <= 0 || known_ns > kLongGapNs || ahead_ns > kLongGapNs) return T_world_newest;
   const geometry::Vector6d step = geometry::se3_log(before->T_world_camera.inverse() * T_world_newest);
   const double steps = static_cast<double>(ahead_ns) / static_cast<double>(known_ns);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/msg/features.hpp"
+#include "common/msg/stamps.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {
@@ -58,7 +59,7 @@ class ViewStore {
   const View* second_newest() const { return recent_.size() < 2 ? nullptr : &recent_[recent_.size() - 2]; }
   /// Is there a view at least this old?
   bool spans(std::int64_t now_ns, std::int64_t age_ns) const {
-    return !recent_.empty() && now_ns - recent_.front().stamp_ns >= age_ns;
+    return !recent_.empty() && msg::minus_ns(now_ns, recent_.front().stamp_ns) >= age_ns;
   }
   /// The recent view with this stamp; null when there is none.
   const View* at(std::int64_t stamp_ns) const;

@@ -32,7 +32,8 @@ struct GridShape {
   /// The same for any position, outside ones to the nearest cell.
   int nearest_cell(double u_px, double v_px) const {
     const auto clamp = [this](double px, int count) {
-      return static_cast<int>(std::clamp(px / cell_px, 0.0, count - 1.0));
+      const double cell = px / cell_px;
+      return cell > 0 ? static_cast<int>(std::min(cell, count - 1.0)) : 0;  // 0 for NaN
     };
     return index(clamp(u_px, columns), clamp(v_px, rows));
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/msg/stamps.hpp"
 #include "services/filter/core/tracks/assignment.hpp"
 
 namespace rtd::filter {
@@ -27,7 +28,7 @@ vision::Detection to_detection(const std::string& class_name, float score, const
 }  // namespace
 
 void BoxTracks::begin_frame(const TrackedFrame& frame) {
-  const std::int64_t dt_ns = frames_.empty() ? 0 : frame.stamp_ns - frames_.back().stamp_ns;
+  const std::int64_t dt_ns = frames_.empty() ? 0 : msg::minus_ns(frame.stamp_ns, frames_.back().stamp_ns);
   if (dt_ns < 0) clear();
   frames_.push_back(frame);
   if (frames_.size() > kMaxFrames) frames_.pop_front();
@@ -36,17 +37,18 @@ void BoxTracks::begin_frame(const TrackedFrame& frame) {
     step.state.predict(seconds(dt_ns));
     track.steps.push_back({frame.stamp_ns, step.state, std::nullopt, false, std::nullopt, step.depth_m});
     if (track.steps.size() > kMaxFrames) track.steps.pop_front();
-    if (frame.rolling) track.distrusted_ns += dt_ns;
+    if (frame.rolling) track.distrusted_ns = msg::plus_ns(track.distrusted_ns, dt_ns);
   }
 }
 
 std::optional<std::size_t> BoxTracks::frame_of(std::int64_t stamp_ns) const {
-  const bool around = !frames_.empty() && stamp_ns >= frames_.front().stamp_ns - kSameFrameNs;  // any number may come
+  const bool around =
+      !frames_.empty() && msg::minus_ns(frames_.front().stamp_ns, stamp_ns) <= kSameFrameNs;  // any number may come
   if (!around || stamp_ns > frames_.back().stamp_ns) return std::nullopt;
   const auto nearest = std::min_element(frames_.begin(), frames_.end(), [&](const auto& a, const auto& b) {
-    return std::abs(a.stamp_ns - stamp_ns) < std::abs(b.stamp_ns - stamp_ns);
+    return msg::apart_ns(a.stamp_ns, stamp_ns) < msg::apart_ns(b.stamp_ns, stamp_ns);
   });
-  if (std::abs(nearest->stamp_ns - stamp_ns) > kSameFrameNs) return std::nullopt;
+  if (msg::apart_ns(nearest->stamp_ns, stamp_ns) > kSameFrameNs) return std::nullopt;
   return static_cast<std::size_t>(nearest - frames_.begin());
 }
 
@@ -128,8 +130,8 @@ void BoxTracks::miss(Track& track, std::size_t step, const TrackedFrame& frame) 
   if (frame.rolling || frame.stamp_ns <= track.last_hit_ns) return;
   if (visible_share(track.steps[step].state.box(), frame.size_px()) < kMostlyVisible) return;
   ++track.misses;
-  const double unseen_s = seconds(frame.stamp_ns - track.last_hit_ns - track.distrusted_ns);
-  const double known_s = seconds(track.last_hit_ns - track.first_ns);
+  const double unseen_s = msg::minus_s(msg::minus_ns(frame.stamp_ns, track.last_hit_ns), track.distrusted_ns);
+  const double known_s = msg::minus_s(track.last_hit_ns, track.first_ns);
   const double survive_s = std::min(config_.survive_misses_s, known_s);
   track.dead = track.hits < config_.confirm_hits || (track.misses >= 2 && unseen_s > survive_s);
 }
@@ -157,7 +159,7 @@ void BoxTracks::replay(Track& track, std::size_t from) const {
     Step& step = track.steps[i];
     if (i > 0) {
       const Step& before = track.steps[i - 1];
-      const double dt_s = seconds(step.stamp_ns - before.stamp_ns);
+      const double dt_s = msg::minus_s(step.stamp_ns, before.stamp_ns);
       step.state = before.state;
       if (step.flow) step.state.flowed(*step.flow, dt_s);
       step.state.predict(dt_s);
@@ -188,9 +190,9 @@ bool BoxTracks::expired(const Track& track) const {
   constexpr double kHardlyVisible = 0.15;
   const Step& now = track.steps.back();
   if (now.seen) return false;
-  const auto patience_ns = static_cast<std::int64_t>(1e9 * config_.roll_patience_s);
-  const std::int64_t unseen_ns = now.stamp_ns - track.last_hit_ns - std::min(track.distrusted_ns, patience_ns);
-  return seconds(unseen_ns) > config_.silence_s ||
+  const auto patience_ns = msg::ns_of(config_.roll_patience_s);
+  const std::int64_t unseen_ns = msg::minus_ns(now.stamp_ns, track.last_hit_ns);
+  return msg::minus_s(unseen_ns, std::min(track.distrusted_ns, patience_ns)) > config_.silence_s ||
          visible_share(now.state.box(), frames_.back().size_px()) < kHardlyVisible;
 }
 
@@ -201,8 +203,8 @@ std::vector<TrackedBox> BoxTracks::boxes() {
     const Step& now = track.steps.back();
     vision::Detection detection =
         now.seen ? *now.seen : to_detection(voted_class(track.votes), track.score, now.state.box());
-    boxes.push_back(
-        {track.id, std::move(detection), !now.seen.has_value(), now.depth_m, seconds(now.stamp_ns - track.first_ns)});
+    boxes.push_back({track.id, std::move(detection), !now.seen.has_value(), now.depth_m,
+                     msg::minus_s(now.stamp_ns, track.first_ns)});
   }
   return boxes;
 }

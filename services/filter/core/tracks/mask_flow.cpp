@@ -55,7 +55,7 @@ void MaskFlow::see(std::int64_t stamp_ns, const cv::Mat& color_bgr) {
   if (!images_.empty() && stamp_ns <= images_.back().stamp_ns) images_.clear();
   cv::Mat grey, small;
   cv::cvtColor(color_bgr, grey, cv::COLOR_BGR2GRAY);
-  cv::resize(grey, small, {grey.cols / 2, grey.rows / 2}, 0, 0, cv::INTER_AREA);
+  cv::resize(grey, small, {std::max(1, grey.cols / 2), std::max(1, grey.rows / 2)}, 0, 0, cv::INTER_AREA);
   images_.push_back({stamp_ns, std::move(small), {}});
   if (images_.size() > kMaxImages) images_.pop_front();
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/msg/stamps.hpp"
 #include "services/filter/core/motion/ego_motion.hpp"
 #include "services/filter/core/tracks/assignment.hpp"
 
@@ -34,7 +35,7 @@ double MoverTracks::margin_m(const Track& track) const {
 }
 
 bool MoverTracks::confirmed(const Track& track) const {
-  return track.hits >= config_.confirm_hits && seconds(track.seen_ns - track.first_ns) >= config_.confirm_s;
+  return track.hits >= config_.confirm_hits && msg::minus_s(track.seen_ns, track.first_ns) >= config_.confirm_s;
 }
 
 CellMask MoverTracks::expected(const MoverFrame& frame) const {
@@ -51,7 +52,7 @@ CellMask MoverTracks::expected(const MoverFrame& frame) const {
 void MoverTracks::update(const MoverFrame& frame, const DepthClusters& clusters, const CellMask& moving,
                          const FeatureVotes& slow_votes) {
   const std::vector<MoverSighting> sightings = sight_movers(frame, clusters, moving);
-  const double elapsed_s = tracks_.empty() ? 0.0 : seconds(frame.pose.stamp_ns - tracks_.front().now_ns);
+  const double elapsed_s = tracks_.empty() ? 0.0 : msg::minus_s(frame.pose.stamp_ns, tracks_.front().now_ns);
   for (Track& track : tracks_) predict(track, frame.pose.stamp_ns);
   const std::vector<int> sighting_of = assign_to_tracks(sightings, frame);
   std::vector<char> known(sightings.size(), 0);
@@ -70,7 +71,7 @@ void MoverTracks::update(const MoverFrame& frame, const DepthClusters& clusters,
 }
 
 void MoverTracks::predict(Track& track, std::int64_t stamp_ns) const {
-  const double dt_s = seconds(stamp_ns - track.now_ns);
+  const double dt_s = msg::minus_s(stamp_ns, track.now_ns);
   if (dt_s <= 0) return;
   for (AxisKalman& axis : track.axes) axis.predict(dt_s, config_.acceleration_m_s2);
   track.now_ns = stamp_ns;
@@ -164,7 +165,7 @@ std::vector<Mover> MoverTracks::movers() const {
   std::vector<Mover> movers;
   for (const Track& track : tracks_) {
     if (!confirmed(track)) continue;
-    const double age_s = seconds(track.now_ns - track.first_ns);
+    const double age_s = msg::minus_s(track.now_ns, track.first_ns);
     movers.push_back({track.id, track.extent(0), track.velocity(), age_s, track.unseen_s()});
   }
   return movers;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/msg/stamps.hpp"
 #include "services/filter/core/filter_config.hpp"
 #include "services/filter/core/motion/dynamic_regions.hpp"
 #include "services/filter/core/tracks/kalman.hpp"
@@ -52,7 +53,7 @@ class MoverTracks {
     bool out_of_sight = false;      ///< some time since it was last seen moving
     double rest_s = 0, gone_s = 0;  ///< seen at rest, or not where it should be, since it was last seen moving
     Eigen::Vector3d velocity() const { return {axes[0].state[1], axes[1].state[1], axes[2].state[1]}; }
-    double unseen_s() const { return 1e-9 * static_cast<double>(now_ns - seen_ns); }
+    double unseen_s() const { return msg::minus_s(now_ns, seen_ns); }
     Eigen::AlignedBox3d extent(double margin_m) const;
   };
   void predict(Track& track, std::int64_t stamp_ns) const;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/tracks/object_tracker.hpp"
+#include "common/msg/stamps.hpp"
 #include "common/vision/samples.hpp"
 
 #include <algorithm>
@@ -71,7 +72,7 @@ std::vector<ObjectBox> ObjectTracker::boxes_of_frame(const DetectorUpdate& detec
 std::vector<ObjectBox> ObjectTracker::tracked_boxes(const DetectorUpdate& detector, const vision::RgbdImage& image,
                                                     const DepthGrid& grid, const ViewStore& views) {
   if (detector.active) detector_active_ns_ = image.stamp_ns;
-  if (std::abs(static_cast<double>(image.stamp_ns - detector_active_ns_)) > 1e9 * config_.unwatched_s) {
+  if (static_cast<double>(msg::apart_ns(image.stamp_ns, detector_active_ns_)) > 1e9 * config_.unwatched_s) {
     clear();  // geometry only
     return {};
   }
@@ -127,7 +128,7 @@ void ObjectTracker::clear() {
 double roll_rate_rad_s(const ViewStore& views) {
   const View* before = views.second_newest();
   if (before == nullptr) return 0;
-  const double dt_s = 1e-9 * static_cast<double>(views.newest().stamp_ns - before->stamp_ns);
+  const double dt_s = msg::minus_s(views.newest().stamp_ns, before->stamp_ns);
   if (dt_s <= 0) return 0;
   const Eigen::Matrix3d turn = before->T_world_camera.linear().transpose() * views.newest().T_world_camera.linear();
   return std::atan2(turn(1, 0), turn(0, 0)) / dt_s;

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/msg/stamps.hpp"
 #include "services/filter/core/tracks/assignment.hpp"
 
 namespace rtd::filter {
@@ -105,7 +106,7 @@ std::vector<WorldMover> WorldMovers::place(std::int64_t stamp_ns, const Eigen::I
 void WorldMovers::predict(std::int64_t stamp_ns) {
   now_ns_ = stamp_ns;
   for (Track& track : tracks_) {
-    const double dt_s = seconds(stamp_ns - track.now_ns), variance = kAcceleration_m_s2 * kAcceleration_m_s2;
+    const double dt_s = msg::minus_s(stamp_ns, track.now_ns), variance = kAcceleration_m_s2 * kAcceleration_m_s2;
     track.now_ns = stamp_ns;
     if (dt_s <= 0) continue;
     Matrix6d transition = Matrix6d::Identity();
@@ -325,7 +326,7 @@ WorldMovers::Track WorldMovers::start(const ObjectSighting& sighting, const Obje
 
 /// What was seen for a moment only is not expected to be anywhere else.
 bool WorldMovers::forgotten(const Track& track) {
-  return track.unseen_s() > std::min(kForgetS, seconds(track.seen_ns - track.first_ns));
+  return track.unseen_s() > std::min(kForgetS, msg::minus_s(track.seen_ns, track.first_ns));
 }
 
 WorldMover WorldMovers::to_mover(const Track& track) {

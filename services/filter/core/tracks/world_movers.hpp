@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/msg/stamps.hpp"
 #include "services/filter/core/tracks/object_look.hpp"
 #include "services/filter/core/tracks/object_sighting.hpp"
 
@@ -55,7 +56,7 @@ class WorldMovers {
     TintShares tints = TintShares::Zero();
     std::int64_t first_ns = 0, now_ns = 0, seen_ns = 0;
     int hits = 0;
-    double unseen_s() const { return 1e-9 * static_cast<double>(now_ns - seen_ns); }
+    double unseen_s() const { return msg::minus_s(now_ns, seen_ns); }
     Eigen::Vector3d middle() const { return state.head<3>() + to_middle_m; }
   };
   struct View;

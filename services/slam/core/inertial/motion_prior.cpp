@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "common/msg/stamps.hpp"
+
 namespace rtd::slam {
 namespace {
 
@@ -19,7 +21,7 @@ MotionPrior::MotionPrior(const SlamConfig& config)
       wheels_(config.wheel) {}
 
 void MotionPrior::add(ImuSample sample) {
-  sample.stamp_ns += static_cast<std::int64_t>(1e9 * config_.imu.time_offset_s);
+  sample.stamp_ns = msg::plus_ns(sample.stamp_ns, msg::ns_of(config_.imu.time_offset_s));
   imu_.add(sample);
 }
 
@@ -33,8 +35,8 @@ std::optional<PredictedPose> MotionPrior::advance(std::int64_t stamp_ns) {
   before_ns_ = now_ns_;
   now_ns_ = stamp_ns;
   if (filter_) advance_filter(stamp_ns);
-  imu_.forget_before(stamp_ns - kKept_ns);
-  wheels_.forget_before((last_ns_ == 0 ? stamp_ns : last_ns_) - kKept_ns);
+  imu_.forget_before(msg::minus_ns(stamp_ns, kKept_ns));
+  wheels_.forget_before(msg::minus_ns(last_ns_ == 0 ? stamp_ns : last_ns_, kKept_ns));
   return expected();
 }
 
@@ -42,7 +44,7 @@ void MotionPrior::advance_filter(std::int64_t stamp_ns) {
   const auto motion =
       imu_.integrate(before_ns_, stamp_ns, filter_->bias(), {config_.imu.gyro_rad_s_rthz, config_.imu.accel_m_s2_rthz});
   if (!motion) {
-    filter_->predict_blind(1e-9 * static_cast<double>(stamp_ns - before_ns_));
+    filter_->predict_blind(msg::minus_s(stamp_ns, before_ns_));
     return;
   }
   const Eigen::Isometry3d T_world_imu_before = filter_->state().T_world_imu;

@@ -7,10 +7,12 @@
 #include <deque>
 #include <optional>
 
+#include "common/msg/stamps.hpp"
+
 namespace rtd::slam {
 
 inline double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
-  return 1e-9 * static_cast<double>(to_ns - from_ns);
+  return msg::minus_s(to_ns, from_ns);
 }
 
 /// What an IMU measured, in its own axes. At rest the accelerometer shows 9.81 m/s2 upwards.

@@ -5,15 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/msg/frame_size.hpp"
 #include "common/msg/sensor_time.hpp"
 
 namespace rtd::slam {
 namespace {
-
-bool usable_intrinsics(const msg::FeatureFrame& message) {
-  const auto& [fx, fy, cx, cy] = message.intrinsics;
-  return std::isfinite(fx) && std::isfinite(fy) && std::isfinite(cx) && std::isfinite(cy) && fx > 1 && fy > 1;
-}
 
 std::size_t count_usable(const msg::FeatureFrame& message) {
   const auto end = message.features.begin() + message.count;
@@ -35,9 +31,10 @@ FrameRaster raster_of(const msg::FeatureFrame& message) {
 }
 
 bool usable(const msg::Feature& feature) {
-  return std::isfinite(feature.u_px) && std::isfinite(feature.v_px) && std::isfinite(feature.angle_rad) &&
-         std::isfinite(feature.depth_m) && feature.depth_m >= 0 && feature.static_probability >= 0 &&
-         feature.static_probability <= 1 && feature.octave < kOctaves;
+  constexpr float kFarOutside_px = 1e6F;  // no lens puts a pixel there
+  return std::abs(feature.u_px) < kFarOutside_px && std::abs(feature.v_px) < kFarOutside_px &&
+         std::isfinite(feature.angle_rad) && std::isfinite(feature.depth_m) && feature.depth_m >= 0 &&
+         feature.static_probability >= 0 && feature.static_probability <= 1 && feature.octave < kOctaves;
 }
 
 Eigen::Vector3d Frame::unproject(std::size_t feature) const {
@@ -55,16 +52,16 @@ std::vector<Eigen::Vector3d> Frame::unproject_all() const {
 
 FrameInput make_frame(const msg::FeatureFrame& message, const SensorConfig& config, const ShutterMotion& motion) {
   FrameInput input;
-  if (!usable_intrinsics(message)) {
-    input.error = "intrinsics are zero or not finite";
+  if (!msg::is_frame_size(message.width, message.height) || message.count > msg::kMaxFeatures) {
+    input.error = "image size or feature count out of range";
+    return input;
+  }
+  if (!msg::is_camera(message.intrinsics, message.width, message.height)) {
+    input.error = "intrinsics are zero, not finite or not those of a camera of this image size";
     return input;
   }
   if (!msg::is_sensor_time(message.readout_s)) {
     input.error = "readout time is not finite or beyond 0.1 s";
-    return input;
-  }
-  if (message.width == 0 || message.height == 0 || message.count > msg::kMaxFeatures) {
-    input.error = "image size or feature count out of range";
     return input;
   }
   auto frame = std::make_shared<Frame>();

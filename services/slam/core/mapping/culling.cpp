@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
+#include "common/msg/stamps.hpp"
 #include "services/slam/core/mapping/mapping_steps.hpp"
 
 #include <algorithm>
@@ -50,7 +51,7 @@ int RecentLandmarks::cull(Map& map, KeyframeId newest, double min_found_ratio) {
 bool is_redundant_keyframe(const Map& map, KeyframeId id, std::int64_t now_ns, const MapperConfig& config) {
   const Keyframe& keyframe = *map.find_keyframe(id);
   if (keyframe.is_origin()) return false;
-  const bool old = 1e-9 * static_cast<double>(now_ns - keyframe.frame->stamp_ns) > config.old_after_s;
+  const bool old = msg::minus_s(now_ns, keyframe.frame->stamp_ns) > config.old_after_s;
   const auto landmarks = std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
                                        [](LandmarkId l) { return l != kNoLandmark; });
   const double enough = (old ? config.old_redundant_ratio : config.redundant_ratio) * static_cast<double>(landmarks);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "common/msg/stamps.hpp"
+
 namespace rtd::slam {
 
 bool agrees_widely(const Frame& frame, const LocalMapTracking& tracking, double min_found_ratio) {
@@ -72,7 +74,7 @@ void Relocalizer::give_up() {
 double UnknownViewClock::observe(std::int64_t stamp_ns, bool rich) {
   constexpr double kMaxGap_s = 0.5;
   if (rich && last_ns_ && stamp_ns > *last_ns_) {
-    unknown_s_ += std::min(kMaxGap_s, static_cast<double>(stamp_ns - *last_ns_) * 1e-9);
+    unknown_s_ += std::min(kMaxGap_s, msg::minus_s(stamp_ns, *last_ns_));
   }
   last_ns_.reset();
   if (rich) last_ns_ = stamp_ns;

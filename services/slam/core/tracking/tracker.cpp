@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/msg/stamps.hpp"
 #include "common/vision/samples.hpp"
 #include "services/slam/core/tracking/tracking_steps.hpp"
 
@@ -19,7 +20,7 @@ constexpr double kMaxPredictionGap_s = 0.5;  ///< nothing is known of the motion
 constexpr double kFirstPoseVariance = 1e-8;  ///< of the pose that makes the world
 
 double seconds_between(const Frame& earlier, const Frame& later) {
-  return static_cast<double>(later.stamp_ns - earlier.stamp_ns) / kNanosecondsPerSecond;
+  return static_cast<double>(msg::minus_ns(later.stamp_ns, earlier.stamp_ns)) / kNanosecondsPerSecond;
 }
 
 /// Whether a camera that moved like `motion` can have got there in `gap_s`. If not, frames in between are missing or it
@@ -327,7 +328,7 @@ void Tracker::reject(TrackOutcome& outcome, const FramePtr& frame_in_work, const
     return;
   }
   if (!failing_since_ns_) failing_since_ns_ = frame.stamp_ns;
-  const double failing_s = 1e-9 * static_cast<double>(frame.stamp_ns - *failing_since_ns_);
+  const double failing_s = msg::minus_s(frame.stamp_ns, *failing_since_ns_);
   motion_.reset();
   const bool recent = state_ != msg::TrackingState::kLost && failing_s <= config_.tracker.recently_lost_s;
   state_ = recent ? msg::TrackingState::kRecentlyLost : msg::TrackingState::kLost;
@@ -349,7 +350,7 @@ void Tracker::count(const LocalMapTracking& tracking) {
 
 KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_idle) const {
   KeyframeSituation situation;
-  situation.since_keyframe_s = 1e-9 * static_cast<double>(last_.frame->stamp_ns - keyframe_ns_);
+  situation.since_keyframe_s = msg::minus_s(last_.frame->stamp_ns, keyframe_ns_);
   situation.map_keyframes = static_cast<int>(map.component_keyframes);
   situation.inliers = inliers_;
   situation.mapper_idle = mapper_idle;

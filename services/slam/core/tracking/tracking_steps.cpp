@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/msg/stamps.hpp"
 #include "services/slam/core/map/frame.hpp"
 #include "services/slam/core/mapping/mapping_steps.hpp"
 #include "services/slam/core/tracking/matcher.hpp"
@@ -71,7 +72,7 @@ std::vector<Association> points_of(const TrackedFrame& last, const LocalMap& map
 /// is known of the motion. At 30 Hz about ORB-SLAM2's 15 px.
 double search_radius_px(const Frame& frame, const TrackedFrame& last, const TrackerConfig& config) {
   constexpr double kLeast_px = 10, kMost_rad = 0.2;
-  const double gap_s = 1e-9 * static_cast<double>(frame.stamp_ns - last.frame->stamp_ns);
+  const double gap_s = msg::minus_s(frame.stamp_ns, last.frame->stamp_ns);
   const double turned_rad = std::min(config.motion_turn_rad_s * gap_s, kMost_rad);
   return std::max(kLeast_px, frame.camera.fx * turned_rad);
 }

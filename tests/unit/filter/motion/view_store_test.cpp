@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 namespace rtd::filter {
 namespace {
 
@@ -40,6 +42,22 @@ TEST(ViewStore, is_bounded_and_keeps_a_second_at_any_rate) {
       EXPECT_TRUE(store.spans(last.stamp_ns, 1'000'000'000)) << period_ns;
     }
   }
+}
+
+TEST(ViewStore, stamps_at_the_ends_of_time_are_very_old_or_far_ahead) {
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max(),
+                         kMin = std::numeric_limits<std::int64_t>::min();
+  ViewStore store;
+  View old = view(0), now = view(1, 0.01);
+  old.stamp_ns = kMin;
+  store.add(old);
+  store.add(now);
+  EXPECT_TRUE(store.spans(kMax, 1'000'000'000));
+  EXPECT_FALSE(store.spans(kMin, 1));
+  EXPECT_EQ(store.of_age(kMax, 0).seq, 1U);
+  EXPECT_EQ(store.of_age(kMin, kPeriodNs).seq, 0U);
+  EXPECT_EQ(store.long_ago(kMax, -1'000'000'000).seq, 1U);
+  EXPECT_NEAR(store.predict_pose(kMax).translation().x(), 0.01, 1e-9) << "at rest after a long gap";
 }
 
 TEST(ViewStore, predicts_by_the_stamps_of_the_frames) {

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
 #include <random>
 
 namespace rtd::filter {
@@ -268,6 +269,20 @@ TEST_F(BoxTracksTest, stay_bounded_with_random_boxes) {
                        static_cast<float>((k * 57 + i * 31) % 400), 40, 60});
     answer(i, boxes);
     EXPECT_LE(tracks_.boxes().size(), BoxTracks::kMaxTracks);
+  }
+}
+
+TEST_F(BoxTracksTest, end_when_the_stamp_jumps_to_the_end_of_time) {
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max(),
+                         kMin = std::numeric_limits<std::int64_t>::min();
+  for (const bool rolling : {false, true}) {
+    for (const std::int64_t stamp_ns : {kMin, std::int64_t{0}, kMax}) {
+      tracks_.begin_frame({stamp_ns, rolling, 640, 480});
+      EXPECT_THAT(tracks_.boxes(), IsEmpty()) << stamp_ns;
+      tracks_.update({stamp_ns, {person(100)}}, no_depth);
+      EXPECT_THAT(tracks_.boxes(), SizeIs(1)) << stamp_ns;
+    }
+    tracks_.update({kMin, {person(100)}}, no_depth);
   }
 }
 

@@ -57,6 +57,15 @@ TEST(MaskFlow, returns_nothing_where_no_point_is_found_again) {
   EXPECT_FALSE(flow.follow(1, 2, kBox, points_in_box()));
 }
 
+TEST(MaskFlow, takes_images_that_are_one_pixel_wide_or_high) {
+  for (const cv::Size size : {cv::Size(1, 1), {1, 480}, {640, 1}, {3, 1}}) {
+    MaskFlow flow;
+    flow.see(1, cv::Mat(size, CV_8UC3, cv::Scalar::all(90)));
+    flow.see(2, cv::Mat(size, CV_8UC3, cv::Scalar::all(100)));
+    EXPECT_NO_THROW(flow.follow(1, 2, kBox, points_in_box())) << size;
+  }
+}
+
 TEST(MaskFlow, returns_nothing_for_unknown_images_and_too_few_points) {
   MaskFlow flow;
   flow.see(1, picture(0));
