@@ -67,19 +67,40 @@ std::string section_of(const std::string& key) {
   return key.substr(0, key.find('.'));
 }
 
-/// Calls visit(key, yaml) for every node that is a known key or a leaf, with sections joined by dots.
-void flatten(const YAML::Node& node, const std::string& prefix, const std::vector<std::string>& known,
-             const std::function<void(const std::string&, const std::string&)>& visit) {
-  for (const auto& child : node) {
-    const std::string key = prefix + child.first.as<std::string>();
-    const bool is_key = std::find(known.begin(), known.end(), key) != known.end();
-    if (child.second.IsMap() && !is_key) {
-      flatten(child.second, key + ".", known, visit);
-    } else {
-      visit(key, dump(child.second));
+/// Walks through the sections of a file. Anchors let a short text hold itself, or itself many times: both are bounded.
+class Flattener {
+ public:
+  /// `known`: keys, what is below them is their value. `skips`: keys and sections that are passed over.
+  Flattener(std::vector<std::string> known, std::string origin, std::function<bool(const std::string& key)> skips)
+      : known_(std::move(known)), origin_(std::move(origin)), skips_(std::move(skips)) {}
+
+  /// Calls visit(key, yaml) for every node that is a known key or a leaf, with sections joined by dots.
+  void flatten(const YAML::Node& node, const std::string& prefix, int depth,
+               const std::function<void(const std::string&, const std::string&)>& visit) {
+    constexpr int kDeepest = 16, kMostNodes = 100'000;
+    for (const auto& child : node) {
+      if (depth >= kDeepest || ++nodes_ > kMostNodes)
+        throw ConfigError(fmt::format("{}: section '{}' has too many sections within it: remove anchors and aliases",
+                                      origin_, prefix.substr(0, 60)));
+      if (!child.first.IsScalar())
+        throw ConfigError(fmt::format("{}: a key below '{}' is not a name: write 'key: value'", origin_, prefix));
+      const std::string key = prefix + child.first.Scalar();
+      if (skips_(key)) continue;
+      const bool is_key = std::find(known_.begin(), known_.end(), key) != known_.end();
+      if (child.second.IsMap() && !is_key) {
+        flatten(child.second, key + ".", depth + 1, visit);
+      } else {
+        visit(key, dump(child.second));
+      }
     }
   }
-}
+
+ private:
+  const std::vector<std::string> known_;
+  const std::string origin_;
+  const std::function<bool(const std::string& key)> skips_;
+  int nodes_ = 0;
+};
 
 std::vector<std::string> split_at_dots(const std::string& key) {
   std::vector<std::string> parts;
@@ -208,9 +229,9 @@ void ConfigBinder::load_text(const std::string& yaml, const std::string& origin,
   }
   if (root.IsNull()) return;
   if (!root.IsMap()) throw ConfigError(fmt::format("{}: expected sections such as 'filter:' at the top level", origin));
-  flatten(root, "", keys(), [&](const std::string& key, const std::string& value) {
-    if (!is_of_others(key, other_sections)) set(key, value, origin);
-  });
+  Flattener(keys(), origin, [&](const std::string& key) {
+    return is_of_others(key, other_sections);
+  }).flatten(root, "", 0, [&](const std::string& key, const std::string& value) { set(key, value, origin); });
 }
 
 std::string ConfigBinder::print() const {

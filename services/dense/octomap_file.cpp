@@ -43,10 +43,21 @@ class NodeReader {
   void fill(const Eigen::Vector3i& corner, std::int64_t side, Space space) {
     filled_ += side * side * side;
     if (filled_ > kMostCells) throw OctomapError("it has more than 200 million cells");
+    if (side >= CellBlocks<Space>::kSide) return fill_blocks(corner, side, space);
     for (std::int64_t i = 0; i < side * side * side; ++i) {
       cells_.set(corner + Eigen::Vector3i(static_cast<int>(i % side), static_cast<int>(i / side % side),
                                           static_cast<int>(i / side / side)),
                  space);
+    }
+  }
+
+  /// A cube of whole blocks.
+  void fill_blocks(const Eigen::Vector3i& corner, std::int64_t side, Space space) {
+    const Eigen::Vector3i first = CellBlocks<Space>::block_of(corner);
+    const auto count = static_cast<int>(side / CellBlocks<Space>::kSide);
+    for (int i = 0; i < count * count * count; ++i) {
+      const Eigen::Vector3i at = first + Eigen::Vector3i(i % count, i / count % count, i / count / count);
+      if (auto* const block = cells_.at(at)) block->fill(space);
     }
   }
 
@@ -58,7 +69,7 @@ class NodeReader {
 struct Header {
   double cell_m = 0;
   std::string id;
-  std::int64_t nodes = -1;
+  bool empty = false;  ///< it says that there are no nodes
 };
 
 Header read_header(std::istream& in) {
@@ -70,7 +81,7 @@ Header read_header(std::istream& in) {
     const std::string value = line.substr(std::min(line.size(), line.find(' ') + 1));
     if (line.starts_with("id ")) header.id = value;
     if (line.starts_with("res ")) header.cell_m = io::parse_number(value).value_or(0);
-    if (line.starts_with("size ")) header.nodes = static_cast<std::int64_t>(io::parse_number(value).value_or(-1));
+    if (line.starts_with("size ")) header.empty = io::parse_number(value) == 0.0;
   }
   if (line != "data") throw OctomapError("its header does not end");
   if (header.id != "OcTree") throw OctomapError("it holds a tree of type '" + header.id + "', not OcTree");
@@ -102,7 +113,7 @@ void write_octomap(std::ostream& out, const Volume& volume) {
 Volume read_octomap(std::istream& in) {
   const Header header = read_header(in);
   Volume volume{header.cell_m, {}};
-  if (header.nodes == 0) return volume;
+  if (header.empty) return volume;
   NodeReader(in, volume.cells).read(Eigen::Vector3i::Constant(-kCenter), 0);
   return volume;
 }

@@ -59,12 +59,29 @@ void change_values(Bytes& file, std::mt19937_64& random) {
   }
 }
 
+/// Says that a block has another size: a little off, none, or more than any computer has. The rest is as it was.
+void change_size(Bytes& file, std::mt19937_64& random) {
+  constexpr std::size_t kBlocks = 16, kHead = 8, kCrc = 4;
+  std::vector<std::size_t> sizes;
+  for (std::size_t at = kBlocks; at + kHead + kCrc <= file.size();) {
+    sizes.push_back(at + 4);
+    at += kHead + kCrc + io::load<std::uint32_t>(file.data() + at + 4);
+  }
+  if (sizes.empty()) return;
+  std::byte* const place = file.data() + sizes[random() % sizes.size()];
+  const auto size = io::load<std::uint32_t>(place);
+  const std::array<std::uint32_t, 8> hostile{0,          size - 1,   size + 1,   size / 2,
+                                             0x7FFFFFFF, 0xFFFFFFFF, 0xFFFFFFF4, static_cast<std::uint32_t>(random())};
+  io::store(place, hostile[random() % hostile.size()]);
+}
+
 Bytes make_input(const std::vector<Bytes>& files, std::mt19937_64& random) {
   const Bytes& file = files[random() % files.size()];
-  const std::uint64_t way = random() % 4;
+  const std::uint64_t way = random() % 5;
   if (way == 0) return mcap::mutate(file, files[random() % files.size()], random);
   Bytes input = way == 1 ? mcap::mutate(file, files[random() % files.size()], random) : file;
-  if (way > 1) change_values(input, random);
+  if (way == 2 || way == 3) change_values(input, random);
+  if (way == 4) change_size(input, random);
   reseal(input);
   return input;
 }

@@ -106,6 +106,29 @@ TEST_F(ConfigTest, broken_yaml_names_the_line) {
   EXPECT_THAT(error_of("filter:\n  count: [1,\n"), HasSubstr("not valid YAML"));
 }
 
+TEST_F(ConfigTest, anchors_that_hold_themselves_are_an_error) {
+  EXPECT_THAT(error_of("filter: &a\n  x: *a\n"), HasSubstr("anchors"));
+  std::string bomb = "filter:\n  x: &a0 {}\n";
+  for (int i = 0; i < 12; ++i) {
+    const std::string below = " *a" + std::to_string(i);
+    bomb += "  x" + std::to_string(i) + ": &a" + std::to_string(i + 1) + " {";
+    for (int k = 0; k < 20; ++k) bomb += "k" + std::to_string(k) + ":" + below + ", ";
+    bomb += "}\n";
+  }
+  EXPECT_THAT(error_of(bomb), HasSubstr("anchors"));
+  EXPECT_EQ(error_of("slam: &a\n  x: *a\nfilter: {count: 3}\n"), "no error") << "a section of others is not read";
+  EXPECT_EQ(sample_.count, 3);
+}
+
+TEST_F(ConfigTest, a_key_that_is_no_name_is_an_error) {
+  for (const std::string text : {"filter: {[a, b]: c}", "filter: {{a: b}: c}", "? [x]\n: y\n"})
+    EXPECT_THAT(error_of(text), HasSubstr("not a name")) << text;
+}
+
+TEST_F(ConfigTest, a_very_long_key_is_refused_at_once) {
+  EXPECT_THAT(error_of("filter:\n  ? " + std::string(500'000, 'x') + "\n  : 1\n"), HasSubstr("unknown key"));
+}
+
 TEST_F(ConfigTest, missing_file_is_named) {
   EXPECT_THROW(binder_.load_file("/nonexistent/rtd.yaml", {}), ConfigError);
   EXPECT_THROW(binder_.load_file(testing::TempDir(), {}), ConfigError) << "a folder";

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+/// Feeds changed lists of a TUM folder to their readers: fuzz_tum [inputs] [seed]. The input is rgb.txt, depth.txt and
+/// groundtruth.txt, or associations.txt, with NUL between them. What must hold for every input: no crash, no sanitizer
+/// report, bounded memory, no exception but SourceError and TrajectoryError; colour stamps of pairs rise, and poses are
+/// rigid and in order. Exit code 1 and the input in fuzz_tum_failed.txt otherwise. The preset asan-ubsan gives it its
+/// teeth.
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "common/geometry/trajectory.hpp"
+#include "services/camera/core/frame_source.hpp"
+#include "services/camera/core/tum/tum_source.hpp"
+#include "tests/fuzz/files/text_mutation.hpp"
+#include "tests/fuzz/fuzz_loop.hpp"
+
+namespace rtd::camera {
+namespace {
+
+constexpr std::size_t kMostAllocated = 64 << 20;
+
+struct Counted {
+  std::uint64_t pairs = 0, poses = 0;
+};
+
+std::vector<std::string> seeds() {
+  std::string color = "# color images\n# timestamp filename\n", depth = "# depth maps\n", truth = "# ground truth\n",
+              pairs;
+  for (int i = 0; i < 12; ++i) {
+    const std::string stamp = "130503117" + std::to_string(i) + "." + std::to_string(100'000 + 33'333 * i);
+    color += stamp + " rgb/" + stamp + ".png\n";
+    depth += stamp + "9 depth/" + stamp + ".png\n";
+    truth += stamp + " 1.3405 0.6266 1.6575 0.6574 0.6126 -0.2949 -0.3248\n";
+    pairs += stamp + " rgb/" + stamp + ".png " + stamp + "8 depth/" + stamp + ".png\n";
+  }
+  return {color + '\0' + depth + '\0' + truth, pairs};
+}
+
+std::vector<std::string> words() {
+  return {"nan ",
+          "inf ",
+          "-inf ",
+          "1e300 ",
+          "-9.3e9 ",
+          "9.2e9 ",
+          "-9.2e9 ",
+          "9199999999.999999999 ",
+          "0 ",
+          "-0.5 ",
+          "1e-300 ",
+          "+",
+          "0x10 ",
+          "1305031170.1 ",
+          "# ",
+          "\n",
+          "\r\n",
+          "\t",
+          " ",
+          "a b c d e\n",
+          "../../etc/passwd ",
+          "9223372036854775807 ",
+          "1. ",
+          ". ",
+          "0 0 0 0 ",
+          "99999999999999999999999.5 ",
+          "\xff",
+          "\x1b[31m"};
+}
+
+/// The folder that the readers are given.
+class Folder {
+ public:
+  Folder() : path_(std::filesystem::temp_directory_path() / ("rtd_fuzz_tum_" + std::to_string(getpid()))) {
+    std::filesystem::create_directory(path_);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  void fill(const std::string& input) {
+    std::vector<std::string> parts(1);
+    for (const char letter : input) {
+      if (letter != '\0') parts.back() += letter;
+      if (letter == '\0' && parts.size() < 3) parts.emplace_back();
+    }
+    std::filesystem::remove(path_ / "associations.txt");
+    if (parts.size() == 1) return put("associations.txt", parts[0]);
+    put("rgb.txt", parts[0]);
+    put("depth.txt", parts[1]);
+    put("groundtruth.txt", parts.size() > 2 ? parts[2] : "");
+  }
+
+ private:
+  void put(const char* name, const std::string& text) { std::ofstream(path_ / name, std::ios::binary) << text; }
+  std::filesystem::path path_;
+};
+
+std::string check_pairs(const std::filesystem::path& folder, Counted& counted) {
+  const PairList list = read_pairs(folder);
+  counted.pairs += list.pairs.size();
+  for (std::size_t i = 1; i < list.pairs.size(); ++i)
+    if (list.pairs[i].color.stamp_ns <= list.pairs[i - 1].color.stamp_ns) return "colour stamps do not rise";
+  return "";
+}
+
+std::string check_poses(const std::filesystem::path& file, Counted& counted) {
+  const geometry::Trajectory poses = geometry::read_tum_trajectory(file, geometry::TumRows::kAsWritten);
+  counted.poses += poses.size();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!poses[i].T_world_body.matrix().allFinite()) return "a pose is not finite";
+    if (i > 0 && poses[i].stamp_ns <= poses[i - 1].stamp_ns) return "poses are not in order";
+    geometry::pose_at(poses, poses[i].stamp_ns + 1, 1'000'000'000);
+  }
+  return "";
+}
+
+std::string try_input(const io::Bytes& input, Folder& folder, Counted& counted) {
+  folder.fill(testing::text_of(input));
+  std::string failure;
+  try {
+    failure = check_pairs(folder.path(), counted);
+  } catch (const SourceError&) {
+  }
+  try {
+    if (failure.empty()) failure = check_poses(folder.path() / "groundtruth.txt", counted);
+  } catch (const geometry::TrajectoryError&) {
+  }
+  if (!failure.empty()) return failure;
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated)
+    return "it made the reader hold " + std::to_string(peak) + " bytes";
+  return "";
+}
+
+}  // namespace
+}  // namespace rtd::camera
+
+int main(int argc, char** argv) {
+  using namespace rtd;
+  const std::vector<std::string> texts = camera::seeds(), all_words = camera::words();
+  camera::Folder folder;
+  camera::Counted counted;
+  return testing::run_fuzz(
+      argc, argv, "fuzz_tum_failed.txt",
+      [&](std::mt19937_64& random) { return testing::mutate_text(texts, all_words, random); },
+      [&](const io::Bytes& input, std::mt19937_64&) { return camera::try_input(input, folder, counted); },
+      [&] { return std::to_string(counted.pairs) + " pairs, " + std::to_string(counted.poses) + " poses"; });
+}
