@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+/// Attacks the detector: red_detector [messages] [seed]. Hostile but well-formed frames and poses go through the edge
+/// of the bus into what prepares the network's input, and hostile answers of a network into the decoder. What must
+/// hold: no crash, no sanitizer report, no exception, no call of a second, bounded memory (red_watch.hpp), boxes that
+/// are finite and within the frame. The preset asan-ubsan gives it its teeth. The network itself sees pixels only.
+#include <cmath>
+#include <memory>
+
+#include "common/msg/transform_eigen.hpp"
+#include "common/vision/rgbd_image.hpp"
+#include "services/detector/core/camera_roll.hpp"
+#include "services/detector/core/network_input.hpp"
+#include "services/detector/core/yolo_decoder.hpp"
+#include "tests/fuzz/red/attack.hpp"
+#include "tests/fuzz/red/red_watch.hpp"
+#include "tests/fuzz/red/small_frames.hpp"
+
+namespace rtd::detector {
+namespace {
+
+using testing::SmallFrames;
+
+constexpr InputSize kInput{160, 128};
+constexpr int kClasses = 8;
+
+/// One head of a network's answer, of which each number is anything.
+struct Answer {
+  std::vector<float> logits;
+  HeadLogits head;
+};
+
+class Attack {
+ public:
+  explicit Attack(testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()) {}
+
+  int run() {
+    while (watch_.more()) {
+      if (watch_.messages() >= 300 && !settled_) {
+        settled_ = true;
+        watch_.settled();
+      }
+      step(settled_ && !attacker_.one_in(3));
+    }
+    return broken_ > 0 ? 1 : watch_.finish();
+  }
+
+ private:
+  void step(bool hostile) {
+    ++seq_;
+    for (int i = 0; i < 4; ++i) give_pose(hostile);
+    SmallFrames::paint(seq_, *frame_);
+    if (hostile) attacker_.attack(*frame_);
+    if (hostile && attacker_.one_in(4)) {
+      frame_->width = static_cast<std::uint32_t>(1 + attacker_.below(attacker_.one_in(2) ? 3 : msg::kMaxFrameSide));
+      frame_->height = static_cast<std::uint32_t>(1 + attacker_.below(attacker_.one_in(2) ? 3 : 160));
+    }
+    if (watch_.passes(*frame_)) watch_.call("frame", [&] { detect(vision::view_color(*frame_)); });
+  }
+
+  void give_pose(bool hostile) {
+    msg::TrackingResult result{};
+    result.stamp_ns = SmallFrames::stamp_ns(seq_);
+    result.T_world_camera = {{0, 0, 0}, {0, 0, std::sin(0.01 * static_cast<double>(seq_)), 1}};
+    result.state = msg::TrackingState::kOk;
+    if (hostile) attacker_.attack(result);
+    if (!watch_.passes(result)) return;
+    watch_.call("pose", [&] { roll_.put(result.stamp_ns, msg::to_isometry(result.T_world_camera)); });
+  }
+
+  /// What Detector does around the network.
+  void detect(const cv::Mat& image) {
+    if (image.empty()) return;
+    const UprightView view = fit_upright(image.size(), kInput, roll_.roll_rad());
+    fill_blob(image, fit_letterbox(image.size(), kInput), kInput, blob_);
+    fill_upright_blob(image, view, blob_);
+    const Answer answer = make_answer();
+    const DecodeConfig config;
+    for (const Candidate& candidate : suppress_non_maxima(decode_heads({answer.head}, kClasses, config), config)) {
+      const cv::Rect2f box = box_in_frame(candidate, view);
+      const bool inside = box.x >= 0 && box.y >= 0 && box.br().x <= static_cast<float>(image.cols) + 0.5F &&
+                          box.br().y <= static_cast<float>(image.rows) + 0.5F;
+      if (!inside && broken_++ == 0)
+        std::fprintf(stderr, "a box of %g x %g at %g, %g is not within the frame\n", static_cast<double>(box.width),
+                     static_cast<double>(box.height), static_cast<double>(box.x), static_cast<double>(box.y));
+    }
+  }
+
+  Answer make_answer() {
+    Answer answer;
+    answer.head = {nullptr, kInput.height_px / 16, kInput.width_px / 16, {16, {{{10, 13}, {16, 30}, {33, 23}}}}};
+    answer.logits.resize(static_cast<std::size_t>(answer.head.rows * answer.head.cols) * 3 * (5 + kClasses));
+    const double spread = attacker_.one_in(2) ? 8 : 0.5;
+    for (float& logit : answer.logits) logit = static_cast<float>(attacker_.between(-spread, spread));
+    for (std::uint64_t i = attacker_.below(60); i > 0; --i)
+      attacker_.spoil(answer.logits[attacker_.below(answer.logits.size())]);
+    answer.head.logits = answer.logits.data();
+    return answer;
+  }
+
+  testing::RedWatch& watch_;
+  testing::Attacker attacker_;
+  RollFeedback roll_{RollConfig()};
+  cv::Mat blob_;
+  std::unique_ptr<msg::RgbdFrame> frame_ = std::make_unique<msg::RgbdFrame>();
+  std::uint64_t seq_ = 0, broken_ = 0;
+  bool settled_ = false;
+};
+
+}  // namespace
+}  // namespace rtd::detector
+
+int main(int argc, char** argv) {
+  rtd::testing::RedWatch watch("red_detector", 10000, argc, argv);
+  return rtd::detector::Attack(watch).run();
+}
