@@ -53,6 +53,7 @@ TEST_P(DdsBus, delivers_every_kind_of_message) {
   pose.child_frame_id = "camera";
   EXPECT_TRUE(odometry_writer.write(pose));
   msg::ServiceStatus heartbeat;
+  heartbeat.service = "camera";
   heartbeat.metrics = {{"frames_in", 3.0}};
   EXPECT_TRUE(status_writer.write(heartbeat));
 
