@@ -42,8 +42,8 @@ class FrameReader {
  public:
   using OnFrame = std::function<void(std::shared_ptr<const msg::FrameView>)>;
   FrameReader() = default;
-  FrameReader(Bus& bus, const OnFrame& on_frame) {
-    std::apply([&](const auto&... topic) { readers_ = {read(bus, topic, on_frame)...}; }, topics::kFrames);
+  FrameReader(Bus& bus, const OnFrame& on_frame, const StatusCallbacks& callbacks = {}) {
+    std::apply([&](const auto&... topic) { readers_ = {read(bus, topic, on_frame, callbacks)...}; }, topics::kFrames);
   }
   explicit operator bool() const { return static_cast<bool>(std::get<0>(readers_)); }
   /// Writers matched now, of all classes.
@@ -53,10 +53,13 @@ class FrameReader {
 
  private:
   template <class T>
-  static Reader<T> read(Bus& bus, const Topic<T>& topic, const OnFrame& on_frame) {
-    return bus.reader<T>(topic, [on_frame](const std::shared_ptr<const T>& frame) {
-      on_frame(std::make_shared<const msg::FrameView>(*frame, frame));
-    });
+  static Reader<T> read(Bus& bus, const Topic<T>& topic, const OnFrame& on_frame, const StatusCallbacks& callbacks) {
+    return bus.reader(
+        topic,
+        [on_frame](const std::shared_ptr<const T>& frame) {
+          on_frame(std::make_shared<const msg::FrameView>(*frame, frame));
+        },
+        callbacks);
   }
 
   std::tuple<Reader<msg::RgbdFrame>, Reader<msg::RgbdFrame848>, Reader<msg::RgbdFrame1280>, Reader<msg::RgbdFrame1920>>

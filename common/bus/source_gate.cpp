@@ -8,7 +8,7 @@
 namespace rtd::bus {
 namespace {
 
-constexpr std::size_t kMostClaims = 8, kMostDeparted = 32;
+constexpr std::size_t kMostClaims = 8, kMostDeparted = 32, kMostMatched = 256;
 constexpr std::int64_t kHeardLatelyNs = 50'000'000;  // nobody needs to be asked whether it lives
 
 }  // namespace
@@ -89,7 +89,13 @@ void SourceGate::note(const WriterId& writer, bool matched) {
     departed_.push_back(writer);
     if (departed_.size() > kMostDeparted) departed_.pop_front();
   }
-  const std::size_t place = place_of(participant_of(writer));
+  const ParticipantId connection = participant_of(writer);
+  if (matched) {
+    if (matched_.size() < kMostMatched || matched_.contains(connection)) ++matched_[connection];
+  } else if (const auto known = matched_.find(connection); known != matched_.end() && --known->second <= 0) {
+    matched_.erase(known);
+  }
+  const std::size_t place = place_of(connection);
   if (place != kNone) claims_[place].present = matched;
 }
 
@@ -108,6 +114,11 @@ std::uint64_t SourceGate::changes() const {
 std::uint64_t SourceGate::refused() const {
   const std::lock_guard lock(mutex_);
   return refused_;
+}
+
+bool SourceGate::matched(const ParticipantId& connection) const {
+  const std::lock_guard lock(mutex_);
+  return matched_.contains(connection);
 }
 
 std::optional<ParticipantId> SourceGate::source() const {

@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -59,6 +60,8 @@ class SourceGate {
   /// Messages that did not pass.
   std::uint64_t refused() const;
   std::optional<ParticipantId> source() const;
+  /// Whether a writer of that connection is matched. In a secured domain its permissions allow the topic then.
+  bool matched(const ParticipantId& connection) const;
 
  private:
   struct Claim {
@@ -84,6 +87,7 @@ class SourceGate {
   mutable std::mutex mutex_;
   std::vector<Claim> claims_;      ///< sources that had the place, by their first message
   std::size_t holder_ = kNone;     ///< in claims_
+  std::map<ParticipantId, int> matched_;  ///< how many of its writers
   std::deque<WriterId> departed_;  ///< writers that are gone, newest last: their last messages claim nothing
   std::uint64_t changes_ = 0, refused_ = 0;
 };

@@ -18,9 +18,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kPeriod{200}, kLookPeriod{100};
 constexpr std::int64_t kGoneAfterNs = 700'000'000;       // three heartbeats missed, with a margin for a busy host
-constexpr std::int64_t kNewcomerForNs = 5'000'000'000;   // a service that has run for longer never ends for a duplicate
 constexpr std::int64_t kBlockedAfterNs = 3'000'000'000;  // a write may wait for a slow reader, but not so long
-constexpr std::size_t kMostPeers = 100;                  // a writer could make up names without end
 
 void add_troubles(const std::string& topic, const bus::TopicTrouble& trouble, std::vector<msg::Metric>& metrics) {
   const auto add = [&](const char* what, std::uint64_t count) {
@@ -61,27 +59,17 @@ void make_plausible(msg::ServiceStatus& status) {
   }
 }
 
-std::string duplicate_text(const msg::ServiceStatus& older, const std::string& robot) {
-  if (robot.empty()) {
-    return fmt::format(
-        "another {} (pid {}) already runs in this DDS domain: stop it first or choose another domain with --domain",
-        older.service, older.pid);
-  }
-  return fmt::format(
-      "robot '{}' already has a {} (pid {}) in this DDS domain: stop it first or give this robot another name with "
-      "--robot",
-      robot, older.service, older.pid);
-}
-
 }  // namespace
 
 Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, Twins twins)
     : bus_(bus),
       stop_(stop),
       twins_(twins),
+      own_name_(service_name),
       started_ns_(realtime_ns()),
       looked_ns_(monotonic_ns()),
-      clocks_(service_name, PeerClocks::this_host_id()) {
+      clocks_(service_name, PeerClocks::this_host_id()),
+      peers_(process_gone()) {
   own_.service = std::move(service_name);
   own_.metrics.push_back({"host_id", PeerClocks::this_host_id()});
   own_.metrics.push_back({kHostNameMetric + host_name(), 1});
@@ -89,7 +77,8 @@ Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, T
   own_.started_ns = started_ns_;
   writer_ = bus.writer(bus::topics::kStatus);
   reader_ = bus.reader<msg::ServiceStatus>(
-      bus::topics::kStatus, [this](const std::shared_ptr<const msg::ServiceStatus>& status) { receive(*status); });
+      bus::topics::kStatus, [this](const std::shared_ptr<const msg::ServiceStatus>& status,
+                                   const bus::WriterId& writer) { receive(*status, writer); });
   thread_ = std::thread([this] { loop(); });
 }
 
@@ -102,11 +91,34 @@ Heartbeat::~Heartbeat() {
 /// Checks the others twice as often as it publishes; changes are published at once.
 void Heartbeat::loop() {
   for (int turn = 0; !ended_.wait_for(kLookPeriod); ++turn) {
-    looked_ns_ = monotonic_ns();
+    const std::int64_t now_ns = monotonic_ns();
+    looked_ns_ = now_ns;
+    forgive_standstill(now_ns);
+    forget_silent(now_ns);
     bool changed = check_peers();
     changed = check_progress() || changed;
     changed = check_topics() || changed;
     if (changed || turn % (kPeriod / kLookPeriod) == 0) publish();
+  }
+}
+
+/// Nobody was silent, and no worker stuck, while this whole process stood still.
+void Heartbeat::forgive_standstill(std::int64_t now_ns) {
+  const std::int64_t stood_still_ns = standstill_.look(now_ns);
+  if (stood_still_ns == 0) return;
+  SPDLOG_WARN("event=stood_still for_ms={} cause=\"stopped, paused, or no processor time\"",
+              stood_still_ns / 1'000'000);
+  const std::lock_guard lock(mutex_);
+  progress_.forgive(stood_still_ns);
+  peers_.forgive(stood_still_ns);
+}
+
+void Heartbeat::forget_silent(std::int64_t now_ns) {
+  const std::lock_guard lock(mutex_);
+  for (const std::string& name : peers_.forget_silent(now_ns)) {
+    clocks_.forget(name);
+    const std::string prefix = "clock." + name + '.';
+    std::erase_if(own_.metrics, [&](const msg::Metric& metric) { return metric.name.starts_with(prefix); });
   }
 }
 
@@ -141,62 +153,80 @@ void Heartbeat::set(const msg::Metric& metric) {
   }
 }
 
-void Heartbeat::receive(const msg::ServiceStatus& status) {
-  const std::int64_t arrival_ns = realtime_ns();
-  bool refused = false, known = false;
-  {
-    const std::lock_guard lock(mutex_);
-    if (status.service == own_.service) {
-      const bool self = status.pid == own_.pid && status.started_ns == own_.started_ns;
-      // Heartbeats are volatile: their sender is alive. The older instance stays, the younger one ends.
-      // One heartbeat is not enough: any program may have sent it.
-      const bool newcomer = twins_ == Twins::kRefused && arrival_ns - own_.started_ns < kNewcomerForNs;
-      const bool older =
-          newcomer && !self && status.state != msg::ServiceState::kFinished && status.started_ns < own_.started_ns;
-      const bool again = older && twin_ == std::pair(status.pid, status.started_ns);
-      if (older) twin_ = {status.pid, status.started_ns};
-      if (again) {
-        duplicate_ = duplicate_text(status, bus_.robot());
-        refused = true;
-      }
-    } else if (peers_.size() < kMostPeers || peers_.contains(status.service)) {
-      Peer& peer = peers_[status.service];
-      peer.status = status;
-      peer.received_ns = monotonic_ns();
-      for (const msg::Metric& metric : clocks_.received(status, arrival_ns)) set(metric);
-      known = true;
-    }
-  }
-  if (refused) stop_.request_stop();
-  if (!known) return;
+void Heartbeat::receive(const msg::ServiceStatus& status, const bus::WriterId& writer) {
+  if (writer == writer_.id()) return;
+  if (status.service == own_name_) return report_twin(status, writer);
+  processes_.note(status, writer);
+  if (!note(status, writer)) return;
   const std::lock_guard callback_lock(callback_mutex_);
   if (callback_) callback_(status);
 }
 
+/// False when somebody else has that name.
+bool Heartbeat::note(const msg::ServiceStatus& status, const bus::WriterId& writer) {
+  const std::int64_t arrival_ns = realtime_ns();
+  const std::lock_guard lock(mutex_);
+  const bool believed = believes(status.service, writer);
+  if (!believed) ++disbelieved_;
+  if (!believed || !peers_.note(status, writer, monotonic_ns())) {
+    set({"heartbeats_refused", static_cast<double>(peers_.refused() + disbelieved_)});
+    return false;
+  }
+  for (const msg::Metric& metric : clocks_.received(status, arrival_ns)) set(metric);
+  return true;
+}
+
+/// Under the lock.
+bool Heartbeat::believes(const std::string& service, const bus::WriterId& writer) const {
+  const auto known = writers_of_.find(service);
+  const auto writers = known == writers_of_.end() ? nullptr : known->second.lock();
+  return writers == nullptr || writers->matched(bus::participant_of(writer));
+}
+
+void Heartbeat::believe_only(const std::string& service, std::weak_ptr<const bus::SourceGate> writers) {
+  const std::lock_guard lock(mutex_);
+  writers_of_[service] = std::move(writers);
+}
+
+void Heartbeat::report_twin(const msg::ServiceStatus& twin, const bus::WriterId& writer) {
+  if (twins_ == Twins::kAllowed || !twin_log_.pass()) return;
+  SPDLOG_ERROR(
+      "event=second_service service={} pid={} source={} effect=\"this one goes on; the others follow the one that they "
+      "heard first\" fix=\"stop one, or give it another --domain\"",
+      twin.service, twin.pid, bus::to_string(writer));
+}
+
+/// Under the lock.
+const Peer* Heartbeat::find(const std::string& service) const {
+  const auto found = peers_.peers().find(service);
+  return found == peers_.peers().end() ? nullptr : &found->second;
+}
+
 bool Heartbeat::alive(const std::string& service) const {
   const std::lock_guard lock(mutex_);
-  const auto found = peers_.find(service);
-  return found != peers_.end() && found->second.status.state != msg::ServiceState::kFinished &&
-         found->second.health == PeerHealth::kAlive && monotonic_ns() - found->second.received_ns < kGoneAfterNs;
+  const Peer* const peer = find(service);
+  return peer != nullptr && peer->status.state != msg::ServiceState::kFinished && peer->health == PeerHealth::kAlive &&
+         monotonic_ns() - peer->received_ns < kGoneAfterNs;
 }
 
 bool Heartbeat::alone() const {
   const std::lock_guard lock(mutex_);
-  return peers_.empty();
+  return peers_.peers().empty();
 }
 
 std::optional<double> Heartbeat::metric_on_this_host(const std::string& service, const std::string& metric) const {
   if (!alive(service)) return std::nullopt;
   const std::lock_guard lock(mutex_);
-  const msg::ServiceStatus& status = peers_.at(service).status;
-  if (find_metric(status, "host_id") != find_metric(own_, "host_id")) return std::nullopt;
-  return find_metric(status, metric);
+  const Peer* const peer = find(service);
+  if (peer == nullptr || find_metric(peer->status, "host_id") != find_metric(own_, "host_id")) return std::nullopt;
+  return find_metric(peer->status, metric);
 }
 
 bool Heartbeat::ready(const std::string& service) const {
   if (!alive(service)) return false;
   const std::lock_guard lock(mutex_);
-  const msg::ServiceState state = peers_.at(service).status.state;
+  const Peer* const peer = find(service);
+  const msg::ServiceState state = peer == nullptr ? msg::ServiceState::kStarting : peer->status.state;
   return state == msg::ServiceState::kReady || state == msg::ServiceState::kRunning ||
          state == msg::ServiceState::kDegraded;
 }
@@ -204,11 +234,6 @@ bool Heartbeat::ready(const std::string& service) const {
 void Heartbeat::on_status(std::function<void(const msg::ServiceStatus&)> callback) {
   const std::lock_guard lock(callback_mutex_);
   callback_ = std::move(callback);
-}
-
-std::string Heartbeat::duplicate() const {
-  const std::lock_guard lock(mutex_);
-  return duplicate_;
 }
 
 void Heartbeat::tick() {
@@ -245,7 +270,7 @@ bool Heartbeat::check_peers() {
   const std::int64_t now_ns = monotonic_ns();
   const double own_host = find_metric(own_, "host_id").value_or(0);
   bool changed = false;
-  for (auto& [name, peer] : peers_) {
+  for (auto& [name, peer] : peers_.peers()) {
     PeerEvidence evidence{now_ns - peer.received_ns, ProcessState::kUnknown};
     const bool here = find_metric(peer.status, "host_id").value_or(0) == own_host;
     if (evidence.silent_ns >= kSuspectAfterNs && here) evidence.process = process_state(peer.status.pid);
@@ -301,7 +326,7 @@ msg::ServiceStatus Heartbeat::current_status() {
   const std::lock_guard lock(mutex_);
   own_.stamp_ns = realtime_ns();
   msg::ServiceStatus status = own_;
-  for (const auto& [name, peer] : peers_) {
+  for (const auto& [name, peer] : peers_.peers()) {
     if (peer.health != PeerHealth::kAlive) {
       status.metrics.push_back({fmt::format("peer.{}.{}", name, to_string(peer.health)), 1});
     }
@@ -320,7 +345,7 @@ msg::ServiceStatus Heartbeat::current_status() {
 void Heartbeat::publish_end() {
   {
     const std::lock_guard lock(mutex_);
-    if (own_.state == msg::ServiceState::kFailed || !duplicate_.empty()) return;
+    if (own_.state == msg::ServiceState::kFailed) return;
     own_.state = msg::ServiceState::kFinished;
     stuck_.clear();
   }

@@ -73,12 +73,14 @@ class Pacer {
   PaceDecision by_stamp(std::int64_t stamp_ns, std::size_t newer_waiting);
   PaceDecision by_window(std::size_t room);
   void advance_timeline(std::int64_t stamp_ns, PaceDecision& decision);
+  void forgive_standstill(std::int64_t now_ns);
 
   PacerConfig config_;
   std::function<std::int64_t()> now_ns_;
   std::deque<std::uint64_t> in_flight_;
   std::int64_t last_sent_ns_ = 0;                  ///< window: send or resend
   std::int64_t last_progress_ns_ = 0;              ///< window: first frame of a burst or result
+  std::optional<std::int64_t> asked_ns_;           ///< window: when the caller asked last
   std::optional<std::int64_t> stamp_ns_, due_ns_;  ///< realtime: frame on the timeline and when it is due
   std::uint64_t late_ = 0, resends_ = 0;
 };

@@ -55,8 +55,11 @@ PeerClocks::PeerClocks(std::string own_service, double own_host_id)
 
 /// The last 8 of its 16 hexadecimal digits: a double holds them exactly.
 double PeerClocks::this_host_id() {
-  const std::string name = bus::host_partition();
-  return static_cast<double>(std::strtoul(name.substr(name.size() - 8).c_str(), nullptr, 16));
+  static const double id = [] {  // asked for every heartbeat
+    const std::string name = bus::host_partition();
+    return static_cast<double>(std::strtoul(name.substr(name.size() - 8).c_str(), nullptr, 16));
+  }();
+  return id;
 }
 
 std::vector<msg::Metric> PeerClocks::received(const msg::ServiceStatus& status, std::int64_t arrival_ns) {
@@ -76,7 +79,8 @@ std::vector<msg::Metric> PeerClocks::received(const msg::ServiceStatus& status, 
 
 void PeerClocks::warn_once(const msg::ServiceStatus& status, double host_id, const ClockOffset& offset) {
   if (std::abs(offset.offset_ms) < kNotableMs + offset.round_trip_ms / 2) return;
-  if (!warned_hosts_.insert(host_id).second) return;
+  constexpr std::size_t kMostWarnings = 100;  // host ids may be made up
+  if (warned_hosts_.size() >= kMostWarnings || !warned_hosts_.insert(host_id).second) return;
   SPDLOG_WARN(
       "event=clocks_differ peer={} ahead_ms={:.1f} round_trip_ms={:.1f} effect=\"stamps stay as they are, boxes are "
       "paired by the stamp of their frame; do not compare times of both hosts\" fix=\"run chrony on both\"",

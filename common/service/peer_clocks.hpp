@@ -36,6 +36,7 @@ class ClockOffsets {
   std::optional<double> measured_ms(const std::string& peer) const;
   /// `peer_measured_ms`: its measured_ms() of us.
   std::optional<ClockOffset> offset(const std::string& peer, double peer_measured_ms) const;
+  void forget(const std::string& peer) { peers_.erase(peer); }
 
  private:
   struct Least {
@@ -57,6 +58,7 @@ class PeerClocks {
 
   /// The metrics to publish from now on, after a heartbeat of another service; none when it is of this host.
   std::vector<msg::Metric> received(const msg::ServiceStatus& status, std::int64_t arrival_ns);
+  void forget(const std::string& service) { clocks_.forget(service); }
 
  private:
   void warn_once(const msg::ServiceStatus& status, double host_id, const ClockOffset& offset);

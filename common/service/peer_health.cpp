@@ -6,24 +6,23 @@
 #include <iterator>
 
 namespace rtd::service {
-namespace {
-
-constexpr std::int64_t kSilentAfterNs = 1'200'000'000;
-
-}  // namespace
-
 PeerHealth judge(const PeerEvidence& evidence) {
   const bool gone = evidence.process == ProcessState::kGone;
   if (evidence.silent_ns < (gone ? kSuspectAfterNs : kSilentAfterNs)) return PeerHealth::kAlive;
   return evidence.process == ProcessState::kRunning ? PeerHealth::kHung : PeerHealth::kDead;
 }
 
+std::int64_t StandstillWatch::look(std::int64_t now_ns) {
+  const std::int64_t away_ns = looked_ns_ == 0 ? 0 : now_ns - looked_ns_;
+  looked_ns_ = now_ns;
+  return away_ns > limit_ns_ ? away_ns : 0;
+}
+
 /// A process that stood still itself has to take what waits for it first.
 bool InputWatch::deaf(std::int64_t now_ns, std::optional<double> sent) {
-  constexpr std::int64_t kPatienceNs = 1'500'000'000, kStoodStillNs = 500'000'000;
+  constexpr std::int64_t kPatienceNs = 1'500'000'000;
   constexpr double kEnough = 5;
-  const bool stood_still = now_ns - looked_ns_ > kStoodStillNs;
-  looked_ns_ = now_ns;
+  const bool stood_still = standstill_.look(now_ns) > 0;
   if (!sent || received_ == 0 || received_ != received_then_ || *sent < sent_then_ || stood_still) {
     received_then_ = received_;
     sent_then_ = sent.value_or(0);

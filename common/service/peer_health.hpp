@@ -30,11 +30,27 @@ struct PeerEvidence {
 PeerHealth judge(const PeerEvidence& evidence);
 /// Silence from which on it is worth to look at the process.
 constexpr std::int64_t kSuspectAfterNs = 300'000'000;
+/// Silence from which on one whose process is there, or on another host, does not count as alive.
+constexpr std::int64_t kSilentAfterNs = 1'200'000'000;
 
 /// From /proc/PID/stat; a zombie is gone.
 ProcessState process_state(std::int64_t pid, const std::string& proc_dir = "/proc");
 
 const char* to_string(PeerHealth health);
+
+/// Notices that this process itself stood still: it was stopped, its container was paused, or the host had no processor
+/// time for it. What others did not send meanwhile is not their silence. Times are given. Not thread-safe.
+class StandstillWatch {
+ public:
+  /// `limit_ns`: what lies between two looks at most while the process runs.
+  explicit StandstillWatch(std::int64_t limit_ns = 500'000'000) : limit_ns_(limit_ns) {}
+  /// How long it stood still before this look; 0: it did not.
+  std::int64_t look(std::int64_t now_ns);
+
+ private:
+  const std::int64_t limit_ns_;
+  std::int64_t looked_ns_ = 0;
+};
 
 /// Whether a worker loop goes on: it ticks in each round. Silence while it waits on purpose does not count. Times are
 /// given. Not thread-safe.
@@ -44,6 +60,10 @@ class ProgressWatch {
   void set_limit(std::int64_t limit_ns) { limit_ns_ = limit_ns; }
   void tick(std::int64_t now_ns) { ticked_ns_ = now_ns; }
   void idle() { ticked_ns_ = 0; }  ///< until the next tick
+  /// The whole process stood still for so long.
+  void forgive(std::int64_t stood_still_ns) {
+    if (ticked_ns_ > 0) ticked_ns_ += stood_still_ns;
+  }
   /// How long the worker has been stuck; 0: it goes on, or has not begun.
   std::int64_t stuck_ns(std::int64_t now_ns) const {
     const bool stuck = limit_ns_ > 0 && ticked_ns_ > 0 && now_ns - ticked_ns_ > limit_ns_;
@@ -66,7 +86,8 @@ class InputWatch {
  private:
   std::uint64_t received_ = 0, received_then_ = 0;
   double sent_then_ = 0;
-  std::int64_t since_ns_ = 0, looked_ns_ = 0;
+  std::int64_t since_ns_ = 0;
+  StandstillWatch standstill_;
 };
 
 }  // namespace rtd::service

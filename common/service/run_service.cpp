@@ -23,6 +23,7 @@
 #include "common/service/log.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/service_lock.hpp"
 #include "common/service/standard_streams.hpp"
 #include "common/service/systemd_link.hpp"
 
@@ -74,7 +75,7 @@ class SignalWatcher {
 
 /// A worker that makes no progress for so long is stuck. Offline one frame may take its time, closing loops and all.
 constexpr std::chrono::milliseconds kStuckAfter{1500}, kStuckAfterOffline{30'000};
-constexpr std::chrono::milliseconds kEndOfBus{10'000};
+constexpr std::chrono::milliseconds kEndOfBus{3'000};
 
 /// Killed processes leave shared memory behind.
 void remove_leftovers() {
@@ -119,6 +120,10 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   StopToken stop;
   const SignalWatcher signals(stop);
   bus::BusOptions options = to_bus_options(bus_config, "rtd-" + definition.name);
+  const std::string shared = definition.shared_name ? definition.shared_name() : std::string();
+  std::optional<ServiceLock> only_one;
+  if (shared.empty())
+    only_one.emplace(ServicePlace{definition.name, options.robot, options.domain, options.vendor == "inprocess"});
   BusProblems problems;
   options.on_problem = [&problems](const std::string& problem) { problems.add(problem); };
   BoundedEnd end("rtd-" + definition.name, kEndOfBus);
@@ -129,12 +134,10 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   if (options.vendor != "inprocess") cleaner = std::jthread(remove_leftovers);
   for (const std::string& warning : bus::host_warnings(options)) SPDLOG_INFO("event=host_limit cause=\"{}\"", warning);
   ExitCode code = kOk;
-  std::string duplicate;
   {
-    const std::string shared = definition.shared_name ? definition.shared_name() : std::string();
     using Twins = Heartbeat::Twins;
     Heartbeat heartbeat(*bus, shared.empty() ? definition.name : shared, stop,
-                        shared.empty() ? Twins::kRefused : Twins::kAllowed);
+                        shared.empty() ? Twins::kReported : Twins::kAllowed);
     problems.count_in(&heartbeat);
     const std::shared_ptr<void> at_end(nullptr, [&problems](void*) { problems.count_in(nullptr); });
     heartbeat.watch_progress(pace == Pace::kRealtime ? kStuckAfter : kStuckAfterOffline);
@@ -145,10 +148,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     }
     const SystemdLink systemd([&heartbeat] { return heartbeat.work(); });
     Trace trace(process_environment()(kTraceVariable).value_or(""), definition.name);
-    const auto bound_end = [&](int exit_code) {
-      duplicate = heartbeat.duplicate();
-      end.begin(duplicate.empty() ? exit_code : kUsageOrConfig);
-    };
+    const auto bound_end = [&end](int exit_code) { end.begin(exit_code); };
     Runtime runtime{*bus, heartbeat, stop, pace, options, bound_end, trace};
     SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), options.domain, to_string(pace),
                 getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");
@@ -156,7 +156,6 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     code = definition.run(runtime);
     bound_end(code);
   }
-  if (!duplicate.empty()) throw ConfigError(duplicate);
   SPDLOG_INFO("event=ended exit={}", static_cast<int>(code));
   return code;
 }
@@ -195,6 +194,7 @@ int run_service(const ServiceDefinition& definition, int argc, char** argv) {
     return run_on_bus(definition, bus_config, parse_pace(common.pace));
   } catch (const std::exception& error) {
     std::cerr << "rtd-" << definition.name << ": " << error.what() << '\n';
+    if (dynamic_cast<const AlreadyRuns*>(&error) != nullptr) return kAlreadyRuns;
     const bool wrong_setup =
         dynamic_cast<const ConfigError*>(&error) != nullptr || dynamic_cast<const bus::BusError*>(&error) != nullptr;
     return wrong_setup ? kUsageOrConfig : kRunFailed;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -17,7 +18,10 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/service/pacer.hpp"
 #include "common/service/peer_clocks.hpp"
+#include "common/service/log.hpp"
 #include "common/service/peer_health.hpp"
+#include "common/service/peer_table.hpp"
+#include "common/service/process_book.hpp"
 #include "common/service/stop_token.hpp"
 #include "common/service/trace.hpp"
 
@@ -30,12 +34,10 @@ inline constexpr char kFramesPublishedMetric[] = "frames_published";
 /// Thread-safe.
 class Heartbeat {
  public:
-  /// What happens when an older process of the same name is found.
-  enum class Twins {
-    kRefused,  ///< this one asks for its stop
-    kAllowed,
-  };
-  Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, Twins twins = Twins::kRefused);
+  /// Whether another process of the same name is worth an error in the log. It ends nothing: any program of the domain
+  /// may say that it is one (ServiceLock finds the real ones).
+  enum class Twins { kReported, kAllowed };
+  Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, Twins twins = Twins::kReported);
   ~Heartbeat();
 
   void set_state(msg::ServiceState state, const std::string& message = {});
@@ -59,27 +61,33 @@ class Heartbeat {
   bool alone() const;                            ///< no other service has sent a heartbeat yet
   /// A metric of another service that is alive and runs on this host.
   std::optional<double> metric_on_this_host(const std::string& service, const std::string& metric) const;
+  /// Whether the process of a connection is known to have ended. To be used while this lives.
+  std::function<bool(const bus::ParticipantId&)> process_gone() const {
+    return [this](const bus::ParticipantId& connection) { return processes_.gone(connection); };
+  }
+  /// From now on heartbeats of that service count only while a writer of their connection is matched behind the gate.
+  /// Once the gate is gone, they count from anybody again.
+  void believe_only(const std::string& service, std::weak_ptr<const bus::SourceGate> writers);
   /// `callback` runs on a bus thread for every heartbeat of another service. Waits for a running call: afterwards the
   /// earlier callback is not used any more. Not to be called from the callback itself.
   void on_status(std::function<void(const msg::ServiceStatus&)> callback);
-  /// Message when an older instance of the same service runs in this domain; empty otherwise.
-  std::string duplicate() const;
   /// What its heartbeats carry as ServiceStatus::started_ns.
   std::int64_t started_ns() const { return started_ns_; }
 
  private:
-  struct Peer {
-    msg::ServiceStatus status;
-    std::int64_t received_ns = 0;
-    PeerHealth health = PeerHealth::kAlive;
-  };
   void publish();
   void publish_end();
   bool check_peers();
   bool check_progress();
   bool check_topics();
   msg::ServiceStatus current_status();
-  void receive(const msg::ServiceStatus& status);
+  void receive(const msg::ServiceStatus& status, const bus::WriterId& writer);
+  bool note(const msg::ServiceStatus& status, const bus::WriterId& writer);
+  bool believes(const std::string& service, const bus::WriterId& writer) const;
+  void report_twin(const msg::ServiceStatus& twin, const bus::WriterId& writer);
+  void forgive_standstill(std::int64_t now_ns);
+  void forget_silent(std::int64_t now_ns);
+  const Peer* find(const std::string& service) const;
   void loop();
 
   void set(const msg::Metric& metric);
@@ -87,21 +95,25 @@ class Heartbeat {
   bus::Bus& bus_;
   StopToken& stop_;
   const Twins twins_;
+  const std::string own_name_;
   const std::int64_t started_ns_;
   std::atomic<std::int64_t> looked_ns_;  ///< when the last turn of the heartbeat's thread began
+  ProcessBook processes_;
   mutable std::mutex mutex_;
   PeerClocks clocks_;
   msg::ServiceStatus own_;
-  std::map<std::string, Peer> peers_;
+  PeerTable peers_;
+  std::map<std::string, std::weak_ptr<const bus::SourceGate>> writers_of_;  ///< by service
+  std::uint64_t disbelieved_ = 0;
   std::mutex callback_mutex_;  ///< guards the callback, also while it runs
   std::function<void(const msg::ServiceStatus&)> callback_;
-  std::string duplicate_;
   ProgressWatch progress_;
+  StandstillWatch standstill_;  ///< used by the heartbeat's thread
   InputWatch frames_;
   bool begun_ = false;
   std::string stuck_;  ///< why the worker counts as stuck; empty: it does not
   std::map<std::string, bus::TopicTrouble> troubles_;
-  std::pair<std::int64_t, std::int64_t> twin_{};  ///< pid and start of an older instance that was seen once
+  RateLimit twin_log_{std::chrono::seconds(30)};  ///< used by the reader's thread
   std::mutex publish_mutex_;
   bus::Writer<msg::ServiceStatus> writer_;
   bus::Reader<msg::ServiceStatus> reader_;

@@ -95,8 +95,10 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
                  realtime_ ? concurrency::Overflow::kDropOldest : concurrency::Overflow::kBlock,
                  [changes = changes_] { changes->push(true); }),
       truth_(runtime.bus.writer(bus::topics::kGroundTruth)),
+      slam_(service::follow_source("slam", runtime)),
       tracking_(runtime.bus.reader<msg::TrackingResult>(
-          bus::topics::kTracking, [results = results_](const auto& result) { results->push(result->seq); })) {
+          bus::topics::kTracking, [results = results_](const auto& result) { results->push(result->seq); },
+          slam_->callbacks())) {
   cv::setNumThreads(1);
   const SourceInfo& info = source_->info();
   if (info.has_imu || info.has_wheels) {

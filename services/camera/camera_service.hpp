@@ -14,6 +14,7 @@
 #include "common/service/log.hpp"
 #include "common/service/pacer.hpp"
 #include "common/service/runtime.hpp"
+#include "common/service/topic_source.hpp"
 #include "services/camera/core/depth_offsets.hpp"
 #include "services/camera/core/read_ahead.hpp"
 #include "services/camera/core/source_factory.hpp"
@@ -116,6 +117,7 @@ class CameraService {
   FramePublisher publisher_;
   bus::Writer<msg::PoseStamped> truth_;
   std::optional<MotionPublisher> motion_;  ///< of sources that have an IMU or wheels
+  const std::shared_ptr<bus::SourceGate> slam_;
   bus::Reader<msg::TrackingResult> tracking_;
   std::deque<vision::RgbdImage> in_flight_;  ///< kept for sending again; empty at pace realtime
   SourceCounters counters_;

@@ -72,19 +72,28 @@ DenseService::DenseService(const Config& config, service::Runtime& runtime)
       joiner_(std::make_shared<FrameJoiner>(
           FrameJoiner::Options{static_cast<std::uint64_t>(config.every), !config.without_masks})),
       cloud_writer_(runtime.bus.writer(bus::topics::kDensePoints)),
-      grid_writer_(runtime.bus.writer(bus::topics::kOccupancyGrid)) {
+      grid_writer_(runtime.bus.writer(bus::topics::kOccupancyGrid)),
+      camera_(service::follow_source("camera", runtime)),
+      filter_(service::follow_source("filter", runtime)),
+      slam_(service::follow_source("slam", runtime)) {
   runtime.stop.on_stop([joiner = joiner_] { joiner->close(); });
-  keyframe_reader_ = runtime.bus.reader<msg::KeyframeEvent>(bus::topics::kKeyframes,
-                                                            [this](const auto& event) { joiner_->put(*event); });
-  tracking_reader_ = runtime.bus.reader<msg::TrackingResult>(bus::topics::kTracking,
-                                                             [this](const auto& result) { joiner_->put(*result); });
-  mask_reader_ = runtime.bus.reader<msg::Image>(bus::topics::kDynamicMask, [this](const auto& message) {
-    if (auto mask = from_message(*message)) joiner_->put(msg::to_ns(message->header.stamp), std::move(*mask));
-  });
-  frame_reader_ = bus::FrameReader(runtime.bus, [this](std::shared_ptr<const msg::FrameView> frame) {
-    runtime_.heartbeat.frame_received();
-    joiner_->put(std::move(frame));
-  });
+  keyframe_reader_ = runtime.bus.reader(
+      bus::topics::kKeyframes, [this](const auto& event) { joiner_->put(*event); }, slam_->callbacks());
+  tracking_reader_ = runtime.bus.reader(
+      bus::topics::kTracking, [this](const auto& result) { joiner_->put(*result); }, slam_->callbacks());
+  mask_reader_ = runtime.bus.reader(
+      bus::topics::kDynamicMask,
+      [this](const auto& message) {
+        if (auto mask = from_message(*message)) joiner_->put(msg::to_ns(message->header.stamp), std::move(*mask));
+      },
+      filter_->callbacks());
+  frame_reader_ = bus::FrameReader(
+      runtime.bus,
+      [this](std::shared_ptr<const msg::FrameView> frame) {
+        runtime_.heartbeat.frame_received();
+        joiner_->put(std::move(frame));
+      },
+      camera_->callbacks());
 }
 
 service::ExitCode DenseService::run() {

@@ -10,6 +10,7 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
+#include "common/service/topic_source.hpp"
 #include "services/dense/core/background.hpp"
 #include "services/dense/core/dense_config.hpp"
 #include "services/dense/core/navigation_map.hpp"
@@ -109,6 +110,7 @@ class DenseService {
   std::shared_ptr<FrameJoiner> joiner_;
   bus::Writer<msg::PointCloud2> cloud_writer_;
   bus::Writer<msg::OccupancyGrid> grid_writer_;
+  const std::shared_ptr<bus::SourceGate> camera_, filter_, slam_;
   bus::Reader<msg::KeyframeEvent> keyframe_reader_;
   bus::Reader<msg::TrackingResult> tracking_reader_;
   bus::Reader<msg::Image> mask_reader_;

@@ -115,7 +115,8 @@ DetectorService::DetectorService(const Config& config, service::Runtime& runtime
       arrivals_(runtime.pace == service::Pace::kRealtime
                     ? std::make_shared<Arrivals>(1, concurrency::Overflow::kDropOldest)
                     : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
-      detections_(runtime.bus.writer(bus::topics::kDetections)) {
+      detections_(runtime.bus.writer(bus::topics::kDetections)),
+      slam_(service::follow_source("slam", runtime.heartbeat.process_gone())) {
   runtime.stop.on_stop([arrivals = arrivals_] { arrivals->close(); });
   input_ = std::make_unique<ImageInput>(runtime, config_.input,
                                         [this](Arrival arrival) { arrivals_->push(std::move(arrival)); });
@@ -123,9 +124,11 @@ DetectorService::DetectorService(const Config& config, service::Runtime& runtime
     roll_ = std::make_shared<RollFeedback>(roll_config(config_));
     runtime_.stop.on_stop([roll = roll_] { roll->close(); });
     tracking_ = runtime.bus.reader<msg::TrackingResult>(
-        bus::topics::kTracking, [roll = roll_](std::shared_ptr<const msg::TrackingResult> result) {
+        bus::topics::kTracking,
+        [roll = roll_](std::shared_ptr<const msg::TrackingResult> result) {
           roll->put(result->stamp_ns, pose_of(*result));
-        });
+        },
+        slam_->callbacks());
   }
   const Detector& detector = detectors_.front()->detector();
   SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} workers={} device=\"{}\"",

@@ -17,6 +17,7 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
+#include "common/service/topic_source.hpp"
 #include "common/vision/detection.hpp"
 #include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/engine_guard.hpp"
@@ -121,6 +122,7 @@ class DetectorService {
   EngineLog engine_log_;
   std::shared_ptr<Arrivals> arrivals_;
   bus::Writer<msg::Detection2DArray> detections_;
+  const std::shared_ptr<bus::SourceGate> slam_;
   std::unique_ptr<ImageInput> input_;
   std::shared_ptr<RollFeedback> roll_;  ///< null while detector.derotate is off
   bus::Reader<msg::TrackingResult> tracking_;

@@ -15,24 +15,32 @@ constexpr std::int64_t kMatchingTakesNs = 500'000'000;  // a camera of this host
 }  // namespace
 
 ImageInput::ImageInput(service::Runtime& runtime, const std::string& input, OnImage on_image)
-    : runtime_(runtime), on_image_(std::move(on_image)), automatic_(input == "auto") {
+    : runtime_(runtime),
+      on_image_(std::move(on_image)),
+      automatic_(input == "auto"),
+      camera_(service::follow_source("camera", runtime.heartbeat.process_gone())) {
   if (input == "jpeg") {
     read_jpegs();
     return;
   }
-  frames_ = bus::FrameReader(runtime.bus, [this](std::shared_ptr<const msg::FrameView> frame) {
-    runtime_.heartbeat.frame_received();
-    const std::int64_t stamp_ns = frame->stamp_ns;
-    on_image_({stamp_ns, std::move(frame), nullptr});
-  });
+  frames_ = bus::FrameReader(
+      runtime.bus,
+      [this](std::shared_ptr<const msg::FrameView> frame) {
+        runtime_.heartbeat.frame_received();
+        const std::int64_t stamp_ns = frame->stamp_ns;
+        on_image_({stamp_ns, std::move(frame), nullptr});
+      },
+      camera_->callbacks());
 }
 
 void ImageInput::read_jpegs() {
   jpegs_ = runtime_.bus.reader<msg::CompressedImage>(
-      bus::topics::kColorJpeg, [on_image = on_image_](std::shared_ptr<const msg::CompressedImage> jpeg) {
+      bus::topics::kColorJpeg,
+      [on_image = on_image_](std::shared_ptr<const msg::CompressedImage> jpeg) {
         const std::int64_t stamp_ns = msg::to_ns(jpeg->header.stamp);
         on_image({stamp_ns, nullptr, std::move(jpeg)});
-      });
+      },
+      camera_->callbacks());
 }
 
 /// A camera that is ready has its writers; so has the replay in its place.

@@ -10,6 +10,7 @@
 
 #include "common/bus/frame_topics.hpp"
 #include "common/service/runtime.hpp"
+#include "common/service/topic_source.hpp"
 
 namespace rtd::detector {
 
@@ -42,6 +43,7 @@ class ImageInput {
   const bool automatic_;
   mutable std::mutex mutex_;
   std::int64_t unmatched_since_ns_ = 0;  ///< since when a camera is known without raw frames here; 0: there is none
+  const std::shared_ptr<bus::SourceGate> camera_;  ///< of both: a camera writes either
   bus::FrameReader frames_;
   bus::Reader<msg::CompressedImage> jpegs_;
 };

@@ -46,7 +46,10 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
       frames_(runtime.pace == service::Pace::kRealtime
                   ? std::make_shared<Frames>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
                   : std::make_shared<Frames>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
-      load_(watch_from(first_load_step())) {
+      load_(watch_from(first_load_step())),
+      camera_(service::follow_source("camera", runtime)),
+      detector_(service::follow_source("detector", runtime, service::kDetectorSilenceNs)),
+      slam_(service::follow_source("slam", runtime)) {
   cv::setNumThreads(1);
   if (load_.step() > 0) follow_load_step();
   runtime.stop.on_stop([frames = frames_, prepared = prepared_, detections = detections_, feedback = feedback_] {
@@ -63,18 +66,24 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
   mask_writer_ = runtime.bus.writer(bus::topics::kDynamicMask);
   tracking_reader_ = runtime.bus.reader<msg::TrackingResult>(
       bus::topics::kTracking,
-      [this](const std::shared_ptr<const msg::TrackingResult>& result) { feedback_->put(*result); });
+      [this](const std::shared_ptr<const msg::TrackingResult>& result) { feedback_->put(*result); },
+      slam_->callbacks());
   keyframe_reader_ = runtime.bus.reader<msg::KeyframeEvent>(
       bus::topics::kKeyframes,
-      [this](const std::shared_ptr<const msg::KeyframeEvent>& event) { feedback_->put(*event); });
+      [this](const std::shared_ptr<const msg::KeyframeEvent>& event) { feedback_->put(*event); }, slam_->callbacks());
   detection_reader_ = runtime.bus.reader<msg::Detection2DArray>(
-      bus::topics::kDetections, [this](const std::shared_ptr<const msg::Detection2DArray>& message) {
+      bus::topics::kDetections,
+      [this](const std::shared_ptr<const msg::Detection2DArray>& message) {
         detections_->put(to_detection_batch(*message));
-      });
-  frame_reader_ = bus::FrameReader(runtime.bus, [this](std::shared_ptr<const msg::FrameView> frame) {
-    runtime_.heartbeat.frame_received();
-    frames_->push(std::move(frame));
-  });
+      },
+      detector_->callbacks());
+  frame_reader_ = bus::FrameReader(
+      runtime.bus,
+      [this](std::shared_ptr<const msg::FrameView> frame) {
+        runtime_.heartbeat.frame_received();
+        frames_->push({std::move(frame), camera_->changes()});
+      },
+      camera_->callbacks());
 }
 
 /// A reader waits for its running callback, which may be blocked on the full queue.
@@ -96,22 +105,23 @@ service::ExitCode FilterService::run() {
     commands_->serve();
     std::optional<Work> work = next_frame();
     watch_detector();
-    if (work && accept(*work->frame)) process(std::move(*work));
+    if (work && accept(work->arrival)) process(std::move(*work));
   }
   commands_->close();
   SPDLOG_INFO("event=summary frames={} dropped={} defective={} foreign={} without_detections={}", published_,
-              frames_->dropped(), defective_, from_others_, unpaired_);
+              frames_->dropped(), defective_, camera_->refused(), unpaired_);
   return service::kOk;
 }
 
 /// Realtime: finds the features of the next frame while the one before is judged. Two threads get more of a busy
 /// computer than one, and two cores halve the time between frames.
 void FilterService::prepare_frames() {
-  while (const auto frame = frames_->pop()) {
-    Work work{*frame, std::nullopt, nullptr};
+  while (const auto arrival = frames_->pop()) {
+    Work work{*arrival, std::nullopt, nullptr};
+    const msg::FrameView& frame = *arrival->frame;
     try {
-      const service::TraceSpan span(runtime_.trace, "extract", (*frame)->seq);
-      if (vision::defect(**frame).empty()) work.extraction = filter_.extract(vision::view_image(**frame));
+      const service::TraceSpan span(runtime_.trace, "extract", frame.seq);
+      if (vision::defect(frame).empty()) work.extraction = filter_.extract(vision::view_image(frame));
     } catch (...) {
       work.failure = std::current_exception();
     }
@@ -121,8 +131,8 @@ void FilterService::prepare_frames() {
 
 std::optional<FilterService::Work> FilterService::next_frame() {
   if (runtime_.pace == service::Pace::kRealtime) return prepared_->pop_for(kStatePeriod);
-  auto frame = frames_->pop_for(kStatePeriod);
-  return frame ? std::optional(Work{std::move(*frame), std::nullopt, nullptr}) : std::nullopt;
+  auto arrival = frames_->pop_for(kStatePeriod);
+  return arrival ? std::optional(Work{std::move(*arrival), std::nullopt, nullptr}) : std::nullopt;
 }
 
 Extraction FilterService::extract(std::uint64_t seq, const vision::RgbdImage& image) {
@@ -133,7 +143,7 @@ Extraction FilterService::extract(std::uint64_t seq, const vision::RgbdImage& im
 /// One frame: features while the detector still works on it, then its boxes, then the judgement.
 void FilterService::process(Work work) {
   if (work.failure) std::rethrow_exception(work.failure);
-  const msg::FrameView& frame = *work.frame;
+  const msg::FrameView& frame = *work.arrival.frame;
   const vision::RgbdImage image = vision::view_image(frame);
   Extraction extraction = work.extraction ? std::move(*work.extraction) : extract(frame.seq, image);
   const std::int64_t waiting_since_ns = service::monotonic_ns();
@@ -167,10 +177,10 @@ void FilterService::trace(std::int64_t waiting_since_ns, std::int64_t judging_si
   trace.stages(judging_since_ns, stages, message_->seq);
 }
 
-/// False for a frame that is not to be processed: from a second camera, defective, or sent again (its features are
-/// published again).
-bool FilterService::accept(const msg::FrameView& frame) {
-  if (from_other_camera(frame)) return false;
+/// False for a frame that is not to be processed: defective, or sent again (its features are published again).
+bool FilterService::accept(const Arrival& arrival) {
+  const msg::FrameView& frame = *arrival.frame;
+  follow_camera(arrival.camera_changes);
   if (const std::string cause = vision::defect(frame); !cause.empty()) {
     publish_no_features(frame, cause);
     return false;
@@ -205,32 +215,12 @@ void FilterService::publish_no_features(const msg::FrameView& frame, const std::
   writer_.write(*message_);
 }
 
-/// Of two cameras on the topic, the first is followed as long as it sends. The successor of one that died does not wait
-/// for long.
-bool FilterService::from_other_camera(const msg::FrameView& frame) {
-  constexpr std::int64_t kGonePeriods = 4, kGoneAtLeastNs = 300'000'000, kGoneAtMostNs = 1'000'000'000;
-  constexpr std::int64_t kAveraged = 8;
-  const std::int64_t now_ns = service::monotonic_ns();
-  const bool other = published_ > 0 && frame.source_id != source_id_;
-  const std::int64_t silent_ns = now_ns - source_heard_ns_;
-  if (other && silent_ns < std::clamp(kGonePeriods * source_period_ns_, kGoneAtLeastNs, kGoneAtMostNs)) {
-    ++from_others_;
-    if (other_camera_log_.pass()) {
-      SPDLOG_ERROR("event=second_camera source={:x} followed={:x} fix=\"stop one, or give it another --domain\"",
-                   frame.source_id, source_id_);
-    }
-    return true;
-  }
-  if (other) {
-    SPDLOG_INFO("event=camera_changed source={:x}", frame.source_id);
-    filter_.reset();
-    movers_.clear();
-  } else if (published_ > 0) {
-    source_period_ns_ += (silent_ns - source_period_ns_) / kAveraged;
-  }
-  source_id_ = frame.source_id;
-  source_heard_ns_ = now_ns;
-  return false;
+/// What was seen by the camera before cannot be compared with what this one sees.
+void FilterService::follow_camera(std::uint64_t changes) {
+  if (changes == camera_changes_) return;
+  camera_changes_ = changes;
+  filter_.reset();
+  movers_.clear();
 }
 
 void FilterService::apply_slam_feedback() {
@@ -336,7 +326,7 @@ void FilterService::count(const FilterResult& result) {
   service::Heartbeat& heartbeat = runtime_.heartbeat;
   heartbeat.set_metric("frames", static_cast<double>(published_));
   heartbeat.set_metric("frames_dropped", static_cast<double>(frames_->dropped()));
-  heartbeat.set_metric("frames_foreign", static_cast<double>(from_others_));
+  heartbeat.set_metric("frames_foreign", static_cast<double>(camera_->refused()));
   heartbeat.set_metric("frames_without_detections", static_cast<double>(unpaired_));
   heartbeat.set_metric("features", static_cast<double>(result.features.size()));
   heartbeat.set_metric("features_removed", result.removed);

@@ -19,6 +19,7 @@
 #include "common/service/load_step.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
+#include "common/service/topic_source.hpp"
 #include "services/filter/config.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
 #include "services/filter/core/load/load_watch.hpp"
@@ -46,10 +47,15 @@ class FilterService {
   service::ExitCode run();
 
  private:
-  using Frames = concurrency::BoundedQueue<std::shared_ptr<const msg::FrameView>>;
+  /// A frame, and how often another camera had been followed before it.
+  struct Arrival {
+    std::shared_ptr<const msg::FrameView> frame;
+    std::uint64_t camera_changes = 0;
+  };
+  using Frames = concurrency::BoundedQueue<Arrival>;
   /// A frame and, where another thread finds them, its features.
   struct Work {
-    std::shared_ptr<const msg::FrameView> frame;
+    Arrival arrival;
     std::optional<Extraction> extraction;
     std::exception_ptr failure;  ///< of that thread
   };
@@ -62,11 +68,11 @@ class FilterService {
   bool sheds_load() const;
   const service::LoadStep& follow_load_step();
   void watch_load(const msg::TrackingResult& result);
-  bool accept(const msg::FrameView& frame);
+  bool accept(const Arrival& arrival);
   void publish_no_features(const msg::FrameView& frame, const std::string& cause);
   void forget_views(const msg::FrameView& frame, const char* cause);
   bool detector_alive() const;
-  bool from_other_camera(const msg::FrameView& frame);
+  void follow_camera(std::uint64_t changes);
   Extraction extract(std::uint64_t seq, const vision::RgbdImage& image);
   void trace(std::int64_t waiting_since_ns, std::int64_t judging_since_ns);
   void apply_slam_feedback();
@@ -89,20 +95,18 @@ class FilterService {
   std::shared_ptr<SlamFeedback> feedback_ = std::make_shared<SlamFeedback>();
   bus::Writer<msg::FeatureFrame> writer_;
   bus::Writer<msg::Image> mask_writer_;
+  const std::shared_ptr<bus::SourceGate> camera_, detector_, slam_;
   bus::FrameReader frame_reader_;
   bus::Reader<msg::Detection2DArray> detection_reader_;
   bus::Reader<msg::TrackingResult> tracking_reader_;
   bus::Reader<msg::KeyframeEvent> keyframe_reader_;
 
   std::unique_ptr<msg::FeatureFrame> message_ = std::make_unique<msg::FeatureFrame>();
-  std::uint64_t published_ = 0, defective_ = 0, from_others_ = 0, unpaired_ = 0;
-  std::uint64_t source_id_ = 0;
-  std::int64_t source_heard_ns_ = 0, source_period_ns_ = 0;
+  std::uint64_t published_ = 0, defective_ = 0, unpaired_ = 0, camera_changes_ = 0;
   bool detector_seen_ = false, detector_gone_ = false;
   std::atomic<std::int64_t> detector_alive_ns_{0};           ///< CLOCK_MONOTONIC of its last heartbeat, 0 = ended
   std::array<double, msg::kFilterStages> total_stage_ms_{};  ///< of all published frames
-  service::RateLimit defect_log_{std::chrono::seconds(1)}, other_camera_log_{std::chrono::seconds(5)},
-      wait_log_{std::chrono::seconds(1)};
+  service::RateLimit defect_log_{std::chrono::seconds(1)}, wait_log_{std::chrono::seconds(1)};
   std::optional<bus::CommandDesk> commands_;
   std::thread preparing_;  // these two last: they use the others
 };

@@ -76,6 +76,7 @@ SlamService::SlamService(const Config& config, service::Runtime& runtime)
       arrivals_(runtime.pace == service::Pace::kRealtime
                     ? std::make_shared<Arrivals>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
                     : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
+      filter_(service::follow_source("filter", runtime)),
       map_keeper_(config_.map, slam_) {
   if (config_.motion.given()) motion_.emplace(runtime.bus_options, config_.motion.imu, config_.motion.wheels);
   load_map();
@@ -85,7 +86,8 @@ SlamService::SlamService(const Config& config, service::Runtime& runtime)
   });
   features_ = runtime.bus.reader<msg::FeatureFrame>(
       bus::topics::kFeatures,
-      [this](std::shared_ptr<const msg::FeatureFrame> frame) { arrivals_->push(std::move(frame)); });
+      [this](std::shared_ptr<const msg::FeatureFrame> frame) { arrivals_->push(std::move(frame)); },
+      filter_->callbacks());
 }
 
 /// A reader waits for its running callback, which may be blocked on the full queue.

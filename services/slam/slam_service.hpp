@@ -11,6 +11,7 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
+#include "common/service/topic_source.hpp"
 #include "services/slam/config.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "services/slam/map_file.hpp"
@@ -74,6 +75,7 @@ class SlamService {
   MapPublisher map_publisher_;
   std::optional<MotionFeed> motion_;  ///< IMU and wheels
   std::shared_ptr<Arrivals> arrivals_;
+  const std::shared_ptr<bus::SourceGate> filter_;
   bus::Reader<msg::FeatureFrame> features_;
   std::atomic<bool> source_ended_{false};  ///< as the camera reports
   SlamCounters counters_;

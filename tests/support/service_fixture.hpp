@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <future>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,7 +28,6 @@ class ServiceFixture : public ::testing::Test {
  protected:
   ServiceFixture() : folder_(folder_of_test()), bus_options_(next_domain()), bus_(bus::connect(bus_options_)) {
     std::filesystem::remove_all(folder_);
-    statuses_writer_ = bus_->writer(bus::topics::kStatus);
     statuses_reader_ = bus_->template reader<msg::ServiceStatus>(
         bus::topics::kStatus, [this](std::shared_ptr<const msg::ServiceStatus> status) {
           if (status->service == Service::kName) states_.take(std::move(status));
@@ -80,7 +81,7 @@ class ServiceFixture : public ::testing::Test {
     status.service = service;
     status.pid = 1;
     status.state = state;
-    statuses_writer_.write(status);
+    status_writer(service).write(status);
   }
   /// Listens until the end of the test.
   template <class T>
@@ -111,7 +112,16 @@ class ServiceFixture : public ::testing::Test {
     return std::filesystem::temp_directory_path() / (std::string("rtd_") + Service::kName + "_service_" + test->name());
   }
 
-  bus::Writer<msg::ServiceStatus> statuses_writer_;
+  /// Each service has one of its own.
+  bus::Writer<msg::ServiceStatus>& status_writer(const std::string& service) {
+    const std::lock_guard lock(writers_mutex_);
+    bus::Writer<msg::ServiceStatus>& writer = statuses_writers_[service];
+    if (!writer) writer = bus_->writer(bus::topics::kStatus);
+    return writer;
+  }
+
+  std::mutex writers_mutex_;
+  std::map<std::string, bus::Writer<msg::ServiceStatus>> statuses_writers_;
   bus::Reader<msg::ServiceStatus> statuses_reader_;
   std::vector<std::shared_ptr<void>> readers_;
   std::future<service::ExitCode> running_;

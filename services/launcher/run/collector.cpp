@@ -29,6 +29,9 @@ std::vector<std::uint8_t> encode_jpeg(const msg::FrameView& frame) {
 
 Collector::Collector(bus::Bus& bus, FrameStore& store, const Options& options)
     : bus_(bus),
+      camera_(service::follow_source("camera", process_gone())),
+      filter_(service::follow_source("filter", process_gone())),
+      slam_(service::follow_source("slam", process_gone())),
       builder_(store),
       samples_(options.samples, options.total),
       total_(options.total),
@@ -39,32 +42,50 @@ Collector::Collector(bus::Bus& bus, FrameStore& store, const Options& options)
 
 std::unique_ptr<Collector::Readers> Collector::subscribe() {
   auto readers = std::make_unique<Readers>();
-  readers->tracking = bus_.reader<msg::TrackingResult>(bus::topics::kTracking, [this](const auto& result) {
-    const std::lock_guard lock(mutex_);
-    builder_.add(*result);
-  });
-  readers->features = bus_.reader<msg::FeatureFrame>(bus::topics::kFeatures, [this](const auto& features) {
-    const std::lock_guard lock(mutex_);
-    builder_.add(*features);
-    samples_.add_features(builder_.run_seq(features->seq), *features);
-    if (keep_features_ && judged_.size() < kMaxJudgedFrames) {
-      judged_.try_emplace(features->stamp_ns, eval::judged({features->features.data(), features->count}));
-    }
-  });
-  readers->status = bus_.reader<msg::ServiceStatus>(bus::topics::kStatus, [this](const auto& status) {
-    const std::lock_guard lock(mutex_);
-    builder_.add(*status);
-  });
-  readers->frames = bus::FrameReader(bus_, [this](const auto& frame) {
-    std::uint64_t seq = 0;
-    {
-      const std::lock_guard lock(mutex_);
-      seq = builder_.run_seq(frame->seq);
-      if (!samples_.wants(seq)) return;
-    }
-    images_.push({seq, frame});
-  });
+  readers->tracking = bus_.reader(
+      bus::topics::kTracking, [this](const auto& result) { add(*result); }, slam_->callbacks());
+  readers->features = bus_.reader(
+      bus::topics::kFeatures, [this](const auto& features) { add(*features); }, filter_->callbacks());
+  readers->status = bus_.reader(
+      bus::topics::kStatus, [this](const std::shared_ptr<const msg::ServiceStatus>& status,
+                                   const bus::WriterId& writer) { add(*status, writer); });
+  readers->frames = bus::FrameReader(
+      bus_, [this](const auto& frame) { add_image(frame); }, camera_->callbacks());
   return readers;
+}
+
+void Collector::add(const msg::TrackingResult& result) {
+  const std::lock_guard lock(mutex_);
+  builder_.add(result);
+}
+
+void Collector::add(const msg::FeatureFrame& features) {
+  const std::lock_guard lock(mutex_);
+  builder_.add(features);
+  samples_.add_features(builder_.run_seq(features.seq), features);
+  if (keep_features_ && judged_.size() < kMaxJudgedFrames) {
+    judged_.try_emplace(features.stamp_ns, eval::judged({features.features.data(), features.count}));
+  }
+}
+
+void Collector::add(const msg::ServiceStatus& status, const bus::WriterId& writer) {
+  processes_.note(status, writer);
+  const std::lock_guard lock(mutex_);
+  builder_.add(status);
+}
+
+void Collector::add_image(const std::shared_ptr<const msg::FrameView>& frame) {
+  std::uint64_t seq = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    seq = builder_.run_seq(frame->seq);
+    if (!samples_.wants(seq)) return;
+  }
+  images_.push({seq, frame});
+}
+
+service::ProcessGone Collector::process_gone() const {
+  return [this](const bus::ParticipantId& connection) { return processes_.gone(connection); };
 }
 
 void Collector::subscribe_again() {

@@ -11,6 +11,8 @@
 
 #include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
+#include "common/service/process_book.hpp"
+#include "common/service/topic_source.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
 
 namespace rtd::launcher {
@@ -52,9 +54,16 @@ class Collector {
   };
 
   std::unique_ptr<Readers> subscribe();
+  void add(const msg::TrackingResult& result);
+  void add(const msg::FeatureFrame& features);
+  void add(const msg::ServiceStatus& status, const bus::WriterId& writer);
+  void add_image(const std::shared_ptr<const msg::FrameView>& frame);
+  service::ProcessGone process_gone() const;
   void encode_samples();
 
   bus::Bus& bus_;
+  service::ProcessBook processes_;
+  const std::shared_ptr<bus::SourceGate> camera_, filter_, slam_;
   mutable std::mutex mutex_;
   RecordBuilder builder_;
   SampleKeeper samples_;

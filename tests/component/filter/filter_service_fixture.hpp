@@ -33,20 +33,26 @@ class FilterServiceTest : public test_support::ServiceFixture<FilterService> {
     if (with_detector) std::this_thread::sleep_for(std::chrono::milliseconds(300));  // it has heard the detector
   }
 
+  /// Of another process.
+  bus::Writer<msg::RgbdFrame> other_camera() {
+    elsewhere_ = bus::connect(bus_options_);
+    return elsewhere_->writer(bus::topics::kFrame);
+  }
   static std::int64_t stamp(std::uint64_t seq) { return static_cast<std::int64_t>(seq) * 33'333'333 + 1'000'000'000; }
-  void send_frame(std::uint64_t seq, std::uint64_t source = 7) {
+  void send_frame(std::uint64_t seq) { send_frame(seq, frames_); }
+  void send_frame(std::uint64_t seq, bus::Writer<msg::RgbdFrame>& camera) {
     const vision::RgbdImage image = scene_.render(seq, 0, 0);
     *frame_ = {};
     frame_->seq = seq;
     frame_->stamp_ns = stamp(seq);
-    frame_->source_id = source;
+    frame_->source_id = 7;
     frame_->intrinsics = {525, 525, 319.5, 239.5};
     frame_->depth_scale_m = image.depth_scale_m;
     frame_->width = 640;
     frame_->height = 480;
     std::memcpy(frame_->color_bgr.data(), image.color_bgr.data, frame_->color_bgr.size());
     std::memcpy(frame_->depth.data(), image.depth.data, sizeof(frame_->depth));
-    frames_.write(*frame_);
+    camera.write(*frame_);
   }
   /// A person on the block of the scene, or an empty answer.
   void send_boxes(std::uint64_t seq, bool person) {
@@ -98,6 +104,7 @@ class FilterServiceTest : public test_support::ServiceFixture<FilterService> {
   };
 
   const test::MovingScene scene_;
+  std::shared_ptr<bus::Bus> elsewhere_;
   test_support::Inbox<msg::FeatureFrame> answers_;
   std::unique_ptr<msg::RgbdFrame> frame_ = std::make_unique<msg::RgbdFrame>();
   bus::Writer<msg::RgbdFrame> frames_;

@@ -228,21 +228,60 @@ TEST_F(FilterServiceTest, a_frame_of_impossible_size_is_refused_and_counted) {
 
 TEST_F(FilterServiceTest, keeps_to_the_first_of_two_cameras) {
   start(service::Pace::kAsap, false);
-  send_frame(0, 7);
-  send_frame(0, 8);
-  send_frame(1, 8);
-  send_frame(1, 7);
+  auto other = other_camera();
+  send_frame(0);
+  ASSERT_TRUE(answers_.wait_count(1));
+  send_frame(0, other);  // with the first one's source_id
+  send_frame(1, other);
+  send_frame(1);
   ASSERT_TRUE(answers_.wait_count(2));
   EXPECT_EQ(answers_.at(1)->seq, 1U);
   EXPECT_TRUE(wait_metric("frames_foreign", 2));
 }
 
-TEST_F(FilterServiceTest, follows_the_successor_of_a_camera_that_fell_silent) {
+TEST_F(FilterServiceTest, a_camera_that_stutters_keeps_its_place) {
   start(service::Pace::kAsap, false);
-  for (const std::uint64_t seq : {0U, 1U, 2U}) send_frame(seq, 7);
+  auto other = other_camera();
+  for (const std::uint64_t seq : {0U, 1U, 2U}) send_frame(seq);
   ASSERT_TRUE(answers_.wait_count(3));
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
-  send_frame(0, 8);
+  for (int i = 0; i < 8; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    send_frame(100, other);
+  }
+  send_frame(3);
+  ASSERT_TRUE(answers_.wait_count(4));
+  EXPECT_EQ(answers_.at(3)->seq, 3U);
+}
+
+TEST_F(FilterServiceTest, results_of_a_second_slam_are_not_taken) {
+  config_.feedback_timeout_ms = 300;
+  start(service::Pace::kLockstep, false);
+  const auto elsewhere = bus::connect(bus_options_);
+  auto forged = elsewhere->writer(bus::topics::kTracking);
+  send_frame(0);
+  ASSERT_TRUE(answers_.wait_count(1));
+  send_result(0, 0);
+  send_frame(1);
+  ASSERT_TRUE(answers_.wait_count(2));
+  msg::TrackingResult result{};
+  result.published_ns = result.finished_ns = 1;
+  result.seq = 1;
+  result.state = msg::TrackingState::kOk;
+  result.T_world_camera.rotation_xyzw = {0, 0, 0, 1};
+  forged.write(result);
+  const std::int64_t asked_ns = service::monotonic_ns();
+  send_frame(2);
+  ASSERT_TRUE(answers_.wait_count(3));
+  EXPECT_GE(service::monotonic_ns() - asked_ns, 290'000'000) << "waited for the result of the slam that it knows";
+}
+
+TEST_F(FilterServiceTest, follows_the_successor_of_a_camera_that_ended_at_once) {
+  start(service::Pace::kAsap, false);
+  for (const std::uint64_t seq : {0U, 1U, 2U}) send_frame(seq);
+  ASSERT_TRUE(answers_.wait_count(3));
+  auto other = other_camera();
+  frames_ = {};
+  send_frame(0, other);
   ASSERT_TRUE(answers_.wait_count(4));
   EXPECT_EQ(answers_.at(3)->seq, 0U);
 }

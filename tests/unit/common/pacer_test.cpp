@@ -122,6 +122,22 @@ TEST_F(PacerTest, ResendsAfterSilenceAgainAndAgain) {
   }
 }
 
+TEST_F(PacerTest, DoesNotCountTheTimeInWhichEverythingStoodStill) {
+  Pacer pacer = this->pacer(1);
+  pacer.sent(0);
+  EXPECT_EQ(pacer.next(0).action, PaceAction::kWait);
+  for (const std::int64_t pause_ns : {10 * kS, 60 * kS}) {
+    now_ns_ += pause_ns;
+    EXPECT_EQ(pacer.next(0).action, PaceAction::kWait) << pause_ns;
+  }
+  for (int i = 0; i < 29; ++i) {
+    now_ns_ += kS;
+    EXPECT_NE(pacer.next(0).action, PaceAction::kGiveUp) << i;
+  }
+  now_ns_ += kS;
+  EXPECT_EQ(pacer.next(0).action, PaceAction::kGiveUp);
+}
+
 TEST_F(PacerTest, GivesUpAfterTheResultTimeout) {
   Pacer pacer = this->pacer(3);
   for (std::uint64_t seq = 0; seq < 3; ++seq) pacer.sent(seq);

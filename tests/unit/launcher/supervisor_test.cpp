@@ -70,10 +70,14 @@ class SupervisorTest : public testing::Test {
     supervisor.start({"detector", {"rtd-detector"}, ServiceRole::kOptional}, now);
     supervisor.start({"camera", {"rtd-camera"}, ServiceRole::kSource}, now);
   }
+  /// With many looks on the way, as in a run.
   void advance(milliseconds by) {
-    now += by;
-    supervisor.update(now);
+    constexpr milliseconds kLook{500};
+    for (; by > kLook; by -= kLook) supervisor.update(now += kLook);
+    supervisor.update(now += by);
   }
+  /// Everything is stopped, the launcher too.
+  void stand_still(milliseconds by) { supervisor.update(now += by); }
   void die_and_wait(const std::string& name, int times) {
     for (int i = 0; i < times; ++i) {
       host.end(name, {1, 0});
@@ -105,6 +109,40 @@ TEST_F(SupervisorTest, one_that_falls_silent_is_killed_and_restarted_at_once) {
   EXPECT_THAT(told, Contains("slam hung for 3 s and was killed, restart at once"));
   EXPECT_EQ(restarts("slam"), 1);
   EXPECT_THAT(restarts("detector"), 0) << "has never given a sign of life";
+}
+
+TEST_F(SupervisorTest, nobody_is_killed_for_the_time_in_which_everything_stood_still) {
+  start_all();
+  host.signs["slam"] = 1;
+  advance(milliseconds(2900));
+  for (const milliseconds pause : {milliseconds(10'000), milliseconds(60'000)}) {
+    stand_still(pause);
+    EXPECT_THAT(host.killed, IsEmpty()) << "each has its time from before the pause";
+    ++host.signs["slam"];
+    advance(milliseconds(2900));
+    EXPECT_THAT(host.killed, IsEmpty());
+  }
+  advance(milliseconds(700));
+  EXPECT_THAT(host.killed, ElementsAre("slam")) << "a real silence counts as before";
+}
+
+TEST_F(SupervisorTest, one_that_was_asked_to_end_has_its_grace_beside_a_standstill) {
+  start_all();
+  host.deaf.insert("slam");
+  advance(milliseconds(10));
+  supervisor.stop(now, milliseconds(5000), RunOutcome::kInterrupted);
+  advance(milliseconds(1000));
+  stand_still(milliseconds(10'000));
+  EXPECT_THAT(host.killed, IsEmpty());
+  advance(milliseconds(4000));
+  EXPECT_THAT(host.killed, ElementsAre("slam"));
+}
+
+TEST_F(SupervisorTest, a_service_that_runs_already_ends_the_start) {
+  start_all();
+  host.end("slam", {4, 0});
+  advance(milliseconds(10));
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kConfigError);
 }
 
 TEST_F(SupervisorTest, the_restarted_one_is_waited_for_as_the_first_was) {

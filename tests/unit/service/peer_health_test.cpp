@@ -57,6 +57,25 @@ TEST(ProgressWatch, only_a_worker_that_has_begun_and_does_not_wait_gets_stuck) {
   EXPECT_EQ(watch.stuck_ns(9000 * kNsPerMs), 0);
 }
 
+TEST(ProgressWatch, a_worker_is_not_stuck_for_the_time_in_which_its_process_stood_still) {
+  ProgressWatch watch;
+  watch.set_limit(1500 * kNsPerMs);
+  watch.forgive(60'000 * kNsPerMs);
+  EXPECT_EQ(watch.stuck_ns(100'000 * kNsPerMs), 0) << "it has not begun";
+  watch.tick(1000 * kNsPerMs);
+  watch.forgive(10'000 * kNsPerMs);
+  EXPECT_EQ(watch.stuck_ns(12'000 * kNsPerMs), 0);
+  EXPECT_EQ(watch.stuck_ns(13'000 * kNsPerMs), 2000 * kNsPerMs);
+}
+
+TEST(StandstillWatch, tells_a_stop_of_the_process_from_its_work) {
+  StandstillWatch watch;
+  EXPECT_EQ(watch.look(5000 * kNsPerMs), 0) << "the first look";
+  EXPECT_EQ(watch.look(5400 * kNsPerMs), 0) << "a busy host";
+  EXPECT_EQ(watch.look(15'400 * kNsPerMs), 10'000 * kNsPerMs);
+  EXPECT_EQ(watch.look(15'500 * kNsPerMs), 0);
+}
+
 /// Looks ten times a second.
 class InputWatchTest : public testing::Test {
  protected:

@@ -9,7 +9,8 @@
 namespace rtd::launcher {
 namespace {
 
-constexpr int kExitUsageOrConfig = 2;
+constexpr int kExitUsageOrConfig = 2, kExitAlreadyRuns = 4;
+constexpr Supervisor::Clock kStoodStill{1000};  // update() is called many times in it
 
 /// "1st", "2nd", "3rd", "4th", ..., "11th".
 std::string ordinal(int number) {
@@ -39,6 +40,7 @@ void Supervisor::start(const ServicePlan& plan, Clock now) {
 }
 
 void Supervisor::update(Clock now) {
+  forgive_standstill(now);
   for (Child& child : children_) {
     if (child.state == State::kRunning) {
       if (const auto exit = host_.poll_exit(child.process)) on_exit(child, *exit, now);
@@ -49,6 +51,17 @@ void Supervisor::update(Clock now) {
   if (!stopping_ || !others_ended()) return;
   for (Child& child : children_) {
     if (!child.asked) ask_to_end(child, now + grace_);
+  }
+}
+
+/// Stopped, or in a paused container: the services, stopped as well, had no chance to give a sign or to end.
+void Supervisor::forgive_standstill(Clock now) {
+  const Clock away = updated_ == Clock(0) ? Clock(0) : now - updated_;
+  updated_ = now;
+  if (away < kStoodStill) return;
+  for (Child& child : children_) {
+    child.last_sign += away;
+    child.kill_at += away;
   }
 }
 
@@ -132,7 +145,8 @@ void Supervisor::on_exit(Child& child, const ProcessExit& exit, Clock now) {
     report(SupervisorEvent::Kind::kEnded, child, child.plan.name + " reached the end of its source", exit);
     return decide(RunOutcome::kComplete);
   }
-  if (exit.signal == 0 && exit.code == kExitUsageOrConfig && child.restarts == 0) {
+  const bool refused = exit.code == kExitUsageOrConfig || exit.code == kExitAlreadyRuns;
+  if (exit.signal == 0 && refused && child.restarts == 0) {
     report(SupervisorEvent::Kind::kRefused, child, child.plan.name + " refused to start", exit);
     return decide(RunOutcome::kConfigError);
   }

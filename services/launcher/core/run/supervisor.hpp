@@ -84,7 +84,7 @@ enum class RunOutcome {
   kRunning,      ///< not decided yet
   kComplete,     ///< the source ended by itself
   kFailed,       ///< the source or an essential service failed for good
-  kConfigError,  ///< a service refused its arguments or configuration (exit code 2 at its first start)
+  kConfigError,  ///< a service refused its arguments or configuration (exit code 2 or 4 at its first start)
   kInterrupted,  ///< stopped by the user
 };
 
@@ -108,7 +108,8 @@ class Supervisor {
 
   /// Starts a service. Throws ProcessError when its executable cannot be run.
   void start(const ServicePlan& plan, Clock now);
-  /// Looks for deaths, restarts services when due, kills those that hang or outlive the grace of stop(). Call it often.
+  /// Looks for deaths, restarts services when due, kills those that hang or outlive the grace of stop(). Call it often:
+  /// when it was not called for a second, the launcher itself stood still, and all services have that time on top.
   void update(Clock now);
   /// Asks every service to end, those with ends_last after the others; update() kills those still there `grace` after
   /// they were asked. The first outcome stays. A second stop asks all at once.
@@ -140,6 +141,7 @@ class Supervisor {
   void on_exit(Child& child, const ProcessExit& exit, Clock now);
   void on_death(Child& child, const ProcessExit& exit, Clock now);
   void watch(Child& child, Clock now);
+  void forgive_standstill(Clock now);
   void ask_to_end(Child& child, Clock kill_at);
   bool others_ended() const;
   void decide(RunOutcome outcome);
@@ -151,7 +153,7 @@ class Supervisor {
   std::vector<Child> children_;
   RunOutcome outcome_ = RunOutcome::kRunning;
   bool stopping_ = false;
-  Clock grace_{};
+  Clock grace_{}, updated_{};
 };
 
 }  // namespace rtd::launcher

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/service/peer_table.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/bus/topic_roles.hpp"
+
+namespace rtd::service {
+namespace {
+
+constexpr std::size_t kMostOthers = 100;
+constexpr std::int64_t kMakesRoomAfterNs = 10'000'000'000, kForgottenAfterNs = 60'000'000'000;
+
+bool is_ours(const std::string& name) {
+  return std::ranges::find(bus::roles(), name) != bus::roles().end();
+}
+
+}  // namespace
+
+bool PeerTable::note(const msg::ServiceStatus& status, const bus::WriterId& writer, std::int64_t now_ns) {
+  now_ns_ = now_ns;
+  const std::string& name = status.service;
+  const auto known = names_.find(writer);
+  const bool another_name = known != names_.end() && known->second != name;
+  if (another_name || !(gates_.contains(name) || admit(name, now_ns)) || !gates_.at(name).accepts(writer)) {
+    ++refused_;
+    return false;
+  }
+  Peer& peer = peers_[name];
+  names_.erase(peer.writer);
+  names_[writer] = name;
+  peer.status = status;
+  peer.writer = writer;
+  peer.received_ns = now_ns;
+  return true;
+}
+
+/// With a gate of its own from then on.
+bool PeerTable::admit(const std::string& name, std::int64_t now_ns) {
+  const auto others = std::ranges::count_if(peers_, [](const auto& peer) { return !is_ours(peer.first); });
+  if (!is_ours(name) && static_cast<std::size_t>(others) >= kMostOthers) {
+    const auto heard = [](const auto& peer) {
+      return std::pair(is_ours(peer.first), peer.second.received_ns);
+    };
+    const auto longest = std::ranges::min_element(peers_, {}, heard);
+    if (now_ns - longest->second.received_ns < kMakesRoomAfterNs) return false;
+    made_room_.push_back(longest->first);
+    erase(made_room_.back());
+  }
+  bus::SourceGate::Options options;
+  options.silence_ns = kSilentAfterNs;
+  options.clock = [this] { return now_ns_; };
+  options.gone = gone_;
+  gates_.try_emplace(name, std::move(options));
+  return true;
+}
+
+void PeerTable::erase(const std::string& name) {
+  const auto peer = peers_.find(name);
+  if (peer == peers_.end()) return;
+  names_.erase(peer->second.writer);
+  gates_.erase(name);
+  peers_.erase(peer);
+}
+
+std::vector<std::string> PeerTable::forget_silent(std::int64_t now_ns) {
+  std::vector<std::string> gone = std::exchange(made_room_, {});
+  const std::size_t before = gone.size();
+  for (const auto& [name, peer] : peers_) {
+    if (!is_ours(name) && now_ns - peer.received_ns > kForgottenAfterNs) gone.push_back(name);
+  }
+  for (std::size_t i = before; i < gone.size(); ++i) erase(gone[i]);
+  return gone;
+}
+
+void PeerTable::forgive(std::int64_t stood_still_ns) {
+  for (auto& [name, peer] : peers_) peer.received_ns += stood_still_ns;
+}
+
+}  // namespace rtd::service

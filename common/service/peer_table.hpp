@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/bus/source_gate.hpp"
+#include "common/msg/status.hpp"
+#include "common/service/peer_health.hpp"
+
+namespace rtd::service {
+
+/// A service as its heartbeats show it.
+struct Peer {
+  msg::ServiceStatus status;
+  bus::WriterId writer{};
+  std::int64_t received_ns = 0;
+  PeerHealth health = PeerHealth::kAlive;
+};
+
+/// The other services of a domain by name. Bounded, and not to be fooled by names that somebody makes up:
+/// - A name belongs to the connection that uses it first, until its process is gone or it was silent for 1.2 s; then
+///   another one may use it, until the first is heard again.
+/// - One writer has one name.
+/// - The names of this system's own services (bus::roles()) always have a place. Of others there are 100 at most; one
+///   that is silent for 10 s makes room for a new one, and is forgotten after a minute.
+/// Times are given, CLOCK_MONOTONIC. Not thread-safe.
+class PeerTable {
+ public:
+  /// `gone`: as SourceGate::Options::gone.
+  explicit PeerTable(std::function<bool(const bus::ParticipantId&)> gone) : gone_(std::move(gone)) {}
+
+  /// False for a heartbeat that does not count.
+  bool note(const msg::ServiceStatus& status, const bus::WriterId& writer, std::int64_t now_ns);
+  /// Forgets who has been silent for long; the names that go.
+  std::vector<std::string> forget_silent(std::int64_t now_ns);
+  /// This process stood still for so long: nobody was silent meanwhile.
+  void forgive(std::int64_t stood_still_ns);
+
+  std::map<std::string, Peer>& peers() { return peers_; }
+  const std::map<std::string, Peer>& peers() const { return peers_; }
+  /// Heartbeats that did not count.
+  std::uint64_t refused() const { return refused_; }
+
+ private:
+  bool admit(const std::string& name, std::int64_t now_ns);
+  void erase(const std::string& name);
+
+  const std::function<bool(const bus::ParticipantId&)> gone_;
+  std::int64_t now_ns_ = 0;  ///< of the heartbeat at hand, for the gates
+  std::map<std::string, Peer> peers_;
+  std::map<std::string, bus::SourceGate> gates_;  ///< by name, as peers_
+  std::map<bus::WriterId, std::string> names_;    ///< at most one for each peer
+  std::vector<std::string> made_room_;
+  std::uint64_t refused_ = 0;
+};
+
+}  // namespace rtd::service
