@@ -29,7 +29,7 @@ packages=(
   build-essential cmake ninja-build
   libfastrtps-dev libfastcdr-dev fastdds-tools
   cyclonedds-dev
-  libopencv-dev libeigen3-dev libceres-dev
+  libopencv-dev libjpeg62-turbo-dev libpng-dev libeigen3-dev libceres-dev
   libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev libsystemd-dev nlohmann-json3-dev libtinyxml2-dev
   zlib1g-dev libdeflate-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libssl-dev
   liboctomap-dev
@@ -113,20 +113,35 @@ install_viewers() {
   packages+=("${viewer_packages[@]}")
   install_packages
   mkdir -p "$tools"
-  cp "$root/tests/interop/viewers/package.json" "$tools/"
-  npm --prefix "$tools" install --no-audit --no-fund --ignore-scripts
+  cp "$root"/tests/interop/viewers/package{,-lock}.json "$tools/"
+  npm --prefix "$tools" ci --no-audit --no-fund --ignore-scripts  # refuses what has another checksum than the lock file
   echo "setup: next step: ./deploy/test.sh -R interop"
+}
+
+# check_sha512 FILE SUM
+check_sha512() {
+  local found
+  found="$(sha512sum "$1" | cut -d ' ' -f 1)"
+  if [ "$found" != "$2" ]; then
+    echo "setup: $(basename "$1") is not the file that this version expects, so nothing of it was installed:" >&2
+    echo "  SHA-512 is     $found" >&2
+    echo "  SHA-512 wanted $2" >&2
+    echo "  Try again, and look at the registry and proxy that npm uses (npm config list)." >&2
+    return 1
+  fi
 }
 
 # Debian 12 has no package of it. The npm package holds the library for the CPU and the header for many systems.
 install_onnxruntime() {
   local package=com.github.asus4.onnxruntime@0.4.9 folder="$root/build/onnxruntime" scratch
+  local sha512=064cf176e499f4891e0cfe90f25cf64c553689eee1492bd2ed921fccca28131a2ad02373267bae19a509ec8b288c182a3b8a2e0f58d76a1f0e63225b08ddbd16
   local headers="package/Plugins/iOS~/onnxruntime.xcframework/ios-arm64/onnxruntime.framework/Headers"
   command -v npm >/dev/null || packages+=(npm)
   install_packages
   scratch="$(mktemp -d)"
   trap 'rm -rf "$scratch"' RETURN
   npm pack --silent --pack-destination "$scratch" "$package" >/dev/null
+  check_sha512 "$scratch"/*.tgz "$sha512"
   mkdir -p "$folder/include" "$folder/lib"
   tar xzf "$scratch"/*.tgz -C "$scratch" "$headers" package/Plugins/Linux/x64/libonnxruntime.so package/LICENSE
   cp "$scratch/$headers"/onnxruntime_*.h "$folder/include/"
