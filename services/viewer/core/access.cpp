@@ -39,6 +39,12 @@ bool right_token(const AccessRules& rules, const AccessRequest& request) {
   return same_text(query_value(request.target, "token"), rules.token);
 }
 
+/// Any page in a file or a sandboxed frame has such an origin, whoever wrote it.
+bool is_anonymous(std::string_view origin) {
+  return origin == "null" || lower(origin.substr(0, 5)) == "file:";
+}
+
+/// Anonymous ones have been dealt with before.
 bool right_origin(const AccessRules& rules, const AccessRequest& request) {
   if (request.origin.empty() || std::ranges::count(rules.origins, request.origin) > 0) return true;
   const std::size_t scheme = request.origin.find("://");
@@ -77,9 +83,10 @@ Access check_host(const AccessRules& rules, std::string_view host) {
 
 Access check_access(const AccessRules& rules, const AccessRequest& request) {
   if (check_host(rules, request.host) != Access::kGranted) return Access::kWrongHost;
+  if (is_anonymous(request.origin) && rules.token.empty()) return Access::kAnonymousOrigin;
   if (!right_origin(rules, request)) return Access::kWrongOrigin;
   if (right_token(rules, request)) return Access::kGranted;
-  return rules.look_freely ? Access::kToLook : Access::kNoToken;
+  return rules.look_freely && !is_anonymous(request.origin) ? Access::kToLook : Access::kNoToken;
 }
 
 const char* explain(Access access) {
@@ -92,6 +99,9 @@ const char* explain(Access access) {
       return "this viewer is not addressed by that host name; start it with --host NAME to allow it\n";
     case Access::kWrongOrigin:
       return "a page of another site may not connect; start the viewer with --origin ORIGIN to allow it\n";
+    case Access::kAnonymousOrigin:
+      return "a page from a file may connect only with a token; start the viewer with --token TEXT and use the address "
+             "that it then prints (?token=TEXT)\n";
     case Access::kNoToken:
       return "the token is missing or wrong: use the address that the viewer has printed (?token=...)\n";
   }

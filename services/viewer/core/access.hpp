@@ -23,9 +23,10 @@ struct AccessRequest {
   std::string_view host, origin, target, authorization;
 };
 
-enum class Access { kGranted, kToLook, kWrongHost, kWrongOrigin, kNoToken };
+enum class Access { kGranted, kToLook, kWrongHost, kWrongOrigin, kAnonymousOrigin, kNoToken };
 
-/// Whether a WebSocket may be opened, and for what. A request without Origin is not of a browser.
+/// Whether a WebSocket may be opened, and for what. A request without Origin is not of a browser. The origins "file://"
+/// and "null" say nothing about who wrote the page: they need the token even to look.
 Access check_access(const AccessRules& rules, const AccessRequest& request);
 /// Granted, or to look only.
 inline bool may_look(Access access) {

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
 namespace rtd::viewer {
 namespace {
+
+namespace fs = std::filesystem;
 
 const char* mime_type(std::string_view name) {
   if (name.ends_with(".html")) return "text/html; charset=utf-8";
@@ -17,15 +20,35 @@ const char* mime_type(std::string_view name) {
   return "application/octet-stream";
 }
 
-bool is_plain(std::string_view name) {
-  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./";
-  return name.find_first_not_of(kLetters) == std::string_view::npos && name.find("..") == std::string_view::npos;
+constexpr std::size_t kMostFiles = 10'000;  // Debian has 600; what a wrong folder has is not listed to its end
+
+bool lies_in(const fs::path& file, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+}
+
+/// The scripts below the folder, by their names in requests, with links resolved. Those that lead out are left out.
+std::map<std::string, fs::path> scripts_below(const fs::path& three) {
+  std::map<std::string, fs::path> files;
+  std::error_code error;
+  const fs::path folder = fs::canonical(three, error);
+  if (error) return files;
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
+  for (; !error && entry != fs::recursive_directory_iterator() && files.size() < kMostFiles; entry.increment(error)) {
+    if (entry->path().extension() != ".js") continue;
+    std::error_code unusable;
+    const fs::path file = fs::canonical(entry->path(), unusable);
+    if (unusable || !lies_in(file, folder) || !fs::is_regular_file(file, unusable)) continue;
+    files.emplace(entry->path().lexically_relative(folder).string(), file);
+  }
+  return files;
 }
 
 }  // namespace
 
+Site::Site(const fs::path& three) : three_(scripts_below(three)) {}
+
 std::optional<SiteFile> Site::file(std::string_view path) const {
-  if (!path.starts_with('/') || !is_plain(path)) return std::nullopt;
+  if (!path.starts_with('/')) return std::nullopt;
   std::string name(path.substr(1));
   constexpr std::string_view kThree = "three/";
   if (name.starts_with(kThree)) return three_file(name.substr(kThree.size()));
@@ -39,15 +62,16 @@ std::optional<SiteFile> Site::file(std::string_view path) const {
 std::optional<SiteFile> Site::three_file(std::string name) const {
   constexpr std::string_view kBuild = "build/";
   if (name.starts_with(kBuild)) name.erase(0, kBuild.size());
-  if (!name.ends_with(".js")) return std::nullopt;
-  std::ifstream file(three_ / name, std::ios::binary);
+  const auto known = three_.find(name);
+  if (known == three_.end()) return std::nullopt;
+  std::ifstream file(known->second, std::ios::binary);
   if (!file) return std::nullopt;
   return SiteFile{
       .content = std::string(std::istreambuf_iterator<char>(file), {}), .type = mime_type(name), .keeps = true};
 }
 
 bool Site::has_three() const {
-  return std::filesystem::exists(three_ / "three.module.js");
+  return three_.contains("three.module.js");
 }
 
 }  // namespace rtd::viewer

@@ -20,18 +20,20 @@ struct SiteFile {
 /// The page's own files, compiled in, by path: "index.html", "app.js".
 const std::map<std::string, std::string_view>& page_files();
 
-/// What is served over HTTP: the page at "/", and three.js at "/three/".
+/// What is served over HTTP: the page at "/", and three.js at "/three/". Both are fixed lists of names: a request never
+/// becomes a path. Immutable, so thread-safe.
 class Site {
  public:
-  /// `three`: the folder of Debian's libjs-three.
-  explicit Site(std::filesystem::path three) : three_(std::move(three)) {}
+  /// `three`: the folder of Debian's libjs-three. Lists the .js files that are in it now; links that lead out of it are
+  /// left out.
+  explicit Site(const std::filesystem::path& three);
   /// Empty: there is no such file.
   std::optional<SiteFile> file(std::string_view path) const;
   bool has_three() const;
 
  private:
   std::optional<SiteFile> three_file(std::string name) const;
-  const std::filesystem::path three_;
+  std::map<std::string, std::filesystem::path> three_;  ///< by name below the folder
 };
 
 }  // namespace rtd::viewer

@@ -170,10 +170,10 @@ class WebServer::Implementation::Visitor : public std::enable_shared_from_this<V
   }
 
   void serve(const Request& request) {
-    if (request.method() != http::verb::get && request.method() != http::verb::head)
-      return refuse(http::status::method_not_allowed, "only GET is answered\n");
     const Access access = check_host(server_.options_.access, view(request[http::field::host]));
     if (access != Access::kGranted) return refuse(http::status::forbidden, explain(access));
+    if (request.method() != http::verb::get && request.method() != http::verb::head)
+      return refuse(http::status::method_not_allowed, "only GET is answered\n");
     const std::string_view path = path_of(view(request.target()));
     if (path == "/access") return answer_access(request);
     if (const auto report = server_.reports_.find(path); report != server_.reports_.end())

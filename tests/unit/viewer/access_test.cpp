@@ -18,8 +18,24 @@ TEST(Access, programs_and_the_own_page_may_connect) {
 }
 
 TEST(Access, pages_of_other_sites_may_not) {
-  for (const char* origin : {"https://evil.example", "http://localhost:9999", "null", "http://127.0.0.1", "evil"})
+  for (const char* origin : {"https://evil.example", "http://localhost:9999", "http://127.0.0.1", "evil"})
     EXPECT_EQ(check_access(kLoopback, {.host = "localhost:8765", .origin = origin}), Access::kWrongOrigin) << origin;
+}
+
+TEST(Access, a_page_from_a_file_needs_a_token) {
+  AccessRules rules{.hosts = {"localhost"}, .origins = {"file://", "null"}, .token = ""};
+  for (const char* origin : {"file://", "null", "FILE://", "file://localhost:8765"})
+    EXPECT_EQ(check_access(rules, {.host = "localhost:8765", .origin = origin}), Access::kAnonymousOrigin) << origin;
+  rules.token = "s3cret";
+  const auto with = [&](const char* origin, const char* target) {
+    return check_access(rules, {.host = "localhost:8765", .origin = origin, .target = target});
+  };
+  EXPECT_EQ(with("file://", "/?token=s3cret"), Access::kGranted);
+  EXPECT_EQ(with("file://", "/?token=wrong"), Access::kNoToken);
+  rules.look_freely = true;
+  EXPECT_EQ(with("file://", "/?token=wrong"), Access::kNoToken) << "not even to look";
+  rules.origins.clear();
+  EXPECT_EQ(with("null", "/?token=s3cret"), Access::kWrongOrigin);
 }
 
 TEST(Access, a_foreign_name_that_points_here_is_refused) {
