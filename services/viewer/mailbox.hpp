@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -10,22 +11,24 @@
 
 namespace rtd::viewer {
 
-/// Hands work from the bus's threads to the viewer's, bounded: if that one falls behind, messages are dropped and
-/// counted, changes of topics are not. Thread-safe; copies share one count.
+/// Hands work from the bus's threads to the viewer's, bounded in number and bytes: if that one falls behind, messages
+/// are dropped and counted, changes of topics are not. Thread-safe; copies share one count.
 class Mailbox {
  public:
   using Task = std::function<void()>;
   explicit Mailbox(std::function<void(Task)> post) : post_(std::move(post)) {}
 
-  /// A message, which may be dropped.
-  void deliver(Task task) const {
-    if (state_->waiting.fetch_add(1) >= kMostWaiting) {
-      --state_->waiting;
+  /// A message, which may be dropped. `bytes`: of memory that the task keeps until it has run.
+  void deliver(Task task, std::size_t bytes) const {
+    const bool full = state_->waiting.fetch_add(1) >= kMostWaiting;
+    const std::size_t before = state_->bytes.fetch_add(bytes);
+    if (full || (before > 0 && before + bytes > kMostBytes)) {  // a large one alone may pass
+      state_->take(bytes);
       ++state_->dropped;
       return;
     }
-    post_([state = state_, task = std::move(task)] {
-      --state->waiting;
+    post_([state = state_, bytes, task = std::move(task)] {
+      state->take(bytes);
       task();
     });
   }
@@ -35,8 +38,14 @@ class Mailbox {
 
  private:
   static constexpr int kMostWaiting = 512;
+  static constexpr std::size_t kMostBytes = std::size_t{32} << 20;
   struct State {
+    void take(std::size_t taken) {
+      --waiting;
+      bytes -= taken;
+    }
     std::atomic<int> waiting{0};
+    std::atomic<std::size_t> bytes{0};
     std::atomic<std::uint64_t> dropped{0};
   };
   std::function<void(Task)> post_;

@@ -29,6 +29,31 @@ bool is_of_unnamed_robot(const std::string& wire_name) {
          wire_name != ros2::kSchemasTopic;
 }
 
+/// Of a message in memory, nearly.
+template <class T>
+std::size_t bytes_of(const T&) {
+  return sizeof(T);
+}
+std::size_t bytes_of(const msg::CompressedImage& image) {
+  return sizeof(image) + image.data.size();
+}
+std::size_t bytes_of(const msg::Image& image) {
+  return sizeof(image) + image.data.size();
+}
+std::size_t bytes_of(const msg::PointCloud2& cloud) {
+  return sizeof(cloud) + cloud.data.size();
+}
+std::size_t bytes_of(const msg::Detection2DArray& detections) {
+  return sizeof(detections) + detections.detections.size() * sizeof(msg::Detection2D);
+}
+std::size_t bytes_of(const msg::MapUpdate& update) {
+  std::size_t bytes = sizeof(update) + update.loop_edges.size() * sizeof(std::uint32_t);
+  for (const msg::MapKeyframe& keyframe : update.keyframes)
+    bytes += sizeof(keyframe) + keyframe.points_m.size() * sizeof(float) +
+             keyframe.covisible.size() * sizeof(std::uint32_t);
+  return bytes;
+}
+
 }  // namespace
 
 std::set<std::string> shown_robots(const std::vector<std::string>& wire_names) {
@@ -57,7 +82,8 @@ void RobotFeed::read(bus::Reader<T>& reader, const bus::Topic<T>& topic, bool wa
   }
   try {
     reader = bus_->reader(topic, [this, take](std::shared_ptr<const T> message) {
-      mailbox_.deliver([&mirror = mirror_, take, message = std::move(message)] { take(mirror, *message); });
+      const std::size_t bytes = bytes_of(*message);
+      mailbox_.deliver([&mirror = mirror_, take, message = std::move(message)] { take(mirror, *message); }, bytes);
     });
   } catch (const bus::BusError& error) {
     SPDLOG_WARN("event=not_read topic={} cause=\"{}\"", topic.name, error.what());

@@ -170,9 +170,11 @@ void TopicFeed::want(std::uint32_t channel, bool wanted) {
 void TopicFeed::listen(Entry& entry) {
   bus::RawHandlers handlers;
   handlers.on_sample = [this, channel = entry.channel](const bus::RawSample& sample) {
-    mailbox_.deliver([this, channel, sample] {
-      if (hub_.wanted(channel)) hub_.publish(channel, sample.source_ns, copy_of(sample.cdr()));
-    });
+    mailbox_.deliver(
+        [this, channel, sample] {
+          if (hub_.wanted(channel)) hub_.publish(channel, sample.source_ns, copy_of(sample.cdr()));
+        },
+        sample.cdr().size());
   };
   try {
     entry.listener = std::make_unique<bus::TopicListener>(bus_, std::move(handlers), false, kDepth);
