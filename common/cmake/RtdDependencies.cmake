@@ -4,7 +4,9 @@
 # Finds every third-party package once. docs/dependencies.md explains why each is needed.
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs features2d calib3d video dnn)
+find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc features2d calib3d video dnn)
+find_package(JPEG REQUIRED)
+find_package(PNG REQUIRED)
 find_package(Ceres 2.1 REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(CLI11 REQUIRED)
@@ -22,6 +24,7 @@ find_package(SQLite3 REQUIRED)
 find_package(octomap 1.9 REQUIRED)
 if(RTD_BUILD_TESTS)
   find_package(GTest REQUIRED)
+  find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs features2d calib3d video dnn)  # imgcodecs: tests only
 endif()
 if(RTD_BUILD_BENCH)
   find_package(benchmark REQUIRED)

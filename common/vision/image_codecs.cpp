@@ -2,36 +2,54 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/vision/image_codecs.hpp"
 
-#include <dlfcn.h>
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <string_view>
 
-#include <stdexcept>
-#include <string>
-
-#include "common/io/own_library.hpp"
+#include "common/vision/jpeg_codec.hpp"
+#include "common/vision/png_codec.hpp"
 
 namespace rtd::vision {
 namespace {
 
-const ImageCodecs& load() {
-  constexpr const char* kLibrary = "librtd_image_codecs.so";
-  const std::string file = io::find_own_library(kLibrary).string();
-  if (file.empty()) {
-    throw std::runtime_error(
-        std::string("no image can be read or written: ") + kLibrary +
-        " is neither beside this program nor in ../lib/rtd-slam from there; install RTD-SLAM again");
-  }
-  void* const library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
-  if (library == nullptr) throw std::runtime_error(file + " cannot be loaded: " + dlerror());
-  const auto entry = reinterpret_cast<const ImageCodecs* (*)()>(dlsym(library, kImageCodecsEntry));
-  if (entry == nullptr) throw std::runtime_error(file + " is of another version: install RTD-SLAM again");
-  return *entry();
+bool starts_with(std::span<const std::uint8_t> bytes, std::string_view magic) {
+  return bytes.size() >= magic.size() &&
+         std::ranges::equal(bytes.first(magic.size()), magic, {}, {}, [](char c) { return static_cast<std::uint8_t>(c); });
 }
 
 }  // namespace
 
-const ImageCodecs& image_codecs() {
-  static const ImageCodecs& codecs = load();  // tried again after an exception
-  return codecs;
+ImageFormat format_of(std::span<const std::uint8_t> bytes) {
+  if (starts_with(bytes, "\xFF\xD8\xFF")) return ImageFormat::kJpeg;
+  if (starts_with(bytes, "\x89PNG\r\n\x1A\n")) return ImageFormat::kPng;
+  return ImageFormat::kUnknown;
+}
+
+DecodedImage decode_image(std::span<const std::uint8_t> bytes, const DecodeRules& rules) {
+  if (bytes.empty()) return {{}, "is empty"};
+  const ImageFormat format = format_of(bytes);
+  if (format == ImageFormat::kJpeg) return decode_jpeg(bytes, rules);
+  if (rules.jpeg_only) return {{}, "is not a JPEG image"};
+  if (format == ImageFormat::kPng) return decode_png(bytes, rules);
+  return {{}, std::string("cannot be decoded as an image; readable: ") + kReadableFormats};
+}
+
+DecodedImage read_image(const std::filesystem::path& file, const DecodeRules& rules) {
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  if (!stream) return {{}, "cannot be read"};
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::max<std::streamoff>(stream.tellg(), 0)));
+  stream.seekg(0);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!stream && !bytes.empty()) return {{}, "cannot be read"};
+  return decode_image(bytes, rules);
+}
+
+std::vector<std::uint8_t> encode_image(std::string extension, const cv::Mat& image) {
+  std::ranges::transform(extension, extension.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  if (extension == ".png") return encode_png(image);
+  if (extension == ".jpg" || extension == ".jpeg") return encode_jpeg(image);
+  return {};
 }
 
 }  // namespace rtd::vision

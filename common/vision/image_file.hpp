@@ -12,12 +12,11 @@
 
 namespace rtd::vision {
 
-/// Writes an image file as io::AtomicFile does; its extension names the format. False: the image cannot be encoded so.
-/// Throws io::IoError, and what image_codecs() throws.
-inline bool write_image(const std::filesystem::path& file, const cv::Mat& image, const std::vector<int>& parameters = {},
-                        io::AtomicOptions options = {}) {
-  std::vector<std::uint8_t> bytes;
-  if (!image_codecs().encode(file.extension().string(), image, bytes, parameters)) return false;
+/// Writes an image file as io::AtomicFile does, encoded by its extension: .png, .jpg or .jpeg. False: another extension,
+/// or the image cannot be encoded. Throws io::IoError.
+inline bool write_image(const std::filesystem::path& file, const cv::Mat& image, io::AtomicOptions options = {}) {
+  const std::vector<std::uint8_t> bytes = encode_image(file.extension().string(), image);
+  if (bytes.empty()) return false;
   io::write_file(file, std::as_bytes(std::span(bytes)), options);
   return true;
 }

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <opencv2/imgcodecs.hpp>
 #include <random>
 #include <stdexcept>
 #include <utility>
@@ -76,13 +75,8 @@ void JpegPublisher::publish(const Waiting& image) {
   msg::CompressedImage message;
   message.header = {msg::to_time(image.stamp_ns), frame_id_};
   message.format = "bgr8; jpeg compressed bgr8";
-  try {
-    if (!vision::image_codecs().encode(".jpg", image.color_bgr, message.data, {cv::IMWRITE_JPEG_QUALITY, quality_}))
-      return;
-  } catch (const std::runtime_error& error) {  // the installation is broken
-    if (!std::exchange(refused_, true)) SPDLOG_ERROR("event=no_jpeg cause=\"{}\"", error.what());
-    return;
-  }
+  message.data = vision::encode_jpeg(image.color_bgr, quality_);
+  if (message.data.empty()) return;
   ++encoded_;
   writer_.write(message);
 }

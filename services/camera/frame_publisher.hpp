@@ -54,7 +54,6 @@ class JpegPublisher {
   std::int64_t offered_ns_ =
       std::numeric_limits<std::int64_t>::min() / 2;  ///< stamp of the last image that was not left out
   std::atomic<std::uint64_t> encoded_{0};
-  bool refused_ = false;  ///< the worker cannot encode, and has said so
   concurrency::BoundedQueue<Waiting> waiting_;
   std::thread thread_;
 };

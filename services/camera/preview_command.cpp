@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 
 #include "common/service/bus_config.hpp"
@@ -61,7 +60,7 @@ int preview(const PreviewOptions& options) {
     return service::kRunFailed;
   }
   std::cout << measured.text(source->info(), source->counters());
-  if (!vision::write_image(options.picture, measured.picture(), {}, {.named_by = io::NamedBy::kOperator})) {
+  if (!vision::write_image(options.picture, measured.picture(), {.named_by = io::NamedBy::kOperator})) {
     std::cerr << "rtd-camera: " << options.picture << " cannot be written: choose another file with --picture\n";
     return service::kRunFailed;
   }

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <exception>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -186,12 +186,12 @@ void DetectorService::publish_in_turn(std::uint64_t turn, const std::optional<ms
   turn_changed_.notify_all();
 }
 
-/// The pixels of an arrival; empty when they are broken. A frame's pixels stay in the message.
+/// The pixels of an arrival; empty or std::invalid_argument when they are broken. A frame's pixels stay in the message.
 std::optional<cv::Mat> DetectorService::image_of(const Arrival& arrival) {
   if (arrival.jpeg) {
-    if (arrival.jpeg->data.empty()) return std::nullopt;
-    cv::Mat image = vision::image_codecs().decode(arrival.jpeg->data, cv::IMREAD_COLOR);
-    return image.empty() ? std::nullopt : std::optional<cv::Mat>(std::move(image));
+    vision::DecodedImage decoded = vision::decode_image(arrival.jpeg->data, vision::kBusImages);
+    if (!decoded.problem.empty()) throw std::invalid_argument("it " + decoded.problem);
+    return std::move(decoded.pixels);
   }
   const cv::Mat image = vision::view_color(*arrival.frame);
   return image.empty() ? std::nullopt : std::optional(image);

@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,7 +28,7 @@ int print_files(Detector& detector, const std::vector<std::string>& files) {
   std::cout << fmt::format("{:<32} {:<14} {:>5} {:>6} {:>6} {:>6} {:>6}\n", "file", "class", "score", "x_px", "y_px",
                            "width", "height");
   for (const std::string& file : files) {
-    const cv::Mat image = vision::image_codecs().read(file, cv::IMREAD_COLOR);
+    const cv::Mat image = vision::read_image(file, {.upright = true}).pixels;
     if (image.empty()) {
       std::cerr << "rtd-detector: " << file << " is missing or not an image\n";
       code = service::kRunFailed;

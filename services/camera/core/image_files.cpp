@@ -6,9 +6,10 @@
 #include <array>
 #include <fstream>
 #include <iterator>
-#include <opencv2/imgcodecs.hpp>
 #include <string_view>
+#include <utility>
 #include <vector>
+
 #include "common/vision/image_codecs.hpp"
 
 namespace rtd::camera {
@@ -44,18 +45,13 @@ ImageRead refuse(SkipReason reason, const std::string& name, const std::string& 
   return {{}, SkippedInput{reason, name + ": " + cause}};
 }
 
-ImageRead decode(Bytes bytes, const std::string& name, int flags, SkipReason unreadable) {
+ImageRead decode(Bytes bytes, const std::string& name, vision::PixelsAs pixels, SkipReason unreadable) {
   if (bytes.empty()) return refuse(unreadable, name, "is empty");
   if (!complete(bytes)) return refuse(unreadable, name, "is truncated");
-  ImageRead result;
-  try {
-    const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
-    result.image = vision::image_codecs().decode(encoded, flags);
-  } catch (const cv::Exception&) {
-    result.image.release();
-  }
-  if (result.image.empty()) return refuse(unreadable, name, "cannot be decoded as an image");
-  return result;
+  vision::DecodedImage decoded =
+      vision::decode_image(bytes, {.pixels = pixels, .max_pixels = vision::DecodeRules::kMaxStreamPixels});
+  if (!decoded.problem.empty()) return refuse(unreadable, name, decoded.problem);
+  return {std::move(decoded.pixels), {}};
 }
 
 std::string pixel_type_name(const cv::Mat& image) {
@@ -75,11 +71,11 @@ void drop_saturated(cv::Mat& depth) {
 }
 
 ImageRead decode_color(Bytes encoded, const std::string& name) {
-  return decode(encoded, name, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, SkipReason::kColorUnreadable);
+  return decode(encoded, name, vision::PixelsAs::kBgr, SkipReason::kColorUnreadable);
 }
 
 ImageRead decode_depth(Bytes encoded, const std::string& name) {
-  ImageRead result = decode(encoded, name, cv::IMREAD_UNCHANGED, SkipReason::kDepthUnreadable);
+  ImageRead result = decode(encoded, name, vision::PixelsAs::kStored, SkipReason::kDepthUnreadable);
   if (result.problem) return result;
   if (result.image.type() != CV_16UC1) {
     return refuse(

@@ -3,26 +3,21 @@
 #include "services/detector/fleet/fleet_pipeline.hpp"
 
 #include <exception>
-#include <opencv2/imgcodecs.hpp>
 #include <thread>
 #include <utility>
 
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/image_codecs.hpp"
-#include "common/vision/jpeg_size.hpp"
 
 namespace rtd::detector {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestTurn{50};
-constexpr std::int64_t kMostPixels = 3840 * 2160;
 
 /// Empty when they are broken, or so many that decoding them would cost the other robots time and memory.
 cv::Mat pixels_of(const msg::CompressedImage& jpeg) {
-  const cv::Size size = vision::jpeg_size(jpeg.data);
-  if (size.empty() || std::int64_t{size.width} * size.height > kMostPixels) return {};
   try {
-    return vision::image_codecs().decode(jpeg.data, cv::IMREAD_COLOR);
+    return vision::decode_image(jpeg.data, vision::kBusImages).pixels;
   } catch (const std::exception&) {  // data from outside never ends the process
     return {};
   }

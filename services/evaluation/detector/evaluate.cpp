@@ -6,13 +6,13 @@
 #include <cctype>
 #include <filesystem>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "common/io/text.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "common/vision/motion_levels.hpp"
 #include "services/detector/core/evaluation/labels.hpp"
 
@@ -24,7 +24,7 @@ constexpr double kLeastScore = 0.001;  // the whole curve counts
 constexpr std::size_t kTimedImages = 40;
 
 bool is_image(const fs::path& path) {
-  static const std::vector<std::string> kEndings = {".jpg", ".jpeg", ".png", ".bmp"};
+  static const std::vector<std::string> kEndings = {".jpg", ".jpeg", ".png"};
   std::string ending = path.extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return std::ranges::find(kEndings, ending) != kEndings.end();
@@ -43,7 +43,7 @@ std::vector<fs::path> images_in(const std::string& folder, int step) {
   std::vector<fs::path> all, taken;
   for (const auto& entry : fs::directory_iterator(folder))
     if (is_image(entry.path())) all.push_back(entry.path());
-  if (all.empty()) throw service::ConfigError("--images " + folder + ": has no images (jpg, jpeg, png, bmp)");
+  if (all.empty()) throw service::ConfigError("--images " + folder + ": has no images (jpg, jpeg, png)");
   std::ranges::sort(all);
   for (std::size_t i = 0; i < all.size(); i += static_cast<std::size_t>(step)) taken.push_back(all[i]);
   return taken;
@@ -207,12 +207,13 @@ void add_recall(const MaskedImage& image, const std::vector<vision::Detection>& 
 }
 
 std::optional<MaskedImage> read_pair(const fs::path& path, const EvalDetectorOptions& options, InputReport& input) {
-  const fs::path mask_path = partner_of(path, options.masks, {".png", ".jpg", ".bmp"});
+  const fs::path mask_path = partner_of(path, options.masks, {".png", ".jpg"});
   if (mask_path.empty()) {
     ++input.without_partner;
     return std::nullopt;
   }
-  MaskedImage pair{cv::imread(path.string()), cv::imread(mask_path.string(), cv::IMREAD_GRAYSCALE)};
+  MaskedImage pair{vision::read_image(path, {.upright = true}).pixels,
+                   vision::read_image(mask_path, {.pixels = vision::PixelsAs::kGrey, .upright = true}).pixels};
   const auto reject = [&](const std::string& problem) {
     ++input.not_decoded;
     input.problems.push_back(problem + ", left out");
@@ -239,7 +240,7 @@ LabelledResults evaluate_labels(const EvalDetectorOptions& options, std::ostream
   LabelledResults results{{}, labels.format(), options.wanted_recall, {}};
   service::Progress progress(err, "images", images.size());
   for (const fs::path& path : images) {
-    const cv::Mat image = cv::imread(path.string());
+    const cv::Mat image = vision::read_image(path, {.upright = true}).pixels;
     if (image.empty()) {
       ++results.input.not_decoded;
       results.input.problems.push_back(path.filename().string() + ": is not an image, left out");

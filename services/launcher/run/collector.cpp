@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/run/collector.hpp"
 
-#include <opencv2/imgcodecs.hpp>
-#include <stdexcept>
 #include <utility>
 
 #include "common/vision/image_codecs.hpp"
@@ -14,15 +12,8 @@ namespace {
 
 constexpr int kJpegQuality = 80;
 
-std::vector<std::uint8_t> encode_jpeg(const msg::FrameView& frame) {
-  const cv::Mat color = vision::view_color(frame);
-  if (color.empty()) return {};
-  std::vector<std::uint8_t> jpeg;
-  try {
-    vision::image_codecs().encode(".jpg", color, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
-  } catch (const std::runtime_error&) {  // without the library the report has no pictures
-  }
-  return jpeg;
+std::vector<std::uint8_t> jpeg_of(const msg::FrameView& frame) {
+  return vision::encode_jpeg(vision::view_color(frame), kJpegQuality);
 }
 
 }  // namespace
@@ -134,7 +125,7 @@ void Collector::fill(eval::RunRecord& record) const {
 
 void Collector::encode_samples() {
   while (const auto image = images_.pop()) {
-    std::vector<std::uint8_t> jpeg = encode_jpeg(*image->frame);
+    std::vector<std::uint8_t> jpeg = jpeg_of(*image->frame);
     const std::lock_guard lock(mutex_);
     if (!jpeg.empty()) samples_.add_image(image->seq, std::move(jpeg));
   }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <vector>
 
 #include "common/vision/image_codecs.hpp"
@@ -71,9 +70,7 @@ void ColorFaults::expose(cv::Mat& color_bgr, double t_s) const {
 cv::Mat ColorFaults::compressed(const cv::Mat& color_bgr) const {
   const int quality = static_cast<int>(faults_.jpeg);
   if (quality == 0) return color_bgr;
-  std::vector<std::uint8_t> bytes;
-  vision::image_codecs().encode(".jpg", color_bgr, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
-  return vision::image_codecs().decode(bytes, cv::IMREAD_COLOR);
+  return vision::decode_image(vision::encode_jpeg(color_bgr, quality)).pixels;
 }
 
 }  // namespace rtd::camera::synthetic

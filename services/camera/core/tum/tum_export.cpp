@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "common/io/atomic_file.hpp"
@@ -23,8 +22,7 @@ void write_text(const fs::path& file, const std::string& text) try {
 }
 
 void write_png(const fs::path& file, const cv::Mat& image) try {
-  constexpr int kFastCompression = 1;
-  if (!vision::write_image(file, image, {cv::IMWRITE_PNG_COMPRESSION, kFastCompression}, {.durable = false}))
+  if (!vision::write_image(file, image, {.durable = false}))
     throw SourceError("cannot encode " + file.string());
 } catch (const io::IoError& error) {
   throw SourceError(std::string("cannot write ") + error.what());

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "common/io/text.hpp"
@@ -204,7 +203,7 @@ cv::Mat TumSource::read_mask(const FilePair& pair) const {
   const std::filesystem::path name = std::filesystem::path(pair.color.file).filename().replace_extension(".png");
   const std::filesystem::path file = folder_ / "mask" / name;
   if (!std::filesystem::exists(file)) return {};
-  const cv::Mat mask = vision::image_codecs().read(file.string(), cv::IMREAD_GRAYSCALE);
+  const cv::Mat mask = vision::read_image(file, {.pixels = vision::PixelsAs::kGrey}).pixels;
   if (mask.empty()) return {};
   return mask > 0;
 }

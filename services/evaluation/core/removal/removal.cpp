@@ -8,11 +8,11 @@
 #include <map>
 #include <memory>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "common/io/text.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "services/camera/core/source_factory.hpp"
 
 namespace rtd::eval {
@@ -45,7 +45,7 @@ MaskOf masks_of_folder(const fs::path& folder) {
   return [files](std::int64_t stamp_ns) -> std::optional<cv::Mat> {
     const auto found = files.find(stamp_ns);
     if (found == files.end()) return std::nullopt;
-    const cv::Mat mask = cv::imread(found->second, cv::IMREAD_GRAYSCALE);
+    const cv::Mat mask = vision::read_image(found->second, {.pixels = vision::PixelsAs::kGrey}).pixels;
     if (mask.empty()) return std::nullopt;
     return mask;
   };
