@@ -3,7 +3,8 @@
 //
 // An attacker without keys: flood_peer VENDOR DOMAIN RATE_HZ. Writes a message to every topic and sends a request to
 // every command RATE_HZ times a second until SIGTERM, then prints how many. What it writes is well-formed: in turn
-// random values in every field, and copies of what the real services have just sent with one thing changed.
+// hostile values in one field after the other, and copies of what the real services have just sent with one thing
+// changed.
 #include <signal.h>
 #include <sys/resource.h>
 
@@ -20,6 +21,7 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/command_codec.hpp"
+#include "tests/fuzz/red/attack.hpp"
 #include "tests/interop/bus/all_topics.hpp"
 
 namespace rtd::flood {
@@ -88,16 +90,13 @@ void change(msg::SizedFrame<kWidth, kHeight>& frame, std::uint64_t turn) {
   frame.stamp_ns = frame.stamp_ns + 1'000'000;
 }
 template <class T>
-void change(T& message, std::uint64_t turn) {
-  std::mt19937_64 random(turn);
-  if constexpr (!bus::MessageTraits<T>::kPlain) bus::reflect::randomize(message, random);
-}
+void change(T&, std::uint64_t) {}
 
 template <class T>
 class TopicTarget final : public Target {
  public:
   TopicTarget(bus::Bus& bus, const bus::Topic<T>& topic)
-      : topic_(topic), writer_(bus.writer(topic)), message_(bus::interop::message_of(topic, 0)) {
+      : writer_(bus.writer(topic)), made_up_(bus::interop::message_of(topic, 0)), message_(std::make_unique<T>()) {
     reader_ = bus.template reader<T>(topic, [this](std::shared_ptr<const T> heard) { heard_.put(std::move(heard)); });
   }
   void attack(std::uint64_t turn) override {
@@ -107,16 +106,17 @@ class TopicTarget final : public Target {
     if (turn % 2 == 0 && heard) {
       *message_ = *heard;
       change(*message_, turn);
-    } else if (sizeof(T) <= kLarge && turn % 50 < 2) {  // random numbers take time that is the attacker's own
-      message_ = bus::interop::message_of(topic_, static_cast<int>(turn));
+    } else {
+      *message_ = *made_up_;
+      attacker_.attack(*message_);
     }
     if (writer_.write(*message_)) ++written_;
   }
 
  private:
-  bus::Topic<T> topic_;
   bus::Writer<T> writer_;
-  std::unique_ptr<T> message_;
+  std::unique_ptr<T> made_up_, message_;
+  testing::Attacker attacker_{1};
   Overheard<T> heard_;
   bus::Reader<T> reader_;
 };

@@ -193,7 +193,8 @@ TEST(record_builder, tells_refused_endpoints_by_service_and_topic) {
 }
 
 TEST(record_builder, tells_implausible_messages_once_by_service_and_topic) {
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.implausible", 1}}});
   builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.implausible", 900}}});
   EXPECT_EQ(builder.take_notice(), "slam: rtd/features: implausible");

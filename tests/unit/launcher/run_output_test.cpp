@@ -7,6 +7,7 @@
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/terminal.hpp"
 #include "services/launcher/process/posix_process_host.hpp"
+#include "tests/support/frame_list.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -51,7 +52,8 @@ TEST(terminal, repeats_plain_lines_every_two_seconds_without_a_terminal) {
 TEST(terminal, shows_the_message_of_a_hostile_heartbeat_without_obeying_it) {
   std::ostringstream out;
   Terminal terminal(out, {true, false, 200});
-  RecordBuilder builder;
+  FrameList store;
+  RecordBuilder builder(store);
   builder.add(msg::ServiceStatus{.service = "camera",
                                  .state = msg::ServiceState::kDegraded,
                                  .message = "gone\033[2J\nrtd: slam was killed\xc2\x9b"
