@@ -27,3 +27,5 @@ BENCHMARK(screen<msg::ServiceStatus>);
 
 }  // namespace
 }  // namespace rtd::bus
+
+BENCHMARK_MAIN();
