@@ -160,8 +160,8 @@ void FoxgloveHub::set_played(const std::optional<Played>& played) {
   };
   const bool other = played.has_value() != played_.has_value() || range(played) != range(played_);
   played_ = played;
-  if (!other) return;
-  for (FoxgloveSession* session : sessions_) session->send(foxglove::server_info(server_info(session->hooks_)));
+  for (FoxgloveSession* session : sessions_)
+    if (other) session->send(foxglove::server_info(server_info(session->hooks_)));
   if (played_) send_playback();
 }
 
