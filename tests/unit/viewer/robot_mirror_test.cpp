@@ -3,12 +3,15 @@
 #include "services/viewer/core/robot_mirror.hpp"
 
 #include <gmock/gmock.h>
+#include <malloc.h>
 
 #include <array>
 #include <cstring>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+
+#include "tests/support/sanitizers.hpp"
 
 namespace rtd::viewer {
 namespace {
@@ -186,6 +189,30 @@ TEST(RobotMirror, stamps_of_any_size_are_only_very_old_or_new) {
   result.published_ns = kMin;
   mirror.add(result, 0);
   EXPECT_NE(mirror.item(Item::kTracking).payload, nullptr);
+}
+
+TEST(RobotMirror, memory_is_level_after_five_minutes_of_an_hour_at_30_hz) {
+  if (test_support::kSanitized) GTEST_SKIP() << "sanitizers count their own memory";
+  const auto allocated = [] { return mallinfo2().uordblks + mallinfo2().hblkhd; };
+  RobotMirror mirror(0);
+  constexpr int kFrames = 3600 * 30, kSettled = 300 * 30;
+  std::size_t after_five_minutes = 0;
+  msg::TrackingResult result{.state = msg::TrackingState::kOk};
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const std::int64_t ms = frame * 100 / 3;
+    msg::CompressedImage picture = image(ms);
+    picture.data.resize(20'000);
+    mirror.add(picture);
+    mirror.add(*features(ms));
+    result.stamp_ns = ms * 1'000'000;
+    result.T_world_camera.translation_m[0] = 0.001 * frame;
+    mirror.add(result, static_cast<double>(ms));
+    if (frame % 6 == 0) mirror.add(msg::ServiceStatus{.service = "slam"}, result.stamp_ns);
+    if (frame % 30 == 0) mirror.refresh(result.stamp_ns);
+    if (frame == kSettled) after_five_minutes = allocated();
+  }
+  EXPECT_LT(allocated(), after_five_minutes + 5'000'000);
+  EXPECT_EQ(mirror.map().trajectory().size(), static_cast<std::size_t>(kFrames)) << "the whole path is shown";
 }
 
 }  // namespace
