@@ -130,14 +130,26 @@ TEST(TumSource, names_the_pixel_type_of_depth_that_is_not_16_bit) {
   const SequenceFolder folder;
   folder.three_frames();
   folder.image("depth/1.1.png", cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_8UC1, cv::Scalar(9)));
-  folder.image("depth/f.tiff", cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_32FC1, cv::Scalar(1.5)));
+  folder.image("depth/c.png", cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_16UC3, cv::Scalar(9, 9, 9)));
   folder.append("rgb.txt", "1.3 rgb/1.0.png\n");
-  folder.append("depth.txt", "1.3 depth/f.tiff\n");
+  folder.append("depth.txt", "1.3 depth/c.png\n");
   const Played played = play(folder);
   EXPECT_THAT(played.frames, SizeIs(2));
   EXPECT_EQ(played.counters.of(SkipReason::kDepthNot16Bit), 2U);
   EXPECT_THAT(played.skipped[0].detail, AllOf(HasSubstr("8-bit"), HasSubstr("needed is a 16-bit")));
-  EXPECT_THAT(played.skipped[1].detail, HasSubstr("32-bit float"));
+  EXPECT_THAT(played.skipped[1].detail, HasSubstr("16-bit, 3 channels"));
+}
+
+TEST(TumSource, names_the_formats_it_reads) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  folder.image("depth/f.tiff", cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_32FC1, cv::Scalar(1.5)));
+  folder.append("rgb.txt", "1.3 rgb/1.0.png\n");
+  folder.append("depth.txt", "1.3 depth/f.tiff\n");
+  const Played played = play(folder);
+  EXPECT_THAT(played.frames, SizeIs(3));
+  EXPECT_EQ(played.counters.of(SkipReason::kDepthUnreadable), 1U);
+  EXPECT_THAT(played.skipped[0].detail, AllOf(HasSubstr("f.tiff"), HasSubstr("readable: JPEG and PNG")));
 }
 
 TEST(TumSource, refuses_a_sequence_without_one_good_frame) {

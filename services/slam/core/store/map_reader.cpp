@@ -109,6 +109,7 @@ void ContentsBuilder::add_landmark(FieldReader& fields) {
   require(contents_.landmarks.empty() || contents_.landmarks.back().id < l.id, name, "comes behind a later one");
   require(l.id < head_.next_landmark, name, "has an id that is still free");
   require(is_sound(l), name, "has values that cannot be");
+  require(head_.probability_origin == 1 || reserved == 0, name, "has a value where this version has none");
   require(l.first_keyframe < head_.next_keyframe, name, "was made by a keyframe that never was");
   contents_.landmarks.push_back(l);
 }
