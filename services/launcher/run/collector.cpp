@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "common/service/monotonic_clock.hpp"
 #include "common/vision/image_codecs.hpp"
 #include "common/vision/rgbd_image.hpp"
 
@@ -23,6 +24,7 @@ Collector::Collector(bus::Bus& bus, FrameStore& store, const Options& options)
       camera_(service::follow_source("camera", process_gone())),
       filter_(service::follow_source("filter", process_gone())),
       slam_(service::follow_source("slam", process_gone())),
+      peers_(process_gone()),
       builder_(store),
       samples_(options.samples, options.total),
       total_(options.total),
@@ -62,7 +64,7 @@ void Collector::add(const msg::FeatureFrame& features) {
 void Collector::add(const msg::ServiceStatus& status, const bus::WriterId& writer) {
   processes_.note(status, writer);
   const std::lock_guard lock(mutex_);
-  builder_.add(status);
+  if (peers_.note(status, writer, service::monotonic_ns())) builder_.add(status);
 }
 
 void Collector::add_image(const std::shared_ptr<const msg::FrameView>& frame) {

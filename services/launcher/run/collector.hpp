@@ -11,6 +11,7 @@
 
 #include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
+#include "common/service/peer_table.hpp"
 #include "common/service/process_book.hpp"
 #include "common/service/topic_source.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
@@ -65,6 +66,7 @@ class Collector {
   service::ProcessBook processes_;
   const std::shared_ptr<bus::SourceGate> camera_, filter_, slam_;
   mutable std::mutex mutex_;
+  service::PeerTable peers_;  ///< whose heartbeats count
   RecordBuilder builder_;
   SampleKeeper samples_;
   std::uint64_t total_;

@@ -30,7 +30,8 @@ class FloodTest : public testing::TestWithParam<std::string> {
   }
   std::vector<std::string> arguments(const std::string& out) const {
     const std::string source = "synthetic:office?frames=" + std::to_string(30 * seconds());
-    return {"run", "--source", source, "--out", out, "--dds", GetParam(), "--domain", domain(), "--detector", "off", "--dense"};
+    return {"run",       "--source", source,      "--out",      out,   "--dds",  GetParam(),
+            "--domain",  domain(),   "--detector", "off", "--dense"};
   }
   static std::string domain() { return GetParam() == "fastdds" ? "161" : "162"; }
 

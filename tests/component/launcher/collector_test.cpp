@@ -107,6 +107,23 @@ TEST_F(CollectorTest, shows_the_known_length_and_what_services_complain_about) {
   EXPECT_EQ(collector_.live().total, kFrames);
 }
 
+TEST_F(CollectorTest, a_heartbeat_in_the_name_of_another_connection_does_not_count) {
+  const std::shared_ptr<bus::Bus> peer = bus::connect({.vendor = "inprocess", .domain = 71});
+  bus::Writer<msg::ServiceStatus> forger = peer->writer(bus::topics::kStatus);
+  const auto status_of = [](std::int64_t pid, double frames_in) {
+    return msg::ServiceStatus{.service = "camera", .pid = pid, .metrics = {{"frames_in", frames_in}}};
+  };
+  status_.write(status_of(10, 3));
+  publish(0);
+  forger.write(status_of(11, 1e6));  // as a camera that was restarted: its frames would be numbered behind those seen
+  status_.write(status_of(10, 4));
+  publish(1);
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  eval::RunRecord record;
+  while (record.frames.size() < 2 && std::chrono::steady_clock::now() < give_up) collector_.fill(record);
+  EXPECT_EQ(record.frames_in, 4U);
+}
+
 TEST_F(CollectorTest, a_frame_with_an_impossible_size_leaves_no_picture) {
   auto frame = frames_.loan();
   test_support::fill_header(*frame, 100'000, 48);
