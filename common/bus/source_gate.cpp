@@ -101,8 +101,9 @@ void SourceGate::note(const WriterId& writer, bool matched) {
 
 StatusCallbacks SourceGate::callbacks() {
   StatusCallbacks callbacks;
-  callbacks.on_writer = [this](const WriterId& writer, bool matched) { note(writer, matched); };
-  callbacks.accepts = [this](const WriterId& writer) { return accepts(writer); };
+  const std::shared_ptr<SourceGate> gate = shared_from_this();
+  callbacks.on_writer = [gate](const WriterId& writer, bool matched) { gate->note(writer, matched); };
+  callbacks.accepts = [gate](const WriterId& writer) { return gate->accepts(writer); };
   return callbacks;
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -22,7 +23,7 @@ namespace rtd::bus {
 /// what their messages say.
 ///
 /// Thread-safe; several readers may share a gate, then all their messages come from one connection.
-class SourceGate {
+class SourceGate : public std::enable_shared_from_this<SourceGate> {
  public:
   using Clock = std::function<std::int64_t()>;
   /// What happens to the place; `source` has it now, `other` does not.
@@ -52,7 +53,8 @@ class SourceGate {
   bool accepts(const WriterId& writer);
   /// As StatusCallbacks::on_writer.
   void note(const WriterId& writer, bool matched);
-  /// The callbacks of a reader behind this gate, which must outlive the reader.
+  /// The callbacks of a reader behind this gate. They share the gate, which a shared_ptr must own: an endpoint may
+  /// report until it ends.
   StatusCallbacks callbacks();
   /// Grows whenever messages begin to come from another source, the first not counted: what was learned from the one
   /// before may not fit.
