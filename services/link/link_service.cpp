@@ -81,7 +81,10 @@ void LinkService::add_options(CLI::App& app, Config& config) {
 }
 
 LinkService::LinkService(const Config& config, service::Runtime& runtime)
-    : config_(config), runtime_(runtime), rules_(rules_of(config, runtime)) {
+    : config_(config),
+      runtime_(runtime),
+      rules_(rules_of(config, runtime)),
+      only_one_({"link", rules_.robot(), static_cast<std::uint32_t>(config.fleet_domain)}) {
   const bus::BusOptions fleet = fleet_options(config_, runtime_);
   robot_ = bus::connect_raw(robot_options(runtime_));
   fleet_ = bus::connect_raw(fleet);
