@@ -11,6 +11,7 @@
 #include "common/service/bus_config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/runtime.hpp"
+#include "common/service/service_lock.hpp"
 #include "services/link/core/link_rules.hpp"
 #include "services/link/one_way.hpp"
 
@@ -58,6 +59,7 @@ class LinkService {
   const Config config_;
   service::Runtime& runtime_;
   const LinkRules rules_;
+  const service::ServiceLock only_one_;  ///< of this robot in the fleet, from whichever domain
   std::shared_ptr<bus::RawBus> robot_, fleet_;
   std::optional<OneWay> to_fleet_, to_robot_;
   std::int64_t started_ns_ = 0, reported_ns_ = 0;

@@ -107,7 +107,7 @@ TEST(LinkProcess, a_second_link_of_one_robot_is_refused) {
   RtdCommand first, second;
   first.start(link_arguments("anna", kFleetDomain));
   ASSERT_TRUE(first.wait_for("event=linked")) << first.output();
-  EXPECT_EQ(second.run({"link", "--robot", "anna", "--domain", "137", "--fleet", std::to_string(kFleetDomain)}), 2)
+  EXPECT_EQ(second.run({"link", "--robot", "anna", "--domain", "137", "--fleet", std::to_string(kFleetDomain)}), 4)
       << "of another robot with the name";
   EXPECT_THAT(second.output(), HasSubstr("robot 'anna' already has a link"));
   first.interrupt();
