@@ -117,6 +117,11 @@ bool Collector::tracked_any() const {
   return builder_.tracked_any();
 }
 
+void Collector::close() {
+  const std::lock_guard lock(mutex_);
+  builder_.close();
+}
+
 void Collector::fill(eval::RunRecord& record) const {
   const std::lock_guard lock(mutex_);
   builder_.fill(record);

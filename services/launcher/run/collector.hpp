@@ -41,6 +41,8 @@ class Collector {
   /// Subscribes again after a thread that reads was lost (process/lost_lock.hpp). The readers up to now are kept for
   /// ever: they would wait for that thread.
   void subscribe_again();
+  /// The run ends: frames of another source than its own no longer count.
+  void close();
   /// Writes what was received (frames, counters, samples, features of the first kMaxJudgedFrames frames) into the
   /// record.
   void fill(eval::RunRecord& record) const;

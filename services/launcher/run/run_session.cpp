@@ -144,6 +144,7 @@ bool RunSession::camera_may_start(milliseconds time) const {
 
 void RunSession::stop_when_decided(milliseconds time) {
   if (supervisor_.stopping() || supervisor_.outcome() == RunOutcome::kRunning) return;
+  collector_.close();
   if (supervisor_.outcome() == RunOutcome::kConfigError)
     logs_.mute();  // the others only log that they were asked to end
   supervisor_.stop(time, milliseconds(setup_.launcher.finish_grace_ms), supervisor_.outcome());

@@ -342,6 +342,20 @@ TEST(record_builder, ignores_a_forged_number_and_reports_it) {
   EXPECT_EQ(builder.take_notice(), std::nullopt);
 }
 
+TEST(record_builder, frames_behind_the_end_of_the_source_do_not_count) {
+  FrameList store;
+  RecordBuilder builder(store);
+  builder.add(status_of("camera", 7, {{"frames_in", 3}}));
+  builder.add(result_of(0));
+  builder.close();
+  builder.add(result_of(3));  // of another camera, which the services follow now
+  builder.add(result_of(2));
+  eval::RunRecord record;
+  builder.fill(record);
+  EXPECT_THAT(seqs(record), ElementsAre(0, 2));
+  EXPECT_EQ(record.frames_in, 3U);
+}
+
 TEST(record_builder, a_forged_first_number_counts_no_frames) {
   FrameList store;
   RecordBuilder builder(store);

@@ -54,7 +54,7 @@ double frames_per_second(const std::deque<msg::TrackingResult>& results) {
 }  // namespace
 
 RecordBuilder::Frame* RecordBuilder::frame_of(std::uint64_t seq) {
-  if (seq < end_of_stored_) return nullptr;
+  if (seq < end_of_stored_ || seq >= end_of_source_.value_or(UINT64_MAX)) return nullptr;
   const bool first = end_of_seen_ == 0;  // a replay may begin anywhere
   if (seq >= (first ? kFirstAtMost : end_of_seen_ + kFarthestAhead)) {
     if (!named_forged_) notify(fmt::format("a frame claims to be number {}: ignored, {} were seen", seq, end_of_seen_));

@@ -82,6 +82,8 @@ class RecordBuilder {
   /// none.
   std::string active_services(const Tolerated& tolerated = {}) const;
 
+  /// The source has ended: frames behind those that it delivered are of another one, which others may follow now.
+  void close() { end_of_source_ = frames_in(); }
   /// Frames that were not kept for the report: the store was full.
   std::uint64_t frames_not_kept() const { return not_kept_; }
   /// Writes frames, frames_in, frames_dropped and drops.
@@ -120,6 +122,7 @@ class RecordBuilder {
   std::uint64_t end_of_stored_ = 0, not_kept_ = 0;
   std::size_t notices_given_ = 0;
   bool named_forged_ = false;
+  std::optional<std::uint64_t> end_of_source_;  ///< once it has ended
   std::map<std::string, Service> services_;
   std::deque<std::string> notices_;
   std::map<std::string, std::string> troubles_;  ///< already reported, by service or counter
