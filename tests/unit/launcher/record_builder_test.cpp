@@ -345,10 +345,13 @@ TEST(record_builder, ignores_a_forged_number_and_reports_it) {
 TEST(record_builder, frames_behind_the_end_of_the_source_do_not_count) {
   FrameList store;
   RecordBuilder builder(store);
-  builder.add(status_of("camera", 7, {{"frames_in", 3}}));
+  msg::ServiceStatus camera = status_of("camera", 7, {{"frames_in", 3}});
+  builder.add(camera);
   builder.add(result_of(0));
-  builder.close();
-  builder.add(result_of(3));  // of another camera, which the services follow now
+  builder.add(result_of(3));  // of another camera, which the services follow already
+  camera.state = msg::ServiceState::kFinished;
+  builder.add(camera);
+  builder.add(result_of(4));
   builder.add(result_of(2));
   eval::RunRecord record;
   builder.fill(record);

@@ -104,8 +104,10 @@ void RecordBuilder::add(const msg::ServiceStatus& status) {
     if (status.service == "camera" && service.pid != 0) first_of_camera_ = end_of_seen_;
     service.pid = status.pid;
     for (auto& [name, counter] : service.counters) counter = {0, counter.total()};
+    if (status.service == "camera") end_of_source_.reset();
   }
   for (const msg::Metric& metric : status.metrics) set_counter(service, metric);
+  if (status.service == "camera" && status.state == msg::ServiceState::kFinished) close();
 
   note_troubles(status);
   const bool degraded = status.state == msg::ServiceState::kDegraded;  // a failed one ends and gives the reason itself
@@ -146,8 +148,14 @@ void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
   }
 }
 
+/// The camera's own count, where it has given one: what the services follow after it may have been seen already.
+void RecordBuilder::close() {
+  const std::uint64_t counted_by_camera = counted(camera_counter("frames_in").total());
+  if (!end_of_source_) end_of_source_ = counted_by_camera > 0 ? counted_by_camera : end_of_seen_;
+}
+
 std::uint64_t RecordBuilder::frames_in() const {
-  return std::max(counted(camera_counter("frames_in").total()), end_of_seen_);
+  return end_of_source_.value_or(std::max(counted(camera_counter("frames_in").total()), end_of_seen_));
 }
 
 LiveStatus RecordBuilder::live() const {
@@ -203,7 +211,7 @@ std::string RecordBuilder::active_services(const Tolerated& tolerated) const {
 void RecordBuilder::fill(eval::RunRecord& record) const {
   record.frames = store_.read();
   for (const auto& [seq, frame] : frames_) {
-    if (frame.has_result) record.frames.push_back(frame.record);
+    if (frame.has_result && seq < frames_in()) record.frames.push_back(frame.record);
   }
   record.frames_in = frames_in();
   record.frames_dropped = record.frames_in - record.frames.size();

@@ -83,7 +83,7 @@ class RecordBuilder {
   std::string active_services(const Tolerated& tolerated = {}) const;
 
   /// The source has ended: frames behind those that it delivered are of another one, which others may follow now.
-  void close() { end_of_source_ = frames_in(); }
+  void close();
   /// Frames that were not kept for the report: the store was full.
   std::uint64_t frames_not_kept() const { return not_kept_; }
   /// Writes frames, frames_in, frames_dropped and drops.
