@@ -92,8 +92,8 @@ std::string nearest_name(const std::string& name, const std::vector<std::string>
   std::string best;
   int best_distance = static_cast<int>(std::max<std::size_t>(2, name.size() / 3)) + 1;
   for (const std::string& candidate : candidates) {
-    const auto longer = std::minmax(name.size(), candidate.size());
-    if (longer.second - longer.first >= static_cast<std::size_t>(best_distance)) continue;  // so many are to be added
+    const auto [shorter, longer] = std::minmax({name.size(), candidate.size()});
+    if (longer - shorter >= static_cast<std::size_t>(best_distance)) continue;  // so many are to be added
     const int distance = edit_distance(name, candidate);
     if (distance < best_distance) {
       best_distance = distance;
