@@ -109,7 +109,7 @@ std::string check_pairs(const std::filesystem::path& folder, Counted& counted) {
 }
 
 std::string check_poses(const std::filesystem::path& file, Counted& counted) {
-  const geometry::Trajectory poses = geometry::read_tum_trajectory(file, geometry::TumRows::kAsWritten);
+  const geometry::Trajectory poses = geometry::read_tum_trajectory(file, geometry::TumRows::kIncreasing);
   counted.poses += poses.size();
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (!poses[i].T_world_body.matrix().allFinite()) return "a pose is not finite";
