@@ -209,11 +209,11 @@ std::string RecordBuilder::active_services(const Tolerated& tolerated) const {
 }
 
 void RecordBuilder::fill(eval::RunRecord& record) const {
+  record.frames_in = frames_in();
   record.frames = store_.read();
   for (const auto& [seq, frame] : frames_) {
-    if (frame.has_result && seq < frames_in()) record.frames.push_back(frame.record);
+    if (frame.has_result && seq < record.frames_in) record.frames.push_back(frame.record);
   }
-  record.frames_in = frames_in();
   record.frames_dropped = record.frames_in - record.frames.size();
   record.drops = drops();
   record.clocks = clocks();
