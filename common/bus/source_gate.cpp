@@ -8,8 +8,9 @@
 namespace rtd::bus {
 namespace {
 
-constexpr std::size_t kMostClaims = 8, kMostDeparted = 32, kMostMatched = 256;
-constexpr std::int64_t kHeardLatelyNs = 50'000'000;  // nobody needs to be asked whether it lives
+constexpr std::size_t kMostClaims = 8, kMostDeparted = 32, kMostMatched = 256, kMostRefused = 256;
+constexpr std::int64_t kMessagesOnTheirWayNs = 200'000'000;  // of one that has ended
+constexpr std::int64_t kHeardLatelyNs = 50'000'000;          // nobody needs to be asked whether it lives
 
 }  // namespace
 
@@ -34,11 +35,26 @@ SourceGate::Verdict SourceGate::judge(const WriterId& writer, std::int64_t now_n
     return {true};
   }
   if (holder_ == kNone) return departed ? Verdict{true} : take(claim(source), now_ns, Event::kFirst);
-  const bool gone = holder_gone(now_ns), vacant = gone || holder_silent(now_ns);
+  const bool gone = holder_gone(now_ns), silent = holder_silent(now_ns), vacant = gone || silent;
   if (departed) return {vacant};
   if (place != kNone && (place < holder_ || vacant)) return take(place, now_ns, Event::kBack);
-  if (!vacant) return {false, Event::kRefused, claims_[holder_].source, source};
+  if (!vacant || (!silent && options_.successors_only && sent_beside_holder(source))) return refuse(source, now_ns);
   return take(claim(source), now_ns, gone ? Event::kTaken : Event::kSilent);
+}
+
+SourceGate::Verdict SourceGate::refuse(const ParticipantId& source, std::int64_t now_ns) {
+  if (refused_since_ns_.size() >= kMostRefused && !refused_since_ns_.contains(source)) {
+    refused_since_ns_.erase(
+        std::ranges::max_element(refused_since_ns_, {}, [](const auto& entry) { return entry.second; }));
+  }
+  refused_since_ns_.try_emplace(source, now_ns);
+  return {false, Event::kRefused, claims_[holder_].source, source};
+}
+
+/// A successor of one that ended unnoticed is refused for a while, too, but hears nothing more from it.
+bool SourceGate::sent_beside_holder(const ParticipantId& source) const {
+  const auto refused = refused_since_ns_.find(source);
+  return refused != refused_since_ns_.end() && claims_[holder_].heard_ns - refused->second > kMessagesOnTheirWayNs;
 }
 
 SourceGate::Verdict SourceGate::take(std::size_t place, std::int64_t now_ns, Event event) {
@@ -48,6 +64,7 @@ SourceGate::Verdict SourceGate::take(std::size_t place, std::int64_t now_ns, Eve
     ++changes_;
   }
   holder_ = place;
+  refused_since_ns_.clear();
   claims_[place].heard_ns = now_ns;
   claims_[place].present = true;
   return verdict;

@@ -51,6 +51,7 @@ bool PeerTable::admit(const std::string& name, std::int64_t now_ns) {
   }
   bus::SourceGate::Options options;
   options.silence_ns = kSilentAfterNs;
+  options.successors_only = false;  // a second box says all the time that it could take over
   options.clock = [this] { return now_ns_; };
   options.gone = gone_;
   gates_.try_emplace(name, std::move(options));

@@ -12,6 +12,7 @@
 
 #include "common/bus/fastdds/network_mapping.hpp"
 #include "common/bus/fastdds/robust_locks.hpp"
+#include "common/bus/fastdds/standstill_guard.hpp"
 #include "common/bus/network.hpp"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -100,6 +101,7 @@ Participant::Participant(const BusOptions& options, const HostLimits& limits, En
                    " MiB, allowed: " + std::to_string(kMinSegmentMib) + "..1024");
   }
   link_robust_locks();
+  link_standstill_guard();
   configure_library_once();
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
   const DiscoveryScope scope = registry == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;

@@ -35,15 +35,22 @@ Collector::Collector(bus::Bus& bus, FrameStore& store, const Options& options)
 
 std::unique_ptr<Collector::Readers> Collector::subscribe() {
   auto readers = std::make_unique<Readers>();
-  readers->tracking = bus_.reader(
-      bus::topics::kTracking, [this](const auto& result) { add(*result); }, slam_->callbacks());
-  readers->features = bus_.reader(
-      bus::topics::kFeatures, [this](const auto& features) { add(*features); }, filter_->callbacks());
-  readers->status = bus_.reader(
-      bus::topics::kStatus, [this](const std::shared_ptr<const msg::ServiceStatus>& status,
-                                   const bus::WriterId& writer) { add(*status, writer); });
+  const auto recipient = readers->recipient = std::make_shared<Recipient>();
+  recipient->collector = this;
+  const auto deliver = [recipient](const auto& action) {
+    const std::lock_guard lock(recipient->mutex);
+    if (recipient->collector != nullptr) action(*recipient->collector);
+  };
+  const auto add = [deliver](const auto& message) { deliver([&](Collector& collector) { collector.add(*message); }); };
+  readers->tracking = bus_.reader(bus::topics::kTracking, add, slam_->callbacks());
+  readers->features = bus_.reader(bus::topics::kFeatures, add, filter_->callbacks());
+  readers->status = bus_.reader(bus::topics::kStatus, [deliver](const std::shared_ptr<const msg::ServiceStatus>& status,
+                                                                const bus::WriterId& writer) {
+    deliver([&](Collector& collector) { collector.add(*status, writer); });
+  });
   readers->frames = bus::FrameReader(
-      bus_, [this](const auto& frame) { add_image(frame); }, camera_->callbacks());
+      bus_, [deliver](const auto& frame) { deliver([&](Collector& collector) { collector.add_image(frame); }); },
+      camera_->callbacks());
   return readers;
 }
 
@@ -62,7 +69,7 @@ void Collector::add(const msg::FeatureFrame& features) {
 }
 
 void Collector::add(const msg::ServiceStatus& status, const bus::WriterId& writer) {
-  processes_.note(status, writer);
+  processes_->note(status, writer);
   const std::lock_guard lock(mutex_);
   if (peers_.note(status, writer, service::monotonic_ns())) builder_.add(status);
 }
@@ -78,10 +85,14 @@ void Collector::add_image(const std::shared_ptr<const msg::FrameView>& frame) {
 }
 
 service::ProcessGone Collector::process_gone() const {
-  return [this](const bus::ParticipantId& connection) { return processes_.gone(connection); };
+  return [processes = processes_](const bus::ParticipantId& connection) { return processes->gone(connection); };
 }
 
 void Collector::subscribe_again() {
+  {
+    const std::lock_guard lock(readers_->recipient->mutex);
+    readers_->recipient->collector = nullptr;
+  }
   static_cast<void>(readers_.release());
   readers_ = subscribe();
 }

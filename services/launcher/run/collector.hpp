@@ -39,7 +39,7 @@ class Collector {
   std::optional<std::string> take_notice();
   bool tracked_any() const;
   /// Subscribes again after a thread that reads was lost (process/lost_lock.hpp). The readers up to now are kept for
-  /// ever: they would wait for that thread.
+  /// ever, for they would wait for that thread, but reach nobody any more.
   void subscribe_again();
   /// The run ends: frames of another source than its own no longer count.
   void close();
@@ -49,7 +49,13 @@ class Collector {
   static constexpr std::size_t kMaxJudgedFrames = 5000;  ///< about 15 kB each
 
  private:
+  /// What the readers' callbacks hold: a reader that is kept for ever may outlive the collector.
+  struct Recipient {
+    std::mutex mutex;
+    Collector* collector = nullptr;  ///< null: nobody
+  };
   struct Readers {
+    std::shared_ptr<Recipient> recipient;
     bus::Reader<msg::TrackingResult> tracking;
     bus::Reader<msg::FeatureFrame> features;
     bus::Reader<msg::ServiceStatus> status;
@@ -65,7 +71,7 @@ class Collector {
   void encode_samples();
 
   bus::Bus& bus_;
-  service::ProcessBook processes_;
+  const std::shared_ptr<service::ProcessBook> processes_ = std::make_shared<service::ProcessBook>();
   const std::shared_ptr<bus::SourceGate> camera_, filter_, slam_;
   mutable std::mutex mutex_;
   service::PeerTable peers_;  ///< whose heartbeats count

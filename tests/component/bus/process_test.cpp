@@ -93,6 +93,40 @@ TEST_P(DdsProcesses, nothing_is_lost_with_three_feature_frames_in_flight) {
   }
 }
 
+/// This process and the other, which both go on at the same moment.
+void stop_for_longer_than_the_lease(pid_t other) {
+  kill(other, SIGSTOP);
+  const std::string wake = "(sleep 7; kill -CONT " + std::to_string(getpid()) + ' ' + std::to_string(other) + ") &";
+  ASSERT_EQ(std::system(wake.c_str()), 0);
+  kill(getpid(), SIGSTOP);
+}
+
+/// The lease of both connections runs out meanwhile.
+TEST_P(DdsProcesses, what_was_paused_longer_than_the_lease_talks_again) {
+  const auto bus = connect_to(GetParam());
+  Collector<msg::TrackingResult> results;
+  const auto reader = bus->reader(topics::kTracking, results.callback());
+  auto writer = bus->writer(topics::kFeatures);
+  const PeerProcess peer(GetParam(), "answer_features", test_domain());
+  while (writer.matched() == 0 || reader.matched() == 0) std::this_thread::sleep_for(1ms);
+  auto features = std::make_unique<msg::FeatureFrame>();
+  std::uint64_t seq = 0;
+  const auto answered = [&](std::chrono::seconds patience) {
+    const auto give_up = std::chrono::steady_clock::now() + patience;
+    while (std::chrono::steady_clock::now() < give_up) {
+      fill_features(*features, ++seq);
+      writer.write(*features);
+      for (auto result = results.try_next(100ms); result; result = results.try_next(0ms)) {
+        if (result->seq == seq) return true;
+      }
+    }
+    return false;
+  };
+  ASSERT_TRUE(answered(5s));
+  stop_for_longer_than_the_lease(peer.pid());
+  EXPECT_TRUE(answered(10s));
+}
+
 /// The writer's shared memory has five slots: one that gets lost now and then ends the stream.
 TEST_P(DdsProcesses, two_readers_get_every_frame_of_a_long_stream) {
   constexpr std::uint64_t kFrames = 2000, kWindow = 3;

@@ -84,6 +84,22 @@ TEST_F(SourceGateTest, the_successor_of_a_process_that_died_passes_at_once) {
   EXPECT_TRUE(gate_.accepts(other_));
 }
 
+TEST_F(SourceGateTest, one_that_sent_beside_it_waits_for_the_long_silence_and_a_newcomer_does_not) {
+  EXPECT_TRUE(gate_.accepts(camera_));
+  for (int i = 0; i < 10; ++i) {
+    now_ns_ += 50 * kMs;
+    EXPECT_FALSE(gate_.accepts(other_));
+    EXPECT_TRUE(gate_.accepts(camera_));
+  }
+  gate_.note(camera_, false);
+  now_ns_ += 9 * kS;
+  EXPECT_FALSE(gate_.accepts(other_));
+  EXPECT_TRUE(gate_.accepts(third_));
+  EXPECT_FALSE(gate_.accepts(other_));
+  now_ns_ += SourceGate::kSilenceNs + kMs;
+  EXPECT_TRUE(gate_.accepts(other_));
+}
+
 /// A status event overtakes the messages that were sent before it.
 TEST_F(SourceGateTest, the_last_messages_of_a_writer_that_is_gone_claim_nothing) {
   gate_.note(camera_, true);
