@@ -59,7 +59,7 @@ class NextWanted {
     wanted_ = accepts_(*writer_);
   }
   bool wanted() const { return wanted_; }
-  /// For the one that was taken then: a history that ran full meanwhile has dropped the next one for another.
+  /// For the one that was taken then: another one may have become the next meanwhile.
   bool wanted(const WriterId& taken) const { return !accepts_ || (taken == writer_ ? wanted_ : accepts_(taken)); }
 
  private:
@@ -73,8 +73,9 @@ class NextWanted {
 /// mapped, and refuses the sample when it finds it overwritten after the copy.
 template <class T>
 TakenSample MessageCodec<T>::take(dds::DataReader& reader, const Accepts& accepts) {
+  constexpr std::size_t kCheapToCopy = 500'000;  // bytes
   const NextWanted next(reader, accepts);
-  std::shared_ptr<T> message = next.wanted() ? create() : nullptr;
+  std::shared_ptr<T> message = next.wanted() || sizeof(T) < kCheapToCopy ? create() : nullptr;
   dds::SampleInfo info;
   if (reader.take_next_sample(message.get(), &info) != ReturnCode_t::RETCODE_OK) return {};
   const WriterId writer = to_writer_id(info.sample_identity.writer_guid());

@@ -29,7 +29,7 @@ class Codec {
   /// Thread-safe.
   virtual bool write(eprosima::fastdds::dds::DataWriter& writer, const void* message) const = 0;
   /// The next sample of a writer that `accepts` wants, if it is given; one of another writer gives kNoData and is not
-  /// copied. For one thread.
+  /// copied when it is large. For one thread.
   using Accepts = std::function<bool(const WriterId& writer)>;
   virtual TakenSample take(eprosima::fastdds::dds::DataReader& reader, const Accepts& accepts) = 0;
   /// Whether a sample in the vendor's memory, 4 bytes behind a multiple of 8, may be used as the message itself.

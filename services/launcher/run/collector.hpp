@@ -25,6 +25,7 @@ class Collector {
     std::uint64_t samples = 12;
     std::uint64_t total = 0;     ///< frames expected, 0 = unknown
     bool keep_features = false;  ///< for RunRecord::judged_frames
+    bool secured = false;        ///< a heartbeat of camera, filter or slam counts when its sender may write their topic
   };
 
   /// `store` outlives this and is used by it alone.
@@ -66,6 +67,7 @@ class Collector {
   void add(const msg::TrackingResult& result);
   void add(const msg::FeatureFrame& features);
   void add(const msg::ServiceStatus& status, const bus::WriterId& writer);
+  bool believes(const msg::ServiceStatus& status, const bus::WriterId& writer) const;
   void add_image(const std::shared_ptr<const msg::FrameView>& frame);
   service::ProcessGone process_gone() const;
   void encode_samples();
@@ -78,7 +80,7 @@ class Collector {
   RecordBuilder builder_;
   SampleKeeper samples_;
   std::uint64_t total_;
-  bool keep_features_;
+  bool keep_features_, secured_;
   std::map<std::int64_t, std::vector<eval::JudgedFeature>> judged_;  ///< by stamp
   struct Image {
     std::uint64_t seq = 0;  ///< within the run

@@ -43,7 +43,7 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptS
       frames_(setup.out_dir),
       collector_(bus, frames_,
                  {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames,
-                       eval::has_true_masks(setup.source)}),
+                       eval::has_true_masks(setup.source), setup.bus_options.security.enabled()}),
       host_(
           [this](const std::string& service, const std::string& line) {
             logs_.add(service, line);

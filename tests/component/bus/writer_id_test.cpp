@@ -162,6 +162,30 @@ TEST_P(WriterIds, decide_which_frames_are_taken) {
   expect_one_taken(topics::kFrame);
 }
 
+TEST_P(WriterIds, lose_next_to_nothing_of_the_wanted_writer_while_another_writes_a_thousand_times_a_second) {
+  const auto elsewhere = connect_to(GetParam().first);
+  auto one = here->writer(topics::kFeatures), other = elsewhere->writer(topics::kFeatures);
+  StatusCallbacks callbacks;
+  callbacks.accepts = [wanted = one.id()](const WriterId& id) { return id == wanted; };
+  const auto reader = listen(topics::kFeatures, callbacks);
+  wait_for_match<msg::FeatureFrame>(reader, {&one, &other});
+  const auto features = std::make_unique<msg::FeatureFrame>(), forged = std::make_unique<msg::FeatureFrame>();
+  fill_features(*forged, 0);
+  const std::jthread flood([&](const std::stop_token& stop) {
+    for (; !stop.stop_requested(); std::this_thread::sleep_for(1ms)) other.write(*forged);
+  });
+  constexpr std::uint64_t kMessages = 3000;
+  int lost = 0;
+  for (std::uint64_t seq = 1; seq <= kMessages; ++seq) {
+    fill_features(*features, seq);
+    EXPECT_TRUE(one.write(*features));
+    auto arrival = arrivals.try_next(100ms);
+    while (arrival && arrival->seq < seq) arrival = arrivals.try_next(100ms);
+    if (!arrival) ++lost;
+  }
+  EXPECT_LE(lost, 10) << "of " << kMessages << "; a history that a busy computer reads too late overflows";
+}
+
 std::vector<std::pair<std::string, std::string>> pairs() {
   std::vector<std::pair<std::string, std::string>> all{{"inprocess", "inprocess"}};
   for (const std::string& from : dds_vendors())

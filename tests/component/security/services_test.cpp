@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 
 #include <regex>
+#include <thread>
 
+#include "common/bus/bus_factory.hpp"
 #include "common/bus/commands.hpp"
 #include "common/bus/topic_roles.hpp"
 #include "common/bus/topics.hpp"
@@ -99,6 +101,35 @@ TEST_F(SecuredServicesTest, a_secured_run_does_what_a_run_in_the_clear_does) {
   ASSERT_EQ(clear.run(run_command("clear")), 0) << clear.output();
   EXPECT_EQ(text_of(scratch_ / "secured/trajectory.txt"), text_of(scratch_ / "clear/trajectory.txt"))
       << "byte for byte";
+}
+
+/// Any service of the domain may send heartbeats, but only slam may write slam's poses.
+TEST_F(SecuredServicesTest, a_heartbeat_in_the_name_of_slam_is_believed_from_slam_alone) {
+  const std::string keystore = scratch_ / "keystore";
+  RtdCommand create;
+  ASSERT_EQ(create.run({"keystore", "create", keystore}), 0) << create.output();
+  for (const std::string& vendor : bus::dds_vendors()) {
+    bus::BusOptions options;
+    options.vendor = vendor;
+    options.domain = domain_;
+    options.security = {keystore, "/rtd/dense"};
+    const auto dense = bus::connect(options);
+    auto forged = dense->writer(bus::topics::kStatus);
+    const std::jthread forger([&](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+        forged.write({.service = "slam", .pid = 1, .state = msg::ServiceState::kFinished});
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      }
+    });
+    RtdCommand rtd;
+    EXPECT_EQ(rtd.run({"run", "--source", "synthetic:office?frames=12", "--out", scratch_ / vendor, "--pace",
+                       "lockstep", "--detector", "off", "--domain", std::to_string(domain_), "--secure", "--keystore",
+                       keystore, "--dds", vendor}),
+              0)
+        << rtd.output();
+    EXPECT_THAT(rtd.output(), HasSubstr("heartbeats_refused")) << "the attack was none";
+    EXPECT_THAT(rtd.output(), HasSubstr("12 with pose")) << vendor;
+  }
 }
 
 TEST_F(SecuredServicesTest, commands_are_answered_to_those_who_may_call_and_to_nobody_else) {
