@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// An attacker without keys: flood_peer VENDOR DOMAIN RATE_HZ. Writes a message to every topic and sends a request to
-// every command RATE_HZ times a second until SIGTERM, then prints how many. What it writes is well-formed: in turn
+// An attacker without keys: flood_peer VENDOR DOMAIN RATE_HZ [TOPIC]. Writes a message to every topic and sends a
+// request to every command RATE_HZ times a second until SIGTERM, then prints how many; with TOPIC only to topics whose
+// name contains it, and frames as often as anything else. What it writes is well-formed: in turn
 // hostile values in one field after the other, and copies of what the real services have just sent with one thing
 // changed.
 #include <signal.h>
@@ -95,13 +96,16 @@ void change(T&, std::uint64_t) {}
 template <class T>
 class TopicTarget final : public Target {
  public:
-  TopicTarget(bus::Bus& bus, const bus::Topic<T>& topic)
-      : writer_(bus.writer(topic)), made_up_(bus::interop::message_of(topic, 0)), message_(std::make_unique<T>()) {
+  TopicTarget(bus::Bus& bus, const bus::Topic<T>& topic, bool spares_bandwidth)
+      : spares_bandwidth_(spares_bandwidth),
+        writer_(bus.writer(topic)),
+        made_up_(bus::interop::message_of(topic, 0)),
+        message_(std::make_unique<T>()) {
     reader_ = bus.template reader<T>(topic, [this](std::shared_ptr<const T> heard) { heard_.put(std::move(heard)); });
   }
   void attack(std::uint64_t turn) override {
-    constexpr std::size_t kLarge = 1'000'000;  // written at a tenth of the rate: memory bandwidth is no news
-    if (sizeof(T) > kLarge && turn % 10 != 0) return;
+    constexpr std::size_t kLarge = 1'000'000;
+    if (spares_bandwidth_ && sizeof(T) > kLarge && turn % 10 != 0) return;
     const auto heard = heard_.get();
     if (turn % 2 == 0 && heard) {
       *message_ = *heard;
@@ -114,6 +118,7 @@ class TopicTarget final : public Target {
   }
 
  private:
+  const bool spares_bandwidth_;  ///< frames at a tenth of the rate: that memory bandwidth ends is no news
   bus::Writer<T> writer_;
   std::unique_ptr<T> made_up_, message_;
   testing::Attacker attacker_{1};
@@ -137,20 +142,24 @@ class CommandTarget final : public Target {
   std::vector<std::byte> request_;
 };
 
-std::vector<std::unique_ptr<Target>> make_targets(bus::Bus& bus) {
+std::vector<std::unique_ptr<Target>> make_targets(bus::Bus& bus, const std::string& topics) {
   std::vector<std::unique_ptr<Target>> targets;
   bus::interop::for_each_topic([&]<class T>(const bus::Topic<T>& topic) {
-    targets.push_back(std::make_unique<TopicTarget<T>>(bus, topic));
+    if (std::string(topic.name).find(topics) == std::string::npos) return;
+    targets.push_back(std::make_unique<TopicTarget<T>>(bus, topic, topics.empty()));
   });
-  for (const auto& [name, argument] : {std::pair("slam/save_map", "../../escaped"), {"slam/load_map", "/etc/passwd"},
-                                       {"filter/set_mode", "no such mode"}, {"recorder/start", "/tmp/escaped"}})
+  if (!topics.empty()) return targets;
+  for (const auto& [name, argument] : {std::pair("slam/save_map", "../../escaped"),
+                                       {"slam/load_map", "/etc/passwd"},
+                                       {"filter/set_mode", "no such mode"},
+                                       {"recorder/start", "/tmp/escaped"}})
     targets.push_back(std::make_unique<CommandTarget>(bus, name, argument));
   return targets;
 }
 
 /// Does not return: with Fast DDS 2.9 the reader of frames that were overwritten before they were read may never end.
-[[noreturn]] void flood(bus::Bus& bus, double rate_hz) {
-  const auto targets = make_targets(bus);
+[[noreturn]] void flood(bus::Bus& bus, double rate_hz, const std::string& topics) {
+  const auto targets = make_targets(bus, topics);
   const auto period = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(1 / rate_hz));
   auto next = std::chrono::steady_clock::now();
   for (std::uint64_t turn = 0; stopped() == 0; ++turn) {
@@ -169,8 +178,8 @@ std::vector<std::unique_ptr<Target>> make_targets(bus::Bus& bus) {
 }  // namespace rtd::flood
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::fputs("usage: flood_peer VENDOR DOMAIN RATE_HZ\n", stderr);
+  if (argc != 4 && argc != 5) {
+    std::fputs("usage: flood_peer VENDOR DOMAIN RATE_HZ [TOPIC]\n", stderr);
     return 2;
   }
   ::signal(SIGTERM, [](int) { rtd::flood::stopped() = 1; });
@@ -181,5 +190,5 @@ int main(int argc, char** argv) {
   options.domain = static_cast<std::uint32_t>(std::atoi(argv[2]));
   options.participant_name = "flood";
   const auto bus = rtd::bus::connect(options);
-  rtd::flood::flood(*bus, std::atof(argv[3]));
+  rtd::flood::flood(*bus, std::atof(argv[3]), argc > 4 ? argv[4] : "");
 }
