@@ -21,7 +21,7 @@ class IoError : public std::system_error {
  public:
   IoError(int error_number, const std::string& what)
       : std::system_error(error_number, std::generic_category(), what),
-        text_(error_number == EISDIR ? what : std::system_error::what()) {}
+        text_(error_number == EISDIR || error_number == EWOULDBLOCK ? what : std::system_error::what()) {}
   const char* what() const noexcept override { return text_.what(); }
 
  private:

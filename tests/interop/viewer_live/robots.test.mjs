@@ -21,11 +21,11 @@ let folder, browser, page, client, services = [];
 
 /** What the protocol says of each robot, read with the byte offsets of docs/viewer_protocol.md. */
 class Client {
-  constructor(port) {
+  constructor(address) {
     this.names = [];
     this.robots = new Map();   // index -> {points: keyframe -> total, resets, tracking, commands}
     this.answers = [];
-    this.socket = new WebSocket(`ws://127.0.0.1:${port}/live`, "rtd.viewer.v1");
+    this.socket = new WebSocket(address, "rtd.viewer.v1");
     this.socket.on("message", (data, binary) => (binary ? this.#points(data) : this.#text(JSON.parse(data))));
   }
   robot(name) {
@@ -77,7 +77,7 @@ before(async () => {
   browser = await launchBrowser();
   folder = mkdtempSync(join(tmpdir(), "rtd_robots_"));
   const viewer = await startViewer();
-  client = new Client(viewer.port);
+  client = new Client(viewer.socket);
   page = await openPage(browser, viewer.address);
   services = [viewer, ...kNames.flatMap(startRobot)];
 });
