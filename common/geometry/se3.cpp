@@ -51,6 +51,24 @@ Vector6d se3_log(const Eigen::Isometry3d& T) {
   return twist;
 }
 
+Matrix6d adjoint(const Eigen::Isometry3d& T) {
+  Matrix6d Ad = block_rotation(T.linear());
+  Ad.topRightCorner<3, 3>() = skew(T.translation()) * T.linear();
+  return Ad;
+}
+
+Matrix6d block_rotation(const Eigen::Matrix3d& rotation) {
+  Matrix6d R = Matrix6d::Zero();
+  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = rotation;
+  return R;
+}
+
+Matrix6d lever_arm(const Eigen::Vector3d& offset) {
+  Matrix6d lever = Matrix6d::Identity();
+  lever.topRightCorner<3, 3>() = -skew(offset);
+  return lever;
+}
+
 double rotation_angle_rad(const Eigen::Isometry3d& T) {
   return so3_log(T.linear()).norm();
 }

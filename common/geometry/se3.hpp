@@ -8,6 +8,7 @@ namespace rtd::geometry {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;  ///< of messages
 
 /// [v]x, so that skew(v) * w = v x w.
 Eigen::Matrix3d skew(const Eigen::Vector3d& v);
@@ -25,6 +26,15 @@ Eigen::Matrix3d so3_left_jacobian(const Eigen::Vector3d& phi);
 Eigen::Isometry3d se3_exp(const Vector6d& twist);
 /// Inverse of se3_exp.
 Vector6d se3_log(const Eigen::Isometry3d& T);
+
+/// Ad of a transform: T Exp(d) T^-1 = Exp(Ad d), and the twist of one point of a rigid body -> that of another, both in
+/// their own axes. docs/theory/se3.md.
+Matrix6d adjoint(const Eigen::Isometry3d& T);
+/// Both halves of a twist, or of an error (translation, rotation), turned into other axes.
+Matrix6d block_rotation(const Eigen::Matrix3d& rotation);
+/// What an error (translation, rotation about the point) of one point of a rigid body means `offset` (m) from it, in
+/// the same axes: rotation swings the translation.
+Matrix6d lever_arm(const Eigen::Vector3d& offset);
 
 /// Angle of the rotation part (rad), in [0, pi].
 double rotation_angle_rad(const Eigen::Isometry3d& T);

@@ -8,12 +8,13 @@
 #include <numbers>
 #include <utility>
 
+#include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 
 namespace rtd::filter {
 namespace {
 
-using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+using geometry::RowMajor6d;
 
 std::array<double, 3> to_array(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};

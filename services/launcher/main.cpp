@@ -4,15 +4,21 @@
 #include <algorithm>
 #include <array>
 #include <iostream>
+#include <memory>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "common/bus/topic_roles.hpp"
 #include "common/io/printable.hpp"
 #include "common/msg/engine_names.hpp"
+#include "common/ros2/names.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/standard_streams.hpp"
+#include "services/launcher/core/completion/completion.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/process/executable.hpp"
@@ -21,7 +27,7 @@
 namespace rtd::launcher {
 namespace {
 
-const std::vector<std::string> kBuiltIn = {"run", "demo", "doctor", "version", "help"};
+const std::vector<std::string> kBuiltIn = {"run", "demo", "doctor", "version", "help", "complete"};
 
 struct ExternalCommand {
   const char* name;        ///< "info" of `rtd info`
@@ -141,6 +147,71 @@ std::string start_viewer(std::vector<std::string>& arguments) {
   return start_companion(executable, command);
 }
 
+/// Lines of at most 100 characters; what does not fit goes on in the column of the descriptions.
+class WrappedHelp final : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    std::istringstream lines(CLI::Formatter::make_help(app, std::move(name), mode));
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+      while (line.size() > kColumns) {
+        const std::size_t end = line.rfind(' ', kColumns);
+        if (end == std::string::npos || end <= get_column_width()) break;
+        text += line.substr(0, end) + '\n';
+        line = std::string(get_column_width(), ' ') + line.substr(end + 1);
+      }
+      text += line + '\n';
+    }
+    return text;
+  }
+
+ private:
+  static constexpr std::size_t kColumns = 100;
+};
+
+/// The options of `rtd run --help` by what they are about; those that are not named are the advanced ones.
+void group_run_options(CLI::App& command) {
+  const std::pair<const char*, std::vector<const char*>> groups[] = {
+      {"Source", {"--source", "--frames", "--pace", "--replay-topics"}},
+      {"Results", {"--out", "--record", "--viewer", "--dense", "--trace", "--quiet"}},
+      {"Dynamic points", {"--filter", "--detector", "--model", "--engine"}},
+      {"Map", {"--map", "--save-map", "--maps-dir", "--localize-only"}},
+      {"Robot", {"--base-frame", "--camera-in-base", "--gravity", "--imu", "--wheel-odometry", "--robot"}},
+      {"Network", {"--domain", "--dds", "--dds-of", "--profile", "--peers", "--interface", "--discovery-server"}},
+      {"Security", {"--secure", "--keystore"}}};
+  for (CLI::Option* option : command.get_options()) option->group("Advanced");
+  for (const auto& [group, names] : groups)
+    for (const char* name : names) command.get_option(name)->group(group);
+  command.footer(
+      "Examples:\n"
+      "  rtd run --source synthetic:office --out /tmp/office --viewer\n"
+      "  rtd run --source tum:rgbd_dataset_freiburg3_walking_xyz --out walking --pace lockstep\n"
+      "  rtd run --source ros2:/camera/color/image_raw,/camera/depth/image_raw --out live --record live.mcap");
+}
+
+/// `rtd complete WORD...`: prints the candidates for the last word, for the shells' scripts (deploy/completion).
+int complete_words(const std::vector<std::string>& words) {
+  CompletionSources sources;
+  for (const std::string& name : kBuiltIn)
+    if (name != "complete") sources.commands.push_back(name);
+  for (const ExternalCommand& command : kCommands) sources.commands.emplace_back(command.name);
+  for (const std::string& other : other_commands()) sources.commands.push_back(other);
+  for (const bus::TopicRoles& topic : bus::topic_roles())
+    if (topic.topic.find('*') == std::string::npos) sources.topics.push_back(ros2::ros_topic(topic.topic));
+  const auto is_known = [&](const std::string& name) { return std::ranges::count(sources.commands, name) > 0; };
+  sources.help = [&](const std::vector<std::string>& command) -> std::string {
+    if (!is_known(command.front())) return "";
+    std::vector<std::string> arguments = command;
+    arguments.emplace_back("--help");
+    return output_of(find_executable("rtd"), arguments);
+  };
+  sources.config = [&](const std::string& service) {
+    return is_known(service) ? output_of(find_executable("rtd"), {service, "--print-config"}) : "";
+  };
+  for (const std::string& candidate : complete(words, sources)) std::cout << candidate << '\n';
+  return service::kOk;
+}
+
 struct Requests {
   RunOptions run;
   DemoOptions demo;
@@ -196,8 +267,9 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--frames", options.frames, "End after this many frames");
   command->add_option("--map", options.map, "Continue the map in this file");
   command->add_option("--save-map", options.save_map, "Map file to write (default: map.rtdmap in the folder of --out)");
-  command->add_option("--maps-dir", options.maps_dir,
-                      "Folder of the maps that /slam/save_map and /slam/load_map may name (default: that of the map file)");
+  command->add_option(
+      "--maps-dir", options.maps_dir,
+      "Folder of the maps that /slam/save_map and /slam/load_map may name (default: that of the map file)");
   add_robot_options(*command, options);
   command->add_flag("--localize-only", options.localize_only,
                     "Only find poses in the map of --map, leave it unchanged");
@@ -217,6 +289,7 @@ void add_run_command(CLI::App& app, RunOptions& options) {
       ->delimiter(',')
       ->check(CLI::IsMember({"detections", "features"}));
   command->add_flag("--quiet", options.quiet, "Only warnings and errors");
+  group_run_options(*command);
 }
 
 void add_demo_command(CLI::App& app, DemoOptions& options) {
@@ -254,6 +327,7 @@ int dispatch(const CLI::App& app, const Requests& requests) {
 /// The command `rtd`: its own commands, and those of other executables. Returns the exit code.
 int front(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (!arguments.empty() && arguments[0] == "complete") return complete_words({arguments.begin() + 1, arguments.end()});
   const bool named = !arguments.empty() && !arguments[0].empty() && arguments[0][0] != '-';
   if (named && std::ranges::count(kBuiltIn, arguments[0]) == 0) {
     std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
@@ -264,6 +338,7 @@ int front(int argc, char** argv) {
 
   Requests requests;
   CLI::App app{"RTD-SLAM: RGB-D SLAM that stays accurate when people walk through the view", "rtd"};
+  app.formatter(std::make_shared<WrappedHelp>());
   add_run_command(app, requests.run);
   add_demo_command(app, requests.demo);
   add_doctor_command(app, requests.doctor);

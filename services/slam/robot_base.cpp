@@ -14,7 +14,6 @@
 namespace rtd::slam {
 namespace {
 
-using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using geometry::Matrix6d;
 
 constexpr double kUnitTolerance = 0.01;  // of a quaternion written with few digits
@@ -38,16 +37,8 @@ msg::Pose of_base(const msg::Pose& camera, const RobotBase& base) {
   return to_pose(to_isometry(camera) * base.T_base_camera.inverse());
 }
 
-/// Twist of one point of a rigid body -> that of another, both in their own axes: (v, w), docs/theory/se3.md.
-Matrix6d adjoint(const Eigen::Isometry3d& T) {
-  Matrix6d A = Matrix6d::Zero();
-  A.topLeftCorner<3, 3>() = A.bottomRightCorner<3, 3>() = T.linear();
-  A.topRightCorner<3, 3>() = geometry::skew(T.translation()) * T.linear();
-  return A;
-}
-
 void transform_covariance(std::array<double, 36>& covariance, const Matrix6d& J) {
-  Eigen::Map<RowMajor6d> matrix(covariance.data());
+  Eigen::Map<geometry::RowMajor6d> matrix(covariance.data());
   matrix = (J * Matrix6d(matrix) * J.transpose()).eval();
 }
 
@@ -98,13 +89,11 @@ void move_to_base(msg::Odometry& odometry, const RobotBase& base) {
   // The base is off the camera by r, in the axes of the world: an error of the rotation swings it.
   const Eigen::Isometry3d T_odom_camera = to_isometry(odometry.pose.pose);
   const Eigen::Vector3d r = T_odom_camera.linear() * base.T_base_camera.inverse().translation();
-  Matrix6d lever = Matrix6d::Identity();
-  lever.topRightCorner<3, 3>() = -geometry::skew(r);
   odometry.pose.pose = of_base(odometry.pose.pose, base);
-  transform_covariance(odometry.pose.covariance, lever);
+  transform_covariance(odometry.pose.covariance, geometry::lever_arm(r));
 
   auto& [linear, angular] = odometry.twist.twist;
-  const Matrix6d A = adjoint(base.T_base_camera);
+  const Matrix6d A = geometry::adjoint(base.T_base_camera);
   geometry::Vector6d twist;
   twist << linear.x, linear.y, linear.z, angular.x, angular.y, angular.z;
   twist = (A * twist).eval();

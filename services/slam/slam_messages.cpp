@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNsPerS = 1e9;
 
-using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+using geometry::RowMajor6d;
 
 msg::Pose to_pose(const msg::Transform& T) {
   const auto& [x, y, z] = T.translation_m;
@@ -26,8 +26,7 @@ msg::Pose to_pose(const msg::Transform& T) {
 RowMajor6d twist_covariance(const OdometryPose& pose, const OdometryPose& previous, double gap_s) {
   const RowMajor6d sum = Eigen::Map<const RowMajor6d>(pose.result.covariance.data()) +
                          Eigen::Map<const RowMajor6d>(previous.result.covariance.data());
-  RowMajor6d turn = RowMajor6d::Zero();
-  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = pose.T_odom_camera.linear().transpose();
+  const RowMajor6d turn = geometry::block_rotation(pose.T_odom_camera.linear().transpose());
   return turn * sum * turn.transpose() / (gap_s * gap_s);
 }
 
@@ -95,8 +94,7 @@ OdometryPose to_odometry_frame(const msg::TrackingResult& result, const Eigen::I
   if (T_map_odom.matrix().isIdentity(0)) return {result, T_map_camera};  // to the last bit
   msg::TrackingResult moved = result;
   moved.T_world_camera = msg::to_message(T_map_odom.inverse() * T_map_camera);
-  RowMajor6d turn = RowMajor6d::Zero();
-  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = T_map_odom.linear().transpose();
+  const RowMajor6d turn = geometry::block_rotation(T_map_odom.linear().transpose());
   Eigen::Map<RowMajor6d>(moved.covariance.data()) =
       turn * Eigen::Map<const RowMajor6d>(result.covariance.data()) * turn.transpose();
   return {moved, msg::to_isometry(moved.T_world_camera)};

@@ -5,12 +5,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/io/atomic_file.hpp"
@@ -49,11 +46,7 @@ std::string require_executable(const std::string& name) {
 /// What `rtd-<service> --print-config` prints.
 std::string printed_config(const std::string& service) {
   const std::string executable = require_executable("rtd-" + service);
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(("'" + executable + "' --print-config").c_str(), "r"), pclose);
-  std::string text;
-  std::array<char, 4096> part{};
-  while (pipe != nullptr && std::fgets(part.data(), static_cast<int>(part.size()), pipe.get()) != nullptr)
-    text += part.data();
+  std::string text = launcher::output_of(executable, {"--print-config"});
   if (text.empty()) throw service::ConfigError(executable + " --print-config printed nothing");
   return text;
 }

@@ -8,12 +8,11 @@
 #include <utility>
 
 #include "services/filter/core/modes/mode_table.hpp"
-#include "services/filter/core/modes/rtd_judge.hpp"
 
 namespace rtd::filter {
 
-/// How dynamic points are found, docs/theory/dynamic_points.md. First what all modes share: surfaces, objects, the
-/// verdict of the mode ...
+/// What all modes share: surfaces, objects, the verdict of the mode. That of our own modes is RtdJudge::judge(),
+/// docs/theory/dynamic_points.md.
 FilterResult DynamicFilter::judge(const vision::RgbdImage& image, Extraction extraction,
                                   const DetectorUpdate& detector) {
   std::vector<msg::Feature> features = std::move(extraction.features);
@@ -26,29 +25,6 @@ FilterResult DynamicFilter::judge(const vision::RgbdImage& image, Extraction ext
   Verdict verdict = judge_->judge({image, surfaces, objects, detector.active}, std::move(features), clock);
   grid_ = std::move(surfaces.grid);
   return complete(std::move(verdict), objects, grid_.shape, clock, extraction.ms);
-}
-
-/// ... then the verdict of our own modes: where the camera is, what moves, how probably each feature is static.
-Verdict RtdJudge::judge(const Scene& scene, std::vector<msg::Feature> features, StageClock& clock) {
-  const Foreground foreground = separate_foreground(scene);  // what may move, by its class
-  clock.finish(msg::kStageMasks);
-  const EgoMotion ego = find_ego_motion(scene, foreground, features);
-  clock.finish(msg::kStageEgoMotion);
-  const DepthEvidence evidence = compare_with_views(scene, foreground, ego);  // the multi-view check
-  const DynamicRegions regions = find_regions(scene, foreground, ego, evidence);
-  std::vector<Mover> movers = follow_movers(scene, foreground, ego, regions);
-  clock.finish(msg::kStageDepthCheck);
-  features = weigh(scene, ego, evidence, regions, std::move(features));  // beliefs to one probability, never starve
-  clock.finish(msg::kStageFuse);
-  const CellMask dynamic = dynamic_cells(scene, foreground, regions);
-  remember(scene, ego, regions, dynamic, features);
-  const bool others_rest = uses_geometry() ? regions.trusted : scene.detector_active;
-  return {.features = std::move(features),
-          .motion = to_cell_motion(dynamic, others_rest),
-          .T_world_camera = ego.T_world_camera,
-          .pose_reliable = ego.reliable,
-          .dynamic_clusters = static_cast<std::uint32_t>(regions.clusters),
-          .movers = std::move(movers)};
 }
 
 DynamicFilter::DynamicFilter(const FilterConfig& config, std::function<std::int64_t()> now_ns)

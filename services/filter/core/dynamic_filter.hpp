@@ -10,8 +10,8 @@
 #include "services/filter/core/filter_config.hpp"
 #include "services/filter/core/modes/mode_judge.hpp"
 #include "services/filter/core/orb/orb_extractor.hpp"
-#include "services/filter/core/tracks/object_tracker.hpp"
-#include "services/filter/core/tracks/world_movers.hpp"
+#include "services/filter/core/boxes/object_tracker.hpp"
+#include "services/filter/core/movers/world_movers.hpp"
 
 namespace rtd::filter {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "services/filter/core/motion/motion_config.hpp"
-#include "services/filter/core/tracks/track_config.hpp"
+#include "services/filter/core/boxes/track_config.hpp"
 
 /// Every setting of the core: the member has the default, bind() below it key, range and help text
 /// (common/service/config.hpp). The defaults are the tested values.

@@ -6,11 +6,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <sstream>
 
@@ -102,6 +105,16 @@ std::string start_companion(const std::string& executable, const std::vector<std
     _exit(127);
   }
   return pid > 0 ? "" : "cannot run " + executable + ": " + std::strerror(errno);
+}
+
+std::string output_of(const std::string& executable, const std::vector<std::string>& arguments) {
+  std::string command = "'" + executable + "'", text;
+  for (const std::string& argument : arguments) command += " '" + argument + "'";
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen((command + " 2>/dev/null").c_str(), "r"), pclose);
+  std::array<char, 4096> part{};
+  while (pipe != nullptr && std::fgets(part.data(), static_cast<int>(part.size()), pipe.get()) != nullptr)
+    text += part.data();
+  return text;
 }
 
 int run_in_foreground(const std::string& executable, const std::vector<std::string>& arguments) {

@@ -29,6 +29,9 @@ std::string replace_process(const std::string& executable, const std::vector<std
 /// Returns why it cannot be started, else "".
 std::string start_companion(const std::string& executable, const std::vector<std::string>& arguments);
 
+/// What a program prints, without its errors; empty when it cannot be run.
+std::string output_of(const std::string& executable, const std::vector<std::string>& arguments);
+
 /// Runs a tool that shares this program's terminal and waits for it; its exit code, 128 + signal when one ended it.
 int run_in_foreground(const std::string& executable, const std::vector<std::string>& arguments);
 

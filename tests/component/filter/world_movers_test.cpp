@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 /// Where the filter says that objects are and how fast, against the objects of rendered scenes.
-#include "services/filter/core/tracks/world_movers.hpp"
+#include "services/filter/core/movers/world_movers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 #include "services/camera/core/source_factory.hpp"
 #include "services/camera/core/synthetic/synthetic_source.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
-#include "services/filter/core/tracks/assignment.hpp"
+#include "services/filter/core/boxes/assignment.hpp"
 
 namespace rtd::filter {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <regex>
+#include <sstream>
 #include <thread>
 
 #include "common/msg/engine_names.hpp"
@@ -43,6 +44,30 @@ TEST_F(FrontTest, without_arguments_it_prints_the_help) {
 TEST_F(FrontTest, help_of_a_run_names_every_engine_of_the_detector) {
   EXPECT_EQ(rtd_.run({"run", "--help"}), 0);
   EXPECT_THAT(std::regex_replace(rtd_.output(), std::regex("\\s+"), " "), HasSubstr(msg::kEngineNames));
+}
+
+TEST_F(FrontTest, help_of_a_run_is_grouped_and_fits_a_terminal) {
+  EXPECT_EQ(rtd_.run({"run", "--help"}), 0);
+  std::istringstream lines(rtd_.output());
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
+  for (const char* group : {"Source:", "Results:", "Map:", "Robot:", "Network:", "Security:", "Advanced:", "Examples:"})
+    EXPECT_THAT(rtd_.output(), HasSubstr(group));
+}
+
+/// What bash asks the function of deploy/completion for, at the end of `line`.
+TEST_F(FrontTest, the_tab_key_completes_commands_options_and_schemes) {
+  const auto completed = [this](const std::string& line) {
+    RtdCommand bash("/bin/bash");
+    const std::string typed = (scratch_ / "rtd") + line;
+    bash.run({"-c", ". " RTD_COMPLETION "; COMP_LINE='" + typed + "' COMP_POINT=" + std::to_string(typed.size()) +
+                        "; _rtd 2>/dev/null; echo \"${COMPREPLY[@]}\""});
+    return bash.output();
+  };
+  EXPECT_EQ(completed(" do"), "doctor\n");
+  EXPECT_EQ(completed(" run --pac"), "--pace\n");
+  EXPECT_EQ(completed(" run --pace "), "realtime asap lockstep\n");
+  EXPECT_EQ(completed(" run --source rea"), "realsense-dds:\n");
+  EXPECT_EQ(completed(" run --source tum:"), "\n") << "file names";
 }
 
 TEST_F(FrontTest, tells_its_version) {

@@ -11,7 +11,7 @@
 #include "common/vision/rgbd_image.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
-#include "services/filter/core/tracks/world_movers.hpp"
+#include "services/filter/core/movers/world_movers.hpp"
 #include "services/filter/filter_messages.hpp"
 #include "services/filter/inboxes.hpp"
 #include "tests/fuzz/red/attack.hpp"

@@ -129,6 +129,25 @@ TEST(Se3, skew_is_the_cross_product) {
   EXPECT_LT((skew(a) * b - a.cross(b)).norm(), 1e-15);
 }
 
+TEST(Se3, adjoint_carries_a_small_motion_to_the_other_side) {
+  const Eigen::Isometry3d T = se3_exp((Vector6d() << 0.4, -1.2, 0.7, 0.3, 0.9, -0.5).finished());
+  const Vector6d d = (Vector6d() << 0.2, 0.1, -0.3, -0.4, 0.2, 0.6).finished();
+  EXPECT_TRUE((T * se3_exp(d) * T.inverse()).isApprox(se3_exp(adjoint(T) * d), 1e-12));
+}
+
+TEST(Se3, lever_arm_is_the_derivative_of_the_other_points_error) {
+  const Eigen::Vector3d offset(0.3, -0.8, 1.4);
+  constexpr double kStep = 1e-6;
+  for (int i = 0; i < 6; ++i) {
+    const Vector6d error = kStep * Vector6d::Unit(i);
+    const Eigen::Matrix3d turn = so3_exp(error.tail<3>());
+    const Eigen::Vector3d moved_m = error.head<3>() + turn * offset - offset;
+    const Vector6d expected = lever_arm(offset) * error;
+    EXPECT_TRUE(expected.head<3>().isApprox(moved_m, 1e-5)) << i;
+    EXPECT_EQ(expected.tail<3>(), error.tail<3>());
+  }
+}
+
 TEST(Transform, message_keeps_the_pose) {
   Vector6d twist;
   twist << 0.1, 0.2, -0.3, 0.4, -0.5, 0.6;

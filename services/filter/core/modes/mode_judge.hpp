@@ -11,7 +11,7 @@
 #include "services/filter/core/motion/view_store.hpp"
 #include "services/filter/core/stage_clock.hpp"
 #include "services/filter/core/surfaces/object_masks.hpp"
-#include "services/filter/core/tracks/mover_tracks.hpp"
+#include "services/filter/core/boxes/mover_tracks.hpp"
 
 namespace rtd::filter {
 

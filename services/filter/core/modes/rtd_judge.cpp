@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-/// The steps of RtdJudge. Their order, RtdJudge::judge(), is in core/dynamic_filter.cpp.
 #include "services/filter/core/modes/rtd_judge.hpp"
 
 #include <algorithm>
@@ -54,6 +53,29 @@ std::vector<int> clusters_of(const std::vector<msg::Feature>& features, const De
 }
 
 }  // namespace
+
+/// How dynamic points are found: where the camera is, what moves, how probably each feature is static.
+Verdict RtdJudge::judge(const Scene& scene, std::vector<msg::Feature> features, StageClock& clock) {
+  const Foreground foreground = separate_foreground(scene);  // what may move, by its class
+  clock.finish(msg::kStageMasks);
+  const EgoMotion ego = find_ego_motion(scene, foreground, features);
+  clock.finish(msg::kStageEgoMotion);
+  const DepthEvidence evidence = compare_with_views(scene, foreground, ego);  // the multi-view check
+  const DynamicRegions regions = find_regions(scene, foreground, ego, evidence);
+  std::vector<Mover> movers = follow_movers(scene, foreground, ego, regions);
+  clock.finish(msg::kStageDepthCheck);
+  features = weigh(scene, ego, evidence, regions, std::move(features));  // beliefs to one probability, never starve
+  clock.finish(msg::kStageFuse);
+  const CellMask dynamic = dynamic_cells(scene, foreground, regions);
+  remember(scene, ego, regions, dynamic, features);
+  const bool others_rest = uses_geometry() ? regions.trusted : scene.detector_active;
+  return {.features = std::move(features),
+          .motion = to_cell_motion(dynamic, others_rest),
+          .T_world_camera = ego.T_world_camera,
+          .pose_reliable = ego.reliable,
+          .dynamic_clusters = static_cast<std::uint32_t>(regions.clusters),
+          .movers = std::move(movers)};
+}
 
 RtdJudge::Foreground RtdJudge::separate_foreground(const Scene& scene) const {
   const int grow_cells = config_.masks.dilate_cells;

@@ -10,7 +10,7 @@
 namespace rtd::filter {
 
 /// The rule of this project, for the modes rtd, semantic and geometry, which differ in the techniques that are on.
-/// docs/theory/dynamic_points.md. judge() itself is in core/dynamic_filter.cpp, which tells the whole story.
+/// docs/theory/dynamic_points.md.
 class RtdJudge final : public ModeJudge {
  public:
   /// `config`: effective_config() of the mode.

@@ -73,16 +73,13 @@ std::optional<PredictedPose> MotionPrior::by_wheels() const {
   PredictedPose pose;
   pose.T_world_camera = geometry::normalized(T_world_base * motion->T_first_last * T_base_camera);
   const auto lever = [&](const Eigen::Vector3d& from) {
-    geometry::Matrix6d J = geometry::Matrix6d::Identity();
-    J.topRightCorner<3, 3>() = -geometry::skew(pose.T_world_camera.translation() - from);
-    return J;
+    return geometry::lever_arm(pose.T_world_camera.translation() - from);
   };
   // Errors of the last pose swing the whole way; those of the motion happen, on average, at its middle.
   const geometry::Matrix6d of_last = lever(last_->T_world_camera.translation());
   const geometry::Matrix6d of_way =
       lever(0.5 * (T_world_base.translation() + (T_world_base * motion->T_first_last).translation()));
-  geometry::Matrix6d R = geometry::Matrix6d::Zero();
-  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = T_world_base.linear();
+  const geometry::Matrix6d R = geometry::block_rotation(T_world_base.linear());
   pose.covariance = of_last * last_->covariance * of_last.transpose() +
                     of_way * (R * motion->covariance * R.transpose()) * of_way.transpose();
   return pose;

@@ -14,7 +14,7 @@ namespace {
 
 using geometry::Matrix6d;
 using geometry::Vector6d;
-using RowMajor6d = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+using geometry::RowMajor6d;
 using RowMajor67d = Eigen::Matrix<double, 6, 7, Eigen::RowMajor>;
 
 constexpr int kAmbient = 7, kTangent = 6;
@@ -99,14 +99,6 @@ Matrix6d adjoint_of_twist(const Vector6d& twist) {
   return ad;
 }
 
-/// Ad of a transform: T Exp(d) T^-1 = Exp(Ad d).
-Matrix6d adjoint(const Eigen::Isometry3d& T) {
-  Matrix6d Ad = Matrix6d::Zero();
-  Ad.topLeftCorner<3, 3>() = Ad.bottomRightCorner<3, 3>() = T.linear();
-  Ad.topRightCorner<3, 3>() = geometry::skew(T.translation()) * T.linear();
-  return Ad;
-}
-
 /// Inverse right Jacobian of SE(3), loop_closing.md Eq. (5): Log(E Exp(d)) = Log(E) + J d.
 Matrix6d inverse_right_jacobian(const Vector6d& twist) {
   const Matrix6d ad = adjoint_of_twist(twist), ad2 = ad * ad;
@@ -121,7 +113,7 @@ PoseGraphResidual evaluate_pose_graph_edge(const Eigen::Isometry3d& T_world_from
   const Eigen::Isometry3d T_to_from = T_world_to.inverse() * T_world_from;
   residual.value = geometry::se3_log(T_from_to.inverse() * T_to_from.inverse());
   residual.by_to = inverse_right_jacobian(residual.value);
-  residual.by_from = -residual.by_to * adjoint(T_to_from);
+  residual.by_from = -residual.by_to * geometry::adjoint(T_to_from);
   return residual;
 }
 

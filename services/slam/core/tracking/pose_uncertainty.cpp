@@ -13,8 +13,7 @@ using geometry::Matrix6d;
 
 /// What an error of the pose (translation, rotation about it) at `from` means at `to`. Eq. (14).
 Matrix6d moved(const Matrix6d& covariance, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  Matrix6d lever = Matrix6d::Identity();
-  lever.topRightCorner<3, 3>() = -geometry::skew(to - from);
+  const Matrix6d lever = geometry::lever_arm(to - from);
   return lever * covariance * lever.transpose();
 }
 
@@ -36,8 +35,7 @@ PredictedPose predict_motion(const CameraMotion& motion, double gap_s, const Pre
 
   // A wrong direction at the start becomes a wrong place at the end.
   const Eigen::Vector3d way_m = predicted.T_world_camera.translation() - motion.T_world_camera.translation();
-  geometry::Matrix6d F = geometry::Matrix6d::Identity();
-  F.topRightCorner<3, 3>() = -geometry::skew(way_m);
+  const geometry::Matrix6d F = geometry::lever_arm(way_m);
   predicted.covariance = F * motion.covariance * F.transpose();
   // The velocity is the difference of two poses as uncertain as the last one.
   if (motion.velocity_gap_s > 0) {

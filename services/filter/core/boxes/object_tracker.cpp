@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/boxes/object_tracker.hpp"
+#include "common/msg/stamps.hpp"
+#include "common/vision/samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rtd::filter {
+namespace {
+
+constexpr std::size_t kMaxPoints = 14;  // of one object
+
+/// Features of a view inside a box at about the object's depth: corners that the optical flow can follow.
+std::vector<cv::Point2f> points_on(const View& view, const Box& box, double depth_m, double tolerance_m) {
+  std::vector<cv::Point2f> points;
+  for (const msg::Feature& f : view.features) {
+    const Eigen::Vector2d from_centre = Eigen::Vector2d(f.u_raw_px, f.v_raw_px) - box.centre_px;
+    if ((from_centre.cwiseAbs() - 0.5 * box.size_px).maxCoeff() > 0 || f.depth_m <= 0) continue;
+    if (depth_m > 0 && std::abs(static_cast<double>(f.depth_m) - depth_m) > tolerance_m) continue;
+    points.emplace_back(f.u_raw_px, f.v_raw_px);
+  }
+  return vision::thin_out(std::move(points), kMaxPoints);
+}
+
+/// Median depth of a grid at some raw pixels, 0 = nothing measured.
+double depth_at(const std::vector<cv::Point2f>& points_px, const geometry::CameraModel& camera, const DepthGrid& grid) {
+  std::vector<float> depths;
+  for (const cv::Point2f& p : points_px) {
+    const Eigen::Vector2d pixel = camera.undistort({p.x, p.y});
+    const int cell = grid.shape.cell_at(pixel.x(), pixel.y());
+    if (cell >= 0 && grid.depth_m[static_cast<std::size_t>(cell)] > 0)
+      depths.push_back(grid.depth_m[static_cast<std::size_t>(cell)]);
+  }
+  return static_cast<double>(vision::median(std::move(depths)));
+}
+
+}  // namespace
+
+ObjectTracker::ObjectTracker(const FilterConfig& config)
+    : config_(config.tracks),
+      masks_(config.masks),
+      use_tracks_(config.techniques.box_tracks),
+      use_flow_(config.techniques.mask_flow),
+      distrust_roll_(config.techniques.roll_distrust),
+      levels_(config.techniques.motion_levels ? MotionLevels(config.motion_levels)
+                                              : MotionLevels(config.motion_levels).all_high()),
+      tracks_(config.tracks) {}
+
+std::vector<SceneObject> ObjectTracker::track(const DetectorUpdate& detector, const vision::RgbdImage& image,
+                                              const DepthGrid& grid, const DepthClusters& clusters,
+                                              const ViewStore& views) {
+  const std::vector<ObjectBox> boxes =
+      use_tracks_ ? tracked_boxes(detector, image, grid, views) : boxes_of_frame(detector, image);
+  std::vector<SceneObject> objects = find_objects(boxes, levels_, image.camera, grid, clusters, masks_);
+  learn_depths(objects, grid);
+  return objects;
+}
+
+std::vector<ObjectBox> ObjectTracker::boxes_of_frame(const DetectorUpdate& detector,
+                                                     const vision::RgbdImage& image) const {
+  std::vector<ObjectBox> boxes;
+  for (const DetectionBatch& batch : detector.batches) {
+    if (batch.stamp_ns != image.stamp_ns) continue;
+    for (const auto& d : usable_detections(batch.detections, levels_)) boxes.push_back({d, -1, 0, false, 0});
+  }
+  return boxes;
+}
+
+std::vector<ObjectBox> ObjectTracker::tracked_boxes(const DetectorUpdate& detector, const vision::RgbdImage& image,
+                                                    const DepthGrid& grid, const ViewStore& views) {
+  if (detector.active) detector_active_ns_ = image.stamp_ns;
+  if (static_cast<double>(msg::apart_ns(image.stamp_ns, detector_active_ns_)) > 1e9 * config_.unwatched_s) {
+    clear();  // geometry only
+    return {};
+  }
+  const double fast_rad_s = config_.fast_roll_deg_s * std::numbers::pi / 180;
+  const bool rolling = distrust_roll_ && std::abs(roll_rate_rad_s(views)) > fast_rad_s;
+  if (use_flow_) flow_.see(image.stamp_ns, image.color_bgr);
+  tracks_.begin_frame(
+      {image.stamp_ns, rolling, static_cast<double>(image.color_bgr.cols), static_cast<double>(image.color_bgr.rows)});
+  const auto depth_of = [&](std::int64_t stamp_ns, const vision::Detection& box) {
+    if (stamp_ns == image.stamp_ns) return depth_in_box(box, image.camera, grid);
+    const View* view = views.at(stamp_ns);
+    return view == nullptr ? 0.0 : depth_in_box(box, image.camera, view->grid);
+  };
+  for (const DetectionBatch& batch : detector.batches) {
+    tracks_.update({batch.stamp_ns, usable_detections(batch.detections, levels_)}, depth_of);
+  }
+  if (use_flow_) tracks_.carry([&](const CarryStep& step) { return measure(step, image, grid, views); });
+  std::vector<ObjectBox> boxes;
+  for (const TrackedBox& box : tracks_.boxes())
+    boxes.push_back({box.detection, box.id, box.age_s, box.carried, box.depth_m});
+  return boxes;
+}
+
+std::optional<CarriedBox> ObjectTracker::measure(const CarryStep& step, const vision::RgbdImage& image,
+                                                 const DepthGrid& grid, const ViewStore& views) {
+  if (levels_.find(step.class_name) != MotionLevel::kHigh) return std::nullopt;  // geometry decides: not worth the time
+  const View *from = views.at(step.from_ns), *to = views.at(step.to_ns);
+  if (from == nullptr || (to == nullptr && step.to_ns != image.stamp_ns)) return std::nullopt;
+  const auto points = points_on(*from, step.box, step.depth_m, masks_.max_object_depth_m);
+  const std::optional<PointsMotion> motion = flow_.follow(step.from_ns, step.to_ns, step.box, points);
+  if (!motion) return std::nullopt;
+  return CarriedBox{motion->flow, depth_at(motion->landed_px, image.camera, to == nullptr ? grid : to->grid)};
+}
+
+/// The depths at which the masks of this frame lie: where the objects are expected next.
+void ObjectTracker::learn_depths(const std::vector<SceneObject>& objects, const DepthGrid& grid) {
+  for (const SceneObject& object : objects) {
+    if (object.track_id < 0) continue;
+    std::vector<float> depths;
+    for (const int cell : object.cells) {
+      const float depth_m = grid.depth_m[static_cast<std::size_t>(cell)];
+      if (depth_m > 0) depths.push_back(depth_m);
+    }
+    if (!depths.empty()) tracks_.set_depth(object.track_id, static_cast<double>(vision::median(std::move(depths))));
+  }
+}
+
+void ObjectTracker::clear() {
+  tracks_.clear();
+  flow_.clear();
+}
+
+double roll_rate_rad_s(const ViewStore& views) {
+  const View* before = views.second_newest();
+  if (before == nullptr) return 0;
+  const double dt_s = msg::minus_s(views.newest().stamp_ns, before->stamp_ns);
+  if (dt_s <= 0) return 0;
+  const Eigen::Matrix3d turn = before->T_world_camera.linear().transpose() * views.newest().T_world_camera.linear();
+  return std::atan2(turn(1, 0), turn(0, 0)) / dt_s;
+}
+
+}  // namespace rtd::filter

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/vision/motion_levels.hpp"
+#include "common/vision/rgbd_image.hpp"
+#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/motion/view_store.hpp"
+#include "services/filter/core/surfaces/depth_grid.hpp"
+#include "services/filter/core/surfaces/object_masks.hpp"
+#include "services/filter/core/boxes/box_tracks.hpp"
+#include "services/filter/core/boxes/detection_batch.hpp"
+#include "services/filter/core/boxes/mask_flow.hpp"
+
+namespace rtd::filter {
+
+/// Finds the objects of every frame, whether the detector's boxes come early, late or not at all: box tracks, carried
+/// by optical flow of the features on the object where no detection came, and the mask of each box.
+/// docs/theory/dynamic_points.md section 6.
+class ObjectTracker {
+ public:
+  explicit ObjectTracker(const FilterConfig& config);
+
+  /// Once per frame, in order of time. `views` are earlier frames.
+  std::vector<SceneObject> track(const DetectorUpdate& detector, const vision::RgbdImage& image, const DepthGrid& grid,
+                                 const DepthClusters& clusters, const ViewStore& views);
+  void clear();
+
+ private:
+  std::vector<ObjectBox> boxes_of_frame(const DetectorUpdate& detector, const vision::RgbdImage& image) const;
+  std::vector<ObjectBox> tracked_boxes(const DetectorUpdate& detector, const vision::RgbdImage& image,
+                                       const DepthGrid& grid, const ViewStore& views);
+  std::optional<CarriedBox> measure(const CarryStep& step, const vision::RgbdImage& image, const DepthGrid& grid,
+                                    const ViewStore& views);
+  void learn_depths(const std::vector<SceneObject>& objects, const DepthGrid& grid);
+
+  BoxTrackConfig config_;
+  MaskConfig masks_;
+  bool use_tracks_, use_flow_, distrust_roll_;
+  MotionLevels levels_;
+  BoxTracks tracks_;
+  MaskFlow flow_;
+  std::int64_t detector_active_ns_ = 0;  ///< stamp of the last frame for which a detector was active
+};
+
+/// How fast the camera turned about its optical axis between the last two views, rad/s.
+double roll_rate_rad_s(const ViewStore& views);
+
+}  // namespace rtd::filter
