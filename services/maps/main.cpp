@@ -4,12 +4,11 @@
 #include <iostream>
 
 #include "common/service/command_line.hpp"
-#include "services/slam/map_tool/map_command.hpp"
+#include "services/maps/map_command.hpp"
 
 int main(int argc, char** argv) {
-  rtd::map_tool::MapRequest request;
+  rtd::maps::MapRequest request;
   CLI::App app{"What a map file of slam contains; export of its landmarks and keyframe poses", "rtd map"};
-  rtd::map_tool::add_map_commands(app, request);
-  return rtd::service::run_command(app, argc, argv,
-                                   [&] { return rtd::map_tool::run_map(request, std::cout, std::cerr); });
+  rtd::maps::add_map_commands(app, request);
+  return rtd::service::run_command(app, argc, argv, [&] { return rtd::maps::run_map(request, std::cout, std::cerr); });
 }

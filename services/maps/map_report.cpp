@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/map_tool/map_report.hpp"
+#include "services/maps/map_report.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -12,7 +12,7 @@
 #include "common/service/command_line.hpp"
 #include "services/slam/core/store/map_format.hpp"
 
-namespace rtd::map_tool {
+namespace rtd::maps {
 namespace {
 
 using Parts = std::map<slam::MapId, MapPart>;
@@ -211,4 +211,4 @@ void write_pcd(std::ostream& out, const std::vector<slam::MapPoint>& points) {
                point.static_probability);
 }
 
-}  // namespace rtd::map_tool
+}  // namespace rtd::maps

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/map_tool/map_command.hpp"
+#include "services/maps/map_command.hpp"
 
 #include <fmt/format.h>
 
@@ -16,10 +16,10 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
 #include "services/dense/octomap_file.hpp"
+#include "services/maps/map_report.hpp"
 #include "services/slam/map_file.hpp"
-#include "services/slam/map_tool/map_report.hpp"
 
-namespace rtd::map_tool {
+namespace rtd::maps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -209,4 +209,4 @@ int run_map(const MapRequest& request, std::ostream& out, std::ostream& err) {
   });
 }
 
-}  // namespace rtd::map_tool
+}  // namespace rtd::maps

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/map_tool/map_command.hpp"
+#include "services/maps/map_command.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@
 #include "services/slam/map_file.hpp"
 #include "tests/support/sample_map.hpp"
 
-namespace rtd::map_tool {
+namespace rtd::maps {
 namespace {
 
 using ::testing::HasSubstr;
@@ -157,4 +157,4 @@ TEST_F(MapCommand, says_why_there_is_no_floor_plan) {
 }
 
 }  // namespace
-}  // namespace rtd::map_tool
+}  // namespace rtd::maps

@@ -12,7 +12,7 @@ namespace CLI {
 class App;
 }
 
-namespace rtd::map_tool {
+namespace rtd::maps {
 
 /// The command line of `rtd map`.
 struct MapRequest {
@@ -34,4 +34,4 @@ void add_map_commands(CLI::App& app, MapRequest& request);
 /// damaged.
 int run_map(const MapRequest& request, std::ostream& out, std::ostream& err);
 
-}  // namespace rtd::map_tool
+}  // namespace rtd::maps

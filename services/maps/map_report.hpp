@@ -13,7 +13,7 @@
 #include "services/slam/core/map/map.hpp"
 #include "services/slam/core/map/trajectory.hpp"
 
-namespace rtd::map_tool {
+namespace rtd::maps {
 
 /// One map of a file: its keyframes and landmarks have one frame.
 struct MapPart {
@@ -49,4 +49,4 @@ dense::Volume voxels_of(const slam::MapContents& contents, slam::MapId map);
 /// ASCII PCD 0.7: x y z static_probability, as the Point Cloud Library reads it.
 void write_pcd(std::ostream& out, const std::vector<slam::MapPoint>& points);
 
-}  // namespace rtd::map_tool
+}  // namespace rtd::maps
