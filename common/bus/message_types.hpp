@@ -6,25 +6,12 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "common/msg/features.hpp"
-#include "common/msg/map_update.hpp"
-#include "common/msg/movers.hpp"
-#include "common/msg/rgbd_frame.hpp"
-#include "common/msg/ros.hpp"
-#include "common/msg/status.hpp"
-#include "common/msg/tracking.hpp"
+#include "common/msg/message_list.hpp"
 
 namespace rtd::bus {
 
-template <class... T>
-struct TypeList {};
-
-/// Every message type that the bus carries.
-using MessageTypes = TypeList<msg::RgbdFrame, msg::RgbdFrame848, msg::RgbdFrame1280, msg::RgbdFrame1920,
-                              msg::FeatureFrame, msg::KeyframeEvent, msg::TrackingResult, msg::ServiceStatus,
-                              msg::CompressedImage, msg::Image, msg::CameraInfo, msg::Detection2DArray, msg::Odometry,
-                              msg::PoseStamped, msg::TFMessage, msg::Path, msg::PointCloud2, msg::DiagnosticArray,
-                              msg::MapUpdate, msg::Movers, msg::Detection3DArray, msg::MarkerArray, msg::OccupancyGrid>;
+using msg::MessageTypes;
+using msg::TypeList;
 
 /// The place of a type in the list.
 enum class MessageId : std::uint8_t {};

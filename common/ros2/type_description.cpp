@@ -10,8 +10,8 @@
 #include <set>
 #include <sstream>
 
-#include "common/bus/message_types.hpp"
 #include "common/msg/imu.hpp"
+#include "common/msg/message_list.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros_codec/wire.hpp"
 
@@ -74,7 +74,7 @@ class Collector {
 };
 
 template <class... T>
-MessageFields fields_of_all(bus::TypeList<T...>) {
+MessageFields fields_of_all(msg::TypeList<T...>) {
   Collector collector;
   (collector.add<T>(), ...);
   collector.add<msg::Imu>();  // travels as raw samples only
@@ -188,7 +188,7 @@ std::string description(const std::string& type, const MessageFields& types) {
 }  // namespace
 
 const MessageFields& message_fields() {
-  static const MessageFields kTypes = fields_of_all(bus::MessageTypes());
+  static const MessageFields kTypes = fields_of_all(msg::MessageTypes());
   return kTypes;
 }
 

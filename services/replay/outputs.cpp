@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "common/bus/frame_topics.hpp"
+#include "common/bus/offered_qos.hpp"
 #include "common/msg/ros.hpp"
 #include "common/ros2/names.hpp"
-#include "common/ros2/offered_qos.hpp"
 #include "common/ros2/schema_texts.hpp"
 #include "common/ros2/type_description.hpp"
 #include "common/ros_codec/wire.hpp"
@@ -41,7 +41,7 @@ std::size_t frame_bytes_of(const std::string& dds_type) {
 bus::RawQos qos_of(const mcap::Channel& channel) {
   const auto text = channel.metadata.find("offered_qos_profiles");
   std::vector<bus::RawQos> offered;
-  if (text != channel.metadata.end()) offered = ros2::parse_offered_qos(text->second);
+  if (text != channel.metadata.end()) offered = bus::parse_offered_qos(text->second);
   bus::RawQos qos = offered.empty() ? bus::RawQos{} : offered.front();
   qos.lifespan_ns = bus::kUnlimitedNs;
   if (qos.depth <= 0) qos.depth = qos.durability == bus::RawQos::Durability::kVolatile ? kUsualDepth : kLatchedDepth;

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "common/ros2/offered_qos.hpp"
+#include "common/bus/offered_qos.hpp"
 
 namespace rtd::recorder {
 namespace {
@@ -60,7 +60,7 @@ std::string topic_text(const RecordedTopic& topic) {
   return fmt::format(
       "    - topic_metadata:\n        name: {}\n        type: {}\n        serialization_format: cdr\n"
       "        offered_qos_profiles: {}\n      message_count: {}\n",
-      quoted(topic.name), quoted(topic.type.name), quoted(ros2::offered_qos_text(topic.offered)), topic.counts.written);
+      quoted(topic.name), quoted(topic.type.name), quoted(bus::offered_qos_text(topic.offered)), topic.counts.written);
 }
 
 }  // namespace
@@ -185,7 +185,7 @@ mcap::ChannelId Recording::channel(std::size_t topic) {
     schema = schemas_.emplace(type.name, writer_.add(mcap::Schema{0, type.name, type.encoding, type.text})).first;
   }
   const mcap::ChannelId id = writer_.add(mcap::Channel{
-      0, schema->second, described.name, "cdr", {{"offered_qos_profiles", ros2::offered_qos_text(described.offered)}}});
+      0, schema->second, described.name, "cdr", {{"offered_qos_profiles", bus::offered_qos_text(described.offered)}}});
   channels_.emplace(topic, id);
   return id;
 }

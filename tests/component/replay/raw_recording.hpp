@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
+#include "common/bus/offered_qos.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/bus/robot.hpp"
 #include "common/mcap/writer.hpp"
 #include "common/ros2/names.hpp"
-#include "common/ros2/offered_qos.hpp"
 
 namespace rtd::replay {
 
@@ -65,7 +65,7 @@ inline void write_recording(const std::string& path, const std::vector<Piece>& p
                                                        schema,
                                                        ros2::ros_topic(piece.topic),
                                                        piece.encoding,
-                                                       {{"offered_qos_profiles", ros2::offered_qos_text({qos})}}});
+                                                       {{"offered_qos_profiles", bus::offered_qos_text({qos})}}});
     }
     writer.write(mcap::Message{channels.at(piece.topic), 1, static_cast<mcap::Timestamp>(piece.log_ns),
                                static_cast<mcap::Timestamp>(piece.publish_ns), io::bytes_of(piece.cdr)});

@@ -10,8 +10,8 @@
 #include <chrono>
 #include <thread>
 
+#include "common/bus/offered_qos.hpp"
 #include "common/mcap/indexed_reader.hpp"
-#include "common/ros2/offered_qos.hpp"
 
 namespace rtd::recorder {
 namespace {
@@ -119,7 +119,7 @@ TEST_F(RecordingTest, says_what_ros2_tools_look_for) {
   const mcap::Channel& channel = summary.channels.at(1);
   EXPECT_EQ(channel.topic, "/slam/pose");
   EXPECT_EQ(channel.message_encoding, "cdr");
-  EXPECT_EQ(ros2::parse_offered_qos(channel.metadata.at("offered_qos_profiles")).size(), 2U);
+  EXPECT_EQ(bus::parse_offered_qos(channel.metadata.at("offered_qos_profiles")).size(), 2U);
   const mcap::Schema& schema = summary.schemas.at(channel.schema_id);
   EXPECT_EQ(schema.name, "geometry_msgs/msg/PoseStamped");
   EXPECT_EQ(schema.encoding, "ros2msg");
@@ -213,7 +213,7 @@ TEST_F(RecordingTest, metadata_yaml_is_what_rosbag2_reads) {
   EXPECT_EQ(topic["message_count"].as<int>(), 2);
   EXPECT_EQ(topic["topic_metadata"]["name"].as<std::string>(), "/slam/pose");
   EXPECT_EQ(topic["topic_metadata"]["type"].as<std::string>(), "geometry_msgs/msg/PoseStamped");
-  EXPECT_EQ(topic["topic_metadata"]["offered_qos_profiles"].as<std::string>(), ros2::offered_qos_text({bus::RawQos{}}));
+  EXPECT_EQ(topic["topic_metadata"]["offered_qos_profiles"].as<std::string>(), bus::offered_qos_text({bus::RawQos{}}));
 }
 
 }  // namespace

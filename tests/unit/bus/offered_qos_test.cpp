@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/ros2/offered_qos.hpp"
+#include "common/bus/offered_qos.hpp"
 
 #include <gtest/gtest.h>
 
-namespace rtd::ros2 {
+namespace rtd::bus {
 namespace {
-
-using bus::RawQos;
 
 RawQos unusual() {
   RawQos qos;
@@ -54,4 +52,4 @@ TEST(OfferedQos, nonsense_is_the_default_or_nothing) {
 }
 
 }  // namespace
-}  // namespace rtd::ros2
+}  // namespace rtd::bus

@@ -1,16 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/ros2/offered_qos.hpp"
+#include "common/bus/offered_qos.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 
-namespace rtd::ros2 {
+namespace rtd::bus {
 namespace {
 
-using bus::RawQos;
 using Durability = RawQos::Durability;
 using Liveliness = RawQos::Liveliness;
 
@@ -44,11 +43,11 @@ bool is(const YAML::Node& policy, int number, const char* word) {
 
 /// Zero means "not set" in ROS 2.
 std::int64_t time_of(const YAML::Node& node) {
-  if (!node.IsDefined() || !node.IsMap()) return bus::kUnlimitedNs;
+  if (!node.IsDefined() || !node.IsMap()) return kUnlimitedNs;
   const auto seconds = node["sec"].as<std::int64_t>(0);
   const auto nanoseconds = node["nsec"].as<std::int64_t>(0);
   const bool set = seconds >= 0 && seconds < kForeverSeconds && nanoseconds >= 0 && seconds + nanoseconds > 0;
-  return set ? seconds * kSecond + nanoseconds : bus::kUnlimitedNs;
+  return set ? seconds * kSecond + nanoseconds : kUnlimitedNs;
 }
 
 RawQos qos_of(const YAML::Node& node) {
@@ -83,4 +82,4 @@ std::vector<RawQos> parse_offered_qos(const std::string& text) {
   return offered;
 }
 
-}  // namespace rtd::ros2
+}  // namespace rtd::bus
