@@ -13,6 +13,7 @@
 #include "common/bus/topic_roles.hpp"
 #include "common/io/printable.hpp"
 #include "common/msg/engine_names.hpp"
+#include "common/process/executable.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/config.hpp"
@@ -21,7 +22,6 @@
 #include "services/launcher/core/completion/completion.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
-#include "services/launcher/process/executable.hpp"
 #include "services/launcher/run/run_command.hpp"
 
 namespace rtd::launcher {
@@ -75,7 +75,7 @@ constexpr std::array kCommands = {
 
 /// The names of installed executables rtd-NAME that the table does not have.
 std::vector<std::string> other_commands() {
-  std::vector<std::string> names = installed_commands();
+  std::vector<std::string> names = process::installed_commands();
   std::erase_if(names, [](const std::string& name) {
     const std::string executable = "rtd-" + name;
     return std::ranges::count(kCommands, executable, &ExternalCommand::executable) > 0;
@@ -108,14 +108,14 @@ int run_external_command(const std::string& name, std::vector<std::string> argum
   const auto command = std::ranges::find(kCommands, name, &ExternalCommand::name);
   const bool known = command != kCommands.end();
   const std::string target = known ? command->executable : "rtd-" + name;
-  const std::string executable = find_executable(target);
+  const std::string executable = process::find_executable(target);
   if (executable.empty()) {
-    std::cerr << "rtd: " << (known ? missing_executable(target) : unknown_command(name)) << '\n';
+    std::cerr << "rtd: " << (known ? process::missing_executable(target) : unknown_command(name)) << '\n';
     return service::kUsageOrConfig;
   }
   const std::vector<std::string> first = known ? command->first_argument() : std::vector<std::string>{};
   arguments.insert(arguments.begin(), first.begin(), first.end());
-  const std::string problem = replace_process(executable, arguments);  // returns only when it fails
+  const std::string problem = process::replace_process(executable, arguments);  // returns only when it fails
   std::cerr << "rtd: " << problem << '\n';
   return service::kRunFailed;
 }
@@ -125,8 +125,8 @@ int run_external_command(const std::string& name, std::vector<std::string> argum
 std::string start_viewer(std::vector<std::string>& arguments) {
   constexpr const char* kFlag = "--viewer";
   if (std::erase(arguments, kFlag) == 0) return "";
-  const std::string executable = find_executable("rtd-viewer");
-  if (executable.empty()) return missing_executable("rtd-viewer");
+  const std::string executable = process::find_executable("rtd-viewer");
+  if (executable.empty()) return process::missing_executable("rtd-viewer");
   CLI::App app;
   app.set_help_flag();
   app.allow_extras();
@@ -144,7 +144,7 @@ std::string start_viewer(std::vector<std::string>& arguments) {
   if (!config.file.empty()) command.insert(command.end(), {"--config", config.file});
   for (const std::string& assignment : config.overrides) command.insert(command.end(), {"--set", assignment});
   command.insert(command.end(), {"--log-level", "warning"});
-  return start_companion(executable, command);
+  return process::start_companion(executable, command);
 }
 
 /// Lines of at most 100 characters; what does not fit goes on in the column of the descriptions.
@@ -203,10 +203,10 @@ int complete_words(const std::vector<std::string>& words) {
     if (!is_known(command.front())) return "";
     std::vector<std::string> arguments = command;
     arguments.emplace_back("--help");
-    return output_of(find_executable("rtd"), arguments);
+    return process::output_of(process::find_executable("rtd"), arguments);
   };
   sources.config = [&](const std::string& service) {
-    return is_known(service) ? output_of(find_executable("rtd"), {service, "--print-config"}) : "";
+    return is_known(service) ? process::output_of(process::find_executable("rtd"), {service, "--print-config"}) : "";
   };
   for (const std::string& candidate : complete(words, sources)) std::cout << candidate << '\n';
   return service::kOk;

@@ -16,7 +16,7 @@ FilterQuality measure_filter(
   for (std::size_t i = 0; i < clip.size(); ++i) {
     const vision::RgbdImage image = clip.image(i);
     const filter::FilterResult result = dynamic_filter.apply(image, std::nullopt);
-    quality.count(eval::judged(result.features), clip.dynamic_mask(i));
+    quality.count(run_record::judged(result.features), clip.dynamic_mask(i));
     const Eigen::Isometry3d T_true_estimated = clip.T_world_camera(i).inverse() * result.T_world_camera;
     quality.max_pose_error_m = std::max(quality.max_pose_error_m, T_true_estimated.translation().norm());
     for (std::size_t stage = 0; stage < quality.stage_ms.size(); ++stage) {

@@ -11,14 +11,14 @@ namespace rtd::launcher {
 /// The frames of a run in memory, where tests look at them.
 class FrameList final : public FrameStore {
  public:
-  bool append(const eval::FrameRecord& frame) override {
+  bool append(const run_record::FrameRecord& frame) override {
     if (frames.size() >= room) return false;
     frames.push_back(frame);
     return true;
   }
-  std::vector<eval::FrameRecord> read() override { return frames; }
+  std::vector<run_record::FrameRecord> read() override { return frames; }
 
-  std::vector<eval::FrameRecord> frames;
+  std::vector<run_record::FrameRecord> frames;
   std::size_t room = SIZE_MAX;
 };
 

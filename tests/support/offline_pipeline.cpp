@@ -142,7 +142,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
     if (options.on_features) options.on_features(*frame, front.features);
     if (!first_ns) first_ns = frame->image.stamp_ns;
     if (!frame->dynamic_mask.empty() && frame->image.stamp_ns - *first_ns >= kSettledAfterNs) {
-      report.removal.count(eval::judged(front.features), frame->dynamic_mask);
+      report.removal.count(run_record::judged(front.features), frame->dynamic_mask);
     }
     const auto message = make_feature_frame(frame->image, front.features);
     for (const auto& [name, ms] : front.stage_ms) report.stage_ms[name].push_back(ms);

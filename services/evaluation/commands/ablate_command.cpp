@@ -11,6 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/io/atomic_file.hpp"
+#include "common/process/executable.hpp"
+#include "common/process/out_folder.hpp"
+#include "common/process/posix_process_host.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
@@ -22,9 +25,6 @@
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/ablation/ablation.hpp"
 #include "services/evaluation/core/report/report.hpp"
-#include "services/launcher/process/executable.hpp"
-#include "services/launcher/process/out_folder.hpp"
-#include "services/launcher/process/posix_process_host.hpp"
 
 namespace rtd::eval {
 namespace fs = std::filesystem;
@@ -38,15 +38,15 @@ void write_results(const Ablation& ablation, const fs::path& out_dir) {
 }
 
 std::string require_executable(const std::string& name) {
-  std::string path = launcher::find_executable(name);
-  if (path.empty()) throw service::ConfigError(launcher::missing_executable(name));
+  std::string path = process::find_executable(name);
+  if (path.empty()) throw service::ConfigError(process::missing_executable(name));
   return path;
 }
 
 /// What `rtd-<service> --print-config` prints.
 std::string printed_config(const std::string& service) {
   const std::string executable = require_executable("rtd-" + service);
-  std::string text = launcher::output_of(executable, {"--print-config"});
+  std::string text = process::output_of(executable, {"--print-config"});
   if (text.empty()) throw service::ConfigError(executable + " --print-config printed nothing");
   return text;
 }
@@ -63,13 +63,14 @@ std::vector<Technique> known_techniques() {
 /// An ablation compares errors, so the source needs ground truth.
 void check_source(const std::string& uri, const AblateOptions& options, std::vector<std::string>& notes) {
   const auto source = camera::make_source(uri);
-  const bool synthetic = is_synthetic(uri);
+  const bool synthetic = run_record::is_synthetic(uri);
   if (source->info().frames == 0 && options.frames == 0)
     throw service::ConfigError("--source " + uri + " is endless: limit it with --frames");
   if (!synthetic && source->groundtruth().empty())
     throw service::ConfigError("--source " + uri +
                                " has no ground truth: there is no error to compare (groundtruth.txt)");
-  if (!has_true_masks(uri)) notes.push_back(uri + " has no mask/: precision and recall of removed points are unknown");
+  if (!run_record::has_true_masks(uri))
+    notes.push_back(uri + " has no mask/: precision and recall of removed points are unknown");
 }
 
 bool has_detector(const AblateOptions& options) {
@@ -84,8 +85,8 @@ Ablation prepare(const AblateOptions& options) {
   ablation.version = RTD_VERSION;
   ablation.pace = options.pace;
   ablation.runs = options.runs;
-  ablation.plan =
-      plan_ablation({options.modes, options.without, has_detector(options)}, kFilterModes, known_techniques());
+  ablation.plan = plan_ablation({options.modes, options.without, has_detector(options)}, run_record::kFilterModes,
+                                known_techniques());
   for (const std::string& source : options.sources) {
     ablation.sources.push_back(camera::complete_uri(source));
     check_source(ablation.sources.back(), options, ablation.notes);
@@ -144,9 +145,9 @@ std::vector<std::string> run_command(const AblateOptions& options, const Variant
 /// The exit code of `rtd run`; Ctrl-C is passed on to it.
 int run_in_folder(const AblateOptions& options, const VariantTask& task, const fs::path& folder) {
   service::InterruptSignals signals;
-  const launcher::ProcessExit exit =
-      launcher::run_to_end({"rtd run", run_command(options, task, folder)}, signals,
-                           [](const std::string&, const std::string& line) { std::cerr << line << std::endl; });
+  const process::ProcessExit exit =
+      process::run_to_end({"rtd run", run_command(options, task, folder)}, signals,
+                          [](const std::string&, const std::string& line) { std::cerr << line << std::endl; });
   return exit.signal != 0 ? static_cast<int>(service::kRunFailed) : exit.code;
 }
 
@@ -246,7 +247,7 @@ bool measure_all(const AblateOptions& options, Ablation& ablation) {
 
 service::ExitCode run_ablation(const AblateOptions& options) {
   Ablation ablation = prepare(options);
-  const io::FolderLock folder = launcher::take_out_folder(options.out_dir);
+  const io::FolderLock folder = process::take_out_folder(options.out_dir);
   const bool finished = measure_all(options, ablation);
   write_results(ablation, options.out_dir);
   if (options.json) {

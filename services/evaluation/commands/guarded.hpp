@@ -6,15 +6,15 @@
 #include <ostream>
 
 #include "common/geometry/trajectory.hpp"
+#include "common/process/out_folder.hpp"
+#include "common/run_record/run_record.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/camera/core/frame_source.hpp"
-#include "services/evaluation/record/run_record.hpp"
-#include "services/launcher/process/out_folder.hpp"
 
 namespace rtd::eval {
 
-using launcher::make_out_folder;
+using process::make_out_folder;
 
 /// Runs `work`, which returns an exit code. What it throws becomes a line "<command>: <reason>" and an exit code: 2 for
 /// what the user named wrong, else 1.
@@ -31,7 +31,7 @@ int guarded(const char* command, std::ostream& err, const auto& work) {
     return refuse(error, service::kUsageOrConfig);
   } catch (const geometry::TrajectoryError& error) {
     return refuse(error, service::kUsageOrConfig);
-  } catch (const RunFileError& error) {
+  } catch (const run_record::RunFileError& error) {
     return refuse(error, service::kUsageOrConfig);
   } catch (const std::exception& error) {
     return refuse(error, service::kRunFailed);

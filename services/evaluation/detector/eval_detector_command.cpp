@@ -39,7 +39,7 @@ void write_file(const std::filesystem::path& path, const std::string& content, c
 
 /// Runs before the long work, so that a wrong path does not waste it.
 void check_outputs(const EvalDetectorOptions& options) try {
-  if (!options.out_dir.empty()) make_out_folder(options.out_dir);
+  if (!options.out_dir.empty()) process::make_out_folder(options.out_dir);
   if (!options.json.empty()) const io::AtomicFile begun(options.json, {.named_by = io::NamedBy::kOperator});
 } catch (const io::IoError& error) {
   throw service::ConfigError(std::string("--json ") + error.what());

@@ -9,12 +9,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/process/executable.hpp"
+#include "common/process/out_folder.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/standard_streams.hpp"
-#include "services/launcher/process/executable.hpp"
-#include "services/launcher/process/out_folder.hpp"
 #include "services/launcher/run/run_command.hpp"
 
 namespace rtd::launcher {
@@ -38,9 +38,9 @@ fs::path cache_folder() {
 }
 
 void run_tool(const std::string& tool, const std::vector<std::string>& arguments, const std::string& failure) {
-  const std::string executable = find_executable(tool);
+  const std::string executable = process::find_executable(tool);
   if (executable.empty()) throw std::runtime_error(tool + " is not installed: apt-get install " + tool);
-  if (run_in_foreground(executable, arguments) != 0) throw std::runtime_error(failure);
+  if (process::run_in_foreground(executable, arguments) != 0) throw std::runtime_error(failure);
 }
 
 void unpack(const fs::path& archive, const fs::path& folder, const std::string& name) {
@@ -78,9 +78,10 @@ RunResult run_mode(const DemoOptions& options, const std::string& source, const 
 /// Shows both runs on one page and prints their errors. Returns the exit code of rtd-eval.
 int compare(const std::string& out_dir, const std::string& page) {
   const fs::path folder = out_dir;
-  return run_in_foreground(require_executable("rtd-eval"),
-                           {"compare", (folder / "off").string(), (folder / "rtd").string(), "--label",
-                            "every point (--filter off)", "--label", "static points (--filter rtd)", "--page", page});
+  return process::run_in_foreground(
+      process::require_executable("rtd-eval"),
+      {"compare", (folder / "off").string(), (folder / "rtd").string(), "--label", "every point (--filter off)",
+       "--label", "static points (--filter rtd)", "--page", page});
 }
 
 void print_next_steps(const std::string& page) {
@@ -94,7 +95,7 @@ void print_next_steps(const std::string& page) {
 }
 
 int run_both(const DemoOptions& options, const std::string& source) {
-  require_executable("rtd-eval");  // a demo without its report has nothing to show
+  process::require_executable("rtd-eval");  // a demo without its report has nothing to show
   std::cerr << "rtd demo, 1 of 2: every point is used (--filter off)\n";
   const RunResult off = run_mode(options, source, "off");
   if (off.report != ReportState::kWritten || off.code == service::kInterrupted) return off.code;
@@ -112,9 +113,8 @@ int run_both(const DemoOptions& options, const std::string& source) {
 
 int demo(const DemoOptions& options) {
   service::outlive_readers();
-  return service::report_errors<service::ConfigError>("rtd demo", std::cerr,
-                                                      [&]() -> int {
-    const io::FolderLock folder = take_out_folder(options.out_dir);
+  return service::report_errors<service::ConfigError>("rtd demo", std::cerr, [&]() -> int {
+    const io::FolderLock folder = process::take_out_folder(options.out_dir);
     return run_both(options, choose_source(options));
   });
 }

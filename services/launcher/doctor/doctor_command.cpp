@@ -15,6 +15,7 @@
 #include "common/bus/host/host_checks.hpp"
 #include "common/bus/host/shm_leftovers.hpp"
 #include "common/bus/network.hpp"
+#include "common/process/executable.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/model_locator.hpp"
@@ -22,7 +23,6 @@
 #include "services/detector/core/engine.hpp"
 #include "services/detector/core/onnxruntime_engine.hpp"
 #include "services/launcher/demo/demo_command.hpp"
-#include "services/launcher/process/executable.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -32,7 +32,7 @@ constexpr std::array kVerdicts = {"ok   ", "warn ", "FAIL "};  // by Verdict
 void check_services(Findings& findings) {
   std::string missing;
   for (const char* service : {"camera", "detector", "filter", "slam", "dense", "record"}) {
-    if (find_executable(std::string("rtd-") + service).empty()) missing += std::string(" rtd-") + service;
+    if (process::find_executable(std::string("rtd-") + service).empty()) missing += std::string(" rtd-") + service;
   }
   findings.push_back(
       missing.empty()

@@ -22,21 +22,21 @@ FrameFile::FrameFile(const std::string& folder) {
 }
 
 /// After a failure the file may end within a frame: nothing follows.
-bool FrameFile::append(const eval::FrameRecord& frame) {
+bool FrameFile::append(const run_record::FrameRecord& frame) {
   if (full_) return false;
-  eval::for_each_column(frame, [&](const char*, const auto& value) {
+  run_record::for_each_column(frame, [&](const char*, const auto& value) {
     full_ = full_ || std::fwrite(&value, sizeof value, 1, file_.get()) != 1;
   });
   return !full_;
 }
 
-std::vector<eval::FrameRecord> FrameFile::read() {
-  std::vector<eval::FrameRecord> frames;
+std::vector<run_record::FrameRecord> FrameFile::read() {
+  std::vector<run_record::FrameRecord> frames;
   std::fflush(file_.get());
   std::rewind(file_.get());
   for (bool whole = true;;) {
-    eval::FrameRecord frame;
-    eval::for_each_column(frame, [&](const char*, auto& value) {
+    run_record::FrameRecord frame;
+    run_record::for_each_column(frame, [&](const char*, auto& value) {
       whole = whole && std::fread(&value, sizeof value, 1, file_.get()) == 1;
     });
     if (!whole) break;

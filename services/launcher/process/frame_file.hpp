@@ -16,8 +16,8 @@ class FrameFile final : public FrameStore {
  public:
   /// Throws service::ConfigError: no file can be made in the folder.
   explicit FrameFile(const std::string& folder);
-  bool append(const eval::FrameRecord& frame) override;
-  std::vector<eval::FrameRecord> read() override;
+  bool append(const run_record::FrameRecord& frame) override;
+  std::vector<run_record::FrameRecord> read() override;
 
  private:
   struct Close {

@@ -65,7 +65,7 @@ void Collector::add(const msg::FeatureFrame& features) {
   builder_.add(features);
   samples_.add_features(builder_.run_seq(features.seq), features);
   if (keep_features_ && judged_.size() < kMaxJudgedFrames) {
-    judged_.try_emplace(features.stamp_ns, eval::judged({features.features.data(), features.count}));
+    judged_.try_emplace(features.stamp_ns, run_record::judged({features.features.data(), features.count}));
   }
 }
 
@@ -143,7 +143,7 @@ void Collector::close() {
   builder_.close();
 }
 
-void Collector::fill(eval::RunRecord& record) const {
+void Collector::fill(run_record::RunRecord& record) const {
   const std::lock_guard lock(mutex_);
   builder_.fill(record);
   record.samples = samples_.samples();

@@ -46,7 +46,7 @@ class Collector {
   void close();
   /// Writes what was received (frames, counters, samples, features of the first kMaxJudgedFrames frames) into the
   /// record.
-  void fill(eval::RunRecord& record) const;
+  void fill(run_record::RunRecord& record) const;
   static constexpr std::size_t kMaxJudgedFrames = 5000;  ///< about 15 kB each
 
  private:
@@ -81,7 +81,7 @@ class Collector {
   SampleKeeper samples_;
   std::uint64_t total_;
   bool keep_features_, secured_;
-  std::map<std::int64_t, std::vector<eval::JudgedFeature>> judged_;  ///< by stamp
+  std::map<std::int64_t, std::vector<run_record::JudgedFeature>> judged_;  ///< by stamp
   struct Image {
     std::uint64_t seq = 0;  ///< within the run
     std::shared_ptr<const msg::FrameView> frame;

@@ -12,17 +12,17 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/io/atomic_file.hpp"
+#include "common/process/executable.hpp"
+#include "common/process/out_folder.hpp"
+#include "common/run_record/run_record.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/run_service.hpp"
 #include "common/service/standard_streams.hpp"
 #include "common/service/trace.hpp"
 #include "services/camera/core/frame_source.hpp"
-#include "services/evaluation/record/run_record.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/trace_file.hpp"
-#include "services/launcher/process/executable.hpp"
 #include "services/launcher/process/lost_lock.hpp"
-#include "services/launcher/process/out_folder.hpp"
 #include "services/launcher/run/run_session.hpp"
 #include "services/launcher/run/run_setup.hpp"
 
@@ -63,24 +63,25 @@ service::ExitCode exit_code(RunOutcome outcome, bool tracked_any) {
 }
 
 /// What the launcher leaves in the folder of the run beside what the services wrote.
-void write_record(const eval::RunRecord& record, const std::string& out_dir) {
+void write_record(const run_record::RunRecord& record, const std::string& out_dir) {
   io::write_file(out_dir + "/trajectory_online.txt", online_trajectory_text(record.frames));
-  eval::write_run_json(record, out_dir + "/run.json");
+  run_record::write_run_json(record, out_dir + "/run.json");
 }
 
 /// rtd-eval makes the report from run.json and prints the table that ends a run.
 ReportState make_report(const std::string& out_dir, bool quiet, service::InterruptSignals& signals,
                         Terminal& terminal) {
-  const std::string executable = find_executable("rtd-eval");
+  const std::string executable = process::find_executable("rtd-eval");
   if (executable.empty()) {
-    terminal.warn("rtd: no report: " + missing_executable("rtd-eval") + ", then run 'rtd report " + out_dir + "'");
+    terminal.warn("rtd: no report: " + process::missing_executable("rtd-eval") + ", then run 'rtd report " + out_dir +
+                  "'");
     return ReportState::kNone;
   }
   std::string output;
   std::vector<std::string> command = {executable, "report", out_dir};
   if (quiet) command.emplace_back("--quiet");
-  const ProcessExit exit = run_to_end({"rtd-eval", command}, signals,
-                                      [&](const std::string&, const std::string& line) { output += line + '\n'; });
+  const process::ProcessExit exit = process::run_to_end(
+      {"rtd-eval", command}, signals, [&](const std::string&, const std::string& line) { output += line + '\n'; });
   (exit.clean() ? std::cout : std::cerr) << output << std::flush;
   if (exit.clean()) return ReportState::kWritten;
   terminal.warn("rtd: no report: rtd-eval: " + describe(exit) + "; " + out_dir + "/run.json has the data of the run");
@@ -136,7 +137,7 @@ RunResult run(const RunOptions& options) {
   const int code = service::report_errors<service::ConfigError, camera::SourceError, bus::BusError>(
       "rtd run", std::cerr, [&]() -> int {
         const RunSetup setup = prepare_run(options);
-        const io::FolderLock folder = take_out_folder(setup.out_dir);
+        const io::FolderLock folder = process::take_out_folder(setup.out_dir);
         result = run_prepared(setup, plan_services(setup));
         return result.code;
       });

@@ -21,7 +21,7 @@ milliseconds now() {
 }
 
 /// From the first frame handed to the bus to the last pose.
-double span_s(const std::vector<eval::FrameRecord>& frames) {
+double span_s(const std::vector<run_record::FrameRecord>& frames) {
   if (frames.empty()) return 0;
   return static_cast<double>(frames.back().tracking.finished_ns - frames.front().tracking.published_ns) * 1e-9;
 }
@@ -43,7 +43,7 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptS
       frames_(setup.out_dir),
       collector_(bus, frames_,
                  {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames,
-                       eval::has_true_masks(setup.source), setup.bus_options.security.enabled()}),
+                  run_record::has_true_masks(setup.source), setup.bus_options.security.enabled()}),
       host_(
           [this](const std::string& service, const std::string& line) {
             logs_.add(service, line);
@@ -197,8 +197,8 @@ void RunSession::sample_memory(milliseconds time) {
   }
 }
 
-eval::RunRecord RunSession::record() const {
-  eval::RunRecord record;
+run_record::RunRecord RunSession::record() const {
+  run_record::RunRecord record;
   record.version = RTD_VERSION;
   record.source = setup_.source;
   record.pace = setup_.pace;

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
+#include "common/process/posix_process_host.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
 #include "services/launcher/core/run/terminal.hpp"
 #include "services/launcher/process/frame_file.hpp"
-#include "services/launcher/process/posix_process_host.hpp"
 #include "services/launcher/process/service_logs.hpp"
+#include "services/launcher/process/usage_book.hpp"
 #include "services/launcher/run/collector.hpp"
 #include "services/launcher/run/run_setup.hpp"
 
@@ -28,7 +29,7 @@ class RunSession {
   /// service::ConfigError when another run is in the same DDS domain.
   RunOutcome run(const std::vector<ServicePlan>& plans);
   /// What was observed; call it after run().
-  eval::RunRecord record() const;
+  run_record::RunRecord record() const;
   bool tracked_any() const { return collector_.tracked_any(); }
 
  private:
@@ -53,7 +54,7 @@ class RunSession {
   UsageBook usage_;
   FrameFile frames_;
   Collector collector_;
-  PosixProcessHost host_;
+  process::PosixProcessHost host_;
   Supervisor supervisor_;
   std::vector<std::string> events_;
   Milliseconds started_{}, next_sample_{};

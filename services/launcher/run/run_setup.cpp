@@ -13,13 +13,13 @@
 #include <sstream>
 
 #include "common/io/atomic_file.hpp"
+#include "common/process/executable.hpp"
+#include "common/process/out_folder.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/pacer.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/core/source_factory.hpp"
-#include "services/launcher/process/executable.hpp"
-#include "services/launcher/process/out_folder.hpp"
 
 namespace rtd::launcher {
 namespace fs = std::filesystem;
@@ -145,7 +145,7 @@ void choose_detector(RunSetup& setup) {
 
 ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole role,
                  const std::vector<std::string>& own_arguments) {
-  ServicePlan plan{name, {require_executable("rtd-" + name), "--pace", setup.pace}, role};
+  ServicePlan plan{name, {process::require_executable("rtd-" + name), "--pace", setup.pace}, role};
   const auto add = [&plan](const std::vector<std::string>& words) {
     plan.command.insert(plan.command.end(), words.begin(), words.end());
   };
@@ -256,7 +256,7 @@ RunSetup prepare_run(const RunOptions& options) {
   setup.total_frames = setup.replay ? setup.replay.frames : count_frames(setup.source, setup.frames);
   choose_detector(setup);
   choose_map(setup);
-  make_out_folder(setup.out_dir);
+  process::make_out_folder(setup.out_dir);
   if (!setup.trace.empty()) check_trace_file(setup.trace);
   if (fs::exists(setup.record)) throw ConfigError("--record " + setup.record + " exists already: choose another name");
   return setup;

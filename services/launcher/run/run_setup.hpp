@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/run_record/run_record.hpp"
 #include "common/service/bus_config.hpp"
-#include "services/evaluation/record/run_record.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
 
 namespace rtd::launcher {
@@ -50,7 +50,7 @@ struct LauncherConfig {
   }
 };
 
-using eval::kFilterModes;
+using run_record::kFilterModes;
 /// Modes without boxes need no detector.
 inline bool needs_detector(const std::string& filter_mode) {
   return filter_mode != "off" && filter_mode != "geometry";

@@ -38,8 +38,8 @@ class CollectorTest : public testing::Test {
     result.finished_ns = 20'000'000;
     tracking_.write(result);
   }
-  eval::RunRecord record_when_complete(std::size_t samples) {
-    eval::RunRecord record;
+  run_record::RunRecord record_when_complete(std::size_t samples) {
+    run_record::RunRecord record;
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(10);
     do {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -64,7 +64,7 @@ TEST_F(CollectorTest, keeps_every_frame_and_a_few_pictures) {
     std::this_thread::sleep_for(
         std::chrono::milliseconds(20));  // a camera; the encoder lets pictures go rather than wait
   }
-  const eval::RunRecord record = record_when_complete(6);
+  const run_record::RunRecord record = record_when_complete(6);
   ASSERT_EQ(record.frames.size(), kFrames);
   EXPECT_EQ(record.frames_in, kFrames);
   ASSERT_EQ(record.samples.size(), 6U);
@@ -81,7 +81,7 @@ TEST_F(CollectorTest, goes_on_after_it_has_subscribed_again) {
     publish(seq);
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  const eval::RunRecord record = record_when_complete(6);
+  const run_record::RunRecord record = record_when_complete(6);
   EXPECT_EQ(record.frames.size(), kFrames);
   EXPECT_EQ(record.samples.size(), 6U);
 }
@@ -119,7 +119,7 @@ TEST_F(CollectorTest, a_heartbeat_in_the_name_of_another_connection_does_not_cou
   status_.write(status_of(10, 4));
   publish(1);
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
-  eval::RunRecord record;
+  run_record::RunRecord record;
   while ((record.frames.size() < 2 || record.frames_in < 4) && std::chrono::steady_clock::now() < give_up) {
     collector_.fill(record);
   }
@@ -131,7 +131,7 @@ TEST_F(CollectorTest, a_frame_with_an_impossible_size_leaves_no_picture) {
   test_support::fill_header(*frame, 100'000, 48);
   frames_.write(std::move(frame));
   publish(5);
-  eval::RunRecord record;
+  run_record::RunRecord record;
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
   while (record.samples.empty() && std::chrono::steady_clock::now() < give_up) collector_.fill(record);
   ASSERT_EQ(record.samples.size(), 1U);

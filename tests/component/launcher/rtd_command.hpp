@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "services/launcher/process/posix_process_host.hpp"
+#include "common/process/posix_process_host.hpp"
 
 namespace rtd::launcher {
 
@@ -58,12 +58,12 @@ class RtdCommand {
   /// Takes what it has printed; nobody else does, and with a full pipe it would stand still.
   void take_output() { host_.wait(std::chrono::milliseconds(0)); }
   const std::string& output() const { return output_; }
-  ProcessId process() const { return process_; }
+  process::ProcessId process() const { return process_; }
 
  private:
   std::string executable_, command_, output_;
-  ProcessId process_ = 0;
-  PosixProcessHost host_{[this](const std::string&, const std::string& line) { output_ += line + '\n'; }};
+  process::ProcessId process_ = 0;
+  process::PosixProcessHost host_{[this](const std::string&, const std::string& line) { output_ += line + '\n'; }};
 };
 
 /// A folder of its own for each test, removed at the end.

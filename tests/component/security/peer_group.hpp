@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "services/launcher/process/posix_process_host.hpp"
+#include "common/process/posix_process_host.hpp"
 
 namespace rtd::security {
 
@@ -64,8 +64,8 @@ class PeerGroup {
   const std::string vendor_;
   std::string scratch_, log_;
   std::map<std::string, PeerReport> reports_;
-  std::vector<launcher::ProcessId> processes_;
-  launcher::PosixProcessHost host_;
+  std::vector<process::ProcessId> processes_;
+  process::PosixProcessHost host_;
 };
 
 }  // namespace rtd::security

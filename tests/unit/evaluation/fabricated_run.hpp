@@ -27,7 +27,7 @@ inline Run fabricated_run() {
   record.events = {"filter restarted"};
   std::uint64_t seq = 0;
   for (const StampedPose& pose : winding_path(100, 0.1)) {
-    FrameRecord frame;
+    run_record::FrameRecord frame;
     frame.tracking.seq = seq;
     frame.tracking.stamp_ns = pose.stamp_ns;
     frame.tracking.published_ns = 5'000'000'000;
@@ -49,8 +49,8 @@ inline Run fabricated_run() {
 }
 
 /// A grey picture with one kept and one removed feature.
-inline SampleFrame fabricated_sample(std::uint64_t seq) {
-  SampleFrame sample;
+inline run_record::SampleFrame fabricated_sample(std::uint64_t seq) {
+  run_record::SampleFrame sample;
   sample.seq = seq;
   cv::imencode(".jpg", cv::Mat(48, 64, CV_8UC3, cv::Scalar(90, 90, 90)), sample.jpeg);
   sample.features = {{10, 12, false}, {30, 32, true}};

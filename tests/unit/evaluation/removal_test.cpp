@@ -25,7 +25,7 @@ cv::Mat square() {
 
 TEST(RemovalQuality, counts_removed_points_on_the_grown_mask_and_kept_ones_on_the_mask) {
   RemovalQuality quality;
-  const std::vector<JudgedFeature> features{
+  const std::vector<run_record::JudgedFeature> features{
       {150, 150, true}, {202, 150, true}, {204, 150, true}, {150, 150, false}, {202, 150, false}};
   quality.count(features, square());
   EXPECT_EQ(quality.removed_rightly, 2U) << "3 px beside the mask still counts";
@@ -38,10 +38,10 @@ TEST(RemovalQuality, counts_removed_points_on_the_grown_mask_and_kept_ones_on_th
 
 TEST(RemovalQuality, knows_what_it_does_not_know) {
   RemovalQuality quality;
-  quality.count(std::vector<JudgedFeature>{{10, 10, false}}, cv::Mat());
+  quality.count(std::vector<run_record::JudgedFeature>{{10, 10, false}}, cv::Mat());
   EXPECT_TRUE(std::isnan(quality.precision())) << "nothing was removed";
   EXPECT_TRUE(std::isnan(quality.recall())) << "nothing had to be";
-  quality.count(std::vector<JudgedFeature>{{-50, 1e6F, true}}, square());
+  quality.count(std::vector<run_record::JudgedFeature>{{-50, 1e6F, true}}, square());
   EXPECT_EQ(quality.removed_wrongly, 1U) << "outside the image: the nearest pixel";
 }
 
@@ -52,8 +52,8 @@ TEST(TrueMasks, are_read_by_stamp_from_a_folder) {
   cv::imwrite((folder / "mask" / "12.000000.png").string(), square());
   cv::imwrite((folder / "mask" / "cover.png").string(), square());
   const std::string uri = "tum:" + folder.string();
-  EXPECT_TRUE(has_true_masks(uri + "?masks=1"));
-  const std::vector<JudgedFeature> moving{{150, 150, true}};
+  EXPECT_TRUE(run_record::has_true_masks(uri + "?masks=1"));
+  const std::vector<run_record::JudgedFeature> moving{{150, 150, true}};
   const auto removal =
       judge_removal(uri, {{10'500'000'000, moving}, {11'000'000'000, moving}, {12'000'000'000, moving}});
   ASSERT_TRUE(removal);
@@ -62,13 +62,13 @@ TEST(TrueMasks, are_read_by_stamp_from_a_folder) {
   EXPECT_EQ(removal->settled.removed_rightly, 1U) << "after the first second";
   EXPECT_FALSE(judge_removal(uri, {{99, moving}})) << "none fits";
   fs::remove_all(folder);
-  EXPECT_FALSE(has_true_masks(uri));
+  EXPECT_FALSE(run_record::has_true_masks(uri));
   EXPECT_FALSE(judge_removal(uri, {{10'500'000'000, moving}}));
 }
 
 TEST(TrueMasks, of_a_synthetic_scene_are_rendered_again) {
   constexpr std::int64_t kFirstNs = 1'000'000'000'000;
-  std::vector<JudgedFeature> everywhere;
+  std::vector<run_record::JudgedFeature> everywhere;
   for (int v = 2; v < 480; v += 8) {
     for (int u = 2; u < 640; u += 8) everywhere.push_back({static_cast<float>(u), static_cast<float>(v), true});
   }
@@ -76,13 +76,13 @@ TEST(TrueMasks, of_a_synthetic_scene_are_rendered_again) {
   ASSERT_TRUE(removal);
   EXPECT_GT(removal->all.removed_rightly, 100U);
   EXPECT_GT(removal->all.removed_wrongly, removal->all.removed_rightly) << "most of the room rests";
-  EXPECT_FALSE(has_true_masks("openni:0"));
+  EXPECT_FALSE(run_record::has_true_masks("openni:0"));
 }
 
 /// Stamps come from other processes.
 TEST(TrueMasks, of_an_endless_scene_are_not_looked_for_at_the_end_of_time) {
   constexpr std::int64_t kEnd = std::numeric_limits<std::int64_t>::max();
-  const std::vector<JudgedFeature> moving{{150, 150, true}};
+  const std::vector<run_record::JudgedFeature> moving{{150, 150, true}};
   const auto removal =
       judge_removal("synthetic:office?frames=0", {{-kEnd, moving}, {1'000'000'000'000, moving}, {kEnd - 7, moving}});
   ASSERT_TRUE(removal);
@@ -92,7 +92,7 @@ TEST(TrueMasks, of_an_endless_scene_are_not_looked_for_at_the_end_of_time) {
 TEST(TrueMasks, are_looked_at_evenly_spread_or_until_somebody_loses_patience) {
   const fs::path folder = fs::path(testing::TempDir()) / ("rtd_limits_" + std::to_string(getpid()));
   fs::create_directories(folder / "mask");
-  std::vector<JudgedFrame> frames;
+  std::vector<run_record::JudgedFrame> frames;
   for (int second = 10; second < 17; ++second) {
     cv::imwrite((folder / "mask" / (std::to_string(second) + ".000000.png")).string(), square());
     frames.push_back({second * 1'000'000'000LL, {{150, 150, second % 3 == 1}}});  // removed in 10, 13 and 16

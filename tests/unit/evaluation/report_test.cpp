@@ -76,7 +76,7 @@ TEST_F(Report, latency_is_from_published_to_pose) {
 }
 
 TEST_F(Report, stage_times_count_the_frames_in_which_the_stage_ran) {
-  for (FrameRecord& frame : record_.frames) {
+  for (run_record::FrameRecord& frame : record_.frames) {
     if (frame.tracking.stage_ms[msg::kStageMapping] == 0) frame.tracking.stage_ms[msg::kStageMapping] = 0.0004F;
   }
   const auto stages = json()["stage_ms"];
@@ -248,7 +248,7 @@ TEST(EmptyRun, invalid_utf8_in_texts_does_not_stop_the_report) {
 }
 
 TEST_F(Report, long_runs_give_small_pages) {
-  const FrameRecord last = record_.frames.back();
+  const run_record::FrameRecord last = record_.frames.back();
   for (int i = 1; i <= 50'000; ++i) {
     record_.frames.push_back(last);
     record_.frames.back().tracking.seq += static_cast<std::uint64_t>(i);

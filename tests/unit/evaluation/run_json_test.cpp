@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/run_record/run_record.hpp"
 #include "services/evaluation/commands/report_command.hpp"
 #include "services/evaluation/core/report/report.hpp"
-#include "services/evaluation/record/run_record.hpp"
 #include "tests/unit/evaluation/fabricated_run.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
@@ -34,16 +34,16 @@ TEST(Base64, matches_the_vectors_of_rfc_4648_both_ways) {
   const std::vector<std::pair<std::string, std::string>> vectors{
       {"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foobar", "Zm9vYmFy"}};
   for (const auto& [plain, text] : vectors) {
-    EXPECT_EQ(to_base64(bytes(plain)), text);
-    EXPECT_EQ(from_base64(text), bytes(plain));
+    EXPECT_EQ(run_record::to_base64(bytes(plain)), text);
+    EXPECT_EQ(run_record::from_base64(text), bytes(plain));
   }
-  EXPECT_EQ(to_base64({0xFF, 0xFE, 0xFD}), "//79");
+  EXPECT_EQ(run_record::to_base64({0xFF, 0xFE, 0xFD}), "//79");
 }
 
 TEST(Base64, refuses_other_texts) {
   for (const char* text :
        {"Zg=", "Z", "Zg!=", "Z===", "====", "Zm9v\n", "Zg==Zg==", "Z=8=", "    Zm9v", "Zm9v    ", "Zm\n9"}) {
-    EXPECT_THROW(from_base64(text), std::invalid_argument) << text;
+    EXPECT_THROW(run_record::from_base64(text), std::invalid_argument) << text;
   }
 }
 
@@ -58,15 +58,15 @@ class RunJson : public testing::Test {
     run_.frames[2].tracking.T_world_camera.translation_m[1] = std::numeric_limits<double>::quiet_NaN();
     run_.frames[3].filter_stage_ms[0] = std::numeric_limits<float>::infinity();
   }
-  RunRecord written_and_read() const {
-    write_run_json(run_, folder_.file("run.json"));
-    return read_run_json(folder_.file("run.json"));
+  run_record::RunRecord written_and_read() const {
+    run_record::write_run_json(run_, folder_.file("run.json"));
+    return run_record::read_run_json(folder_.file("run.json"));
   }
   std::string why_unreadable(const std::string& text) const {
     folder_.write("run.json", text);
     try {
-      read_run_json(folder_.file("run.json"));
-    } catch (const RunFileError& error) {
+      run_record::read_run_json(folder_.file("run.json"));
+    } catch (const run_record::RunFileError& error) {
       return error.what();
     }
     return "it can be read";
@@ -85,7 +85,7 @@ TEST_F(RunJson, keeps_every_bit_that_the_report_needs) {
 
 TEST_F(RunJson, keeps_the_features_and_whether_the_run_was_interrupted) {
   run_.interrupted = true;
-  const RunRecord read = written_and_read();
+  const run_record::RunRecord read = written_and_read();
   EXPECT_TRUE(read.interrupted);
   ASSERT_EQ(read.judged_frames.size(), 1U);
   EXPECT_EQ(read.judged_frames[0].stamp_ns, run_.judged_frames[0].stamp_ns);
@@ -96,7 +96,7 @@ TEST_F(RunJson, keeps_the_features_and_whether_the_run_was_interrupted) {
 }
 
 TEST_F(RunJson, takes_what_is_not_finite_for_unknown) {
-  const RunRecord read = written_and_read();
+  const run_record::RunRecord read = written_and_read();
   EXPECT_TRUE(std::isnan(read.frames[2].tracking.T_world_camera.translation_m[1]));
   EXPECT_TRUE(std::isnan(read.frames[3].filter_stage_ms[0]));
 }
@@ -105,20 +105,20 @@ TEST_F(RunJson, that_cannot_be_used_is_named_with_the_cause) {
   EXPECT_THAT(why_unreadable(""), HasSubstr("run.json: is not the record of a run"));
   EXPECT_THAT(why_unreadable("{}"), HasSubstr("run.json: is not the record of a run"));
   EXPECT_THAT(why_unreadable(R"({"format": 2})"), HasSubstr("has format 2, this rtd-eval reads format 1"));
-  write_run_json(run_, folder_.file("run.json"));
+  run_record::write_run_json(run_, folder_.file("run.json"));
   nlohmann::json json = nlohmann::json::parse(read_text(folder_.file("run.json")));
   json["frames"]["stamp_ns"].erase(0);
   EXPECT_THAT(why_unreadable(json.dump()), HasSubstr("run.json: is not the record of a run"));
   json["samples"][0]["jpeg"] = "?";
   EXPECT_THAT(why_unreadable(json.dump()), HasSubstr("run.json: "));
-  EXPECT_THROW(write_run_json(run_, folder_.file("nowhere/run.json")), RunFileError);
+  EXPECT_THROW(run_record::write_run_json(run_, folder_.file("nowhere/run.json")), run_record::RunFileError);
 }
 
 /// `rtd-eval report` on a folder as `rtd run` leaves it.
 class ReportCommand : public RunJson {
  protected:
   int report(std::function<bool()> go_on = [] { return true; }) {
-    write_run_json(run_, folder_.file("run.json"));
+    run_record::write_run_json(run_, folder_.file("run.json"));
     out_.str("");
     err_.str("");
     return run_report({folder_.path().string()}, go_on, out_, err_);

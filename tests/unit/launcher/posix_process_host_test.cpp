@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/process/posix_process_host.hpp"
+#include "common/process/posix_process_host.hpp"
 
 #include <gmock/gmock.h>
 #include <sys/wait.h>
@@ -28,10 +28,10 @@ milliseconds now() {
 /// Real processes: small shell scripts.
 class PosixProcessHostTest : public testing::Test {
  protected:
-  ProcessId start(const std::string& name, const std::string& script) {
+  process::ProcessId start(const std::string& name, const std::string& script) {
     return host.start({name, {"/bin/sh", "-c", script}});
   }
-  ProcessExit wait_for_exit(ProcessId process) {
+  process::ProcessExit wait_for_exit(process::ProcessId process) {
     const milliseconds give_up = now() + milliseconds(10000);
     while (now() < give_up) {
       host.wait(milliseconds(20));
@@ -46,24 +46,25 @@ class PosixProcessHostTest : public testing::Test {
   }
 
   std::map<std::string, std::vector<std::string>> lines;
-  PosixProcessHost host{[this](const std::string& name, const std::string& line) { lines[name].push_back(line); }};
+  process::PosixProcessHost host{
+      [this](const std::string& name, const std::string& line) { lines[name].push_back(line); }};
 };
 
 TEST_F(PosixProcessHostTest, tells_exit_code_and_output) {
-  const ProcessExit exit = wait_for_exit(start("a", "echo out; echo err >&2; printf unfinished; exit 3"));
+  const process::ProcessExit exit = wait_for_exit(start("a", "echo out; echo err >&2; printf unfinished; exit 3"));
   EXPECT_EQ(exit.code, 3);
   EXPECT_EQ(exit.signal, 0);
   EXPECT_THAT(lines["a"], ElementsAre("out", "err", "unfinished"));
 }
 
 TEST_F(PosixProcessHostTest, tells_the_signal) {
-  const ProcessExit exit = wait_for_exit(start("a", "kill -SEGV $$"));
+  const process::ProcessExit exit = wait_for_exit(start("a", "kill -SEGV $$"));
   EXPECT_EQ(exit.signal, SIGSEGV);
   EXPECT_EQ(describe(exit), "killed by signal 11 (SIGSEGV)");
 }
 
 TEST_F(PosixProcessHostTest, measures_cpu_time_and_memory) {
-  const ProcessExit exit = wait_for_exit(start("a", "i=0; while [ $i -lt 100000 ]; do i=$((i+1)); done"));
+  const process::ProcessExit exit = wait_for_exit(start("a", "i=0; while [ $i -lt 100000 ]; do i=$((i+1)); done"));
   EXPECT_GT(exit.cpu_s, 0.0);
   EXPECT_GT(exit.peak_rss_mb, 0.1);
 }
@@ -72,13 +73,13 @@ TEST_F(PosixProcessHostTest, names_an_executable_that_cannot_be_run) {
   try {
     host.start({"a", {"/nonexistent/rtd-slam"}});
     FAIL() << "started what does not exist";
-  } catch (const ProcessError& error) {
+  } catch (const process::ProcessError& error) {
     EXPECT_STREQ(error.what(), "cannot run /nonexistent/rtd-slam: No such file or directory");
   }
 }
 
 TEST_F(PosixProcessHostTest, child_leads_its_own_process_group_with_a_closed_stdin) {
-  const ProcessId process = start("a", "cat; echo $$; exec sleep 10");
+  const process::ProcessId process = start("a", "cat; echo $$; exec sleep 10");
   wait_for_line("a");
   EXPECT_THAT(lines["a"], ElementsAre(std::to_string(process)));
   EXPECT_EQ(getpgid(static_cast<pid_t>(process)), static_cast<pid_t>(process));
@@ -99,15 +100,15 @@ TEST_F(PosixProcessHostTest, child_inherits_no_descriptor) {
 
 TEST_F(PosixProcessHostTest, counts_the_signs_of_life_of_each_child) {
   setenv("WATCHDOG_PID", "1", 1);  // as systemd sets it for the launcher itself
-  PosixProcessHost watching([](const std::string&, const std::string&) {}, milliseconds(2000));
+  process::PosixProcessHost watching([](const std::string&, const std::string&) {}, milliseconds(2000));
   const std::string script =
       "import os, socket, time\n"
       "assert os.environ['WATCHDOG_USEC'] == '2000000' and 'WATCHDOG_PID' not in os.environ\n"
       "s = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)\n"
       "s.connect(os.environ['NOTIFY_SOCKET'].replace('@', chr(0)))\n"
       "s.send(b'READY=1'); s.send(b'WATCHDOG=1'); time.sleep(2); s.send(b'STOPPING=1'); time.sleep(60)\n";
-  const ProcessId process = watching.start({"a", {"/usr/bin/env", "python3", "-c", script}});
-  const ProcessId silent = watching.start({"b", {"/bin/sleep", "60"}});
+  const process::ProcessId process = watching.start({"a", {"/usr/bin/env", "python3", "-c", script}});
+  const process::ProcessId silent = watching.start({"b", {"/bin/sleep", "60"}});
   unsetenv("WATCHDOG_PID");
   const auto wait_for_signs = [&](std::uint64_t count) {
     const milliseconds give_up = now() + milliseconds(10'000);
@@ -125,12 +126,12 @@ TEST_F(PosixProcessHostTest, nothing_outlives_the_launcher) {
   ASSERT_EQ(pipe(told), 0);
   const pid_t launcher = fork();
   if (launcher == 0) {
-    PosixProcessHost inner([](const std::string&, const std::string&) {});
-    const ProcessId process = inner.start({"a", {"/bin/sleep", "60"}});
+    process::PosixProcessHost inner([](const std::string&, const std::string&) {});
+    const process::ProcessId process = inner.start({"a", {"/bin/sleep", "60"}});
     [[maybe_unused]] const auto written = write(told[1], &process, sizeof(process));
     raise(SIGKILL);
   }
-  ProcessId orphan = 0;
+  process::ProcessId orphan = 0;
   ASSERT_EQ(read(told[0], &orphan, sizeof(orphan)), static_cast<ssize_t>(sizeof(orphan)));
   waitpid(launcher, nullptr, 0);
   const std::string stat = "/proc/" + std::to_string(orphan) + "/exe";

@@ -51,9 +51,9 @@ msg::ServiceStatus status_of(const std::string& service, std::int64_t pid, std::
   return status;
 }
 
-std::vector<std::uint64_t> seqs(const eval::RunRecord& record) {
+std::vector<std::uint64_t> seqs(const run_record::RunRecord& record) {
   std::vector<std::uint64_t> result;
-  for (const eval::FrameRecord& frame : record.frames) result.push_back(frame.tracking.seq);
+  for (const run_record::FrameRecord& frame : record.frames) result.push_back(frame.tracking.seq);
   return result;
 }
 
@@ -64,7 +64,7 @@ TEST(record_builder, joins_both_streams_by_seq_in_any_order) {
   builder.add(*features_of(1));
   builder.add(*features_of(0));
   builder.add(result_of(0));
-  eval::RunRecord record;
+  run_record::RunRecord record;
   builder.fill(record);
   ASSERT_THAT(seqs(record), ElementsAre(0, 1));
   EXPECT_EQ(record.frames[1].tracking.inliers, 101U);
@@ -79,7 +79,7 @@ TEST(record_builder, counts_frames_without_result_as_dropped) {
   builder.add(result_of(0));
   builder.add(*features_of(1));
   builder.add(result_of(4));
-  eval::RunRecord record;
+  run_record::RunRecord record;
   builder.fill(record);
   EXPECT_THAT(seqs(record), ElementsAre(0, 4));
   EXPECT_EQ(record.frames_in, 5U);
@@ -91,7 +91,7 @@ TEST(record_builder, the_cameras_own_count_wins_when_it_saw_more) {
   RecordBuilder builder(store);
   builder.add(result_of(0));
   builder.add(status_of("camera", 7, {{"frames_in", 10}}));
-  eval::RunRecord record;
+  run_record::RunRecord record;
   builder.fill(record);
   EXPECT_EQ(record.frames_in, 10U);
   EXPECT_EQ(record.frames_dropped, 9U);
@@ -104,7 +104,7 @@ TEST(record_builder, the_first_answer_counts_when_a_frame_was_sent_again) {
   msg::TrackingResult again = result_of(0);
   again.finished_ns += 2000 * kMs;
   builder.add(again);
-  eval::RunRecord record;
+  run_record::RunRecord record;
   builder.fill(record);
   ASSERT_EQ(record.frames.size(), 1U);
   EXPECT_EQ(record.frames[0].tracking.finished_ns, 20 * kMs);
@@ -117,7 +117,7 @@ TEST(record_builder, drops_are_named_by_place_and_survive_a_restart) {
   builder.add(status_of("filter", 8, {{"queue_dropped", 1}}));
   builder.add(status_of("filter", 8, {{"queue_dropped", 2}}));
   builder.add(status_of("camera", 9, {{"frames_late", 3}, {"frames_skipped", 0}}));
-  eval::RunRecord record;
+  run_record::RunRecord record;
   builder.fill(record);
   EXPECT_THAT(record.drops,
               UnorderedElementsAre(Pair("filter.queue_dropped", 6), Pair("camera.late", 3), Pair("camera.skipped", 0)));
@@ -136,7 +136,7 @@ TEST(record_builder, frames_of_a_restarted_camera_follow_those_before) {
   builder.add(result_of(0, msg::TrackingState::kLost));
   builder.add(result_of(1));
   builder.add(status_of("camera", 8, {{"frames_in", 4}}));
-  eval::RunRecord record;
+  run_record::RunRecord record;
   builder.fill(record);
   EXPECT_THAT(seqs(record), ElementsAre(0, 1, 2, 0, 1));
   EXPECT_EQ(record.frames.at(3).tracking.state, msg::TrackingState::kLost);
@@ -252,7 +252,7 @@ TEST(record_builder, knows_the_clocks_of_other_hosts_from_slam) {
   RecordBuilder builder(store);
   builder.add(status_of("slam", 8, {{"clock.detector.offset_ms", 250.5}, {"clock.detector.round_trip_ms", 0.75}}));
   builder.add(status_of("detector", 9, {{"clock.slam.offset_ms", -250.5}, {"clock.slam.round_trip_ms", 0.75}}));
-  eval::RunRecord record;
+  run_record::RunRecord record;
   builder.fill(record);
   ASSERT_EQ(record.clocks.size(), 1u);
   EXPECT_EQ(record.clocks[0].service, "detector");
@@ -260,7 +260,7 @@ TEST(record_builder, knows_the_clocks_of_other_hosts_from_slam) {
   EXPECT_EQ(record.clocks[0].round_trip_ms, 0.75);
 }
 
-std::vector<eval::SampleFrame> run_samples(SampleKeeper& keeper, std::uint64_t frames) {
+std::vector<run_record::SampleFrame> run_samples(SampleKeeper& keeper, std::uint64_t frames) {
   for (std::uint64_t seq = 0; seq < frames; ++seq) {
     if (keeper.wants(seq)) keeper.add_image(seq, {1, 2, 3});
     keeper.add_features(seq, *features_of(seq));
@@ -292,7 +292,7 @@ TEST(sample_keeper, needs_picture_and_features) {
   keeper.add_features(2, *features_of(2));
   keeper.add_image(4, {1});
   keeper.add_features(4, *features_of(4));
-  EXPECT_THAT(keeper.samples(), ElementsAre(Field(&eval::SampleFrame::seq, 4)));
+  EXPECT_THAT(keeper.samples(), ElementsAre(Field(&run_record::SampleFrame::seq, 4)));
 }
 
 TEST(sample_keeper, believes_no_count_beyond_the_message) {
@@ -312,7 +312,7 @@ TEST(record_builder, keeps_the_frames_of_a_long_run_in_the_store_in_their_order)
   }
   EXPECT_EQ(store.frames.size(), kFrames - RecordBuilder::kJoined);
   builder.add(result_of(3, msg::TrackingState::kLost));  // an answer to a frame that was sent again
-  eval::RunRecord record;
+  run_record::RunRecord record;
   builder.fill(record);
   ASSERT_EQ(record.frames.size(), kFrames);
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) ASSERT_EQ(record.frames[seq].tracking.seq, seq);
@@ -353,7 +353,7 @@ TEST(record_builder, frames_behind_the_end_of_the_source_do_not_count) {
   builder.add(camera);
   builder.add(result_of(4));
   builder.add(result_of(2));
-  eval::RunRecord record;
+  run_record::RunRecord record;
   builder.fill(record);
   EXPECT_THAT(seqs(record), ElementsAre(0, 2));
   EXPECT_EQ(record.frames_in, 3U);
@@ -391,7 +391,7 @@ TEST(record_builder, made_up_services_counters_and_troubles_have_a_largest_numbe
   std::size_t notices = 0;
   while (builder.take_notice()) ++notices;
   EXPECT_EQ(notices, RecordBuilder::kMostNotices);
-  eval::RunRecord record;
+  run_record::RunRecord record;
   builder.fill(record);
   EXPECT_LE(record.drops.size(), RecordBuilder::kMostServices + RecordBuilder::kMostCounters);
   EXPECT_EQ(record.drops.at("slam.lost"), 1.0) << "the real counter stays";
@@ -422,7 +422,7 @@ TEST(record_builder, memory_is_level_after_five_minutes_of_an_hour_at_30_hz) {
     if (seq == kSettled) after_five_minutes = allocated();
   }
   EXPECT_LT(allocated(), after_five_minutes + 5'000'000);
-  eval::RunRecord record;
+  run_record::RunRecord record;
   builder.fill(record);
   ASSERT_EQ(record.frames.size(), kFrames) << "nothing is missing in the report";
   EXPECT_EQ(record.frames[kFrames - 1].tracking.inliers, 100 + kFrames - 1);

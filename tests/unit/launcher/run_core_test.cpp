@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include "common/process/posix_process_host.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
-#include "services/launcher/process/posix_process_host.hpp"
 #include "services/launcher/process/service_logs.hpp"
+#include "services/launcher/process/usage_book.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -14,7 +15,7 @@ using testing::ElementsAre;
 std::vector<std::string> split(const std::vector<std::string>& chunks) {
   std::vector<std::string> lines;
   const auto keep = [&](const std::string& line) { lines.push_back(line); };
-  LineSplitter splitter;
+  process::LineSplitter splitter;
   for (const std::string& chunk : chunks) splitter.feed(chunk, keep);
   splitter.finish(keep);
   return lines;

@@ -6,7 +6,7 @@
 
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/terminal.hpp"
-#include "services/launcher/process/posix_process_host.hpp"
+#include "services/launcher/process/usage_book.hpp"
 #include "tests/support/frame_list.hpp"
 
 namespace rtd::launcher {
@@ -96,7 +96,7 @@ TEST(usage_book, adds_cpu_time_over_all_lives_and_keeps_the_highest_peak) {
   book.add_restart("slam");
   book.add_sample("slam", 120);
   book.add_exit("slam", {0, 0, 1.5, 500});
-  const eval::ProcessUsage usage = book.usage().at("slam");
+  const run_record::ProcessUsage usage = book.usage().at("slam");
   EXPECT_DOUBLE_EQ(usage.cpu_s, 3.5);
   EXPECT_DOUBLE_EQ(usage.peak_rss_mb, 120) << "samples, not the account that holds the launcher's memory too";
   EXPECT_EQ(usage.restarts, 1);
@@ -110,7 +110,7 @@ TEST(usage_book, a_process_too_short_to_be_sampled_is_taken_from_the_kernels_acc
 }
 
 TEST(online_trajectory, has_a_line_per_tracked_frame) {
-  eval::FrameRecord tracked, lost;
+  run_record::FrameRecord tracked, lost;
   tracked.tracking.state = msg::TrackingState::kOk;
   tracked.tracking.stamp_ns = 1'305'031'102'175'304'000;
   tracked.tracking.T_world_camera = {{1, -2, 0.5}, {0, 0, 0, 1}};

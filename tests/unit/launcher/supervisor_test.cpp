@@ -18,36 +18,36 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// Processes that end when the test says so.
-class FakeHost : public ProcessHost {
+class FakeHost : public process::ProcessHost {
  public:
-  ProcessId start(const ProcessSpec& spec) override {
+  process::ProcessId start(const process::ProcessSpec& spec) override {
     const std::string& name = spec.name;
-    if (missing.count(name) != 0) throw ProcessError("cannot run " + name + ": No such file or directory");
+    if (missing.count(name) != 0) throw process::ProcessError("cannot run " + name + ": No such file or directory");
     started.push_back(name);
     arguments.assign(spec.command.begin() + 1, spec.command.end());
     names[++last_id] = name;
     return last_id;
   }
-  std::optional<ProcessExit> poll_exit(ProcessId process) override {
+  std::optional<process::ProcessExit> poll_exit(process::ProcessId process) override {
     const auto found = exits.find(process);
     if (found == exits.end()) return std::nullopt;
-    const ProcessExit exit = found->second;
+    const process::ProcessExit exit = found->second;
     exits.erase(found);
     return exit;
   }
-  void terminate(ProcessId process) override {
+  void terminate(process::ProcessId process) override {
     terminated.push_back(names[process]);
     if (deaf.count(names[process]) == 0) exits[process] = {};
   }
-  void kill(ProcessId process) override {
+  void kill(process::ProcessId process) override {
     killed.push_back(names[process]);
     exits[process] = {0, 9};
   }
-  std::uint64_t signs_of_life(ProcessId process) const override {
+  std::uint64_t signs_of_life(process::ProcessId process) const override {
     const auto found = signs.find(names.at(process));
     return found == signs.end() ? 0 : found->second;
   }
-  void end(const std::string& name, ProcessExit exit) {
+  void end(const std::string& name, process::ProcessExit exit) {
     for (const auto& [process, process_name] : names) {
       if (process_name == name) newest = process;
     }
@@ -57,10 +57,10 @@ class FakeHost : public ProcessHost {
   std::set<std::string> missing, deaf;
   std::vector<std::string> started, terminated, killed;
   std::vector<std::string> arguments;  ///< of the last one started
-  std::map<ProcessId, std::string> names;
+  std::map<process::ProcessId, std::string> names;
   std::map<std::string, std::uint64_t> signs;  ///< of life, by name
-  std::map<ProcessId, ProcessExit> exits;
-  ProcessId last_id = 0, newest = 0;
+  std::map<process::ProcessId, process::ProcessExit> exits;
+  process::ProcessId last_id = 0, newest = 0;
 };
 
 class SupervisorTest : public testing::Test {
@@ -367,7 +367,7 @@ TEST_F(SupervisorTest, a_restarted_service_gets_the_arguments_of_that_moment) {
 
 TEST_F(SupervisorTest, a_missing_executable_is_told_to_the_caller) {
   host.missing.insert("slam");
-  EXPECT_THROW(start_all(), ProcessError);
+  EXPECT_THROW(start_all(), process::ProcessError);
 }
 
 TEST_F(SupervisorTest, an_executable_that_vanished_before_its_restart_fails_the_run) {

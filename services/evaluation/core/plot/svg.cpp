@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "services/evaluation/record/run_record.hpp"
+#include "common/run_record/run_record.hpp"
 
 namespace rtd::plot {
 namespace {
@@ -131,7 +131,8 @@ void Svg::text(Point at, const std::string& content, const TextStyle& style) {
 
 void Svg::jpeg(const Area& area, const std::vector<unsigned char>& bytes) {
   body_ += fmt::format("<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" href=\"data:image/jpeg;base64,{}\"/>\n",
-                       number(area.x), number(area.y), number(area.width), number(area.height), eval::to_base64(bytes));
+                       number(area.x), number(area.y), number(area.width), number(area.height),
+                       run_record::to_base64(bytes));
 }
 
 std::string Svg::str() const {

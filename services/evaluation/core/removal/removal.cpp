@@ -22,7 +22,7 @@ namespace {
 constexpr int kGrowPx = 3;
 constexpr std::int64_t kSettledNs = 1'000'000'000;
 
-bool lies_on(const cv::Mat& mask, const JudgedFeature& feature) {
+bool lies_on(const cv::Mat& mask, const run_record::JudgedFeature& feature) {
   if (mask.empty()) return false;
   const auto nearest = [](float px, int count) {
     return static_cast<int>(std::lround(std::clamp(px, 0.0F, static_cast<float>(count - 1))));
@@ -66,11 +66,11 @@ MaskOf masks_of_scene(const std::string& uri) {
 
 }  // namespace
 
-void RemovalQuality::count(std::span<const JudgedFeature> features, const cv::Mat& moving) {
+void RemovalQuality::count(std::span<const run_record::JudgedFeature> features, const cv::Mat& moving) {
   constexpr int kSide = 2 * kGrowPx + 1;
   cv::Mat grown;
   if (!moving.empty()) cv::dilate(moving, grown, cv::getStructuringElement(cv::MORPH_RECT, {kSide, kSide}));
-  for (const JudgedFeature& feature : features) {
+  for (const run_record::JudgedFeature& feature : features) {
     if (feature.removed) {
       ++(lies_on(grown, feature) ? removed_rightly : removed_wrongly);
     } else {
@@ -79,16 +79,16 @@ void RemovalQuality::count(std::span<const JudgedFeature> features, const cv::Ma
   }
 }
 
-std::optional<RunRemoval> judge_removal(const std::string& source_uri, const std::vector<JudgedFrame>& frames,
-                                        const JudgeLimits& limits) {
-  if (frames.empty() || limits.most_frames == 0 || !has_true_masks(source_uri)) return std::nullopt;
-  const MaskOf mask_of =
-      is_synthetic(source_uri) ? masks_of_scene(source_uri) : masks_of_folder(mask_folder(source_uri));
+std::optional<RunRemoval> judge_removal(const std::string& source_uri,
+                                        const std::vector<run_record::JudgedFrame>& frames, const JudgeLimits& limits) {
+  if (frames.empty() || limits.most_frames == 0 || !run_record::has_true_masks(source_uri)) return std::nullopt;
+  const MaskOf mask_of = run_record::is_synthetic(source_uri) ? masks_of_scene(source_uri)
+                                                              : masks_of_folder(run_record::mask_folder(source_uri));
   RunRemoval removal;
   std::int64_t first_ns = 0;
   const std::size_t step = 1 + (frames.size() - 1) / limits.most_frames;
   for (std::size_t i = 0; i < frames.size() && (!limits.go_on || limits.go_on()); i += step) {
-    const JudgedFrame& frame = frames[i];
+    const run_record::JudgedFrame& frame = frames[i];
     const std::optional<cv::Mat> mask = mask_of(frame.stamp_ns);
     if (!mask) continue;
     if (removal.frames++ == 0) first_ns = frame.stamp_ns;

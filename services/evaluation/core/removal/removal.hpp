@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "services/evaluation/record/run_record.hpp"
+#include "common/run_record/run_record.hpp"
 
 namespace cv {
 class Mat;
@@ -24,7 +24,7 @@ struct RemovalQuality {
   std::uint64_t removed_rightly = 0, removed_wrongly = 0, kept_wrongly = 0, kept_rightly = 0;
 
   /// Adds one frame. `moving`: CV_8UC1, not 0 = moving pixel; empty = nothing moves.
-  void count(std::span<const JudgedFeature> features, const cv::Mat& moving);
+  void count(std::span<const run_record::JudgedFeature> features, const cv::Mat& moving);
   /// Removed rightly of all removed; NaN when nothing was removed.
   double precision() const { return ratio(removed_rightly, removed_wrongly); }
   /// Removed rightly of all features on moving pixels; NaN when there are none.
@@ -52,7 +52,8 @@ struct JudgeLimits {
 
 /// Compares a run with the true masks of its source; empty when the source has none. `frames` in order of time; frames
 /// without a mask at their stamp are left out. Throws camera::SourceError when the source cannot be opened again.
-std::optional<RunRemoval> judge_removal(const std::string& source_uri, const std::vector<JudgedFrame>& frames,
+std::optional<RunRemoval> judge_removal(const std::string& source_uri,
+                                        const std::vector<run_record::JudgedFrame>& frames,
                                         const JudgeLimits& limits = {});
 
 }  // namespace rtd::eval

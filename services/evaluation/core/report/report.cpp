@@ -50,7 +50,7 @@ std::string removal_text(const RunRemoval& removal) {
 }
 
 /// A difference of a few milliseconds is the measurement's own error.
-std::string clock_text(const HostClock& clock) {
+std::string clock_text(const run_record::HostClock& clock) {
   constexpr double kWorthTellingMs = 10;
   const bool differs = std::abs(clock.offset_ms) > kWorthTellingMs + clock.round_trip_ms / 2;
   return fmt::format("host of {} is {:.1f} ms {}, round trip {:.1f} ms{}", clock.service, std::abs(clock.offset_ms),
@@ -137,7 +137,7 @@ Json removal_json(const Run& run) {
 }  // namespace
 
 Run load_run(const std::string& folder) {
-  Run run{read_run_json(folder + "/run.json")};
+  Run run{run_record::read_run_json(folder + "/run.json")};
   run.groundtruth_path = existing(folder + "/groundtruth.txt");
   run.trajectory_path = existing(folder + "/trajectory.txt");
   run.static_map_path = existing(folder + "/static_map.ply");
@@ -179,7 +179,7 @@ std::string summary_text(const Run& run, const RunSummary& summary, const std::s
   text += row("map", fmt::format("{} keyframes, {} landmarks", summary.keyframes, summary.landmarks));
   if (!run.static_map_path.empty())
     text += row("static map", fmt::format("{} points, {}", run.static_map_points, run.static_map_path));
-  for (const HostClock& clock : run.clocks) text += row("clock", clock_text(clock));
+  for (const run_record::HostClock& clock : run.clocks) text += row("clock", clock_text(clock));
   text += row("CPU time", usage_text(run));
   for (const std::string& note : summary.notes) text += row("note", note);
   text += row("report", folder + "/report.html");
@@ -237,7 +237,7 @@ Json report_json(const Run& run, const RunSummary& summary) {
   report["drops"] = Json::object();
   for (const auto& [place, count] : run.drops) report["drops"][place] = number_or_null(count);
   report["clocks"] = Json::object();
-  for (const HostClock& host : run.clocks)
+  for (const run_record::HostClock& host : run.clocks)
     report["clocks"][host.service] = {{"ahead_ms", number_or_null(host.offset_ms)},
                                       {"round_trip_ms", number_or_null(host.round_trip_ms)}};
   report["events"] = run.events;

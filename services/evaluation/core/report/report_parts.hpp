@@ -31,7 +31,7 @@ std::string latency_chart(const Run& run, const RunSummary& summary);
 std::string stage_chart(const RunSummary& summary);
 
 /// A kept frame with its features drawn on it: green kept, red removed. Empty when the JPEG cannot be read.
-std::string sample_picture(const SampleFrame& sample);
+std::string sample_picture(const run_record::SampleFrame& sample);
 
 /// "12.34 ms" style text of a number, "unknown" when not finite.
 std::string number_text(double value, int decimals, const std::string& unit);

@@ -23,7 +23,7 @@ namespace palette = plot::palette;
 constexpr double kChartWidth = 1080;
 constexpr std::size_t kMaxColumns = 700;  // more values are averaged: a chart has no more columns
 
-double source_time_s(const FrameRecord& frame, const RunTime& time) {
+double source_time_s(const run_record::FrameRecord& frame, const RunTime& time) {
   return static_cast<double>(frame.tracking.stamp_ns - time.start_ns) * 1e-9;
 }
 
@@ -75,7 +75,7 @@ struct LatencySeries {
 
 LatencySeries latency_series(const Run& run, const RunTime& time) {
   LatencySeries series;
-  for (const FrameRecord& frame : run.frames) {
+  for (const run_record::FrameRecord& frame : run.frames) {
     const auto latency = latency_ms(frame);
     if (!latency) continue;
     series.time_s.push_back(source_time_s(frame, time));
@@ -142,9 +142,9 @@ void draw_stage_row(plot::Svg& svg, const StageSummary& stage, double y, double 
   svg.text({kChartWidth - 10, y + 4}, fmt::format("{} frames", stage.ms.count), {palette::kMuted, 12, Anchor::kEnd});
 }
 
-std::string caption(const SampleFrame& sample) {
+std::string caption(const run_record::SampleFrame& sample) {
   const auto removed =
-      std::ranges::count_if(sample.features, [](const JudgedFeature& feature) { return feature.removed; });
+      std::ranges::count_if(sample.features, [](const run_record::JudgedFeature& feature) { return feature.removed; });
   return fmt::format("frame {}: {} kept, {} removed", sample.seq,
                      sample.features.size() - static_cast<std::size_t>(removed), removed);
 }
@@ -225,13 +225,13 @@ std::string stage_chart(const RunSummary& summary) {
   return svg.str();
 }
 
-std::string sample_picture(const SampleFrame& sample) {
+std::string sample_picture(const run_record::SampleFrame& sample) {
   const auto [width, height] = vision::jpeg_size(sample.jpeg);
   if (width <= 0 || height <= 0) return "";
   plot::Svg svg(width, height, fmt::format("Frame {} with its features", sample.seq));
   svg.jpeg({0, 0, static_cast<double>(width), static_cast<double>(height)}, sample.jpeg);
   std::vector<Point> kept, removed;
-  for (const JudgedFeature& feature : sample.features)
+  for (const run_record::JudgedFeature& feature : sample.features)
     (feature.removed ? removed : kept).push_back({feature.u_raw_px, feature.v_raw_px});
   svg.dots(kept, 6, "#06351b", 0.55);
   svg.dots(kept, 4.4, "#35e07a");
@@ -256,7 +256,7 @@ std::vector<html::Figure> sample_figures(const Run& run, std::size_t wanted) {
   std::vector<html::Figure> figures;
   const std::size_t count = std::min(wanted, run.samples.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const SampleFrame& sample = run.samples[(2 * i + 1) * run.samples.size() / (2 * count)];
+    const run_record::SampleFrame& sample = run.samples[(2 * i + 1) * run.samples.size() / (2 * count)];
     std::string picture = sample_picture(sample);
     if (!picture.empty()) figures.push_back({std::move(picture), caption(sample)});
   }

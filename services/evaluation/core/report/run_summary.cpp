@@ -18,13 +18,13 @@ constexpr std::array<const char*, msg::kStageSlamTotal + 1> kSlamStageNames{
 
 constexpr float kRanMs = 0.01F;  // a shorter time only means that the stage had nothing to do
 
-bool is_tracked(const FrameRecord& frame) {
+bool is_tracked(const run_record::FrameRecord& frame) {
   return msg::is_measured(frame.tracking.state);
 }
 
 std::vector<double> latencies_ms(const Run& run) {
   std::vector<double> latencies;
-  for (const FrameRecord& frame : run.frames) {
+  for (const run_record::FrameRecord& frame : run.frames) {
     if (const auto latency = latency_ms(frame)) latencies.push_back(*latency);
   }
   return latencies;
@@ -43,7 +43,7 @@ void append_stages(const Run& run, const std::array<const char*, N>& names, Time
                    std::vector<StageSummary>& stages) {
   for (std::size_t stage = 0; stage < N; ++stage) {
     std::vector<double> times_ms;
-    for (const FrameRecord& frame : run.frames) {
+    for (const run_record::FrameRecord& frame : run.frames) {
       if (const float ms = times_of(frame)[stage]; ms >= kRanMs) times_ms.push_back(ms);
     }
     stages.push_back({names[stage], summarize_times(times_ms)});
@@ -63,7 +63,7 @@ std::vector<LostFrames> lost_frames(const Run& run) {
   };
   std::uint64_t next_seq = run.frames.front().tracking.seq;
   std::int64_t before_ns = start_ns;
-  for (const FrameRecord& frame : run.frames) {
+  for (const run_record::FrameRecord& frame : run.frames) {
     const auto& tracking = frame.tracking;
     if (tracking.seq > next_seq) add(next_seq, tracking.seq - 1, before_ns);
     if (!is_tracked(frame)) add(tracking.seq, tracking.seq, tracking.stamp_ns);
@@ -75,7 +75,7 @@ std::vector<LostFrames> lost_frames(const Run& run) {
 
 double mean_of(const Run& run, const auto& count_of) {
   std::vector<double> counts;
-  for (const FrameRecord& frame : run.frames) counts.push_back(count_of(frame));
+  for (const run_record::FrameRecord& frame : run.frames) counts.push_back(count_of(frame));
   return summarize(counts).mean;
 }
 
@@ -108,7 +108,7 @@ std::optional<Evaluation> evaluate_or_note(const std::string& what, const Trajec
 
 }  // namespace
 
-std::optional<double> latency_ms(const FrameRecord& frame) {
+std::optional<double> latency_ms(const run_record::FrameRecord& frame) {
   const auto& tracking = frame.tracking;
   if (!is_tracked(frame) || tracking.published_ns <= 0 || tracking.finished_ns < tracking.published_ns)
     return std::nullopt;
@@ -117,7 +117,7 @@ std::optional<double> latency_ms(const FrameRecord& frame) {
 
 Trajectory online_trajectory(const Run& run) {
   Trajectory trajectory;
-  for (const FrameRecord& frame : run.frames) {
+  for (const run_record::FrameRecord& frame : run.frames) {
     const auto& tracking = frame.tracking;
     if (!is_tracked(frame)) continue;
     const Eigen::Isometry3d T_world_camera = msg::to_isometry(tracking.T_world_camera);
@@ -137,12 +137,14 @@ RunSummary summarize_run(const Run& run) {
   }
   summary.latency_ms = summarize_times(latencies_ms(run));
   append_stages(
-      run, kFilterStageNames, [](const FrameRecord& f) -> auto& { return f.filter_stage_ms; }, summary.stages);
+      run, kFilterStageNames, [](const run_record::FrameRecord& f) -> auto& { return f.filter_stage_ms; },
+      summary.stages);
   append_stages(
-      run, kSlamStageNames, [](const FrameRecord& f) -> auto& { return f.tracking.stage_ms; }, summary.stages);
+      run, kSlamStageNames, [](const run_record::FrameRecord& f) -> auto& { return f.tracking.stage_ms; },
+      summary.stages);
   summary.lost = lost_frames(run);
-  summary.kept_mean = mean_of(run, [](const FrameRecord& f) { return f.tracking.features_static; });
-  summary.removed_mean = mean_of(run, [](const FrameRecord& f) { return f.tracking.features_removed; });
+  summary.kept_mean = mean_of(run, [](const run_record::FrameRecord& f) { return f.tracking.features_static; });
+  summary.removed_mean = mean_of(run, [](const run_record::FrameRecord& f) { return f.tracking.features_removed; });
   if (!run.frames.empty()) {
     summary.keyframes = run.frames.back().tracking.keyframes;
     summary.landmarks = run.frames.back().tracking.landmarks;

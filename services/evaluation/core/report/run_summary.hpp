@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "common/run_record/run_record.hpp"
 #include "services/evaluation/core/removal/removal.hpp"
 #include "services/evaluation/core/trajectory/evaluation.hpp"
-#include "services/evaluation/record/run_record.hpp"
 
 namespace rtd::eval {
 
 /// A run with the files of its folder and what is computed from its source.
-struct Run : RunRecord {
+struct Run : run_record::RunRecord {
   std::string trajectory_path;   ///< TUM format: final poses that slam wrote, else those published; empty = none
   std::string groundtruth_path;  ///< TUM format; empty = none
   std::string static_map_path;   ///< static_map.ply that dense wrote; empty = none
@@ -70,6 +70,6 @@ RunSummary summarize_run(const Run& run);
 Trajectory online_trajectory(const Run& run);
 
 /// Camera to pose, ms; nothing when the frame has no pose or was not timed.
-std::optional<double> latency_ms(const FrameRecord& frame);
+std::optional<double> latency_ms(const run_record::FrameRecord& frame);
 
 }  // namespace rtd::eval

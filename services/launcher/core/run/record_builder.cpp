@@ -208,7 +208,7 @@ std::string RecordBuilder::active_services(const Tolerated& tolerated) const {
   return text;
 }
 
-void RecordBuilder::fill(eval::RunRecord& record) const {
+void RecordBuilder::fill(run_record::RunRecord& record) const {
   record.frames_in = frames_in();
   record.frames = store_.read();
   for (const auto& [seq, frame] : frames_) {
@@ -220,11 +220,11 @@ void RecordBuilder::fill(eval::RunRecord& record) const {
 }
 
 /// Slam runs on the first host, so its measurements of other hosts stand for all services of the first host.
-std::vector<eval::HostClock> RecordBuilder::clocks() const {
+std::vector<run_record::HostClock> RecordBuilder::clocks() const {
   const std::string prefix = "clock.", suffix = ".offset_ms";
   const auto slam = services_.find("slam");
   if (slam == services_.end()) return {};
-  std::vector<eval::HostClock> clocks;
+  std::vector<run_record::HostClock> clocks;
   for (const auto& [name, counter] : slam->second.counters) {
     if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
     const std::string service = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
@@ -258,7 +258,7 @@ SampleKeeper::SampleKeeper(std::uint64_t wanted, std::uint64_t total)
 
 void SampleKeeper::add_image(std::uint64_t seq, std::vector<std::uint8_t> jpeg) {
   if (!wants(seq)) return;
-  eval::SampleFrame& sample = kept_[seq];
+  run_record::SampleFrame& sample = kept_[seq];
   sample.seq = seq;
   sample.jpeg = std::move(jpeg);
   thin_out();
@@ -266,9 +266,10 @@ void SampleKeeper::add_image(std::uint64_t seq, std::vector<std::uint8_t> jpeg) 
 
 void SampleKeeper::add_features(std::uint64_t seq, const msg::FeatureFrame& features) {
   if (!wants(seq)) return;
-  eval::SampleFrame& sample = kept_[seq];
+  run_record::SampleFrame& sample = kept_[seq];
   sample.seq = seq;
-  sample.features = eval::judged({features.features.data(), std::min<std::size_t>(features.count, msg::kMaxFeatures)});
+  sample.features =
+      run_record::judged({features.features.data(), std::min<std::size_t>(features.count, msg::kMaxFeatures)});
   thin_out();
 }
 
@@ -281,13 +282,13 @@ void SampleKeeper::thin_out() {
   }
 }
 
-std::vector<eval::SampleFrame> SampleKeeper::samples() const {
-  std::vector<eval::SampleFrame> complete;
+std::vector<run_record::SampleFrame> SampleKeeper::samples() const {
+  std::vector<run_record::SampleFrame> complete;
   for (const auto& [seq, sample] : kept_) {
     if (!sample.jpeg.empty() && !sample.features.empty()) complete.push_back(sample);
   }
   if (complete.size() <= wanted_) return complete;
-  std::vector<eval::SampleFrame> result;
+  std::vector<run_record::SampleFrame> result;
   for (std::uint64_t i = 0; i < wanted_; ++i) result.push_back(std::move(complete[i * complete.size() / wanted_]));
   return result;
 }
@@ -304,9 +305,9 @@ std::string format_live_status(const LiveStatus& status) {
                      status.dropped, status.latency_ms);
 }
 
-std::string online_trajectory_text(const std::vector<eval::FrameRecord>& frames) {
+std::string online_trajectory_text(const std::vector<run_record::FrameRecord>& frames) {
   std::string text;
-  for (const eval::FrameRecord& frame : frames) {
+  for (const run_record::FrameRecord& frame : frames) {
     if (!msg::is_measured_in_map(frame.tracking)) continue;
     const auto& [t, q] = frame.tracking.T_world_camera;
     fmt::format_to(std::back_inserter(text), "{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n",

@@ -12,7 +12,7 @@
 #include "common/msg/features.hpp"
 #include "common/msg/status.hpp"
 #include "common/msg/tracking.hpp"
-#include "services/evaluation/record/run_record.hpp"
+#include "common/run_record/run_record.hpp"
 
 namespace rtd::launcher {
 
@@ -46,14 +46,14 @@ class FrameStore {
  public:
   virtual ~FrameStore() = default;
   /// False: it could not be kept.
-  virtual bool append(const eval::FrameRecord& frame) = 0;
-  virtual std::vector<eval::FrameRecord> read() = 0;
+  virtual bool append(const run_record::FrameRecord& frame) = 0;
+  virtual std::vector<run_record::FrameRecord> read() = 0;
 };
 
 /// Joins the message streams of a run into its record. Messages may be missing, doubled or out of order: the first
 /// message of a frame counts, because later ones answer a frame that was sent again. Frames of a camera that was
-/// restarted follow those that it sent before. Memory is bounded: of the frames the newest kJoined are in memory, the ones
-/// before in the store; services, counters and notices have a largest number. Not thread-safe.
+/// restarted follow those that it sent before. Memory is bounded: of the frames the newest kJoined are in memory, the
+/// ones before in the store; services, counters and notices have a largest number. Not thread-safe.
 class RecordBuilder {
  public:
   static constexpr std::size_t kJoined = 512;  ///< frames whose features or result may still come
@@ -87,7 +87,7 @@ class RecordBuilder {
   /// Frames that were not kept for the report: the store was full.
   std::uint64_t frames_not_kept() const { return not_kept_; }
   /// Writes frames, frames_in, frames_dropped and drops.
-  void fill(eval::RunRecord& record) const;
+  void fill(run_record::RunRecord& record) const;
 
  private:
   struct Counter {
@@ -103,12 +103,12 @@ class RecordBuilder {
 
   static bool disturbs_a_run(const std::string& name, const Service& service, const Tolerated& tolerated);
   std::map<std::string, double> drops() const;
-  std::vector<eval::HostClock> clocks() const;
+  std::vector<run_record::HostClock> clocks() const;
   void note_troubles(const msg::ServiceStatus& status);
   Counter camera_counter(const std::string& name) const;
 
   struct Frame {
-    eval::FrameRecord record;
+    run_record::FrameRecord record;
     bool has_features = false, has_result = false;
   };
   /// The frame of this number; none where it cannot be one of this run, or is in the store already.
@@ -146,16 +146,16 @@ class SampleKeeper {
   void add_features(std::uint64_t seq, const msg::FeatureFrame& features);
 
   /// The kept frames that have both image and features, by seq, at most `wanted`.
-  std::vector<eval::SampleFrame> samples() const;
+  std::vector<run_record::SampleFrame> samples() const;
 
  private:
   void thin_out();
 
   std::uint64_t wanted_, stride_;
-  std::map<std::uint64_t, eval::SampleFrame> kept_;
+  std::map<std::uint64_t, run_record::SampleFrame> kept_;
 };
 
 /// The poses as they were published, one line per tracked frame in TUM's format: "stamp_s tx ty tz qx qy qz qw".
-std::string online_trajectory_text(const std::vector<eval::FrameRecord>& frames);
+std::string online_trajectory_text(const std::vector<run_record::FrameRecord>& frames);
 
 }  // namespace rtd::launcher

@@ -3,7 +3,6 @@
 #include "services/launcher/core/run/supervisor.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 namespace rtd::launcher {
@@ -27,7 +26,7 @@ Supervisor::Clock backoff(const SupervisorOptions& options, int deaths_in_row) {
 
 }  // namespace
 
-Supervisor::Supervisor(ProcessHost& host, SupervisorOptions options,
+Supervisor::Supervisor(process::ProcessHost& host, SupervisorOptions options,
                        std::function<void(const SupervisorEvent&)> on_event)
     : host_(host), options_(options), on_event_(std::move(on_event)) {}
 
@@ -100,8 +99,8 @@ bool Supervisor::all_ended() const {
   return std::ranges::all_of(children_, [](const Child& c) { return c.state == State::kEnded; });
 }
 
-std::vector<std::pair<std::string, ProcessId>> Supervisor::running() const {
-  std::vector<std::pair<std::string, ProcessId>> result;
+std::vector<std::pair<std::string, process::ProcessId>> Supervisor::running() const {
+  std::vector<std::pair<std::string, process::ProcessId>> result;
   for (const Child& child : children_) {
     if (child.state == State::kRunning) result.emplace_back(child.plan.name, child.process);
   }
@@ -122,7 +121,7 @@ void Supervisor::relaunch(Child& child, Clock now) {
   ++child.restarts;
   try {
     launch(child, now, child.plan.when_restarted ? child.plan.when_restarted() : std::vector<std::string>{});
-  } catch (const ProcessError& error) {
+  } catch (const process::ProcessError& error) {
     child.state = State::kEnded;
     report(SupervisorEvent::Kind::kGivenUp, child, child.plan.name + " could not be restarted: " + error.what());
     if (child.plan.role != ServiceRole::kOptional) decide(RunOutcome::kFailed);
@@ -132,7 +131,7 @@ void Supervisor::relaunch(Child& child, Clock now) {
          child.plan.name + " restarted (" + ordinal(child.restarts) + " time)");
 }
 
-void Supervisor::on_exit(Child& child, const ProcessExit& exit, Clock now) {
+void Supervisor::on_exit(Child& child, const process::ProcessExit& exit, Clock now) {
   child.state = State::kEnded;
   if (stopping_) {
     const bool forced = child.killed;
@@ -153,7 +152,7 @@ void Supervisor::on_exit(Child& child, const ProcessExit& exit, Clock now) {
   on_death(child, exit, now);
 }
 
-void Supervisor::on_death(Child& child, const ProcessExit& exit, Clock now) {
+void Supervisor::on_death(Child& child, const process::ProcessExit& exit, Clock now) {
   const std::string hung = " hung for " + std::to_string(options_.hung_after.count() / 1000) + " s and was killed";
   const std::string what = child.plan.name + (child.killed ? hung : " died: " + describe(exit));
   if (child.plan.role == ServiceRole::kSource) {
@@ -183,14 +182,8 @@ void Supervisor::decide(RunOutcome outcome) {
 }
 
 void Supervisor::report(SupervisorEvent::Kind kind, const Child& child, const std::string& text,
-                        const ProcessExit& exit) {
+                        const process::ProcessExit& exit) {
   if (on_event_) on_event_({kind, child.plan.name, text, child.process, exit});
-}
-
-std::string describe(const ProcessExit& exit) {
-  if (exit.signal == 0) return "exit code " + std::to_string(exit.code);
-  const char* name = sigabbrev_np(exit.signal);
-  return "killed by signal " + std::to_string(exit.signal) + (name == nullptr ? "" : std::string(" (SIG") + name + ")");
 }
 
 }  // namespace rtd::launcher

@@ -5,53 +5,12 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "common/process/process_host.hpp"
+
 namespace rtd::launcher {
-
-/// A process could not be started; what() names the executable and the reason.
-class ProcessError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-using ProcessId = std::int64_t;
-
-/// How a process ended and what it used.
-struct ProcessExit {
-  int code = 0;    ///< exit code, meaningful when signal == 0
-  int signal = 0;  ///< the signal that ended it, 0 = it exited by itself
-  double cpu_s = 0;
-  double peak_rss_mb = 0;
-
-  bool clean() const { return code == 0 && signal == 0; }
-};
-
-/// "exit code 1" or "killed by signal 9 (KILL)".
-std::string describe(const ProcessExit& exit);
-
-struct ProcessSpec {
-  std::string name;                  ///< for messages and logs
-  std::vector<std::string> command;  ///< path of the executable and its arguments
-  int niceness = 0;  ///< added to the launcher's own: 0 = the same priority, 19 = only idle processor time
-};
-
-/// Starts and ends processes. Injected, so that the supervisor is tested without an operating system.
-class ProcessHost {
- public:
-  virtual ~ProcessHost() = default;
-  /// Throws ProcessError when the executable cannot be run.
-  virtual ProcessId start(const ProcessSpec& spec) = 0;
-  /// How the process ended; empty while it runs. Returned once, then the id is gone.
-  virtual std::optional<ProcessExit> poll_exit(ProcessId process) = 0;
-  virtual void terminate(ProcessId process) = 0;  ///< asks (SIGTERM)
-  virtual void kill(ProcessId process) = 0;       ///< forces (SIGKILL)
-  /// How often the process has said that its work goes on. 0: it has not begun, is about to end, or never says it.
-  virtual std::uint64_t signs_of_life(ProcessId process) const = 0;
-};
 
 /// What the death of a service means for the run.
 enum class ServiceRole {
@@ -94,8 +53,8 @@ struct SupervisorEvent {
   Kind kind;
   std::string service;
   std::string text;  ///< one line, names service and reason
-  ProcessId process = 0;
-  ProcessExit exit{};  ///< kDied, kGivenUp, kRefused, kEnded, kKilled
+  process::ProcessId process = 0;
+  process::ProcessExit exit{};  ///< kDied, kGivenUp, kRefused, kEnded, kKilled
 };
 
 /// Keeps the services of one run alive: restarts what dies, kills what hangs, decides when the run is over, ends
@@ -104,7 +63,8 @@ class Supervisor {
  public:
   using Clock = std::chrono::milliseconds;
 
-  Supervisor(ProcessHost& host, SupervisorOptions options, std::function<void(const SupervisorEvent&)> on_event);
+  Supervisor(process::ProcessHost& host, SupervisorOptions options,
+             std::function<void(const SupervisorEvent&)> on_event);
 
   /// Starts a service. Throws ProcessError when its executable cannot be run.
   void start(const ServicePlan& plan, Clock now);
@@ -120,13 +80,13 @@ class Supervisor {
   /// No process is left.
   bool all_ended() const;
   /// Name and id of every process that runs now.
-  std::vector<std::pair<std::string, ProcessId>> running() const;
+  std::vector<std::pair<std::string, process::ProcessId>> running() const;
 
  private:
   enum class State { kRunning, kWaiting, kEnded };
   struct Child {
     ServicePlan plan;
-    ProcessId process = 0;
+    process::ProcessId process = 0;
     State state = State::kEnded;
     int deaths_in_row = 0, restarts = 0;
     Clock started{}, restart_at{};
@@ -138,16 +98,17 @@ class Supervisor {
 
   void launch(Child& child, Clock now, const std::vector<std::string>& more_arguments = {});
   void relaunch(Child& child, Clock now);
-  void on_exit(Child& child, const ProcessExit& exit, Clock now);
-  void on_death(Child& child, const ProcessExit& exit, Clock now);
+  void on_exit(Child& child, const process::ProcessExit& exit, Clock now);
+  void on_death(Child& child, const process::ProcessExit& exit, Clock now);
   void watch(Child& child, Clock now);
   void forgive_standstill(Clock now);
   void ask_to_end(Child& child, Clock kill_at);
   bool others_ended() const;
   void decide(RunOutcome outcome);
-  void report(SupervisorEvent::Kind kind, const Child& child, const std::string& text, const ProcessExit& exit = {});
+  void report(SupervisorEvent::Kind kind, const Child& child, const std::string& text,
+              const process::ProcessExit& exit = {});
 
-  ProcessHost& host_;
+  process::ProcessHost& host_;
   SupervisorOptions options_;
   std::function<void(const SupervisorEvent&)> on_event_;
   std::vector<Child> children_;

@@ -6,7 +6,7 @@
 
 #include "common/io/folder_lock.hpp"
 
-namespace rtd::launcher {
+namespace rtd::process {
 
 /// Makes the folder of --out if there is none. Throws service::ConfigError.
 void make_out_folder(const std::string& folder);
@@ -15,4 +15,4 @@ void make_out_folder(const std::string& folder);
 /// process has it.
 io::FolderLock take_out_folder(const std::string& folder);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::process

@@ -1,28 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/process/posix_process_host.hpp"
+#include "common/process/posix_process_host.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <sstream>
 #include <utility>
+
+#include "common/process/cpu_time.hpp"
 
 // linux/close_range.h is missing on older kernels' headers; the value is part of the kernel's interface.
 #ifndef CLOSE_RANGE_CLOEXEC
 #define CLOSE_RANGE_CLOEXEC (1U << 2)
 #endif
 
-namespace rtd::launcher {
+namespace rtd::process {
 namespace {
 
 constexpr std::size_t kMaxLineBytes = 4096;
@@ -73,13 +72,6 @@ int exec_error(int fd) {
     got = read(fd, &reason, sizeof(reason));
   } while (got < 0 && errno == EINTR);
   return got == static_cast<ssize_t>(sizeof(reason)) ? reason : 0;
-}
-
-double cpu_s(const rusage& usage) {
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 /// As exec wants them: with a null pointer at the end.
@@ -231,38 +223,4 @@ ProcessExit run_to_end(const ProcessSpec& spec, service::InterruptSignals& signa
   return *exit;
 }
 
-void UsageBook::add_sample(const std::string& service, double peak_rss_mb) {
-  if (peak_rss_mb < 0) return;
-  Entry& entry = entries_[service];
-  entry.usage.peak_rss_mb = entry.sampled ? std::max(entry.usage.peak_rss_mb, peak_rss_mb) : peak_rss_mb;
-  entry.sampled = true;
-}
-
-void UsageBook::add_exit(const std::string& service, const ProcessExit& exit) {
-  Entry& entry = entries_[service];
-  entry.usage.cpu_s += exit.cpu_s;
-  if (!entry.sampled) entry.usage.peak_rss_mb = std::max(entry.usage.peak_rss_mb, exit.peak_rss_mb);
-}
-
-std::map<std::string, eval::ProcessUsage> UsageBook::usage() const {
-  std::map<std::string, eval::ProcessUsage> result;
-  for (const auto& [name, entry] : entries_) result[name] = entry.usage;
-  return result;
-}
-
-double peak_rss_mb(const std::string& proc_status) {
-  const std::string key = "VmHWM:";
-  const std::size_t at = proc_status.find(key);
-  if (at == std::string::npos) return -1;
-  std::istringstream value(proc_status.substr(at + key.size()));
-  double kib = 0;
-  return value >> kib ? kib / 1024.0 : -1;
-}
-
-eval::ProcessUsage own_usage() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return {cpu_s(usage), static_cast<double>(usage.ru_maxrss) / 1024.0, 0};
-}
-
-}  // namespace rtd::launcher
+}  // namespace rtd::process

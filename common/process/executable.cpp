@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/process/executable.hpp"
+#include "common/process/executable.hpp"
 
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -19,7 +19,7 @@
 
 #include "common/service/config.hpp"
 
-namespace rtd::launcher {
+namespace rtd::process {
 namespace fs = std::filesystem;
 namespace {
 
@@ -131,4 +131,4 @@ int run_in_foreground(const std::string& executable, const std::vector<std::stri
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::process

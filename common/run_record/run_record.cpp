@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/record/run_record.hpp"
+#include "common/run_record/run_record.hpp"
 
 #include <openssl/evp.h>
 
 #include <stdexcept>
 #include <string_view>
 
-namespace rtd::eval {
+namespace rtd::run_record {
 
 std::vector<JudgedFeature> judged(std::span<const msg::Feature> features) {
   std::vector<JudgedFeature> result;
@@ -54,4 +54,4 @@ std::vector<std::uint8_t> from_base64(std::string_view text) {
   return bytes;
 }
 
-}  // namespace rtd::eval
+}  // namespace rtd::run_record

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/process/notify_socket.hpp"
+#include "common/process/notify_socket.hpp"
 
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -13,7 +13,7 @@
 #include <cstring>
 #include <system_error>
 
-namespace rtd::launcher {
+namespace rtd::process {
 namespace {
 
 void check(bool good) {
@@ -83,4 +83,4 @@ void NotifySocket::read(const std::function<void(ProcessId, std::string_view)>& 
   }
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::process

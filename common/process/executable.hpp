@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace rtd::launcher {
+namespace rtd::process {
 
 /// The folder of this program's executable.
 std::string own_directory();
@@ -35,4 +35,4 @@ std::string output_of(const std::string& executable, const std::vector<std::stri
 /// Runs a tool that shares this program's terminal and waits for it; its exit code, 128 + signal when one ended it.
 int run_in_foreground(const std::string& executable, const std::vector<std::string>& arguments);
 
-}  // namespace rtd::launcher
+}  // namespace rtd::process

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/process/out_folder.hpp"
+#include "common/process/out_folder.hpp"
 
 #include <filesystem>
 #include <system_error>
@@ -8,7 +8,7 @@
 #include "common/io/byte_sink.hpp"
 #include "common/service/config.hpp"
 
-namespace rtd::launcher {
+namespace rtd::process {
 
 void make_out_folder(const std::string& folder) {
   std::error_code error;
@@ -25,4 +25,4 @@ io::FolderLock take_out_folder(const std::string& folder) {
   }
 }
 
-}  // namespace rtd::launcher
+}  // namespace rtd::process

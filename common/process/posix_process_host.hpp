@@ -10,12 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "common/process/notify_socket.hpp"
+#include "common/process/process_host.hpp"
 #include "common/service/command_line.hpp"
-#include "services/evaluation/record/run_record.hpp"
-#include "services/launcher/core/run/supervisor.hpp"
-#include "services/launcher/process/notify_socket.hpp"
 
-namespace rtd::launcher {
+namespace rtd::process {
 
 /// Splits a byte stream into lines. A line longer than 4096 bytes comes in pieces.
 class LineSplitter {
@@ -75,29 +74,4 @@ class PosixProcessHost : public ProcessHost {
 ProcessExit run_to_end(const ProcessSpec& spec, service::InterruptSignals& signals,
                        const PosixProcessHost::OnLine& on_line);
 
-/// Adds up what each service used, over all its lives.
-///
-/// CPU time comes from the kernel's final account. Peak memory comes from samples of VmHWM: the final account
-/// (ru_maxrss) also contains the launcher's own memory at the time of the fork, so it only counts for a process too
-/// short-lived to be sampled.
-class UsageBook {
- public:
-  void add_sample(const std::string& service, double peak_rss_mb);
-  void add_exit(const std::string& service, const ProcessExit& exit);
-  void add_restart(const std::string& service) { ++entries_[service].usage.restarts; }
-  std::map<std::string, eval::ProcessUsage> usage() const;
-
- private:
-  struct Entry {
-    eval::ProcessUsage usage;
-    bool sampled = false;
-  };
-  std::map<std::string, Entry> entries_;
-};
-
-/// Peak resident memory in MB (VmHWM), from the text of /proc/PID/status; -1 when absent (the process is ending).
-double peak_rss_mb(const std::string& proc_status);
-/// Of this process so far.
-eval::ProcessUsage own_usage();
-
-}  // namespace rtd::launcher
+}  // namespace rtd::process

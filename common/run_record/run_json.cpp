@@ -9,10 +9,10 @@
 #include <type_traits>
 
 #include "common/io/atomic_file.hpp"
+#include "common/run_record/run_record.hpp"
 #include "common/service/json_text.hpp"
-#include "services/evaluation/record/run_record.hpp"
 
-namespace rtd::eval {
+namespace rtd::run_record {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -201,4 +201,4 @@ RunRecord read_run_json(const std::filesystem::path& file) {
   }
 }
 
-}  // namespace rtd::eval
+}  // namespace rtd::run_record

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "services/launcher/core/run/supervisor.hpp"
+#include "common/process/process_host.hpp"
 
-namespace rtd::launcher {
+namespace rtd::process {
 
 /// Where children say that their work goes on. They do it as under systemd (Type=notify, WatchdogSec=), so that a
 /// service has one way to do it (common/service/systemd_link.hpp). Belongs to one thread.
@@ -32,4 +32,4 @@ class NotifySocket {
   const int fd_;
 };
 
-}  // namespace rtd::launcher
+}  // namespace rtd::process

@@ -15,7 +15,7 @@
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
 
-namespace rtd::eval {
+namespace rtd::run_record {
 
 /// The filter's modes, from no removal to all techniques (docs/theory/dynamic_points.md "Modes").
 inline const std::vector<std::string> kFilterModes{"off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd"};
@@ -117,4 +117,4 @@ class RunFileError : public std::runtime_error {
 void write_run_json(const RunRecord& record, const std::filesystem::path& file);
 RunRecord read_run_json(const std::filesystem::path& file);
 
-}  // namespace rtd::eval
+}  // namespace rtd::run_record

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/process/process_host.hpp"
+
+#include <cstring>
+
+namespace rtd::process {
+
+std::string describe(const ProcessExit& exit) {
+  if (exit.signal == 0) return "exit code " + std::to_string(exit.code);
+  const char* name = sigabbrev_np(exit.signal);
+  return "killed by signal " + std::to_string(exit.signal) + (name == nullptr ? "" : std::string(" (SIG") + name + ")");
+}
+
+}  // namespace rtd::process
