@@ -41,13 +41,13 @@ json agreement_json(const detector::AgreementCount& count) {
   return {{"images", count.images}, {"agreeing", count.agreeing}, {"first_difference", count.first_difference}};
 }
 
-json point_json(const std::optional<detector::OperatingPoint>& point) {
+json point_json(const std::optional<OperatingPoint>& point) {
   if (!point) return {};
   return {
       {"threshold", point->threshold}, {"precision", point->precision}, {"recall", point->recall}, {"f1", point->f1}};
 }
 
-json boxes_json(const detector::BoxAccuracy& accuracy) {
+json boxes_json(const BoxAccuracy& accuracy) {
   return {{"objects", accuracy.truths},
           {"detections", accuracy.detections},
           {"ap50", accuracy.ap50()},
@@ -55,7 +55,7 @@ json boxes_json(const detector::BoxAccuracy& accuracy) {
           {"ap_by_iou", accuracy.ap}};
 }
 
-json group_json(const detector::BoxAccuracy& accuracy, double wanted_recall) {
+json group_json(const BoxAccuracy& accuracy, double wanted_recall) {
   json group = boxes_json(accuracy);
   group["best_f1"] = point_json(best_f1(accuracy.curve));
   group["wanted_recall"] = point_json(highest_threshold_with_recall(accuracy.curve, wanted_recall));
@@ -105,7 +105,7 @@ std::string model_rows(const LabelledResults& results) {
          "taken as one\n";
 }
 
-std::string point_text(const std::optional<detector::OperatingPoint>& point) {
+std::string point_text(const std::optional<OperatingPoint>& point) {
   if (!point) return "-";
   return fmt::format("{:.3f} (P {:.2f} R {:.2f} F1 {:.2f})", point->threshold, point->precision, point->recall,
                      point->f1);
@@ -144,7 +144,7 @@ std::string agreement_rows(const LabelledResults& results) {
          rows;
 }
 
-std::string recall_row(const std::string& name, double roll_deg, double threshold, const detector::MaskRecall& recall) {
+std::string recall_row(const std::string& name, double roll_deg, double threshold, const MaskRecall& recall) {
   return fmt::format("{:<36} {:>6.0f} {:>10.2f} {:>12.3f} {:>14.3f} {:>9.3f} {:>8} {:>8}\n", name, roll_deg, threshold,
                      recall.pixel_recall(), recall.image_share(),
                      recall.people == 0 ? 1 : double(recall.people_found) / double(recall.people), recall.boxes,
@@ -271,7 +271,7 @@ Svg to_plot(const LabelledResults& results) {
     if (high == results.models[i].accuracy.groups.end()) continue;
     std::vector<double> thresholds, precision, recall;
     for (int step = 1; step < kCurveSteps; ++step) {
-      const detector::OperatingPoint point = at_threshold(high->second.curve, step / double(kCurveSteps));
+      const OperatingPoint point = at_threshold(high->second.curve, step / double(kCurveSteps));
       if (point.recall <= 0) break;  // nothing is found any more: precision says nothing
       thresholds.push_back(point.threshold);
       precision.push_back(point.precision);

@@ -14,7 +14,7 @@
 #include "common/service/config.hpp"
 #include "common/vision/image_codecs.hpp"
 #include "common/vision/motion_levels.hpp"
-#include "services/detector/core/evaluation/labels.hpp"
+#include "services/evaluation/core/detection/labels.hpp"
 
 namespace rtd::eval {
 namespace fs = std::filesystem;
@@ -85,8 +85,7 @@ class LabelFolder {
   const std::string& format() const { return format_; }
   /// Whether the image has a label file; without one it has no objects.
   bool has(const fs::path& image) const;
-  detector::ImageLabels read(const fs::path& image, detector::ImageSize size,
-                             const std::vector<std::string>& class_names) const;
+  ImageLabels read(const fs::path& image, ImageSize size, const std::vector<std::string>& class_names) const;
 
  private:
   fs::path file_of(const fs::path& image) const;
@@ -102,11 +101,11 @@ bool LabelFolder::has(const fs::path& image) const {
   return !file_of(image).empty();
 }
 
-detector::ImageLabels LabelFolder::read(const fs::path& image, detector::ImageSize size,
-                                        const std::vector<std::string>& class_names) const {
+ImageLabels LabelFolder::read(const fs::path& image, ImageSize size,
+                              const std::vector<std::string>& class_names) const {
   const fs::path path = file_of(image);
   if (path.empty()) return {};
-  const detector::LabelFile text{path.filename().string(), io::read_text(path).value_or("")};
+  const LabelFile text{path.filename().string(), io::read_text(path).value_or("")};
   return format_ == "yolo" ? parse_yolo_labels(text, size, class_names) : parse_voc_labels(text, size);
 }
 
@@ -129,9 +128,9 @@ std::size_t reference_of(const std::vector<ModelUnderTest>& models, std::size_t 
 }
 
 /// How far a model on another engine finds the boxes of the same model on the CPU.
-std::optional<detector::AgreementCount> compare_engines(
-    const std::vector<ModelUnderTest>& models, const std::vector<std::vector<detector::EvaluatedImage>>& evaluated,
-    std::size_t index) {
+std::optional<detector::AgreementCount> compare_engines(const std::vector<ModelUnderTest>& models,
+                                                        const std::vector<std::vector<EvaluatedImage>>& evaluated,
+                                                        std::size_t index) {
   const std::size_t reference = reference_of(models, index);
   if (reference == index) return std::nullopt;
   detector::AgreementCount count;
@@ -144,11 +143,11 @@ std::optional<detector::AgreementCount> compare_engines(
 
 /// Runs every model on one image.
 void evaluate_image(const cv::Mat& image, const fs::path& path, const LabelFolder& labels,
-                    std::vector<ModelUnderTest>& models, std::vector<std::vector<detector::EvaluatedImage>>& evaluated,
+                    std::vector<ModelUnderTest>& models, std::vector<std::vector<EvaluatedImage>>& evaluated,
                     InputReport& input) {
   if (!labels.has(path)) ++input.without_partner;
   for (std::size_t m = 0; m < models.size(); ++m) {
-    detector::ImageLabels truth = labels.read(path, {image.cols, image.rows}, models[m].class_names());
+    ImageLabels truth = labels.read(path, {image.cols, image.rows}, models[m].class_names());
     if (m == 0) input.problems.insert(input.problems.end(), truth.problems.begin(), truth.problems.end());
     evaluated[m].push_back({std::move(truth.boxes), models[m].detect(image)});
     if (input.images < kTimedImages) models[m].take_time(image);
@@ -157,12 +156,12 @@ void evaluate_image(const cv::Mat& image, const fs::path& path, const LabelFolde
 }
 
 void require_objects(const EvalDetectorOptions& options, const InputReport& input,
-                     const std::vector<detector::EvaluatedImage>& evaluated) {
+                     const std::vector<EvaluatedImage>& evaluated) {
   if (input.without_partner == input.images && input.images > 0) {
     throw service::ConfigError("--labels " + options.labels + ": no file in it has the name of an image of --images " +
                                options.images + " (photo.jpg needs photo.txt or photo.xml)");
   }
-  for (const detector::EvaluatedImage& image : evaluated)
+  for (const EvaluatedImage& image : evaluated)
     if (!image.truths.empty()) return;
   throw service::ConfigError("--labels " + options.labels + ": no object in it can be used" +
                              (input.problems.empty() ? "" : ", for example " + input.problems.front()));
@@ -196,13 +195,13 @@ std::vector<double> angles_of(const RollRange& range) {
 }
 
 void add_recall(const MaskedImage& image, const std::vector<vision::Detection>& found,
-                const EvalDetectorOptions& options, std::map<double, detector::MaskRecall>& by_threshold) {
+                const EvalDetectorOptions& options, std::map<double, MaskRecall>& by_threshold) {
   for (const double threshold : options.thresholds) {
     std::vector<vision::Detection> boxes;
     std::ranges::copy_if(found, std::back_inserter(boxes), [&](const vision::Detection& box) {
       return box.class_name == options.class_name && box.score >= threshold;
     });
-    by_threshold[threshold] += detector::measure_mask_recall(image.mask, boxes);
+    by_threshold[threshold] += measure_mask_recall(image.mask, boxes);
   }
 }
 
@@ -236,7 +235,7 @@ LabelledResults evaluate_labels(const EvalDetectorOptions& options, std::ostream
   const std::vector<fs::path> images = images_in(options.images, options.step);
   const LabelFolder labels(options.labels, options.label_format);
   std::vector<ModelUnderTest> models = load_models(options, kLeastScore);
-  std::vector<std::vector<detector::EvaluatedImage>> evaluated(models.size());
+  std::vector<std::vector<EvaluatedImage>> evaluated(models.size());
   LabelledResults results{{}, labels.format(), options.wanted_recall, {}};
   service::Progress progress(err, "images", images.size());
   for (const fs::path& path : images) {
@@ -251,8 +250,8 @@ LabelledResults evaluate_labels(const EvalDetectorOptions& options, std::ostream
   }
   require_objects(options, results.input, evaluated.front());
   for (std::size_t m = 0; m < models.size(); ++m) {
-    results.models.push_back({models[m].facts(), detector::evaluate_detector(evaluated[m], level_of),
-                              compare_engines(models, evaluated, m)});
+    results.models.push_back(
+        {models[m].facts(), evaluate_detector(evaluated[m], level_of), compare_engines(models, evaluated, m)});
   }
   return results;
 }

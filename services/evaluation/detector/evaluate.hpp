@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "services/detector/core/agreement.hpp"
-#include "services/detector/core/evaluation/average_precision.hpp"
-#include "services/detector/core/evaluation/mask_recall.hpp"
+#include "services/evaluation/core/detection/average_precision.hpp"
+#include "services/evaluation/core/detection/mask_recall.hpp"
 #include "services/evaluation/detector/model_under_test.hpp"
 
 namespace rtd::eval {
@@ -28,7 +28,7 @@ struct InputReport {
 /// A model against labels.
 struct LabelledResult {
   ModelFacts model;
-  detector::AccuracyReport accuracy;
+  AccuracyReport accuracy;
   /// Boxes of the usual confidence against those of the same model on the CPU, where that is compared too.
   std::optional<detector::AgreementCount> agreement = {};
 };
@@ -40,7 +40,7 @@ struct LabelledResults {
 };
 
 /// A model against masks: by roll in degrees, then by confidence threshold.
-using RecallByRoll = std::map<double, std::map<double, detector::MaskRecall>>;
+using RecallByRoll = std::map<double, std::map<double, MaskRecall>>;
 struct MaskResult {
   ModelFacts model;
   RecallByRoll as_seen, upright;  ///< upright: de-rotated by the true roll; empty without --derotate

@@ -17,9 +17,9 @@
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/engine.hpp"
-#include "services/detector/core/evaluation/average_precision.hpp"
-#include "services/detector/core/evaluation/mask_recall.hpp"
 #include "services/detector/core/onnxruntime_engine.hpp"
+#include "services/evaluation/core/detection/average_precision.hpp"
+#include "services/evaluation/core/detection/mask_recall.hpp"
 
 namespace rtd::detector {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "common/vision/detection.hpp"
 
-namespace rtd::detector {
+namespace rtd::eval {
 
 /// How much of what a mask marks lies in boxes. Sums up over images with +=.
 struct MaskRecall {
@@ -25,4 +25,4 @@ struct MaskRecall {
 /// One image: `mask` (CV_8UC1, not 0 = marked) against boxes in the same pixels.
 MaskRecall measure_mask_recall(const cv::Mat& mask, const std::vector<vision::Detection>& boxes);
 
-}  // namespace rtd::detector
+}  // namespace rtd::eval

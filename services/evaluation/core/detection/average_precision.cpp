@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/evaluation/average_precision.hpp"
+#include "services/evaluation/core/detection/average_precision.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <set>
 
-namespace rtd::detector {
+namespace rtd::eval {
 namespace {
 
 constexpr int kRecallSteps = 100;  // precision is read at recall 0, 0.01 .. 1
@@ -210,4 +210,4 @@ AccuracyReport evaluate_detector(const std::vector<EvaluatedImage>& images, cons
   return accuracy;
 }
 
-}  // namespace rtd::detector
+}  // namespace rtd::eval

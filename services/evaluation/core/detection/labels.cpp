@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/evaluation/labels.hpp"
+#include "services/evaluation/core/detection/labels.hpp"
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
@@ -11,7 +11,7 @@
 
 #include "common/io/text.hpp"
 
-namespace rtd::detector {
+namespace rtd::eval {
 namespace {
 
 std::string describe(const LabelledBox& box) {
@@ -177,4 +177,4 @@ ImageLabels parse_voc_labels(const LabelFile& file, ImageSize image) {
   return labels;
 }
 
-}  // namespace rtd::detector
+}  // namespace rtd::eval

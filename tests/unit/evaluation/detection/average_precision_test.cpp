@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/evaluation/average_precision.hpp"
+#include "services/evaluation/core/detection/average_precision.hpp"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-namespace rtd::detector {
+namespace rtd::eval {
 namespace {
 
 using ::testing::IsEmpty;
@@ -199,4 +199,4 @@ TEST(AccuracyReport, averages_over_the_classes_that_occur_and_pools_groups) {
 }
 
 }  // namespace
-}  // namespace rtd::detector
+}  // namespace rtd::eval

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "common/vision/detection.hpp"
-#include "services/detector/core/evaluation/labels.hpp"
+#include "services/evaluation/core/detection/labels.hpp"
 
-namespace rtd::detector {
+namespace rtd::eval {
 
 /// COCO's ten overlaps at which a detection counts as correct.
 inline constexpr std::array<double, 10> kIouThresholds = {0.5, 0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95};
@@ -70,4 +70,4 @@ struct AccuracyReport {
 
 AccuracyReport evaluate_detector(const std::vector<EvaluatedImage>& images, const GroupOf& group_of);
 
-}  // namespace rtd::detector
+}  // namespace rtd::eval

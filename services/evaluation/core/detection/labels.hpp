@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace rtd::detector {
+namespace rtd::eval {
 
 /// Size of an image, px.
 struct ImageSize {
@@ -38,4 +38,4 @@ ImageLabels parse_yolo_labels(const LabelFile& file, ImageSize image, const std:
 /// scaled when `<size>` names another size than the image has.
 ImageLabels parse_voc_labels(const LabelFile& file, ImageSize image);
 
-}  // namespace rtd::detector
+}  // namespace rtd::eval

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/evaluation/mask_recall.hpp"
+#include "services/evaluation/core/detection/mask_recall.hpp"
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace rtd::detector {
+namespace rtd::eval {
 namespace {
 
 constexpr std::size_t kMinPerson_px = 400;
@@ -75,4 +75,4 @@ MaskRecall measure_mask_recall(const cv::Mat& mask, const std::vector<vision::De
   return recall;
 }
 
-}  // namespace rtd::detector
+}  // namespace rtd::eval

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/evaluation/mask_recall.hpp"
+#include "services/evaluation/core/detection/mask_recall.hpp"
 
 #include <gmock/gmock.h>
 
-namespace rtd::detector {
+namespace rtd::eval {
 namespace {
 
 /// Two people of 20 x 40 px and a speck.
@@ -55,4 +55,4 @@ TEST(MaskRecall, is_complete_where_nothing_is_marked) {
 }
 
 }  // namespace
-}  // namespace rtd::detector
+}  // namespace rtd::eval

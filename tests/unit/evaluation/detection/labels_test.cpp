@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "services/detector/core/evaluation/labels.hpp"
+#include "services/evaluation/core/detection/labels.hpp"
 
-namespace rtd::detector {
+namespace rtd::eval {
 namespace {
 
 using ::testing::AllOf;
@@ -121,4 +121,4 @@ TEST(VocLabels, survive_what_is_no_annotation) {
 }
 
 }  // namespace
-}  // namespace rtd::detector
+}  // namespace rtd::eval
