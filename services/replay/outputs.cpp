@@ -14,10 +14,10 @@
 #include "common/ros2/names.hpp"
 #include "common/ros2/schema_texts.hpp"
 #include "common/ros2/type_description.hpp"
+#include "common/ros2/type_layout.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/config.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/replay/core/type_layout.hpp"
 
 namespace rtd::replay {
 namespace {
@@ -53,7 +53,7 @@ void check_layout(const mcap::Channel& channel, const mcap::Schema& schema, cons
   constexpr std::string_view kOurs = "rtd_msgs::msg::dds_::";
   if (!dds_type.starts_with(kOurs) || schema.encoding != "omgidl") return;
   const std::string name = dds_type.substr(kOurs.size());
-  const std::string recorded = layout_in(schema.data, name), ours = layout_in(ros2::own_idl(), name);
+  const std::string recorded = ros2::layout_in(schema.data, name), ours = ros2::layout_in(ros2::own_idl(), name);
   if (recorded.empty() || ours.empty() || recorded == ours) return;
   throw service::ConfigError(
       fmt::format("topic {} was recorded by another version of RTD-SLAM, whose {} has other fields: replay it with "

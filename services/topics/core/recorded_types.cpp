@@ -3,7 +3,7 @@
 #include "services/topics/core/recorded_types.hpp"
 
 #include "common/ros2/type_description.hpp"
-#include "services/replay/core/type_layout.hpp"
+#include "common/ros2/type_layout.hpp"
 
 namespace rtd::topics {
 namespace {
@@ -11,8 +11,8 @@ namespace {
 /// The text of IDL defines the same samples as ours, or does not define the type.
 bool same_layout(const camera::RecordedTopic& topic) {
   const std::string name = topic.type.substr(topic.type.find('/') + 1) + '_';
-  const std::string recorded = replay::layout_in(topic.schema_text, name);
-  const std::string ours = replay::layout_in(ros2::own_idl(), name);
+  const std::string recorded = ros2::layout_in(topic.schema_text, name);
+  const std::string ours = ros2::layout_in(ros2::own_idl(), name);
   return recorded.empty() || ours.empty() || recorded == ours;
 }
 

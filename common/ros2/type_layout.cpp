@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/replay/core/type_layout.hpp"
+#include "common/ros2/type_layout.hpp"
 
 #include <cctype>
 #include <set>
 #include <sstream>
 #include <vector>
 
-namespace rtd::replay {
+namespace rtd::ros2 {
 namespace {
 
 /// Names, numbers and signs, without comments.
@@ -63,4 +63,4 @@ std::string layout_in(const std::string& idl, const std::string& struct_name) {
   return LayoutReader(idl).layout_of(struct_name);
 }
 
-}  // namespace rtd::replay
+}  // namespace rtd::ros2

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/replay/core/type_layout.hpp"
+#include "common/ros2/type_layout.hpp"
 
 #include <gtest/gtest.h>
 
-namespace rtd::replay {
+namespace rtd::ros2 {
 namespace {
 
 constexpr const char* kIdl = R"(
@@ -47,4 +47,4 @@ TEST(TypeLayout, is_empty_without_a_definition_and_ends_in_damaged_texts) {
 }
 
 }  // namespace
-}  // namespace rtd::replay
+}  // namespace rtd::ros2
