@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "common/camera/depth_offsets.hpp"
+#include "common/camera/source_factory.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/pacer.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
-#include "services/camera/core/depth_offsets.hpp"
 #include "services/camera/core/read_ahead.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "services/camera/frame_publisher.hpp"
 
 namespace CLI {

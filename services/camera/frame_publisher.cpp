@@ -11,13 +11,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/camera/recording/ros_images.hpp"
 #include "common/concurrency/thread_priority.hpp"
 #include "common/msg/imu.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/image_codecs.hpp"
-#include "services/camera/core/recording/ros_images.hpp"
 
 namespace rtd::camera {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "common/bus/frame_topics.hpp"
 #include "common/bus/raw_bus.hpp"
+#include "common/camera/frame_source.hpp"
 #include "common/concurrency/bounded_queue.hpp"
-#include "services/camera/core/frame_source.hpp"
 
 namespace rtd::camera {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "common/bus/bus_factory.hpp"
-#include "services/camera/core/frame_source.hpp"
+#include "common/camera/frame_source.hpp"
 
 namespace rtd::camera {
 

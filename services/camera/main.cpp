@@ -5,12 +5,12 @@
 #include <iostream>
 #include <string>
 
+#include "common/camera/source_factory.hpp"
+#include "common/camera/tum/tum_export.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/run_service.hpp"
 #include "services/camera/camera_service.hpp"
-#include "services/camera/core/source_factory.hpp"
-#include "services/camera/core/tum/tum_export.hpp"
 #include "services/camera/preview_command.hpp"
 
 namespace rtd::camera {

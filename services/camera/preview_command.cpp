@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "common/camera/source_factory.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
@@ -15,7 +16,6 @@
 #include "common/vision/image_file.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/core/preview.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "services/camera/live_camera.hpp"
 
 namespace rtd::camera {

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <limits>
 
+#include "common/camera/recording/recording_source.hpp"
+#include "common/camera/recording/ros_images.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/mcap/writer.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/type_description.hpp"
 #include "common/ros_codec/wire.hpp"
-#include "services/camera/core/recording/recording_source.hpp"
-#include "services/camera/core/recording/ros_images.hpp"
 
 namespace rtd::recording {
 namespace {
@@ -66,7 +66,8 @@ msg::TFMessage truth_message(const geometry::StampedPose& pose) {
 class Recorder {
  public:
   Recorder(const fs::path& file, mcap::Compression compression, double depth_scale_m)
-      : sink_(file, {.named_by = io::NamedBy::kOperator, .if_exists = io::IfExists::kFail}), writer_(sink_, {.profile = "ros2", .compression = compression}) {
+      : sink_(file, {.named_by = io::NamedBy::kOperator, .if_exists = io::IfExists::kFail}),
+        writer_(sink_, {.profile = "ros2", .compression = compression}) {
     const mcap::SchemaId image = schema("sensor_msgs/msg/Image");
     color_ = channel("/camera/color/image_raw", image);
     depth_ = channel("/camera/aligned_depth_to_color/image_raw", image,

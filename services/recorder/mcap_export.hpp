@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
+#include "common/camera/tum/tum_export.hpp"
 #include "common/mcap/compression.hpp"
-#include "services/camera/core/tum/tum_export.hpp"
 
 namespace rtd::recording {
 

@@ -5,11 +5,11 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common/camera/recording/recording.hpp"
+#include "common/camera/source_factory.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/json_text.hpp"
-#include "services/camera/core/recording/recording.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "services/recorder/copy_recording.hpp"
 #include "services/recorder/inspect/inspect_commands.hpp"
 #include "services/recorder/mcap_export.hpp"

@@ -9,10 +9,10 @@
 #include <ostream>
 #include <set>
 
+#include "common/camera/frame_source.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/json_text.hpp"
-#include "services/camera/core/frame_source.hpp"
 #include "services/topics/core/topic_report.hpp"
 #include "services/topics/recording_echo.hpp"
 #include "services/topics/topics_session.hpp"

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/camera/calibration.hpp"
+#include "common/camera/tum/tum_source.hpp"
 #include "common/geometry/trajectory.hpp"
-#include "services/camera/core/calibration.hpp"
-#include "services/camera/core/tum/tum_source.hpp"
 
 namespace rtd::test_support {
 namespace {

@@ -10,8 +10,8 @@
 #include <sstream>
 #include <thread>
 
+#include "common/camera/source_factory.hpp"
 #include "common/geometry/se3.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "tests/support/pose_error.hpp"
 

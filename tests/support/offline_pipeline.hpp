@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "common/camera/frame_source.hpp"
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/camera/core/frame_source.hpp"
 #include "services/evaluation/core/removal/removal.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "services/filter/core/dynamic_filter.hpp"

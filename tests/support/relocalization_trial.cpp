@@ -7,10 +7,10 @@
 #include <numbers>
 #include <thread>
 
+#include "common/camera/source_factory.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "tests/support/offline_pipeline.hpp"
 
 namespace rtd::test_support {

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/camera/synthetic/texture.hpp"
 #include "common/service/model_locator.hpp"
-#include "services/camera/core/synthetic/texture.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "tests/support/remembered_detections.hpp"

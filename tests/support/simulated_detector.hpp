@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "common/camera/frame_source.hpp"
 #include "common/vision/detection.hpp"
-#include "services/camera/core/frame_source.hpp"
 #include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/detector_config.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "services/camera/core/frame_source.hpp"
+#include "common/camera/frame_source.hpp"
 
 namespace rtd::camera {
 

@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "common/camera/frame_source.hpp"
 #include "common/concurrency/bounded_queue.hpp"
-#include "services/camera/core/frame_source.hpp"
 
 namespace rtd::camera {
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "services/camera/core/frame_source.hpp"
+#include "common/camera/frame_source.hpp"
 #ifdef RTD_HAS_OPENNI2
 #include "services/camera/devices/openni2_device.hpp"
 #endif

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "services/camera/core/live/device_uri.hpp"
+#include "common/camera/device_uri.hpp"
 #include "services/camera/core/live/live_device.hpp"
 
 namespace rtd::camera {

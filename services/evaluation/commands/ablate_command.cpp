@@ -10,6 +10,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "common/camera/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
@@ -21,7 +22,6 @@
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/standard_streams.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/ablation/ablation.hpp"
 #include "services/evaluation/core/report/report.hpp"

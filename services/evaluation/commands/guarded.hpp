@@ -5,12 +5,12 @@
 #include <exception>
 #include <ostream>
 
+#include "common/camera/frame_source.hpp"
 #include "common/geometry/trajectory.hpp"
 #include "common/process/out_folder.hpp"
 #include "common/run_record/run_record.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
-#include "services/camera/core/frame_source.hpp"
 
 namespace rtd::eval {
 

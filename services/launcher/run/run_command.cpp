@@ -11,6 +11,7 @@
 #include <iostream>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/camera/frame_source.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
@@ -19,7 +20,6 @@
 #include "common/service/run_service.hpp"
 #include "common/service/standard_streams.hpp"
 #include "common/service/trace.hpp"
-#include "services/camera/core/frame_source.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/trace_file.hpp"
 #include "services/launcher/process/lost_lock.hpp"

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/run/run_session.hpp"
 
+#include "common/camera/live_uri.hpp"
 #include "common/io/text.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/camera/core/live/live_source.hpp"
 #include "services/launcher/process/lost_lock.hpp"
 
 namespace rtd::launcher {

@@ -12,14 +12,14 @@
 #include <optional>
 #include <sstream>
 
+#include "common/camera/live_uri.hpp"
+#include "common/camera/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/pacer.hpp"
-#include "services/camera/core/live/live_source.hpp"
-#include "services/camera/core/source_factory.hpp"
 
 namespace rtd::launcher {
 namespace fs = std::filesystem;

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <memory>
 
-#include "services/camera/core/recording/recording.hpp"
+#include "common/camera/recording/recording.hpp"
 
 namespace rtd::recording {
 namespace {

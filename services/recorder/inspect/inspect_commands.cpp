@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <ostream>
 
+#include "common/camera/frame_source.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/open.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
-#include "services/camera/core/frame_source.hpp"
 #include "services/recorder/inspect/foreign_report.hpp"
 #include "services/recorder/inspect/recording_diff.hpp"
 #include "services/recorder/inspect/recording_report.hpp"
@@ -60,13 +60,14 @@ int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream&
   return in_a.data_lost || in_b.data_lost ? service::kPartialLoss : service::kOk;
 }
 
-constexpr char kCompared[] = "'rtd diff' compares two recordings (MCAP, rosbag2, ROS 1 bag), or two trajectories in TUM format";
+constexpr char kCompared[] =
+    "'rtd diff' compares two recordings (MCAP, rosbag2, ROS 1 bag), or two trajectories in TUM format";
 
-eval::Trajectory read_trajectory(const std::string& path) {
+geometry::Trajectory read_trajectory(const std::string& path) {
   try {
-    return eval::read_tum_trajectory(path);
-  } catch (const eval::TrajectoryError& error) {
-    throw eval::TrajectoryError(std::string(error.what()) + "; " + kCompared);
+    return geometry::read_tum_trajectory(path);
+  } catch (const geometry::TrajectoryError& error) {
+    throw geometry::TrajectoryError(std::string(error.what()) + "; " + kCompared);
   }
 }
 
@@ -92,7 +93,8 @@ void add_damages(RecordingReport& report, const std::vector<std::string>& damage
 }  // namespace
 
 CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
-  CLI::App* command = parent.add_subcommand("diff", "Compare two recordings (MCAP, rosbag2, ROS 1 bag) or two trajectories (TUM format)");
+  CLI::App* command = parent.add_subcommand(
+      "diff", "Compare two recordings (MCAP, rosbag2, ROS 1 bag) or two trajectories (TUM format)");
   command->add_option("a", request.a, "Recording or trajectory")->required();
   command->add_option("b", request.b, "Another of the same kind")->required();
   command->add_flag("--json", request.json, "Print JSON instead of text");
@@ -123,7 +125,7 @@ CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
 }
 
 int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
-  return service::report_errors<mcap::RecordingFileError, eval::TrajectoryError>("rtd diff", err, [&] {
+  return service::report_errors<mcap::RecordingFileError, geometry::TrajectoryError>("rtd diff", err, [&] {
     const bool a = recordings::is_recording(request.a), b = recordings::is_recording(request.b);
     if (!a) refuse_other_format(request.a);
     if (!b) refuse_other_format(request.b);
@@ -136,7 +138,8 @@ int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
 
 CLI::App* add_info_command(CLI::App& parent, InfoOptions& options) {
   CLI::App* command = parent.add_subcommand(
-      "info", "Show what a recording (MCAP, ROS 1 bag, rosbag2 file or folder) contains: topics, rates, gaps, losses, damage");
+      "info",
+      "Show what a recording (MCAP, ROS 1 bag, rosbag2 file or folder) contains: topics, rates, gaps, losses, damage");
   command->add_option("file", options.file, "Recording, or a folder with one")->required();
   command->add_flag("--json", options.json, "Print JSON instead of text");
   command->add_flag("--check", options.check,

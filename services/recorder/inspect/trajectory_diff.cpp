@@ -17,7 +17,7 @@ double seconds(std::int64_t ns) {
 }
 
 /// Exactly zero for equal poses: rounding must not make them differ.
-PoseDifference difference(const eval::StampedPose& a, const eval::StampedPose& b) {
+PoseDifference difference(const geometry::StampedPose& a, const geometry::StampedPose& b) {
   PoseDifference result{a.stamp_ns, 0, 0};
   if (a.T_world_body.matrix() == b.T_world_body.matrix()) return result;
   result.translation_m = (a.T_world_body.translation() - b.T_world_body.translation()).norm();
@@ -54,7 +54,7 @@ Json json_of(const std::optional<PoseDifference>& at) {
 
 }  // namespace
 
-TrajectoryDiff diff(const eval::Trajectory& a, const eval::Trajectory& b, const PoseTolerance& tolerance) {
+TrajectoryDiff diff(const geometry::Trajectory& a, const geometry::Trajectory& b, const PoseTolerance& tolerance) {
   TrajectoryDiff result;
   result.poses_a = a.size();
   result.poses_b = b.size();

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "services/evaluation/core/trajectory/trajectory_error.hpp"
+#include "common/geometry/trajectory.hpp"
 
 namespace rtd::recording {
 
@@ -31,7 +31,7 @@ struct TrajectoryDiff {
   bool equal() const { return differing == 0 && only_a_ns.empty() && only_b_ns.empty(); }
 };
 
-TrajectoryDiff diff(const eval::Trajectory& a, const eval::Trajectory& b, const PoseTolerance& tolerance = {});
+TrajectoryDiff diff(const geometry::Trajectory& a, const geometry::Trajectory& b, const PoseTolerance& tolerance = {});
 
 std::string to_text(const TrajectoryDiff& diff);
 nlohmann::ordered_json to_json(const TrajectoryDiff& diff);

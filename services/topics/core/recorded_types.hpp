@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
+#include "common/camera/recording/recording.hpp"
 #include "common/ros_codec/message_definition.hpp"
-#include "services/camera/core/recording/recording.hpp"
 
 namespace rtd::topics {
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 
-#include "services/camera/core/source_factory.hpp"
+#include "common/camera/source_factory.hpp"
 #include "services/camera/frame_publisher.hpp"
 
 namespace {

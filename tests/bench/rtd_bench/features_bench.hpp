@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "services/camera/core/frame_source.hpp"
+#include "common/camera/frame_source.hpp"
 #include "tests/bench/rtd_bench/percentile.hpp"
 
 namespace rtd::bench {

@@ -5,9 +5,9 @@
 #include <iostream>
 #include <string_view>
 
+#include "common/camera/source_factory.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "services/detector/core/engine.hpp"
 #include "tests/bench/rtd_bench/detector/detector_command.hpp"
 #include "tests/bench/rtd_bench/features_bench.hpp"

@@ -9,8 +9,8 @@
 #include <numbers>
 #include <optional>
 
+#include "common/camera/source_factory.hpp"
 #include "common/geometry/se3.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "services/filter/core/orb/orb_extractor.hpp"
 #include "services/slam/core/place/keyframe_database.hpp"

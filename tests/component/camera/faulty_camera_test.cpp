@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "services/camera/core/synthetic/renderer.hpp"
-#include "services/camera/core/synthetic/scene.hpp"
-#include "services/camera/core/synthetic/shutter.hpp"
-#include "services/camera/core/synthetic/synthetic_source.hpp"
+#include "common/camera/synthetic/renderer.hpp"
+#include "common/camera/synthetic/scene.hpp"
+#include "common/camera/synthetic/shutter.hpp"
+#include "common/camera/synthetic/synthetic_source.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 
 namespace rtd::camera {

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "services/camera/core/frame_source.hpp"
+#include "common/camera/frame_source.hpp"
 #include "services/camera/live_camera.hpp"
 #include "tests/support/oni_writer.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "services/camera/core/synthetic/movers.hpp"
-#include "services/camera/core/synthetic/scene.hpp"
+#include "common/camera/synthetic/movers.hpp"
+#include "common/camera/synthetic/scene.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 
 namespace rtd::camera {

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/synthetic/synthetic_source.hpp"
+#include "common/camera/synthetic/synthetic_source.hpp"
 
 #include <gmock/gmock.h>
 
-#include "services/camera/core/source_factory.hpp"
-#include "services/camera/core/tum/tum_export.hpp"
+#include "common/camera/source_factory.hpp"
+#include "common/camera/tum/tum_export.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"
 

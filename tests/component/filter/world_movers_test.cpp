@@ -14,8 +14,8 @@
 #include <optional>
 #include <vector>
 
-#include "services/camera/core/source_factory.hpp"
-#include "services/camera/core/synthetic/synthetic_source.hpp"
+#include "common/camera/source_factory.hpp"
+#include "common/camera/synthetic/synthetic_source.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
 #include "services/filter/core/boxes/assignment.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/topics.hpp"
+#include "common/camera/source_factory.hpp"
 #include "common/msg/status.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/support/inbox.hpp"
 #include "tests/support/realsense_double.hpp"

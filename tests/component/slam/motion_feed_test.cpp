@@ -9,11 +9,11 @@
 #include <numbers>
 #include <sstream>
 
+#include "common/camera/synthetic/motion_sensors.hpp"
 #include "common/msg/imu.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/config.hpp"
-#include "services/camera/core/synthetic/motion_sensors.hpp"
 #include "services/slam/slam_service.hpp"
 #include "tests/support/feature_world.hpp"
 #include "tests/support/service_fixture.hpp"

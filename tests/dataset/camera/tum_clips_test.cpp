@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "services/camera/core/source_factory.hpp"
+#include "common/camera/source_factory.hpp"
 
 namespace rtd::camera {
 namespace {

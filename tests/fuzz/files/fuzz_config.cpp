@@ -6,9 +6,9 @@
 /// fuzz_config_failed.yaml otherwise. The preset asan-ubsan gives it its teeth.
 #include <ctime>
 
+#include "common/camera/calibration.hpp"
+#include "common/camera/frame_source.hpp"
 #include "common/service/config.hpp"
-#include "services/camera/core/calibration.hpp"
-#include "services/camera/core/frame_source.hpp"
 #include "services/filter/config.hpp"
 #include "tests/fuzz/files/text_mutation.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"

@@ -10,10 +10,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "common/camera/frame_source.hpp"
+#include "common/camera/tum/tum_source.hpp"
 #include "common/geometry/trajectory.hpp"
 #include "common/msg/stamps.hpp"
-#include "services/camera/core/frame_source.hpp"
-#include "services/camera/core/tum/tum_source.hpp"
 #include "tests/fuzz/files/text_mutation.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"
 

@@ -6,9 +6,9 @@
 #include <ctime>
 #include <opencv2/imgproc.hpp>
 
+#include "common/camera/source_factory.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "services/slam/slam_messages.hpp"
 

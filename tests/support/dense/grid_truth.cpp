@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "services/camera/core/source_factory.hpp"
-#include "services/camera/core/synthetic/synthetic_source.hpp"
+#include "common/camera/source_factory.hpp"
+#include "common/camera/synthetic/synthetic_source.hpp"
 
 namespace rtd::test_support {
 namespace {

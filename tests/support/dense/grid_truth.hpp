@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "services/camera/core/synthetic/scene.hpp"
+#include "common/camera/synthetic/scene.hpp"
 #include "services/dense/core/navigation_grid.hpp"
 
 namespace rtd::test_support {

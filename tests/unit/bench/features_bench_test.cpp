@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/camera/core/source_factory.hpp"
+#include "common/camera/source_factory.hpp"
 
 namespace rtd::bench {
 namespace {

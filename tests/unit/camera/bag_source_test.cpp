@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "services/camera/core/recording/ros_images.hpp"
+#include "common/camera/recording/ros_images.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/calibration.hpp"
+#include "common/camera/calibration.hpp"
 
 #include <gmock/gmock.h>
 
-#include "services/camera/core/frame_source.hpp"
+#include "common/camera/frame_source.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"
 
 namespace rtd::camera {

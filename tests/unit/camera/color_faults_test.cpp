@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/synthetic/color_faults.hpp"
+#include "common/camera/synthetic/color_faults.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "services/camera/core/synthetic/texture.hpp"
+#include "common/camera/synthetic/texture.hpp"
 
 namespace rtd::camera::synthetic {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/synthetic/depth_faults.hpp"
+#include "common/camera/synthetic/depth_faults.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "services/camera/core/synthetic/geometry.hpp"
+#include "common/camera/synthetic/geometry.hpp"
 
 namespace rtd::camera::synthetic {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <gmock/gmock.h>
 
+#include "common/camera/source_factory.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/core/live/pixel_format.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "tests/unit/camera/played_device.hpp"
 
 namespace rtd::camera {

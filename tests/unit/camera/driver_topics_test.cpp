@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/recording/driver_topics.hpp"
+#include "common/camera/recording/driver_topics.hpp"
 
 #include <gmock/gmock.h>
 
+#include "common/camera/frame_source.hpp"
+#include "common/camera/recording/recording.hpp"
+#include "common/camera/source_factory.hpp"
 #include "common/ros_codec/wire.hpp"
-#include "services/camera/core/frame_source.hpp"
-#include "services/camera/core/recording/recording.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 
 namespace rtd::camera {

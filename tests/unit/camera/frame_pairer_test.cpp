@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/recording/frame_pairer.hpp"
+#include "common/camera/recording/frame_pairer.hpp"
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <random>
 
-#include "services/camera/core/tum/tum_source.hpp"
+#include "common/camera/tum/tum_source.hpp"
 
 namespace rtd::camera {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <set>
 
-#include "services/camera/core/source_factory.hpp"
+#include "common/camera/source_factory.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/two_cameras.hpp"
 

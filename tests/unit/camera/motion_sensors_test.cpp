@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/synthetic/motion_sensors.hpp"
+#include "common/camera/synthetic/motion_sensors.hpp"
 
 #include <gmock/gmock.h>
 
+#include "common/camera/source_factory.hpp"
 #include "common/geometry/se3.hpp"
-#include "services/camera/core/source_factory.hpp"
 
 namespace rtd::camera {
 namespace {

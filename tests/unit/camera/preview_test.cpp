@@ -6,7 +6,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "services/camera/core/source_factory.hpp"
+#include "common/camera/source_factory.hpp"
 
 namespace rtd::camera {
 namespace {

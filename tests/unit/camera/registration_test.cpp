@@ -4,9 +4,9 @@
 // Recordings whose depth was taken by another camera than colour: registered, or refused with the reason.
 #include <gmock/gmock.h>
 
+#include "common/camera/depth_alignment.hpp"
+#include "common/camera/depth_offsets.hpp"
 #include "common/geometry/transform_log.hpp"
-#include "services/camera/core/depth_alignment.hpp"
-#include "services/camera/core/depth_offsets.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/mcap_file.hpp"
 #include "tests/unit/camera/played_frames.hpp"

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/recording/ros_images.hpp"
+#include "common/camera/recording/ros_images.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
 
-#include "services/camera/core/frame_source.hpp"
-#include "services/camera/core/recording/rvl.hpp"
+#include "common/camera/frame_source.hpp"
+#include "common/camera/recording/rvl.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 
 namespace rtd::camera {

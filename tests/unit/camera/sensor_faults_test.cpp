@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/synthetic/faults.hpp"
+#include "common/camera/synthetic/faults.hpp"
 
 #include <gmock/gmock.h>
 
-#include "services/camera/core/synthetic/frame_drops.hpp"
-#include "services/camera/core/synthetic/lens.hpp"
-#include "services/camera/core/synthetic/scene_camera.hpp"
-#include "services/camera/core/synthetic/synthetic_source.hpp"
+#include "common/camera/synthetic/frame_drops.hpp"
+#include "common/camera/synthetic/lens.hpp"
+#include "common/camera/synthetic/scene_camera.hpp"
+#include "common/camera/synthetic/synthetic_source.hpp"
 
 namespace rtd::camera {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <gmock/gmock.h>
 
+#include "common/camera/frame_source.hpp"
 #include "common/mcap/writer.hpp"
 #include "common/msg/ros.hpp"
 #include "common/ros_codec/wire.hpp"
-#include "services/camera/core/frame_source.hpp"
 #include "tests/support/rosbag1/bag_writer.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 

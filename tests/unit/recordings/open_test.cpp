@@ -4,9 +4,9 @@
 
 #include <random>
 
+#include "common/camera/source_factory.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/parts.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "services/recorder/inspect/inspect_commands.hpp"
 #include "tests/support/rosbag1/bag_writer.hpp"
 #include "tests/unit/recordings/sample_files.hpp"

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <random>
 
-#include "services/camera/core/recording/recording.hpp"
-#include "services/camera/core/source_factory.hpp"
+#include "common/camera/recording/recording.hpp"
+#include "common/camera/source_factory.hpp"
 
 namespace rtd::rosbag2 {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "services/camera/core/recording/recording.hpp"
+#include "common/camera/recording/recording.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/mcap_file.hpp"
 #include "tests/unit/camera/played_frames.hpp"

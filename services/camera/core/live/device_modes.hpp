@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "common/camera/device_uri.hpp"
+
 namespace rtd::camera {
 
 enum class Stream { kColor, kDepth };
@@ -17,12 +19,6 @@ struct DeviceMode {
   cv::Size size_px;
   double fps = 0;
   std::string format;  ///< as in pixel_format.hpp, or the device's own name of another
-};
-
-/// What the user asks of the modes; 0 = the device's best.
-struct ModeRequest {
-  int width = 0, height = 0;
-  double fps = 0;
 };
 
 /// The mode of a stream that fits the request: readable, not larger than a frame may be; 640 x 480 at 30 Hz if nothing

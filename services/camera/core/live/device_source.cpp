@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <utility>
 
-#include "services/camera/core/calibration.hpp"
+#include "common/camera/calibration.hpp"
+#include "common/camera/recording/ros_images.hpp"
 #include "services/camera/core/live/pixel_format.hpp"
-#include "services/camera/core/recording/ros_images.hpp"
 
 namespace rtd::camera {
 namespace {

@@ -9,13 +9,13 @@
 #include <optional>
 #include <string>
 
+#include "common/camera/device_uri.hpp"
+#include "common/camera/frame_source.hpp"
+#include "common/camera/recording/frame_pairer.hpp"
 #include "common/vision/depth_registration.hpp"
-#include "services/camera/core/frame_source.hpp"
 #include "services/camera/core/live/device_health.hpp"
 #include "services/camera/core/live/device_timeline.hpp"
-#include "services/camera/core/live/device_uri.hpp"
 #include "services/camera/core/live/live_device.hpp"
-#include "services/camera/core/recording/frame_pairer.hpp"
 
 namespace rtd::camera {
 

@@ -5,46 +5,17 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <sstream>
 #include <utility>
 #include <vector>
 
+#include "common/camera/calibration.hpp"
+#include "common/camera/frame_source.hpp"
+#include "common/camera/recording/ros_images.hpp"
 #include "common/io/text.hpp"
 #include "common/ros_codec/wire.hpp"
-#include "services/camera/core/calibration.hpp"
-#include "services/camera/core/frame_source.hpp"
-#include "services/camera/core/live/device_uri.hpp"
-#include "services/camera/core/recording/ros_images.hpp"
-#include "services/camera/core/source_factory.hpp"
 
 namespace rtd::camera {
 namespace {
-
-constexpr const char* kForm =
-    "ros2:COLOR_TOPIC,DEPTH_TOPIC[,INFO_TOPIC]"
-    "[?calibration=FILE&depth_info=TOPIC&registered=1&tolerance_ms=20]";
-
-std::string absolute(std::string topic) {
-  if (!topic.empty() && topic.front() != '/') topic.insert(topic.begin(), '/');
-  return topic;
-}
-
-std::vector<std::string> split_topics(const std::string& list) {
-  std::vector<std::string> topics;
-  std::istringstream names(list);
-  for (std::string topic; std::getline(names, topic, ',');) {
-    topics.push_back(absolute(topic));
-  }
-  return topics;
-}
-
-/// "camera_info" beside the image, as image_transport has it.
-std::string info_beside(std::string image) {
-  for (const std::string transport : {"/compressed", "/compressedDepth"}) {
-    if (image.ends_with(transport)) image.resize(image.size() - transport.size());
-  }
-  return image.substr(0, image.rfind('/')) + "/camera_info";
-}
 
 /// Empty when the info describes none: it may still do to be left unused.
 std::optional<geometry::CameraModel> usable_camera(const msg::CameraInfo& info, const std::string& image_topic,
@@ -63,41 +34,6 @@ constexpr std::int64_t kAlignmentNs = 5'000'000'000;     // for what registers d
 constexpr std::uint64_t kSteppedImages = 30;             // in a row with a stamp before that of the last frame
 
 }  // namespace
-
-bool is_live(const std::string& uri) {
-  return uri.starts_with("ros2:") || is_device(uri);
-}
-
-void check_live_uri(const std::string& uri) {
-  is_device(uri) ? static_cast<void>(parse_device_uri(uri)) : static_cast<void>(parse_live_options(uri));
-}
-
-LiveOptions parse_live_options(const std::string& text) {
-  const SourceUri uri = parse_source_uri(text);
-  const std::vector<std::string> topics = split_topics(uri.path);
-  bool complete = topics.size() == 2 || topics.size() == 3;
-  for (const std::string& topic : topics) complete = complete && topic.size() > 1;
-  if (!complete) throw SourceError("source '" + text + "' does not name its topics: " + kForm);
-  LiveOptions options;
-  options.topics = {topics[0], topics[1], topics.size() == 3 ? topics[2] : info_beside(topics[0]),
-                    info_beside(topics[1])};
-  if (topics[0] == topics[1]) throw SourceError("source '" + text + "': colour and depth are one topic: " + kForm);
-  for (const auto& [key, value] : uri.parameters) {
-    if (key == "calibration") {
-      options.calibration_file = value;
-    } else if (key == "tolerance_ms") {
-      options.tolerance_ns = parse_tolerance_ns(text, value);
-    } else if (key == "registered") {
-      options.registered = parse_flag(text, key, value);
-    } else if (key == "depth_info") {
-      options.topics.depth_info = absolute(value);
-    } else {
-      throw SourceError("source '" + text + "': unknown parameter '" + key +
-                        "'; ros2: knows calibration, depth_info, registered, tolerance_ms");
-    }
-  }
-  return options;
-}
 
 LiveSource::LiveSource(std::string uri, std::unique_ptr<LiveFeed> feed, LiveOptions options)
     : options_(std::move(options)),

@@ -9,19 +9,16 @@
 #include <optional>
 #include <string>
 
+#include "common/camera/depth_alignment.hpp"
+#include "common/camera/frame_source.hpp"
+#include "common/camera/live_uri.hpp"
+#include "common/camera/recording/frame_pairer.hpp"
+#include "common/camera/recording/recording.hpp"
 #include "common/geometry/transform_log.hpp"
 #include "common/vision/depth_registration.hpp"
-#include "services/camera/core/depth_alignment.hpp"
-#include "services/camera/core/frame_source.hpp"
-#include "services/camera/core/recording/frame_pairer.hpp"
-#include "services/camera/core/recording/recording.hpp"
 
 namespace rtd::camera {
 
-/// The topics of a camera that runs now, by their ROS names. Transforms come on /tf_static and /tf.
-struct LiveTopics {
-  std::string color, depth, info, depth_info;
-};
 inline constexpr const char* kLastingTransforms = "/tf_static";
 inline constexpr const char* kTransforms = "/tf";
 
@@ -46,27 +43,6 @@ class LiveFeed {
   /// Whether a publisher of its type is known.
   virtual bool is_published(const std::string& topic) const = 0;
 };
-
-/// The parameters of `ros2:COLOR,DEPTH[,INFO][?calibration=FILE&depth_info=TOPIC&registered=1&tolerance_ms=20]`.
-struct LiveOptions {
-  LiveTopics topics;
-  std::string calibration_file;  ///< replaces the driver's calibration and depth unit
-  bool registered = false;       ///< depth is registered to colour, whatever it looks like
-  std::int64_t tolerance_ns = kPairingToleranceNs;
-  std::int64_t open_timeout_ns = 30'000'000'000;  ///< until the first frame
-  /// Receives what the source waits for, about once a second, and an empty text when frames arrive (again).
-  std::function<void(const std::string&)> on_wait = [](const std::string&) {};
-};
-
-/// Whether the URI is that of a running camera: ROS 2 topics or a device.
-bool is_live(const std::string& uri);
-
-/// Throws SourceError when the URI of a running camera is malformed; opens nothing.
-void check_live_uri(const std::string& uri);
-
-/// Topics and parameters of such a URI; INFO is `camera_info` beside COLOR when not named, depth_info that beside
-/// DEPTH. Throws SourceError.
-LiveOptions parse_live_options(const std::string& uri);
 
 /// Frames of a running ROS camera: colour and depth paired by their stamps, as soon as both are there; depth that is
 /// not registered to colour is registered by both CameraInfos and the transform between the two frames. It ends only

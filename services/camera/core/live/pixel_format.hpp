@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "services/camera/core/image_files.hpp"
+#include "common/camera/image_files.hpp"
 #include "services/camera/core/live/device_modes.hpp"
 
 namespace rtd::camera {

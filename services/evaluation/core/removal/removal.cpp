@@ -11,9 +11,9 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "common/camera/source_factory.hpp"
 #include "common/io/text.hpp"
 #include "common/vision/image_codecs.hpp"
-#include "services/camera/core/source_factory.hpp"
 
 namespace rtd::eval {
 namespace fs = std::filesystem;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/camera/recording/recording.hpp"
 #include "common/geometry/trajectory.hpp"
-#include "services/camera/core/recording/recording.hpp"
 
 namespace rtd::eval {
 

@@ -9,11 +9,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <ostream>
 
+#include "common/camera/source_factory.hpp"
 #include "common/msg/engine_names.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
-#include "services/camera/core/source_factory.hpp"
 #include "services/detector/core/engine.hpp"
 
 namespace rtd::bench {

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 
-#include "services/camera/core/frame_source.hpp"
+#include "common/camera/frame_source.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 
 namespace rtd::recording {

@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::int64_t kPeriodNs = 33'000'000;
 
-eval::Trajectory straight_walk(int poses) {
-  eval::Trajectory trajectory;
+geometry::Trajectory straight_walk(int poses) {
+  geometry::Trajectory trajectory;
   for (int i = 0; i < poses; ++i) {
-    eval::StampedPose pose{i * kPeriodNs, Eigen::Isometry3d::Identity()};
+    geometry::StampedPose pose{i * kPeriodNs, Eigen::Isometry3d::Identity()};
     pose.T_world_body.translation() = Eigen::Vector3d(0.01 * i, 0, 1);
     pose.T_world_body.rotate(Eigen::AngleAxisd(0.1 * i, Eigen::Vector3d(1, 2, 3).normalized()));
     trajectory.push_back(pose);
@@ -29,8 +29,8 @@ TEST(TrajectoryDiff, equal_poses_are_equal_without_any_tolerance) {
 }
 
 TEST(TrajectoryDiff, finds_the_first_and_the_largest_difference_in_their_units) {
-  const eval::Trajectory a = straight_walk(10);
-  eval::Trajectory b = a;
+  const geometry::Trajectory a = straight_walk(10);
+  geometry::Trajectory b = a;
   b[3].T_world_body.translation().x() += 0.001;
   b[5].T_world_body.translation().y() -= 0.25;
   b[7].T_world_body.rotate(Eigen::AngleAxisd(2 * std::numbers::pi / 180, Eigen::Vector3d::UnitZ()));
@@ -46,8 +46,8 @@ TEST(TrajectoryDiff, finds_the_first_and_the_largest_difference_in_their_units) 
 }
 
 TEST(TrajectoryDiff, finds_poses_that_are_missing_on_either_side) {
-  const eval::Trajectory whole = straight_walk(10);
-  eval::Trajectory a = whole, b = whole;
+  const geometry::Trajectory whole = straight_walk(10);
+  geometry::Trajectory a = whole, b = whole;
   a.erase(a.begin() + 4);
   b.erase(b.begin());
   b.pop_back();
@@ -59,9 +59,9 @@ TEST(TrajectoryDiff, finds_poses_that_are_missing_on_either_side) {
 }
 
 TEST(TrajectoryDiff, lets_the_caller_say_what_is_the_same) {
-  const eval::Trajectory a = straight_walk(10);
-  eval::Trajectory b = a;
-  for (eval::StampedPose& pose : b) {
+  const geometry::Trajectory a = straight_walk(10);
+  geometry::Trajectory b = a;
+  for (geometry::StampedPose& pose : b) {
     pose.stamp_ns += 50'000;
     pose.T_world_body.translation().z() += 1e-4;
   }

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "services/camera/core/synthetic/motion_sensors.hpp"
+#include "common/camera/synthetic/motion_sensors.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/feature_world.hpp"
 #include "tests/support/pose_error.hpp"

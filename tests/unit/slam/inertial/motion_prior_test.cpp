@@ -8,8 +8,8 @@
 #include <limits>
 #include <random>
 
-#include "services/camera/core/synthetic/camera_path.hpp"
-#include "services/camera/core/synthetic/motion_sensors.hpp"
+#include "common/camera/synthetic/camera_path.hpp"
+#include "common/camera/synthetic/motion_sensors.hpp"
 
 namespace rtd::slam {
 namespace {

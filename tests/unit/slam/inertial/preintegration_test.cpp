@@ -8,9 +8,9 @@
 #include <limits>
 #include <random>
 
+#include "common/camera/synthetic/camera_path.hpp"
+#include "common/camera/synthetic/motion_sensors.hpp"
 #include "common/geometry/se3.hpp"
-#include "services/camera/core/synthetic/camera_path.hpp"
-#include "services/camera/core/synthetic/motion_sensors.hpp"
 
 namespace rtd::slam {
 namespace {

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/camera/calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "common/camera/frame_source.hpp"
+#include "common/io/text.hpp"
+#include "common/msg/rgbd_frame.hpp"
+#include "common/msg/sensor_time.hpp"
+
+namespace rtd::camera {
+namespace {
+
+constexpr const char* kAllowedKeys =
+    "width height fx fy cx cy (needed), fisheye k1 k2 p1 p2 k3 k4 k5 k6 depth_factor fps readout_s depth_offset_s "
+    "(optional)";
+
+struct KeyRule {
+  double min, max;
+  bool needed;
+};
+
+const std::map<std::string, KeyRule>& key_rules() {
+  constexpr double kTime = msg::kMaxSensorTime_s;
+  static const std::map<std::string, KeyRule> rules = {{"width", {16, 1e5, true}},
+                                                       {"height", {16, 1e5, true}},
+                                                       {"fx", {1, 1e5, true}},
+                                                       {"fy", {1, 1e5, true}},
+                                                       {"cx", {-1e5, 1e5, true}},
+                                                       {"cy", {-1e5, 1e5, true}},
+                                                       {"k1", {-100, 100, false}},
+                                                       {"k2", {-100, 100, false}},
+                                                       {"p1", {-10, 10, false}},
+                                                       {"p2", {-10, 10, false}},
+                                                       {"k3", {-100, 100, false}},
+                                                       {"k4", {-100, 100, false}},
+                                                       {"k5", {-100, 100, false}},
+                                                       {"k6", {-100, 100, false}},
+                                                       {"fisheye", {0, 1, false}},
+                                                       {"fps", {0.1, 1000, false}},
+                                                       {"depth_factor", {1, 1e6, false}},
+                                                       {"readout_s", {-kTime, kTime, false}},
+                                                       {"depth_offset_s", {-kTime, kTime, false}}};
+  return rules;
+}
+
+/// Keys of the distortion in the order of CameraModel::Parameters.
+const std::vector<std::string>& coefficient_names(geometry::Lens lens) {
+  static const std::vector<std::string> brown = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+  static const std::vector<std::string> fisheye = {"k1", "k2", "k3", "k4"};
+  return lens == geometry::Lens::kFisheye ? fisheye : brown;
+}
+
+std::pair<std::string, double> parse_entry(const io::TextLine& line, const std::string& origin) {
+  const std::string where = origin + ":" + std::to_string(line.number);
+  std::string joined;
+  for (const std::string& field : line.fields) joined += field;
+  const std::size_t colon = joined.find(':');
+  if (colon == std::string::npos) throw SourceError(where + ": expected 'key: value' with the keys " + kAllowedKeys);
+  const std::string key = joined.substr(0, colon), value_text = joined.substr(colon + 1);
+  const auto rule = key_rules().find(key);
+  if (rule == key_rules().end()) throw SourceError(where + ": unknown key '" + key + "'; allowed: " + kAllowedKeys);
+  const std::optional<double> value = io::parse_number(value_text);
+  if (!value || !std::isfinite(*value) || *value < rule->second.min || *value > rule->second.max) {
+    throw SourceError(fmt::format("{}: {} is '{}', allowed is a number in [{:g}, {:g}]", where, key, value_text,
+                                  rule->second.min, rule->second.max));
+  }
+  return {key, *value};
+}
+
+Calibration from_values(std::map<std::string, double>& values, const std::string& origin) {
+  for (const auto& [key, rule] : key_rules()) {
+    if (rule.needed && values.count(key) == 0) {
+      throw SourceError(origin + ": key '" + key + "' is missing; keys: " + kAllowedKeys);
+    }
+  }
+  check_frame_size(values["width"], values["height"], origin);
+  geometry::CameraModel::Parameters parameters;
+  parameters.fx = values["fx"], parameters.fy = values["fy"], parameters.cx = values["cx"],
+  parameters.cy = values["cy"];
+  parameters.lens = values["fisheye"] != 0 ? geometry::Lens::kFisheye : geometry::Lens::kBrownConrady;
+  const std::vector<std::string>& names = coefficient_names(parameters.lens);
+  for (const std::string name : {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}) {
+    if (values[name] != 0 && std::ranges::find(names, name) == names.end())
+      throw SourceError(origin + ": a fisheye lens has k1 k2 k3 k4; remove " + name);
+  }
+  std::ranges::transform(names, parameters.distortion.begin(), [&](const std::string& name) { return values[name]; });
+  parameters.width = static_cast<int>(values["width"]), parameters.height = static_cast<int>(values["height"]);
+  Calibration calibration;
+  calibration.camera = geometry::CameraModel(parameters);
+  if (values.count("depth_factor") != 0) calibration.depth_scale_m = 1.0 / values["depth_factor"];
+  if (values.count("fps") != 0) calibration.fps = values["fps"];
+  calibration.readout_s = values["readout_s"], calibration.depth_offset_s = values["depth_offset_s"];
+  return calibration;
+}
+
+/// The digit of "freiburg2" or of a word that begins with "fr2"; no second digit may follow.
+std::optional<int> family_in(const std::string& name) {
+  for (const std::string prefix : {"freiburg", "fr"}) {
+    for (std::size_t at = name.find(prefix); at != std::string::npos; at = name.find(prefix, at + 1)) {
+      const std::size_t digit = at + prefix.size();
+      if (digit >= name.size() || name[digit] < '1' || name[digit] > '3') continue;
+      if (digit + 1 < name.size() && std::isdigit(static_cast<unsigned char>(name[digit + 1])) != 0) continue;
+      if (prefix == "fr" && at > 0 && std::isalpha(static_cast<unsigned char>(name[at - 1])) != 0) continue;
+      return name[digit] - '0';
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void apply(const Calibration& calibration, SourceInfo& info) {
+  info.camera = calibration.camera;
+  info.depth_scale_m = calibration.depth_scale_m;
+  info.readout_s = calibration.readout_s;
+  info.depth_offset_s = calibration.depth_offset_s;
+}
+
+void check_frame_size(double width, double height, const std::string& origin) {
+  if (width >= 1 && height >= 1 && width <= msg::kMaxFrameSide && height <= msg::kMaxFrameSide &&
+      width * height <= static_cast<double>(msg::kMaxFramePixels))
+    return;
+  throw SourceError(
+      fmt::format("{}: {:g} x {:g} px, but a frame carries at most 1920 x 1200 px; scale the images down "
+                  "and fx fy cx cy with them",
+                  origin, width, height));
+}
+
+Calibration parse_calibration(const std::string& text, const std::string& origin) {
+  std::map<std::string, double> values;
+  for (const io::TextLine& line : io::split_lines(text)) {
+    if (line.fields.front() == "---" || line.fields.front().front() == '%') continue;  // YAML document start, directive
+    if (const auto entry = parse_entry(line, origin); !values.insert(entry).second) {
+      throw SourceError(origin + ":" + std::to_string(line.number) + ": key '" + entry.first + "' occurs twice");
+    }
+  }
+  return from_values(values, origin);
+}
+
+Calibration read_calibration(const std::string& file) {
+  const std::optional<std::string> text = io::read_text(file);
+  if (!text) throw SourceError("calibration " + file + " cannot be read");
+  return parse_calibration(*text, file);
+}
+
+std::optional<int> tum_family(const std::filesystem::path& folder) {
+  const std::vector<std::filesystem::path> parts(folder.begin(), folder.end());
+  for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
+    std::string name = part->string();
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (const std::optional<int> family = family_in(name)) return family;
+  }
+  return std::nullopt;
+}
+
+Calibration load_calibration(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "calibration.yaml";
+  if (const auto text = io::read_text(file)) return parse_calibration(*text, file.string());
+  if (const std::optional<int> family = tum_family(std::filesystem::absolute(folder))) {
+    return parse_calibration(tum_camera_yaml(*family), "config/cameras/tum_fr" + std::to_string(*family) + ".yaml");
+  }
+  throw SourceError("no calibration for " + folder.string() + ": write " + file.string() +
+                    " with one 'key: value' a line, keys " + kAllowedKeys +
+                    "; or name the folder after its TUM camera (freiburg1, freiburg2, freiburg3)");
+}
+
+std::string to_yaml(const Calibration& calibration) {
+  const auto& p = calibration.camera.parameters();
+  std::string text = fmt::format("width: {}\nheight: {}\nfx: {:.9g}\nfy: {:.9g}\ncx: {:.9g}\ncy: {:.9g}\n", p.width,
+                                 p.height, p.fx, p.fy, p.cx, p.cy);
+  if (p.lens == geometry::Lens::kFisheye) text += "fisheye: 1\n";
+  const std::vector<std::string>& names = coefficient_names(p.lens);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i < 5 || p.distortion[i] != 0) text += fmt::format("{}: {:.9g}\n", names[i], p.distortion[i]);
+  }
+  text += fmt::format("depth_factor: {:.9g}\nfps: {:.9g}\n", 1.0 / calibration.depth_scale_m, calibration.fps);
+  if (calibration.readout_s != 0) text += fmt::format("readout_s: {:.9g}\n", calibration.readout_s);
+  if (calibration.depth_offset_s != 0) text += fmt::format("depth_offset_s: {:.9g}\n", calibration.depth_offset_s);
+  return text;
+}
+
+}  // namespace rtd::camera

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+
+#include "common/camera/frame_source.hpp"
+#include "common/geometry/camera_model.hpp"
+
+namespace rtd::camera {
+
+/// What is known about one of the two images of a frame.
+struct ImageOrigin {
+  std::string topic, frame_id;
+  cv::Size size_px;                             ///< empty when unknown
+  std::optional<geometry::CameraModel> camera;  ///< by a CameraInfo of its own
+};
+
+/// Why depth is not, or cannot be trusted to be, registered to colour; empty when it is. It is not when sizes or
+/// intrinsics differ by more than half a pixel. Otherwise it is when its topic has the name that drivers give to
+/// registered depth, or when both images are in one frame that has a name; in RealSense SDK bags all are in frame "0".
+std::string why_unregistered(const ImageOrigin& color, const ImageOrigin& depth);
+
+/// Whether a frame id says where an image was taken: neither empty nor the "0" of RealSense SDK bags.
+bool names_a_place(const std::string& frame_id);
+
+/// Both images are in one frame that has a name: what differs is the raster alone.
+bool same_place(const ImageOrigin& color, const ImageOrigin& depth);
+
+/// The error for depth that cannot be registered: why it must be, what is missing and what the user can do.
+SourceError unregistered(const std::string& source, const std::string& cause, const std::string& missing);
+
+}  // namespace rtd::camera

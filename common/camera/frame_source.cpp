@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/camera/frame_source.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "common/msg/sensor_time.hpp"
+
+namespace rtd::camera {
+
+const char* to_string(SkipReason reason) {
+  static constexpr std::array<const char*, kSkipReasons> kNames = {
+      "malformed_line",   "no_depth_partner", "stamp_backwards",  "stamp_doubled",
+      "color_unreadable", "depth_unreadable", "depth_not_16_bit", "size_mismatch",
+      "damaged_record",   "overrun",          "color_frozen"};
+  return kNames.at(static_cast<std::size_t>(reason));
+}
+
+std::uint64_t SourceCounters::skipped_total() const {
+  return std::accumulate(skipped.begin(), skipped.end(), std::uint64_t{0});
+}
+
+void SkipLog::add(SkippedInput input) {
+  ++counters_.skipped[static_cast<std::size_t>(input.reason)];
+  skipped_.push_back(std::move(input));
+}
+
+void SkipLog::number(SourceFrame& frame) {
+  frame.image.seq = counters_.frames++;
+  if (!frame.has_depth) ++counters_.frames_without_depth;
+}
+
+std::string SkipLog::summary() const {
+  if (skipped_.empty()) return {};
+  std::string text = ":";
+  for (std::size_t i = 0; i < kSkipReasons; ++i) {
+    if (counters_.skipped[i] == 0) continue;
+    text += ' ' + std::to_string(counters_.skipped[i]) + " x " + to_string(static_cast<SkipReason>(i)) + ',';
+  }
+  return text + " first: " + skipped_.front().detail;
+}
+
+std::optional<SourceFrame> PlayedSource::next() {
+  std::optional<SourceFrame> frame = first_ ? std::exchange(first_, std::nullopt) : read_next();
+  if (frame) skips_.number(*frame);
+  return frame;
+}
+
+std::uint64_t PlayedSource::pass_over(std::int64_t stamp_ns) {
+  std::uint64_t passed = 0;
+  if (first_ && first_->image.stamp_ns < stamp_ns) {
+    first_.reset();
+    ++passed;
+  }
+  while (!first_) {
+    if (!gone_to_) gone_to_ = advance();
+    if (!gone_to_ || *gone_to_ >= stamp_ns) break;
+    gone_to_.reset();
+    ++passed;
+  }
+  skips_.counters().frames += passed;
+  return passed;
+}
+
+std::optional<SourceFrame> PlayedSource::read_next() {
+  while (gone_to_ || (gone_to_ = advance())) {
+    gone_to_.reset();
+    if (std::optional<SourceFrame> frame = decode()) return frame;
+  }
+  return std::nullopt;
+}
+
+void PlayedSource::read_first(const std::string& file) {
+  first_ = read_next();
+  if (!first_) throw SourceError("no usable frame in " + file + skips_.summary());
+}
+
+std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat& color, const cv::Mat& depth,
+                                          const geometry::CameraModel& camera) {
+  const cv::Size calibrated(camera.parameters().width, camera.parameters().height);
+  if (color.size() == calibrated && depth.size() == calibrated) return std::nullopt;
+  return SkippedInput{SkipReason::kSizeMismatch, name + ": colour " + size_text(color.size()) + ", depth " +
+                                                     size_text(depth.size()) + ", calibration " +
+                                                     size_text(calibrated) + " px differ"};
+}
+
+SourceFrame to_frame(std::int64_t stamp_ns, cv::Mat color_bgr, cv::Mat depth, const SourceInfo& info) {
+  const bool has_depth = cv::countNonZero(depth) > 0;
+  return {.image = {0, stamp_ns, std::move(color_bgr), std::move(depth), info.depth_scale_m, info.camera,
+                    info.readout_s, info.depth_offset_s},
+          .has_depth = has_depth};
+}
+
+void set_depth_stamp(SourceFrame& frame, std::int64_t depth_ns, const SourceInfo& info) {
+  frame.image.depth_offset_s = 0;
+  frame.depth_after_color_ns.reset();
+  constexpr double kNear_ns = 1e9;  // their difference cannot overflow
+  if (std::abs(static_cast<double>(depth_ns) - static_cast<double>(frame.image.stamp_ns)) > kNear_ns) return;
+  frame.depth_after_color_ns = depth_ns - frame.image.stamp_ns;
+  const double offset_s = static_cast<double>(*frame.depth_after_color_ns) * 1e-9 + info.depth_offset_s;
+  if (msg::is_sensor_time(offset_s)) frame.image.depth_offset_s = offset_s;
+}
+
+geometry::Trajectory poses_of_span(geometry::Trajectory poses, std::int64_t from_ns, std::int64_t to_ns) {
+  std::erase_if(poses, [=](const geometry::StampedPose& pose) {
+    return pose.stamp_ns < from_ns - kGroundtruthMarginNs || pose.stamp_ns > to_ns + kGroundtruthMarginNs;
+  });
+  return poses;
+}
+
+std::string size_text(cv::Size size_px) {
+  return std::to_string(size_px.width) + " x " + std::to_string(size_px.height);
+}
+
+}  // namespace rtd::camera

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "common/camera/frame_source.hpp"
+
+namespace rtd::camera {
+
+/// An image read from a file, or why there is none.
+struct ImageRead {
+  cv::Mat image;
+  std::optional<SkippedInput> problem;
+};
+
+/// PNG or JPEG as CV_8UC3 BGR. A file that ends early is refused (decoders would fill the rest with grey).
+ImageRead read_color(const std::filesystem::path& file);
+
+/// 16-bit PNG as CV_16UC1. 65535 (saturated) becomes 0, "no measurement". Other pixel types are refused by name.
+ImageRead read_depth(const std::filesystem::path& file);
+
+/// The same from memory; `name` is for messages.
+ImageRead decode_color(std::span<const std::uint8_t> encoded, const std::string& name);
+ImageRead decode_depth(std::span<const std::uint8_t> encoded, const std::string& name);
+
+/// 65535 -> 0 in a CV_16UC1 image.
+void drop_saturated(cv::Mat& depth);
+
+}  // namespace rtd::camera

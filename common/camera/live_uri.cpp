@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/camera/live_uri.hpp"
+
+#include <sstream>
+#include <vector>
+
+#include "common/camera/device_uri.hpp"
+#include "common/camera/source_factory.hpp"
+
+namespace rtd::camera {
+namespace {
+
+constexpr const char* kForm =
+    "ros2:COLOR_TOPIC,DEPTH_TOPIC[,INFO_TOPIC]"
+    "[?calibration=FILE&depth_info=TOPIC&registered=1&tolerance_ms=20]";
+
+std::string absolute(std::string topic) {
+  if (!topic.empty() && topic.front() != '/') topic.insert(topic.begin(), '/');
+  return topic;
+}
+
+std::vector<std::string> split_topics(const std::string& list) {
+  std::vector<std::string> topics;
+  std::istringstream names(list);
+  for (std::string topic; std::getline(names, topic, ',');) {
+    topics.push_back(absolute(topic));
+  }
+  return topics;
+}
+
+/// "camera_info" beside the image, as image_transport has it.
+std::string info_beside(std::string image) {
+  for (const std::string transport : {"/compressed", "/compressedDepth"}) {
+    if (image.ends_with(transport)) image.resize(image.size() - transport.size());
+  }
+  return image.substr(0, image.rfind('/')) + "/camera_info";
+}
+
+}  // namespace
+
+bool is_live(const std::string& uri) {
+  return uri.starts_with("ros2:") || is_device(uri);
+}
+
+void check_live_uri(const std::string& uri) {
+  is_device(uri) ? static_cast<void>(parse_device_uri(uri)) : static_cast<void>(parse_live_options(uri));
+}
+
+LiveOptions parse_live_options(const std::string& text) {
+  const SourceUri uri = parse_source_uri(text);
+  const std::vector<std::string> topics = split_topics(uri.path);
+  bool complete = topics.size() == 2 || topics.size() == 3;
+  for (const std::string& topic : topics) complete = complete && topic.size() > 1;
+  if (!complete) throw SourceError("source '" + text + "' does not name its topics: " + kForm);
+  LiveOptions options;
+  options.topics = {topics[0], topics[1], topics.size() == 3 ? topics[2] : info_beside(topics[0]),
+                    info_beside(topics[1])};
+  if (topics[0] == topics[1]) throw SourceError("source '" + text + "': colour and depth are one topic: " + kForm);
+  for (const auto& [key, value] : uri.parameters) {
+    if (key == "calibration") {
+      options.calibration_file = value;
+    } else if (key == "tolerance_ms") {
+      options.tolerance_ns = parse_tolerance_ns(text, value);
+    } else if (key == "registered") {
+      options.registered = parse_flag(text, key, value);
+    } else if (key == "depth_info") {
+      options.topics.depth_info = absolute(value);
+    } else {
+      throw SourceError("source '" + text + "': unknown parameter '" + key +
+                        "'; ros2: knows calibration, depth_info, registered, tolerance_ms");
+    }
+  }
+  return options;
+}
+
+}  // namespace rtd::camera

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/camera/recording/frame_pairer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/camera/recording/ros_images.hpp"
+
+namespace rtd::camera {
+namespace {
+
+std::string place_of(const StampedMessage& color) {
+  return color.message.topic + " at " + std::to_string(color.stamp_ns) + " ns";
+}
+
+}  // namespace
+
+void FramePairer::add_color(StampedMessage color, SkipLog& skips) {
+  newest_recorded_ns_ = std::max(newest_recorded_ns_, color.message.recorded_ns);
+  if (last_color_ns_ && color.stamp_ns == *last_color_ns_) {
+    return skips.add({SkipReason::kStampDoubled, place_of(color) + " has the stamp of the frame before"});
+  }
+  if (last_color_ns_ && color.stamp_ns < *last_color_ns_) {
+    return skips.add({SkipReason::kStampBackwards, place_of(color) + " is older than the frame before"});
+  }
+  last_color_ns_ = color.stamp_ns;
+  colors_.push_back(std::move(color));
+}
+
+void FramePairer::add_depth(StampedMessage depth) {
+  newest_recorded_ns_ = std::max(newest_recorded_ns_, depth.message.recorded_ns);
+  const auto place =
+      std::lower_bound(depths_.begin(), depths_.end(), depth.stamp_ns,
+                       [](const StampedMessage& other, std::int64_t stamp_ns) { return other.stamp_ns < stamp_ns; });
+  if (place != depths_.end() && place->stamp_ns == depth.stamp_ns) return;
+  depths_.insert(place, std::move(depth));
+  if (depths_.size() > kMaxPending) depths_.pop_front();
+}
+
+bool FramePairer::decided() const {
+  const bool settled = options_.at_once && !depths_.empty() && depths_.back().stamp_ns >= colors_.front().stamp_ns;
+  return settled || finished_ || colors_.size() > kMaxPending ||
+         newest_recorded_ns_ - colors_.front().message.recorded_ns >= kLookaheadNs;
+}
+
+std::optional<std::size_t> FramePairer::partner_of_front() const {
+  const std::vector<geometry::StampPair> pairs =
+      geometry::associate(geometry::stamps_of(colors_), geometry::stamps_of(depths_), options_.tolerance_ns);
+  if (pairs.empty() || pairs.front().first != 0) return std::nullopt;
+  return pairs.front().second;
+}
+
+/// No colour image to come is as old.
+void FramePairer::forget_before(std::int64_t stamp_ns) {
+  while (!depths_.empty() && depths_.front().stamp_ns < stamp_ns) depths_.pop_front();
+}
+
+std::optional<FramePairer::Pair> FramePairer::next(SkipLog& skips) {
+  while (!colors_.empty() && decided()) {
+    const std::optional<std::size_t> partner = partner_of_front();
+    StampedMessage color = std::move(colors_.front());
+    colors_.pop_front();
+    if (!partner) {
+      skips.add({SkipReason::kNoDepthPartner, fmt::format("{} has no depth image within {:g} s", place_of(color),
+                                                          static_cast<double>(options_.tolerance_ns) * 1e-9)});
+      continue;
+    }
+    const auto place = depths_.begin() + static_cast<std::ptrdiff_t>(*partner);
+    Pair pair{std::move(color), std::move(*place)};
+    depths_.erase(place);
+    forget_before(pair.color.stamp_ns - options_.tolerance_ns);
+    return pair;
+  }
+  return std::nullopt;
+}
+
+std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, double float_unit_m, const SourceInfo& info,
+                                       const std::optional<vision::DepthRegistration>& registration, SkipLog& skips) {
+  ImageRead color = decode_color(pair.color.message);
+  if (color.problem) return skips.add(*color.problem), std::nullopt;
+  ImageRead depth = decode_depth(pair.depth.message, float_unit_m);
+  if (depth.problem) return skips.add(*depth.problem), std::nullopt;
+  if (registration && depth.image.size() == registration->depth_size()) depth.image = (*registration)(depth.image);
+  const auto mismatch = size_mismatch(name_of(pair.color.message), color.image, depth.image, info.camera);
+  if (mismatch) return skips.add(*mismatch), std::nullopt;
+  SourceFrame frame = to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info);
+  set_depth_stamp(frame, pair.depth.stamp_ns, info);
+  return frame;
+}
+
+}  // namespace rtd::camera

@@ -1,0 +1,227 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/camera/recording/ros_images.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <span>
+#include <string_view>
+
+#include "common/camera/frame_source.hpp"
+#include "common/camera/recording/color_encodings.hpp"
+#include "common/camera/recording/rvl.hpp"
+#include "common/ros_codec/byte_cursor.hpp"
+#include "common/ros_codec/wire.hpp"
+
+namespace rtd::camera {
+namespace {
+
+constexpr const char* kDepthTransport = "compressedDepth";
+constexpr double kMaxUnits = 65534;  // 65535 is TUM's "saturated"
+
+/// depth = a / (pixel - b), 0 = no measurement.
+cv::Mat from_inverse(const cv::Mat& pixels, float a, float b) {
+  cv::Mat depth_m(pixels.size(), CV_32FC1);
+  for (int row = 0; row < pixels.rows; ++row) {
+    for (int column = 0; column < pixels.cols; ++column) {
+      const std::uint16_t pixel = pixels.at<std::uint16_t>(row, column);
+      depth_m.at<float>(row, column) = pixel == 0 ? 0.0F : a / (static_cast<float>(pixel) - b);
+    }
+  }
+  return depth_m;
+}
+
+/// CV_32FC1 metres -> CV_16UC1 in units of unit_m; NaN, infinity, negative and what does not fit become 0.
+cv::Mat quantize_depth(const cv::Mat& depth_m, double unit_m) {
+  cv::Mat depth(depth_m.size(), CV_16UC1);
+  for (int row = 0; row < depth.rows; ++row) {
+    const auto* from = depth_m.ptr<float>(row);
+    auto* to = depth.ptr<std::uint16_t>(row);
+    for (int column = 0; column < depth.cols; ++column) {
+      const double units = std::round(from[column] / unit_m);
+      to[column] = units >= 0 && units <= kMaxUnits ? static_cast<std::uint16_t>(units) : 0;  // NaN compares false
+    }
+  }
+  return depth;
+}
+
+constexpr const char* kDepthCodecs = "compressedDepth (PNG, RVL)";
+
+/// The 16-bit image behind the header of compressedDepth. A format that names no codec is PNG, as in ROS 1.
+ImageRead decode_depth_codec(const std::string& format, ros::Bytes bytes, const std::string& name) {
+  const std::string codec = format.substr(format.find(kDepthTransport) + std::string_view(kDepthTransport).size());
+  if (codec.find("rvl") != std::string::npos || codec.find("RVL") != std::string::npos) return {decode_rvl(bytes), {}};
+  if (codec.find_first_not_of(' ') == std::string::npos || codec.find("png") != std::string::npos) {
+    return decode_depth(bytes, name);
+  }
+  throw SourceError(name + " is encoded as '" + format + "', which cannot be read; readable: " + kDepthCodecs);
+}
+
+/// From ROS's compressed_depth_image_transport: 12 bytes (a code of the format, quantisation parameters a and b), then
+/// a 16-bit image; of floats it holds a / depth + b (inverse depth). Throws SourceError for an unknown codec.
+ImageRead decode_compressed_depth(const msg::CompressedImage& image, const std::string& name, double float_unit_m) {
+  ros::ByteCursor cursor(image.data);
+  cursor.read<std::int32_t>();  // the driver's own code of the format; the text says more
+  const auto a = cursor.read<float>(), b = cursor.read<float>();
+  ImageRead result = decode_depth_codec(image.format, cursor.take(cursor.remaining()), name);
+  if (result.problem) return result;
+  if (image.format.starts_with("32FC1")) result.image = quantize_depth(from_inverse(result.image, a, b), float_unit_m);
+  drop_saturated(result.image);
+  return result;
+}
+
+const std::map<std::string, int> kDepthTypes = {{"16UC1", CV_16UC1}, {"mono16", CV_16UC1}, {"32FC1", CV_32FC1}};
+
+constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
+
+SourceError unsupported(const RecordedMessage& message, const std::string& encoding, const std::string& known) {
+  return SourceError(message.topic + " is encoded as '" + encoding + "', which cannot be read; readable: " + known);
+}
+
+ImageRead refuse(SkipReason reason, const RecordedMessage& message, const std::string& cause) {
+  return {{}, SkippedInput{reason, name_of(message) + ": " + cause}};
+}
+
+/// The pixels where they lie in the message. Throws ros::WireError when the message holds fewer than it claims.
+cv::Mat view_of(msg::Image& image, int type) {
+  const std::size_t row_bytes = std::size_t{image.width} * static_cast<std::size_t>(CV_ELEM_SIZE(type));
+  if (image.width == 0 || image.height == 0 || image.step < row_bytes ||
+      image.data.size() / image.step < image.height) {
+    throw ros::WireError(std::to_string(image.width) + " x " + std::to_string(image.height) + " px of " +
+                         image.encoding + " in rows of " + std::to_string(image.step) + " bytes do not fit into " +
+                         std::to_string(image.data.size()) + " bytes");
+  }
+  return {static_cast<int>(image.height), static_cast<int>(image.width), type, image.data.data(), image.step};
+}
+
+ImageRead raw_color(const RecordedMessage& message) {
+  auto image = ros::decode<msg::Image>(message.wire, message.bytes);
+  const ColorEncoding* const encoding = find_color_encoding(image.encoding);
+  if (encoding == nullptr) throw unsupported(message, image.encoding, known_color_encodings() + ", JPEG, PNG");
+  if (image.is_bigendian != 0 && CV_MAT_DEPTH(encoding->type) != CV_8U) {
+    throw unsupported(message, image.encoding + ", big endian", "little endian");
+  }
+  const cv::Mat pixels = view_of(image, encoding->type);
+  if (const std::string defect = size_defect(*encoding, pixels.size()); !defect.empty()) {
+    throw ros::WireError("an image of " + size_text(pixels.size()) + " px in " + image.encoding + ": " + defect);
+  }
+  return {to_bgr(*encoding, pixels), {}};
+}
+
+int depth_type(const RecordedMessage& message, const msg::Image& image) {
+  const auto type = kDepthTypes.find(image.encoding);
+  if (type == kDepthTypes.end()) {
+    throw unsupported(message, image.encoding,
+                      std::string("16UC1 (mm), mono16 (mm), 32FC1 (m), 16-bit PNG, ") + kDepthCodecs);
+  }
+  if (image.is_bigendian != 0) throw unsupported(message, image.encoding + ", big endian", "little endian");
+  return type->second;
+}
+
+ImageRead raw_depth(const RecordedMessage& message, double float_unit_m) {
+  auto image = ros::decode<msg::Image>(message.wire, message.bytes);
+  const int type = depth_type(message, image);
+  const cv::Mat pixels = view_of(image, type);
+  ImageRead result{type == CV_32FC1 ? quantize_depth(pixels, float_unit_m) : pixels.clone(), {}};
+  drop_saturated(result.image);
+  return result;
+}
+
+ImageRead compressed_depth(const RecordedMessage& message, double float_unit_m) {
+  const auto image = ros::decode<msg::CompressedImage>(message.wire, message.bytes);
+  if (image.format.find(kDepthTransport) == std::string::npos) return decode_depth(image.data, name_of(message));
+  return decode_compressed_depth(image, name_of(message), float_unit_m);
+}
+
+constexpr const char* kFix = "; give a calibration of your own: ?calibration=FILE";
+
+constexpr const char* kFisheyeModel = "equidistant";  // ROS's name
+
+void take_distortion(const msg::CameraInfo& info, const std::string& origin,
+                     geometry::CameraModel::Parameters& parameters) {
+  const auto is_zero = [](double value) { return value == 0; };
+  const bool fisheye = info.distortion_model == kFisheyeModel || info.distortion_model == "fisheye";
+  if (!fisheye && std::ranges::all_of(info.d, is_zero)) return;
+  const std::size_t known = std::min<std::size_t>(fisheye ? 4 : parameters.distortion.size(), info.d.size());
+  if (!std::ranges::all_of(std::span(info.d).subspan(known), is_zero)) {
+    throw SourceError(
+        origin + ": distortion model '" + info.distortion_model + "' with " + std::to_string(info.d.size()) +
+        " values; known: plumb_bob (k1 k2 p1 p2 k3), rational_polynomial (... k4 k5 k6), equidistant (k1 k2 "
+        "k3 k4)" +
+        kFix);
+  }
+  parameters.lens = fisheye ? geometry::Lens::kFisheye : geometry::Lens::kBrownConrady;
+  std::copy_n(info.d.begin(), known, parameters.distortion.begin());
+}
+
+/// ROS's name of the distortion and the number of its coefficients.
+std::pair<const char*, std::ptrdiff_t> ros_distortion(const geometry::CameraModel::Parameters& p) {
+  if (p.lens == geometry::Lens::kFisheye) return {kFisheyeModel, 4};
+  const bool rational = p.distortion[5] != 0 || p.distortion[6] != 0 || p.distortion[7] != 0;
+  return rational ? std::pair("rational_polynomial", std::ptrdiff_t{8}) : std::pair("plumb_bob", std::ptrdiff_t{5});
+}
+
+}  // namespace
+
+std::string name_of(const RecordedMessage& message) {
+  return message.topic + " recorded at " + std::to_string(message.recorded_ns) + " ns";
+}
+
+ImageRead decode_color(const RecordedMessage& message) try {
+  if (message.type != kCompressed) return raw_color(message);
+  const auto image = ros::decode<msg::CompressedImage>(message.wire, message.bytes);
+  return decode_color(image.data, name_of(message));
+} catch (const ros::WireError& error) {
+  return refuse(SkipReason::kColorUnreadable, message, error.what());
+}
+
+ImageRead decode_depth(const RecordedMessage& message, double float_unit_m) try {
+  return message.type == kCompressed ? compressed_depth(message, float_unit_m) : raw_depth(message, float_unit_m);
+} catch (const ros::WireError& error) {
+  return refuse(SkipReason::kDepthUnreadable, message, error.what());
+}
+
+double depth_unit_m(const RecordedMessage& message, double float_unit_m) {
+  const bool floats = message.type == kCompressed
+                          ? ros::decode<msg::CompressedImage>(message.wire, message.bytes).format.starts_with("32FC1")
+                          : depth_type(message, ros::decode<msg::Image>(message.wire, message.bytes)) == CV_32FC1;
+  return floats ? float_unit_m : kMillimetre;
+}
+
+msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns,
+                               const std::string& frame_id) {
+  const auto& p = camera.parameters();
+  msg::CameraInfo info;
+  info.header = {msg::to_time(stamp_ns), frame_id};
+  info.width = static_cast<std::uint32_t>(p.width);
+  info.height = static_cast<std::uint32_t>(p.height);
+  const auto [model, coefficients] = ros_distortion(p);
+  info.distortion_model = model;
+  info.d.assign(p.distortion.begin(), p.distortion.begin() + coefficients);
+  info.k = {p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1};
+  info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  info.p = {p.fx, 0, p.cx, 0, 0, p.fy, p.cy, 0, 0, 0, 1, 0};
+  return info;
+}
+
+geometry::CameraModel to_camera_model(const msg::CameraInfo& info, const std::string& color_topic,
+                                      const std::string& origin) {
+  geometry::CameraModel::Parameters p;
+  p.width = static_cast<int>(info.width), p.height = static_cast<int>(info.height);
+  if (color_topic.find("image_rect") != std::string::npos && info.p[0] > 0) {
+    p.fx = info.p[0], p.fy = info.p[5], p.cx = info.p[2], p.cy = info.p[6];
+  } else {
+    p.fx = info.k[0], p.fy = info.k[4], p.cx = info.k[2], p.cy = info.k[5];
+    take_distortion(info, origin, p);
+  }
+  const double sum = std::accumulate(p.distortion.begin(), p.distortion.end(), p.fx + p.fy + p.cx + p.cy);
+  if (!(p.fx > 0) || !(p.fy > 0) || !std::isfinite(sum)) {
+    throw SourceError(origin + ": fx is " + std::to_string(p.fx) + ", fy " + std::to_string(p.fy) +
+                      ": the camera was not calibrated" + kFix);
+  }
+  return geometry::CameraModel(p);
+}
+
+}  // namespace rtd::camera

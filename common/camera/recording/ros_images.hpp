@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "common/camera/image_files.hpp"
+#include "common/camera/recording/recording.hpp"
+#include "common/geometry/camera_model.hpp"
+#include "common/msg/ros.hpp"
+
+namespace rtd::camera {
+
+inline constexpr double kMillimetre = 0.001;  ///< the unit of 16-bit depth in ROS (REP 118)
+/// TUM's depth unit: floats are rounded to it unless the recording names its unit.
+inline constexpr double kFloatDepthUnitM = 1.0 / 5000.0;
+/// Metadata of the depth topic's channel in an MCAP file that we wrote: the units of a metre in the source's images.
+inline constexpr const char* kDepthFactor = "depth_factor";
+
+/// "/camera/rgb/image_color recorded at 1305031102175304000 ns": for messages.
+std::string name_of(const RecordedMessage& message);
+
+/// sensor_msgs/Image (color_encodings.hpp: RGB, grey, YUV 4:2:2, Bayer) or CompressedImage (JPEG, PNG) as CV_8UC3 BGR.
+/// Throws SourceError for an encoding that cannot be read, naming it and those that can: it is the topic's, not the
+/// frame's.
+ImageRead decode_color(const RecordedMessage& message);
+
+/// sensor_msgs/Image (16UC1, mono16, 32FC1) or CompressedImage (16-bit PNG, compressedDepth as PNG or RVL) as CV_16UC1,
+/// 0 = no measurement: NaN, infinity, saturation, nothing in front of the camera. Floats become units of float_unit_m;
+/// what does not fit is no measurement. Throws SourceError as above.
+ImageRead decode_depth(const RecordedMessage& message, double float_unit_m);
+
+/// Metres of a unit of what decode_depth() makes of such a message. Throws SourceError and ros::WireError.
+double depth_unit_m(const RecordedMessage& message, double float_unit_m);
+
+inline constexpr const char* kCameraFrame = "camera_color_optical_frame";  ///< docs/frames.md
+
+/// The camera_info message of a camera, ROS conventions.
+msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns,
+                               const std::string& frame_id = kCameraFrame);
+
+/// The camera that a CameraInfo describes: K and D of the raw image, or P for a rectified one ("image_rect" in the
+/// colour topic's name). Throws SourceError naming `origin`: not calibrated, distortion model other than plumb_bob, not
+/// finite.
+geometry::CameraModel to_camera_model(const msg::CameraInfo& info, const std::string& color_topic,
+                                      const std::string& origin);
+
+}  // namespace rtd::camera

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/camera/source_factory.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
+#include "common/camera/frame_source.hpp"
+#include "common/camera/live_uri.hpp"
+#include "common/camera/recording/recording.hpp"
+#include "common/camera/recording/recording_source.hpp"
+#include "common/camera/synthetic/synthetic_source.hpp"
+#include "common/camera/tum/tum_source.hpp"
+#include "common/io/text.hpp"
+#include "common/recordings/parts.hpp"
+
+namespace rtd::camera {
+
+namespace {
+
+/// Video nodes give depth that is not registered to colour, and no calibration that could register it.
+void refuse_video_nodes(const std::string& text) {
+  if (!text.starts_with("v4l2:")) return;
+  throw SourceError("source '" + text +
+                    "': V4L2 cameras give no depth that is registered to colour; use the camera through openni2:, "
+                    "realsense-dds: or its ROS 2 driver (ros2:COLOR,DEPTH)");
+}
+
+}  // namespace
+
+SourceUri parse_source_uri(const std::string& text) {
+  refuse_video_nodes(text);
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos || colon == 0) {
+    throw SourceError("source '" + text +
+                      "' has no scheme; write tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE, ros2:TOPICS, openni2:[URI], "
+                      "realsense-dds:[SERIAL] or synthetic:NAME[?key=value&...]");
+  }
+  SourceUri uri{text, text.substr(0, colon), text.substr(colon + 1), {}};
+  const std::size_t question = uri.path.find('?');
+  if (question == std::string::npos) return uri;
+  std::istringstream parameters(uri.path.substr(question + 1));
+  uri.path.resize(question);
+  for (std::string part; std::getline(parameters, part, '&');) {
+    const std::size_t equals = part.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw SourceError("source '" + text + "': parameter '" + part + "' is not key=value");
+    }
+    if (!uri.parameters.emplace(part.substr(0, equals), part.substr(equals + 1)).second) {
+      throw SourceError("source '" + text + "': parameter '" + part.substr(0, equals) + "' occurs twice");
+    }
+  }
+  return uri;
+}
+
+std::int64_t parse_tolerance_ns(const std::string& uri, const std::string& value) {
+  constexpr double kMaxMs = 1000;
+  const std::optional<double> ms = io::parse_number(value);
+  if (!ms || !(*ms > 0) || *ms > kMaxMs) {
+    throw SourceError("source '" + uri + "': tolerance_ms is '" + value + "', allowed: more than 0, at most 1000");
+  }
+  return static_cast<std::int64_t>(*ms * 1e6);
+}
+
+bool parse_flag(const std::string& uri, const std::string& key, const std::string& value) {
+  if (value != "0" && value != "1") {
+    throw SourceError("source '" + uri + "': " + key + " is 0 or 1, not '" + value + "'");
+  }
+  return value == "1";
+}
+
+std::string complete_uri(const std::string& source) {
+  if (source.find(':') != std::string::npos) return source;
+  const std::filesystem::path path = source;
+  if (std::filesystem::is_directory(path)) return (recordings::holds_recording(path) ? "mcap:" : "tum:") + source;
+  if (path.extension() == ".bag") return "bag:" + source;
+  if (path.extension() == ".oni") return "openni2:" + source;
+  if (path.extension() == ".db3") return "db3:" + source;
+  const bool packed = path.extension() == ".zstd" || path.extension() == ".zst";
+  return path.extension() == ".mcap" || packed ? "mcap:" + source : source;
+}
+
+namespace {
+
+std::unique_ptr<FrameSource> make_tum_source(const SourceUri& uri) {
+  TumSource::Options options;
+  for (const auto& [key, value] : uri.parameters) {
+    if (key == "masks") {
+      options.masks = parse_flag(uri.text, key, value);
+    } else if (key == "tolerance_ms") {
+      options.tolerance_ns = parse_tolerance_ns(uri.text, value);
+    } else {
+      throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; tum: knows masks, tolerance_ms");
+    }
+  }
+  if (uri.path.empty()) throw SourceError("source 'tum:' needs a folder: tum:FOLDER");
+  return std::make_unique<TumSource>(uri.text, uri.path, options);
+}
+
+RecordingOptions recording_options(const SourceUri& uri) {
+  if (uri.path.empty()) throw SourceError("source '" + uri.text + "' needs a file: " + uri.scheme + ":FILE");
+  RecordingOptions options;
+  const std::map<std::string, std::string*> known = {{"color", &options.topics.color},
+                                                     {"depth", &options.topics.depth},
+                                                     {"info", &options.topics.info},
+                                                     {"depth_info", &options.topics.depth_info},
+                                                     {"calibration", &options.calibration_file}};
+  for (const auto& [key, value] : uri.parameters) {
+    if (const auto found = known.find(key); found != known.end()) {
+      *found->second = value;
+    } else if (key == "registered") {
+      options.registered = parse_flag(uri.text, key, value);
+    } else if (key == "tolerance_ms") {
+      options.tolerance_ns = parse_tolerance_ns(uri.text, value);
+    } else {
+      throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; " + uri.scheme +
+                        ": knows color, depth, info, calibration, depth_info, registered, tolerance_ms");
+    }
+  }
+  return options;
+}
+
+/// Bags and databases are read where they lie; all else, also folders and packed ones of these, as MCAP.
+std::unique_ptr<Recording> open_file(const SourceUri& uri) {
+  const std::filesystem::path extension = std::filesystem::path(uri.path).extension();
+  const bool lies_there = !std::filesystem::is_directory(uri.path) && extension != ".zstd" && extension != ".zst";
+  if (lies_there && uri.scheme == "bag") return open_bag(uri.path);
+  return lies_there && uri.scheme == "db3" ? open_db3(uri.path) : open_mcap(uri.path);
+}
+
+std::unique_ptr<FrameSource> make_recording_source(const SourceUri& uri) {
+  const RecordingOptions options = recording_options(uri);
+  return open_recording(uri.text, open_file(uri), options);
+}
+
+bool is_recording(const SourceUri& uri) {
+  return uri.scheme == "bag" || uri.scheme == "db3" || uri.scheme == "mcap";
+}
+
+}  // namespace
+
+std::vector<RecordedTopic> topics_beside_frames(const std::string& text) {
+  const SourceUri uri = parse_source_uri(text);
+  if (!is_recording(uri)) return {};
+  const std::unique_ptr<Recording> recording = open_file(uri);
+  std::vector<RecordedTopic> beside = recording->topics();
+  std::vector<std::string> names = transform_topics(*recording);
+  if (const std::string own = own_frames_topic(*recording); !own.empty()) {
+    names.push_back(own);
+  } else {
+    const ImageTopics used = choose_topics(*recording, recording_options(uri).topics);
+    names.insert(names.end(), {used.color, used.depth, used.info, used.depth_info});
+  }
+  std::erase_if(beside, [&](const auto& topic) { return std::ranges::find(names, topic.name) != names.end(); });
+  return beside;
+}
+
+std::unique_ptr<FrameSource> make_source(const std::string& text) {
+  const SourceUri uri = parse_source_uri(text);
+  if (uri.scheme == "tum") return make_tum_source(uri);
+  if (uri.scheme == "synthetic") return std::make_unique<SyntheticSource>(uri.text, parse_synthetic_options(uri));
+  if (is_recording(uri)) return make_recording_source(uri);
+  if (is_live(text)) {
+    throw SourceError(
+        "source '" + text +
+        "' is a running camera: only `rtd run` and rtd-camera play it; record it first (rtd record) and use mcap:FILE");
+  }
+  throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme +
+                    "'; known: bag, db3, mcap, openni2, realsense-dds, ros2, synthetic, tum");
+}
+
+}  // namespace rtd::camera

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "common/camera/synthetic/faults.hpp"
+#include "common/camera/synthetic/noise_field.hpp"
+#include "common/camera/synthetic/sensor.hpp"
+
+namespace rtd::camera::synthetic {
+
+/// What the depth camera looks at.
+struct DepthView {
+  cv::Mat inverse_depth;  ///< CV_32FC1, 1/m, 0 = nothing there
+  cv::Mat material;       ///< CV_8UC1, Material
+  cv::Mat color_bgr;      ///< CV_8UC3; dark paint returns little infrared light
+};
+
+/// The faults of a depth image at one instant, on top of the sensor's own. The same seed and frame index give the same
+/// faults. Immutable.
+class DepthFaults {
+ public:
+  DepthFaults(const SensorFaults& faults, const SensorModel& model, cv::Size size_px, std::uint64_t seed);
+
+  /// What the sensor measures of a view, in its units.
+  cv::Mat measure(const DepthView& view, std::uint64_t frame_index) const;
+
+ private:
+  void fly(cv::Mat& depth, const cv::Mat& inverse_depth, std::uint64_t frame_index) const;
+  cv::Mat wrong_sided(const cv::Mat& depth, const cv::Mat& inverse_depth, std::uint64_t frame_index) const;
+  void lose_by_material(cv::Mat& depth, const DepthView& view, std::uint64_t frame_index) const;
+  void lose_speckle(cv::Mat& depth, std::uint64_t frame_index) const;
+  void scale(cv::Mat& depth) const;
+  cv::Mat registered(const cv::Mat& depth) const;
+  void register_row(const cv::Mat& depth, int row, cv::Mat& moved) const;
+  std::uint16_t to_units(float inverse_depth) const;
+
+  SensorFaults faults_;
+  SensorModel model_;
+  Sensor sensor_;
+  std::optional<NoiseField> disparity_noise_, blobs_, ragged_, mixing_;  ///< those that some fault needs
+  cv::Point2f offset_px_;                                                ///< of the registration
+};
+
+}  // namespace rtd::camera::synthetic

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/camera/synthetic/figure.hpp"
+
+#include <cmath>
+
+#include "common/camera/synthetic/texture.hpp"
+
+namespace rtd::camera::synthetic {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float kLegSwingRad = 0.42F, kArmSwingRad = 0.5F;
+constexpr float kHipHeightM = 0.86F, kKneeHeightM = 0.43F, kThighM = 0.43F;
+constexpr float kSeatedThighRad = 1.45F;  ///< thighs of one who sits, from the vertical
+constexpr float kSeatedArmRad = -0.75F;   ///< arms reach forward to the knees
+
+/// One ellipsoid of a figure, person frame: x forward, y left, z up, origin between the feet.
+struct BodyPart {
+  Vector3f center_m, semi_axes_m;
+  float turned_rad = 0;      ///< about the joint's left-right axis
+  float joint_height_m = 0;  ///< z of the joint
+  Material material = Material::kPlain;
+};
+
+}  // namespace
+
+/// Where the parts of one figure go.
+struct Figure::Placing {
+  Geometry& geometry;
+  Eigen::Isometry3f T_world_person;
+  float scale, breadth;
+  Vector3f hip_shift_m;  ///< of everything above the legs: it is lower and farther back when the knees are bent
+  int object;
+  bool body_moves, limbs_move;
+
+  void add(const BodyPart& part, int texture, bool moving) {
+    const Vector3f wide(1, breadth, 1);
+    const Vector3f center_m = part.center_m.cwiseProduct(wide), semi_axes_m = part.semi_axes_m.cwiseProduct(wide);
+    const Vector3f joint(center_m.x(), center_m.y(), part.joint_height_m);
+    Eigen::Isometry3f T_person_body = Eigen::Isometry3f::Identity();
+    T_person_body.linear() = Eigen::AngleAxisf(part.turned_rad, Vector3f::UnitY()).toRotationMatrix();
+    T_person_body.translation() = scale * (joint + T_person_body.linear() * (center_m - joint));
+    geometry.ellipsoids.push_back(
+        {T_world_person * T_person_body, scale * semi_axes_m, texture, moving, object, part.material});
+  }
+  void add_above_hips(BodyPart part, int texture, bool moving) {
+    part.center_m += hip_shift_m;
+    part.joint_height_m += hip_shift_m.z();
+    add(part, texture, moving);
+  }
+};
+
+ColorBgr vivid_color(SeededRandom& random) {
+  return {random.between(30, 200), random.between(30, 200), random.between(30, 200)};
+}
+
+Figure::Figure(std::uint64_t seed, std::vector<Texture>& textures, float breadth) : breadth_(breadth) {
+  SeededRandom random(seed ^ 0x9E450AULL);
+  height_scale_ = random.between(0.92F, 1.08F);
+  step_rate_rad_s_ = kTwoPiF * random.between(0.8F, 1.0F);
+  const TextureStyle skin{{120, 150, 205}, 5, 25, 0.02F, 0.05F, 0.15F};
+  const TextureStyle shirt{vivid_color(random), 9, 45, 0.04F, 0.25F, 0.75F};
+  const TextureStyle trousers{vivid_color(random), 9, 30, 0.03F, 0.12F, 0.35F};
+  skin_texture_ = add_texture(textures, 0.25F, 0.3F, kFigureTexelsPerM, skin, random.next());
+  shirt_texture_ = add_texture(textures, 0.6F * breadth, 0.75F, kFigureTexelsPerM, shirt, random.next());
+  trousers_texture_ = add_texture(textures, 0.25F * breadth, 0.9F, kFigureTexelsPerM, trousers, random.next());
+}
+
+void Figure::append_to(Geometry& geometry, const Posture& posture) const {
+  const Eigen::Isometry3f T_world_person =
+      upright({posture.position_m.x(), posture.position_m.y(), posture.raised_m}, posture.heading_rad);
+  const float thigh_rad = kSeatedThighRad * posture.seated;
+  const Vector3f hip_shift_m(-kThighM * std::sin(thigh_rad), 0, kThighM * (std::cos(thigh_rad) - 1));
+  Placing placing{geometry,           T_world_person,    height_scale_,
+                  breadth_,           hip_shift_m,       geometry.add_object("person"),
+                  posture.body_moves, posture.limbs_move};
+  append_upper_body(placing, posture);
+  if (posture.seated > 0) {
+    append_bent_legs(placing, thigh_rad);
+  } else {
+    append_standing_legs(placing, posture.swing);
+  }
+}
+
+void Figure::append_upper_body(Placing& placing, const Posture& posture) const {
+  const bool body = placing.body_moves, limbs = placing.limbs_move;
+  const float nod_rad = 0.5F * posture.fidget_rad;
+  placing.add_above_hips({{0.02F, 0, 1.62F}, {0.105F, 0.085F, 0.135F}, nod_rad, 1.5F, Material::kHead}, skin_texture_,
+                         limbs);
+  placing.add_above_hips({{0, 0, 1.46F}, {0.055F, 0.055F, 0.10F}}, skin_texture_, body);  // neck
+  placing.add_above_hips({{0, 0, 1.17F}, {0.14F, 0.225F, 0.33F}}, shirt_texture_, body);  // torso
+  placing.add_above_hips({{0, 0, 0.90F}, {0.145F, 0.19F, 0.17F}, 0, 0, Material::kDark}, trousers_texture_,
+                         body);  // hips
+  for (const float side : {-1.0F, 1.0F}) {
+    const float arm_rad =
+        -side * posture.swing * kArmSwingRad + posture.seated * kSeatedArmRad + side * posture.fidget_rad;
+    placing.add_above_hips({{0, side * 0.26F, 1.12F}, {0.05F, 0.05F, 0.31F}, arm_rad, 1.40F}, shirt_texture_, limbs);
+  }
+}
+
+void Figure::append_standing_legs(Placing& placing, float swing) const {
+  for (const float side : {-1.0F, 1.0F}) {
+    placing.add(
+        {{0, side * 0.10F, 0.44F}, {0.085F, 0.08F, 0.45F}, side * swing * kLegSwingRad, kHipHeightM, Material::kDark},
+        trousers_texture_, placing.body_moves);
+  }
+}
+
+/// Shins upright on the feet, thighs from the knees back to the hips.
+void Figure::append_bent_legs(Placing& placing, float thigh_rad) const {
+  for (const float side : {-1.0F, 1.0F}) {
+    const Vector3f knee_m(0, side * 0.10F, kKneeHeightM);
+    placing.add({{0, knee_m.y(), 0.22F}, {0.065F, 0.065F, 0.235F}, 0, 0, Material::kDark}, trousers_texture_,
+                placing.body_moves);
+    placing.add(
+        {knee_m + Vector3f(0, 0, kThighM / 2), {0.08F, 0.08F, 0.26F}, -thigh_rad, kKneeHeightM, Material::kDark},
+        trousers_texture_, placing.body_moves);
+  }
+}
+
+}  // namespace rtd::camera::synthetic

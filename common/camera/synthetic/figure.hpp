@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "common/camera/synthetic/geometry.hpp"
+#include "common/camera/synthetic/texture.hpp"
+
+namespace rtd::camera::synthetic {
+
+inline constexpr float kSeatHeightM = 0.45F;
+inline constexpr float kFigureTexelsPerM = 256;  ///< of all movers
+
+/// How a figure stands or sits at one moment.
+struct Posture {
+  Eigen::Vector2f position_m = Eigen::Vector2f::Zero();  ///< on the floor, between the feet of a standing figure
+  float raised_m = 0;                                    ///< above the floor, as on a step
+  float heading_rad = 0;                                 ///< where it looks, from x towards y
+  float swing = 0;                                       ///< of the limbs, [-1, 1]; 0 = at rest
+  float seated = 0;                                      ///< 1 = sits, 0 = stands; the feet stay where they are
+  float fidget_rad = 0;                                  ///< of the arms and the head, moves them alone
+  bool body_moves = true;                                ///< torso, hips and legs
+  bool limbs_move = true;                                ///< arms and head
+};
+
+/// What a figure looks like, painted by its seed: a person of ellipsoids (head, torso, hips, arms, legs).
+class Figure {
+ public:
+  /// Adds its textures to `textures`. `breadth` scales it from side to side: a wide coat.
+  Figure(std::uint64_t seed, std::vector<Texture>& textures, float breadth = 1);
+  /// Adds an object of class "person".
+  void append_to(Geometry& geometry, const Posture& posture) const;
+  float step_rate_rad_s() const { return step_rate_rad_s_; }
+
+ private:
+  struct Placing;
+  void append_upper_body(Placing& placing, const Posture& posture) const;
+  void append_standing_legs(Placing& placing, float swing) const;
+  void append_bent_legs(Placing& placing, float thigh_rad) const;
+
+  float height_scale_, breadth_, step_rate_rad_s_;
+  int skin_texture_, shirt_texture_, trousers_texture_;
+};
+
+/// A colour that is neither black nor white.
+ColorBgr vivid_color(SeededRandom& random);
+
+}  // namespace rtd::camera::synthetic

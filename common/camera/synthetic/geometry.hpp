@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/camera/synthetic/texture.hpp"
+
+namespace rtd::camera::synthetic {
+
+inline constexpr int kRoomItself = -1;  ///< no object: walls and furniture
+
+/// How a surface returns infrared light, whatever its colour.
+enum class Material : std::uint8_t {
+  kPlain,
+  kHead,     ///< skin with hair on it
+  kDark,     ///< hair, dark cloth
+  kMonitor,  ///< a screen
+};
+
+/// A textured rectangle, seen from the side its normal axis_s x axis_t points to. World frame: z up.
+struct Face {
+  Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< corner with texture coordinate (0, 0)
+  Eigen::Vector3f axis_s = Eigen::Vector3f::UnitX(), axis_t = Eigen::Vector3f::UnitY();  ///< unit, orthogonal
+  float width_m = 0, height_m = 0;                                                       ///< along axis_s, axis_t
+  int texture = 0;                                                                       ///< index
+  bool moving = false;
+  int object = kRoomItself;  ///< index
+  Material material = Material::kPlain;
+};
+
+/// A textured ellipsoid. Body frame: centre and main axes.
+struct Ellipsoid {
+  Eigen::Isometry3f T_world_body = Eigen::Isometry3f::Identity();
+  Eigen::Vector3f semi_axes_m = Eigen::Vector3f::Ones();
+  int texture = 0;  ///< index
+  bool moving = false;
+  int object = kRoomItself;  ///< index
+  Material material = Material::kPlain;
+};
+
+/// Everything there is to see at one moment.
+struct Geometry {
+  std::vector<Face> faces;
+  std::vector<Ellipsoid> ellipsoids;
+  std::vector<std::string> object_classes = {};  ///< index: object
+  /// A new object; its index.
+  int add_object(std::string class_name);
+};
+
+/// A box with one texture for all sides. Frame: origin in the middle of its lower side, z up.
+struct Cuboid {
+  Eigen::Isometry3f T_world_cuboid = Eigen::Isometry3f::Identity();
+  Eigen::Vector3f size_m = Eigen::Vector3f::Ones();
+  int texture = 0;
+  bool moving = false;
+  int object = kRoomItself;
+  Material material = Material::kPlain;
+};
+
+/// T_world_body of something that stands at `position_m`, turned about the vertical.
+Eigen::Isometry3f upright(const Eigen::Vector3f& position_m, float turned_rad);
+
+/// The six outer sides of a cuboid.
+std::array<Face, 6> outer_faces(const Cuboid& cuboid);
+
+}  // namespace rtd::camera::synthetic
