@@ -6,13 +6,18 @@
 
 #include "common/bus/topics.hpp"
 #include "common/msg/imu.hpp"
+#include "common/msg/services.hpp"
 
 namespace rtd::bus {
 namespace {
 
 using Roles = std::vector<std::string_view>;
 
-const Roles kServices = {"camera", "detector", "filter", "slam", "dense", "record", "replay", "viewer", "link"};
+Roles every_service() {
+  Roles names;
+  for (const msg::NamedService& service : msg::kServices) names.emplace_back(service.name);
+  return names;
+}
 const Roles kFrameReaders = {"filter", "detector", "dense", "launcher", "viewer"};
 /// They read the results; a link also writes them, in the domain of the fleet.
 const Roles kOnlookers = {"viewer", "observer", "link"};
@@ -77,7 +82,7 @@ const std::vector<TopicRoles>& topic_roles() {
       {kMovers.name, {"filter"}, Roles{"viewer", "observer"}},
       {kMoverBoxes.name, {"filter"}, kOnlookers},
       {kMoverMarkers.name, {"filter"}, kOnlookers},
-      {kStatus.name, kServices, kServices + Roles{"launcher", "observer"}},
+      {kStatus.name, every_service(), every_service() + Roles{"launcher", "observer"}},
       {kOdometry.name, {"slam", "link"}, kOnlookers},
       {kPose.name, {"slam", "link"}, kOnlookers},
       {kTf.name, {"slam", "link"}, kOnlookers},
@@ -99,9 +104,11 @@ const std::vector<TopicRoles>& topic_roles() {
 }
 
 const std::vector<std::string>& roles() {
-  static const std::vector<std::string> kRoles = {"camera",   "detector", "filter",   "slam",   "dense",
-                                                  "record",   "replay",   "launcher", "topics", "viewer",
-                                                  "observer", "link",     "call"};
+  static const std::vector<std::string> kRoles = [] {
+    std::vector<std::string> names = msg::service_names();
+    names.insert(names.end(), {"launcher", "topics", "observer", "call"});
+    return names;
+  }();
   return kRoles;
 }
 

@@ -42,6 +42,13 @@ struct ServiceStatus {
   std::vector<Metric> metrics;
 };
 RTD_FIELDS(rtd_msgs, ServiceStatus, service, pid, started_ns, stamp_ns, state, message, metrics)
+/// A word of a heartbeat. Metrics have no place for a text, so it follows a prefix in the name: "host_name.robot" = 1.
+/// Empty: there is none with that prefix.
+inline std::string word_of(const ServiceStatus& status, std::string_view prefix) {
+  for (const Metric& metric : status.metrics)
+    if (metric.name.starts_with(prefix)) return metric.name.substr(prefix.size());
+  return {};
+}
 /// "camera", "detector/anna": letters, digits and - _ / ..
 constexpr bool is_service_name(std::string_view name) {
   const auto is_part = [](char c) {

@@ -17,9 +17,6 @@
 
 namespace rtd::run_record {
 
-/// The filter's modes, from no removal to all techniques (docs/theory/dynamic_points.md "Modes").
-inline const std::vector<std::string> kFilterModes{"off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd"};
-
 /// What filter and slam published about one frame.
 struct FrameRecord {
   msg::TrackingResult tracking{};

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <ranges>
 
+#include "common/msg/services.hpp"
 #include "common/security/keystore_layout.hpp"
 
 namespace rtd::service {
@@ -137,8 +138,11 @@ bus::BusOptions load_bus_options(const BusArguments& arguments, const ConfigSour
 }
 
 const std::vector<std::string>& config_sections() {
-  static const std::vector<std::string> kSections = {"bus",    "camera", "detector", "filter", "slam",  "dense",
-                                                     "record", "replay", "launcher", "link",   "viewer"};
+  static const std::vector<std::string> kSections = [] {
+    std::vector<std::string> names = msg::service_names();
+    names.insert(names.end(), {"bus", "launcher"});
+    return names;
+  }();
   return kSections;
 }
 

@@ -10,6 +10,7 @@
 #include "common/io/printable.hpp"
 #include "common/service/host_name.hpp"
 #include "common/service/log.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/runtime.hpp"
 
@@ -22,7 +23,7 @@ constexpr std::int64_t kBlockedAfterNs = 3'000'000'000;  // a write may wait for
 
 void add_troubles(const std::string& topic, const bus::TopicTrouble& trouble, std::vector<msg::Metric>& metrics) {
   const auto add = [&](const char* what, std::uint64_t count) {
-    if (count > 0) metrics.push_back({"topic." + topic + '.' + what, static_cast<double>(count)});
+    if (count > 0) metrics.push_back({metric::kTopicPrefix + topic + '.' + what, static_cast<double>(count)});
   };
   add("lost", trouble.lost);
   add("rejected", trouble.rejected);
@@ -71,8 +72,8 @@ Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, T
       clocks_(service_name, PeerClocks::this_host_id()),
       peers_(process_gone()) {
   own_.service = std::move(service_name);
-  own_.metrics.push_back({"host_id", PeerClocks::this_host_id()});
-  own_.metrics.push_back({kHostNameMetric + host_name(), 1});
+  own_.metrics.push_back({metric::kHostId, PeerClocks::this_host_id()});
+  own_.metrics.push_back({metric::kHostNamePrefix + host_name(), 1});
   own_.pid = getpid();
   own_.started_ns = started_ns_;
   writer_ = bus.writer(bus::topics::kStatus);
@@ -117,7 +118,7 @@ void Heartbeat::forget_silent(std::int64_t now_ns) {
   const std::lock_guard lock(mutex_);
   for (const std::string& name : peers_.forget_silent(now_ns)) {
     clocks_.forget(name);
-    const std::string prefix = "clock." + name + '.';
+    const std::string prefix = metric::kClockPrefix + name + '.';
     std::erase_if(own_.metrics, [&](const msg::Metric& metric) { return metric.name.starts_with(prefix); });
   }
 }
@@ -140,6 +141,14 @@ void Heartbeat::set_state(msg::ServiceState state, const std::string& message) {
 void Heartbeat::set_metric(const std::string& name, double value) {
   const std::lock_guard lock(mutex_);
   set({name, value});
+}
+
+void Heartbeat::set_word(const std::string& prefix, const std::string& word) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(own_.metrics, [&](const msg::Metric& own) {
+    return own.name.starts_with(prefix) && own.name.compare(prefix.size(), std::string::npos, word) != 0;
+  });
+  set({prefix + word, 1});
 }
 
 /// Under the lock.
@@ -169,7 +178,7 @@ bool Heartbeat::note(const msg::ServiceStatus& status, const bus::WriterId& writ
   const bool believed = believes(status.service, writer);
   if (!believed) ++disbelieved_;
   if (!believed || !peers_.note(status, writer, monotonic_ns())) {
-    set({"heartbeats_refused", static_cast<double>(peers_.refused() + disbelieved_)});
+    set({metric::kHeartbeatsRefused, static_cast<double>(peers_.refused() + disbelieved_)});
     return false;
   }
   for (const msg::Metric& metric : clocks_.received(status, arrival_ns)) set(metric);
@@ -218,7 +227,8 @@ std::optional<double> Heartbeat::metric_on_this_host(const std::string& service,
   if (!alive(service)) return std::nullopt;
   const std::lock_guard lock(mutex_);
   const Peer* const peer = find(service);
-  if (peer == nullptr || find_metric(peer->status, "host_id") != find_metric(own_, "host_id")) return std::nullopt;
+  if (peer == nullptr || find_metric(peer->status, metric::kHostId) != find_metric(own_, metric::kHostId))
+    return std::nullopt;
   return find_metric(peer->status, metric);
 }
 
@@ -268,11 +278,11 @@ Heartbeat::Work Heartbeat::work() const {
 bool Heartbeat::check_peers() {
   const std::lock_guard lock(mutex_);
   const std::int64_t now_ns = monotonic_ns();
-  const double own_host = find_metric(own_, "host_id").value_or(0);
+  const double own_host = find_metric(own_, metric::kHostId).value_or(0);
   bool changed = false;
   for (auto& [name, peer] : peers_.peers()) {
     PeerEvidence evidence{now_ns - peer.received_ns, ProcessState::kUnknown};
-    const bool here = find_metric(peer.status, "host_id").value_or(0) == own_host;
+    const bool here = find_metric(peer.status, metric::kHostId).value_or(0) == own_host;
     if (evidence.silent_ns >= kSuspectAfterNs && here) evidence.process = process_state(peer.status.pid);
     const bool ended = peer.status.state == msg::ServiceState::kFinished;
     const PeerHealth health = ended ? PeerHealth::kAlive : judge(evidence);
@@ -287,7 +297,7 @@ bool Heartbeat::check_peers() {
 
 /// True when the worker got stuck or free.
 bool Heartbeat::check_progress() {
-  const auto frames_sent = metric_on_this_host("camera", kFramesPublishedMetric);
+  const auto frames_sent = metric_on_this_host("camera", metric::kFramesPublished);
   const std::lock_guard lock(mutex_);
   const std::int64_t now_ns = monotonic_ns(), stuck_ns = progress_.stuck_ns(now_ns);
   const bool deaf = frames_.deaf(now_ns, frames_sent);
@@ -328,14 +338,14 @@ msg::ServiceStatus Heartbeat::current_status() {
   msg::ServiceStatus status = own_;
   for (const auto& [name, peer] : peers_.peers()) {
     if (peer.health != PeerHealth::kAlive) {
-      status.metrics.push_back({fmt::format("peer.{}.{}", name, to_string(peer.health)), 1});
+      status.metrics.push_back({fmt::format("{}{}.{}", metric::kPeerPrefix, name, to_string(peer.health)), 1});
     }
   }
   for (const auto& [topic, trouble] : troubles_) add_troubles(topic, trouble, status.metrics);
   if (!stuck_.empty()) {
     status.state = msg::ServiceState::kDegraded;
     status.message = "hung: " + stuck_;
-    status.metrics.push_back({"hung", 1});
+    status.metrics.push_back({metric::kHung, 1});
   }
   make_plausible(status);
   return status;

@@ -9,9 +9,6 @@
 
 namespace rtd::service {
 
-/// Begin of a metric of every heartbeat; the name of its host follows, as metrics have no other place for a text.
-inline constexpr const char* kHostNameMetric = "host_name.";
-
 /// The name of this host; "localhost" when it has none.
 inline std::string host_name() {
   std::array<char, 256> name{};

@@ -7,15 +7,13 @@
 #include <cmath>
 #include <cstddef>
 
+#include "common/service/metric_names.hpp"
 #include "common/service/runtime.hpp"
 
 /// What the services of one host do less while the computer cannot keep up. The filter chooses the step, because every
 /// pose comes back to it, and names it in its heartbeat; detector and camera on the same host follow.
 /// docs/operations.md, "A slow or busy computer".
 namespace rtd::service {
-
-/// Metric of the filter's heartbeat: 0 = everything as configured, else an index of kLoadSteps.
-inline constexpr const char* kLoadStepMetric = "load_step";
 
 /// One step, with all that it implies.
 struct LoadStep {
@@ -38,7 +36,7 @@ inline constexpr std::array<LoadStep, 6> kLoadSteps{{
 
 /// What the filter on this host asks of the others; full work without one, or with a value that makes no sense.
 inline const LoadStep& asked_load_step(const Heartbeat& heartbeat) {
-  const double asked = heartbeat.metric_on_this_host("filter", kLoadStepMetric).value_or(0);
+  const double asked = heartbeat.metric_on_this_host("filter", metric::kLoadStep).value_or(0);
   if (!std::isfinite(asked)) return kLoadSteps.front();
   return kLoadSteps[static_cast<std::size_t>(std::clamp(asked, 0.0, static_cast<double>(kLoadSteps.size() - 1)))];
 }

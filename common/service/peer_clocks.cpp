@@ -11,6 +11,7 @@
 
 #include "common/bus/network.hpp"
 #include "common/service/log.hpp"
+#include "common/service/metric_names.hpp"
 
 namespace rtd::service {
 namespace {
@@ -63,16 +64,17 @@ double PeerClocks::this_host_id() {
 }
 
 std::vector<msg::Metric> PeerClocks::received(const msg::ServiceStatus& status, std::int64_t arrival_ns) {
-  const std::optional<double> host_id = find_metric(status, "host_id");
+  const std::optional<double> host_id = find_metric(status, metric::kHostId);
   if (!host_id || *host_id == own_host_id_) return {};
   clocks_.received(status.service, status.stamp_ns, arrival_ns);
-  const std::string prefix = "clock." + status.service + ".";
-  std::vector<msg::Metric> metrics = {{prefix + "heard_ms", *clocks_.measured_ms(status.service)}};
-  const std::optional<double> peer_measured_ms = find_metric(status, "clock." + own_service_ + ".heard_ms");
+  const std::string prefix = metric::kClockPrefix + status.service;
+  std::vector<msg::Metric> metrics = {{prefix + metric::kClockHeardSuffix, *clocks_.measured_ms(status.service)}};
+  const std::optional<double> peer_measured_ms =
+      find_metric(status, metric::kClockPrefix + own_service_ + metric::kClockHeardSuffix);
   if (!peer_measured_ms) return metrics;
   const ClockOffset offset = *clocks_.offset(status.service, *peer_measured_ms);
-  metrics.push_back({prefix + "offset_ms", offset.offset_ms});
-  metrics.push_back({prefix + "round_trip_ms", offset.round_trip_ms});
+  metrics.push_back({prefix + metric::kClockOffsetSuffix, offset.offset_ms});
+  metrics.push_back({prefix + metric::kClockRoundTripSuffix, offset.round_trip_ms});
   warn_once(status, *host_id, offset);
   return metrics;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/peer_clocks.hpp"
 
@@ -14,7 +15,7 @@ ProcessBook::ProcessBook() : ProcessBook([](std::int64_t pid) { return process_s
 void ProcessBook::note(const msg::ServiceStatus& status, const bus::WriterId& writer) {
   constexpr std::size_t kMost = 64;
   const bus::ParticipantId connection = bus::participant_of(writer);
-  const bool here = find_metric(status, "host_id") == PeerClocks::this_host_id();
+  const bool here = find_metric(status, metric::kHostId) == PeerClocks::this_host_id();
   const std::lock_guard lock(mutex_);
   if (entries_.size() >= kMost && !entries_.contains(connection)) {
     entries_.erase(

@@ -21,6 +21,7 @@
 #include "common/bus/host/shm_leftovers.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/log.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/service_lock.hpp"
@@ -102,12 +103,12 @@ class BusProblems {
     constexpr int kLogged = 50;  // other participants must not fill the disk
     const std::lock_guard lock(mutex_);
     if (++count_ <= kLogged) SPDLOG_WARN("event=bus_problem cause=\"{}\"", problem);
-    if (heartbeat_ != nullptr) heartbeat_->set_metric("bus_problems", count_);
+    if (heartbeat_ != nullptr) heartbeat_->set_metric(metric::kBusProblems, count_);
   }
   void count_in(Heartbeat* heartbeat) {
     const std::lock_guard lock(mutex_);
     heartbeat_ = heartbeat;
-    if (heartbeat_ != nullptr && count_ > 0) heartbeat_->set_metric("bus_problems", count_);
+    if (heartbeat_ != nullptr && count_ > 0) heartbeat_->set_metric(metric::kBusProblems, count_);
   }
 
  private:

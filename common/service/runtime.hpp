@@ -27,9 +27,6 @@
 
 namespace rtd::service {
 
-/// How many frames the camera has sent, in its heartbeat.
-inline constexpr char kFramesPublishedMetric[] = "frames_published";
-
 /// Publishes the heartbeat of one service (topic rtd/status, 5 Hz and at changes) and knows those of the others.
 /// Thread-safe.
 class Heartbeat {
@@ -43,6 +40,8 @@ class Heartbeat {
   void set_state(msg::ServiceState state, const std::string& message = {});
   /// A number shown in the heartbeat; the same name overwrites.
   void set_metric(const std::string& name, double value);
+  /// A word shown in the heartbeat (msg::word_of); the same prefix overwrites.
+  void set_word(const std::string& prefix, const std::string& word);
   /// A worker loop calls it in each round. If it is stuck for longer than the limit, the heartbeat has state degraded.
   void tick();
   /// The worker waits on purpose until the next tick.

@@ -14,6 +14,7 @@
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/live/live_source.hpp"
 #include "services/camera/live_camera.hpp"
@@ -345,16 +346,17 @@ void CameraService::report_counters() {
   const auto set = [this](const char* name, std::uint64_t value) {
     runtime_.heartbeat.set_metric(name, static_cast<double>(value));
   };
-  set("frames_in", frames_in_);
-  set(service::kFramesPublishedMetric, published_);
-  set("frames_late", late());
-  set("frames_skipped", counters_.skipped_total());
-  set("frames_without_depth", counters_.frames_without_depth);
-  set("frames_refused", refused_);
-  set("reconnects", counters_.reconnects);
-  set("jpegs_dropped", publisher_.jpegs().dropped());
-  set("resends", pacer_.resends());
-  if (const auto offset_ms = depth_offsets_.median_ms()) runtime_.heartbeat.set_metric("depth_offset_ms", *offset_ms);
+  set(service::metric::kFramesIn, frames_in_);
+  set(service::metric::kFramesPublished, published_);
+  set(service::metric::kFramesLate, late());
+  set(service::metric::kFramesSkipped, counters_.skipped_total());
+  set(service::metric::kFramesWithoutDepth, counters_.frames_without_depth);
+  set(service::metric::kFramesRefused, refused_);
+  set(service::metric::kReconnects, counters_.reconnects);
+  set(service::metric::kJpegsDropped, publisher_.jpegs().dropped());
+  set(service::metric::kResends, pacer_.resends());
+  if (const auto offset_ms = depth_offsets_.median_ms())
+    runtime_.heartbeat.set_metric(service::metric::kDepthOffsetMs, *offset_ms);
 }
 
 void CameraService::write_groundtruth() {

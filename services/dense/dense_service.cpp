@@ -12,6 +12,7 @@
 #include "common/io/text.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/image_file.hpp"
 #include "common/vision/rgbd_image.hpp"
@@ -230,14 +231,14 @@ std::string DenseService::trouble() {
 void DenseService::report_state() {
   const JoinCounters joins = joiner_->counters();
   service::Heartbeat& heartbeat = runtime_.heartbeat;
-  heartbeat.set_metric("frames", static_cast<double>(totals_.frames));
-  heartbeat.set_metric("frames_without_image", static_cast<double>(joins.without_image));
-  heartbeat.set_metric("frames_without_mask", static_cast<double>(joins.without_mask));
-  heartbeat.set_metric("frames_not_tracked", static_cast<double>(joins.not_tracked));
-  heartbeat.set_metric("frames_defective", static_cast<double>(totals_.defective));
-  heartbeat.set_metric("voxels", static_cast<double>(map_.voxels()));
-  heartbeat.set_metric("voxels_carved", static_cast<double>(totals_.carved));
-  heartbeat.set_metric("points_without_room", static_cast<double>(totals_.refused));
+  heartbeat.set_metric(service::metric::kFrames, static_cast<double>(totals_.frames));
+  heartbeat.set_metric(service::metric::kFramesWithoutImage, static_cast<double>(joins.without_image));
+  heartbeat.set_metric(service::metric::kFramesWithoutMask, static_cast<double>(joins.without_mask));
+  heartbeat.set_metric(service::metric::kFramesNotTracked, static_cast<double>(joins.not_tracked));
+  heartbeat.set_metric(service::metric::kFramesDefective, static_cast<double>(totals_.defective));
+  heartbeat.set_metric(service::metric::kVoxels, static_cast<double>(map_.voxels()));
+  heartbeat.set_metric(service::metric::kVoxelsCarved, static_cast<double>(totals_.carved));
+  heartbeat.set_metric(service::metric::kPointsWithoutRoom, static_cast<double>(totals_.refused));
   const std::string message = trouble();
   if (!message.empty()) return heartbeat.set_state(msg::ServiceState::kDegraded, message);
   if (totals_.frames > 0) return heartbeat.set_state(msg::ServiceState::kRunning);

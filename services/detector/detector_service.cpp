@@ -14,6 +14,7 @@
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/image_codecs.hpp"
@@ -241,7 +242,7 @@ void DetectorService::report_engine(const EngineGuard& detector) {
 
 void DetectorService::skip(const Arrival& arrival, const std::string& cause) {
   const std::lock_guard lock(counters_mutex_);
-  runtime_.heartbeat.set_metric("frames_broken", static_cast<double>(++broken_));
+  runtime_.heartbeat.set_metric(service::metric::kFramesBroken, static_cast<double>(++broken_));
   if (broken_log_.pass()) {
     SPDLOG_WARN("event=image_skipped stamp_ns={} total={} cause=\"{}\"", arrival.stamp_ns, broken_, cause);
   }
@@ -252,10 +253,10 @@ void DetectorService::count(double detect_ms) {
   ++detected_;
   total_detect_ms_ += detect_ms;
   max_detect_ms_ = std::max(max_detect_ms_, detect_ms);
-  runtime_.heartbeat.set_metric("frames", static_cast<double>(detected_));
-  runtime_.heartbeat.set_metric("frames_dropped", static_cast<double>(arrivals_->dropped()));
-  runtime_.heartbeat.set_metric("detect_ms", total_detect_ms_ / static_cast<double>(detected_));
-  runtime_.heartbeat.set_metric("detect_ms_max", max_detect_ms_);
+  runtime_.heartbeat.set_metric(service::metric::kFrames, static_cast<double>(detected_));
+  runtime_.heartbeat.set_metric(service::metric::kFramesDropped, static_cast<double>(arrivals_->dropped()));
+  runtime_.heartbeat.set_metric(service::metric::kDetectMs, total_detect_ms_ / static_cast<double>(detected_));
+  runtime_.heartbeat.set_metric(service::metric::kDetectMsMax, max_detect_ms_);
 }
 
 bool DetectorService::peers_matched() const {

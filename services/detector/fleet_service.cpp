@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/service/log.hpp"
+#include "common/service/metric_names.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -128,9 +129,9 @@ void FleetService::report(const Lanes& lanes) {
     serving += lane->serving() ? 1 : 0;
     reading += lane->reading() ? 1 : 0;
   }
-  runtime_.heartbeat.set_metric("robots", static_cast<double>(lanes.size()));
-  runtime_.heartbeat.set_metric("robots_served", serving);
-  runtime_.heartbeat.set_metric("robots_read", reading);
+  runtime_.heartbeat.set_metric(service::metric::kRobots, static_cast<double>(lanes.size()));
+  runtime_.heartbeat.set_metric(service::metric::kRobotsServed, serving);
+  runtime_.heartbeat.set_metric(service::metric::kRobotsRead, reading);
   runtime_.heartbeat.set_state(reading > 0 ? msg::ServiceState::kRunning : msg::ServiceState::kReady,
                                parts.empty() ? "no robot found" : fmt::format("{}", fmt::join(parts, "; ")));
 }

@@ -2,19 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/config.hpp"
 
+#include "common/msg/filter_modes.hpp"
 #include "common/vision/motion_levels.hpp"
-#include "services/filter/core/modes/mode_table.hpp"
 
 namespace rtd::filter {
 
-std::vector<std::string> mode_names() {
-  std::vector<std::string> names;
-  for (const ModeEntry& entry : all_modes()) names.emplace_back(entry.name);
-  return names;
-}
-
 void ServiceConfig::bind(service::ConfigBinder& binder) {
-  binder.choice("mode", mode, mode_names(), "which parts of the filter are at work");
+  binder.choice("mode", mode, msg::filter_mode_names(), "which parts of the filter are at work");
   binder.choice("detector", detector, {"auto", "off"}, "auto: use a detector if one runs; off: never wait, never use");
   binder.field("detections_timeout_ms", detections_timeout_ms, {1, 600000},
                "asap, lockstep: longest wait for the boxes of one frame");
@@ -27,9 +21,7 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
 
 FilterConfig ServiceConfig::core_config() const {
   FilterConfig config = core;
-  for (const ModeEntry& entry : all_modes()) {
-    if (mode == entry.name) config.mode = entry.mode;
-  }
+  if (const auto* const known = msg::find_filter_mode(mode)) config.mode = known->mode;
   try {
     const vision::MotionLevels check(config.motion_levels);
   } catch (const std::invalid_argument& error) {

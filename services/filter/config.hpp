@@ -10,9 +10,6 @@
 
 namespace rtd::filter {
 
-/// Values of `filter.mode`.
-std::vector<std::string> mode_names();
-
 /// Section `filter` of the configuration.
 struct ServiceConfig {
   FilterConfig core;

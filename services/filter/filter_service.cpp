@@ -8,8 +8,11 @@
 #include <algorithm>
 #include <opencv2/core/utility.hpp>
 
+#include "common/msg/filter_modes.hpp"
 #include "common/msg/stamps.hpp"
+#include "common/msg/word_list.hpp"
 #include "common/service/load_step.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/rgbd_image.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
@@ -34,8 +37,8 @@ LoadWatch watch_from(int first_step) {
 }  // namespace
 
 void FilterService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--mode", config.mode, "off, semantic, geometry, epipolar, rtd-paper or rtd (filter.mode)")
-      ->check(CLI::IsMember(mode_names()));
+  app.add_option("--mode", config.mode, msg::word_list(msg::filter_mode_names()) + " (filter.mode)")
+      ->check(CLI::IsMember(msg::filter_mode_names()));
 }
 
 FilterService::FilterService(const Config& config, service::Runtime& runtime)
@@ -209,7 +212,7 @@ void FilterService::forget_views(const msg::FrameView& frame, const char* cause)
 
 /// The other services wait for every frame: a frame that cannot be used has no features.
 void FilterService::publish_no_features(const msg::FrameView& frame, const std::string& cause) {
-  runtime_.heartbeat.set_metric("frames_defective", static_cast<double>(++defective_));
+  runtime_.heartbeat.set_metric(service::metric::kFramesDefective, static_cast<double>(++defective_));
   if (defect_log_.pass()) SPDLOG_ERROR("event=frame_defective frame={} cause=\"{}\"", frame.seq, cause);
   fill_message(frame, {}, msg::DetectionUse::kNone, *message_);
   writer_.write(*message_);
@@ -258,7 +261,7 @@ bool FilterService::sheds_load() const {
 const service::LoadStep& FilterService::follow_load_step() {
   const service::LoadStep& step = service::kLoadSteps[static_cast<std::size_t>(load_.step())];
   filter_.set_effort({step.feature_share, step.coarse_depth_check, step.first_octave});
-  runtime_.heartbeat.set_metric(service::kLoadStepMetric, load_.step());
+  runtime_.heartbeat.set_metric(service::metric::kLoadStep, load_.step());
   return step;
 }
 
@@ -324,17 +327,16 @@ bool FilterService::detector_alive() const {
 
 void FilterService::count(const FilterResult& result) {
   service::Heartbeat& heartbeat = runtime_.heartbeat;
-  heartbeat.set_metric("frames", static_cast<double>(published_));
-  heartbeat.set_metric("frames_dropped", static_cast<double>(frames_->dropped()));
-  heartbeat.set_metric("frames_foreign", static_cast<double>(camera_->refused()));
-  heartbeat.set_metric("frames_without_detections", static_cast<double>(unpaired_));
-  heartbeat.set_metric("features", static_cast<double>(result.features.size()));
-  heartbeat.set_metric("features_removed", result.removed);
-  heartbeat.set_metric("objects", static_cast<double>(result.objects.size()));
-  heartbeat.set_metric("dynamic_clusters", result.dynamic_clusters);
-  heartbeat.set_metric("mode", static_cast<double>(filter_.mode()));
-  static constexpr std::array<const char*, 7> kNames{"wait_ms",        "extract_ms", "masks_ms", "ego_motion_ms",
-                                                     "depth_check_ms", "fuse_ms",    "filter_ms"};
+  heartbeat.set_metric(service::metric::kFrames, static_cast<double>(published_));
+  heartbeat.set_metric(service::metric::kFramesDropped, static_cast<double>(frames_->dropped()));
+  heartbeat.set_metric(service::metric::kFramesForeign, static_cast<double>(camera_->refused()));
+  heartbeat.set_metric(service::metric::kFramesWithoutDetections, static_cast<double>(unpaired_));
+  heartbeat.set_metric(service::metric::kFeatures, static_cast<double>(result.features.size()));
+  heartbeat.set_metric(service::metric::kFeaturesRemoved, result.removed);
+  heartbeat.set_metric(service::metric::kObjects, static_cast<double>(result.objects.size()));
+  heartbeat.set_metric(service::metric::kDynamicClusters, result.dynamic_clusters);
+  heartbeat.set_word(service::metric::kModePrefix, msg::name_of(filter_.mode()));
+  constexpr auto kNames = service::metric::kFilterStageMs;
   for (std::size_t stage = 0; stage < kNames.size(); ++stage) {  // means so far
     total_stage_ms_[stage] += static_cast<double>(result.stage_ms[stage]);
     heartbeat.set_metric(kNames[stage], total_stage_ms_[stage] / static_cast<double>(published_));
@@ -360,11 +362,12 @@ void FilterService::report_state() {
 
 /// What the old mode knew is forgotten, so the first frames of the new one are judged without views to compare with.
 bus::CommandAnswer FilterService::set_mode(const std::string& name) {
-  const auto& modes = all_modes();
-  const auto found = std::ranges::find_if(modes, [&name](const ModeEntry& entry) { return name == entry.name; });
-  if (found == std::end(modes))
-    return {false, fmt::format("'{}' is no mode of the filter: choose {}", name, fmt::join(mode_names(), ", "))};
-  const std::string before = entry_of(filter_.mode()).name;
+  const msg::NamedFilterMode* const found = msg::find_filter_mode(name);
+  if (found == nullptr) {
+    return {false,
+            fmt::format("'{}' is no mode of the filter: choose {}", name, fmt::join(msg::filter_mode_names(), ", "))};
+  }
+  const std::string before = msg::name_of(filter_.mode());
   if (before == name) return {true, "the mode is " + name + " already"};
   filter_.set_mode(found->mode);
   movers_.clear();

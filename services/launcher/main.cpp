@@ -13,6 +13,9 @@
 #include "common/bus/topic_roles.hpp"
 #include "common/io/printable.hpp"
 #include "common/msg/engine_names.hpp"
+#include "common/msg/filter_modes.hpp"
+#include "common/msg/services.hpp"
+#include "common/msg/word_list.hpp"
 #include "common/process/executable.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/bus_config.hpp"
@@ -33,7 +36,7 @@ struct ExternalCommand {
   const char* name;        ///< "info" of `rtd info`
   const char* executable;  ///< "rtd-recording"; also the CMake target that builds it
   const char* help;
-  const char* group = "Services";
+  const char* group = "Tools";
   const char* subcommand = nullptr;  ///< what the executable calls it, if not `name`
 
   /// An executable with several commands gets the command as its first argument.
@@ -43,49 +46,49 @@ struct ExternalCommand {
   }
 };
 
-constexpr const char* kTools = "Tools";
-constexpr std::array kCommands = {
+constexpr std::array kToolCommands = {
     ExternalCommand{"eval", "rtd-eval", "Compare a trajectory with its ground truth (TUM, KITTI, EuRoC, recordings)",
-                    kTools, "trajectory"},
-    ExternalCommand{"eval-detector", "rtd-eval", "Measure precision, recall and time of detector models", kTools,
+                    "Tools", "trajectory"},
+    ExternalCommand{"eval-detector", "rtd-eval", "Measure precision, recall and time of detector models", "Tools",
                     "detector"},
-    ExternalCommand{"ablate", "rtd-eval", "Compare all filter modes, and mode rtd without each technique", kTools},
-    ExternalCommand{"report", "rtd-eval", "Write the report of a run again, from its run.json", kTools},
-    ExternalCommand{"info", "rtd-recording", "Show what a recording contains: topics, rates, losses, damage", kTools},
-    ExternalCommand{"diff", "rtd-recording", "Compare two recordings or two trajectories (TUM format)", kTools},
+    ExternalCommand{"ablate", "rtd-eval", "Compare all filter modes, and mode rtd without each technique"},
+    ExternalCommand{"report", "rtd-eval", "Write the report of a run again, from its run.json"},
+    ExternalCommand{"info", "rtd-recording", "Show what a recording contains: topics, rates, losses, damage"},
+    ExternalCommand{"diff", "rtd-recording", "Compare two recordings or two trajectories (TUM format)"},
     ExternalCommand{"convert", "rtd-recording",
-                    "Convert a recording with all its topics to MCAP, or frames to TUM or MCAP", kTools},
-    ExternalCommand{"map", "rtd-map", "Show what a map file contains; export its landmarks or keyframe poses", kTools},
+                    "Convert a recording with all its topics to MCAP, or frames to TUM or MCAP"},
+    ExternalCommand{"map", "rtd-map", "Show what a map file contains; export its landmarks or keyframe poses"},
     ExternalCommand{"topics", "rtd-topics",
-                    "List the topics of a DDS domain, measure rates, print messages, also of a recording", kTools},
-    ExternalCommand{"call", "rtd-topics", "Call a command of a running service: reset the map, pause a replay, ...",
-                    kTools},
-    ExternalCommand{"keystore", "rtd-keystore", "Create and renew the keys for --secure", kTools},
-    ExternalCommand{"bench", "rtd-bench", "Measure feature extraction, transport and detector engines", kTools},
-    ExternalCommand{"camera", "rtd-camera", "Publish the frames of a source"},
-    ExternalCommand{"detector", "rtd-detector", "Detect people and objects in images"},
-    ExternalCommand{"filter", "rtd-filter", "Extract features and find those on moving objects"},
-    ExternalCommand{"slam", "rtd-slam", "Track the camera and build the map"},
-    ExternalCommand{"dense", "rtd-dense", "Fuse a dense static map"},
-    ExternalCommand{"record", "rtd-record", "Record topics to MCAP files; recover and join recordings"},
-    ExternalCommand{"replay", "rtd-replay", "Replay a recording"},
-    ExternalCommand{"viewer", "rtd-viewer", "Show a run in the browser and in Foxglove: map, images, services"},
-    ExternalCommand{"link", "rtd-link", "Pass a robot's poses, images and detections to and from a fleet's domain"},
+                    "List the topics of a DDS domain, measure rates, print messages, also of a recording"},
+    ExternalCommand{"call", "rtd-topics", "Call a command of a running service: reset the map, pause a replay, ..."},
+    ExternalCommand{"keystore", "rtd-keystore", "Create and renew the keys for --secure"},
+    ExternalCommand{"bench", "rtd-bench", "Measure feature extraction, transport and detector engines"},
 };
+
+/// The tools, then the services.
+const std::vector<ExternalCommand>& commands() {
+  static const std::vector<ExternalCommand> all = [] {
+    std::vector<ExternalCommand> list(kToolCommands.begin(), kToolCommands.end());
+    for (const msg::NamedService& service : msg::kServices)
+      list.push_back({service.name, service.executable, service.help, "Services"});
+    return list;
+  }();
+  return all;
+}
 
 /// The names of installed executables rtd-NAME that the table does not have.
 std::vector<std::string> other_commands() {
   std::vector<std::string> names = process::installed_commands();
   std::erase_if(names, [](const std::string& name) {
     const std::string executable = "rtd-" + name;
-    return std::ranges::count(kCommands, executable, &ExternalCommand::executable) > 0;
+    return std::ranges::count(commands(), executable, &ExternalCommand::executable) > 0;
   });
   return names;
 }
 
 std::string unknown_command(const std::string& name) {
   std::vector<std::string> known = kBuiltIn;
-  for (const ExternalCommand& command : kCommands) known.emplace_back(command.name);
+  for (const ExternalCommand& command : commands()) known.emplace_back(command.name);
   for (const std::string& other : other_commands()) known.push_back(other);
   const std::string near = service::nearest_name(name, known);
   return "'" + name + "' is not an rtd command" +
@@ -94,7 +97,8 @@ std::string unknown_command(const std::string& name) {
 
 /// Adds the commands that are executables of their own to the help of `app`, and those that are installed but not ours.
 void list_external_commands(CLI::App& app) {
-  for (const ExternalCommand& command : kCommands) app.add_subcommand(command.name, command.help)->group(command.group);
+  for (const ExternalCommand& command : commands())
+    app.add_subcommand(command.name, command.help)->group(command.group);
   app.footer([] {
     std::string text = "'rtd COMMAND --help' shows the options of a command.";
     for (const std::string& name : other_commands()) text += "\n  also installed: rtd " + name;
@@ -105,8 +109,8 @@ void list_external_commands(CLI::App& app) {
 /// Becomes the executable of `rtd NAME`: a known one, else rtd-NAME. Returns only when that fails, with the exit code:
 /// the message says which CMake target builds it or, for an unknown name, which command is nearest to it.
 int run_external_command(const std::string& name, std::vector<std::string> arguments) {
-  const auto command = std::ranges::find(kCommands, name, &ExternalCommand::name);
-  const bool known = command != kCommands.end();
+  const auto command = std::ranges::find(commands(), name, &ExternalCommand::name);
+  const bool known = command != commands().end();
   const std::string target = known ? command->executable : "rtd-" + name;
   const std::string executable = process::find_executable(target);
   if (executable.empty()) {
@@ -194,7 +198,7 @@ int complete_words(const std::vector<std::string>& words) {
   CompletionSources sources;
   for (const std::string& name : kBuiltIn)
     if (name != "complete") sources.commands.push_back(name);
-  for (const ExternalCommand& command : kCommands) sources.commands.emplace_back(command.name);
+  for (const ExternalCommand& command : commands()) sources.commands.emplace_back(command.name);
   for (const std::string& other : other_commands()) sources.commands.push_back(other);
   for (const bus::TopicRoles& topic : bus::topic_roles())
     if (topic.topic.find('*') == std::string::npos) sources.topics.push_back(ros2::ros_topic(topic.topic));
@@ -246,9 +250,8 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--pace", options.pace, "realtime, asap or lockstep")
       ->check(CLI::IsMember({"realtime", "asap", "lockstep"}))
       ->capture_default_str();
-  command
-      ->add_option("--filter", options.filter_mode, "off, semantic, geometry, epipolar, rtd-paper or rtd (default rtd)")
-      ->check(CLI::IsMember(kFilterModes));
+  command->add_option("--filter", options.filter_mode, msg::word_list(msg::filter_mode_names()) + " (default rtd)")
+      ->check(CLI::IsMember(msg::filter_mode_names()));
   service::add_bus_options(*command, options.bus);
   command->add_option("--dds-of", options.dds_of,
                       "Another DDS for one service, e.g. detector=cyclonedds (repeatable); all vendors interoperate");

@@ -10,6 +10,7 @@
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/log.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 
 namespace rtd::link {
@@ -115,13 +116,14 @@ void LinkService::report(std::int64_t now_ns) {
       const bool own_side = way == &*to_fleet_;
       topics += rules_.is_heartbeat(passed.topic) ? 0 : 1;
       bytes += passed.bytes, lost += passed.lost;
-      runtime_.heartbeat.set_metric((own_side ? "out:" : "in:") + passed.topic, static_cast<double>(passed.messages));
+      const char* const prefix = own_side ? service::metric::kOutPrefix : service::metric::kInPrefix;
+      runtime_.heartbeat.set_metric(prefix + passed.topic, static_cast<double>(passed.messages));
       rates += fmt::format(" {}{}={}{}", own_side ? "" : "in:", passed.topic, passed.messages,
                            passed.wanted ? "" : "(unread)");
     }
   }
-  runtime_.heartbeat.set_metric("bytes", static_cast<double>(bytes));
-  runtime_.heartbeat.set_metric("lost", static_cast<double>(lost));
+  runtime_.heartbeat.set_metric(service::metric::kBytes, static_cast<double>(bytes));
+  runtime_.heartbeat.set_metric(service::metric::kLost, static_cast<double>(lost));
   if (topics == 0) {
     runtime_.heartbeat.set_state(msg::ServiceState::kReady, "waits for topics of robot " + rules_.robot());
     if (now_ns - started_ns_ > kPatienceNs && !std::exchange(waiting_logged_, true)) {

@@ -12,6 +12,7 @@
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/log.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
 
 namespace rtd::recorder {
@@ -133,7 +134,7 @@ void RecorderService::end_session() {
 }
 
 void RecorderService::show_recording() {
-  runtime_.heartbeat.set_metric("recording", session_ ? 1 : 0);
+  runtime_.heartbeat.set_metric(service::metric::kRecording, session_ ? 1 : 0);
   if (session_) return;  // it shows its own state
   runtime_.heartbeat.set_state(msg::ServiceState::kReady, "not recording: /recorder/start begins");
 }

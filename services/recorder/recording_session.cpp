@@ -19,6 +19,7 @@
 #include "common/service/config.hpp"
 #include "common/service/json_text.hpp"
 #include "common/service/log.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/recorder/core/recording.hpp"
 
@@ -234,15 +235,16 @@ void RecordingSession::report_state(std::int64_t now_ns) {
 
 void RecordingSession::publish_metrics(const Acknowledged& acknowledged, const TopicCounts& totals) {
   service::Heartbeat& heartbeat = runtime_.heartbeat;
-  heartbeat.set_metric("messages", static_cast<double>(totals.written));
-  heartbeat.set_metric("bytes", static_cast<double>(recording_->bytes()));
-  heartbeat.set_metric("lost_in_transit", static_cast<double>(totals.lost_in_transit));
-  heartbeat.set_metric("lost_in_queue", static_cast<double>(totals.lost_in_queue));
-  heartbeat.set_metric("queue_bytes", static_cast<double>(queue_.bytes()));
-  heartbeat.set_metric("acknowledged", static_cast<double>(totals.acknowledged));
-  heartbeat.set_metric("acknowledged_bytes", static_cast<double>(acknowledged.bytes));
+  heartbeat.set_metric(service::metric::kMessages, static_cast<double>(totals.written));
+  heartbeat.set_metric(service::metric::kBytes, static_cast<double>(recording_->bytes()));
+  heartbeat.set_metric(service::metric::kLostInTransit, static_cast<double>(totals.lost_in_transit));
+  heartbeat.set_metric(service::metric::kLostInQueue, static_cast<double>(totals.lost_in_queue));
+  heartbeat.set_metric(service::metric::kQueueBytes, static_cast<double>(queue_.bytes()));
+  heartbeat.set_metric(service::metric::kAcknowledged, static_cast<double>(totals.acknowledged));
+  heartbeat.set_metric(service::metric::kAcknowledgedBytes, static_cast<double>(acknowledged.bytes));
   for (const RecordedTopic& topic : book_.topics()) {
-    heartbeat.set_metric("acknowledged:" + topic.name, static_cast<double>(topic.counts.acknowledged));
+    heartbeat.set_metric(service::metric::kAcknowledgedPrefix + topic.name,
+                         static_cast<double>(topic.counts.acknowledged));
   }
 }
 

@@ -21,6 +21,7 @@
 #include "common/service/config.hpp"
 #include "common/service/json_text.hpp"
 #include "common/service/log.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/pacer.hpp"
 #include "services/replay/core/topic_choice.hpp"
@@ -121,7 +122,7 @@ void ReplayService::open() {
                                                      .wait_for_readers = window_ == 0 && !by_time,
                                                      .frames_apart = by_time});
   // rtd run reads it before it starts in this domain.
-  runtime_.heartbeat.set_metric("run_topics",
+  runtime_.heartbeat.set_metric(service::metric::kRunTopics,
                                 static_cast<double>(std::ranges::count_if(
                                     outputs_->all(), [](const auto& output) { return is_run_topic(output.first); })));
   if (window_ > 0) choose_paced_topic();
@@ -360,13 +361,13 @@ void ReplayService::show(const PlayState& state) {
   next_metrics_ns_ = time_ns + kMetricsEveryNs;
   shown_paused_ = state.paused;
   service::Heartbeat& heartbeat = runtime_.heartbeat;
-  heartbeat.set_metric("messages_sent", static_cast<double>(state.sent));
-  heartbeat.set_metric("replay.begin_s", static_cast<double>(first_ns_) * 1e-9);
-  heartbeat.set_metric("replay.at_s", static_cast<double>(service::realtime_ns()) * 1e-9);
-  heartbeat.set_metric("replay.position_s", static_cast<double>(state.recorded_ns - first_ns_) * 1e-9);
-  heartbeat.set_metric("replay.length_s", static_cast<double>(end_ns_ - first_ns_) * 1e-9);
-  heartbeat.set_metric("replay.speed", state.rate);
-  heartbeat.set_metric("replay.paused", state.paused ? 1 : 0);
+  heartbeat.set_metric(service::metric::kMessagesSent, static_cast<double>(state.sent));
+  heartbeat.set_metric(service::metric::kReplayBeginS, static_cast<double>(first_ns_) * 1e-9);
+  heartbeat.set_metric(service::metric::kReplayAtS, static_cast<double>(service::realtime_ns()) * 1e-9);
+  heartbeat.set_metric(service::metric::kReplayPositionS, static_cast<double>(state.recorded_ns - first_ns_) * 1e-9);
+  heartbeat.set_metric(service::metric::kReplayLengthS, static_cast<double>(end_ns_ - first_ns_) * 1e-9);
+  heartbeat.set_metric(service::metric::kReplaySpeed, state.rate);
+  heartbeat.set_metric(service::metric::kReplayPaused, state.paused ? 1 : 0);
 }
 
 }  // namespace rtd::replay

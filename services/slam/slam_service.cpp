@@ -11,6 +11,7 @@
 
 #include "common/concurrency/thread_priority.hpp"
 #include "common/service/config.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/slam/map_file.hpp"
@@ -205,19 +206,19 @@ void SlamService::count_motion() {
   const MotionPrior& prior = *slam_.prior();
   if (!config_.motion.imu.empty()) {
     const auto [received, undecodable, overflowed] = motion_->imu_counters();
-    set("imu_samples", received);
-    set("imu_dropped", prior.imu_counters().dropped() + undecodable + overflowed);
-    set("imu_gaps", prior.imu_counters().gaps);
-    set("imu_clock_jumps", prior.imu_counters().clock_jumps);
-    set("imu_ready", prior.filter() && prior.filter()->ready() ? 1 : 0);
+    set(service::metric::kImuSamples, received);
+    set(service::metric::kImuDropped, prior.imu_counters().dropped() + undecodable + overflowed);
+    set(service::metric::kImuGaps, prior.imu_counters().gaps);
+    set(service::metric::kImuClockJumps, prior.imu_counters().clock_jumps);
+    set(service::metric::kImuReady, prior.filter() && prior.filter()->ready() ? 1 : 0);
   }
   if (!config_.motion.wheels.empty()) {
     const auto [received, undecodable, overflowed] = motion_->wheel_counters();
-    set("wheel_samples", received);
-    set("wheel_dropped", prior.wheel_counters().dropped() + undecodable + overflowed);
-    set("wheel_jumps", prior.wheel_counters().jumps);
+    set(service::metric::kWheelSamples, received);
+    set(service::metric::kWheelDropped, prior.wheel_counters().dropped() + undecodable + overflowed);
+    set(service::metric::kWheelJumps, prior.wheel_counters().jumps);
   }
-  set("frames_predicted", counters_.predicted);
+  set(service::metric::kFramesPredicted, counters_.predicted);
 }
 
 void SlamService::trace(std::int64_t started_ns) {
@@ -251,19 +252,19 @@ void SlamService::count(const SlamOutput& output) {
     SPDLOG_WARN("event=source_restarted frame={} total={}", output.result.seq, counters_.source_restarts);
   }
   service::Heartbeat& heartbeat = runtime_.heartbeat;
-  heartbeat.set_metric("frames", static_cast<double>(counters_.frames));
-  heartbeat.set_metric("frames_tracked", static_cast<double>(counters_.tracked));
-  heartbeat.set_metric("frames_doubtful", static_cast<double>(counters_.doubtful));
-  heartbeat.set_metric("frames_dropped", static_cast<double>(counters_.dropped));
-  heartbeat.set_metric("features_invalid", static_cast<double>(counters_.invalid_features));
-  heartbeat.set_metric("keyframes", output.result.keyframes);
-  if (config_.base.z_up()) heartbeat.set_metric("map_z_up", 1);
-  heartbeat.set_metric("loops_closed", static_cast<double>(counters_.loops));
-  heartbeat.set_metric("landmarks", output.result.landmarks);
-  heartbeat.set_metric("readout_ms", 1e3 * slam_.readout_s());
-  heartbeat.set_metric("localize_only", slam_.localize_only() ? 1 : 0);
+  heartbeat.set_metric(service::metric::kFrames, static_cast<double>(counters_.frames));
+  heartbeat.set_metric(service::metric::kFramesTracked, static_cast<double>(counters_.tracked));
+  heartbeat.set_metric(service::metric::kFramesDoubtful, static_cast<double>(counters_.doubtful));
+  heartbeat.set_metric(service::metric::kFramesDropped, static_cast<double>(counters_.dropped));
+  heartbeat.set_metric(service::metric::kFeaturesInvalid, static_cast<double>(counters_.invalid_features));
+  heartbeat.set_metric(service::metric::kKeyframes, output.result.keyframes);
+  if (config_.base.z_up()) heartbeat.set_metric(service::metric::kMapZUp, 1);
+  heartbeat.set_metric(service::metric::kLoopsClosed, static_cast<double>(counters_.loops));
+  heartbeat.set_metric(service::metric::kLandmarks, output.result.landmarks);
+  heartbeat.set_metric(service::metric::kReadoutMs, 1e3 * slam_.readout_s());
+  heartbeat.set_metric(service::metric::kLocalizeOnly, slam_.localize_only() ? 1 : 0);
   if (motion_) count_motion();
-  heartbeat.set_metric("slam_ms", static_cast<double>(output.result.stage_ms[msg::kStageSlamTotal]));
+  heartbeat.set_metric(service::metric::kSlamMs, static_cast<double>(output.result.stage_ms[msg::kStageSlamTotal]));
 }
 
 void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {

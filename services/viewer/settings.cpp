@@ -6,39 +6,35 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
+
+#include "common/service/metric_names.hpp"
+#include "common/service/peer_clocks.hpp"
 
 namespace rtd::viewer {
 namespace {
 
-/// A setting: the metric that has its value and the command that changes it.
+/// A setting: the metric that has its value, of a choice the prefix of its word, and the command that changes it.
 struct Setting {
   const char *name, *service, *metric, *command;
   enum class Form { kSwitch, kNumber, kChoice } form;
 };
 constexpr std::array kSettings = {
-    Setting{"slam.localize_only", "slam", "localize_only", "/slam/localize_only", Setting::Form::kSwitch},
-    Setting{"filter.mode", "filter", "mode", "/filter/set_mode", Setting::Form::kChoice},
-    Setting{"replay.paused", "replay", "replay.paused", "/replay/pause", Setting::Form::kSwitch},
-    Setting{"replay.speed", "replay", "replay.speed", "/replay/speed", Setting::Form::kNumber},
+    Setting{"slam.localize_only", "slam", service::metric::kLocalizeOnly, "/slam/localize_only",
+            Setting::Form::kSwitch},
+    Setting{"filter.mode", "filter", service::metric::kModePrefix, "/filter/set_mode", Setting::Form::kChoice},
+    Setting{"replay.paused", "replay", service::metric::kReplayPaused, "/replay/pause", Setting::Form::kSwitch},
+    Setting{"replay.speed", "replay", service::metric::kReplaySpeed, "/replay/speed", Setting::Form::kNumber},
 };
-/// In the order of filter::FilterMode.
-constexpr const char* kFilterModes[] = {"off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd"};
 
-std::optional<double> metric_of(const std::vector<msg::ServiceStatus>& services, const std::string& service,
-                                const std::string& name) {
-  const auto status = std::ranges::find(services, service, &msg::ServiceStatus::service);
-  if (status == services.end()) return std::nullopt;
-  const auto metric = std::ranges::find(status->metrics, name, &msg::Metric::name);
-  return metric == status->metrics.end() ? std::nullopt : std::optional(metric->value);
-}
-
-foxglove::ParameterValue value_of(Setting::Form form, double metric) {
-  if (form == Setting::Form::kSwitch) return metric != 0;
-  if (form == Setting::Form::kNumber) return metric;
-  const bool known = metric >= 0 && metric < static_cast<double>(std::size(kFilterModes));
-  return known ? foxglove::ParameterValue(std::string(kFilterModes[static_cast<std::size_t>(metric)]))
-               : std::monostate();
+/// Empty: the heartbeat does not say.
+std::optional<foxglove::ParameterValue> value_of(const Setting& setting, const msg::ServiceStatus& status) {
+  if (setting.form == Setting::Form::kChoice) {
+    const std::string word = msg::word_of(status, setting.metric);
+    return word.empty() ? std::nullopt : std::optional<foxglove::ParameterValue>(word);
+  }
+  const std::optional<double> metric = service::find_metric(status, setting.metric);
+  if (!metric) return std::nullopt;
+  return setting.form == Setting::Form::kSwitch ? foxglove::ParameterValue(*metric != 0) : *metric;
 }
 
 std::optional<std::string> argument_of(Setting::Form form, const foxglove::ParameterValue& value) {
@@ -56,9 +52,12 @@ std::optional<std::string> argument_of(Setting::Form form, const foxglove::Param
 std::vector<foxglove::Parameter> settings_of(const std::string& robot,
                                              const std::vector<msg::ServiceStatus>& services) {
   std::vector<foxglove::Parameter> parameters;
-  for (const Setting& setting : kSettings)
-    if (const auto metric = metric_of(services, setting.service, setting.metric))
-      parameters.push_back({(robot.empty() ? "" : robot + '.') + setting.name, value_of(setting.form, *metric)});
+  for (const Setting& setting : kSettings) {
+    const auto status = std::ranges::find(services, setting.service, &msg::ServiceStatus::service);
+    if (status == services.end()) continue;
+    if (const auto value = value_of(setting, *status))
+      parameters.push_back({(robot.empty() ? "" : robot + '.') + setting.name, *value});
+  }
   return parameters;
 }
 
@@ -83,17 +82,18 @@ std::optional<page::Playback> playback_of(const std::vector<page::ServiceLine>& 
   };
   const auto replay = service("replay"), camera = service("camera");
   if (replay == services.end()) return std::nullopt;
-  const auto metric = [&](const char* name) { return metric_of({replay->status}, "replay", name); };
-  const auto position = metric("replay.position_s"), length = metric("replay.length_s");
+  const auto metric = [&](const char* name) { return service::find_metric(replay->status, name); };
+  const auto position = metric(service::metric::kReplayPositionS), length = metric(service::metric::kReplayLengthS);
   if (!position || !length) return std::nullopt;
-  return page::Playback{.position_s = *position,
-                        .length_s = *length,
-                        .speed = metric("replay.speed").value_or(1),
-                        .paused = metric("replay.paused").value_or(0) != 0,
-                        .ended = ended(*replay),
-                        .begin_s = metric("replay.begin_s").value_or(0),
-                        .at_s = metric("replay.at_s").value_or(1e-9 * static_cast<double>(replay->status.stamp_ns)),
-                        .replaced = ended(*replay) && camera != services.end() && !ended(*camera)};
+  return page::Playback{
+      .position_s = *position,
+      .length_s = *length,
+      .speed = metric(service::metric::kReplaySpeed).value_or(1),
+      .paused = metric(service::metric::kReplayPaused).value_or(0) != 0,
+      .ended = ended(*replay),
+      .begin_s = metric(service::metric::kReplayBeginS).value_or(0),
+      .at_s = metric(service::metric::kReplayAtS).value_or(1e-9 * static_cast<double>(replay->status.stamp_ns)),
+      .replaced = ended(*replay) && camera != services.end() && !ended(*camera)};
 }
 
 }  // namespace rtd::viewer

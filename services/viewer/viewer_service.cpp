@@ -16,6 +16,7 @@
 #include "common/service/config.hpp"
 #include "common/service/host_name.hpp"
 #include "common/service/log.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/viewer/core/page_messages.hpp"
 #include "services/viewer/wall_clock.hpp"
@@ -296,15 +297,16 @@ void ViewerService::report() {
   const auto clients = static_cast<double>(counts.clients);
   runtime_.heartbeat.set_state(counts.clients > 0 ? msg::ServiceState::kRunning : msg::ServiceState::kReady,
                                fmt::format("port {}, {} clients", server_->port(), counts.clients));
-  runtime_.heartbeat.set_metric("clients", clients);
-  runtime_.heartbeat.set_metric("sent_mb", 1e-6 * static_cast<double>(counts.sent_bytes));
-  runtime_.heartbeat.set_metric("requests", static_cast<double>(counts.requests));
-  runtime_.heartbeat.set_metric("requests_refused", static_cast<double>(counts.refused));
-  runtime_.heartbeat.set_metric("clients_too_slow", static_cast<double>(counts.closed_slow));
+  runtime_.heartbeat.set_metric(service::metric::kClients, clients);
+  runtime_.heartbeat.set_metric(service::metric::kSentMb, 1e-6 * static_cast<double>(counts.sent_bytes));
+  runtime_.heartbeat.set_metric(service::metric::kRequests, static_cast<double>(counts.requests));
+  runtime_.heartbeat.set_metric(service::metric::kRequestsRefused, static_cast<double>(counts.refused));
+  runtime_.heartbeat.set_metric(service::metric::kClientsTooSlow, static_cast<double>(counts.closed_slow));
   std::uint64_t left_out = 0;
   for (const auto& [name, feed] : robots_) left_out += feed->mirror().map().left_out();
-  runtime_.heartbeat.set_metric("map_items_left_out", static_cast<double>(left_out));
-  runtime_.heartbeat.set_metric("messages_dropped", static_cast<double>(mailbox_->dropped() + foxglove_.dropped()));
+  runtime_.heartbeat.set_metric(service::metric::kMapItemsLeftOut, static_cast<double>(left_out));
+  runtime_.heartbeat.set_metric(service::metric::kMessagesDropped,
+                                static_cast<double>(mailbox_->dropped() + foxglove_.dropped()));
 }
 
 void ViewerService::print_address() const {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/service/host_name.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/peer_clocks.hpp"
 #include "services/detector/detector_service.hpp"
@@ -17,20 +18,17 @@ namespace {
 
 /// "gpubox (pid 42)".
 std::string name_of(const msg::ServiceStatus& status) {
-  const std::string_view prefix = service::kHostNameMetric;
-  for (const msg::Metric& metric : status.metrics)
-    if (metric.name.starts_with(prefix))
-      return fmt::format("{} (pid {})", metric.name.substr(prefix.size(), 64), status.pid);
-  return fmt::format("another detector (pid {})", status.pid);
+  const std::string host = msg::word_of(status, service::metric::kHostNamePrefix).substr(0, 64);
+  return fmt::format("{} (pid {})", host.empty() ? "another detector" : host, status.pid);
 }
 
 Claim claim_of(const msg::ServiceStatus& status) {
-  return {status.started_ns, service::find_metric(status, "host_id").value_or(0), status.pid};
+  return {status.started_ns, service::find_metric(status, service::metric::kHostId).value_or(0), status.pid};
 }
 
 bool serves(const msg::ServiceStatus& status) {
   return status.state != msg::ServiceState::kFinished && status.state != msg::ServiceState::kFailed &&
-         !service::find_metric(status, "hung");
+         !service::find_metric(status, service::metric::kHung);
 }
 
 }  // namespace
@@ -114,13 +112,13 @@ void RobotLane::report(const View& view, std::int64_t now_ns) {
   const std::lock_guard lock(mutex_);
   if (!heartbeat_) return;
   const AnswerSummary summary = stats_.summary(now_ns);
-  const std::pair<const char*, double> metrics[] = {{"frames", double(answered_)},
-                                                    {"frames_dropped", double(view.dropped)},
-                                                    {"frames_broken", double(broken_)},
-                                                    {"rate_hz", summary.rate_hz},
-                                                    {"latency_p50_ms", summary.latency_p50_ms},
-                                                    {"latency_p99_ms", summary.latency_p99_ms},
-                                                    {"batch_mean", summary.batch_mean}};
+  const std::pair<const char*, double> metrics[] = {{service::metric::kFrames, double(answered_)},
+                                                    {service::metric::kFramesDropped, double(view.dropped)},
+                                                    {service::metric::kFramesBroken, double(broken_)},
+                                                    {service::metric::kRateHz, summary.rate_hz},
+                                                    {service::metric::kLatencyP50Ms, summary.latency_p50_ms},
+                                                    {service::metric::kLatencyP99Ms, summary.latency_p99_ms},
+                                                    {service::metric::kBatchMean, summary.batch_mean}};
   for (const auto& [metric, value] : metrics) heartbeat_->set_metric(metric, value);
   using State = msg::ServiceState;
   if (!reading_) {

@@ -12,6 +12,7 @@
 
 #include "common/camera/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
+#include "common/msg/filter_modes.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
 #include "common/process/posix_process_host.hpp"
@@ -85,7 +86,7 @@ Ablation prepare(const AblateOptions& options) {
   ablation.version = RTD_VERSION;
   ablation.pace = options.pace;
   ablation.runs = options.runs;
-  ablation.plan = plan_ablation({options.modes, options.without, has_detector(options)}, run_record::kFilterModes,
+  ablation.plan = plan_ablation({options.modes, options.without, has_detector(options)}, msg::filter_mode_names(),
                                 known_techniques());
   for (const std::string& source : options.sources) {
     ablation.sources.push_back(camera::complete_uri(source));

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "common/msg/filter_modes.hpp"
 #include "services/filter/core/motion/motion_config.hpp"
 #include "services/filter/core/boxes/track_config.hpp"
 
@@ -13,15 +14,7 @@
 /// (common/service/config.hpp). The defaults are the tested values.
 namespace rtd::filter {
 
-/// Which parts of the filter are at work; the other modes serve for comparison.
-enum class FilterMode {
-  kOff,       ///< features only: ORB-SLAM2's front end
-  kSemantic,  ///< every object of a high motion level is removed, nothing else
-  kGeometry,  ///< multi-view geometry only, boxes are ignored
-  kEpipolar,  ///< DS-SLAM's rule: people with moving points on them are removed
-  kRtdPaper,  ///< the RTD-SLAM paper's own rules and thresholds
-  kRtd,       ///< objects and geometry
-};
+using msg::FilterMode;
 
 /// The techniques of the filter. Each can be left out alone, to measure what it is worth (`rtd ablate`). A mode uses
 /// those that belong to it; one that is off here is off in every mode. docs/theory/dynamic_points.md names each.

@@ -15,6 +15,8 @@
 #include "common/bus/host/host_checks.hpp"
 #include "common/bus/host/shm_leftovers.hpp"
 #include "common/bus/network.hpp"
+#include "common/msg/services.hpp"
+#include "common/msg/word_list.hpp"
 #include "common/process/executable.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"
@@ -31,12 +33,20 @@ constexpr std::array kVerdicts = {"ok   ", "warn ", "FAIL "};  // by Verdict
 
 void check_services(Findings& findings) {
   std::string missing;
-  for (const char* service : {"camera", "detector", "filter", "slam", "dense", "record"}) {
-    if (process::find_executable(std::string("rtd-") + service).empty()) missing += std::string(" rtd-") + service;
+  std::vector<std::string> found;
+  for (const msg::NamedService& service : msg::kServices) {
+    if (!process::find_executable(service.executable).empty()) {
+      found.emplace_back(service.name);
+    } else if (service.in_package_of_all) {
+      missing += std::string(" ") + service.executable;
+    } else {
+      findings.push_back({Verdict::kWarn, std::string("services: ") + service.executable + " is not installed; " +
+                                              "package rtd-slam-" + service.name + " has it"});
+    }
   }
   findings.push_back(
       missing.empty()
-          ? Finding{Verdict::kOk, "services: camera, detector, filter, slam, dense and record found"}
+          ? Finding{Verdict::kOk, "services: " + msg::word_list(found, " and ") + " found"}
           : Finding{Verdict::kFail, "services: missing" + missing +
                                         "; build them with 'cmake --build <build folder> --target rtd_services'"});
 }

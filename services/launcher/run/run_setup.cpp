@@ -15,6 +15,8 @@
 #include "common/camera/live_uri.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
+#include "common/msg/filter_modes.hpp"
+#include "common/msg/services.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
 #include "common/service/bus_config.hpp"
@@ -53,8 +55,10 @@ void load_config(RunSetup& setup) {
 
 /// A service that is not named uses the vendor of --dds.
 void choose_vendors(RunSetup& setup) {
-  const std::vector<std::string> services = {"camera", "detector", "filter", "slam",
-                                             "dense",  "record",   "replay", "viewer"};
+  std::vector<std::string> services;
+  for (const msg::NamedService& service : msg::kServices) {
+    if (service.started_by_run) services.emplace_back(service.name);
+  }
   const std::vector<std::string> vendors = bus::dds_vendors();
   for (const std::string& pair : setup.dds_of) {
     const std::size_t equals = pair.find('=');
@@ -95,8 +99,9 @@ std::string peek(const RunOptions& options, const std::string& section, const st
 std::string choose_filter_mode(const RunOptions& options) {
   std::string mode = options.filter_mode.empty() ? peek(options, "filter", "mode") : options.filter_mode;
   if (mode.empty()) mode = "rtd";
-  if (std::ranges::count(kFilterModes, mode) == 0) {
-    throw ConfigError(fmt::format("--filter: unknown mode '{}', use one of {}", mode, fmt::join(kFilterModes, ", ")));
+  if (msg::find_filter_mode(mode) == nullptr) {
+    throw ConfigError(
+        fmt::format("--filter: unknown mode '{}', use one of {}", mode, fmt::join(msg::filter_mode_names(), ", ")));
   }
   return mode;
 }
@@ -116,7 +121,7 @@ void choose_detector(RunSetup& setup) {
     setup.detector_note = setup.replay.features ? "off (recorded features)" : "recorded boxes";
     return;
   }
-  if (!needs_detector(setup.filter_mode)) {
+  if (msg::find_filter_mode(setup.filter_mode)->boxes == msg::BoxUse::kNone) {
     setup.detector_note = "off (filter mode " + setup.filter_mode + ")";
     return;
   }

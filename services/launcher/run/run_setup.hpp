@@ -50,17 +50,11 @@ struct LauncherConfig {
   }
 };
 
-using run_record::kFilterModes;
-/// Modes without boxes need no detector.
-inline bool needs_detector(const std::string& filter_mode) {
-  return filter_mode != "off" && filter_mode != "geometry";
-}
-
 /// The command line of `rtd run`.
 struct RunOptions {
   std::string source;
   std::string pace = "realtime";
-  std::string filter_mode;  ///< one of kFilterModes; empty: configuration, default rtd
+  std::string filter_mode;  ///< one of msg::kFilterModes; empty: configuration, default rtd
   service::BusArguments bus;
   std::vector<std::string> dds_of;  ///< "SERVICE=VENDOR": another DDS for one service
   std::string config_file;

@@ -12,11 +12,12 @@
 #include <string_view>
 
 #include "common/service/json_text.hpp"
+#include "common/service/metric_names.hpp"
 
 namespace rtd::viewer {
 namespace {
 
-constexpr std::string_view kHostName = "host_name.";
+namespace metric = service::metric;
 
 /// Prometheus asks for base units, by their whole names.
 struct Unit {
@@ -31,12 +32,6 @@ constexpr std::array kUnits = {
 
 /// Samples by the name of their metric, as the format wants them together.
 using Families = std::map<std::string, std::string>;
-
-std::string host_of(const msg::ServiceStatus& status) {
-  for (const msg::Metric& metric : status.metrics)
-    if (metric.name.starts_with(kHostName)) return metric.name.substr(kHostName.size());
-  return {};
-}
 
 /// Letters, digits and underscores.
 std::string as_name(std::string_view text) {
@@ -57,7 +52,7 @@ std::string escaped(std::string_view text) {
 
 std::string labels_of(const WatchedService& service) {
   return "robot=\"" + escaped(service.robot) + "\",service=\"" + escaped(service.line.status.service) + "\",host=\"" +
-         escaped(host_of(service.line.status)) + '"';
+         escaped(msg::word_of(service.line.status, metric::kHostNamePrefix)) + '"';
 }
 
 std::string number(double value) {
@@ -73,9 +68,9 @@ void add(Families& families, const std::string& name, const std::string& labels,
 }
 
 /// "acknowledged:/slam/pose" and "clock.slam.offset_ms" are about something: what it is becomes a label.
-void add_metric(Families& families, const WatchedService& service, const msg::Metric& metric) {
-  if (metric.name == "host_id" || metric.name.starts_with(kHostName)) return;
-  const std::string_view text = metric.name;
+void add_metric(Families& families, const WatchedService& service, const msg::Metric& given) {
+  if (given.name == metric::kHostId || given.name.starts_with(metric::kHostNamePrefix)) return;
+  const std::string_view text = given.name;
   const std::size_t begin = text.find_first_of(".:"), end = std::max(text.rfind('.'), begin);
   const bool about = begin != std::string_view::npos && begin + 1 < text.size() && text.substr(0, begin) != "replay";
   std::string name = as_name(text), labels = labels_of(service);
@@ -85,7 +80,7 @@ void add_metric(Families& families, const WatchedService& service, const msg::Me
     name = as_name(text.substr(0, begin)) + (between ? '_' + as_name(text.substr(end + 1)) : "");
     labels += ",of=\"" + escaped(of) + '"';
   }
-  double value = metric.value;
+  double value = given.value;
   for (const Unit& unit : kUnits) {
     if (!name.ends_with(unit.ending)) continue;
     name.replace(name.size() - unit.ending.size(), unit.ending.size(), unit.base);
@@ -108,7 +103,7 @@ std::string metrics_text(const std::vector<WatchedService>& services) {
     add(families, "rtd_service_degraded", labels, state == "degraded" ? 1 : 0);
     add(families, "rtd_service_heartbeat_age_seconds", labels, 1e-3 * service.line.age_ms);
     add(families, "rtd_service_start_time_seconds", labels, 1e-9 * static_cast<double>(service.line.status.started_ns));
-    for (const msg::Metric& metric : service.line.status.metrics) add_metric(families, service, metric);
+    for (const msg::Metric& given : service.line.status.metrics) add_metric(families, service, given);
   }
   std::string text;
   for (const auto& [name, samples] : families)
@@ -126,7 +121,7 @@ Health health_of(const std::vector<WatchedService>& services) {
     degraded = degraded || state == "degraded";
     list.push_back({{"robot", service.robot},
                     {"service", service.line.status.service},
-                    {"host", host_of(service.line.status)},
+                    {"host", msg::word_of(service.line.status, metric::kHostNamePrefix)},
                     {"state", state},
                     {"message", service.line.status.message},
                     {"age_s", std::round(service.line.age_ms) * 1e-3}});

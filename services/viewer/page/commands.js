@@ -3,8 +3,9 @@
 
 // The runtime commands that the page knows: their words, and which of them destroy something. Others keep their names.
 
+// Those that the panel has a button for; `rtd call` takes all.
 export const kFilterModes = ["off", "semantic", "geometry", "rtd"];
-const kModesByMetric = ["off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd"];
+const kModePrefix = "mode.";
 
 /** kind: button, text (a field and a button), switch (two states), choice. confirm: asked before it is sent.
     idle: what the button says while it has nothing to do. */
@@ -43,15 +44,16 @@ export function describe({ name, argument }) {
 
 /** The argument that holds now, from the heartbeats of the services; undefined if they do not say. */
 export function currentArgument(name, services) {
-  const metric = (service, key) => services.find((one) => one.name === service)?.metrics?.[key];
-  if (name === "/filter/set_mode") return kModesByMetric[metric("filter", "mode")];
-  const localizes = metric("slam", "localize_only");
+  const metricsOf = (service) => services.find((one) => one.name === service)?.metrics ?? {};
+  if (name === "/filter/set_mode")
+    return Object.keys(metricsOf("filter")).find((key) => key.startsWith(kModePrefix))?.slice(kModePrefix.length);
+  const localizes = metricsOf("slam").localize_only;
   return name === "/slam/localize_only" && localizes !== undefined ? String(localizes === 1) : undefined;
 }
 
 /** Whether the command would change nothing now, by the heartbeats; false if they do not say. */
 export function isIdle(name, services) {
-  const recording = services.find((one) => one.name === "recorder")?.metrics?.recording;
+  const recording = services.find((one) => one.name === "record")?.metrics?.recording;
   return (name === "/recorder/start" && recording === 1) || (name === "/recorder/stop" && recording === 0);
 }
 

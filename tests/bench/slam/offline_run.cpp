@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "common/msg/filter_modes.hpp"
+#include "common/msg/word_list.hpp"
 #include "common/service/config.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "services/slam/config.hpp"
@@ -185,7 +187,7 @@ int main(int argc, char** argv) {
   rtd::slam::ServiceConfig slam_settings;
   std::vector<std::string> settings;
   app.add_option("--source", options.source, "source URI or TUM folder")->required();
-  app.add_option("--mode", options.front_end.mode, "off, true-mask, semantic, geometry, epipolar, rtd-paper, rtd");
+  app.add_option("--mode", options.front_end.mode, "true-mask, " + rtd::msg::word_list(rtd::msg::filter_mode_names()));
   app.add_option("--set", settings, "filter.KEY=VALUE or slam.KEY=VALUE, e.g. filter.techniques.belief=false");
   add_detector_options(app, options.front_end.detector);
   add_slam_options(app, slam_settings.core);

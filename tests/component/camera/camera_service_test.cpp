@@ -18,6 +18,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/peer_clocks.hpp"
 #include "tests/support/inbox.hpp"
 
@@ -306,7 +307,7 @@ TEST_F(CameraServiceTest, a_busy_computer_gets_fewer_jpegs_at_pace_realtime) {
     msg::ServiceStatus status;
     status.service = "filter";
     status.state = msg::ServiceState::kRunning;
-    status.metrics = {{"host_id", service::PeerClocks::this_host_id()}, {service::kLoadStepMetric, 4}};
+    status.metrics = {{"host_id", service::PeerClocks::this_host_id()}, {service::metric::kLoadStep, 4}};
     filter.write(status);
   }
   EXPECT_EQ(code.get(), service::kOk);

@@ -11,6 +11,7 @@
 
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/peer_clocks.hpp"
@@ -164,7 +165,7 @@ TEST_F(DetectorServiceTest, follows_the_load_step_of_a_filter_on_its_own_host_on
   const auto answers_in_a_second = [&](double filters_host, double step) {
     const std::size_t before = answer_box_.all().size();
     for (int i = 0; i < 100; ++i) {
-      say("filter", msg::ServiceState::kRunning, {{"host_id", filters_host}, {service::kLoadStepMetric, step}});
+      say("filter", msg::ServiceState::kRunning, {{"host_id", filters_host}, {service::metric::kLoadStep, step}});
       send_frame(i);
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }

@@ -7,6 +7,7 @@
 
 #include "common/bus/commands.hpp"
 #include "common/service/load_step.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "tests/component/filter/filter_service_fixture.hpp"
 #include "tests/support/sanitizers.hpp"
@@ -140,13 +141,13 @@ TEST_F(FilterServiceTest, sheds_load_while_poses_come_late_in_realtime_and_takes
   ASSERT_GT(all, 200U);
   const std::size_t fewer = send(150, 150'000'000);
   EXPECT_LT(fewer, all * 6 / 10) << "35 %";
-  EXPECT_TRUE(wait_metric(service::kLoadStepMetric, 4));
+  EXPECT_TRUE(wait_metric(service::metric::kLoadStep, 4));
   EXPECT_TRUE(wait_state(msg::ServiceState::kRunning, "computer too slow or busy: 35 % of the features"));
   if (test_support::kSanitized) GTEST_SKIP() << test_support::kTooSlow;
   const std::int64_t since_ns = service::monotonic_ns();
   while (service::monotonic_ns() - since_ns < 8'000'000'000) send(1, 20'000'000);
   EXPECT_TRUE(states_.wait([](const auto& states) {
-    return metric(*states.back(), service::kLoadStepMetric).value_or(9) <= 2;
+    return metric(*states.back(), service::metric::kLoadStep).value_or(9) <= 2;
   })) << "a step after each 3 s";
 }
 
@@ -158,7 +159,7 @@ TEST_F(FilterServiceTest, never_sheds_load_when_told_not_to) {
     ASSERT_TRUE(answers_.wait_count(seq + 1));
     send_result(seq, 0, 150'000'000);
   }
-  EXPECT_EQ(metric(*states_.all().back(), service::kLoadStepMetric), std::nullopt);
+  EXPECT_EQ(metric(*states_.all().back(), service::metric::kLoadStep), std::nullopt);
 }
 
 TEST_F(FilterServiceTest, reports_within_half_a_second_that_the_detector_has_gone_and_its_return) {

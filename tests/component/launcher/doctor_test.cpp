@@ -12,6 +12,7 @@
 
 #include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
+#include "common/msg/services.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
 
@@ -31,8 +32,8 @@ class DoctorTest : public testing::Test {
   DoctorTest() {
     fs::copy_file(RTD_EXECUTABLE, scratch_ / "rtd");
     fs::create_symlink(fs::path(RTD_EXECUTABLE).parent_path() / "rtd-keystore", scratch_ / "rtd-keystore");
-    for (const char* service : {"camera", "detector", "filter", "slam", "dense", "record"}) {
-      const std::string file = scratch_ / (std::string("rtd-") + service);
+    for (const msg::NamedService& service : msg::kServices) {
+      const std::string file = scratch_ / service.executable;
       std::ofstream(file) << "#!/bin/sh\n";
       fs::permissions(file, fs::perms::owner_all);
     }

@@ -18,6 +18,7 @@
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/runtime.hpp"
 
 extern char** environ;
@@ -147,7 +148,7 @@ TEST_P(Health, a_service_that_hears_no_more_frames_counts_as_stuck) {
   filter.frame_received();  // and no more
   double sent = 0;
   const double hung_s = seconds_until([&] {
-    camera.set_metric(kFramesPublishedMetric, ++sent);
+    camera.set_metric(metric::kFramesPublished, ++sent);
     return reports("filter", "hung");
   });
   std::printf("%s: lost reader reported after %.2f s\n", GetParam().c_str(), hung_s);

@@ -15,12 +15,12 @@ msg::ServiceStatus status(const std::string& service, std::vector<msg::Metric> m
 }
 
 TEST(Settings, come_from_the_heartbeats) {
-  const auto settings = settings_of("", {status("slam", {{"localize_only", 1}}), status("filter", {{"mode", 5}})});
+  const auto settings = settings_of("", {status("slam", {{"localize_only", 1}}), status("filter", {{"mode.rtd", 1}})});
   ASSERT_EQ(settings.size(), 2U);
   EXPECT_EQ(settings[0].name, "slam.localize_only");
   EXPECT_EQ(settings[0].value, foxglove::ParameterValue(true));
   EXPECT_EQ(settings[1].value, foxglove::ParameterValue(std::string("rtd")));
-  EXPECT_EQ(settings_of("anna", {status("filter", {{"mode", 99}})})[0].name, "anna.filter.mode");
+  EXPECT_EQ(settings_of("anna", {status("filter", {{"mode.of-later", 1}})})[0].name, "anna.filter.mode");
   EXPECT_TRUE(settings_of("", {status("filter", {{"frames", 1}})}).empty());
 }
 

@@ -76,7 +76,7 @@ test("commands that destroy something are asked about, unknown ones keep their n
 });
 
 test("modes that hold now come from the heartbeats", () => {
-  const services = [{ name: "filter", metrics: { mode: 2 } }, { name: "slam", metrics: { localize_only: 1 } }];
+  const services = [{ name: "filter", metrics: { frames: 2, "mode.geometry": 1 } }, { name: "slam", metrics: { localize_only: 1 } }];
   assert.deepEqual(["/filter/set_mode", "/slam/localize_only", "/slam/reset"].map((name) => currentArgument(name, services)),
                    ["geometry", "true", undefined]);
   assert.equal(currentArgument("/slam/localize_only", []), undefined);
@@ -84,7 +84,7 @@ test("modes that hold now come from the heartbeats", () => {
 
 test("a recording cannot be begun twice, nor one be ended that does not run", () => {
   const idle = (recording) => ["/recorder/start", "/recorder/stop", "/slam/reset"].map((name) =>
-    isIdle(name, [{ name: "recorder", metrics: { recording } }]));
+    isIdle(name, [{ name: "record", metrics: { recording } }]));
   assert.deepEqual([idle(1), idle(0), idle(undefined)], [[true, false, false], [false, true, false], [false, false, false]]);
   assert.equal(isIdle("/recorder/stop", []), false);
 });

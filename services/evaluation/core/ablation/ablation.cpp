@@ -10,12 +10,16 @@
 #include <sstream>
 
 #include "common/io/text.hpp"
+#include "common/msg/filter_modes.hpp"
 #include "common/service/config.hpp"
 
 namespace rtd::eval {
 namespace {
 
-const std::vector<std::string> kNothingWithoutDetector = {"semantic", "epipolar", "rtd-paper"};
+bool removes_nothing_without_detector(const std::string& mode) {
+  const msg::NamedFilterMode* const known = msg::find_filter_mode(mode);
+  return known != nullptr && known->boxes == msg::BoxUse::kEssential;
+}
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::ranges::find(words, word) != words.end();
@@ -41,7 +45,7 @@ std::vector<Variant> plan_modes(const AblationRequest& request, const std::vecto
   std::vector<Variant> variants;
   for (const std::string& mode : modes) {
     if (!request.modes.empty() && !contains(request.modes, mode)) continue;
-    if (!request.detector && contains(kNothingWithoutDetector, mode)) {
+    if (!request.detector && removes_nothing_without_detector(mode)) {
       notes.push_back("mode " + mode + " is left out: no detector");
     } else {
       variants.push_back({mode, mode, {}, ""});

@@ -39,19 +39,19 @@ Techniques everything() {
 
 const std::vector<ModeEntry>& table() {
   static const std::vector<ModeEntry> entries{
-      {FilterMode::kOff, "off", only({}), make<RtdJudge>},
-      {FilterMode::kSemantic, "semantic",
+      {FilterMode::kOff, only({}), make<RtdJudge>},
+      {FilterMode::kSemantic,
        only({&T::motion_levels, &T::depth_masks, &T::object_holes, &T::box_tracks, &T::mask_flow, &T::roll_distrust,
              &T::more_features}),
        make<RtdJudge>},
-      {FilterMode::kGeometry, "geometry",
+      {FilterMode::kGeometry,
        only({&T::depth_check, &T::feature_votes, &T::look_back, &T::arrivals, &T::noise_aware_tau, &T::mover_memory,
              &T::mover_tracks, &T::surface_poses, &T::belief, &T::feature_weights, &T::more_features,
              &T::keep_doubtful}),
        make<RtdJudge>},
-      {FilterMode::kEpipolar, "epipolar", only({&T::motion_levels, &T::depth_masks}), make<EpipolarJudge>},
-      {FilterMode::kRtdPaper, "rtd-paper", only({&T::motion_levels}), make<PaperJudge>},
-      {FilterMode::kRtd, "rtd", everything(), make<RtdJudge>},
+      {FilterMode::kEpipolar, only({&T::motion_levels, &T::depth_masks}), make<EpipolarJudge>},
+      {FilterMode::kRtdPaper, only({&T::motion_levels}), make<PaperJudge>},
+      {FilterMode::kRtd, everything(), make<RtdJudge>},
   };
   return entries;
 }
@@ -96,10 +96,6 @@ std::span<const ModeEntry> all_modes() {
 
 const ModeEntry& entry_of(FilterMode mode) {
   return *std::find_if(table().begin(), table().end(), [mode](const ModeEntry& entry) { return entry.mode == mode; });
-}
-
-bool looks_at_boxes(FilterMode mode) {
-  return mode != FilterMode::kOff && mode != FilterMode::kGeometry;
 }
 
 FilterConfig effective_config(FilterConfig config) {

@@ -11,10 +11,9 @@ namespace rtd::filter {
 
 class ModeJudge;
 
-/// A mode: a composition of techniques and the rule that decides.
+/// How a mode of common/msg/filter_modes.hpp works: a composition of techniques and the rule that decides.
 struct ModeEntry {
   FilterMode mode;
-  const char* name;  ///< `filter.mode`
   Techniques techniques;
   std::unique_ptr<ModeJudge> (*make_judge)(const FilterConfig& config);
 };
@@ -22,9 +21,6 @@ struct ModeEntry {
 /// All modes, from nothing to everything.
 std::span<const ModeEntry> all_modes();
 const ModeEntry& entry_of(FilterMode mode);
-
-/// Does the mode use detections?
-bool looks_at_boxes(FilterMode mode);
 
 /// The configuration that the algorithms work with: the techniques that belong to the mode and are not switched off,
 /// and what that means for the numbers.

@@ -7,11 +7,16 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "common/service/metric_names.hpp"
+
 namespace rtd::launcher {
 namespace {
+
+namespace metric = service::metric;
 
 constexpr std::size_t kRecentFrames = 30;
 constexpr std::uint64_t kStrideOfUnknownLength = 4;
@@ -137,12 +142,15 @@ void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
   for (const msg::Metric& metric : status.metrics) {
     const auto& name = metric.name;
     const std::string what = name.substr(name.rfind('.') + 1);
-    if (name.starts_with("peer.") && (what == "dead" || what == "hung")) {
-      const std::string peer = name.substr(5, name.size() - 6 - what.size());
+    const auto about = [&](std::string_view prefix) {
+      return name.substr(prefix.size(), name.size() - prefix.size() - 1 - what.size());
+    };
+    if (name.starts_with(metric::kPeerPrefix) && (what == "dead" || what == "hung")) {
+      const std::string peer = about(metric::kPeerPrefix);
       report_once(peer, peer + " is " + what + ": no heartbeat");
-    } else if (name.starts_with("topic.") &&
+    } else if (name.starts_with(metric::kTopicPrefix) &&
                (what == "rejected" || what == "incompatible_qos" || what == "type_mismatch" || what == "implausible")) {
-      const std::string topic = name.substr(6, name.size() - 7 - what.size());
+      const std::string topic = about(metric::kTopicPrefix);
       report_once(status.service + ' ' + name, status.service + ": " + topic + ": " + what);
     }
   }
@@ -150,18 +158,17 @@ void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
 
 /// The camera's own count, where it has given one: what the services follow after it may have been seen already.
 void RecordBuilder::close() {
-  const std::uint64_t counted_by_camera = counted(camera_counter("frames_in").total());
+  const std::uint64_t counted_by_camera = counted(camera_counter(metric::kFramesIn).total());
   if (!end_of_source_) end_of_source_ = counted_by_camera > 0 ? counted_by_camera : end_of_seen_;
 }
 
 std::uint64_t RecordBuilder::frames_in() const {
-  return end_of_source_.value_or(std::max(counted(camera_counter("frames_in").total()), end_of_seen_));
+  return end_of_source_.value_or(std::max(counted(camera_counter(metric::kFramesIn).total()), end_of_seen_));
 }
 
 LiveStatus RecordBuilder::live() const {
   LiveStatus status;
   status.frames = end_of_seen_;
-  status.total = counted(camera_counter("frames_total").current);
   for (const auto& [place, count] : drops()) {
     const bool before_the_pose = !place.starts_with("detector.") &&
                                  place.find(".topic.") == std::string::npos;  // it only needs the newest frame
@@ -194,7 +201,7 @@ bool RecordBuilder::disturbs_a_run(const std::string& name, const Service& servi
   if (service.state == msg::ServiceState::kFinished || harmless) return false;
   if (name == "detector") return !tolerated.detector;
   if (name != "replay") return true;
-  const auto run_topics = service.counters.find("run_topics");
+  const auto run_topics = service.counters.find(metric::kRunTopics);
   if (run_topics == service.counters.end()) return !tolerated.silent_replay;
   return !tolerated.harmless_replay || run_topics->second.current > 0;
 }
@@ -221,14 +228,14 @@ void RecordBuilder::fill(run_record::RunRecord& record) const {
 
 /// Slam runs on the first host, so its measurements of other hosts stand for all services of the first host.
 std::vector<run_record::HostClock> RecordBuilder::clocks() const {
-  const std::string prefix = "clock.", suffix = ".offset_ms";
+  const std::string prefix = metric::kClockPrefix, suffix = metric::kClockOffsetSuffix;
   const auto slam = services_.find("slam");
   if (slam == services_.end()) return {};
   std::vector<run_record::HostClock> clocks;
   for (const auto& [name, counter] : slam->second.counters) {
     if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
     const std::string service = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
-    const auto round_trip = slam->second.counters.find(prefix + service + ".round_trip_ms");
+    const auto round_trip = slam->second.counters.find(prefix + service + metric::kClockRoundTripSuffix);
     if (round_trip != slam->second.counters.end())
       clocks.push_back({service, counter.current, round_trip->second.current});
   }

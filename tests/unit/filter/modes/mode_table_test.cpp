@@ -19,7 +19,7 @@ TEST(ModeTable, names_every_technique) {
 TEST(ModeTable, gives_every_mode_a_name_and_rtd_everything) {
   std::set<std::string> names;
   for (const ModeEntry& entry : all_modes()) {
-    names.insert(entry.name);
+    names.insert(msg::name_of(entry.mode));
     EXPECT_EQ(&entry_of(entry.mode), &entry);
   }
   EXPECT_EQ(names.size(), all_modes().size());
@@ -32,7 +32,7 @@ TEST(ModeTable, gives_every_mode_a_name_and_rtd_everything) {
 TEST(ModeTable, knows_which_modes_need_the_detector) {
   for (const ModeEntry& entry : all_modes()) {
     const bool blind = entry.mode == FilterMode::kOff || entry.mode == FilterMode::kGeometry;
-    EXPECT_NE(looks_at_boxes(entry.mode), blind) << entry.name;
+    EXPECT_NE(looks_at_boxes(entry.mode), blind) << msg::name_of(entry.mode);
   }
 }
 
