@@ -10,11 +10,10 @@
 #include "common/camera/frame_source.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/io/text.hpp"
+#include "common/camera/source_schemes.hpp"
 
 namespace rtd::camera {
 namespace {
-
-constexpr std::array kSchemes = {"openni2", "realsense-dds"};
 
 double parse_mode_value(const std::string& uri, const std::string& key, const std::string& value, double most) {
   const std::optional<double> number = io::parse_number(value);
@@ -43,7 +42,7 @@ void take_parameter(DeviceUri& uri, const std::string& key, const std::string& v
 }  // namespace
 
 bool is_device(const std::string& uri) {
-  return std::ranges::any_of(kSchemes, [&](const char* scheme) { return uri.starts_with(std::string(scheme) + ':'); });
+  return is_of_kind(uri, SourceKind::kDevice);
 }
 
 DeviceUri parse_device_uri(const std::string& text) {

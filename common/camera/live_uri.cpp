@@ -7,6 +7,7 @@
 
 #include "common/camera/device_uri.hpp"
 #include "common/camera/source_factory.hpp"
+#include "common/camera/source_schemes.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -40,7 +41,7 @@ std::string info_beside(std::string image) {
 }  // namespace
 
 bool is_live(const std::string& uri) {
-  return uri.starts_with("ros2:") || is_device(uri);
+  return is_of_kind(uri, SourceKind::kTopics) || is_device(uri);
 }
 
 void check_live_uri(const std::string& uri) {

@@ -14,6 +14,8 @@
 #include "common/camera/tum/tum_source.hpp"
 #include "common/io/text.hpp"
 #include "common/recordings/parts.hpp"
+#include "common/io/recording_forms.hpp"
+#include "common/camera/source_schemes.hpp"
 
 namespace rtd::camera {
 
@@ -33,9 +35,7 @@ SourceUri parse_source_uri(const std::string& text) {
   refuse_video_nodes(text);
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos || colon == 0) {
-    throw SourceError("source '" + text +
-                      "' has no scheme; write tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE, ros2:TOPICS, openni2:[URI], "
-                      "realsense-dds:[SERIAL] or synthetic:NAME[?key=value&...]");
+    throw SourceError("source '" + text + "' has no scheme; write " + all_source_forms());
   }
   SourceUri uri{text, text.substr(0, colon), text.substr(colon + 1), {}};
   const std::size_t question = uri.path.find('?');
@@ -74,11 +74,11 @@ std::string complete_uri(const std::string& source) {
   if (source.find(':') != std::string::npos) return source;
   const std::filesystem::path path = source;
   if (std::filesystem::is_directory(path)) return (recordings::holds_recording(path) ? "mcap:" : "tum:") + source;
-  if (path.extension() == ".bag") return "bag:" + source;
-  if (path.extension() == ".oni") return "openni2:" + source;
-  if (path.extension() == ".db3") return "db3:" + source;
-  const bool packed = path.extension() == ".zstd" || path.extension() == ".zst";
-  return path.extension() == ".mcap" || packed ? "mcap:" + source : source;
+  if (io::is_packed_name(path)) return "mcap:" + source;
+  const std::string extension = path.extension();
+  if (extension.empty()) return source;
+  const auto scheme = std::ranges::find(kSourceSchemes, extension, &SourceScheme::extension);
+  return scheme == kSourceSchemes.end() ? source : std::string(scheme->name) + ':' + source;
 }
 
 namespace {
@@ -123,8 +123,7 @@ RecordingOptions recording_options(const SourceUri& uri) {
 
 /// Bags and databases are read where they lie; all else, also folders and packed ones of these, as MCAP.
 std::unique_ptr<Recording> open_file(const SourceUri& uri) {
-  const std::filesystem::path extension = std::filesystem::path(uri.path).extension();
-  const bool lies_there = !std::filesystem::is_directory(uri.path) && extension != ".zstd" && extension != ".zst";
+  const bool lies_there = !std::filesystem::is_directory(uri.path) && !io::is_packed_name(uri.path);
   if (lies_there && uri.scheme == "bag") return open_bag(uri.path);
   return lies_there && uri.scheme == "db3" ? open_db3(uri.path) : open_mcap(uri.path);
 }
@@ -135,7 +134,7 @@ std::unique_ptr<FrameSource> make_recording_source(const SourceUri& uri) {
 }
 
 bool is_recording(const SourceUri& uri) {
-  return uri.scheme == "bag" || uri.scheme == "db3" || uri.scheme == "mcap";
+  return is_of_kind(uri.text, SourceKind::kRecording);
 }
 
 }  // namespace
@@ -166,8 +165,10 @@ std::unique_ptr<FrameSource> make_source(const std::string& text) {
         "source '" + text +
         "' is a running camera: only `rtd run` and rtd-camera play it; record it first (rtd record) and use mcap:FILE");
   }
+  std::vector<std::string> known;
+  for (const SourceScheme& scheme : kSourceSchemes) known.emplace_back(scheme.name);
   throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme +
-                    "'; known: bag, db3, mcap, openni2, realsense-dds, ros2, synthetic, tum");
+                    "'; known: " + msg::word_list(known, ", "));
 }
 
 }  // namespace rtd::camera

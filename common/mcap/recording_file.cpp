@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/io/byte_sink.hpp"
+#include "common/io/recording_forms.hpp"
 #include "common/mcap/framing.hpp"
 
 namespace rtd::mcap {
@@ -21,12 +22,11 @@ struct KnownFormat {
 };
 
 constexpr std::array kOtherFormats = {
+    KnownFormat{io::kBagMagic,
+                "a ROS 1 bag: 'rtd info' shows what it contains, --source bag:FILE plays it, and 'rtd convert FILE.bag "
+                "NEW.mcap' makes an MCAP file of it"},
     KnownFormat{
-        "#ROSBAG V2.0",
-        "a ROS 1 bag: 'rtd info' shows what it contains, --source bag:FILE plays it, and 'rtd convert FILE.bag "
-        "NEW.mcap' makes an MCAP file of it"},
-    KnownFormat{
-        "SQLite format 3",
+        io::kDb3Magic,
         "a rosbag2 database: 'rtd info' shows what it contains, --source db3:FILE plays it, and 'rtd convert FILE.db3 "
         "NEW.mcap' makes an MCAP file of it"},
     KnownFormat{"\x28\xb5\x2f\xfd", "compressed with zstd: unpack it first ('zstd -d')"},
@@ -61,7 +61,7 @@ fs::path recording_path(const fs::path& path) {
   if (!fs::is_directory(path, error)) return path;
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
-    if (entry.path().extension() == ".mcap") files.push_back(entry.path());
+    if (entry.path().extension() == io::kMcapExtension) files.push_back(entry.path());
   std::ranges::sort(files);
   if (files.size() == 1) return files.front();
   if (files.empty())

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/io/bytes.hpp"
+#include "common/io/recording_forms.hpp"
 
 /// The records of an MCAP file, named as in the specification (https://mcap.dev/spec). Times are nanoseconds since an
 /// epoch that the recorder chose; offsets are bytes from the start of the file unless said otherwise. A span is a view
@@ -25,7 +26,7 @@ using io::Buffer;
 using io::Bytes;
 using io::ByteView;
 
-constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
+inline constexpr std::string_view kMagic = io::kMcapMagic;
 
 enum class Opcode : std::uint8_t {
   kHeader = 0x01,

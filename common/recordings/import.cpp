@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "common/io/recording_forms.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/rosbag1/bag_reader.hpp"
@@ -57,8 +58,8 @@ Import::Import(io::ByteSink& sink, bool packed_messages)
 
 void Import::add(const fs::path& file, const std::string& name, const Share& progress) {
   const std::string begin = first_bytes(file);
-  if (begin.starts_with("SQLite format 3")) return add_db3(file, name, progress);
-  if (begin.starts_with("#ROSBAG V2.0")) return add_bag(file, name, progress);
+  if (begin.starts_with(io::kDb3Magic)) return add_db3(file, name, progress);
+  if (begin.starts_with(io::kBagMagic)) return add_bag(file, name, progress);
   mcap::require_recording(io::FileSource(file), name);
   add_mcap(file, name, progress);
 }

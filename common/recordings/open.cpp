@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "common/io/recording_forms.hpp"
 #include "common/mcap/copy.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/import.hpp"
@@ -148,10 +149,10 @@ bool is_recording(const std::string& path) {
   try {
     const io::FileSource source(path);
     if (is_packed(source) || mcap::looks_like_recording(source)) return true;
-    std::array<std::byte, 16> begin{};
+    std::array<std::byte, io::kMagicBytes> begin{};
     const std::size_t count = source.read(0, begin);
     const std::string_view text(reinterpret_cast<const char*>(begin.data()), count);
-    return text.starts_with("SQLite format 3") || text.starts_with("#ROSBAG V2.0");
+    return text.starts_with(io::kDb3Magic) || text.starts_with(io::kBagMagic);
   } catch (const io::IoError& error) {
     throw RecordingFileError(error.what());
   }

@@ -9,6 +9,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "common/io/recording_forms.hpp"
 #include "common/mcap/recording_file.hpp"
 
 namespace rtd::recordings {
@@ -18,17 +19,11 @@ namespace {
 using mcap::RecordingFileError;
 
 constexpr const char* kMetadata = "metadata.yaml";
-constexpr std::array kPacked = {".zstd", ".zst"};
-constexpr std::array kRecordings = {".mcap", ".db3"};
 
-bool is_one_of(const auto& extensions, const fs::path& extension) {
-  return std::ranges::find(extensions, extension.string(), [](const char* text) { return std::string(text); }) !=
-         extensions.end();
-}
-
+/// Of rosbag2: a folder of ROS 1 bags is not one recording.
 bool has_recording_name(const fs::path& file) {
-  const fs::path name = is_one_of(kPacked, file.extension()) ? file.stem() : file.filename();
-  return is_one_of(kRecordings, name.extension());
+  const fs::path name = io::is_packed_name(file) ? file.stem() : file.filename();
+  return io::is_recording_name(name) && name.extension() != io::kBagExtension;
 }
 
 /// Runs of digits count as numbers: "walk_10" comes after "walk_9".

@@ -9,6 +9,8 @@
 #include <memory>
 #include <string>
 
+#include "common/io/recording_forms.hpp"
+
 namespace rtd::rosbag1 {
 
 RecordHeader::RecordHeader(Bytes bytes) {
@@ -46,8 +48,7 @@ Bytes RecordHeader::field(const std::string& name) const {
 
 namespace {
 
-constexpr std::string_view kMagic = "#ROSBAG V";
-constexpr std::string_view kVersionLine = "#ROSBAG V2.0\n";
+constexpr std::string_view kMagic = io::kBagOfAnyVersion, kVersionLine = io::kBagVersionLine;
 constexpr std::uint64_t kMaxHeaderBytes = 1U << 20U;
 constexpr std::uint64_t kLengthBytes = 4;
 

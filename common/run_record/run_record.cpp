@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "common/camera/source_schemes.hpp"
+
 namespace rtd::run_record {
 
 std::vector<JudgedFeature> judged(std::span<const msg::Feature> features) {
@@ -19,7 +21,7 @@ std::vector<JudgedFeature> judged(std::span<const msg::Feature> features) {
 }
 
 bool is_synthetic(const std::string& source_uri) {
-  return source_uri.starts_with("synthetic:");
+  return camera::is_of_kind(source_uri, camera::SourceKind::kScene);
 }
 
 std::filesystem::path mask_folder(const std::string& source_uri) {

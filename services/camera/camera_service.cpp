@@ -67,11 +67,7 @@ int readers_of(const std::string& service) {
 }  // namespace
 
 void CameraService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--source", config.source,
-                 "tum:FOLDER, bag:FILE, mcap:FILE, db3:FILE [?color=TOPIC&depth=TOPIC&calibration=FILE], "
-                 "ros2:COLOR,DEPTH[,INFO], openni2:[URI], realsense-dds:[SERIAL] or "
-                 "synthetic:SCENE[?key=value&...] "
-                 "(camera.source)");
+  app.add_option("--source", config.source, source_help() + " (camera.source)");
   app.add_option("--frames", config.frames, "Play at most N frames, 0 = all (camera.frames)")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--wait-for", config.wait_for,

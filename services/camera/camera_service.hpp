@@ -18,6 +18,7 @@
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
 #include "services/camera/core/read_ahead.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "services/camera/frame_publisher.hpp"
 
 namespace CLI {
@@ -42,10 +43,7 @@ struct ServiceConfig {
   bool preview = false;       ///< the same of --preview
 
   void bind(auto& binder) {
-    binder.field(
-        "source", source,
-        "where frames come from: tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE, ros2:COLOR,DEPTH[,INFO], openni2:[URI], "
-        "realsense-dds:[SERIAL] or synthetic:SCENE[?key=value&...]");
+    binder.field("source", source, "where frames come from: " + all_source_forms());
     binder.field("frames", frames, {0, 1e9}, "play at most this many frames, 0 = all");
     binder.field("jpeg_quality", jpeg_quality, {1, 100}, "of the compressed topic, encoded only while it has readers");
     binder.field("asap_window", asap_window, {1, 3}, "pace asap: frames without a result at a time");

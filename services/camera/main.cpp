@@ -11,6 +11,7 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/run_service.hpp"
 #include "services/camera/camera_service.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "services/camera/preview_command.hpp"
 
 namespace rtd::camera {
@@ -29,8 +30,7 @@ int run_export(int argc, char** argv) {
   std::uint64_t frames = 0;
   CLI::App app{"Write a source to a new folder in TUM's layout", "rtd-camera"};
   app.add_option("--export", folder, "New folder")->required();
-  app.add_option("--source", uri, "tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE or synthetic:SCENE[?key=value&...]")
-      ->required();
+  app.add_option("--source", uri, stored_source_forms())->required();
   app.add_option("--frames", frames, "At most this many frames, 0 = all");
   return service::run_command(app, argc, argv, [&]() -> int {
     try {

@@ -23,6 +23,7 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/standard_streams.hpp"
 #include "services/launcher/core/completion/completion.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/run/run_command.hpp"
@@ -240,12 +241,7 @@ void add_robot_options(CLI::App& command, RunOptions& options) {
 
 void add_run_command(CLI::App& app, RunOptions& options) {
   CLI::App* command = app.add_subcommand("run", "Run camera, detector, filter and slam on a source and report");
-  command
-      ->add_option("--source", options.source,
-                   "tum:FOLDER, bag:FILE, mcap:FILE, db3:FILE [?color=TOPIC&depth=TOPIC&calibration=FILE], "
-                   "ros2:COLOR,DEPTH[,INFO], openni2:[URI], realsense-dds:[SERIAL] or "
-                   "synthetic:NAME[?seed=..&frames=..]")
-      ->required();
+  command->add_option("--source", options.source, camera::source_help())->required();
   command->add_option("--out", options.out_dir, "Folder for trajectory, map, logs and report")->required();
   command->add_option("--pace", options.pace, "realtime, asap or lockstep")
       ->check(CLI::IsMember({"realtime", "asap", "lockstep"}))

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "common/io/atomic_file.hpp"
+#include "common/io/recording_forms.hpp"
 #include "common/mcap/copy.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
@@ -125,7 +126,7 @@ std::vector<fs::path> files_of(const std::vector<std::string>& inputs) {
     }
     const std::size_t before = files.size();
     for (const fs::directory_entry& entry : fs::directory_iterator(input))
-      if (entry.path().extension() == ".mcap") files.push_back(entry.path());
+      if (entry.path().extension() == io::kMcapExtension) files.push_back(entry.path());
     if (files.size() == before)
       throw io::IoError(EISDIR, input + ": this folder holds no .mcap file: name the parts, or their folder");
   }

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "common/bus/raw_bus.hpp"
+#include "common/io/recording_forms.hpp"
 #include "common/mcap/records.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
@@ -19,7 +20,7 @@ namespace rtd::recorder {
 namespace {
 
 constexpr std::chrono::milliseconds kIdle{20};
-constexpr io::FileKind kRecordings{"recording", ".mcap", mcap::kMagic, "--recordings-dir"};
+constexpr io::FileKind kRecordings{"recording", io::kMcapExtension, mcap::kMagic, "--recordings-dir"};
 
 /// Of the recordings that a command may name.
 std::string folder_of(const ServiceConfig& config) {

@@ -10,6 +10,8 @@
 #include "common/mcap/recording_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/json_text.hpp"
+#include "common/io/recording_forms.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "services/recorder/copy_recording.hpp"
 #include "services/recorder/inspect/inspect_commands.hpp"
 #include "services/recorder/mcap_export.hpp"
@@ -39,8 +41,8 @@ Destination parse_destination(const std::string& text) {
   for (const auto& [scheme, format] : {std::pair{"tum:", Format::kTum}, std::pair{"mcap:", Format::kMcap}}) {
     if (text.starts_with(scheme)) return {format, text.substr(std::string_view(scheme).size())};
   }
-  if (text.ends_with(".mcap")) return {Format::kMcap, text};
-  if (text.starts_with("bag:") || text.ends_with(".bag")) {
+  if (text.ends_with(io::kMcapExtension)) return {Format::kMcap, text};
+  if (text.starts_with("bag:") || text.ends_with(io::kBagExtension)) {
     throw SourceError("destination '" + text + "': bags are read, not written; write FILE.mcap or tum:DIR");
   }
   return {Format::kTum, text};
@@ -68,7 +70,7 @@ std::uint64_t write(camera::FrameSource& source, const ConvertOptions& options, 
 
 /// A recording that becomes an MCAP file whole: frames are not looked at.
 bool copies_recording(const ConvertOptions& options, const std::string& uri) {
-  const bool recording = uri.starts_with("bag:") || uri.starts_with("db3:") || uri.starts_with("mcap:");
+  const bool recording = camera::is_of_kind(uri, camera::SourceKind::kRecording);
   return recording && uri.find('?') == std::string::npos && options.frames == 0 &&
          parse_destination(options.destination).format == Format::kMcap;
 }

@@ -10,6 +10,7 @@
 #include <ostream>
 #include <set>
 
+#include "common/io/recording_forms.hpp"
 #include "common/recordings/parts.hpp"
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"
@@ -25,11 +26,6 @@ namespace fs = std::filesystem;
 using Types = std::map<std::string, RecordedType>;
 
 constexpr std::size_t kShownErrors = 5;
-
-bool ends_as_recording(const fs::path& path) {
-  static const std::array<std::string, 3> kEndings = {".bag", ".db3", ".mcap"};
-  return std::ranges::count(kEndings, path.extension().string()) != 0;
-}
 
 /// Prints messages of several topics.
 class RecordingPrinter {
@@ -133,7 +129,7 @@ void print_all(const TopicsRequest& request, camera::Recording& recording, Recor
 
 bool is_recording(const std::string& argument) {
   std::error_code none;
-  if (fs::is_regular_file(argument, none) || ends_as_recording(argument)) return true;
+  if (fs::is_regular_file(argument, none) || io::is_recording_name(argument)) return true;
   return fs::is_directory(argument, none) && recordings::holds_recording(argument);
 }
 

@@ -19,6 +19,7 @@
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/viewer/core/page_messages.hpp"
+#include "services/viewer/settings.hpp"
 #include "services/viewer/wall_clock.hpp"
 
 namespace rtd::viewer {

@@ -23,6 +23,7 @@
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/standard_streams.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/ablation/ablation.hpp"
 #include "services/evaluation/core/report/report.hpp"
@@ -270,9 +271,7 @@ service::ExitCode run_ablation(const AblateOptions& options) {
 
 void add_ablate_command(CLI::App& app, AblateOptions& options) {
   CLI::App* command = app.add_subcommand("ablate", "Every filter mode, and rtd without each technique, compared");
-  command
-      ->add_option("--source", options.sources,
-                   "tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE or synthetic:NAME[?...], with ground truth (repeatable)")
+  command->add_option("--source", options.sources, camera::stored_source_forms() + ", with ground truth (repeatable)")
       ->required();
   command->add_option("--runs", options.runs, "Runs of each")->check(CLI::Range(1, 1000))->capture_default_str();
   command->add_option("--pace", options.pace, "realtime, asap or lockstep")

@@ -11,6 +11,8 @@
 #include <map>
 #include <regex>
 
+#include "common/io/recording_forms.hpp"
+
 namespace rtd::recorder {
 namespace fs = std::filesystem;
 namespace {
@@ -26,7 +28,7 @@ std::string lower(std::string text) {
 
 OutputFiles::OutputFiles(const std::string& output, bool split) {
   const fs::path path = output.ends_with('/') ? fs::path(output).parent_path() : fs::path(output);
-  const bool is_file = path.extension() == ".mcap";
+  const bool is_file = path.extension() == io::kMcapExtension;
   folder_ = is_file ? path.parent_path() : path;
   if (folder_.empty()) folder_ = ".";
   stem_ = is_file ? path.stem() : path.filename();
@@ -35,7 +37,7 @@ OutputFiles::OutputFiles(const std::string& output, bool split) {
 
 OutputFiles OutputFiles::free_beside(const std::string& output, bool split) {
   OutputFiles files(output, split);
-  const std::string tail = fs::path(output).extension() == ".mcap" ? ".mcap" : "";
+  const std::string tail = fs::path(output).extension() == io::kMcapExtension ? io::kMcapExtension : "";
   const fs::path folder = tail.empty() ? files.folder_.parent_path() : files.folder_;
   const std::string base = folder / files.stem_;
   for (int i = 1; !files.existing().empty(); ++i) files = OutputFiles(fmt::format("{}.{}{}", base, i, tail), split);
@@ -43,12 +45,12 @@ OutputFiles OutputFiles::free_beside(const std::string& output, bool split) {
 }
 
 fs::path OutputFiles::file(std::size_t number) const {
-  return folder_ / (numbered_ ? fmt::format("{}_{}.mcap", stem_, number) : stem_ + ".mcap");
+  return folder_ / (numbered_ ? fmt::format("{}_{}{}", stem_, number, io::kMcapExtension) : stem_ + io::kMcapExtension);
 }
 
 bool OutputFiles::is_ours(const std::string& file_name) const {
-  if (!numbered_) return file_name == stem_ + ".mcap";
-  const std::string head = stem_ + '_', tail = ".mcap";
+  if (!numbered_) return file_name == stem_ + io::kMcapExtension;
+  const std::string head = stem_ + '_', tail = io::kMcapExtension;
   if (file_name.size() <= head.size() + tail.size() || !file_name.starts_with(head) || !file_name.ends_with(tail)) {
     return false;
   }

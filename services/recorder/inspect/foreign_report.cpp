@@ -7,20 +7,22 @@
 #include <memory>
 
 #include "common/camera/recording/recording.hpp"
+#include "common/io/recording_forms.hpp"
 
 namespace rtd::recording {
 namespace {
 
 struct ForeignFormat {
-  std::string begin, name;
+  std::string_view begin;
+  std::string name;
   std::unique_ptr<camera::Recording> (*open)(const std::filesystem::path&);
 };
 
 const ForeignFormat* format_of(const std::filesystem::path& file) {
   static const std::array<ForeignFormat, 2> kFormats = {
-      ForeignFormat{"#ROSBAG V2.0", "ROS 1 bag", camera::open_bag},
-      ForeignFormat{"SQLite format 3", "rosbag2 sqlite3", camera::open_db3}};
-  std::string begin(16, '\0');
+      ForeignFormat{io::kBagMagic, "ROS 1 bag", camera::open_bag},
+      ForeignFormat{io::kDb3Magic, "rosbag2 sqlite3", camera::open_db3}};
+  std::string begin(io::kMagicBytes, '\0');
   std::ifstream stream(file, std::ios::binary);
   stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
   const auto found =

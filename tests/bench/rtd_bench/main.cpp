@@ -8,6 +8,7 @@
 #include "common/camera/source_factory.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "services/detector/core/engine.hpp"
 #include "tests/bench/rtd_bench/detector/detector_command.hpp"
 #include "tests/bench/rtd_bench/features_bench.hpp"
@@ -50,8 +51,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Measure single parts beside a reference in the same run", "rtd bench"};
   app.require_subcommand(1);
   CLI::App* features = app.add_subcommand("features", "Our ORB extractor beside cv::ORB on the same frames");
-  features->add_option("--source", options.source, "tum:FOLDER, bag:FILE, db3:FILE, mcap:FILE or synthetic:SCENE")
-      ->capture_default_str();
+  features->add_option("--source", options.source, rtd::camera::stored_source_forms())->capture_default_str();
   features->add_option("--features", options.features.features, "Features wanted per frame")
       ->check(CLI::Range(100, 1300))
       ->capture_default_str();

@@ -13,6 +13,7 @@
 #include "common/camera/recording/ros_images.hpp"
 #include "common/io/text.hpp"
 #include "common/ros_codec/wire.hpp"
+#include "common/camera/source_schemes.hpp"
 
 namespace rtd::camera {
 namespace {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/io/recording_forms.hpp"
 #include "common/io/text.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/open.hpp"
@@ -46,8 +47,7 @@ PoseArgument parse(const std::string& text) {
 
 bool is_recording(const fs::path& file) try {
   if (fs::is_directory(file)) return recordings::holds_recording(file);
-  return recordings::is_recording(file.string()) || file.extension() == ".bag" || file.extension() == ".mcap" ||
-         file.extension() == ".db3";
+  return recordings::is_recording(file.string()) || io::is_recording_name(file);
 } catch (const mcap::RecordingFileError&) {
   return false;  // read_text_file() says why it cannot be read
 }
