@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/bus/topic_roles.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "common/io/printable.hpp"
 #include "common/msg/engine_names.hpp"
 #include "common/msg/filter_modes.hpp"
@@ -23,7 +24,6 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/standard_streams.hpp"
 #include "services/launcher/core/completion/completion.hpp"
-#include "common/camera/source_schemes.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/run/run_command.hpp"
@@ -201,6 +201,7 @@ int complete_words(const std::vector<std::string>& words) {
     if (name != "complete") sources.commands.push_back(name);
   for (const ExternalCommand& command : commands()) sources.commands.emplace_back(command.name);
   for (const std::string& other : other_commands()) sources.commands.push_back(other);
+  for (const msg::NamedService& service : msg::kServices) sources.services.emplace_back(service.name);
   for (const bus::TopicRoles& topic : bus::topic_roles())
     if (topic.topic.find('*') == std::string::npos) sources.topics.push_back(ros2::ros_topic(topic.topic));
   const auto is_known = [&](const std::string& name) { return std::ranges::count(sources.commands, name) > 0; };

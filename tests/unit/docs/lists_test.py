@@ -12,7 +12,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 MODES, SERVICES = "common/msg/filter_modes.hpp", "common/msg/services.hpp"
-SCHEMES = "services/camera/core/source_schemes.hpp"
+SCHEMES = "common/camera/source_schemes.hpp"
 METRICS, FORMS = "common/service/metric_names.hpp", "common/io/recording_forms.hpp"
 SOURCES = sorted(path.relative_to(ROOT).as_posix() for folder in ("common", "services")
                  for path in (ROOT / folder).rglob("*") if path.suffix in (".cpp", ".hpp", ".js", ".in"))

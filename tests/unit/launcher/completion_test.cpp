@@ -30,6 +30,7 @@ class CompletionTest : public testing::Test {
 
   CompletionSources sources_{
       .commands = {"run", "replay", "topics"},
+      .services = {"filter", "slam"},
       .topics = {"/slam/pose", "/slam/odometry"},
       .help = [](const std::vector<std::string>& command) -> std::string {
         if (command == std::vector<std::string>{"run"}) return kRunHelp;

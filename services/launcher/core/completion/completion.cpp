@@ -3,7 +3,6 @@
 #include "services/launcher/core/completion/completion.hpp"
 
 #include <algorithm>
-#include <array>
 #include <regex>
 #include <sstream>
 
@@ -86,10 +85,9 @@ std::vector<std::string> keys_in(const std::string& yaml) {
 }
 
 std::vector<std::string> keys_for(const std::string& command, const CompletionSources& sources) {
-  constexpr std::array kOfRun = {"camera", "detector", "filter", "slam", "dense", "viewer", "record"};
   if (command != "run") return keys_in(sources.config(command));
   std::vector<std::string> keys;
-  for (const char* service : kOfRun) {
+  for (const std::string& service : sources.services) {
     for (std::string& key : keys_in(sources.config(service)))
       if (std::ranges::find(keys, key) == keys.end()) keys.push_back(std::move(key));  // bus is in all of them
   }

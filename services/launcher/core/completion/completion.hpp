@@ -12,7 +12,8 @@ namespace rtd::launcher {
 /// option is completed without a change here.
 struct CompletionSources {
   std::vector<std::string> commands;
-  std::vector<std::string> topics;  ///< names for `rtd topics echo` and `hz`
+  std::vector<std::string> services;  ///< whose keys `rtd run --set` takes
+  std::vector<std::string> topics;    ///< names for `rtd topics echo` and `hz`
   /// The help of `rtd COMMAND [SUBCOMMAND]`; empty when there is none.
   std::function<std::string(const std::vector<std::string>& command)> help;
   /// What `rtd SERVICE --print-config` prints; empty when there is none.
