@@ -44,9 +44,9 @@ std::string seconds(int timeout_ms) {
 }
 
 /// The calls of one client to one service.
-class Line {
+class CallChannel {
  public:
-  Line(std::shared_ptr<RawBus> bus, const CallTopics& topics)
+  CallChannel(std::shared_ptr<RawBus> bus, const CallTopics& topics)
       : bus_(std::move(bus)),
         calls_(bus_->create_calls(topics, CallRole::kClient,
                                   [this](const CallId& id, std::span<const std::byte> cdr) { take_reply(id, cdr); })) {}
@@ -128,7 +128,7 @@ std::string checked_argument(const FoundCommand& command, const std::string& arg
     throw CommandError(Cause::kWrongArgument, command.full_name() + ' ' + problem);
   };
   if (command.kind == CommandKind::kTrigger && !argument.empty()) refuse("takes no argument");
-  if (argument.size() >= kMostRequestBytes / 2) refuse("takes at most " + std::to_string(kMostRequestBytes / 2) + " B");
+  if (argument.size() >= kMaxRequestBytes / 2) refuse("takes at most " + std::to_string(kMaxRequestBytes / 2) + " B");
   if (command.kind != CommandKind::kSetBool) return argument;
   const auto state = switch_argument(argument);
   if (!state) refuse("takes true or false, not '" + argument + "'");
@@ -152,14 +152,14 @@ class CommandClient::State {
   std::string full_name(const std::string& name) const;
   FoundCommand find(const std::string& full_name, Clock::time_point deadline) const;
   std::shared_ptr<RawBus> bus_of(const std::string& vendor);
-  std::shared_ptr<Line> line_to(const FoundCommand& command);
+  std::shared_ptr<CallChannel> channel_to(const FoundCommand& command);
 
   const BusOptions options_;
   const Clock::time_point start_ = Clock::now();
   const std::shared_ptr<RawBus> bus_;
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<RawBus>> others_;  ///< by vendor
-  std::map<std::string, std::shared_ptr<Line>> lines_;     ///< by vendor, type and name
+  std::map<std::string, std::shared_ptr<CallChannel>> channels_;  ///< by vendor, type and name
 };
 
 std::string CommandClient::State::full_name(const std::string& name) const {
@@ -195,30 +195,32 @@ std::shared_ptr<RawBus> CommandClient::State::bus_of(const std::string& vendor) 
   return other = connect_raw(options);
 }
 
-std::shared_ptr<Line> CommandClient::State::line_to(const FoundCommand& command) {
+std::shared_ptr<CallChannel> CommandClient::State::channel_to(const FoundCommand& command) {
   if (command.vendor.empty())
     throw BusError(command.full_name() + " is offered through a DDS whose services are unknown here");
   const std::lock_guard lock(mutex_);
-  std::shared_ptr<Line>& line = lines_[command.vendor + ' ' + ros_type(command.kind) + ' ' + command.full_name()];
-  if (!line)
-    line = std::make_shared<Line>(bus_of(command.vendor), call_topics(command.full_name().substr(1), command.kind));
-  return line;
+  std::shared_ptr<CallChannel>& channel =
+      channels_[command.vendor + ' ' + ros_type(command.kind) + ' ' + command.full_name()];
+  if (!channel)
+    channel =
+        std::make_shared<CallChannel>(bus_of(command.vendor), call_topics(command.full_name().substr(1), command.kind));
+  return channel;
 }
 
 CommandAnswer CommandClient::State::call(const std::string& name, const std::string& argument, int timeout_ms) {
   const Clock::time_point deadline = Clock::now() + std::chrono::milliseconds(timeout_ms);
   const FoundCommand command = find(full_name(name), deadline);
   const CommandRequest request{checked_argument(command, argument)};
-  const std::shared_ptr<Line> line = line_to(command);
+  const std::shared_ptr<CallChannel> channel = channel_to(command);
   const std::string called = command.full_name();
-  if (!line->connect(deadline))
+  if (!channel->connect(deadline))
     throw CommandError(Cause::kNoAnswer, called + " was found but could not be reached within " + seconds(timeout_ms) +
                                              "; with --secure: both need keys of one keystore that allow it");
-  const auto [outcome, reply] = line->call(encode_request(command.kind, request), deadline);
-  if (outcome == Line::Outcome::kTimeout)
+  const auto [outcome, reply] = channel->call(encode_request(command.kind, request), deadline);
+  if (outcome == CallChannel::Outcome::kTimeout)
     throw CommandError(Cause::kNoAnswer, called + " did not answer within " + seconds(timeout_ms) +
                                              "; it may be busy and still carry it out (--timeout)");
-  if (outcome == Line::Outcome::kServerGone)
+  if (outcome == CallChannel::Outcome::kServerGone)
     throw CommandError(Cause::kNoAnswer, "the program that offers " + called + " ended before it answered");
   try {
     return decode_answer(reply);

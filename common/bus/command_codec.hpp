@@ -14,7 +14,7 @@
 namespace rtd::bus {
 
 /// A longer request is refused.
-inline constexpr std::size_t kMostRequestBytes = 64 * 1024;
+inline constexpr std::size_t kMaxRequestBytes = 64 * 1024;
 
 /// `full_name` without a slash before it: "slam/reset", "anna/slam/reset".
 CallTopics call_topics(const std::string& full_name, CommandKind kind);

@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t kMostWaiting = 16;
+constexpr std::size_t kMaxWaiting = 16;
 /// A client that has just appeared may not receive replies yet: its two endpoints are found one after the other.
 constexpr auto kClientPatience = 500ms;
 
@@ -51,7 +51,7 @@ class CommandServer::State {
   };
 
   void enqueue(const CallId& id, std::span<const std::byte> cdr) {
-    const bool too_long = cdr.size() > kMostRequestBytes;
+    const bool too_long = cdr.size() > kMaxRequestBytes;
     const std::size_t kept = too_long ? 0 : cdr.size();
     waiting_.push({id, std::vector<std::byte>(cdr.begin(), cdr.begin() + static_cast<std::ptrdiff_t>(kept)), too_long});
   }
@@ -64,7 +64,7 @@ class CommandServer::State {
     }
   }
   CommandAnswer handle(const Call& call) const {
-    if (call.too_long) return {false, "a request has at most " + std::to_string(kMostRequestBytes) + " bytes"};
+    if (call.too_long) return {false, "a request has at most " + std::to_string(kMaxRequestBytes) + " bytes"};
     try {
       return handler_(decode_request(kind_, call.cdr));
     } catch (const std::exception& error) {
@@ -81,7 +81,7 @@ class CommandServer::State {
 
   const CommandKind kind_;
   const Handler handler_;
-  concurrency::BoundedQueue<Call> waiting_{kMostWaiting, concurrency::Overflow::kDropOldest};
+  concurrency::BoundedQueue<Call> waiting_{kMaxWaiting, concurrency::Overflow::kDropOldest};
   std::unique_ptr<CallEndpoint> calls_;
   std::thread thread_;
 };

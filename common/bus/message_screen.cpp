@@ -8,14 +8,14 @@
 
 namespace rtd::bus {
 
-bool SequenceGuard::goes_on(const WriterId& writer, std::uint64_t sequence) {
+bool SequenceGuard::continues(const WriterId& writer, std::uint64_t sequence) {
   const auto found = std::ranges::find_if(last_, [&](const Last& last) { return last.known && last.writer == writer; });
   if (found == last_.end()) {
     last_[oldest_] = {writer, sequence, true};
-    oldest_ = (oldest_ + 1) % kMostWriters;
+    oldest_ = (oldest_ + 1) % kMaxWriters;
     return true;
   }
-  if (sequence > found->sequence && sequence - found->sequence > kMostLost) return false;
+  if (sequence > found->sequence && sequence - found->sequence > kMaxLost) return false;
   found->sequence = sequence;
   return true;
 }
@@ -25,7 +25,7 @@ msg::ImplausibleField MessageScreen::implausible_field(const void* message, cons
     const T& typed = *static_cast<const T*>(message);
     msg::ImplausibleField bad = msg::implausible_field(typed);
     if constexpr (requires { typed.seq; }) {
-      if (!bad && !sequences_.goes_on(writer, typed.seq)) bad = {msg::type_name(msg::TypeOf<T>()), "seq (a jump)"};
+      if (!bad && !sequences_.continues(writer, typed.seq)) bad = {msg::type_name(msg::TypeOf<T>()), "seq (a jump)"};
     }
     return bad;
   });

@@ -12,15 +12,15 @@
 
 namespace rtd::bus {
 
-/// Whether the numbers of one writer's messages go on as a source counts them: they may go back, as in a loop, and
-/// leave out what was lost, but not more than kMostLost at a time. Remembers the last kMostWriters. Not thread-safe.
+/// Whether the numbers of one writer's messages continue as a source counts them: they may go back, as in a loop, and
+/// leave out what was lost, but not more than kMaxLost at a time. Remembers the last kMaxWriters. Not thread-safe.
 class SequenceGuard {
  public:
-  static constexpr std::uint64_t kMostLost = 1'000'000;  ///< 9 hours at 30 Hz
-  static constexpr std::size_t kMostWriters = 16;
+  static constexpr std::uint64_t kMaxLost = 1'000'000;  ///< 9 hours at 30 Hz
+  static constexpr std::size_t kMaxWriters = 16;
 
-  /// A number that does not go on is not remembered.
-  bool goes_on(const WriterId& writer, std::uint64_t sequence);
+  /// A number that does not continue is not remembered.
+  bool continues(const WriterId& writer, std::uint64_t sequence);
 
  private:
   struct Last {
@@ -28,7 +28,7 @@ class SequenceGuard {
     std::uint64_t sequence = 0;
     bool known = false;
   };
-  std::array<Last, kMostWriters> last_{};
+  std::array<Last, kMaxWriters> last_{};
   std::size_t oldest_ = 0;
 };
 

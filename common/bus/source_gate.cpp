@@ -8,9 +8,9 @@
 namespace rtd::bus {
 namespace {
 
-constexpr std::size_t kMostClaims = 8, kMostDeparted = 32, kMostMatched = 256, kMostRefused = 256;
+constexpr std::size_t kMaxClaims = 8, kMaxDeparted = 32, kMaxMatched = 256, kMaxRefused = 256;
 constexpr std::int64_t kMessagesOnTheirWayNs = 200'000'000;  // of one that has ended
-constexpr std::int64_t kHeardLatelyNs = 50'000'000;          // nobody needs to be asked whether it lives
+constexpr std::int64_t kReceivedLatelyNs = 50'000'000;       // nobody needs to be asked whether it lives
 
 }  // namespace
 
@@ -30,7 +30,7 @@ SourceGate::Verdict SourceGate::judge(const WriterId& writer, std::int64_t now_n
   const std::size_t place = place_of(source);
   const bool departed = std::ranges::find(departed_, writer) != departed_.end();
   if (place != kNone && place == holder_) {
-    claims_[place].heard_ns = now_ns;
+    claims_[place].received_ns = now_ns;
     claims_[place].present = claims_[place].present || !departed;
     return {true};
   }
@@ -43,7 +43,7 @@ SourceGate::Verdict SourceGate::judge(const WriterId& writer, std::int64_t now_n
 }
 
 SourceGate::Verdict SourceGate::refuse(const ParticipantId& source, std::int64_t now_ns) {
-  if (refused_since_ns_.size() >= kMostRefused && !refused_since_ns_.contains(source)) {
+  if (refused_since_ns_.size() >= kMaxRefused && !refused_since_ns_.contains(source)) {
     refused_since_ns_.erase(
         std::ranges::max_element(refused_since_ns_, {}, [](const auto& entry) { return entry.second; }));
   }
@@ -54,7 +54,7 @@ SourceGate::Verdict SourceGate::refuse(const ParticipantId& source, std::int64_t
 /// A successor of one that ended unnoticed is refused for a while, too, but hears nothing more from it.
 bool SourceGate::sent_beside_holder(const ParticipantId& source) const {
   const auto refused = refused_since_ns_.find(source);
-  return refused != refused_since_ns_.end() && claims_[holder_].heard_ns - refused->second > kMessagesOnTheirWayNs;
+  return refused != refused_since_ns_.end() && claims_[holder_].received_ns - refused->second > kMessagesOnTheirWayNs;
 }
 
 SourceGate::Verdict SourceGate::take(std::size_t place, std::int64_t now_ns, Event event) {
@@ -65,7 +65,7 @@ SourceGate::Verdict SourceGate::take(std::size_t place, std::int64_t now_ns, Eve
   }
   holder_ = place;
   refused_since_ns_.clear();
-  claims_[place].heard_ns = now_ns;
+  claims_[place].received_ns = now_ns;
   claims_[place].present = true;
   return verdict;
 }
@@ -73,11 +73,11 @@ SourceGate::Verdict SourceGate::take(std::size_t place, std::int64_t now_ns, Eve
 bool SourceGate::holder_gone(std::int64_t now_ns) const {
   const Claim& holder = claims_[holder_];
   if (!holder.present) return true;
-  return options_.gone && now_ns - holder.heard_ns > kHeardLatelyNs && options_.gone(holder.source);
+  return options_.gone && now_ns - holder.received_ns > kReceivedLatelyNs && options_.gone(holder.source);
 }
 
 bool SourceGate::holder_silent(std::int64_t now_ns) const {
-  return now_ns - claims_[holder_].heard_ns > options_.silence_ns;
+  return now_ns - claims_[holder_].received_ns > options_.silence_ns;
 }
 
 std::size_t SourceGate::place_of(const ParticipantId& source) const {
@@ -87,7 +87,7 @@ std::size_t SourceGate::place_of(const ParticipantId& source) const {
 
 /// A new last one. What is full forgets the last that is absent, or else the last that does not hold the place.
 std::size_t SourceGate::claim(const ParticipantId& source) {
-  if (claims_.size() >= kMostClaims) {
+  if (claims_.size() >= kMaxClaims) {
     std::size_t leaves = kNone;
     for (std::size_t i = 0; i < claims_.size(); ++i) {
       if (i != holder_ && (leaves == kNone || claims_[leaves].present || !claims_[i].present)) leaves = i;
@@ -104,11 +104,11 @@ void SourceGate::note(const WriterId& writer, bool matched) {
   std::erase(departed_, writer);
   if (!matched) {
     departed_.push_back(writer);
-    if (departed_.size() > kMostDeparted) departed_.pop_front();
+    if (departed_.size() > kMaxDeparted) departed_.pop_front();
   }
   const ParticipantId connection = participant_of(writer);
   if (matched) {
-    if (matched_.size() < kMostMatched || matched_.contains(connection)) ++matched_[connection];
+    if (matched_.size() < kMaxMatched || matched_.contains(connection)) ++matched_[connection];
   } else if (const auto known = matched_.find(connection); known != matched_.end() && --known->second <= 0) {
     matched_.erase(known);
   }

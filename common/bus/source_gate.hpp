@@ -70,7 +70,7 @@ class SourceGate : public std::enable_shared_from_this<SourceGate> {
  private:
   struct Claim {
     ParticipantId source{};
-    std::int64_t heard_ns = 0;
+    std::int64_t received_ns = 0;
     bool present = true;
   };
   struct Verdict {

@@ -83,7 +83,9 @@ Calibration from_values(std::map<std::string, double>& values, const std::string
   }
   check_frame_size(values["width"], values["height"], origin);
   geometry::CameraModel::Parameters parameters;
-  parameters.fx = values["fx"], parameters.fy = values["fy"], parameters.cx = values["cx"],
+  parameters.fx = values["fx"];
+  parameters.fy = values["fy"];
+  parameters.cx = values["cx"];
   parameters.cy = values["cy"];
   parameters.lens = values["fisheye"] != 0 ? geometry::Lens::kFisheye : geometry::Lens::kBrownConrady;
   const std::vector<std::string>& names = coefficient_names(parameters.lens);
@@ -92,12 +94,14 @@ Calibration from_values(std::map<std::string, double>& values, const std::string
       throw SourceError(origin + ": a fisheye lens has k1 k2 k3 k4; remove " + name);
   }
   std::ranges::transform(names, parameters.distortion.begin(), [&](const std::string& name) { return values[name]; });
-  parameters.width = static_cast<int>(values["width"]), parameters.height = static_cast<int>(values["height"]);
+  parameters.width = static_cast<int>(values["width"]);
+  parameters.height = static_cast<int>(values["height"]);
   Calibration calibration;
   calibration.camera = geometry::CameraModel(parameters);
   if (values.count("depth_factor") != 0) calibration.depth_scale_m = 1.0 / values["depth_factor"];
   if (values.count("fps") != 0) calibration.fps = values["fps"];
-  calibration.readout_s = values["readout_s"], calibration.depth_offset_s = values["depth_offset_s"];
+  calibration.readout_s = values["readout_s"];
+  calibration.depth_offset_s = values["depth_offset_s"];
   return calibration;
 }
 

@@ -23,7 +23,7 @@ class SourceError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Why a piece of the input was left out. The source goes on with the next one.
+/// Why a piece of the input was left out. The source continues with the next one.
 enum class SkipReason {
   kMalformedLine,    ///< a list line that does not read as "stamp file"
   kNoDepthPartner,   ///< no depth image within the pairing tolerance

@@ -18,7 +18,7 @@ namespace rtd::geometry {
 namespace {
 
 constexpr std::size_t kColumns = 8;
-constexpr double kMostQuaternionError = 0.05;  // of the length; TUM's own ground truth comes near it
+constexpr double kMaxQuaternionError = 0.05;  // of the length; TUM's own ground truth comes near it
 
 [[noreturn]] void fail(const std::string& name, int line, const std::string& cause) {
   throw TrajectoryError(name + ":" + std::to_string(line) + ": " + cause);
@@ -79,7 +79,7 @@ Eigen::Isometry3d make_pose(const Eigen::Vector3d& translation, const Eigen::Qua
   if (!translation.allFinite() || !rotation.coeffs().allFinite()) {
     throw std::invalid_argument("the pose has a value that is not finite");
   }
-  if (std::abs(rotation.norm() - 1) > kMostQuaternionError) {
+  if (std::abs(rotation.norm() - 1) > kMaxQuaternionError) {
     throw std::invalid_argument("quaternion has length " + std::to_string(rotation.norm()) + " instead of 1");
   }
   Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();

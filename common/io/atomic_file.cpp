@@ -47,9 +47,9 @@ bool is_written_directly(const fs::path& path) {
 
 /// Where the links of the last part of a path lead.
 fs::path follow_links(fs::path path) {
-  constexpr int kMostLinks = 40;  // as the kernel
+  constexpr int kMaxLinks = 40;  // as the kernel
   std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
+  for (int i = 0; i < kMaxLinks && fs::is_symlink(fs::symlink_status(path, error)); ++i) {
     const fs::path target = fs::read_symlink(path, error);
     if (error) fail_writing(path, error.value());
     path = path.parent_path() / target;  // an absolute target replaces all

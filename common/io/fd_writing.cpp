@@ -18,7 +18,7 @@
 namespace rtd::io {
 namespace {
 
-constexpr std::size_t kMostParts = 16;
+constexpr std::size_t kMaxParts = 16;
 
 std::string reason(int error_number) {
   switch (error_number) {
@@ -77,8 +77,8 @@ void fail_writing(const std::filesystem::path& path, int error_number) {
 }
 
 int write_parts(int fd, std::initializer_list<ByteView> parts) {
-  if (parts.size() > kMostParts) throw std::logic_error("a byte sink takes at most 16 parts at once");
-  std::array<iovec, kMostParts> vectors;
+  if (parts.size() > kMaxParts) throw std::logic_error("a byte sink takes at most 16 parts at once");
+  std::array<iovec, kMaxParts> vectors;
   std::size_t count = 0;
   for (const ByteView part : parts) vectors[count++] = {const_cast<std::byte*>(part.data()), part.size()};
   return write_all(fd, std::span(vectors).first(count));

@@ -51,12 +51,12 @@ bool StreamReader::begin() {
              "profile and library are not known");
     return true;
   }
-  const bool goes_on = header && header->opcode == Opcode::kHeader && begins_record(file_, kMagic.size());
+  const bool continues = header && header->opcode == Opcode::kHeader && begins_record(file_, kMagic.size());
   report(ProblemKind::kNotMcap, 0, "the file does not begin with the MCAP magic",
-         goes_on ? "a Header follows all the same: it is read on" : "nothing is read: this is not an MCAP file",
-         !goes_on);
+         continues ? "a Header follows all the same: it is read on" : "nothing is read: this is not an MCAP file",
+         !continues);
   position_ = kMagic.size();
-  return goes_on;
+  return continues;
 }
 
 StreamReader::Step StreamReader::step() {
@@ -113,7 +113,7 @@ bool StreamReader::salvage(const Frame& frame) {
   return true;
 }
 
-/// Goes on behind the record where its length can be trusted, else at the next place that looks like a record.
+/// Continues behind the record where its length can be trusted, else at the next place that looks like a record.
 StreamReader::Step StreamReader::damaged(const Frame& frame, const std::string& what) {
   audit_.lose_chunk();
   std::optional<std::uint64_t> next;

@@ -17,7 +17,7 @@ struct Location {
 
 /// Reads all records of a file in file order, opens the chunks, and checks everything that can be checked: lengths, all
 /// CRCs, definitions before use, indexes and statistics against what the file holds. Tolerant: whatever the bytes are,
-/// it delivers each record that is whole, goes on behind the damage and lists what was wrong. A chunk or attachment
+/// it delivers each record that is whole, continues behind the damage and lists what was wrong. A chunk or attachment
 /// whose CRC is wrong is left out as a whole. Memory: one record or chunk, and an entry for each index entry. For one
 /// thread.
 class StreamReader {

@@ -11,19 +11,19 @@
 /// What a field of a message may hold, by name. The walk over the fields (common/msg/plausible.hpp) goes by this list;
 /// it does not compile for a field of whole numbers that has no entry here, so that none is forgotten. Without an
 /// entry:
-///   floating point           finite, at most kMostValue in size
-///   int64 named *_ns         a time: at most kMostTime_ns in size, so that differences do not overflow
-///   text                     UTF-8 on one line without control characters, at most kMostText bytes
-///   sequences                at most kMostElements, or kMostBytes of memory for numbers
+///   floating point           finite, at most kMaxValue in size
+///   int64 named *_ns         a time: at most kMaxTime_ns in size, so that differences do not overflow
+///   text                     UTF-8 on one line without control characters, at most kMaxText bytes
+///   sequences                at most kMaxElements, or kMaxBytes of memory for numbers
 ///   enumerations             up to last_value() of the type, which stands beside it
 namespace rtd::msg {
 
-inline constexpr double kMostValue = 1e15;      ///< its square is finite also as a float
-inline constexpr double kMostTime_ns = 4e18;    ///< 126 years
-inline constexpr double kMostPosition_m = 2e7;  ///< half way round the Earth; in cells of 1 cm still 32 bits
-inline constexpr double kMostPosition_px = 1e6;
-inline constexpr double kMostSequence = 1e12;  ///< of numbers that count messages: 1000 years at 30 Hz
-inline constexpr std::size_t kMostText = 1024, kMostElements = 100'000, kMostBytes = std::size_t{256} << 20;
+inline constexpr double kMaxValue = 1e15;      ///< its square is finite also as a float
+inline constexpr double kMaxTime_ns = 4e18;    ///< 126 years
+inline constexpr double kMaxPosition_m = 2e7;  ///< half way round the Earth; in cells of 1 cm still 32 bits
+inline constexpr double kMaxPosition_px = 1e6;
+inline constexpr double kMaxSequence = 1e12;  ///< of numbers that count messages: 1000 years at 30 Hz
+inline constexpr std::size_t kMaxText = 1024, kMaxElements = 100'000, kMaxBytes = std::size_t{256} << 20;
 
 enum class TextRule : std::uint8_t {
   kLine,   ///< for people: UTF-8 without control characters
@@ -34,7 +34,7 @@ enum class TextRule : std::uint8_t {
 /// Bounds of one field, both included.
 struct FieldRule {
   std::string_view field;  ///< "package/Type.field"; "Type*" is any type that begins so, ".*" any field
-  double least = -kMostValue, most = kMostValue;
+  double least = -kMaxValue, most = kMaxValue;
   std::size_t most_count = 0;  ///< elements of a sequence, bytes of a text; 0: as without an entry
   TextRule text = TextRule::kLine;
   bool free = false;  ///< any value at all
@@ -64,8 +64,8 @@ inline constexpr FieldRule kFieldRules[] = {
     between("builtin_interfaces/Time.nanosec", 0, 999'999'999),
     free_field("builtin_interfaces/Duration.sec"),
     between("builtin_interfaces/Duration.nanosec", 0, 999'999'999),
-    within("geometry_msgs/Point.*", kMostPosition_m),
-    within("geometry_msgs/Vector3.*", kMostPosition_m),
+    within("geometry_msgs/Point.*", kMaxPosition_m),
+    within("geometry_msgs/Vector3.*", kMaxPosition_m),
     within("geometry_msgs/PoseWithCovariance.covariance", std::numeric_limits<double>::max()),
     within("geometry_msgs/TwistWithCovariance.covariance", std::numeric_limits<double>::max()),
     within("sensor_msgs/Imu.orientation_covariance", std::numeric_limits<double>::max()),
@@ -99,8 +99,8 @@ inline constexpr FieldRule kFieldRules[] = {
     free_field("sensor_msgs/PointCloud2.point_step"),
     free_field("sensor_msgs/PointCloud2.row_step"),
     free_field("sensor_msgs/PointCloud2.data"),
-    within("vision_msgs/Point2D.*", kMostPosition_px),
-    within("vision_msgs/BoundingBox2D.*", kMostPosition_px),
+    within("vision_msgs/Point2D.*", kMaxPosition_px),
+    within("vision_msgs/BoundingBox2D.*", kMaxPosition_px),
     at_most("vision_msgs/Detection2D.results", 1000),
     at_most("vision_msgs/Detection2DArray.detections", 10'000),
     at_most("vision_msgs/Detection3D.results", 1000),
@@ -118,7 +118,7 @@ inline constexpr FieldRule kFieldRules[] = {
     text_field("rtd_msgs/WireSchema.text", TextRule::kLines, 1 << 20),
     text_field("rtd_msgs/Command_Request.argument", TextRule::kLine, 4096),
     text_field("rtd_msgs/Command_Response.message", TextRule::kLines, 65'536),
-    between("rtd_msgs/RgbdFrame*.seq", 0, kMostSequence),
+    between("rtd_msgs/RgbdFrame*.seq", 0, kMaxSequence),
     within("rtd_msgs/RgbdFrame*.distortion", 1e6),
     between("rtd_msgs/RgbdFrame*.depth_scale_m", 1e-9, 1),
     within("rtd_msgs/RgbdFrame*.readout_s", 0.1),
@@ -130,10 +130,10 @@ inline constexpr FieldRule kFieldRules[] = {
     free_field("rtd_msgs/RgbdFrame*.source_id"),
     free_field("rtd_msgs/RgbdFrame*.color_bgr"),
     free_field("rtd_msgs/RgbdFrame*.depth"),
-    within("rtd_msgs/Feature.u_px", kMostPosition_px),
-    within("rtd_msgs/Feature.v_px", kMostPosition_px),
-    within("rtd_msgs/Feature.u_raw_px", kMostPosition_px),
-    within("rtd_msgs/Feature.v_raw_px", kMostPosition_px),
+    within("rtd_msgs/Feature.u_px", kMaxPosition_px),
+    within("rtd_msgs/Feature.v_px", kMaxPosition_px),
+    within("rtd_msgs/Feature.u_raw_px", kMaxPosition_px),
+    within("rtd_msgs/Feature.v_raw_px", kMaxPosition_px),
     between("rtd_msgs/Feature.depth_m", 0, 65'536),
     within("rtd_msgs/Feature.angle_rad", 100),
     between("rtd_msgs/Feature.static_probability", 0, 1),
@@ -141,20 +141,20 @@ inline constexpr FieldRule kFieldRules[] = {
     free_field("rtd_msgs/Feature.flags"),
     free_field("rtd_msgs/Feature.object_id"),
     free_field("rtd_msgs/Feature.descriptor"),
-    between("rtd_msgs/FeatureFrame.seq", 0, kMostSequence),
+    between("rtd_msgs/FeatureFrame.seq", 0, kMaxSequence),
     within("rtd_msgs/FeatureFrame.readout_s", 0.1),
     between("rtd_msgs/FeatureFrame.width", 1, 1920),
     between("rtd_msgs/FeatureFrame.height", 1, 1920),
     between("rtd_msgs/FeatureFrame.count", 0, 4096),
     between("rtd_msgs/FeatureFrame.removed", 0, 4096),
     between("rtd_msgs/FeatureFrame.objects", 0, 1'000'000),
-    between("rtd_msgs/KeyframeEvent.event_index", 0, kMostSequence),
-    between("rtd_msgs/KeyframeEvent.frame_seq", 0, kMostSequence),
+    between("rtd_msgs/KeyframeEvent.event_index", 0, kMaxSequence),
+    between("rtd_msgs/KeyframeEvent.frame_seq", 0, kMaxSequence),
     free_field("rtd_msgs/KeyframeEvent.keyframe_id"),
-    within("rtd_msgs/Transform.translation_m", kMostPosition_m),
-    between("rtd_msgs/TrackingResult.seq", 0, kMostSequence),
+    within("rtd_msgs/Transform.translation_m", kMaxPosition_m),
+    between("rtd_msgs/TrackingResult.seq", 0, kMaxSequence),
     within("rtd_msgs/TrackingResult.covariance", std::numeric_limits<double>::max()),
-    between("rtd_msgs/TrackingResult.event_count", 0, kMostSequence),
+    between("rtd_msgs/TrackingResult.event_count", 0, kMaxSequence),
     free_field("rtd_msgs/TrackingResult.inliers"),  // counts for people, never used as sizes; ids of maps
     free_field("rtd_msgs/TrackingResult.features_static"),
     free_field("rtd_msgs/TrackingResult.features_removed"),
@@ -171,15 +171,15 @@ inline constexpr FieldRule kFieldRules[] = {
     free_field("rtd_msgs/MapKeyframe.keyframe_id"),
     free_field("rtd_msgs/MapKeyframe.map_id"),
     between("rtd_msgs/MapKeyframe.content", 0, 7),
-    within("rtd_msgs/MapKeyframe.points_m", kMostPosition_m),
+    within("rtd_msgs/MapKeyframe.points_m", kMaxPosition_m),
     free_field("rtd_msgs/MapKeyframe.covisible"),
-    between("rtd_msgs/MapUpdate.revision", 0, kMostSequence),
+    between("rtd_msgs/MapUpdate.revision", 0, kMaxSequence),
     free_field("rtd_msgs/MapUpdate.loop_edges"),
-    between("rtd_msgs/Movers.seq", 0, kMostSequence),
+    between("rtd_msgs/Movers.seq", 0, kMaxSequence),
     at_most("rtd_msgs/Movers.movers", 10'000),
     free_field("rtd_msgs/Mover.id"),
-    within("rtd_msgs/Mover.center_m", kMostPosition_m),
-    within("rtd_msgs/Mover.size_m", kMostPosition_m),
+    within("rtd_msgs/Mover.center_m", kMaxPosition_m),
+    within("rtd_msgs/Mover.size_m", kMaxPosition_m),
     between("rtd_msgs/Mover.static_probability", 0, 1.001),  // a mean, rounded
     within("rtd_msgs/Mover.covariance", std::numeric_limits<double>::max()),
 };

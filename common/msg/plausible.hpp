@@ -73,7 +73,7 @@ constexpr FieldRule rule_of(std::string_view type, std::string_view name) {
   if (!kWhole<Value>) return {};
   const bool time = std::is_same_v<Value, std::int64_t> && name.ends_with("_ns");
   if (!time) throw "a field of whole numbers has no entry in common/msg/field_rules.hpp";  // does not compile
-  return within(name, kMostTime_ns);
+  return within(name, kMaxTime_ns);
 }
 
 template <Message T>
@@ -121,7 +121,7 @@ constexpr bool holds(char32_t code, TextRule rule) {
 }
 
 constexpr bool holds(std::string_view text, const FieldRule& rule) {
-  if (text.size() > (rule.most_count > 0 ? rule.most_count : kMostText)) return false;
+  if (text.size() > (rule.most_count > 0 ? rule.most_count : kMaxText)) return false;
   while (!text.empty()) {
     const io::Utf8Character character = io::first_character(text);
     if (character.bytes == 0 || !holds(character.code, rule.text)) return false;
@@ -158,7 +158,7 @@ bool holds(const std::array<T, kSize>& values, const FieldRule& rule) {
 template <class T>
 constexpr std::size_t most_elements(const FieldRule& rule) {
   if (rule.most_count > 0) return rule.most_count;
-  return std::is_arithmetic_v<T> ? kMostBytes / sizeof(T) : kMostElements;
+  return std::is_arithmetic_v<T> ? kMaxBytes / sizeof(T) : kMaxElements;
 }
 template <class T>
 bool holds(const std::vector<T>& values, const FieldRule& rule) {

@@ -11,20 +11,20 @@
 namespace rtd::msg {
 
 /// Bound of all results: their sign can be changed, and std::abs() of them exists.
-inline constexpr std::int64_t kMostNs = std::numeric_limits<std::int64_t>::max();
+inline constexpr std::int64_t kMaxNs = std::numeric_limits<std::int64_t>::max();
 
-/// a - b, within +-kMostNs.
+/// a - b, within +-kMaxNs.
 constexpr std::int64_t minus_ns(std::int64_t a, std::int64_t b) {
   std::int64_t difference = 0;
-  if (__builtin_sub_overflow(a, b, &difference)) return a < b ? -kMostNs : kMostNs;
-  return std::max(difference, -kMostNs);
+  if (__builtin_sub_overflow(a, b, &difference)) return a < b ? -kMaxNs : kMaxNs;
+  return std::max(difference, -kMaxNs);
 }
 
-/// a + b, within +-kMostNs.
+/// a + b, within +-kMaxNs.
 constexpr std::int64_t plus_ns(std::int64_t a, std::int64_t b) {
   std::int64_t sum = 0;
-  if (__builtin_add_overflow(a, b, &sum)) return a < 0 ? -kMostNs : kMostNs;
-  return std::max(sum, -kMostNs);
+  if (__builtin_add_overflow(a, b, &sum)) return a < 0 ? -kMaxNs : kMaxNs;
+  return std::max(sum, -kMaxNs);
 }
 
 /// Time between two stamps, whichever is later.
@@ -39,9 +39,9 @@ constexpr double minus_s(std::int64_t later_ns, std::int64_t earlier_ns) {
 
 /// Seconds as nanoseconds, rounded towards 0; 0 for NaN.
 constexpr std::int64_t ns_of(double seconds) {
-  constexpr double kMost = 9.2e18;  // fits; so does its negative
+  constexpr double kMax = 9.2e18;  // fits; so does its negative
   const double ns = 1e9 * seconds;
-  return ns == ns ? static_cast<std::int64_t>(std::clamp(ns, -kMost, kMost)) : 0;
+  return ns == ns ? static_cast<std::int64_t>(std::clamp(ns, -kMax, kMax)) : 0;
 }
 
 }  // namespace rtd::msg

@@ -12,7 +12,7 @@
 
 namespace rtd::process {
 
-/// Where children say that their work goes on. They do it as under systemd (Type=notify, WatchdogSec=), so that a
+/// Where children say that their work continues. They do it as under systemd (Type=notify, WatchdogSec=), so that a
 /// service has one way to do it (common/service/systemd_link.hpp). Belongs to one thread.
 class NotifySocket {
  public:

@@ -177,10 +177,10 @@ void PosixProcessHost::wait(std::chrono::milliseconds timeout, int wake_fd) {
   if (signs_) fds.push_back({signs_->fd(), POLLIN, 0});
   if (poll(fds.data(), fds.size(), static_cast<int>(timeout.count())) <= 0) return;
   for (auto& [process, child] : children_) read_output(child);
-  if (signs_) signs_->read([this](ProcessId sender, std::string_view text) { hear(sender, text); });
+  if (signs_) signs_->read([this](ProcessId sender, std::string_view text) { receive(sender, text); });
 }
 
-void PosixProcessHost::hear(ProcessId sender, std::string_view text) {
+void PosixProcessHost::receive(ProcessId sender, std::string_view text) {
   const auto found = children_.find(sender);
   if (found == children_.end()) return;
   if (text.starts_with("STOPPING=1")) found->second.ending = true;

@@ -35,8 +35,8 @@ class PosixProcessHost : public ProcessHost {
  public:
   using OnLine = std::function<void(const std::string& name, const std::string& line)>;
 
-  /// Children that know systemd's watchdog say at least so often that their work goes on (signs_of_life()). 0: they are
-  /// not asked to.
+  /// Children that know systemd's watchdog say at least so often that their work continues (signs_of_life()). 0: they
+  /// are not asked to.
   explicit PosixProcessHost(OnLine on_line, std::chrono::milliseconds longest_silence = {});
   ~PosixProcessHost() override;
   PosixProcessHost(const PosixProcessHost&) = delete;
@@ -60,7 +60,7 @@ class PosixProcessHost : public ProcessHost {
     std::uint64_t signs_of_life = 0;
     bool ending = false;
   };
-  void hear(ProcessId sender, std::string_view text);
+  void receive(ProcessId sender, std::string_view text);
   void read_output(Child& child);
   void close_output(Child& child);
 

@@ -47,7 +47,7 @@ class ProcessHost {
   virtual std::optional<ProcessExit> poll_exit(ProcessId process) = 0;
   virtual void terminate(ProcessId process) = 0;  ///< asks (SIGTERM)
   virtual void kill(ProcessId process) = 0;       ///< forces (SIGKILL)
-  /// How often the process has said that its work goes on. 0: it has not begun, is about to end, or never says it.
+  /// How often the process has said that its work continues. 0: it has not begun, is about to end, or never says it.
   virtual std::uint64_t signs_of_life(ProcessId process) const = 0;
 };
 

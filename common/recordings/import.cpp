@@ -17,8 +17,8 @@ namespace rtd::recordings {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMostDamages = 100;
-constexpr std::uint64_t kMostMessageBytes = 256ULL << 20;
+constexpr std::size_t kMaxDamages = 100;
+constexpr std::uint64_t kMaxMessageBytes = 256ULL << 20;
 
 std::string first_bytes(const fs::path& file) {
   std::array<std::byte, 16> begin{};
@@ -82,12 +82,12 @@ void Import::write(mcap::Message message, const std::string& topic) {
   if (packed_messages_) {
     const unsigned long long size = ZSTD_getFrameContentSize(message.data.data(), message.data.size());
     const bool sensible =
-        size != ZSTD_CONTENTSIZE_UNKNOWN && size != ZSTD_CONTENTSIZE_ERROR && size <= kMostMessageBytes;
+        size != ZSTD_CONTENTSIZE_UNKNOWN && size != ZSTD_CONTENTSIZE_ERROR && size <= kMaxMessageBytes;
     unpacked_.resize(sensible ? size : 0);
     const std::size_t result =
         ZSTD_decompress(unpacked_.data(), unpacked_.size(), message.data.data(), message.data.size());
     if (!sensible || ZSTD_isError(result) != 0 || result != size) {
-      if (damages_.size() < kMostDamages) note("a message of " + topic + " cannot be unpacked (zstd); it is left out");
+      if (damages_.size() < kMaxDamages) note("a message of " + topic + " cannot be unpacked (zstd); it is left out");
       return;
     }
     message.data = unpacked_;
@@ -119,59 +119,63 @@ void Import::add_mcap(const fs::path& file, const std::string& name, const Share
   }
 }
 
-void Import::add_db3(const fs::path& file, const std::string& name, const Share& progress) try {
-  rosbag2::Db3Reader reader(file);
-  std::map<std::int64_t, mcap::ChannelId> ids;
-  std::vector<std::string> topics;
-  for (const auto& [id, topic] : reader.topics()) {
-    mcap::Channel entry{0, 0, topic.name, topic.serialization_format, {}};
-    if (!topic.offered_qos.empty()) entry.metadata["offered_qos_profiles"] = topic.offered_qos;
-    ids[id] = channel({0, topic.type, topic.definition_encoding, topic.definition}, std::move(entry));
-    topics.push_back(topic.name);
-  }
-  const std::vector<rosbag2::Db3Place> places = reader.messages(topics);
-  Steps steps(progress, places.size());
-  std::uint32_t sequence = 0;
-  for (const rosbag2::Db3Place& place : places) {
-    try {
-      const std::vector<std::uint8_t> bytes = reader.read(place);
-      const mcap::Timestamp time = time_of(place.time_ns);
-      write({ids.at(place.topic), ++sequence, time, time, view_of(bytes)}, reader.topics().at(place.topic).name);
-    } catch (const rosbag2::Db3Error& error) {
-      if (damages_.size() < kMostDamages) note(name + ": " + error.what());
+void Import::add_db3(const fs::path& file, const std::string& name, const Share& progress) {
+  try {
+    rosbag2::Db3Reader reader(file);
+    std::map<std::int64_t, mcap::ChannelId> ids;
+    std::vector<std::string> topics;
+    for (const auto& [id, topic] : reader.topics()) {
+      mcap::Channel entry{0, 0, topic.name, topic.serialization_format, {}};
+      if (!topic.offered_qos.empty()) entry.metadata["offered_qos_profiles"] = topic.offered_qos;
+      ids[id] = channel({0, topic.type, topic.definition_encoding, topic.definition}, std::move(entry));
+      topics.push_back(topic.name);
     }
-    steps.step();
+    const std::vector<rosbag2::Db3Place> places = reader.messages(topics);
+    Steps steps(progress, places.size());
+    std::uint32_t sequence = 0;
+    for (const rosbag2::Db3Place& place : places) {
+      try {
+        const std::vector<std::uint8_t> bytes = reader.read(place);
+        const mcap::Timestamp time = time_of(place.time_ns);
+        write({ids.at(place.topic), ++sequence, time, time, view_of(bytes)}, reader.topics().at(place.topic).name);
+      } catch (const rosbag2::Db3Error& error) {
+        if (damages_.size() < kMaxDamages) note(name + ": " + error.what());
+      }
+      steps.step();
+    }
+    for (const std::string& damage : reader.damages()) note(damage);
+  } catch (const rosbag2::Db3Error& error) {
+    throw mcap::RecordingFileError(error.what());
   }
-  for (const std::string& damage : reader.damages()) note(damage);
-} catch (const rosbag2::Db3Error& error) {
-  throw mcap::RecordingFileError(error.what());
 }
 
-void Import::add_bag(const fs::path& file, const std::string& name, const Share& progress) try {
-  rosbag1::BagReader reader(file);
-  std::map<std::uint32_t, mcap::ChannelId> ids;
-  std::vector<std::string> topics;
-  for (const auto& [id, connection] : reader.connections()) {
-    ids[id] = channel({0, connection.type, "ros1msg", connection.definition},
-                      {0, 0, connection.topic, "ros1", {{"md5sum", connection.md5sum}}});
-  }
-  for (const rosbag1::Topic& topic : reader.topics()) topics.push_back(topic.name);
-  const std::vector<rosbag1::MessagePlace> places = reader.messages(topics);
-  Steps steps(progress, places.size());
-  std::uint32_t sequence = 0;
-  for (const rosbag1::MessagePlace& place : places) {
-    try {
-      const mcap::Timestamp time = time_of(place.time_ns);
-      write({ids.at(place.connection), ++sequence, time, time, view_of(reader.read(place))},
-            reader.connections().at(place.connection).topic);
-    } catch (const rosbag1::BagError& error) {
-      if (damages_.size() < kMostDamages) note(name + ": " + error.what());
+void Import::add_bag(const fs::path& file, const std::string& name, const Share& progress) {
+  try {
+    rosbag1::BagReader reader(file);
+    std::map<std::uint32_t, mcap::ChannelId> ids;
+    std::vector<std::string> topics;
+    for (const auto& [id, connection] : reader.connections()) {
+      ids[id] = channel({0, connection.type, "ros1msg", connection.definition},
+                        {0, 0, connection.topic, "ros1", {{"md5sum", connection.md5sum}}});
     }
-    steps.step();
+    for (const rosbag1::Topic& topic : reader.topics()) topics.push_back(topic.name);
+    const std::vector<rosbag1::MessagePlace> places = reader.messages(topics);
+    Steps steps(progress, places.size());
+    std::uint32_t sequence = 0;
+    for (const rosbag1::MessagePlace& place : places) {
+      try {
+        const mcap::Timestamp time = time_of(place.time_ns);
+        write({ids.at(place.connection), ++sequence, time, time, view_of(reader.read(place))},
+              reader.connections().at(place.connection).topic);
+      } catch (const rosbag1::BagError& error) {
+        if (damages_.size() < kMaxDamages) note(name + ": " + error.what());
+      }
+      steps.step();
+    }
+    for (const std::string& damage : reader.damages()) note(damage);
+  } catch (const rosbag1::BagError& error) {
+    throw mcap::RecordingFileError(error.what());
   }
-  for (const std::string& damage : reader.damages()) note(damage);
-} catch (const rosbag1::BagError& error) {
-  throw mcap::RecordingFileError(error.what());
 }
 
 }  // namespace rtd::recordings

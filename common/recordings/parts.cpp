@@ -66,27 +66,30 @@ fs::path place_of(const fs::path& folder, const std::string& name) {
   return fs::exists(beside) ? beside : folder / fs::path(name).filename();
 }
 
-Parts parts_by_metadata(const fs::path& folder) try {
-  const YAML::Node bag = YAML::LoadFile((folder / kMetadata).string())["rosbag2_bagfile_information"];
-  if (!bag) throw RecordingFileError((folder / kMetadata).string() + " describes no recording of rosbag2");
-  Parts parts;
-  const auto format = bag["compression_format"].as<std::string>("");
-  parts.packed_messages = bag["compression_mode"].as<std::string>("") == "MESSAGE";
-  if (!format.empty() && format != "zstd") {
-    throw RecordingFileError(folder.string() + ": its files are compressed with '" + format + "': only zstd is known");
+Parts parts_by_metadata(const fs::path& folder) {
+  try {
+    const YAML::Node bag = YAML::LoadFile((folder / kMetadata).string())["rosbag2_bagfile_information"];
+    if (!bag) throw RecordingFileError((folder / kMetadata).string() + " describes no recording of rosbag2");
+    Parts parts;
+    const auto format = bag["compression_format"].as<std::string>("");
+    parts.packed_messages = bag["compression_mode"].as<std::string>("") == "MESSAGE";
+    if (!format.empty() && format != "zstd") {
+      throw RecordingFileError(folder.string() + ": its files are compressed with '" + format +
+                               "': only zstd is known");
+    }
+    for (const YAML::Node& name : bag["relative_file_paths"]) {
+      const fs::path file = place_of(folder, name.as<std::string>());
+      fs::exists(file) ? parts.files.push_back(file) : parts.missing.push_back(name.as<std::string>());
+    }
+    if (parts.files.empty()) {
+      throw RecordingFileError(folder.string() + ": none of the files that " + kMetadata + " names is in it" +
+                               (parts.missing.empty() ? "" : ", e.g. " + parts.missing.front()));
+    }
+    return parts;
+  } catch (const YAML::Exception& error) {
+    throw RecordingFileError((folder / kMetadata).string() + " cannot be read: " + error.what() +
+                             "; name the files themselves, or remove it to take them by their names");
   }
-  for (const YAML::Node& name : bag["relative_file_paths"]) {
-    const fs::path file = place_of(folder, name.as<std::string>());
-    fs::exists(file) ? parts.files.push_back(file) : parts.missing.push_back(name.as<std::string>());
-  }
-  if (parts.files.empty()) {
-    throw RecordingFileError(folder.string() + ": none of the files that " + kMetadata + " names is in it" +
-                             (parts.missing.empty() ? "" : ", e.g. " + parts.missing.front()));
-  }
-  return parts;
-} catch (const YAML::Exception& error) {
-  throw RecordingFileError((folder / kMetadata).string() + " cannot be read: " + error.what() +
-                           "; name the files themselves, or remove it to take them by their names");
 }
 
 }  // namespace

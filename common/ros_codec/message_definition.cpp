@@ -11,7 +11,7 @@
 namespace rtd::ros {
 namespace {
 
-constexpr std::size_t kMostTypes = 1000, kDeepest = 50;
+constexpr std::size_t kMaxTypes = 1000, kDeepest = 50;
 constexpr const char* kBlanks = " \t\r";
 
 const std::set<std::string>& primitives() {
@@ -116,7 +116,7 @@ class Parser {
     if (slash == std::string::npos || !is_type_name(type)) {
       throw std::invalid_argument("'" + type + "' is not PACKAGE/TYPE");
     }
-    if (types_.size() >= kMostTypes) throw std::invalid_argument("more than " + std::to_string(kMostTypes) + " types");
+    if (types_.size() >= kMaxTypes) throw std::invalid_argument("more than " + std::to_string(kMaxTypes) + " types");
     package_ = type.substr(0, slash);
     fields_ = &types_[type];
     fields_->clear();  // a type given twice: the last text counts
@@ -185,17 +185,19 @@ std::string package_and_type(const std::string& type) {
   return infix == std::string::npos ? type : type.substr(0, infix) + type.substr(infix + 4);
 }
 
-MessageFields parse_definition(const std::string& type, const std::string& text) try {
-  const std::string root = package_and_type(type);
-  Parser parser(root);
-  parser.take(text);
-  MessageFields all = std::move(parser).result();
-  add_base_types(all);
-  Closure closure(all);
-  closure.add(root);
-  return closure.take();
-} catch (const std::invalid_argument& error) {
-  throw DefinitionError("definition of " + type + ": " + error.what());
+MessageFields parse_definition(const std::string& type, const std::string& text) {
+  try {
+    const std::string root = package_and_type(type);
+    Parser parser(root);
+    parser.take(text);
+    MessageFields all = std::move(parser).result();
+    add_base_types(all);
+    Closure closure(all);
+    closure.add(root);
+    return closure.take();
+  } catch (const std::invalid_argument& error) {
+    throw DefinitionError("definition of " + type + ": " + error.what());
+  }
 }
 
 }  // namespace rtd::ros

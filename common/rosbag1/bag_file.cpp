@@ -101,7 +101,8 @@ Content decompress_lz4(const Content& data, std::size_t size) {
     hint = LZ4F_decompress(context, content.data() + found, &produced, data.data() + used, &consumed, nullptr);
     if (LZ4F_isError(hint) != 0)
       throw ros::WireError(std::string("an lz4 chunk is damaged: ") + LZ4F_getErrorName(hint));
-    found += produced, used += consumed;
+    found += produced;
+    used += consumed;
     if (hint != 0 && produced == 0 && consumed == 0) {
       throw ros::WireError("an lz4 chunk ends early or is longer than it claims");
     }

@@ -54,8 +54,12 @@ void BagReader::walk() {
 }
 
 /// A record that is damaged inside does not keep from the next.
-void BagReader::take_noting(const RecordPlace& place) try { take(place); } catch (const ros::WireError& error) {
-  note(file_.path().string() + ", record before byte " + std::to_string(place.data_begin) + ": " + error.what());
+void BagReader::take_noting(const RecordPlace& place) {
+  try {
+    take(place);
+  } catch (const ros::WireError& error) {
+    note(file_.path().string() + ", record before byte " + std::to_string(place.data_begin) + ": " + error.what());
+  }
 }
 
 void BagReader::check_bag_header(const RecordHeader& header) const {
@@ -133,20 +137,22 @@ void BagReader::search_unindexed() {
   }
 }
 
-void BagReader::search(std::uint32_t chunk, bool messages) try {
-  ros::ByteCursor cursor(load(chunk));
-  while (cursor.remaining() > 0) {
-    const InnerRecord record = next_record(cursor);
-    if (record.header.op() == Op::kConnection) take_connection(record.header, record.data);
-    if (messages && record.header.op() == Op::kMessage) {
-      messages_.push_back({record.header.time_ns("time"), record.header.number<std::uint32_t>("conn"), chunk,
-                           static_cast<std::uint32_t>(record.begin)});
+void BagReader::search(std::uint32_t chunk, bool messages) {
+  try {
+    ros::ByteCursor cursor(load(chunk));
+    while (cursor.remaining() > 0) {
+      const InnerRecord record = next_record(cursor);
+      if (record.header.op() == Op::kConnection) take_connection(record.header, record.data);
+      if (messages && record.header.op() == Op::kMessage) {
+        messages_.push_back({record.header.time_ns("time"), record.header.number<std::uint32_t>("conn"), chunk,
+                             static_cast<std::uint32_t>(record.begin)});
+      }
     }
+  } catch (const BagError& error) {
+    note(error.what());
+  } catch (const ros::WireError& error) {
+    note(file_.path().string() + ", chunk at byte " + std::to_string(chunks_[chunk].begin) + ": " + error.what());
   }
-} catch (const BagError& error) {
-  note(error.what());
-} catch (const ros::WireError& error) {
-  note(file_.path().string() + ", chunk at byte " + std::to_string(chunks_[chunk].begin) + ": " + error.what());
 }
 
 std::vector<Topic> BagReader::topics() const {

@@ -12,9 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostMessageBytes = 256ULL << 20;
-constexpr std::int64_t kMostHeapBytes = 1LL << 30;  // SQLite's own, of the whole process
-constexpr std::size_t kMostTopics = 10'000;
+constexpr std::uint64_t kMaxMessageBytes = 256ULL << 20;
+constexpr std::int64_t kMaxHeapBytes = 1LL << 30;  // SQLite's own, of the whole process
+constexpr std::size_t kMaxTopics = 10'000;
 constexpr int kStepInstructions = 1000;  // of SQLite's machine between two calls of the progress handler
 
 std::uint64_t size_of(const fs::path& path) {
@@ -108,8 +108,8 @@ void Db3Reader::open() {
 
 void Db3Reader::bound() {
   sqlite3* database = database_.get();
-  sqlite3_hard_heap_limit64(kMostHeapBytes);
-  const std::uint64_t longest = std::clamp<std::uint64_t>(bytes_, 1U << 20, kMostMessageBytes);
+  sqlite3_hard_heap_limit64(kMaxHeapBytes);
+  const std::uint64_t longest = std::clamp<std::uint64_t>(bytes_, 1U << 20, kMaxMessageBytes);
   sqlite3_limit(database, SQLITE_LIMIT_LENGTH, static_cast<int>(longest));
   sqlite3_limit(database, SQLITE_LIMIT_ATTACHED, 0);
   sqlite3_limit(database, SQLITE_LIMIT_TRIGGER_DEPTH, 0);
@@ -136,9 +136,9 @@ void Db3Reader::read_topics() {
   Statement rows(database_.get(), "SELECT id, name, type, serialization_format FROM topics NOT INDEXED");
   if (!rows.usable()) fail(std::string("no rosbag2 recording: ") + sqlite3_errmsg(database_.get()));
   int result = rows.step();
-  for (; result == SQLITE_ROW && topics_.size() < kMostTopics; result = rows.step())
+  for (; result == SQLITE_ROW && topics_.size() < kMaxTopics; result = rows.step())
     topics_[rows.integer(0)] = {rows.text(1), rows.text(2), rows.text(3), 0, {}, {}, {}};
-  if (result == SQLITE_ROW) fail("has more than " + std::to_string(kMostTopics) + " topics");
+  if (result == SQLITE_ROW) fail("has more than " + std::to_string(kMaxTopics) + " topics");
   if (result != SQLITE_DONE) fail(std::string("its topics cannot be read: ") + sqlite3_errmsg(database_.get()));
 }
 

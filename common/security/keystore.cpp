@@ -24,10 +24,12 @@ void create_folder(const fs::path& folder, fs::perms perms = fs::perms::none) {
   if (error) throw SecurityError(folder.string() + " cannot be created: " + error.message());
 }
 
-void write_file(const fs::path& file, const std::string& content, unsigned mode) try {
-  io::write_file(file, content, {.mode = mode, .keep_mode = false});
-} catch (const io::IoError& error) {
-  throw SecurityError(std::string("cannot write ") + error.what());
+void write_file(const fs::path& file, const std::string& content, unsigned mode) {
+  try {
+    io::write_file(file, content, {.mode = mode, .keep_mode = false});
+  } catch (const io::IoError& error) {
+    throw SecurityError(std::string("cannot write ") + error.what());
+  }
 }
 
 void link_to(const fs::path& target, const fs::path& link) {

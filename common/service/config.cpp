@@ -77,9 +77,9 @@ class Flattener {
   /// Calls visit(key, yaml) for every node that is a known key or a leaf, with sections joined by dots.
   void flatten(const YAML::Node& node, const std::string& prefix, int depth,
                const std::function<void(const std::string&, const std::string&)>& visit) {
-    constexpr int kDeepest = 16, kMostNodes = 100'000;
+    constexpr int kDeepest = 16, kMaxNodes = 100'000;
     for (const auto& child : node) {
-      if (depth >= kDeepest || ++nodes_ > kMostNodes)
+      if (depth >= kDeepest || ++nodes_ > kMaxNodes)
         throw ConfigError(fmt::format("{}: section '{}' has too many sections within it: remove anchors and aliases",
                                       origin_, prefix.substr(0, 60)));
       if (!child.first.IsScalar())

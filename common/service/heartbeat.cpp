@@ -49,23 +49,23 @@ void log_refusals(const std::string& topic, const bus::TopicTrouble& before, con
 }
 
 void make_plausible(msg::ServiceStatus& status) {
-  constexpr std::size_t kMostMessage = 4096, kMostName = 384;
+  constexpr std::size_t kMaxMessage = 4096, kMaxName = 384;
   if (!io::is_printable(status.message)) status.message = io::printable(status.message);
-  if (status.message.size() > kMostMessage) status.message = io::printable(status.message.substr(0, kMostMessage / 4));
+  if (status.message.size() > kMaxMessage) status.message = io::printable(status.message.substr(0, kMaxMessage / 4));
   for (auto& [name, value] : status.metrics) {
     std::replace_if(
         name.begin(), name.end(), [](char c) { return c <= ' ' || c > '~'; }, '?');
-    if (name.size() > kMostName) name.resize(kMostName);
+    if (name.size() > kMaxName) name.resize(kMaxName);
     if (!std::isfinite(value)) value = 0;
   }
 }
 
 }  // namespace
 
-Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, Twins twins)
+Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, SecondInstance second_instance)
     : bus_(bus),
       stop_(stop),
-      twins_(twins),
+      second_instance_(second_instance),
       own_name_(service_name),
       started_ns_(realtime_ns()),
       looked_ns_(monotonic_ns()),
@@ -164,7 +164,7 @@ void Heartbeat::set(const msg::Metric& metric) {
 
 void Heartbeat::receive(const msg::ServiceStatus& status, const bus::WriterId& writer) {
   if (writer == writer_.id()) return;
-  if (status.service == own_name_) return report_twin(status, writer);
+  if (status.service == own_name_) return report_second_instance(status, writer);
   processes_.note(status, writer);
   if (!note(status, writer)) return;
   const std::lock_guard callback_lock(callback_mutex_);
@@ -197,12 +197,13 @@ void Heartbeat::believe_only(const std::string& service, std::weak_ptr<const bus
   writers_of_[service] = std::move(writers);
 }
 
-void Heartbeat::report_twin(const msg::ServiceStatus& twin, const bus::WriterId& writer) {
-  if (twins_ == Twins::kAllowed || !twin_log_.pass()) return;
+void Heartbeat::report_second_instance(const msg::ServiceStatus& second, const bus::WriterId& writer) {
+  if (second_instance_ == SecondInstance::kAllowed || !second_instance_log_.pass()) return;
   SPDLOG_ERROR(
-      "event=second_service service={} pid={} source={} effect=\"this one goes on; the others follow the one that they "
+      "event=second_service service={} pid={} source={} effect=\"this one continues; the others follow the one that "
+      "they "
       "heard first\" fix=\"stop one, or give it another --domain\"",
-      twin.service, twin.pid, bus::to_string(writer));
+      second.service, second.pid, bus::to_string(writer));
 }
 
 /// Under the lock.
@@ -271,7 +272,7 @@ Heartbeat::Work Heartbeat::work() const {
   const std::lock_guard lock(mutex_);
   if (!begun_) return Work::kNotBegun;
   const bool blocked = monotonic_ns() - looked_ns_ > kBlockedAfterNs;
-  return !stuck_.empty() || blocked ? Work::kStuck : Work::kGoesOn;
+  return !stuck_.empty() || blocked ? Work::kStuck : Work::kContinues;
 }
 
 /// True when the health of one has changed.
@@ -300,15 +301,15 @@ bool Heartbeat::check_progress() {
   const auto frames_sent = metric_on_this_host("camera", metric::kFramesPublished);
   const std::lock_guard lock(mutex_);
   const std::int64_t now_ns = monotonic_ns(), stuck_ns = progress_.stuck_ns(now_ns);
-  const bool deaf = frames_.deaf(now_ns, frames_sent);
+  const bool receives_nothing = frames_.receives_nothing(now_ns, frames_sent);
   std::string cause;
-  if (deaf) cause = "it receives no frames, although the camera sends them";
+  if (receives_nothing) cause = "it receives no frames, although the camera sends them";
   if (stuck_ns > 0) cause = "its worker makes no progress";
   if (stop_.stop_requested()) cause.clear();
   if (cause.empty() == stuck_.empty()) return false;
   stuck_ = std::move(cause);
   if (stuck_.empty()) {
-    SPDLOG_INFO("event=worker_goes_on");
+    SPDLOG_INFO("event=worker_continues");
   } else {
     SPDLOG_ERROR("event=worker_stuck for_ms={} cause=\"{}\"", stuck_ns / 1'000'000, stuck_);
   }

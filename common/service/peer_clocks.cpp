@@ -81,8 +81,8 @@ std::vector<msg::Metric> PeerClocks::received(const msg::ServiceStatus& status, 
 
 void PeerClocks::warn_once(const msg::ServiceStatus& status, double host_id, const ClockOffset& offset) {
   if (std::abs(offset.offset_ms) < kNotableMs + offset.round_trip_ms / 2) return;
-  constexpr std::size_t kMostWarnings = 100;  // host ids may be made up
-  if (warned_hosts_.size() >= kMostWarnings || !warned_hosts_.insert(host_id).second) return;
+  constexpr std::size_t kMaxWarnings = 100;  // host ids may be made up
+  if (warned_hosts_.size() >= kMaxWarnings || !warned_hosts_.insert(host_id).second) return;
   SPDLOG_WARN(
       "event=clocks_differ peer={} ahead_ms={:.1f} round_trip_ms={:.1f} effect=\"stamps stay as they are, boxes are "
       "paired by the stamp of their frame; do not compare times of both hosts\" fix=\"run chrony on both\"",

@@ -48,8 +48,9 @@ class ClockOffsets {
 };
 
 /// Where the clocks of other hosts stand, as metrics of the heartbeat: `host_id` (the same for all processes of a
-/// host), and for each service of another host `clock.SERVICE.heard_ms` (its half of the comparison, see ClockOffsets),
-/// `clock.SERVICE.offset_ms` (how far its clock is ahead of ours) and `clock.SERVICE.round_trip_ms`. Not thread-safe.
+/// host), and for each service of another host `clock.SERVICE.received_ms` (its half of the comparison, see
+/// ClockOffsets), `clock.SERVICE.offset_ms` (how far its clock is ahead of ours) and `clock.SERVICE.round_trip_ms`. Not
+/// thread-safe.
 class PeerClocks {
  public:
   PeerClocks(std::string own_service, double own_host_id);

@@ -19,7 +19,7 @@ std::int64_t StandstillWatch::look(std::int64_t now_ns) {
 }
 
 /// A process that stood still itself has to take what waits for it first.
-bool InputWatch::deaf(std::int64_t now_ns, std::optional<double> sent) {
+bool InputWatch::receives_nothing(std::int64_t now_ns, std::optional<double> sent) {
   constexpr std::int64_t kPatienceNs = 1'500'000'000;
   constexpr double kEnough = 5;
   const bool stood_still = standstill_.look(now_ns) > 0;

@@ -52,7 +52,7 @@ class StandstillWatch {
   std::int64_t looked_ns_ = 0;
 };
 
-/// Whether a worker loop goes on: it ticks in each round. Silence while it waits on purpose does not count. Times are
+/// Whether a worker loop continues: it ticks in each round. Silence while it waits on purpose does not count. Times are
 /// given. Not thread-safe.
 class ProgressWatch {
  public:
@@ -64,7 +64,7 @@ class ProgressWatch {
   void forgive(std::int64_t stood_still_ns) {
     if (ticked_ns_ > 0) ticked_ns_ += stood_still_ns;
   }
-  /// How long the worker has been stuck; 0: it goes on, or has not begun.
+  /// How long the worker has been stuck; 0: it continues, or has not begun.
   std::int64_t stuck_ns(std::int64_t now_ns) const {
     const bool stuck = limit_ns_ > 0 && ticked_ns_ > 0 && now_ns - ticked_ns_ > limit_ns_;
     return stuck ? now_ns - ticked_ns_ : 0;
@@ -75,13 +75,13 @@ class ProgressWatch {
 };
 
 /// Whether messages still arrive, as far as their sender counts them. A reader may be lost for good while everything
-/// else of its process goes on: docs/topics.md, "Known weakness of Fast DDS". Times are given. Not thread-safe.
+/// else of its process continues: docs/topics.md, "Known weakness of Fast DDS". Times are given. Not thread-safe.
 class InputWatch {
  public:
   void received() { ++received_; }
   /// Called at least every half second. `sent`: how many messages the sender says it has sent; nullopt: not known.
   /// True when, after earlier ones, none has arrived for 1.5 s, although more than five were sent.
-  bool deaf(std::int64_t now_ns, std::optional<double> sent);
+  bool receives_nothing(std::int64_t now_ns, std::optional<double> sent);
 
  private:
   std::uint64_t received_ = 0, received_then_ = 0;

@@ -10,7 +10,7 @@
 namespace rtd::service {
 namespace {
 
-constexpr std::size_t kMostOthers = 100;
+constexpr std::size_t kMaxOthers = 100;
 constexpr std::int64_t kMakesRoomAfterNs = 10'000'000'000, kForgottenAfterNs = 60'000'000'000;
 
 bool is_ours(const std::string& name) {
@@ -40,11 +40,9 @@ bool PeerTable::note(const msg::ServiceStatus& status, const bus::WriterId& writ
 /// With a gate of its own from then on.
 bool PeerTable::admit(const std::string& name, std::int64_t now_ns) {
   const auto others = std::ranges::count_if(peers_, [](const auto& peer) { return !is_ours(peer.first); });
-  if (!is_ours(name) && static_cast<std::size_t>(others) >= kMostOthers) {
-    const auto heard = [](const auto& peer) {
-      return std::pair(is_ours(peer.first), peer.second.received_ns);
-    };
-    const auto longest = std::ranges::min_element(peers_, {}, heard);
+  if (!is_ours(name) && static_cast<std::size_t>(others) >= kMaxOthers) {
+    const auto age_order = [](const auto& peer) { return std::pair(is_ours(peer.first), peer.second.received_ns); };
+    const auto longest = std::ranges::min_element(peers_, {}, age_order);
     if (now_ns - longest->second.received_ns < kMakesRoomAfterNs) return false;
     made_room_.push_back(longest->first);
     erase(made_room_.back());

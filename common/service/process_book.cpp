@@ -13,13 +13,12 @@ namespace rtd::service {
 ProcessBook::ProcessBook() : ProcessBook([](std::int64_t pid) { return process_state(pid); }, monotonic_ns) {}
 
 void ProcessBook::note(const msg::ServiceStatus& status, const bus::WriterId& writer) {
-  constexpr std::size_t kMost = 64;
+  constexpr std::size_t kMax = 64;
   const bus::ParticipantId connection = bus::participant_of(writer);
   const bool here = find_metric(status, metric::kHostId) == PeerClocks::this_host_id();
   const std::lock_guard lock(mutex_);
-  if (entries_.size() >= kMost && !entries_.contains(connection)) {
-    entries_.erase(
-        std::ranges::min_element(entries_, {}, [](const auto& entry) { return entry.second.heard_ns; }));
+  if (entries_.size() >= kMax && !entries_.contains(connection)) {
+    entries_.erase(std::ranges::min_element(entries_, {}, [](const auto& entry) { return entry.second.received_ns; }));
   }
   entries_[connection] = {status.pid, clock_(), here, status.state == msg::ServiceState::kFinished};
 }
@@ -30,7 +29,7 @@ bool ProcessBook::gone(const bus::ParticipantId& connection) const {
   if (found == entries_.end()) return false;
   const Entry& entry = found->second;
   if (entry.finished) return true;
-  return entry.here && clock_() - entry.heard_ns >= kSuspectAfterNs && look_(entry.pid) == ProcessState::kGone;
+  return entry.here && clock_() - entry.received_ns >= kSuspectAfterNs && look_(entry.pid) == ProcessState::kGone;
 }
 
 }  // namespace rtd::service

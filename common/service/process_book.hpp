@@ -30,7 +30,7 @@ class ProcessBook {
 
  private:
   struct Entry {
-    std::int64_t pid = 0, heard_ns = 0;
+    std::int64_t pid = 0, received_ns = 0;
     bool here = false, finished = false;
   };
   const Look look_;

@@ -136,9 +136,9 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   for (const std::string& warning : bus::host_warnings(options)) SPDLOG_INFO("event=host_limit cause=\"{}\"", warning);
   ExitCode code = kOk;
   {
-    using Twins = Heartbeat::Twins;
+    using SecondInstance = Heartbeat::SecondInstance;
     Heartbeat heartbeat(*bus, shared.empty() ? definition.name : shared, stop,
-                        shared.empty() ? Twins::kReported : Twins::kAllowed);
+                        shared.empty() ? SecondInstance::kReported : SecondInstance::kAllowed);
     problems.count_in(&heartbeat);
     const std::shared_ptr<void> at_end(nullptr, [&problems](void*) { problems.count_in(nullptr); });
     heartbeat.watch_progress(pace == Pace::kRealtime ? kStuckAfter : kStuckAfterOffline);

@@ -33,8 +33,9 @@ class Heartbeat {
  public:
   /// Whether another process of the same name is worth an error in the log. It ends nothing: any program of the domain
   /// may say that it is one (ServiceLock finds the real ones).
-  enum class Twins { kReported, kAllowed };
-  Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, Twins twins = Twins::kReported);
+  enum class SecondInstance { kReported, kAllowed };
+  Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop,
+            SecondInstance second_instance = SecondInstance::kReported);
   ~Heartbeat();
 
   void set_state(msg::ServiceState state, const std::string& message = {});
@@ -52,7 +53,7 @@ class Heartbeat {
   /// 0, the default: a worker never counts as stuck.
   void watch_progress(std::chrono::milliseconds limit);
   /// How the worker is, as the heartbeat sees it; stuck, too, when the bus lets no heartbeat out.
-  enum class Work { kNotBegun, kGoesOn, kStuck };
+  enum class Work { kNotBegun, kContinues, kStuck };
   Work work() const;
   /// False for a service that is dead, hung, or sent no heartbeat for 0.7 s.
   bool alive(const std::string& service) const;
@@ -83,7 +84,7 @@ class Heartbeat {
   void receive(const msg::ServiceStatus& status, const bus::WriterId& writer);
   bool note(const msg::ServiceStatus& status, const bus::WriterId& writer);
   bool believes(const std::string& service, const bus::WriterId& writer) const;
-  void report_twin(const msg::ServiceStatus& twin, const bus::WriterId& writer);
+  void report_second_instance(const msg::ServiceStatus& second, const bus::WriterId& writer);
   void forgive_standstill(std::int64_t now_ns);
   void forget_silent(std::int64_t now_ns);
   const Peer* find(const std::string& service) const;
@@ -93,7 +94,7 @@ class Heartbeat {
 
   bus::Bus& bus_;
   StopToken& stop_;
-  const Twins twins_;
+  const SecondInstance second_instance_;
   const std::string own_name_;
   const std::int64_t started_ns_;
   std::atomic<std::int64_t> looked_ns_;  ///< when the last turn of the heartbeat's thread began
@@ -112,7 +113,7 @@ class Heartbeat {
   bool begun_ = false;
   std::string stuck_;  ///< why the worker counts as stuck; empty: it does not
   std::map<std::string, bus::TopicTrouble> troubles_;
-  RateLimit twin_log_{std::chrono::seconds(30)};  ///< used by the reader's thread
+  RateLimit second_instance_log_{std::chrono::seconds(30)};  ///< used by the reader's thread
   std::mutex publish_mutex_;
   bus::Writer<msg::ServiceStatus> writer_;
   bus::Reader<msg::ServiceStatus> reader_;

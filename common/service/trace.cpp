@@ -64,7 +64,7 @@ void Trace::stages(std::int64_t begin_ns, std::span<const TraceStage> stages, st
   write(lines);
 }
 
-void Trace::way(const char* name, std::int64_t begin_ns, std::int64_t end_ns, std::uint64_t frame) {
+void Trace::async_span(const char* name, std::int64_t begin_ns, std::int64_t end_ns, std::uint64_t frame) {
   if (!on()) return;
   const auto line = [&](char phase, std::int64_t at_ns) {
     return fmt::format(

@@ -35,7 +35,7 @@ class Trace {
   /// Consecutive stages of a span that began at `begin_ns`; those without time are left out.
   void stages(std::int64_t begin_ns, std::span<const TraceStage> stages, std::uint64_t frame);
   /// What overlaps with others of its kind, such as the way of a frame through all services.
-  void way(const char* name, std::int64_t begin_ns, std::int64_t end_ns, std::uint64_t frame);
+  void async_span(const char* name, std::int64_t begin_ns, std::int64_t end_ns, std::uint64_t frame);
 
  private:
   void write(const std::string& lines);

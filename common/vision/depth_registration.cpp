@@ -26,7 +26,7 @@ constexpr float kBorder_px = 64;            // around the image: farther out not
 constexpr double kFieldMargin = 1.2;        // beyond the image's corners, of the squared distance from the axis
 constexpr std::uint16_t kNothing = 0xFFFF;  // the nearest wins by the minimum
 constexpr float kFarthest = kNothing;
-constexpr int kMostLanes = 8;
+constexpr int kMaxLanes = 8;
 constexpr int kRowsBehind = 4;  // of an image that is one pixel wide: for four pixels
 
 void check(const geometry::CameraModel& camera, const std::string& name) {
@@ -45,7 +45,8 @@ Eigen::Vector3d ray_of(const geometry::CameraModel& camera, int column, int row)
 /// where its image stops to move outward.
 double turn_squared(geometry::CameraModel::Parameters lens) {
   constexpr double kStep = 1e-3, kFar = 10;
-  lens.fx = lens.fy = 1, lens.cx = lens.cy = 0;
+  lens.fx = lens.fy = 1;
+  lens.cx = lens.cy = 0;
   if (lens.lens == geometry::Lens::kBrownConrady) lens.distortion[2] = lens.distortion[3] = 0;
   const geometry::CameraModel radial(lens);
   double before = 0;
@@ -64,14 +65,20 @@ double field_squared(const geometry::CameraModel& camera) {
   const auto look_at = [&](int x, int y) {
     farthest = std::max(farthest, ray_of(camera, x, y).head<2>().squaredNorm());
   };
-  for (int x = 0; x <= right; ++x) look_at(x, 0), look_at(x, bottom);
-  for (int y = 0; y <= bottom; ++y) look_at(0, y), look_at(right, y);
+  for (int x = 0; x <= right; ++x) {
+    look_at(x, 0);
+    look_at(x, bottom);
+  }
+  for (int y = 0; y <= bottom; ++y) {
+    look_at(0, y);
+    look_at(right, y);
+  }
   return farthest;
 }
 
-/// Elements of a row whose pixels are processed up to kMostLanes at a time.
+/// Elements of a row whose pixels are processed up to kMaxLanes at a time.
 std::size_t padded(int columns) {
-  return static_cast<std::size_t>((columns + kMostLanes - 1) / kMostLanes * kMostLanes);
+  return static_cast<std::size_t>((columns + kMaxLanes - 1) / kMaxLanes * kMaxLanes);
 }
 
 /// A row of the depth image as the colour camera sees it, with a pixel without depth before it and behind.
@@ -227,7 +234,8 @@ struct DepthRegistration::Kernels {
       }
       if (fisheye) {
         const Floats factor = fisheye_factor<L>(r2);
-        bent_x = x * factor, bent_y = y * factor;
+        bent_x = x * factor;
+        bent_y = y * factor;
       }
       const Floats u = fx * bent_x + cx, v = fy * bent_y + cy;
       const auto measured = (units > 0.0F) & (units < kFarthest) & (Z > nearest) & (r2 < farthest);
@@ -268,7 +276,8 @@ struct DepthRegistration::Kernels {
     for (std::size_t i = 0; i < quads.z.size(); i += sizeof(Floats) / sizeof(float)) {
       const Floats u = L::load(&row.u[i + 1]), v = L::load(&row.v[i + 1]), z_m = L::load(&row.z_m[i + 1]);
       if (!L::any(z_m > 0.0F)) {
-        L::store(&quads.first[i], behind), L::store(&quads.larger[i], Ints{});
+        L::store(&quads.first[i], behind);
+        L::store(&quads.larger[i], Ints{});
         continue;
       }
       const Floats zoom = L::load(&row.zoom[i + 1]);
@@ -296,10 +305,14 @@ struct DepthRegistration::Kernels {
       L::store(&quads.first[i], some ? top * self.color_.width + left : behind);
       L::store(&quads.nearest[i], L::ints(L::within(z + change + 0.5F, L::all(1), L::all(kFarthest))));
       L::store(&quads.larger[i], some & ((columns > 1) | (rows > 1)) & 1);
-      L::store(&quads.left[i], left), L::store(&quads.right[i], right);
-      L::store(&quads.top[i], top), L::store(&quads.bottom[i], bottom);
-      L::store(&quads.z[i], z), L::store(&quads.slack[i], slack);
-      L::store(&quads.z_u[i], z_u), L::store(&quads.z_v[i], z_v);
+      L::store(&quads.left[i], left);
+      L::store(&quads.right[i], right);
+      L::store(&quads.top[i], top);
+      L::store(&quads.bottom[i], bottom);
+      L::store(&quads.z[i], z);
+      L::store(&quads.slack[i], slack);
+      L::store(&quads.z_u[i], z_u);
+      L::store(&quads.z_v[i], z_v);
     }
   }
 

@@ -12,7 +12,7 @@ namespace {
 
 int cells_along(int side_px, int cell_px) {
   const std::int64_t cells = (std::int64_t{side_px} + cell_px - 1) / cell_px;
-  return static_cast<int>(std::clamp<std::int64_t>(cells, 1, FeatureGrid::kMostCells));
+  return static_cast<int>(std::clamp<std::int64_t>(cells, 1, FeatureGrid::kMaxCells));
 }
 
 }  // namespace

@@ -25,10 +25,10 @@ struct SearchWindow {
 ///
 /// Buckets the undistorted positions in square cells; positions outside the image go to the nearest border cell, so
 /// none is lost. Visits in a fixed order (row of cells, column, index). At most 65535 features (std::length_error).
-/// At most kMostCells cells a side, whatever the size says. Refers to `features`, which must outlive the grid.
+/// At most kMaxCells cells a side, whatever the size says. Refers to `features`, which must outlive the grid.
 class FeatureGrid {
  public:
-  static constexpr int kMostCells = 256;
+  static constexpr int kMaxCells = 256;
 
   FeatureGrid() = default;
   FeatureGrid(std::span<const msg::Feature> features, int width_px, int height_px, int cell_px = 20);

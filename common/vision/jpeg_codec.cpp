@@ -17,9 +17,9 @@
 namespace rtd::vision {
 namespace {
 
-constexpr int kMostScans = 64;                  // progressive JPEGs of cameras and programs have about ten
-constexpr std::int64_t kMostPixelsPerByte = 1024;  // the emptiest grey image has 512: one bit for 8 x 8 px
-constexpr long kMostWarnings = 64;              // damaged data; a few are padding and unknown markers
+constexpr int kMaxScans = 64;                     // progressive JPEGs of cameras and programs have about ten
+constexpr std::int64_t kMaxPixelsPerByte = 1024;  // the emptiest grey image has 512: one bit for 8 x 8 px
+constexpr long kMaxWarnings = 64;                 // damaged data; a few are padding and unknown markers
 constexpr std::int64_t kMaxJpegSide = 32768;
 
 /// What libjpeg calls on errors and warnings. `manager` comes first: libjpeg knows only that part.
@@ -44,7 +44,7 @@ struct JpegErrors {
   void note(j_common_ptr info, int level) {
     if (level >= 0) return;  // a trace
     ++manager.num_warnings;
-    if (manager.msg_code == JWRN_JPEG_EOF || manager.num_warnings > kMostWarnings) leave(info);
+    if (manager.msg_code == JWRN_JPEG_EOF || manager.num_warnings > kMaxWarnings) leave(info);
   }
 };
 
@@ -54,7 +54,7 @@ struct ScanGuard {
   ScanGuard() {
     manager.progress_monitor = [](j_common_ptr info) {
       auto* const decoder = reinterpret_cast<j_decompress_ptr>(info);
-      if (decoder->input_scan_number > kMostScans) ERREXIT(info, JERR_BAD_PROGRESSION);
+      if (decoder->input_scan_number > kMaxScans) ERREXIT(info, JERR_BAD_PROGRESSION);
     };
   }
 };
@@ -109,7 +109,7 @@ class JpegDecoder {
     const std::string size = std::to_string(width) + " x " + std::to_string(height) + " px";
     if (width > kMaxJpegSide || height > kMaxJpegSide || pixels > rules_.max_pixels)
       return "has " + size + ", the most that is read is " + std::to_string(rules_.max_pixels) + " px";
-    if (pixels / kMostPixelsPerByte > static_cast<std::int64_t>(bytes_.size()))
+    if (pixels / kMaxPixelsPerByte > static_cast<std::int64_t>(bytes_.size()))
       return "claims " + size + ", which its " + std::to_string(bytes_.size()) + " bytes cannot hold";
     if (info_.num_components != 1 && info_.num_components != 3)
       return "is a JPEG with " + std::to_string(info_.num_components) + " colour components; save it as RGB or grey";

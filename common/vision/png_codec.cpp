@@ -15,9 +15,9 @@
 namespace rtd::vision {
 namespace {
 
-constexpr std::int64_t kMostBytesPerByte = 1100;  // deflate reaches 1032
+constexpr std::int64_t kMaxBytesPerByte = 1100;  // deflate reaches 1032
 constexpr png_uint_32 kMaxPngSide = 32768;
-constexpr png_alloc_size_t kMostChunkBytes = 1 << 20;  // of texts and colour profiles, which nobody needs here
+constexpr png_alloc_size_t kMaxChunkBytes = 1 << 20;  // of texts and colour profiles, which nobody needs here
 constexpr double kRedOfGrey = 0.299, kGreenOfGrey = 0.587;
 
 struct PngErrors {
@@ -59,7 +59,7 @@ class PngDecoder {
   bool read_header() {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     png_set_user_limits(png_, kMaxPngSide, kMaxPngSide);
-    png_set_chunk_malloc_max(png_, kMostChunkBytes);
+    png_set_chunk_malloc_max(png_, kMaxChunkBytes);
     png_set_read_fn(png_, this, [](png_structp png, png_bytep to, png_size_t count) {
       static_cast<PngDecoder*>(png_get_io_ptr(png))->give(to, count);
     });
@@ -116,7 +116,7 @@ class PngDecoder {
     if (pixels > rules_.max_pixels)
       return "has " + size + ", the most that is read is " + std::to_string(rules_.max_pixels) + " px";
     const std::int64_t stored_bytes = pixels * bits_ * png_get_channels(png_, info_) / 8;
-    if (stored_bytes / kMostBytesPerByte > static_cast<std::int64_t>(bytes_))
+    if (stored_bytes / kMaxBytesPerByte > static_cast<std::int64_t>(bytes_))
       return "claims " + size + ", which its " + std::to_string(bytes_) + " bytes cannot hold";
     return {};
   }

@@ -13,7 +13,7 @@
 namespace rtd::vision {
 namespace {
 
-constexpr double kMostDepthScale_m = 1;  // a metre per unit
+constexpr double kMaxDepthScale_m = 1;  // a metre per unit
 
 }  // namespace
 
@@ -31,8 +31,8 @@ std::string defect(const msg::FrameView& frame) {
   if (!finite) return "distortion is not finite";
   if (frame.lens > static_cast<std::uint32_t>(geometry::Lens::kFisheye))
     return fmt::format("lens model {} is unknown", frame.lens);
-  if (!(frame.depth_scale_m > 0 && frame.depth_scale_m <= kMostDepthScale_m))
-    return fmt::format("depth scale {} m is not in (0, {:g}] m", frame.depth_scale_m, kMostDepthScale_m);
+  if (!(frame.depth_scale_m > 0 && frame.depth_scale_m <= kMaxDepthScale_m))
+    return fmt::format("depth scale {} m is not in (0, {:g}] m", frame.depth_scale_m, kMaxDepthScale_m);
   if (!msg::is_sensor_time(frame.readout_s) || !msg::is_sensor_time(frame.depth_offset_s)) {
     return fmt::format("readout time {} s or depth offset {} s is not within +-{:g} s", frame.readout_s,
                        frame.depth_offset_s, msg::kMaxSensorTime_s);

@@ -12,7 +12,10 @@ int main(int argc, char** argv) {
   int left = argc > 1 ? atoi(argv[1]) : 100;
   const char* domain = getenv("ROS_DOMAIN_ID");
   dds_entity_t participant = dds_create_participant(domain ? (dds_domainid_t)atoi(domain) : 0, NULL, NULL);
-  if (participant < 0) return fprintf(stderr, "no participant: %s\n", dds_strretcode(participant)), 1;
+  if (participant < 0) {
+    fprintf(stderr, "no participant: %s\n", dds_strretcode(participant));
+    return 1;
+  }
   dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 10);

@@ -200,7 +200,7 @@ CameraService::Outcome CameraService::play(ReadAhead& frames) {
     frames_in_ += item->passed_over;
     passed_over_ += item->passed_over;
     if (!item->frame) return runtime_.stop.stop_requested() ? Outcome::kStopped : Outcome::kDone;
-    runtime_.trace.way("read", item->begin_ns, item->end_ns, item->frame->image.seq);
+    runtime_.trace.async_span("read", item->begin_ns, item->end_ns, item->frame->image.seq);
     if (const Outcome outcome = handle(std::move(*item->frame), frames); outcome != Outcome::kDone) return outcome;
     if (frames_in_ % kReportEvery == 0) report_counters();
   }
@@ -246,7 +246,10 @@ CameraService::Outcome CameraService::follow(const service::PaceDecision& decisi
 }
 
 CameraService::Outcome CameraService::drain() {
-  if (realtime_) return drain_by_time(), Outcome::kDone;
+  if (realtime_) {
+    drain_by_time();
+    return Outcome::kDone;
+  }
   while (!runtime_.stop.stop_requested()) {
     take_results();
     const service::PaceDecision decision = pacer_.drain();

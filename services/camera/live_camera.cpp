@@ -49,8 +49,12 @@ std::int64_t epoch_ns() {
 }
 
 /// Before OpenNI2's library reads a file.
-void check_recorded(const DeviceUri& uri) try { require_oni_file(uri.device); } catch (const OniFileError& error) {
-  throw SourceError(error.what());
+void check_recorded(const DeviceUri& uri) {
+  try {
+    require_oni_file(uri.device);
+  } catch (const OniFileError& error) {
+    throw SourceError(error.what());
+  }
 }
 
 }  // namespace

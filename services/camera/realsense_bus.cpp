@@ -45,17 +45,17 @@ Subscriptions::Subscriptions(const bus::BusOptions& options)
 
 Subscriptions::~Subscriptions() {
   bus_->watch(nullptr);
-  lines_.clear();
+  subscriptions_.clear();
 }
 
 void Subscriptions::add(const std::string& topic) {
-  lines_.try_emplace(topic);
+  subscriptions_.try_emplace(topic);
   follow_writers();
 }
 
 bool Subscriptions::writes(const std::string& topic, const bus::WriterId& writer) const {
-  const auto line = lines_.find(topic);
-  return line != lines_.end() && line->second.writers.contains(writer);
+  const auto subscription = subscriptions_.find(topic);
+  return subscription != subscriptions_.end() && subscription->second.writers.contains(writer);
 }
 
 std::unique_ptr<bus::RawWriter> Subscriptions::writer(const bus::RawTopic& topic) {
@@ -74,25 +74,27 @@ std::optional<Event> Subscriptions::next(Clock::time_point until) {
 void Subscriptions::follow_writers() {
   std::map<std::string, std::set<bus::WriterId>> there;
   for (const bus::TopicWriter& writer : bus_->writers()) {
-    const auto line = lines_.find(writer.topic.name);
-    if (line == lines_.end() || writer.own) continue;
-    there[line->first].insert(writer.id);
-    if (!line->second.writers.contains(writer.id)) listen(line->first, line->second, writer);
+    const auto subscription = subscriptions_.find(writer.topic.name);
+    if (subscription == subscriptions_.end() || writer.own) continue;
+    there[subscription->first].insert(writer.id);
+    if (!subscription->second.writers.contains(writer.id)) listen(subscription->first, subscription->second, writer);
   }
-  for (auto& [topic, line] : lines_) line.writers = there[topic];
+  for (auto& [topic, subscription] : subscriptions_) subscription.writers = there[topic];
 }
 
-void Subscriptions::listen(const std::string& topic, Line& line, const bus::TopicWriter& writer) try {
-  if (!line.listener) {
-    bus::RawHandlers handlers;
-    handlers.on_sample = [this, topic](const bus::RawSample& sample) {
-      queue_.push(Event{topic, sample.writer, sample.bytes});
-    };
-    line.listener = std::make_unique<bus::TopicListener>(*bus_, std::move(handlers), false, kStreamDepth);
+void Subscriptions::listen(const std::string& topic, Subscription& subscription, const bus::TopicWriter& writer) {
+  try {
+    if (!subscription.listener) {
+      bus::RawHandlers handlers;
+      handlers.on_sample = [this, topic](const bus::RawSample& sample) {
+        queue_.push(Event{topic, sample.writer, sample.bytes});
+      };
+      subscription.listener = std::make_unique<bus::TopicListener>(*bus_, std::move(handlers), false, kStreamDepth);
+    }
+    subscription.listener->add(writer);
+  } catch (const bus::BusError& error) {
+    SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", topic, error.what());
   }
-  line.listener->add(writer);
-} catch (const bus::BusError& error) {
-  SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", topic, error.what());
 }
 
 Devices::Devices(const bus::BusOptions& options) : subscriptions_(options) {
@@ -107,16 +109,27 @@ std::optional<Event> Devices::next(Clock::time_point until) {
 }
 
 /// Whether it is of the devices' own topics, or news.
-bool Devices::take(const Event& event) try {
-  if (!event.bytes) return forget_silent(), true;
-  if (event.topic == kDeviceInfoTopic) return take_info(event), true;
-  for (auto& [root, device] : devices_) {
-    if (event.topic == notifications_of(root)) return take_notification(device, event), true;
+bool Devices::take(const Event& event) {
+  try {
+    if (!event.bytes) {
+      forget_silent();
+      return true;
+    }
+    if (event.topic == kDeviceInfoTopic) {
+      take_info(event);
+      return true;
+    }
+    for (auto& [root, device] : devices_) {
+      if (event.topic == notifications_of(root)) {
+        take_notification(device, event);
+        return true;
+      }
+    }
+    return false;
+  } catch (const ros::WireError& error) {
+    SPDLOG_WARN("event=message_refused topic={} cause=\"{}\"", event.topic, error.what());
+    return true;
   }
-  return false;
-} catch (const ros::WireError& error) {
-  SPDLOG_WARN("event=message_refused topic={} cause=\"{}\"", event.topic, error.what());
-  return true;
 }
 
 void Devices::take_info(const Event& event) {

@@ -38,25 +38,25 @@ class Subscriptions {
   Subscriptions& operator=(const Subscriptions&) = delete;
 
   void add(const std::string& topic);
-  void remove(const std::string& topic) { lines_.erase(topic); }
-  bool published(const std::string& topic) const { return !lines_.at(topic).writers.empty(); }
+  void remove(const std::string& topic) { subscriptions_.erase(topic); }
+  bool published(const std::string& topic) const { return !subscriptions_.at(topic).writers.empty(); }
   bool writes(const std::string& topic, const bus::WriterId& writer) const;
   std::unique_ptr<bus::RawWriter> writer(const bus::RawTopic& topic);
   /// The next event; empty when none came in time.
   std::optional<Event> next(Clock::time_point until);
 
  private:
-  struct Line {
+  struct Subscription {
     std::set<bus::WriterId> writers;
     std::unique_ptr<bus::TopicListener> listener;
   };
 
   void follow_writers();
-  void listen(const std::string& topic, Line& line, const bus::TopicWriter& writer);
+  void listen(const std::string& topic, Subscription& subscription, const bus::TopicWriter& writer);
 
   concurrency::BoundedQueue<Event> queue_;
   std::shared_ptr<bus::RawBus> bus_;
-  std::map<std::string, Line> lines_;
+  std::map<std::string, Subscription> subscriptions_;
 };
 
 /// The devices that announce themselves, each with its description as far as it has come.

@@ -139,9 +139,11 @@ DeviceSetup RealsenseDevice::start(const ModeRequest& asked) {
   coming_.clear();
   color_topic_ = stream_topic(device().info, device().description.color().name);
   depth_topic_ = stream_topic(device().info, device().description.depth().name);
-  devices_.subscriptions().add(color_topic_), devices_.subscriptions().add(depth_topic_);
+  devices_.subscriptions().add(color_topic_);
+  devices_.subscriptions().add(depth_topic_);
   DeviceSetup setup;
-  setup.color = first_image(Stream::kColor, color), setup.depth = first_image(Stream::kDepth, depth);
+  setup.color = first_image(Stream::kColor, color);
+  setup.depth = first_image(Stream::kDepth, depth);
   setup.depth_scale_m = device().description.depth().unit_m;
   setup.camera = device().description.color().camera(setup.color.size_px);
   setup.depth_camera = depth_camera(setup.depth);
@@ -219,27 +221,30 @@ std::optional<DeviceImage> RealsenseDevice::read(milliseconds timeout) {
   }
 }
 
-std::optional<DeviceImage> RealsenseDevice::take(const Event& event) try {
-  if (event.topic != color_topic_ && event.topic != depth_topic_) return std::nullopt;
-  const Stream stream = event.topic == color_topic_ ? Stream::kColor : Stream::kDepth;
-  auto image = ros::decode<msg::Image>(ros::Wire::kCdr, event.cdr());
-  const cv::Size size_px(static_cast<int>(image.width), static_cast<int>(image.height));
-  const DeviceMode mode{stream, size_px, 0, pixel_format_of(image.encoding)};
-  const auto [known, first] = coming_.try_emplace(stream, mode);
-  if (!first && (known->second.size_px != size_px || known->second.format != mode.format)) {
-    throw DeviceError(DeviceProblem::kAbsent,
-                      fmt::format("{} changed the mode of its {} images to {} x {} {}; it is "
-                                  "started again",
-                                  name(), to_string(stream), size_px.width, size_px.height, mode.format));
+std::optional<DeviceImage> RealsenseDevice::take(const Event& event) {
+  try {
+    if (event.topic != color_topic_ && event.topic != depth_topic_) return std::nullopt;
+    const Stream stream = event.topic == color_topic_ ? Stream::kColor : Stream::kDepth;
+    auto image = ros::decode<msg::Image>(ros::Wire::kCdr, event.cdr());
+    const cv::Size size_px(static_cast<int>(image.width), static_cast<int>(image.height));
+    const DeviceMode mode{stream, size_px, 0, pixel_format_of(image.encoding)};
+    const auto [known, first] = coming_.try_emplace(stream, mode);
+    if (!first && (known->second.size_px != size_px || known->second.format != mode.format)) {
+      throw DeviceError(DeviceProblem::kAbsent,
+                        fmt::format("{} changed the mode of its {} images to {} x {} {}; it is "
+                                    "started again",
+                                    name(), to_string(stream), size_px.width, size_px.height, mode.format));
+    }
+    return DeviceImage{stream, msg::to_ns(image.header.stamp), packed_rows(image)};
+  } catch (const ros::WireError& error) {
+    SPDLOG_WARN("event=image_refused topic={} cause=\"{}\"", event.topic, error.what());
+    return std::nullopt;
   }
-  return DeviceImage{stream, msg::to_ns(image.header.stamp), packed_rows(image)};
-} catch (const ros::WireError& error) {
-  SPDLOG_WARN("event=image_refused topic={} cause=\"{}\"", event.topic, error.what());
-  return std::nullopt;
 }
 
 void RealsenseDevice::close() noexcept {
-  devices_.subscriptions().remove(color_topic_), devices_.subscriptions().remove(depth_topic_);
+  devices_.subscriptions().remove(color_topic_);
+  devices_.subscriptions().remove(depth_topic_);
 }
 
 }  // namespace

@@ -42,15 +42,16 @@ Ros2Feed::Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics)
       {topics.color, {kImage, kCompressed}}, {topics.depth, {kImage, kCompressed}}, {topics.info, {kInfo}},
       {topics.depth_info, {kInfo}},          {kLastingTransforms, {kTransform}},    {kTransforms, {kTransform}}};
   for (const auto& [topic, types] : read) {
-    const bool doubled = std::ranges::any_of(lines_, [&](const Line& line) { return line.topic == topic; });
-    if (!doubled) lines_.push_back({topic, types, nullptr});
+    const bool doubled = std::ranges::any_of(
+        subscriptions_, [&](const Subscription& subscription) { return subscription.topic == topic; });
+    if (!doubled) subscriptions_.push_back({topic, types, nullptr});
   }
-  bus_->watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { take_note(writer, change); });
+  bus_->watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { follow(writer, change); });
 }
 
 Ros2Feed::~Ros2Feed() {
   bus_->watch(nullptr);
-  for (Line& line : lines_) line.listener.reset();
+  for (Subscription& subscription : subscriptions_) subscription.listener.reset();
 }
 
 void Ros2Feed::clear() {
@@ -58,32 +59,34 @@ void Ros2Feed::clear() {
   }
 }
 
-void Ros2Feed::take_note(const bus::TopicWriter& writer, bus::WriterChange change) {
+void Ros2Feed::follow(const bus::TopicWriter& writer, bus::WriterChange change) {
   if (change == bus::WriterChange::kGone) return;
   const std::string topic = ros2::ros_topic(writer.topic.name);
-  for (Line& line : lines_) {
-    if (line.topic != topic || !line.types.contains(plain_dds_type(writer))) continue;
+  for (Subscription& subscription : subscriptions_) {
+    if (subscription.topic != topic || !subscription.types.contains(plain_dds_type(writer))) continue;
     try {
-      subscribe(line, writer);
+      subscribe(subscription, writer);
     } catch (const bus::BusError& error) {
       SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", topic, error.what());
     }
   }
 }
 
-void Ros2Feed::subscribe(Line& line, const bus::TopicWriter& writer) {
-  if (line.listener == nullptr) {
-    line.listener = std::make_unique<bus::TopicListener>(*bus_, handlers(line, writer), false, kReaderDepth);
+void Ros2Feed::subscribe(Subscription& subscription, const bus::TopicWriter& writer) {
+  if (subscription.listener == nullptr) {
+    subscription.listener =
+        std::make_unique<bus::TopicListener>(*bus_, handlers(subscription, writer), false, kReaderDepth);
   }
-  line.listener->add(writer);
-  SPDLOG_INFO("event=camera_topic topic={} type={} reliable={} latched={}", line.topic, plain_dds_type(writer),
-              line.listener->reliable(), line.listener->latched());
+  subscription.listener->add(writer);
+  SPDLOG_INFO("event=camera_topic topic={} type={} reliable={} latched={}", subscription.topic, plain_dds_type(writer),
+              subscription.listener->reliable(), subscription.listener->latched());
 }
 
-bus::RawHandlers Ros2Feed::handlers(const Line& line, const bus::TopicWriter& writer) {
+bus::RawHandlers Ros2Feed::handlers(const Subscription& subscription, const bus::TopicWriter& writer) {
   bus::RawHandlers handlers;
-  const bool is_transform = line.types.contains(kTransform);
-  handlers.on_sample = [=, this, topic = line.topic, type = plain_dds_type(writer)](const bus::RawSample& sample) {
+  const bool is_transform = subscription.types.contains(kTransform);
+  handlers.on_sample = [=, this, topic = subscription.topic,
+                        type = plain_dds_type(writer)](const bus::RawSample& sample) {
     if (is_transform && !wants_transforms_) return;
     const auto* const bytes = reinterpret_cast<const std::uint8_t*>(sample.cdr().data());
     RecordedMessage message{topic, now_ns(), ros::Wire::kCdr, {bytes, bytes + sample.cdr().size()}, type};
@@ -94,10 +97,11 @@ bus::RawHandlers Ros2Feed::handlers(const Line& line, const bus::TopicWriter& wr
 
 Ros2Feed::Publishers Ros2Feed::publishers(const std::string& topic) const {
   Publishers found;
-  const auto line = std::ranges::find_if(lines_, [&](const Line& one) { return one.topic == topic; });
+  const auto subscription =
+      std::ranges::find_if(subscriptions_, [&](const Subscription& one) { return one.topic == topic; });
   for (const bus::TopicWriter& writer : bus_->writers()) {
     if (ros2::ros_topic(writer.topic.name) != topic) continue;
-    if (line != lines_.end() && line->types.contains(plain_dds_type(writer))) {
+    if (subscription != subscriptions_.end() && subscription->types.contains(plain_dds_type(writer))) {
       ++found.readable;
     } else {
       found.other_type = ros2::ros_type(writer.topic.type);

@@ -34,7 +34,7 @@ class Ros2Feed final : public LiveFeed {
   bool is_published(const std::string& topic) const override { return publishers(topic).readable > 0; }
 
  private:
-  struct Line {
+  struct Subscription {
     std::string topic;            ///< ROS name
     std::set<std::string> types;  ///< that can be read, plain_type()
     std::unique_ptr<bus::TopicListener> listener;
@@ -45,9 +45,9 @@ class Ros2Feed final : public LiveFeed {
     std::string other_type;  ///< of one that cannot be read
   };
   Publishers publishers(const std::string& topic) const;
-  void take_note(const bus::TopicWriter& writer, bus::WriterChange change);
-  void subscribe(Line& line, const bus::TopicWriter& writer);
-  bus::RawHandlers handlers(const Line& line, const bus::TopicWriter& writer);
+  void follow(const bus::TopicWriter& writer, bus::WriterChange change);
+  void subscribe(Subscription& subscription, const bus::TopicWriter& writer);
+  bus::RawHandlers handlers(const Subscription& subscription, const bus::TopicWriter& writer);
   std::string without_publisher() const;
 
   const std::uint32_t domain_;
@@ -55,7 +55,7 @@ class Ros2Feed final : public LiveFeed {
   concurrency::BoundedQueue<RecordedMessage> queue_;
   std::shared_ptr<bus::RawBus> bus_;
   std::atomic<bool> wants_transforms_{true};
-  std::vector<Line> lines_;  ///< only the thread of the bus's watcher changes listeners
+  std::vector<Subscription> subscriptions_;  ///< only the thread of the bus's watcher changes listeners
 };
 
 }  // namespace rtd::camera

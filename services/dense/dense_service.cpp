@@ -27,13 +27,15 @@ constexpr std::size_t kMovesPerTick = 4;  // kept images that follow a correctio
 constexpr std::int64_t kMaskPatienceNs = 3'000'000'000;  // for a filter that sends no masks
 
 /// Calls write(); a failure is reported and false.
-bool report_file(const std::string& path, const std::string& content, const std::function<void()>& write) try {
-  write();
-  SPDLOG_INFO("event=file_written path={} {}", path, content);
-  return true;
-} catch (const std::exception& error) {
-  SPDLOG_ERROR("event=file_not_written path={} cause=\"{}\"", path, error.what());
-  return false;
+bool report_file(const std::string& path, const std::string& content, const std::function<void()>& write) {
+  try {
+    write();
+    SPDLOG_INFO("event=file_written path={} {}", path, content);
+    return true;
+  } catch (const std::exception& error) {
+    SPDLOG_ERROR("event=file_not_written path={} cause=\"{}\"", path, error.what());
+    return false;
+  }
 }
 
 /// Three numbers, "x,y,z". Throws service::ConfigError.
@@ -208,10 +210,11 @@ void DenseService::finish() {
 
 /// An older filter sends no masks: that must not keep the camera waiting.
 bool DenseService::ready() {
-  const bool heard = frame_reader_.matched() > 0 && tracking_reader_.matched() > 0 && keyframe_reader_.matched() > 0;
+  const bool connected =
+      frame_reader_.matched() > 0 && tracking_reader_.matched() > 0 && keyframe_reader_.matched() > 0;
   const std::int64_t now_ns = service::monotonic_ns();
-  if (!heard) updated_ns_ = now_ns;
-  return heard && (mask_reader_.matched() > 0 || now_ns - updated_ns_ > kMaskPatienceNs);
+  if (!connected) updated_ns_ = now_ns;
+  return connected && (mask_reader_.matched() > 0 || now_ns - updated_ns_ > kMaskPatienceNs);
 }
 
 /// Why the service does less than it should; empty when it does not.

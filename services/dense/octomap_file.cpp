@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kDepth = 16, kCenter = 1 << (kDepth - 1);  // of an OctoMap: cells from -32768 to 32767
 constexpr const char* kFirstLine = "# Octomap OcTree binary file";
-constexpr std::int64_t kMostCells = 200'000'000;
+constexpr std::int64_t kMaxCells = 200'000'000;
 
 /// The cells of the nodes of a .bt file: two bytes a node, two bits a child, children with children of their own
 /// behind it, first to last.
@@ -42,7 +42,7 @@ class NodeReader {
  private:
   void fill(const Eigen::Vector3i& corner, std::int64_t side, Space space) {
     filled_ += side * side * side;
-    if (filled_ > kMostCells) throw OctomapError("it has more than 200 million cells");
+    if (filled_ > kMaxCells) throw OctomapError("it has more than 200 million cells");
     if (side >= CellBlocks<Space>::kSide) return fill_blocks(corner, side, space);
     for (std::int64_t i = 0; i < side * side * side; ++i) {
       cells_.set(corner + Eigen::Vector3i(static_cast<int>(i % side), static_cast<int>(i / side % side),
@@ -76,8 +76,8 @@ Header read_header(std::istream& in) {
   std::string line;
   if (!std::getline(in, line) || !line.starts_with(kFirstLine)) throw OctomapError("it is not a binary OctoMap (.bt)");
   Header header;
-  constexpr int kMostLines = 100;
-  for (int i = 0; i < kMostLines && std::getline(in, line) && line != "data"; ++i) {
+  constexpr int kMaxLines = 100;
+  for (int i = 0; i < kMaxLines && std::getline(in, line) && line != "data"; ++i) {
     const std::string value = line.substr(std::min(line.size(), line.find(' ') + 1));
     if (line.starts_with("id ")) header.id = value;
     if (line.starts_with("res ")) header.cell_m = io::parse_number(value).value_or(0);

@@ -94,7 +94,7 @@ void DetectorService::add_options(CLI::App& app, Config& config) {
   app.add_option("--engine", config.core.engine,
                  std::string("What computes the network: ") + msg::kEngineNames + " (detector.engine)");
   app.add_flag("--verify-engine", config.verify_engine,
-               "Compare the first ten images with the CPU, and go on with the CPU if they differ");
+               "Compare the first ten images with the CPU, and continue with the CPU if they differ");
   app.add_option("--max-rate", config.max_rate_hz, "Realtime pace: at most this many detections a second, 0 = no limit")
       ->check(CLI::Range(0.0, 1000.0));
   app.add_option("--robots", config.robots,

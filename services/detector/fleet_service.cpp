@@ -15,7 +15,7 @@
 namespace rtd::detector {
 namespace {
 
-constexpr std::chrono::milliseconds kLookAfter{50};  ///< robots come and go, others take over
+constexpr std::chrono::milliseconds kUpdatePeriod{50};  ///< robots come and go, others take over
 
 }  // namespace
 
@@ -49,7 +49,7 @@ FleetPipeline::Outputs FleetService::outputs() {
 service::ExitCode FleetService::run() {
   FleetPipeline::End end = FleetPipeline::End::kClosed;
   {
-    const std::jthread robots([this] { look_after_robots(); });
+    const std::jthread robots([this] { update_robots(); });
     end = pipeline_->run();
     runtime_.stop.request_stop();
   }
@@ -59,11 +59,11 @@ service::ExitCode FleetService::run() {
 }
 
 /// Beside the pipeline: opening and closing topics takes time.
-void FleetService::look_after_robots() {
+void FleetService::update_robots() {
   for (const std::string& robot : config_.robots) open_lane(robot);
   do {
     update_lanes();
-  } while (!runtime_.stop.wait_for(kLookAfter));
+  } while (!runtime_.stop.wait_for(kUpdatePeriod));
 }
 
 void FleetService::update_lanes() {
@@ -116,8 +116,8 @@ bool FleetService::make_room() {
 }
 
 void FleetService::log_refusal(const std::string& robot, const std::string& cause) {
-  constexpr std::size_t kMostLogged = 100;  // others in the domain could make up names without end
-  if (refused_.size() >= kMostLogged || !refused_.insert(robot).second) return;
+  constexpr std::size_t kMaxLogged = 100;  // others in the domain could make up names without end
+  if (refused_.size() >= kMaxLogged || !refused_.insert(robot).second) return;
   SPDLOG_ERROR("event=robot_refused robot=\"{}\" cause=\"{}\"", robot, cause);
 }
 

@@ -37,7 +37,7 @@ class FleetService {
   using Lanes = std::map<std::string, std::shared_ptr<RobotLane>>;
 
   FleetPipeline::Outputs outputs();
-  void look_after_robots();
+  void update_robots();
   void update_lanes();
   void open_lane(const std::string& robot);
   bool make_room();

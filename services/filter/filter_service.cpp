@@ -111,7 +111,7 @@ service::ExitCode FilterService::run() {
     if (work && accept(work->arrival)) process(std::move(*work));
   }
   commands_->close();
-  SPDLOG_INFO("event=summary frames={} dropped={} defective={} foreign={} without_detections={}", published_,
+  SPDLOG_INFO("event=summary frames={} dropped={} defective={} refused={} without_detections={}", published_,
               frames_->dropped(), defective_, camera_->refused(), unpaired_);
   return service::kOk;
 }

@@ -152,7 +152,7 @@ std::string start_viewer(std::vector<std::string>& arguments) {
   return process::start_companion(executable, command);
 }
 
-/// Lines of at most 100 characters; what does not fit goes on in the column of the descriptions.
+/// Lines of at most 100 characters; what does not fit continues in the column of the descriptions.
 class WrappedHelp final : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
@@ -232,10 +232,10 @@ void add_robot_options(CLI::App& command, RunOptions& options) {
   command
       .add_option(
           "--gravity", options.gravity,
-          "What is up in the map: told (as the base stands when it begins), floor (that the camera sees) or imu")
-      ->check(CLI::IsMember({"told", "floor", "imu"}));
+          "What is up in the map: level (as the base stands when it begins), floor (that the camera sees) or imu")
+      ->check(CLI::IsMember({"level", "floor", "imu"}));
   command.add_option("--imu", options.imu,
-                     "Topic of an IMU beside the camera, sensor_msgs/Imu: poses go on while nothing can be seen");
+                     "Topic of an IMU beside the camera, sensor_msgs/Imu: poses continue while nothing can be seen");
   command.add_option("--wheel-odometry", options.wheel_odometry,
                      "Topic of the wheels' odometry, nav_msgs/Odometry; with --camera-in-base");
 }

@@ -115,7 +115,8 @@ void LinkService::report(std::int64_t now_ns) {
     for (const Passed& passed : way->passed()) {
       const bool own_side = way == &*to_fleet_;
       topics += rules_.is_heartbeat(passed.topic) ? 0 : 1;
-      bytes += passed.bytes, lost += passed.lost;
+      bytes += passed.bytes;
+      lost += passed.lost;
       const char* const prefix = own_side ? service::metric::kOutPrefix : service::metric::kInPrefix;
       runtime_.heartbeat.set_metric(prefix + passed.topic, static_cast<double>(passed.messages));
       rates += fmt::format(" {}{}={}{}", own_side ? "" : "in:", passed.topic, passed.messages,

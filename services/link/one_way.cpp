@@ -107,7 +107,7 @@ bus::RawHandlers OneWay::handlers(Route& route) {
 
 /// On the thread of the route's reader.
 void OneWay::pass(Route& route, const bus::RawSample& sample) {
-  if (!is_foreign(route, sample.writer) || !rules_.passes(direction_, route.topic, sample.cdr())) return;
+  if (!written_by_others(route, sample.writer) || !rules_.passes(direction_, route.topic, sample.cdr())) return;
   if (!route.writer->write(sample.cdr(), sample.source_ns)) {
     ++route.lost;
     return;
@@ -118,12 +118,12 @@ void OneWay::pass(Route& route, const bus::RawSample& sample) {
 
 /// A writer is known before its first sample; what is not known is not passed, or a topic that goes both ways would
 /// come back for ever.
-bool OneWay::is_foreign(Route& route, const bus::WriterId& writer) const {
-  if (const auto known = route.foreign.find(writer); known != route.foreign.end()) return known->second;
+bool OneWay::written_by_others(Route& route, const bus::WriterId& writer) const {
+  if (const auto known = route.by_others.find(writer); known != route.by_others.end()) return known->second;
   const std::vector<bus::TopicWriter> writers = from_.writers();
   const auto found = std::ranges::find(writers, writer, &bus::TopicWriter::id);
   if (found == writers.end()) return false;
-  return route.foreign[writer] = !found->own;
+  return route.by_others[writer] = !found->own;
 }
 
 void OneWay::tick() {

@@ -47,7 +47,7 @@ class OneWay {
     std::map<bus::WriterId, bus::TopicWriter> sources;
     std::unique_ptr<bus::RawWriter> writer;
     std::unique_ptr<bus::TopicListener> listener;  ///< null while no one wants the topic
-    std::map<bus::WriterId, bool> foreign;         ///< used by the reader's thread
+    std::map<bus::WriterId, bool> by_others;       ///< used by the reader's thread
     std::atomic<std::uint64_t> messages{0}, bytes{0}, lost{0};
   };
 
@@ -58,7 +58,7 @@ class OneWay {
   void open(Route& route);
   bus::RawHandlers handlers(Route& route);
   void pass(Route& route, const bus::RawSample& sample);
-  bool is_foreign(Route& route, const bus::WriterId& writer) const;
+  bool written_by_others(Route& route, const bus::WriterId& writer) const;
 
   bus::RawBus& from_;
   bus::RawBus& to_;

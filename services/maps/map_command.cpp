@@ -70,12 +70,14 @@ void write_part(const slam::MapContents& contents, const MapPart& part, const st
 }
 
 /// Writes with write_to(stream); nothing is left of a file that could not be written.
-bool write_file(const std::string& path, std::ostream& err, const std::function<void(std::ostream&)>& write_to) try {
-  io::write_file(path, write_to, {.named_by = io::NamedBy::kOperator});
-  return true;
-} catch (const io::IoError& error) {
-  err << "rtd map export: cannot write " << error.what() << '\n';
-  return false;
+bool write_file(const std::string& path, std::ostream& err, const std::function<void(std::ostream&)>& write_to) {
+  try {
+    io::write_file(path, write_to, {.named_by = io::NamedBy::kOperator});
+    return true;
+  } catch (const io::IoError& error) {
+    err << "rtd map export: cannot write " << error.what() << '\n';
+    return false;
+  }
 }
 
 bool is_octomap(const std::string& path) {
@@ -103,8 +105,8 @@ int write_plan(const MapRequest& request, const dense::Volume& volume, const std
   for (const slam::MapPoint& point : occupied) finder.add(static_cast<double>(point.position.z()));
   const std::optional<double> floor_m = request.floor_m ? request.floor_m : finder.floor_m(1e9);
   if (!floor_m) throw UsageError(request.file + " has no occupied cell: give the height of the floor with --floor");
-  constexpr std::size_t kMostCells = 100'000'000;
-  const dense::NavigationGrid grid = dense::project(volume, *floor_m, request.heights, kMostCells);
+  constexpr std::size_t kMaxCells = 100'000'000;
+  const dense::NavigationGrid grid = dense::project(volume, *floor_m, request.heights, kMaxCells);
   if (grid.cells.empty())
     throw UsageError(fmt::format("nothing is known just above the floor at {:.2f} m: --floor names another", *floor_m));
   const auto name = fs::path(request.out).filename().string();

@@ -19,7 +19,7 @@
 namespace rtd::recording {
 namespace {
 
-constexpr std::size_t kMostDamages = 100;
+constexpr std::size_t kMaxDamages = 100;
 
 /// What becomes of the messages of a channel.
 struct Output {
@@ -56,20 +56,22 @@ class Copy {
   }
 
  private:
-  void copy(const mcap::Message& message, const Output& output, const std::string& topic) try {
-    mcap::Message copy = message;
-    copy.channel_id = output.id;
-    std::vector<std::uint8_t> cdr;
-    if (output.to_cdr) {
-      cdr = (*output.to_cdr)({reinterpret_cast<const std::uint8_t*>(message.data.data()), message.data.size()});
-      copy.data = std::as_bytes(std::span(cdr));
-      ++result_.from_ros1;
+  void copy(const mcap::Message& message, const Output& output, const std::string& topic) {
+    try {
+      mcap::Message copy = message;
+      copy.channel_id = output.id;
+      std::vector<std::uint8_t> cdr;
+      if (output.to_cdr) {
+        cdr = (*output.to_cdr)({reinterpret_cast<const std::uint8_t*>(message.data.data()), message.data.size()});
+        copy.data = std::as_bytes(std::span(cdr));
+        ++result_.from_ros1;
+      }
+      writer_.write(copy);
+      ++result_.messages;
+      topics_.insert(topic);
+    } catch (const ros::WireError& error) {
+      note("a message of " + topic + " is left out: " + error.what());
     }
-    writer_.write(copy);
-    ++result_.messages;
-    topics_.insert(topic);
-  } catch (const ros::WireError& error) {
-    note("a message of " + topic + " is left out: " + error.what());
   }
 
   /// Null for a channel that is left out.
@@ -78,23 +80,25 @@ class Copy {
     if (first) known->second = make_output(channel);
     return known->second ? &*known->second : nullptr;
   }
-  std::optional<Output> make_output(const mcap::Channel& channel) try {
-    const auto found = reader_.summary().schemas.find(channel.schema_id);
-    mcap::Schema schema = found == reader_.summary().schemas.end() ? mcap::Schema{} : found->second;
-    mcap::Channel copy = channel;
-    std::optional<ros2::Ros1ToCdr> to_cdr;
-    if (channel.message_encoding == "ros1") {
-      to_cdr = from_ros1(schema);
-      copy.message_encoding = "cdr";
-      copy.metadata.erase("md5sum");
-    } else if (schema.data.empty()) {
-      describe(schema);
+  std::optional<Output> make_output(const mcap::Channel& channel) {
+    try {
+      const auto found = reader_.summary().schemas.find(channel.schema_id);
+      mcap::Schema schema = found == reader_.summary().schemas.end() ? mcap::Schema{} : found->second;
+      mcap::Channel copy = channel;
+      std::optional<ros2::Ros1ToCdr> to_cdr;
+      if (channel.message_encoding == "ros1") {
+        to_cdr = from_ros1(schema);
+        copy.message_encoding = "cdr";
+        copy.metadata.erase("md5sum");
+      } else if (schema.data.empty()) {
+        describe(schema);
+      }
+      copy.schema_id = schema.name.empty() ? mcap::SchemaId{0} : id_of(schema);
+      return Output{writer_.add(std::move(copy)), std::move(to_cdr)};
+    } catch (const ros::DefinitionError& error) {
+      result_.left_out[channel.topic] = error.what();
+      return std::nullopt;
     }
-    copy.schema_id = schema.name.empty() ? mcap::SchemaId{0} : id_of(schema);
-    return Output{writer_.add(std::move(copy)), std::move(to_cdr)};
-  } catch (const ros::DefinitionError& error) {
-    result_.left_out[channel.topic] = error.what();
-    return std::nullopt;
   }
   static ros2::Ros1ToCdr from_ros1(mcap::Schema& schema) {
     const std::string type = schema.name;
@@ -122,7 +126,7 @@ class Copy {
     }
   }
   void note(const std::string& damage) {
-    if (result_.damages.size() < kMostDamages) result_.damages.push_back(damage);
+    if (result_.damages.size() < kMaxDamages) result_.damages.push_back(damage);
   }
 
   mcap::IndexedReader reader_;

@@ -70,7 +70,7 @@ class RecordingSession {
 
   /// Subscribes. The bus outlives the session.
   void listen(bus::RawBus& bus);
-  /// Waits a moment for messages and writes them. False when the recording cannot go on: finish() says why.
+  /// Waits a moment for messages and writes them. False when the recording cannot continue: finish() says why.
   bool turn();
   /// Ends the recording; what was written stays. kPartialLoss: something was lost, or it ended early.
   service::ExitCode finish();

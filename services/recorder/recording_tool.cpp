@@ -118,12 +118,12 @@ nlohmann::json to_json(const ConvertOptions& options, std::uint64_t frames, cons
 
 void print(const ConvertOptions& options, std::uint64_t frames, camera::FrameSource& source, std::ostream& out,
            std::ostream& err) {
-  constexpr std::size_t kMostLines = 10;
+  constexpr std::size_t kMaxLines = 10;
   const std::vector<camera::SkippedInput> skipped = source.take_skipped();
-  for (std::size_t i = 0; i < std::min(kMostLines, skipped.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kMaxLines, skipped.size()); ++i) {
     err << "rtd convert: left out (" << to_string(skipped[i].reason) << "): " << skipped[i].detail << '\n';
   }
-  if (skipped.size() > kMostLines) err << "rtd convert: ... and " << skipped.size() - kMostLines << " more\n";
+  if (skipped.size() > kMaxLines) err << "rtd convert: ... and " << skipped.size() - kMaxLines << " more\n";
   if (options.json) {
     out << service::json_text(to_json(options, frames, source.counters())) << '\n';
   } else {

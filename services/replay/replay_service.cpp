@@ -73,7 +73,7 @@ void validate(const ServiceConfig& config) {
   require("--duration", config.duration_s, ServiceConfig::kLongestS);
   require("--clock", config.clock_hz, ServiceConfig::kFastestClockHz);
   require("--wait-readers", config.wait_readers_s, 3600);
-  require("--read-ahead", config.read_ahead_mb, ServiceConfig::kMostReadAheadMb);
+  require("--read-ahead", config.read_ahead_mb, ServiceConfig::kMaxReadAheadMb);
 }
 
 /// How many paced messages may be without an answer; 0: messages go by time.

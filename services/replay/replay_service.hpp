@@ -45,7 +45,7 @@ struct ServiceConfig {
   bool json = false;
 
   static constexpr double kHighestRate = 1000, kLongestS = 1e9, kFastestClockHz = 10000;
-  static constexpr int kMostReadAheadMb = 16384;
+  static constexpr int kMaxReadAheadMb = 16384;
 
   void bind(auto& binder) {
     binder.field("file", file, "recording (MCAP) to play");
@@ -58,7 +58,7 @@ struct ServiceConfig {
     binder.field("remap", remap, "rename topics: old:=new");
     binder.field("clock_hz", clock_hz, {0, kFastestClockHz}, "rate of /clock, 0 = none");
     binder.field("pause", pause, "start paused");
-    binder.field("read_ahead_mb", read_ahead_mb, {1, kMostReadAheadMb}, "how much is read before it is due");
+    binder.field("read_ahead_mb", read_ahead_mb, {1, kMaxReadAheadMb}, "how much is read before it is due");
     binder.field("lockstep", lockstep, "topic whose messages let the next message of paced_topic go");
     binder.field("paced_topic", paced_topic, "topic that waits for answers; empty = rtd/frame, else rtd/features");
     binder.field("asap_window", asap_window, {1, 3}, "messages without an answer at a time, pace asap");

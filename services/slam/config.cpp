@@ -55,7 +55,7 @@ std::string maps_folder(const ServiceConfig& config, const std::string& state_fo
 
 SlamConfig core_config(const ServiceConfig& config) {
   SlamConfig core = config.core;
-  if (config.base.gravity != "told") core.first_pose = level_camera();
+  if (config.base.gravity != "level") core.first_pose = level_camera();
   if (config.base.given()) core.first_pose = core.prior.T_base_camera = parse_mount(config.base.camera);
   if (config.base.gravity == "floor") core.gravity = Gravity::kFloor;
   if (config.base.gravity == "imu") core.gravity = Gravity::kImu;
@@ -82,7 +82,7 @@ void ServiceConfig::validate() const {
   if (base.given() && !base.from_tf()) parse_mount(base.camera);
   if (base.gravity == "imu" && motion.imu.empty())
     throw service::ConfigError(
-        "slam.base.gravity=imu needs the topic of an IMU: --imu TOPIC; without one use floor or told");
+        "slam.base.gravity=imu needs the topic of an IMU: --imu TOPIC; without one use floor or level");
   check(motion, base.given());
   if (!core.localize_only) return;
   if (map.load.empty())

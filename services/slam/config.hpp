@@ -28,7 +28,7 @@ struct MapFileConfig {
 struct BaseConfig {
   std::string frame = "base_link";
   std::string camera;
-  std::string gravity = "told";
+  std::string gravity = "level";
   int gravity_wait_frames = 30;
   double tf_timeout_s = 10;
   bool publish_camera = true;
@@ -38,7 +38,7 @@ struct BaseConfig {
     binder.field("camera", camera,
                  "where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw, or tf: as rt/tf_static says; "
                  "empty: poses of the camera. The map then begins at the base, with z up");
-    binder.choice("gravity", gravity, {"told", "floor", "imu"},
+    binder.choice("gravity", gravity, {"level", "floor", "imu"},
                   "what is up in a new map: as the base (or the camera) is turned when it begins, the floor that the "
                   "camera sees, or an IMU. With floor and imu z is up also without a base");
     binder.field("gravity_wait_frames", gravity_wait_frames, {0, 10000},
@@ -48,7 +48,7 @@ struct BaseConfig {
   }
   bool given() const { return !camera.empty(); }
   bool from_tf() const { return camera == "tf"; }
-  bool z_up() const { return given() || gravity != "told"; }
+  bool z_up() const { return given() || gravity != "level"; }
 };
 
 /// Where an IMU and the wheels are heard.

@@ -34,8 +34,8 @@ class MapKeeper {
   /// Ends the checkpoints and saves the map; false when that fails. An empty map leaves the file as it is. True without
   /// a file in the configuration.
   bool save_at_end();
-  /// Saves the map as it is now, whatever the configuration says; checkpoints go on. Any thread; the mapper waits while
-  /// the map is copied. Throws std::runtime_error with file and cause: nothing was mapped, or the file cannot be
+  /// Saves the map as it is now, whatever the configuration says; checkpoints continue. Any thread; the mapper waits
+  /// while the map is copied. Throws std::runtime_error with file and cause: nothing was mapped, or the file cannot be
   /// written, which then keeps what it held.
   SavedMap save_to(const std::filesystem::path& path, io::NamedBy named_by = io::NamedBy::kOperator);
 

@@ -15,7 +15,7 @@
 namespace rtd::slam {
 namespace {
 
-constexpr std::size_t kMostWaiting = 4096;
+constexpr std::size_t kMaxWaiting = 4096;
 constexpr int kReaderDepth = 256;  // samples that may wait for the reader's thread: more than a second
 
 }  // namespace
@@ -24,7 +24,7 @@ MotionFeed::MotionFeed(const bus::BusOptions& options, const std::string& imu_to
     : imu_{.topic = imu_topic, .dds_type = msg::kImuDdsType},
       wheels_{.topic = wheel_topic, .dds_type = msg::kOdometryDdsType},
       bus_(bus::connect_raw(options)) {
-  bus_->watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { take_note(writer, change); });
+  bus_->watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { follow(writer, change); });
 }
 
 MotionFeed::~MotionFeed() {
@@ -33,7 +33,7 @@ MotionFeed::~MotionFeed() {
   wheels_.listener.reset();
 }
 
-void MotionFeed::take_note(const bus::TopicWriter& writer, bus::WriterChange change) {
+void MotionFeed::follow(const bus::TopicWriter& writer, bus::WriterChange change) {
   if (change == bus::WriterChange::kGone) return;
   const std::string topic = ros2::ros_topic(writer.topic.name);
   if (topic == imu_.topic) subscribe<msg::Imu>(imu_, writer);
@@ -41,50 +41,52 @@ void MotionFeed::take_note(const bus::TopicWriter& writer, bus::WriterChange cha
 }
 
 template <class Message, class Sample>
-void MotionFeed::subscribe(Line<Sample>& line, const bus::TopicWriter& writer) {
-  if (writer.topic.type != line.dds_type) {
+void MotionFeed::subscribe(Subscription<Sample>& subscription, const bus::TopicWriter& writer) {
+  if (writer.topic.type != subscription.dds_type) {
     const std::lock_guard lock(mutex_);
-    line.other_type = ros2::ros_type(writer.topic.type);
+    subscription.other_type = ros2::ros_type(writer.topic.type);
     return;
   }
   try {
-    if (line.listener == nullptr) {
+    if (subscription.listener == nullptr) {
       bus::RawHandlers handlers;
-      handlers.on_sample = [this, &line](const bus::RawSample& sample) { receive<Message>(line, sample); };
-      line.listener = std::make_unique<bus::TopicListener>(*bus_, std::move(handlers), false, kReaderDepth);
+      handlers.on_sample = [this, &subscription](const bus::RawSample& sample) {
+        receive<Message>(subscription, sample);
+      };
+      subscription.listener = std::make_unique<bus::TopicListener>(*bus_, std::move(handlers), false, kReaderDepth);
     }
-    line.listener->add(writer);
-    SPDLOG_INFO("event=motion_topic topic={} type={} reliable={}", line.topic, ros2::ros_type(line.dds_type),
-                line.listener->reliable());
+    subscription.listener->add(writer);
+    SPDLOG_INFO("event=motion_topic topic={} type={} reliable={}", subscription.topic,
+                ros2::ros_type(subscription.dds_type), subscription.listener->reliable());
   } catch (const bus::BusError& error) {
-    SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", line.topic, error.what());
+    SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", subscription.topic, error.what());
   }
 }
 
 template <class Message, class Sample>
-void MotionFeed::receive(Line<Sample>& line, const bus::RawSample& sample) {
+void MotionFeed::receive(Subscription<Sample>& subscription, const bus::RawSample& sample) {
   const auto* const bytes = reinterpret_cast<const std::uint8_t*>(sample.cdr().data());
   const std::lock_guard lock(mutex_);
-  ++line.counters.received;
+  ++subscription.counters.received;
   try {
-    line.waiting.push_back(to_sample(ros::decode<Message>(ros::Wire::kCdr, {bytes, sample.cdr().size()})));
+    subscription.waiting.push_back(to_sample(ros::decode<Message>(ros::Wire::kCdr, {bytes, sample.cdr().size()})));
   } catch (const ros::WireError&) {
-    ++line.counters.undecodable;
+    ++subscription.counters.undecodable;
     return;
   }
-  line.newest_ns = line.waiting.back().stamp_ns;
-  line.silent = false;
-  if (line.waiting.size() > kMostWaiting) {
-    line.waiting.pop_front();
-    ++line.counters.overflowed;
+  subscription.newest_ns = subscription.waiting.back().stamp_ns;
+  subscription.silent = false;
+  if (subscription.waiting.size() > kMaxWaiting) {
+    subscription.waiting.pop_front();
+    ++subscription.counters.overflowed;
   }
   arrived_.notify_all();
 }
 
 void MotionFeed::await(std::int64_t stamp_ns, std::chrono::milliseconds most) {
   std::unique_lock lock(mutex_);
-  const auto missing = [stamp_ns](const auto& line) {
-    return !line.silent && line.counters.received > 0 && line.newest_ns < stamp_ns;
+  const auto missing = [stamp_ns](const auto& subscription) {
+    return !subscription.silent && subscription.counters.received > 0 && subscription.newest_ns < stamp_ns;
   };
   if (arrived_.wait_for(lock, most, [&] { return !missing(imu_) && !missing(wheels_); })) return;
   imu_.silent = imu_.silent || missing(imu_);
@@ -109,14 +111,15 @@ MotionFeed::Counters MotionFeed::wheel_counters() const {
 
 std::string MotionFeed::trouble() const {
   const std::lock_guard lock(mutex_);
-  const auto of = [](const auto& line, const char* key) -> std::string {
-    if (line.topic.empty() || line.counters.received > line.counters.undecodable) return {};
-    if (line.counters.undecodable > 0)
-      return fmt::format("no message on {} can be decoded as {}", line.topic, ros2::ros_type(line.dds_type));
-    if (!line.other_type.empty())
-      return fmt::format("{} is published as {}, not {}; check {}", line.topic, line.other_type,
-                         ros2::ros_type(line.dds_type), key);
-    return fmt::format("no message on {}: does its driver run in this domain? ({})", line.topic, key);
+  const auto of = [](const auto& subscription, const char* key) -> std::string {
+    if (subscription.topic.empty() || subscription.counters.received > subscription.counters.undecodable) return {};
+    if (subscription.counters.undecodable > 0)
+      return fmt::format("no message on {} can be decoded as {}", subscription.topic,
+                         ros2::ros_type(subscription.dds_type));
+    if (!subscription.other_type.empty())
+      return fmt::format("{} is published as {}, not {}; check {}", subscription.topic, subscription.other_type,
+                         ros2::ros_type(subscription.dds_type), key);
+    return fmt::format("no message on {}: does its driver run in this domain? ({})", subscription.topic, key);
   };
   const std::string imu = of(imu_, "slam.imu.topic");
   return imu.empty() ? of(wheels_, "slam.wheel.topic") : imu;

@@ -42,7 +42,7 @@ class MotionFeed {
 
  private:
   template <class Sample>
-  struct Line {
+  struct Subscription {
     std::string topic;  ///< ROS name; empty: not read
     std::string dds_type;
     std::unique_ptr<bus::TopicListener> listener;
@@ -53,16 +53,16 @@ class MotionFeed {
     std::string other_type;  ///< of a writer that cannot be read
   };
 
-  void take_note(const bus::TopicWriter& writer, bus::WriterChange change);
+  void follow(const bus::TopicWriter& writer, bus::WriterChange change);
   template <class Message, class Sample>
-  void subscribe(Line<Sample>& line, const bus::TopicWriter& writer);
+  void subscribe(Subscription<Sample>& subscription, const bus::TopicWriter& writer);
   template <class Message, class Sample>
-  void receive(Line<Sample>& line, const bus::RawSample& sample);
+  void receive(Subscription<Sample>& subscription, const bus::RawSample& sample);
 
   mutable std::mutex mutex_;
   std::condition_variable arrived_;
-  Line<ImuSample> imu_;
-  Line<WheelSample> wheels_;
+  Subscription<ImuSample> imu_;
+  Subscription<WheelSample> wheels_;
   std::shared_ptr<bus::RawBus> bus_;
 };
 

@@ -49,7 +49,10 @@ void SlamPublisher::publish(const SlamOutput& output, const msg::TrackingResult&
   const OdometryPose smooth = to_odometry_frame(result, output.T_map_odom);
   msg::Odometry odometry = make_odometry(smooth, previous_, names_);
   msg::TFMessage tf = make_tf(smooth, output.T_map_odom, names_);
-  if (base_) move_to_base(odometry, *base_), move_to_base(tf, *base_);
+  if (base_) {
+    move_to_base(odometry, *base_);
+    move_to_base(tf, *base_);
+  }
   odometry_.write(odometry);
   tf_.write(tf);
   previous_ = smooth;

@@ -45,7 +45,7 @@ void yield_to_tracking() {
 void SlamService::add_options(CLI::App& app, Config& config) {
   const auto last = CLI::MultiOptionPolicy::TakeLast;  // a supervisor adds its own behind those of the first start
   app.add_option("--out", config.out_dir, "Folder for trajectory.txt, keyframes.txt and map.ply (slam.out)");
-  app.add_option("--map", config.map.load, "Map file to go on with (slam.map.load)")->multi_option_policy(last);
+  app.add_option("--map", config.map.load, "Map file to continue with (slam.map.load)")->multi_option_policy(last);
   app.add_option("--save-map", config.map.save, "Map file to write at the end and at checkpoints (slam.map.save)")
       ->multi_option_policy(last);
   app.add_option("--maps-dir", config.map.folder,
@@ -57,9 +57,9 @@ void SlamService::add_options(CLI::App& app, Config& config) {
       "Where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw, or tf: as rt/tf_static says; poses are "
       "then those of the base, in a map with z up (slam.base.camera)");
   app.add_option("--gravity", config.base.gravity,
-                 "What is up in a new map: told (as the base stands when it begins), floor (that the camera sees) or "
+                 "What is up in a new map: level (as the base stands when it begins), floor (that the camera sees) or "
                  "imu (slam.base.gravity)")
-      ->check(CLI::IsMember({"told", "floor", "imu"}));
+      ->check(CLI::IsMember({"level", "floor", "imu"}));
   app.add_option("--imu", config.motion.imu, "Topic of an IMU beside the camera, sensor_msgs/Imu (slam.imu.topic)");
   app.add_option("--wheel-odometry", config.motion.wheels,
                  "Topic of the wheels' odometry, nav_msgs/Odometry; with --camera-in-base (slam.wheel.topic)");
@@ -193,8 +193,8 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
 
 /// In realtime slam goes by what has come; else the same samples always belong to a frame, as far as they come in time.
 void SlamService::take_motion(const msg::FeatureFrame& frame) {
-  constexpr std::chrono::milliseconds kMost{250};
-  if (runtime_.pace != service::Pace::kRealtime) motion_->await(frame.stamp_ns, kMost);
+  constexpr std::chrono::milliseconds kMax{250};
+  if (runtime_.pace != service::Pace::kRealtime) motion_->await(frame.stamp_ns, kMax);
   motion_->drain(slam_);
 }
 
@@ -227,7 +227,7 @@ void SlamService::trace(std::int64_t started_ns) {
   const msg::TrackingResult& result = last_result_;
   trace.span("slam", started_ns, result.finished_ns, result.seq);
   trace.span("publish", result.finished_ns, service::monotonic_ns(), result.seq);
-  trace.way("camera to pose", result.published_ns, result.finished_ns, result.seq);
+  trace.async_span("camera to pose", result.published_ns, result.finished_ns, result.seq);
   const auto& ms = result.stage_ms;
   const std::array<service::TraceStage, 6> stages{{{"match", ms[msg::kStageMatch]},
                                                    {"local map", ms[msg::kStageLocalMap]},

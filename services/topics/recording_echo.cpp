@@ -33,25 +33,27 @@ class RecordingPrinter {
   RecordingPrinter(const TopicsRequest& request, const Types& types, std::ostream& out, std::ostream& err)
       : request_(request), types_(types), out_(out), err_(err) {}
 
-  void print(const camera::RecordedMessage& message) try {
-    const RecordedType& type = types_.at(message.topic);
-    const auto json = ros2::message_json(type.fields, type.type, message.wire, message.bytes, request_.max_array);
-    if (request_.json) {
-      const nlohmann::ordered_json line{{"topic", ros2::ros_topic(message.topic)},
-                                        {"type", type.type},
-                                        {"recorded_ns", message.recorded_ns},
-                                        {"message", json}};
-      out_ << service::json_line(line) << '\n';
-    } else {
-      if (request_.topics.size() != 2) out_ << title_of(message, type);
-      out_ << message_text(json);
+  void print(const camera::RecordedMessage& message) {
+    try {
+      const RecordedType& type = types_.at(message.topic);
+      const auto json = ros2::message_json(type.fields, type.type, message.wire, message.bytes, request_.max_array);
+      if (request_.json) {
+        const nlohmann::ordered_json line{{"topic", ros2::ros_topic(message.topic)},
+                                          {"type", type.type},
+                                          {"recorded_ns", message.recorded_ns},
+                                          {"message", json}};
+        out_ << service::json_line(line) << '\n';
+      } else {
+        if (request_.topics.size() != 2) out_ << title_of(message, type);
+        out_ << message_text(json);
+      }
+      ++printed_;
+    } catch (const ros::WireError& error) {
+      if (++unreadable_ > kShownErrors) return;
+      err_ << fmt::format("rtd topics: the message of {} recorded at {} ns is not a {}: {}\n",
+                          ros2::ros_topic(message.topic), message.recorded_ns, types_.at(message.topic).type,
+                          error.what());
     }
-    ++printed_;
-  } catch (const ros::WireError& error) {
-    if (++unreadable_ > kShownErrors) return;
-    err_ << fmt::format("rtd topics: the message of {} recorded at {} ns is not a {}: {}\n",
-                        ros2::ros_topic(message.topic), message.recorded_ns, types_.at(message.topic).type,
-                        error.what());
   }
   std::uint64_t printed() const { return printed_; }
   std::uint64_t unreadable() const { return unreadable_; }

@@ -66,7 +66,7 @@ void discover(double longest_s, TopicsSession& session) {
   constexpr double kSettledS = 2;
   std::set<bus::WriterId> known;
   double last_new_s = 0;
-  while (session.seconds() < longest_s && session.goes_on(50ms)) {
+  while (session.seconds() < longest_s && session.continues(50ms)) {
     for (const bus::TopicWriter& writer : session.writers())
       if (known.insert(writer.id).second) last_new_s = session.seconds();
     if (!known.empty() && session.seconds() - last_new_s > kSettledS) return;

@@ -30,22 +30,24 @@ class Printer {
   Printer(const TopicsRequest& request, std::ostream& out, std::ostream& err)
       : request_(request), out_(out), err_(err) {}
 
-  void print(const bus::RawTopic& topic, const bus::RawSample& sample) try {
-    const auto bytes = reinterpret_cast<const std::uint8_t*>(sample.cdr().data());
-    const auto message = ros2::message_json(topic.type, {bytes, sample.cdr().size()}, request_.max_array);
-    if (request_.json) {
-      const nlohmann::ordered_json line{{"topic", ros2::ros_topic(topic.name)}, {"type", ros2::ros_type(topic.type)},
-                                        {"sequence", sample.sequence},          {"sent_ns", sample.source_ns},
-                                        {"received_ns", sample.received_ns},    {"message", message}};
-      out_ << service::json_line(line) << std::endl;
-    } else {
-      out_ << message_text(message) << std::flush;
+  void print(const bus::RawTopic& topic, const bus::RawSample& sample) {
+    try {
+      const auto bytes = reinterpret_cast<const std::uint8_t*>(sample.cdr().data());
+      const auto message = ros2::message_json(topic.type, {bytes, sample.cdr().size()}, request_.max_array);
+      if (request_.json) {
+        const nlohmann::ordered_json line{{"topic", ros2::ros_topic(topic.name)}, {"type", ros2::ros_type(topic.type)},
+                                          {"sequence", sample.sequence},          {"sent_ns", sample.source_ns},
+                                          {"received_ns", sample.received_ns},    {"message", message}};
+        out_ << service::json_line(line) << std::endl;
+      } else {
+        out_ << message_text(message) << std::flush;
+      }
+      ++printed_;
+    } catch (const ros::WireError& error) {
+      ++unreadable_;
+      err_ << fmt::format("rtd topics: message {} of {} is not a {}: {}\n", sample.sequence,
+                          ros2::ros_topic(topic.name), ros2::ros_type(topic.type), error.what());
     }
-    ++printed_;
-  } catch (const ros::WireError& error) {
-    ++unreadable_;
-    err_ << fmt::format("rtd topics: message {} of {} is not a {}: {}\n", sample.sequence, ros2::ros_topic(topic.name),
-                        ros2::ros_type(topic.type), error.what());
   }
   std::uint64_t printed() const { return printed_; }
   std::uint64_t unreadable() const { return unreadable_; }
@@ -71,7 +73,7 @@ bool in_time(const TopicsRequest& request, const TopicsSession& session) {
 std::optional<bus::TopicWriter> wait_for_writer(const TopicsRequest& request, TopicsSession& session,
                                                 std::ostream& err) {
   bool hinted = false;
-  while (in_time(request, session) && session.goes_on(20ms)) {
+  while (in_time(request, session) && session.continues(20ms)) {
     if (auto writer = writer_called(session, request.topics.front())) return writer;
     if (!hinted && session.seconds() > kHintS) {
       hinted = true;
@@ -85,7 +87,7 @@ std::optional<bus::TopicWriter> wait_for_writer(const TopicsRequest& request, To
 void print_until_end(const TopicsRequest& request, TopicsSession& session, const bus::RawTopic& topic, Queue& queue,
                      Printer& printer) {
   const std::uint64_t most = request.once ? 1 : request.count;
-  while (in_time(request, session) && session.goes_on(0ms)) {
+  while (in_time(request, session) && session.continues(0ms)) {
     if (most > 0 && printer.printed() >= most) return;
     if (const auto sample = queue.pop_for(50ms)) printer.print(topic, *sample);
   }

@@ -74,24 +74,26 @@ class Meters {
     return wanted_.empty() ||
            std::ranges::any_of(wanted_, [&](const std::string& name) { return is_called(topic, name); });
   }
-  void subscribe(const bus::TopicWriter& writer) try {
-    const std::lock_guard lock(mutex_);
-    Meter& meter = meters_[writer.topic];
-    if (meter.listener == nullptr) {
-      bus::RawHandlers handlers;
-      handlers.on_sample = [&meter](const bus::RawSample& sample) {
-        const std::lock_guard meter_lock(meter.mutex);
-        meter.rate.add(sample.received_ns, sample.cdr().size());
-      };
-      handlers.on_lost = [&meter](const bus::RawLoss& loss) {
-        const std::lock_guard meter_lock(meter.mutex);
-        meter.rate.add_lost(loss.count);
-      };
-      meter.listener = std::make_unique<bus::TopicListener>(session_.bus(), std::move(handlers), true, kReaderDepth);
+  void subscribe(const bus::TopicWriter& writer) {
+    try {
+      const std::lock_guard lock(mutex_);
+      Meter& meter = meters_[writer.topic];
+      if (meter.listener == nullptr) {
+        bus::RawHandlers handlers;
+        handlers.on_sample = [&meter](const bus::RawSample& sample) {
+          const std::lock_guard meter_lock(meter.mutex);
+          meter.rate.add(sample.received_ns, sample.cdr().size());
+        };
+        handlers.on_lost = [&meter](const bus::RawLoss& loss) {
+          const std::lock_guard meter_lock(meter.mutex);
+          meter.rate.add_lost(loss.count);
+        };
+        meter.listener = std::make_unique<bus::TopicListener>(session_.bus(), std::move(handlers), true, kReaderDepth);
+      }
+      meter.listener->add(writer);
+    } catch (const bus::BusError&) {
+      // a second type on one name: its row stays empty
     }
-    meter.listener->add(writer);
-  } catch (const bus::BusError&) {
-    // a second type on one name: its row stays empty
   }
 
   TopicsSession& session_;
@@ -106,7 +108,7 @@ int measure_topics(const TopicsRequest& request, TopicsSession& session, std::os
   const double duration_s = request.duration_s > 0 ? request.duration_s : kUsualDurationS;
   err << fmt::format("measuring for {:g} s, Ctrl-C ends earlier\n", duration_s);
   Meters meters(session, request.topics);
-  while (session.seconds() < duration_s && session.goes_on(50ms)) {
+  while (session.seconds() < duration_s && session.continues(50ms)) {
     if (request.count > 0 && meters.all_reached(request.count)) break;
   }
   const double seconds = session.seconds();

@@ -22,7 +22,7 @@ bool is_called(const bus::RawTopic& topic, const std::string& name) {
 TopicsSession::TopicsSession(const service::BusArguments& arguments)
     : options_(service::load_bus_options(arguments, {}, "rtd-topics")), bus_(bus::connect_raw(options_)) {}
 
-bool TopicsSession::goes_on(std::chrono::milliseconds moment) {
+bool TopicsSession::continues(std::chrono::milliseconds moment) {
   pollfd descriptor{signals_.fd(), POLLIN, 0};
   if (!interrupted_ && poll(&descriptor, 1, static_cast<int>(moment.count())) > 0) interrupted_ = signals_.take() > 0;
   return !interrupted_;

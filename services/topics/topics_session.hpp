@@ -29,7 +29,7 @@ class TopicsSession {
 
   bus::RawBus& bus() { return *bus_; }
   /// Waits a moment for a signal; false from the first signal on.
-  bool goes_on(std::chrono::milliseconds moment);
+  bool continues(std::chrono::milliseconds moment);
   double seconds() const;  ///< since the start
   /// The writers of other participants; with --robot without the topics of other robots.
   std::vector<bus::TopicWriter> writers() const;

@@ -32,7 +32,7 @@ CommandCaller::~CommandCaller() {
 }
 
 void CommandCaller::call(const std::string& name, const std::string& argument, Answer answer) {
-  if (calls_.size() >= kMostWaiting) return answer({false, "too many calls are waiting; try again"});
+  if (calls_.size() >= kMaxWaiting) return answer({false, "too many calls are waiting; try again"});
   calls_.push({name, argument, std::move(answer)});
 }
 

@@ -41,8 +41,8 @@ class CommandCaller {
 
   const Mailbox mailbox_;
   bus::CommandClient client_;
-  concurrency::BoundedQueue<Call> calls_{kMostWaiting, concurrency::Overflow::kBlock};
-  static constexpr std::size_t kMostWaiting = 16;
+  concurrency::BoundedQueue<Call> calls_{kMaxWaiting, concurrency::Overflow::kBlock};
+  static constexpr std::size_t kMaxWaiting = 16;
   std::thread thread_;
 };
 

@@ -20,9 +20,9 @@ class Mailbox {
 
   /// A message, which may be dropped. `bytes`: of memory that the task keeps until it has run.
   void deliver(Task task, std::size_t bytes) const {
-    const bool full = state_->waiting.fetch_add(1) >= kMostWaiting;
+    const bool full = state_->waiting.fetch_add(1) >= kMaxWaiting;
     const std::size_t before = state_->bytes.fetch_add(bytes);
-    if (full || (before > 0 && before + bytes > kMostBytes)) {  // a large one alone may pass
+    if (full || (before > 0 && before + bytes > kMaxBytes)) {  // a large one alone may pass
       state_->take(bytes);
       ++state_->dropped;
       return;
@@ -37,8 +37,8 @@ class Mailbox {
   std::uint64_t dropped() const { return state_->dropped; }
 
  private:
-  static constexpr int kMostWaiting = 512;
-  static constexpr std::size_t kMostBytes = std::size_t{32} << 20;
+  static constexpr int kMaxWaiting = 512;
+  static constexpr std::size_t kMaxBytes = std::size_t{32} << 20;
   struct State {
     void take(std::size_t taken) {
       --waiting;

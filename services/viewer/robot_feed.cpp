@@ -90,15 +90,15 @@ void RobotFeed::read(bus::Reader<T>& reader, const bus::Topic<T>& topic, bool wa
   }
 }
 
-void RobotFeed::set_wishes(const std::optional<PageWishes>& wishes) {
-  if (wishes == wishes_) return;
-  wishes_ = wishes;
+void RobotFeed::set_options(const std::optional<PageOptions>& options) {
+  if (options == options_) return;
+  options_ = options;
   using namespace bus::topics;
-  const PageWishes wanted = wishes.value_or(PageWishes{false, false, false, false, false});
+  const PageOptions wanted = options.value_or(PageOptions{false, false, false, false, false});
   read(map_, kMap, wanted.points, [](RobotMirror& to, const msg::MapUpdate& update) { to.map().add(update); });
-  read(movers_, kMovers, wishes.has_value(),
+  read(movers_, kMovers, options.has_value(),
        [](RobotMirror& to, const msg::Movers& movers) { to.set(Item::kMovers, page::movers(to.index(), movers)); });
-  read(truth_, kGroundTruth, wishes.has_value(), [](RobotMirror& to, const msg::PoseStamped& pose) {
+  read(truth_, kGroundTruth, options.has_value(), [](RobotMirror& to, const msg::PoseStamped& pose) {
     const msg::Point& position = pose.pose.position;
     to.add_truth(to_ns(pose.header.stamp), {position.x, position.y, position.z});
   });

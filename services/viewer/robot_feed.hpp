@@ -25,7 +25,7 @@ class RobotFeed {
   RobotFeed(std::shared_ptr<bus::Bus> bus, RobotMirror& mirror, Mailbox mailbox);
 
   /// What pages want now; nothing: no page is open.
-  void set_wishes(const std::optional<PageWishes>& wishes);
+  void set_options(const std::optional<PageOptions>& options);
   RobotMirror& mirror() { return mirror_; }
 
  private:
@@ -35,7 +35,7 @@ class RobotFeed {
   const std::shared_ptr<bus::Bus> bus_;
   RobotMirror& mirror_;
   const Mailbox mailbox_;
-  std::optional<PageWishes> wishes_;
+  std::optional<PageOptions> options_;
   bus::Reader<msg::TrackingResult> tracking_;
   bus::Reader<msg::KeyframeEvent> keyframes_;
   bus::Reader<msg::ServiceStatus> status_;

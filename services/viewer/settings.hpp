@@ -10,8 +10,8 @@
 #include "services/viewer/core/foxglove.hpp"
 #include "services/viewer/core/page_messages.hpp"
 
-/// Settings that may change while a run goes on, as parameters of Foxglove clients: their values come from heartbeats,
-/// setting one calls a command.
+/// Settings that may change while a run continues, as parameters of Foxglove clients: their values come from
+/// heartbeats, setting one calls a command.
 namespace rtd::viewer {
 
 /// Those that the services of a robot report; names begin with the robot's, if it has one: "anna.filter.mode".

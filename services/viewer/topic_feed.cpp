@@ -14,7 +14,7 @@ namespace rtd::viewer {
 namespace {
 
 constexpr int kDepth = 16;
-constexpr std::size_t kMostPublished = 64;
+constexpr std::size_t kMaxPublished = 64;
 
 std::shared_ptr<const Bytes> copy_of(std::span<const std::byte> bytes) {
   return std::make_shared<const Bytes>(bytes.begin(), bytes.end());
@@ -214,7 +214,7 @@ std::string TopicFeed::publish(const std::string& topic, const std::string& type
   auto& writer = published_[topic];
   try {
     if (!writer) {
-      if (published_.size() > kMostPublished) throw bus::BusError("too many topics are published");
+      if (published_.size() > kMaxPublished) throw bus::BusError("too many topics are published");
       writer = bus_.writer({ros2::dds_topic(topic), ros2::dds_type(type)}, {.qos = {.depth = 10}});
     }
     return writer->write(cdr) ? "" : "topic '" + topic + "' did not take the message";

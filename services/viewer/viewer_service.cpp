@@ -226,8 +226,8 @@ void ViewerService::find_robots() {
   }
 }
 
-void ViewerService::apply_wishes() {
-  for (auto& [name, feed] : robots_) feed->set_wishes(page_.wishes(feed->mirror().index()));
+void ViewerService::apply_options() {
+  for (auto& [name, feed] : robots_) feed->set_options(page_.options(feed->mirror().index()));
 }
 
 void ViewerService::refresh(std::int64_t now) {
@@ -327,7 +327,7 @@ service::ExitCode ViewerService::run() {
     server_->run_for(server_->counts().clients > 0 ? kTick : kIdleTick);
     runtime_.heartbeat.tick();
     find_robots();
-    apply_wishes();
+    apply_options();
     refresh(service::monotonic_ns());
     server_->pump();
   }

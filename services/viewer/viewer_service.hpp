@@ -78,7 +78,7 @@ class ViewerService {
   Reports reports() const;
   std::vector<WatchedService> watched_services() const;
   void find_robots();
-  void apply_wishes();
+  void apply_options();
   void refresh(std::int64_t now_ns);
   void refresh_commands();
   void refresh_playback();

@@ -46,8 +46,8 @@ struct MapScaleReport {
   std::string broken_invariant;
 };
 
-/// Walks through a world with the real tracker and mapper, without transport, until the map is that large; then goes on
-/// in turn with a second map of 100 keyframes, so that both meet the same moods of the host.
+/// Walks through a world with the real tracker and mapper, without transport, until the map is that large; then
+/// continues in turn with a second map of 100 keyframes, so that both meet the same moods of the host.
 MapScaleReport run_map_scale(const MapScaleOptions& options);
 
 std::int64_t median(std::vector<std::int64_t> values);  ///< 0 of none

@@ -52,7 +52,8 @@ class OniWriter {
   void record(std::uint32_t type, std::uint32_t node, const std::string& fields, std::string_view payload = {}) {
     constexpr std::uint32_t kHeaderBytes = 28;
     put<std::uint32_t>(0x0052494E), put(type), put(node);
-    put(static_cast<std::uint32_t>(kHeaderBytes + fields.size())), put(static_cast<std::uint32_t>(payload.size()));
+    put(static_cast<std::uint32_t>(kHeaderBytes + fields.size()));
+    put(static_cast<std::uint32_t>(payload.size()));
     put<std::uint64_t>(0);
     file_ << fields << payload;
   }

@@ -34,7 +34,7 @@ struct RealsenseScript {
 
 /// A RealSense camera on DDS: writers of a participant of its own with the topics, types, QoS and messages of
 /// librealsense's documentation (third-party/realdds/doc). It describes itself to everyone who subscribes, and sends 30
-/// frames a second while they are subscribed, until it is destroyed. Its stamps go on where those of the one before
+/// frames a second while they are subscribed, until it is destroyed. Its stamps continue where those of the one before
 /// ended.
 class RealsenseDouble {
  public:
@@ -80,7 +80,10 @@ class RealsenseDouble {
     const json request = realsense::read_flexible({bytes, sample.cdr().size()});
     const json& color = request.at("stream-profiles").at("Color");
     const std::lock_guard lock(mutex_);
-    if (!refuses_) width_ = color.at(2), height_ = color.at(3);
+    if (!refuses_) {
+      width_ = color.at(2);
+      height_ = color.at(3);
+    }
     reply_ = {{"id", "open-streams"}, {"status", refuses_ ? "error" : "ok"}};
     if (refuses_) (*reply_)["explanation"] = "the sensor streams to another program";
   }
@@ -124,7 +127,8 @@ class RealsenseDouble {
                   const std::vector<std::uint8_t>& pixels) const {
     msg::Image image;
     image.header = {msg::to_time(stamp_ns_), script_.serial};
-    image.width = static_cast<std::uint32_t>(width), image.height = static_cast<std::uint32_t>(height);
+    image.width = static_cast<std::uint32_t>(width);
+    image.height = static_cast<std::uint32_t>(height);
     image.encoding = encoding;
     image.step = static_cast<std::uint32_t>(pixels.size()) / image.height + kPadding;
     append_padded(image.data, pixels, height);

@@ -145,7 +145,8 @@ RelocalizationOutcome run_relocalization(const FeatureClip& mapped, const Featur
     if (!outcome.found) {
       outcome.found = true;
       outcome.after_s = static_cast<double>(i - trial.resume) * kPeriodNs * 1e-9;
-      outcome.error_m = error_m, outcome.error_deg = error_deg;
+      outcome.error_m = error_m;
+      outcome.error_deg = error_deg;
     }
     outcome.worst_error_m = std::max(outcome.worst_error_m, error_m);
     outcome.worst_error_deg = std::max(outcome.worst_error_deg, error_deg);

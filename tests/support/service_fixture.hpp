@@ -35,7 +35,7 @@ class ServiceFixture : public ::testing::Test {
   }
   void TearDown() override {
     EXPECT_EQ(stop(), service::kOk);
-    hear_no_more();
+    stop_receiving();
     std::filesystem::remove_all(folder_);
   }
 
@@ -85,12 +85,12 @@ class ServiceFixture : public ::testing::Test {
   }
   /// Listens until the end of the test.
   template <class T>
-  void hear(const bus::Topic<T>& topic, const Inbox<T>& inbox) {
+  void receive(const bus::Topic<T>& topic, const Inbox<T>& inbox) {
     readers_.push_back(std::make_shared<bus::Reader<T>>(bus_->template reader<T>(
         topic, [inbox](std::shared_ptr<const T> message) { inbox.take(std::move(message)); })));
   }
   /// But for the heartbeat.
-  void hear_no_more() { readers_.clear(); }
+  void stop_receiving() { readers_.clear(); }
 
   typename Service::Config config_;
   const std::filesystem::path folder_;  ///< not there yet; removed after the test

@@ -42,8 +42,10 @@ vision::Detection jittered(vision::Detection box, float share, const cv::Size& i
   const float right = edge(box.x_px + box.width_px, box.width_px, image.width);
   const float top = edge(box.y_px, box.height_px, image.height);
   const float low = edge(box.y_px + box.height_px, box.height_px, image.height);
-  box.x_px = left, box.width_px = std::max(right - left, 1.0F);
-  box.y_px = top, box.height_px = std::max(low - top, 1.0F);
+  box.x_px = left;
+  box.width_px = std::max(right - left, 1.0F);
+  box.y_px = top;
+  box.height_px = std::max(low - top, 1.0F);
   return box;
 }
 
@@ -116,8 +118,10 @@ Boxes lie(const camera::SourceFrame& frame, const DetectorOptions& options) {
                          ? "person"
                          : classes[static_cast<std::size_t>(random.index(static_cast<int>(classes.size())))];
     box.score = random.between(kLowestScore, kHighestScore);
-    box.width_px = random.between(0.03F, 0.6F) * width, box.height_px = random.between(0.03F, 0.9F) * height;
-    box.x_px = random.between(0, width - box.width_px), box.y_px = random.between(0, height - box.height_px);
+    box.width_px = random.between(0.03F, 0.6F) * width;
+    box.height_px = random.between(0.03F, 0.9F) * height;
+    box.x_px = random.between(0, width - box.width_px);
+    box.y_px = random.between(0, height - box.height_px);
   }
   return boxes;
 }

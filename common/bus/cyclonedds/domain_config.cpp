@@ -16,7 +16,7 @@
 namespace rtd::bus::cyclonedds {
 namespace {
 
-constexpr std::size_t kMostInterfaces = 4;  // of Cyclone DDS 0.10, loopback included
+constexpr std::size_t kMaxInterfaces = 4;  // of Cyclone DDS 0.10, loopback included
 constexpr std::uint32_t kLeastDatagram = 512, kLargestDatagram = 65000;
 /// RTPS and submessage headers, a heartbeat that rides along, and with security its prefix, tag and postfix.
 constexpr std::uint32_t kOverhead = 160, kSecureOverhead = 360;
@@ -38,11 +38,11 @@ std::string interface(const std::string& address, const std::string& attributes)
 /// is reached.
 std::string interfaces(const NetworkOptions& network) {
   std::vector<std::string> addresses = interface_addresses(network);
-  if (addresses.size() >= kMostInterfaces && !network.interfaces.empty()) {
-    throw BusError("--interface: Cyclone DDS uses at most " + std::to_string(kMostInterfaces - 1) + ", " +
+  if (addresses.size() >= kMaxInterfaces && !network.interfaces.empty()) {
+    throw BusError("--interface: Cyclone DDS uses at most " + std::to_string(kMaxInterfaces - 1) + ", " +
                    std::to_string(addresses.size()) + " are named");
   }
-  addresses.resize(std::min(addresses.size(), kMostInterfaces - 1));
+  addresses.resize(std::min(addresses.size(), kMaxInterfaces - 1));
   std::string all = interface("127.0.0.1", network.multicast ? R"(multicast="true")" : R"(multicast="false")");
   for (const std::string& address : addresses)
     all += interface(address,

@@ -150,9 +150,9 @@ bool CycloneReader::handle_one() {
 }
 
 void CycloneReader::report_lost() {
-  constexpr std::uint64_t kMost = std::numeric_limits<int>::max();
+  constexpr std::uint64_t kMax = std::numeric_limits<int>::max();
   const auto& on_samples_lost = status_.callbacks().on_samples_lost;
-  if (on_samples_lost) on_samples_lost(static_cast<int>(std::min(missing_ + unusable_, kMost)));
+  if (on_samples_lost) on_samples_lost(static_cast<int>(std::min(missing_ + unusable_, kMax)));
 }
 
 CycloneWriter::CycloneWriter(std::shared_ptr<Participant> participant, const SampleType& type, const std::string& topic,

@@ -253,15 +253,15 @@ TopicTypes& Participant::types() {
 }
 
 std::map<ParticipantId, std::string> Participant::participants() const {
-  constexpr std::size_t kMost = 512;
+  constexpr std::size_t kMax = 512;
   std::call_once(asked_, [this] {
     participants_ = dds_create_reader(participant_.get(), DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr);
   });
   std::map<ParticipantId, std::string> names;
-  void* samples[kMost] = {};
-  std::vector<dds_sample_info_t> infos(kMost);
+  void* samples[kMax] = {};
+  std::vector<dds_sample_info_t> infos(kMax);
   const std::uint32_t mask = DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE | DDS_ALIVE_INSTANCE_STATE;
-  const dds_return_t count = dds_read_mask(participants_, samples, infos.data(), kMost, kMost, mask);
+  const dds_return_t count = dds_read_mask(participants_, samples, infos.data(), kMax, kMax, mask);
   for (int i = 0; i < count; ++i) {
     const auto* const participant = static_cast<const dds_builtintopic_participant_t*>(samples[i]);
     char* name = nullptr;

@@ -195,7 +195,7 @@ std::uint32_t sample_size(const ddsi_serdata* sample) {
 }
 
 /// A sample in iceoryx's memory: one of ours on its way out (no subscriber), or one that came. It stays there until it
-/// is taken, for Cyclone goes on reading the chunk's header.
+/// is taken, for Cyclone continues reading the chunk's header.
 ddsi_serdata* from_shared_memory(const ddsi_sertype* type, ddsi_serdata_kind kind, void* subscriber, void* chunk) {
   Serdata* const sample = create_serdata(type, kind, nullptr);
   sample->iox_chunk = chunk;

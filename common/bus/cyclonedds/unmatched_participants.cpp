@@ -18,7 +18,7 @@ namespace {
 /// A handshake takes some tenths of a second, on a busy host more.
 constexpr std::chrono::seconds kSuspicious{3};
 /// So many at once are an attack on our memory.
-constexpr std::size_t kMostKnown = 1000;
+constexpr std::size_t kMaxKnown = 1000;
 
 /// What follows the first `mark`; empty without it.
 std::string_view after(std::string_view line, std::string_view mark) {
@@ -87,7 +87,7 @@ std::vector<std::string> UnmatchedParticipants::appeared(std::string_view line, 
   if (end == std::string_view::npos) return {};  // our own, or an update of a known one
   const std::string guid = guid_in(line.substr(9));
   const std::string name = name_in(line, guid);
-  if (unproven_.size() >= kMostKnown) unproven_.clear();
+  if (unproven_.size() >= kMaxKnown) unproven_.clear();
   const auto [known, is_new] = unproven_.try_emplace(guid, Participant{name, now});
   if (!is_new) return {};
   const bool secure = line.substr(0, end).find("(secure)") != std::string_view::npos;

@@ -40,7 +40,7 @@ class Reannouncer {
 };
 
 /// Calls BusOptions::on_problem when the Discovery Server does not answer within kServerPatience: without it no
-/// participant is found, and Fast DDS goes on asking without a message. Thread-safe.
+/// participant is found, and Fast DDS continues asking without a message. Thread-safe.
 class ServerWatch {
  public:
   ~ServerWatch() { stop(); }

@@ -89,7 +89,7 @@ class ScreeningTransport : public fastdds_rtps::ChainingTransport {
     std::unique_lock one_at_a_time(mutex_);
     if (screen_.passes(std::as_bytes(std::span(data, size)))) return next->OnDataReceived(data, size, local, remote);
     one_at_a_time.unlock();
-    if (descriptor_.on_problem && !told_.exchange(true))
+    if (descriptor_.on_problem && !reported_.exchange(true))
       descriptor_.on_problem("malformed RTPS datagrams come from " + rtps::IPLocator::toIPv4string(remote) +
                              " and are dropped");
   }
@@ -97,7 +97,7 @@ class ScreeningTransport : public fastdds_rtps::ChainingTransport {
  private:
   ScreeningDescriptor descriptor_;
   RtpsScreen screen_;
-  std::atomic<bool> told_{false};
+  std::atomic<bool> reported_{false};
   std::mutex mutex_;
 };
 
@@ -134,7 +134,7 @@ std::shared_ptr<UDPv4TransportDescriptor> udp_transport(const BusOptions& option
   return transport;
 }
 
-/// The first free discovery port of those that peers try: Fast DDS itself goes on to the next while one is taken.
+/// The first free discovery port of those that peers try: Fast DDS itself continues to the next while one is taken.
 /// It is not the participant's id that follows the process id (participant.cpp).
 void take_well_known_port(const BusOptions& options, rtps::BuiltinAttributes& builtin) {
   const std::uint32_t first_port = rtps::PortParameters().getUnicastPort(options.domain, 0);

@@ -21,7 +21,7 @@ namespace rtd::bus::fastdds {
 namespace dds = eprosima::fastdds::dds;
 
 /// Participant ids choose port numbers. A restarted process must not get the shared-memory port of its killed
-/// predecessor: the writers of others go on feeding the dead port for seconds. So the id follows the process id, and
+/// predecessor: the writers of others continue feeding the dead port for seconds. So the id follows the process id, and
 /// the next one is taken while there is a port of that number in `shm_dir`, in use or left behind.
 std::uint32_t free_participant_id(int domain, std::uint32_t first, const std::filesystem::path& shm_dir = "/dev/shm");
 

@@ -29,9 +29,9 @@ class RawType : public dds::TopicDataType {
 
   RawType(const RawTopic& topic, bool bounded, std::uint32_t fixed_bytes) : bounded_(bounded) {
     constexpr std::uint32_t kFirstGuess = 1024;       // memory grows with the samples
-    constexpr std::uint32_t kMostInPlace = 64 << 20;  // the size is not announced; a larger sample would be refused
+    constexpr std::uint32_t kMaxInPlace = 64 << 20;   // the size is not announced; a larger sample would be refused
     setName(topic.type.c_str());
-    m_typeSize = fixed_bytes > 0 ? fixed_bytes : (bounded ? kMostInPlace : kFirstGuess);
+    m_typeSize = fixed_bytes > 0 ? fixed_bytes : (bounded ? kMaxInPlace : kFirstGuess);
     m_isGetKeyDefined = topic.keyed;
     auto_fill_type_object(false);
     auto_fill_type_information(false);

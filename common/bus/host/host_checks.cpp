@@ -83,9 +83,9 @@ std::vector<std::string> host_warnings(const BusOptions& options, const HostLimi
   return warnings;
 }
 
-std::uint32_t socket_buffer_bytes(std::uint32_t wished_kib, std::uint64_t limit) {
-  const std::uint64_t wished = std::min<std::uint64_t>(wished_kib * kKib, UINT32_MAX);
-  return static_cast<std::uint32_t>(limit == 0 ? wished : std::min(wished, limit));
+std::uint32_t socket_buffer_bytes(std::uint32_t requested_kib, std::uint64_t limit) {
+  const std::uint64_t requested = std::min<std::uint64_t>(requested_kib * kKib, UINT32_MAX);
+  return static_cast<std::uint32_t>(limit == 0 ? requested : std::min(requested, limit));
 }
 
 }  // namespace rtd::bus

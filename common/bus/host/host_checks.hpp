@@ -29,7 +29,7 @@ void require_shared_memory(const BusOptions& options, const HostLimits& limits);
 /// What may cost frames on this host, one line each with the command that cures it; empty when all is well.
 std::vector<std::string> host_warnings(const BusOptions& options, const HostLimits& limits = read_host_limits());
 
-/// The buffer to ask of a socket: as wished, but not above what the kernel grants (`limit` 0 = unknown).
-std::uint32_t socket_buffer_bytes(std::uint32_t wished_kib, std::uint64_t limit);
+/// The buffer to ask of a socket: as requested, but not above what the kernel grants (`limit` 0 = unknown).
+std::uint32_t socket_buffer_bytes(std::uint32_t requested_kib, std::uint64_t limit);
 
 }  // namespace rtd::bus

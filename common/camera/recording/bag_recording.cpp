@@ -32,10 +32,12 @@ class BagRecording final : public IndexedRecording<rosbag1::BagReader, rosbag1::
 
 }  // namespace
 
-std::unique_ptr<Recording> open_bag(const std::filesystem::path& file) try {
-  return std::make_unique<BagRecording>(file);
-} catch (const rosbag1::BagError& error) {
-  throw SourceError(error.what());
+std::unique_ptr<Recording> open_bag(const std::filesystem::path& file) {
+  try {
+    return std::make_unique<BagRecording>(file);
+  } catch (const rosbag1::BagError& error) {
+    throw SourceError(error.what());
+  }
 }
 
 }  // namespace rtd::camera

@@ -26,10 +26,12 @@ class Db3Recording final : public IndexedRecording<rosbag2::Db3Reader, rosbag2::
 
 }  // namespace
 
-std::unique_ptr<Recording> open_db3(const std::filesystem::path& file) try {
-  return std::make_unique<Db3Recording>(file);
-} catch (const rosbag2::Db3Error& error) {
-  throw SourceError(error.what());
+std::unique_ptr<Recording> open_db3(const std::filesystem::path& file) {
+  try {
+    return std::make_unique<Db3Recording>(file);
+  } catch (const rosbag2::Db3Error& error) {
+    throw SourceError(error.what());
+  }
 }
 
 }  // namespace rtd::camera

@@ -79,12 +79,21 @@ std::optional<FramePairer::Pair> FramePairer::next(SkipLog& skips) {
 std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, double float_unit_m, const SourceInfo& info,
                                        const std::optional<vision::DepthRegistration>& registration, SkipLog& skips) {
   ImageRead color = decode_color(pair.color.message);
-  if (color.problem) return skips.add(*color.problem), std::nullopt;
+  if (color.problem) {
+    skips.add(*color.problem);
+    return std::nullopt;
+  }
   ImageRead depth = decode_depth(pair.depth.message, float_unit_m);
-  if (depth.problem) return skips.add(*depth.problem), std::nullopt;
+  if (depth.problem) {
+    skips.add(*depth.problem);
+    return std::nullopt;
+  }
   if (registration && depth.image.size() == registration->depth_size()) depth.image = (*registration)(depth.image);
   const auto mismatch = size_mismatch(name_of(pair.color.message), color.image, depth.image, info.camera);
-  if (mismatch) return skips.add(*mismatch), std::nullopt;
+  if (mismatch) {
+    skips.add(*mismatch);
+    return std::nullopt;
+  }
   SourceFrame frame = to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info);
   set_depth_stamp(frame, pair.depth.stamp_ns, info);
   return frame;

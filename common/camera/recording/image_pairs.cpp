@@ -157,22 +157,27 @@ std::optional<std::int64_t> ImagePairs::advance() {
     pair_ = pairer_.next(skips_);
     break;
   }
-  if (!pair_) return take_damages(), std::nullopt;
+  if (!pair_) {
+    take_damages();
+    return std::nullopt;
+  }
   last_ns_ = pair_->color.stamp_ns;
   if (!first_ns_) first_ns_ = last_ns_;
   return last_ns_;
 }
 
-void ImagePairs::take(RecordedMessage message) try {
-  const bool is_color = message.topic == topics_.color;
-  if (!is_color && message.topic != topics_.depth) {
-    return transforms_.add(ros::decode<msg::TFMessage>(message.wire, message.bytes));
+void ImagePairs::take(RecordedMessage message) {
+  try {
+    const bool is_color = message.topic == topics_.color;
+    if (!is_color && message.topic != topics_.depth) {
+      return transforms_.add(ros::decode<msg::TFMessage>(message.wire, message.bytes));
+    }
+    const std::int64_t stamp_ns = msg::to_ns(ros::decode<msg::Header>(message.wire, message.bytes).stamp);
+    StampedMessage stamped{stamp_ns, std::move(message)};
+    is_color ? pairer_.add_color(std::move(stamped), skips_) : pairer_.add_depth(std::move(stamped));
+  } catch (const ros::WireError& error) {
+    skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
   }
-  const std::int64_t stamp_ns = msg::to_ns(ros::decode<msg::Header>(message.wire, message.bytes).stamp);
-  StampedMessage stamped{stamp_ns, std::move(message)};
-  is_color ? pairer_.add_color(std::move(stamped), skips_) : pairer_.add_depth(std::move(stamped));
-} catch (const ros::WireError& error) {
-  skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
 }
 
 std::optional<SourceFrame> ImagePairs::decode() {

@@ -58,9 +58,13 @@ class IndexedRecording : public Recording {
   Reader reader_;
 
  private:
-  std::optional<RecordedMessage> try_read(const Place& place) try { return read(place); } catch (const Error& error) {
-    damages_.emplace_back(error.what());
-    return std::nullopt;
+  std::optional<RecordedMessage> try_read(const Place& place) {
+    try {
+      return read(place);
+    } catch (const Error& error) {
+      damages_.emplace_back(error.what());
+      return std::nullopt;
+    }
   }
 
   std::vector<std::string> damages_;

@@ -122,10 +122,12 @@ class McapRecording final : public Recording {
 
 }  // namespace
 
-std::unique_ptr<Recording> open_mcap(const fs::path& file) try {
-  return std::make_unique<McapRecording>(file, recordings::open(file.string()));
-} catch (const mcap::RecordingFileError& error) {
-  throw SourceError(error.what());
+std::unique_ptr<Recording> open_mcap(const fs::path& file) {
+  try {
+    return std::make_unique<McapRecording>(file, recordings::open(file.string()));
+  } catch (const mcap::RecordingFileError& error) {
+    throw SourceError(error.what());
+  }
 }
 
 }  // namespace rtd::camera

@@ -87,26 +87,30 @@ std::optional<std::int64_t> OwnFrames::advance() {
   return std::nullopt;
 }
 
-bool OwnFrames::take(const RecordedMessage& message) try {
-  frame_ = to_frame_message(message);
-  const auto leave_out = [&](SkipReason reason, const char* cause) {
-    skips_.add({reason, name_of(message) + " " + cause});
+bool OwnFrames::take(const RecordedMessage& message) {
+  try {
+    frame_ = to_frame_message(message);
+    const auto leave_out = [&](SkipReason reason, const char* cause) {
+      skips_.add({reason, name_of(message) + " " + cause});
+      return false;
+    };
+    if (frame_->source_id != source_id_) return leave_out(SkipReason::kDamagedRecord, "comes from another camera");
+    if (last_ns_ && frame_->stamp_ns == *last_ns_) return leave_out(SkipReason::kStampDoubled, "was sent again");
+    if (last_ns_ && frame_->stamp_ns < *last_ns_)
+      return leave_out(SkipReason::kStampBackwards, "is older than the last");
+    return true;
+  } catch (const ros::WireError& error) {
+    skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
     return false;
-  };
-  if (frame_->source_id != source_id_) return leave_out(SkipReason::kDamagedRecord, "comes from another camera");
-  if (last_ns_ && frame_->stamp_ns == *last_ns_) return leave_out(SkipReason::kStampDoubled, "was sent again");
-  if (last_ns_ && frame_->stamp_ns < *last_ns_) return leave_out(SkipReason::kStampBackwards, "is older than the last");
-  return true;
-} catch (const ros::WireError& error) {
-  skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
-  return false;
+  }
 }
 
 std::optional<SourceFrame> OwnFrames::decode() {
   take_damages();
   const vision::RgbdImage image = vision::view_image(*frame_);
   if (const auto mismatch = size_mismatch("frame", image.color_bgr, image.depth, info_.camera)) {
-    return skips_.add(*mismatch), std::nullopt;
+    skips_.add(*mismatch);
+    return std::nullopt;
   }
   SourceFrame frame = to_frame(image.stamp_ns, image.color_bgr.clone(), image.depth.clone(), info_);
   frame.image.readout_s = image.readout_s;

@@ -135,7 +135,8 @@ RecordedMessage first_of(Recording& recording, const std::string& topic) {
 ImageTopics choose_topics(const Recording& recording, const ImageTopics& named) {
   ImageTopics topics;
   const TopicPair images = choose_images(recording, named);
-  topics.color = images.color, topics.depth = images.depth;
+  topics.color = images.color;
+  topics.depth = images.depth;
   topics.info =
       named.info.empty() ? choose_info(recording, topics.color) : check_named(recording, "info", named.info, is_info);
   topics.depth_info = named.depth_info.empty() ? info_beside(fitting(recording, is_info), topics.depth)

@@ -169,18 +169,22 @@ std::string name_of(const RecordedMessage& message) {
   return message.topic + " recorded at " + std::to_string(message.recorded_ns) + " ns";
 }
 
-ImageRead decode_color(const RecordedMessage& message) try {
-  if (message.type != kCompressed) return raw_color(message);
-  const auto image = ros::decode<msg::CompressedImage>(message.wire, message.bytes);
-  return decode_color(image.data, name_of(message));
-} catch (const ros::WireError& error) {
-  return refuse(SkipReason::kColorUnreadable, message, error.what());
+ImageRead decode_color(const RecordedMessage& message) {
+  try {
+    if (message.type != kCompressed) return raw_color(message);
+    const auto image = ros::decode<msg::CompressedImage>(message.wire, message.bytes);
+    return decode_color(image.data, name_of(message));
+  } catch (const ros::WireError& error) {
+    return refuse(SkipReason::kColorUnreadable, message, error.what());
+  }
 }
 
-ImageRead decode_depth(const RecordedMessage& message, double float_unit_m) try {
-  return message.type == kCompressed ? compressed_depth(message, float_unit_m) : raw_depth(message, float_unit_m);
-} catch (const ros::WireError& error) {
-  return refuse(SkipReason::kDepthUnreadable, message, error.what());
+ImageRead decode_depth(const RecordedMessage& message, double float_unit_m) {
+  try {
+    return message.type == kCompressed ? compressed_depth(message, float_unit_m) : raw_depth(message, float_unit_m);
+  } catch (const ros::WireError& error) {
+    return refuse(SkipReason::kDepthUnreadable, message, error.what());
+  }
 }
 
 double depth_unit_m(const RecordedMessage& message, double float_unit_m) {
@@ -209,11 +213,18 @@ msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t
 geometry::CameraModel to_camera_model(const msg::CameraInfo& info, const std::string& color_topic,
                                       const std::string& origin) {
   geometry::CameraModel::Parameters p;
-  p.width = static_cast<int>(info.width), p.height = static_cast<int>(info.height);
+  p.width = static_cast<int>(info.width);
+  p.height = static_cast<int>(info.height);
   if (color_topic.find("image_rect") != std::string::npos && info.p[0] > 0) {
-    p.fx = info.p[0], p.fy = info.p[5], p.cx = info.p[2], p.cy = info.p[6];
+    p.fx = info.p[0];
+    p.fy = info.p[5];
+    p.cx = info.p[2];
+    p.cy = info.p[6];
   } else {
-    p.fx = info.k[0], p.fy = info.k[4], p.cx = info.k[2], p.cy = info.k[5];
+    p.fx = info.k[0];
+    p.fy = info.k[4];
+    p.cx = info.k[2];
+    p.cy = info.k[5];
     take_distortion(info, origin, p);
   }
   const double sum = std::accumulate(p.distortion.begin(), p.distortion.end(), p.fx + p.fy + p.cx + p.cy);

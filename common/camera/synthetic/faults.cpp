@@ -41,24 +41,47 @@ namespace {
 SensorFaults kinect() {
   SensorFaults faults;
   faults.noise_correlation_px = 5;
-  faults.holes = 0.2, faults.dark_holes = 0.75, faults.monitor_holes = 0.9;
-  faults.flying_px = 2, faults.wrong_side_px = 2, faults.shadow_px = 14;
-  faults.registration_px = 1.5, faults.parallax_px_m = 2, faults.depth_error = 0.015;
-  faults.rolling_shutter_ms = 21, faults.depth_shutter_ms = 26, faults.blur_ms = 10, faults.depth_lag_ms = 9;
-  faults.exposure_ev = 0.75, faults.vignetting = 0.25;
-  faults.distortion = 1, faults.calibration_error = 0.01;
+  faults.holes = 0.2;
+  faults.dark_holes = 0.75;
+  faults.monitor_holes = 0.9;
+  faults.flying_px = 2;
+  faults.wrong_side_px = 2;
+  faults.shadow_px = 14;
+  faults.registration_px = 1.5;
+  faults.parallax_px_m = 2;
+  faults.depth_error = 0.015;
+  faults.rolling_shutter_ms = 21;
+  faults.depth_shutter_ms = 26;
+  faults.blur_ms = 10;
+  faults.depth_lag_ms = 9;
+  faults.exposure_ev = 0.75;
+  faults.vignetting = 0.25;
+  faults.distortion = 1;
+  faults.calibration_error = 0.01;
   return faults;
 }
 
 /// Active stereo: global shutter and fine steps, but noisier, with wide flying edges; colour as JPEG by USB.
 SensorFaults d435() {
   SensorFaults faults;
-  faults.disparity_step_px = 0.05, faults.disparity_noise_px = 0.13, faults.noise_correlation_px = 7;
-  faults.holes = 0.15, faults.dark_holes = 0.6, faults.monitor_holes = 0.7;
-  faults.flying_px = 4, faults.wrong_side_px = 3, faults.shadow_px = 8;
-  faults.registration_px = 1, faults.parallax_px_m = 1, faults.depth_error = 0.01;
-  faults.rolling_shutter_ms = 15, faults.blur_ms = 8, faults.depth_lag_ms = -5;
-  faults.exposure_ev = 0.75, faults.vignetting = 0.2, faults.jpeg = 80;
+  faults.disparity_step_px = 0.05;
+  faults.disparity_noise_px = 0.13;
+  faults.noise_correlation_px = 7;
+  faults.holes = 0.15;
+  faults.dark_holes = 0.6;
+  faults.monitor_holes = 0.7;
+  faults.flying_px = 4;
+  faults.wrong_side_px = 3;
+  faults.shadow_px = 8;
+  faults.registration_px = 1;
+  faults.parallax_px_m = 1;
+  faults.depth_error = 0.01;
+  faults.rolling_shutter_ms = 15;
+  faults.blur_ms = 8;
+  faults.depth_lag_ms = -5;
+  faults.exposure_ev = 0.75;
+  faults.vignetting = 0.2;
+  faults.jpeg = 80;
   faults.calibration_error = 0.005;
   return faults;
 }

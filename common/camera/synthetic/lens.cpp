@@ -37,10 +37,13 @@ Lens::Lens(const geometry::CameraModel& camera) : pinhole_(camera) {
     }
   }
   const cv::Size margin_px = margin_of(from_u_, from_v_);
-  from_u_ += margin_px.width, from_v_ += margin_px.height;
+  from_u_ += margin_px.width;
+  from_v_ += margin_px.height;
   parameters.distortion = {};
-  parameters.width += 2 * margin_px.width, parameters.height += 2 * margin_px.height;
-  parameters.cx += margin_px.width, parameters.cy += margin_px.height;
+  parameters.width += 2 * margin_px.width;
+  parameters.height += 2 * margin_px.height;
+  parameters.cx += margin_px.width;
+  parameters.cy += margin_px.height;
   pinhole_ = geometry::CameraModel(parameters);
 }
 

@@ -126,7 +126,9 @@ void Renderer::collect_ellipsoid(const Ellipsoid& ellipsoid, const std::vector<T
   const Eigen::Matrix3f to_sphere = ellipsoid.semi_axes_m.cwiseInverse().asDiagonal() * R_world_body.transpose();
   VisibleEllipsoid visible;
   visible.center = to_sphere * (position_ - ellipsoid.T_world_body.translation());
-  visible.ray0 = to_sphere * ray0_, visible.ray_u = to_sphere * ray_u_, visible.ray_v = to_sphere * ray_v_;
+  visible.ray0 = to_sphere * ray0_;
+  visible.ray_u = to_sphere * ray_u_;
+  visible.ray_v = to_sphere * ray_v_;
   visible.normal_to_world = to_sphere.transpose();
   visible.bounds = bounds;
   visible.texture = &textures[static_cast<std::size_t>(ellipsoid.texture)];
@@ -149,7 +151,10 @@ cv::Rect Renderer::bounds_px(const Ellipsoid& ellipsoid) const {
     ++in_front;
     const float u = static_cast<float>(camera_.fx) * p_camera.x() / p_camera.z() + static_cast<float>(camera_.cx);
     const float v = static_cast<float>(camera_.fy) * p_camera.y() / p_camera.z() + static_cast<float>(camera_.cy);
-    u_min = std::min(u_min, u), u_max = std::max(u_max, u), v_min = std::min(v_min, v), v_max = std::max(v_max, v);
+    u_min = std::min(u_min, u);
+    u_max = std::max(u_max, u);
+    v_min = std::min(v_min, v);
+    v_max = std::max(v_max, v);
   }
   if (in_front == 0) return {};
   if (in_front < 8) return image;  // partly beside or behind the camera: no projection bounds it

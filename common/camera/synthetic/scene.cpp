@@ -99,15 +99,19 @@ std::vector<SceneSpec> make_catalog() {
   SceneSpec approach{"approach"}, slow{"slow"}, flicker{"flicker", 2, 1};
   crowd.area = {0.7F, 1.7F, 0.55F};
   tour.motion = CameraMotion::kTour;
-  sitting.plot = Plot::kSitter, sitting.frames = 600, sitting.motion = CameraMotion::kWatching;
+  sitting.plot = Plot::kSitter;
+  sitting.frames = 600;
+  sitting.motion = CameraMotion::kWatching;
   fill.plot = Plot::kBlocker;
   approach.plot = Plot::kAxialBox;
   slow.plot = Plot::kSlowBoxes;
   flicker.flicker = 1;
   SceneSpec corridor{"corridor"}, lookalike{"lookalike"};
   corridor.corridor = CorridorPlan{};
-  corridor.fps = lookalike.fps = 10, corridor.frames = 570;
-  corridor.range_m = lookalike.range_m = 4, corridor.grain = lookalike.grain = 3;
+  corridor.fps = lookalike.fps = 10;
+  corridor.frames = 570;
+  corridor.range_m = lookalike.range_m = 4;
+  corridor.grain = lookalike.grain = 3;
   corridor.focal_error = lookalike.focal_error = 0.02;  // as a Kinect's without calibration: what drift comes from
   lookalike.corridor = CorridorPlan{.length_m = 11, .depth_m = 11, .alike = true};
   lookalike.frames = 180;  // ends before it sees its start again

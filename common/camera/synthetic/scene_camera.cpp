@@ -28,7 +28,8 @@ geometry::CameraModel miscalibrated(const geometry::CameraModel& camera, double 
   SeededRandom random(seed ^ 0xCA11BULL);
   const auto off = [&] { return random.unit() < 0.5F ? -error : error; };
   const double focal = off();  // both focal lengths: their ratio is known better
-  parameters.fx *= 1 + focal, parameters.fy *= 1 + focal;
+  parameters.fx *= 1 + focal;
+  parameters.fy *= 1 + focal;
   parameters.cx += off() * parameters.width;
   parameters.cy += off() * parameters.height;
   return geometry::CameraModel(parameters);

@@ -13,9 +13,9 @@ struct Shutter {
   double exposure_s = 0;  ///< of each row; 0 = a moment
 };
 
-/// What the camera of a scene sees, its middle row exposed about `t_s`. Camera and moving objects go on while the rows
-/// are read: every 8 rows are drawn for a moment of their own. Colour is the mean over the exposure; depth, mask and
-/// objects are those in its middle. Costs one rendering per 4 ms of exposure; the readout costs next to nothing.
+/// What the camera of a scene sees, its middle row exposed about `t_s`. Camera and moving objects continue while the
+/// rows are read: every 8 rows are drawn for a moment of their own. Colour is the mean over the exposure; depth, mask
+/// and objects are those in its middle. Costs one rendering per 4 ms of exposure; the readout costs next to nothing.
 Rendering take_picture(Renderer& renderer, const Scene& scene, double t_s, const Shutter& shutter);
 
 }  // namespace rtd::camera::synthetic

@@ -41,9 +41,11 @@ double number_in(const SourceUri& uri, const std::string& key, const std::string
 
 geometry::CameraModel make_camera(const SyntheticOptions& options) {
   geometry::CameraModel::Parameters parameters;
-  parameters.width = options.width, parameters.height = options.height;
+  parameters.width = options.width;
+  parameters.height = options.height;
   parameters.fx = parameters.fy = kFocalShare * options.width;
-  parameters.cx = (options.width - 1) / 2.0, parameters.cy = (options.height - 1) / 2.0;
+  parameters.cx = (options.width - 1) / 2.0;
+  parameters.cy = (options.height - 1) / 2.0;
   parameters.distortion = synthetic::lens_distortion(options.faults.distortion);
   return geometry::CameraModel(parameters);
 }
@@ -51,7 +53,8 @@ geometry::CameraModel make_camera(const SyntheticOptions& options) {
 /// What is known of the camera.
 geometry::CameraModel make_calibration(const SyntheticOptions& options) {
   geometry::CameraModel::Parameters parameters = make_camera(options).parameters();
-  parameters.fx *= 1 + options.scene.focal_error, parameters.fy *= 1 + options.scene.focal_error;
+  parameters.fx *= 1 + options.scene.focal_error;
+  parameters.fy *= 1 + options.scene.focal_error;
   return synthetic::miscalibrated(geometry::CameraModel(parameters), options.faults.calibration_error, options.seed);
 }
 
@@ -194,7 +197,8 @@ SyntheticSource::SyntheticSource(std::string uri, const SyntheticOptions& option
   const synthetic::PathOfCamera path = [this](double t_s) { return scene_.T_world_camera(t_s); };
   if (options.imu) imu_.emplace(path, synthetic::SyntheticImu::Options(), options.seed);
   if (options.wheels) wheels_.emplace(path, options.seed);
-  info_.has_imu = options.imu, info_.has_wheels = options.wheels;
+  info_.has_imu = options.imu;
+  info_.has_wheels = options.wheels;
   if (options.wheels) info_.T_base_camera = synthetic::T_base_level_camera(path(0).translation().z());
   if (!options.timing_known) return;
   info_.readout_s = options.faults.rolling_shutter_ms / 1000;

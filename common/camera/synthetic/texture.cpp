@@ -45,7 +45,9 @@ void add_value_noise(Canvas& canvas, float cell_m, float amplitude, SeededRandom
       const float lower = bottom[column] + (bottom[column + 1] - bottom[column]) * wx;
       const float value = upper + (lower - upper) * wy;
       ColorBgr& pixel = canvas.at(x, y);
-      pixel.b += value, pixel.g += value, pixel.r += value;
+      pixel.b += value;
+      pixel.g += value;
+      pixel.r += value;
     }
   }
 }
@@ -96,11 +98,14 @@ Patch random_patch(const Canvas& canvas, const TextureStyle& style, SeededRandom
   Patch patch{};
   patch.center_x = random.unit() * static_cast<float>(canvas.width);
   patch.center_y = random.unit() * static_cast<float>(canvas.height);
-  patch.half_width = size_texels() / 2, patch.half_height = size_texels() / 2;
-  patch.cos_angle = std::cos(angle_rad), patch.sin_angle = std::sin(angle_rad);
+  patch.half_width = size_texels() / 2;
+  patch.half_height = size_texels() / 2;
+  patch.cos_angle = std::cos(angle_rad);
+  patch.sin_angle = std::sin(angle_rad);
   patch.cell = std::max(2.0F, random.between(0.015F, 0.05F) * canvas.texels_per_m);
   patch.fill = static_cast<Fill>(random.index(5));
-  patch.ink = random_color(style, random), patch.paper = random_color(style, random);
+  patch.ink = random_color(style, random);
+  patch.paper = random_color(style, random);
   patch.seed = random.next();
   return patch;
 }

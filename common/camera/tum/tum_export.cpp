@@ -15,16 +15,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_text(const fs::path& file, const std::string& text) try {
-  io::write_file(file, text);
-} catch (const io::IoError& error) {
-  throw SourceError(std::string("cannot write ") + error.what());
+void write_text(const fs::path& file, const std::string& text) {
+  try {
+    io::write_file(file, text);
+  } catch (const io::IoError& error) {
+    throw SourceError(std::string("cannot write ") + error.what());
+  }
 }
 
-void write_png(const fs::path& file, const cv::Mat& image) try {
-  if (!vision::write_image(file, image, {.durable = false})) throw SourceError("cannot encode " + file.string());
-} catch (const io::IoError& error) {
-  throw SourceError(std::string("cannot write ") + error.what());
+void write_png(const fs::path& file, const cv::Mat& image) {
+  try {
+    if (!vision::write_image(file, image, {.durable = false})) throw SourceError("cannot encode " + file.string());
+  } catch (const io::IoError& error) {
+    throw SourceError(std::string("cannot write ") + error.what());
+  }
 }
 
 void prepare(const fs::path& folder) {

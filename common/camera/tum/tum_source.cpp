@@ -183,10 +183,19 @@ std::optional<std::int64_t> TumSource::advance() {
 std::optional<SourceFrame> TumSource::decode() {
   const FilePair& pair = pairs_[next_pair_ - 1];
   ImageRead color = read_color(folder_ / pair.color.file);
-  if (color.problem) return skips_.add(*color.problem), std::nullopt;
+  if (color.problem) {
+    skips_.add(*color.problem);
+    return std::nullopt;
+  }
   ImageRead depth = read_depth(folder_ / pair.depth.file);
-  if (depth.problem) return skips_.add(*depth.problem), std::nullopt;
-  if (const auto problem = check_sizes(pair, color.image, depth.image)) return skips_.add(*problem), std::nullopt;
+  if (depth.problem) {
+    skips_.add(*depth.problem);
+    return std::nullopt;
+  }
+  if (const auto problem = check_sizes(pair, color.image, depth.image)) {
+    skips_.add(*problem);
+    return std::nullopt;
+  }
   SourceFrame frame = to_frame(pair.color.stamp_ns, std::move(color.image), std::move(depth.image), info_);
   set_depth_stamp(frame, pair.depth.stamp_ns, info_);
   if (options_.masks) frame.dynamic_mask = read_mask(pair);

@@ -84,10 +84,12 @@ std::optional<geometry::CameraModel> lens_of(const openni::VideoStream& stream, 
   const double horizontal_rad = stream.getHorizontalFieldOfView(), vertical_rad = stream.getVerticalFieldOfView();
   if (!(horizontal_rad > 0) || !(vertical_rad > 0)) return std::nullopt;
   geometry::CameraModel::Parameters p;
-  p.width = size_px.width, p.height = size_px.height;
+  p.width = size_px.width;
+  p.height = size_px.height;
   p.fx = size_px.width / (2 * std::tan(horizontal_rad / 2));
   p.fy = size_px.height / (2 * std::tan(vertical_rad / 2));
-  p.cx = (size_px.width - 1) / 2.0, p.cy = (size_px.height - 1) / 2.0;
+  p.cx = (size_px.width - 1) / 2.0;
+  p.cy = (size_px.height - 1) / 2.0;
   return geometry::CameraModel(p);
 }
 
@@ -322,15 +324,17 @@ std::unique_ptr<LiveDevice> make_openni2_device(const std::string& uri) {
   return std::make_unique<OpenNi2Device>(uri);
 }
 
-std::vector<FoundCamera> find_openni2_cameras() try {
-  const Library library;
-  openni::Array<openni::DeviceInfo> infos;
-  openni::OpenNI::enumerateDevices(&infos);
-  std::vector<FoundCamera> cameras;
-  for (int i = 0; i < infos.getSize(); ++i) cameras.push_back(look_at(infos[i]));
-  return cameras;
-} catch (const DeviceError&) {
-  return {};  // no driver, so no camera
+std::vector<FoundCamera> find_openni2_cameras() {
+  try {
+    const Library library;
+    openni::Array<openni::DeviceInfo> infos;
+    openni::OpenNI::enumerateDevices(&infos);
+    std::vector<FoundCamera> cameras;
+    for (int i = 0; i < infos.getSize(); ++i) cameras.push_back(look_at(infos[i]));
+    return cameras;
+  } catch (const DeviceError&) {
+    return {};  // no driver, so no camera
+  }
 }
 
 }  // namespace rtd::camera

@@ -127,8 +127,10 @@ FreeSpace::Scan FreeSpace::decimate(const vision::RgbdImage& image) {
   const float side_px = static_cast<float>(p.width) / static_cast<float>(kColumns);
   scan.rows = static_cast<int>(std::ceil(static_cast<float>(p.height) / side_px));
   const auto ratio = static_cast<double>(side_px);
-  scan.fx = static_cast<float>(p.fx / ratio), scan.fy = static_cast<float>(p.fy / ratio);
-  scan.cx = static_cast<float>((p.cx + 0.5) / ratio), scan.cy = static_cast<float>((p.cy + 0.5) / ratio);
+  scan.fx = static_cast<float>(p.fx / ratio);
+  scan.fy = static_cast<float>(p.fy / ratio);
+  scan.cx = static_cast<float>((p.cx + 0.5) / ratio);
+  scan.cy = static_cast<float>((p.cy + 0.5) / ratio);
   const auto pixels = static_cast<std::size_t>(scan.columns * scan.rows);
   std::vector<std::uint16_t> nearest(pixels, std::numeric_limits<std::uint16_t>::max()), looked(pixels),
       measured(pixels);

@@ -58,7 +58,9 @@ Eigen::Matrix3d grid_rotation(const Eigen::Vector3d& up) {
   const Eigen::Vector3d level = Eigen::Vector3d::UnitX() - z.x() * z;
   const Eigen::Vector3d x = level.norm() > 0.1 ? Eigen::Vector3d(level.normalized()) : z.unitOrthogonal();
   Eigen::Matrix3d R;
-  R.row(0) = x, R.row(1) = z.cross(x), R.row(2) = z;
+  R.row(0) = x;
+  R.row(1) = z.cross(x);
+  R.row(2) = z;
   return R;
 }
 

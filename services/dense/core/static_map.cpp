@@ -46,7 +46,7 @@ std::optional<KeyframePoses::Removed> KeyframePoses::update(const msg::KeyframeE
   }
   const Eigen::Isometry3d T_world_keyframe = msg::to_isometry(event.T_world_camera);
   if (!T_world_keyframe.matrix().allFinite()) return std::nullopt;
-  if (keyframes_.size() >= kMost && !keyframes_.contains(id)) return std::nullopt;
+  if (keyframes_.size() >= kMax && !keyframes_.contains(id)) return std::nullopt;
   const auto [keyframe, created] =
       keyframes_.try_emplace(id, Keyframe{event.stamp_ns, T_world_keyframe, T_world_keyframe});
   keyframe->second.T_world_keyframe = T_world_keyframe;

@@ -26,7 +26,7 @@ class KeyframePoses {
     AnchorId keyframe = kNoAnchor, follows = kNoAnchor;
   };
   /// So many live keyframes are followed, 30 MB: those of a day and more. Later ones are as if they were none.
-  static constexpr std::size_t kMost = 100'000;
+  static constexpr std::size_t kMax = 100'000;
   /// Applies one event of slam. Poses that are not finite are ignored.
   std::optional<Removed> update(const msg::KeyframeEvent& event);
   /// The keyframe that new points move with: the newest; kNoAnchor before the first.

@@ -12,7 +12,7 @@
 
 namespace rtd::detector {
 
-/// A detector that goes on with the CPU when the engine asked for is not there or, where it is verified, computes
+/// A detector that continues with the CPU when the engine asked for is not there or, where it is verified, computes
 /// something else. Not thread-safe.
 class EngineGuard {
  public:

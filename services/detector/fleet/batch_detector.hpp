@@ -11,8 +11,8 @@
 
 namespace rtd::detector {
 
-/// A detector for batches. It goes on with the CPU as EngineGuard does, and one image after the other when the network
-/// takes no batch; device() says so. Not thread-safe.
+/// A detector for batches. It continues with the CPU as EngineGuard does, and one image after the other when the
+/// network takes no batch; device() says so. Not thread-safe.
 class BatchDetector {
  public:
   /// Runs a first batch of each size up to `batch`, so that later ones are as fast as the others; on the CPU, where

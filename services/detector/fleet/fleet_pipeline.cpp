@@ -37,9 +37,9 @@ FleetPipeline::End FleetPipeline::run() {
   while (!closed_) {
     outputs_.on_turn();
     if (const std::optional<Batch> batch = handover_.take_for(kLongestTurn)) detect(*batch);
-    if (failures_ == kMostFailures) close();
+    if (failures_ == kMaxFailures) close();
   }
-  return failures_ < kMostFailures ? End::kClosed : End::kEngineFailed;
+  return failures_ < kMaxFailures ? End::kClosed : End::kEngineFailed;
 }
 
 void FleetPipeline::close() {

@@ -43,7 +43,7 @@ class FleetPipeline {
   /// Images of the robot that newer ones have replaced.
   std::uint64_t dropped(const std::string& robot) const { return arrivals_.dropped(robot); }
 
-  /// Works until it is closed, or until the engine has failed kMostFailures times in a row, as that of a GPU that is
+  /// Works until it is closed, or until the engine has failed kMaxFailures times in a row, as that of a GPU that is
   /// gone does. To be called once.
   End run();
   void close();
@@ -52,7 +52,7 @@ class FleetPipeline {
   std::uint64_t images() const { return images_; }    ///< computed; after run()
   std::uint64_t batches() const { return batches_; }  ///< the same
 
-  static constexpr int kMostFailures = 20;
+  static constexpr int kMaxFailures = 20;
 
  private:
   using Clock = std::chrono::steady_clock;

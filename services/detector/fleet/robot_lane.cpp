@@ -54,7 +54,7 @@ void RobotLane::receive(const msg::ServiceStatus& status) {
   if (status.service != DetectorService::kName) return;
   if (status.pid == getpid() && status.started_ns == started_ns_) return;
   const std::lock_guard lock(duty_mutex_);
-  duty_.heard(claim_of(status), name_of(status), serves(status), service::monotonic_ns());
+  duty_.observe(claim_of(status), name_of(status), serves(status), service::monotonic_ns());
 }
 
 void RobotLane::update(const View& view) {
@@ -73,8 +73,8 @@ void RobotLane::update(const View& view) {
 }
 
 void RobotLane::take_over() {
-  auto heartbeat = std::make_unique<service::Heartbeat>(*bus_, DetectorService::kName, twin_found_,
-                                                        service::Heartbeat::Twins::kAllowed);
+  auto heartbeat = std::make_unique<service::Heartbeat>(*bus_, DetectorService::kName, second_found_,
+                                                        service::Heartbeat::SecondInstance::kAllowed);
   heartbeat->watch_progress(stuck_after_);
   const std::lock_guard lock(mutex_);
   started_ns_ = heartbeat->started_ns();

@@ -40,7 +40,7 @@ class RobotLane {
 
   /// Takes over, stands by, opens or closes the reader of images, and reports. To be called often.
   void update(const View& view);
-  /// The thread that computes the boxes goes on.
+  /// The thread that computes the boxes continues.
   void tick();
   /// Publishes, if the lane still serves the robot.
   void publish(const Answer& answer);
@@ -77,7 +77,7 @@ class RobotLane {
   std::atomic<bool> reading_{false}, gone_{false};
 
   std::mutex mutex_;               ///< guards what follows
-  service::StopToken twin_found_;  ///< the heartbeat's; Duty decides
+  service::StopToken second_found_;  ///< the heartbeat's; Duty decides
   std::unique_ptr<service::Heartbeat> heartbeat_;
   AnswerStats stats_;
   std::uint64_t answered_ = 0, broken_ = 0;

@@ -31,18 +31,22 @@ RollRange parse_roll(const std::string& text) {
   return roll;
 }
 
-void write_file(const std::filesystem::path& path, const std::string& content, const std::string& option) try {
-  io::write_file(path, content, {.named_by = io::NamedBy::kOperator});
-} catch (const io::IoError& error) {
-  throw service::ConfigError(option + " " + error.what());
+void write_file(const std::filesystem::path& path, const std::string& content, const std::string& option) {
+  try {
+    io::write_file(path, content, {.named_by = io::NamedBy::kOperator});
+  } catch (const io::IoError& error) {
+    throw service::ConfigError(option + " " + error.what());
+  }
 }
 
 /// Runs before the long work, so that a wrong path does not waste it.
-void check_outputs(const EvalDetectorOptions& options) try {
-  if (!options.out_dir.empty()) process::make_out_folder(options.out_dir);
-  if (!options.json.empty()) const io::AtomicFile begun(options.json, {.named_by = io::NamedBy::kOperator});
-} catch (const io::IoError& error) {
-  throw service::ConfigError(std::string("--json ") + error.what());
+void check_outputs(const EvalDetectorOptions& options) {
+  try {
+    if (!options.out_dir.empty()) process::make_out_folder(options.out_dir);
+    if (!options.json.empty()) const io::AtomicFile begun(options.json, {.named_by = io::NamedBy::kOperator});
+  } catch (const io::IoError& error) {
+    throw service::ConfigError(std::string("--json ") + error.what());
+  }
 }
 
 void write_results(const EvalDetectorOptions& options, const auto& results, const std::string& plot_name,

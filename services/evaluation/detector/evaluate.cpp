@@ -217,8 +217,14 @@ std::optional<MaskedImage> read_pair(const fs::path& path, const EvalDetectorOpt
     ++input.not_decoded;
     input.problems.push_back(problem + ", left out");
   };
-  if (pair.image.empty()) return reject(path.filename().string() + ": is not an image"), std::nullopt;
-  if (pair.mask.empty()) return reject(mask_path.filename().string() + ": is not an image"), std::nullopt;
+  if (pair.image.empty()) {
+    reject(path.filename().string() + ": is not an image");
+    return std::nullopt;
+  }
+  if (pair.mask.empty()) {
+    reject(mask_path.filename().string() + ": is not an image");
+    return std::nullopt;
+  }
   if (pair.mask.size() != pair.image.size()) {
     reject(mask_path.filename().string() + ": is " + std::to_string(pair.mask.cols) + " x " +
            std::to_string(pair.mask.rows) + " px, its image is " + std::to_string(pair.image.cols) + " x " +

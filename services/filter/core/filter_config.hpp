@@ -48,7 +48,7 @@ inline constexpr NamedTechnique kTechniques[] = {
     {"depth_check", &Techniques::depth_check, "no multi-view check of range images"},
     {"feature_votes", &Techniques::feature_votes, "displaced features do not vote for their surface"},
     {"look_back", &Techniques::look_back, "no look back over a second for very slow movers"},
-    {"arrivals", &Techniques::arrivals, "old views go on condemning what has arrived and stopped"},
+    {"arrivals", &Techniques::arrivals, "old views continue condemning what has arrived and stopped"},
     {"object_drift", &Techniques::object_drift, "a person's features vote one by one, not by their median shift"},
     {"noise_aware_tau", &Techniques::noise_aware_tau, "the paper's 0.4 m at every depth"},
     {"mover_memory", &Techniques::mover_memory, "movers must be seen moving in each frame"},

@@ -37,31 +37,37 @@ bool has_route(const std::string& address) {
   return !unreachable;
 }
 
-Finding interfaces(const bus::NetworkOptions& network) try {
-  if (network.loopback_only) return {Verdict::kOk, "network: this host only; --profile lan or wifi adds other hosts"};
-  return {Verdict::kOk, fmt::format("network: {} beside loopback, {}", fmt::join(interface_addresses(network), ", "),
-                                    network.multicast ? "multicast" : "no multicast: each process must name a peer")};
-} catch (const bus::BusError& error) {
-  return {Verdict::kFail, std::string("network: ") + error.what()};
+Finding interfaces(const bus::NetworkOptions& network) {
+  try {
+    if (network.loopback_only) return {Verdict::kOk, "network: this host only; --profile lan or wifi adds other hosts"};
+    return {Verdict::kOk, fmt::format("network: {} beside loopback, {}", fmt::join(interface_addresses(network), ", "),
+                                      network.multicast ? "multicast" : "no multicast: each process must name a peer")};
+  } catch (const bus::BusError& error) {
+    return {Verdict::kFail, std::string("network: ") + error.what()};
+  }
 }
 
-Finding named_host(const std::string& host, const std::string& option) try {
-  const std::string address = bus::resolve_host(host, option).address;
-  if (has_route(address)) return {Verdict::kOk, fmt::format("network: {} {} is {}", option, host, address)};
-  return {Verdict::kFail, fmt::format("network: {} {}: no route to {}; connect this host to its network (ip route)",
-                                      option, host, address)};
-} catch (const bus::BusError& error) {
-  return {Verdict::kFail, std::string("network: ") + error.what()};
+Finding named_host(const std::string& host, const std::string& option) {
+  try {
+    const std::string address = bus::resolve_host(host, option).address;
+    if (has_route(address)) return {Verdict::kOk, fmt::format("network: {} {} is {}", option, host, address)};
+    return {Verdict::kFail, fmt::format("network: {} {}: no route to {}; connect this host to its network (ip route)",
+                                        option, host, address)};
+  } catch (const bus::BusError& error) {
+    return {Verdict::kFail, std::string("network: ") + error.what()};
+  }
 }
 
 /// Settings that contradict each other: outside peers with loopback only, a server with the wrong vendor.
-void contradictions(const bus::BusOptions& options, Findings& findings) try {
-  bus::require_network(options);
-} catch (const bus::BusError& error) {
-  const std::string text = std::string("network: ") + error.what();
-  for (const Finding& known : findings)
-    if (known.text == text) return;
-  findings.push_back({Verdict::kFail, text});
+void contradictions(const bus::BusOptions& options, Findings& findings) {
+  try {
+    bus::require_network(options);
+  } catch (const bus::BusError& error) {
+    const std::string text = std::string("network: ") + error.what();
+    for (const Finding& known : findings)
+      if (known.text == text) return;
+    findings.push_back({Verdict::kFail, text});
+  }
 }
 
 Finding participant_ports(std::uint32_t domain) {

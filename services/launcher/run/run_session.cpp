@@ -29,7 +29,7 @@ double span_s(const std::vector<run_record::FrameRecord>& frames) {
 std::string restart_effect(const std::string& service) {
   if (service == "camera") return ": its frames count from 0 again";
   if (service == "slam") return ": trajectory.txt starts again, the map from its last checkpoint";
-  if (service == "record") return ": it goes on in a file beside";
+  if (service == "record") return ": it continues in a file beside";
   return service == "dense" ? ": static_map.ply starts again" : "";
 }
 

@@ -211,7 +211,7 @@ std::vector<std::string> dense_arguments(const RunSetup& setup) {
   std::vector<std::string> arguments = {"--out", setup.out_dir};
   const std::string gravity = setup.gravity.empty() ? peek(setup, "slam", "base.gravity") : setup.gravity;
   const bool z_up = !setup.camera_in_base.empty() || !peek(setup, "slam", "base.camera").empty() ||
-                    (!gravity.empty() && gravity != "told");
+                    (!gravity.empty() && gravity != "level");
   if (z_up && peek(setup, "dense", "grid.up").empty()) arguments.emplace_back("--up=0,0,1");
   return arguments;
 }

@@ -68,7 +68,7 @@ struct RunOptions {
   std::string maps_dir;                    ///< of maps that commands name; empty: as slam chooses
   std::string base_frame;                  ///< of the robot; empty: as configured
   std::string camera_in_base;              ///< x,y,z,qx,qy,qz,qw or tf; empty: as configured
-  std::string gravity;                     ///< told, floor or imu; empty: as configured
+  std::string gravity;                     ///< level, floor or imu; empty: as configured
   std::string imu, wheel_odometry;         ///< ROS topics; empty: as configured
   bool localize_only = false;              ///< leave the map as it is
   bool dense = false;                      ///< also fuse a dense static map

@@ -31,8 +31,8 @@ class LinkRules {
   LinkRules(std::string robot, const std::vector<std::string>& rules);
 
   bool allows(Direction direction, const std::string& dds_topic) const;
-  /// Whether a sample of an allowed topic goes on. Of heartbeats the robot gets only those of a detector that serves it
-  /// and of a second link of its name: others are of another robot of this name, which its services would obey.
+  /// Whether a sample of an allowed topic continues. Of heartbeats the robot gets only those of a detector that serves
+  /// it and of a second link of its name: others are of another robot of this name, which its services would obey.
   bool passes(Direction direction, const std::string& dds_topic, std::span<const std::byte> cdr) const;
   bool is_heartbeat(const std::string& dds_topic) const { return dds_topic == heartbeats_; }
   const std::string& robot() const { return robot_; }

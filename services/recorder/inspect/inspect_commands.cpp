@@ -12,7 +12,7 @@
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
-#include "services/recorder/inspect/foreign_report.hpp"
+#include "services/recorder/inspect/other_format_report.hpp"
 #include "services/recorder/inspect/recording_diff.hpp"
 #include "services/recorder/inspect/recording_report.hpp"
 
@@ -35,10 +35,10 @@ Contents read(const recordings::Opened& opened, const std::string& path, std::os
 }
 
 void warn(const Contents& contents, const std::string& path, std::ostream& err) {
-  constexpr std::size_t kMostProblems = 5;
+  constexpr std::size_t kMaxProblems = 5;
   if (contents.data_lost)
     err << "rtd diff: " << path << " is damaged, only its readable part is compared:"
-        << problems_text(contents.problems, contents.problems.size(), kMostProblems);
+        << problems_text(contents.problems, contents.problems.size(), kMaxProblems);
 }
 
 template <class Diff>
@@ -153,7 +153,7 @@ int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
       out << (options.json ? service::json_text(to_json(report, options.file)) + '\n' : to_text(report, options.file));
       return report.damaged() ? service::kPartialLoss : service::kOk;
     };
-    if (const auto foreign = report_on_foreign(options.file)) return print_report(*foreign);
+    if (const auto other_format = report_on_other_format(options.file)) return print_report(*other_format);
     const recordings::Opened opened = open(options.file, err);
     const io::FileSource& source = *opened.source;
     service::Progress progress(err, "reading", source.size());

@@ -187,13 +187,13 @@ std::string problems_text(const std::vector<mcap::Problem>& problems, std::uint6
 std::string to_text(const RecordingReport& report, const std::string& name) {
   const std::string profile = report.header.profile.empty() ? "" : ", profile " + report.header.profile;
   const std::string library = report.header.library.empty() ? "" : ", written by " + report.header.library;
-  const bool foreign = report.format != RecordingReport().format;
-  const std::string format = foreign ? ", " + report.format : "";
+  const bool other_format = report.format != RecordingReport().format;
+  const std::string format = other_format ? ", " + report.format : "";
   std::string text = head_row(
       "file", fmt::format("{}, {}{}{}{}", name, service::bytes_text(report.file_bytes), format, profile, library));
   text += time_row(report);
   text += head_row("messages", fmt::format("{} on {} topics", report.messages, report.channels.size()));
-  if (!foreign) text += chunk_rows(report) + summary_row(report) + head_row("checksums", checksum_text(report));
+  if (!other_format) text += chunk_rows(report) + summary_row(report) + head_row("checksums", checksum_text(report));
   return text + loss_rows(report) + metadata_rows(report) + channel_table(report) +
          problems_text(report.problems, report.problem_count, kShownProblems);
 }

@@ -213,7 +213,7 @@ void Player::handle(Request request) {
   }
   const bool pause = request.action == Action::kPause, resume = request.action == Action::kResume;
   if ((pause && !schedule_.paused()) || (resume && schedule_.paused())) toggle_pause();
-  if (resume) end_step("the replay goes on");
+  if (resume) end_step("the replay continues");
   if (request.action == Action::kSeek) {
     seek(request.to_ns);
     take_head();  // the playhead is there from now on

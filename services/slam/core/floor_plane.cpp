@@ -107,7 +107,8 @@ Fit fit(Plane plane, const Points& points) {
       const double sigma = sigma_m(p, plane.up), weight = 1 / (sigma * sigma);
       if (std::abs(plane.above_m(p)) >= kOnPlane * sigma) continue;
       weights += weight;
-      mean += weight * p, squares += weight * p * p.transpose();
+      mean += weight * p;
+      squares += weight * p * p.transpose();
     }
     mean /= weights;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(squares - weights * mean * mean.transpose());

@@ -238,7 +238,7 @@ struct LoopConfig {
 
 /// What says which way is up when a map begins; docs/frames.md.
 enum class Gravity {
-  kTold,   ///< first_pose
+  kLevel,  ///< first_pose
   kFloor,  ///< the floor in the image
   kImu,    ///< the IMU of SlamConfig::prior
 };
@@ -275,14 +275,14 @@ struct ImuConfig {
 
 /// Odometry of the wheels: docs/theory/inertial.md, "Wheels".
 struct WheelConfig {
-  double way_share = 0.03;
+  double distance_share = 0.03;
   double turn_share = 0.05;
   double turn_rad_m = 0.02;
   double still_m = 0.0005;
   double off_plane_share = 0.01;
 
   void bind(auto& binder) {
-    binder.field("way_share", way_share, {1e-4, 1.0}, "standard deviation of a way, share of its length");
+    binder.field("distance_share", distance_share, {1e-4, 1.0}, "standard deviation of a way, share of its length");
     binder.field("turn_share", turn_share, {1e-4, 1.0}, "standard deviation of a turn, share of its angle, and ...");
     binder.field("turn_rad_m", turn_rad_m, {0.0, 1.0}, "... rad per metre of way");
     binder.field("still_m", still_m, {1e-6, 0.1}, "standard deviation of the way between two frames at rest");
@@ -340,7 +340,7 @@ struct SlamConfig {
   /// T_world_camera of the first frame of each map: says where the world is, and which way is up in it.
   Eigen::Isometry3d first_pose = Eigen::Isometry3d::Identity();
   /// Otherwise: z of the world is up. It is turned about its origin from where first_pose has it.
-  Gravity gravity = Gravity::kTold;
+  Gravity gravity = Gravity::kLevel;
   int gravity_wait_frames = 30;  ///< the first map waits so long, then first_pose is right
 };
 

@@ -151,7 +151,7 @@ TrackOutcome SlamSystem::initialize(const FrameInput& input, SlamOutput& output)
 
 /// Only the first map waits: later ones begin at once, with what their first frame shows.
 bool SlamSystem::waits_for_up(const Frame& frame) {
-  if (config_.gravity == Gravity::kTold || frames_without_up_ >= config_.gravity_wait_frames || find_up(frame))
+  if (config_.gravity == Gravity::kLevel || frames_without_up_ >= config_.gravity_wait_frames || find_up(frame))
     return false;
   ++frames_without_up_;
   return true;
@@ -169,7 +169,7 @@ std::optional<FloorPlane> SlamSystem::find_up(const Frame& frame) const {
 }
 
 /// T_world_camera of the first frame of a map.
-Eigen::Isometry3d SlamSystem::turn_up(const std::optional<FloorPlane>& floor, SlamOutput& output) {
+Eigen::Isometry3d SlamSystem::align_to_gravity(const std::optional<FloorPlane>& floor, SlamOutput& output) {
   output.up = UpFound{floor.has_value(), 0, 0, 0, frames_without_up_};
   if (!floor) return config_.first_pose;
   const Eigen::AngleAxisd turn(
@@ -183,8 +183,8 @@ Eigen::Isometry3d SlamSystem::turn_up(const std::optional<FloorPlane>& floor, Sl
 TrackOutcome SlamSystem::begin_map(const FrameInput& input, SlamOutput& output) {
   const std::int64_t start_ns = now_ns_();
   Eigen::Isometry3d first_pose = config_.first_pose;
-  if (config_.gravity != Gravity::kTold) {
-    first_pose = turn_up(find_up(*input.frame), output);
+  if (config_.gravity != Gravity::kLevel) {
+    first_pose = align_to_gravity(find_up(*input.frame), output);
     tracker_->set_first_pose(first_pose);
   }
   KeyframeProposal first;
@@ -192,8 +192,8 @@ TrackOutcome SlamSystem::begin_map(const FrameInput& input, SlamOutput& output) 
   first.landmarks.assign(input.frame->features.size(), kNoLandmark);
   first.T_reference_camera = first_pose;
   const bool first_map = mapping_.snapshot() == nullptr;
-  const Eigen::Isometry3d told_or_found = std::exchange(begun_, true) ? config_.first_pose : first_pose;
-  const Eigen::Isometry3d before = first_map ? told_or_found : tracker_->T_world_camera();
+  const Eigen::Isometry3d given_or_found = std::exchange(begun_, true) ? config_.first_pose : first_pose;
+  const Eigen::Isometry3d before = first_map ? given_or_found : tracker_->T_world_camera();
   TrackOutcome outcome = tracker_->initialize(input.frame, mapping_.begin_map(std::move(first)));
   odometry_.correct(before, tracker_->T_world_camera());  // another world, the same odometry
   requested_centre_ = outcome.tracked.reference;

@@ -65,7 +65,7 @@ class SlamSystem {
   /// `on_mapping_thread` runs first in the mapper's thread (kThreaded only), e.g. to lower its priority.
   SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns, std::function<void()> on_mapping_thread = {});
 
-  /// Goes on with a map that was saved, before the first frame: relocalizing until a frame is found in it.
+  /// Continues with a map that was saved, before the first frame: relocalizing until a frame is found in it.
   void restore(MapContents contents);
   /// Begins again, as after a start: the next frame makes a new map, in whose frame the poses are from then on. The
   /// odometry continues. Keyframes that were announced are removed in the next outputs, whose events count from 0
@@ -115,7 +115,7 @@ class SlamSystem {
   std::optional<FloorPlane> find_up(const Frame& frame) const;
   bool waits_for_up(const Frame& frame);
   TrackOutcome begin_map(const FrameInput& input, SlamOutput& output);
-  Eigen::Isometry3d turn_up(const std::optional<FloorPlane>& floor, SlamOutput& output);
+  Eigen::Isometry3d align_to_gravity(const std::optional<FloorPlane>& floor, SlamOutput& output);
   bool wants_new_map(const Frame& frame, const TrackOutcome& outcome);
   TrackOutcome track(const FrameInput& input, SlamOutput& output);
   void record(const TrackedFrame& tracked);

@@ -17,7 +17,7 @@
 
 namespace rtd::viewer {
 
-/// A recording that is being played: where it was at a moment, and how it goes on from there.
+/// A recording that is being played: where it was at a moment, and how it continues from there.
 struct Played {
   std::uint64_t begin_ns = 0, end_ns = 0;  ///< recorded times of its first and last message
   std::uint64_t position_ns = 0;           ///< recorded time
@@ -128,7 +128,7 @@ class FoxgloveSession : public Session {
 
  private:
   friend class FoxgloveHub;
-  static constexpr std::size_t kMostSubscriptions = 4096;
+  static constexpr std::size_t kMaxSubscriptions = 4096;
 
   void handle(const foxglove::Request& request);
   void answer(const foxglove::Subscribe& request);

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostEntries = 10'000;  ///< of one list in one message
+constexpr std::size_t kMaxEntries = 10'000;  ///< of one list in one message
 
 const json& field(const json& object, const char* name) {
   if (!object.is_object()) throw ProtocolError("an object is missing");
@@ -23,7 +23,7 @@ const json& field(const json& object, const char* name) {
 const json& list(const json& object, const char* name) {
   const json& entries = field(object, name);
   if (!entries.is_array()) throw ProtocolError(std::string("field '") + name + "' is not a list");
-  if (entries.size() > kMostEntries) throw ProtocolError(std::string("field '") + name + "' has too many entries");
+  if (entries.size() > kMaxEntries) throw ProtocolError(std::string("field '") + name + "' has too many entries");
   return entries;
 }
 

@@ -62,7 +62,7 @@ void FoxgloveSession::answer(const foxglove::Subscribe& request) {
       warn("channel " + std::to_string(channel) + " does not exist");
     } else if (subscriptions_.contains(id)) {
       warn("subscription " + std::to_string(id) + " exists already");
-    } else if (subscriptions_.size() >= kMostSubscriptions) {
+    } else if (subscriptions_.size() >= kMaxSubscriptions) {
       send_error("too many subscriptions");
     } else {
       subscriptions_.emplace(id, channel);
@@ -90,7 +90,7 @@ void FoxgloveSession::answer(const foxglove::ClientAdvertise& request) {
   for (const foxglove::Channel& channel : request.channels) {
     if (channel.schema.encoding != "cdr") {
       send_error("channel '" + channel.topic + "': only the encoding cdr can be published");
-    } else if (published_.size() >= kMostSubscriptions) {
+    } else if (published_.size() >= kMaxSubscriptions) {
       send_error("too many channels");
     } else {
       published_.insert_or_assign(channel.id, channel);
@@ -151,7 +151,7 @@ void FoxgloveSession::answer(const foxglove::WatchParameters& request) {
   for (const std::string& name : request.names) {
     if (!request.on) {
       watched_parameters_.erase(name);
-    } else if (watched_parameters_.size() < kMostSubscriptions) {
+    } else if (watched_parameters_.size() < kMaxSubscriptions) {
       watched_parameters_.insert(name);
     }
   }

@@ -19,19 +19,19 @@ std::unique_ptr<Session> PageHub::open(Rights rights) {
 }
 
 RobotMirror* PageHub::robot(const std::string& name) {
-  constexpr std::size_t kMostRobots = 64;
+  constexpr std::size_t kMaxRobots = 64;
   const auto known = std::ranges::find(names_, name);
   if (known != names_.end()) return mirrors_[static_cast<std::size_t>(known - names_.begin())].get();
-  if (names_.size() >= kMostRobots) return nullptr;
+  if (names_.size() >= kMaxRobots) return nullptr;
   names_.push_back(name);
   mirrors_.push_back(std::make_unique<RobotMirror>(static_cast<std::uint8_t>(mirrors_.size())));
   return mirrors_.back().get();
 }
 
-std::optional<PageWishes> PageHub::wishes(std::uint8_t robot) const {
+std::optional<PageOptions> PageHub::options(std::uint8_t robot) const {
   if (sessions_.empty()) return std::nullopt;
-  PageWishes all{false, false, false, false, false};
-  for (const PageSession* session : sessions_) all = all | session->wishes(robot);
+  PageOptions all{false, false, false, false, false};
+  for (const PageSession* session : sessions_) all = all | session->options(robot);
   return all;
 }
 

@@ -14,13 +14,13 @@
 namespace rtd::viewer {
 
 /// What a page wants to be sent; a hidden panel switches its part off.
-struct PageWishes {
+struct PageOptions {
   bool image = true, mask = true, features = true, points = true, dense = false;
-  PageWishes operator|(const PageWishes& other) const {
+  PageOptions operator|(const PageOptions& other) const {
     return {image || other.image, mask || other.mask, features || other.features, points || other.points,
             dense || other.dense};
   }
-  bool operator==(const PageWishes&) const = default;
+  bool operator==(const PageOptions&) const = default;
 };
 
 /// How much a page gets.
@@ -60,7 +60,7 @@ class PageHub {
   /// The mirror of a robot; known ones keep their index. Null when there are too many.
   RobotMirror* robot(const std::string& name);
   /// What any page wants of a robot; nothing without pages.
-  std::optional<PageWishes> wishes(std::uint8_t robot) const;
+  std::optional<PageOptions> options(std::uint8_t robot) const;
   std::size_t clients() const { return sessions_.size(); }
 
  private:

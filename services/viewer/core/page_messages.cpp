@@ -149,8 +149,8 @@ Bytes features(std::uint8_t robot, const msg::FeatureFrame& frame) {
 
 Bytes mask(std::uint8_t robot, const msg::Image& image) {
   const std::size_t pixels = std::size_t{image.width} * image.height;
-  constexpr std::size_t kMostPixels = 1U << 20U;
-  if (image.encoding != "mono8" || image.step != image.width || pixels == 0 || pixels > kMostPixels ||
+  constexpr std::size_t kMaxPixels = 1U << 20U;
+  if (image.encoding != "mono8" || image.step != image.width || pixels == 0 || pixels > kMaxPixels ||
       image.data.size() < pixels)
     return {};
   ByteWriter writer = begin(Kind::kMask, robot, 0, 0);

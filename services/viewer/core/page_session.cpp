@@ -93,9 +93,9 @@ void PageSession::on_text(std::string_view message_text) {
   if (!message.is_object()) return;
   const std::string op = text(message, "op");
   if (op == "options") {
-    wishes_ = {flag(message, "image", wishes_.image), flag(message, "mask", wishes_.mask),
-               flag(message, "features", wishes_.features), flag(message, "points", wishes_.points),
-               flag(message, "dense", wishes_.dense)};
+    options_ = {flag(message, "image", options_.image), flag(message, "mask", options_.mask),
+                flag(message, "features", options_.features), flag(message, "points", options_.points),
+                flag(message, "dense", options_.dense)};
     const auto robot = message.find("robot");
     if (robot != message.end() && robot->is_number_unsigned()) watched_ = robot->get<std::uint64_t>();
   } else if (op == "call") {
@@ -109,10 +109,10 @@ void PageSession::on_text(std::string_view message_text) {
   }
 }
 
-PageWishes PageSession::wishes(std::uint8_t robot) const {
-  PageWishes wishes = wishes_;
-  if (watched_ && *watched_ != robot) wishes.image = wishes.mask = wishes.features = false;
-  return wishes;
+PageOptions PageSession::options(std::uint8_t robot) const {
+  PageOptions options = options_;
+  if (watched_ && *watched_ != robot) options.image = options.mask = options.features = false;
+  return options;
 }
 
 void PageSession::on_binary(std::span<const std::byte>) {}  // pages send none
@@ -221,7 +221,7 @@ std::optional<Frame> PageSession::next_edges(const RobotMirror& robot, Sent& sen
 }
 
 std::optional<Frame> PageSession::next_points(const RobotMirror& robot, Sent& sent) const {
-  if (!wishes_.points) return std::nullopt;
+  if (!options_.points) return std::nullopt;
   const std::size_t stride =
       (robot.map().point_count() + hub_.limits_.most_points - 1) / std::max<std::size_t>(hub_.limits_.most_points, 1);
   std::size_t bytes = 0;
@@ -268,7 +268,7 @@ std::optional<Frame> PageSession::next_view(const RobotMirror& robot, Sent& sent
     if (!view || view->stamp_ns == sent.view_stamp_ns) return std::nullopt;
     sent.view_ns = now_ns;
     sent.view_stamp_ns = view->stamp_ns;
-    const PageWishes wanted = wishes(robot.index());
+    const PageOptions wanted = options(robot.index());
     if (wanted.image && view->image) sent.view.emplace_back(false, view->image);
     if (wanted.image && view->boxes) sent.view.emplace_back(true, view->boxes);
     if (wanted.mask && view->mask) sent.view.emplace_back(false, view->mask);
@@ -283,7 +283,7 @@ std::optional<Frame> PageSession::next_view(const RobotMirror& robot, Sent& sent
 
 std::optional<Frame> PageSession::next_dense(const RobotMirror& robot, Sent& sent) const {
   const RobotMirror::Dense& dense = robot.dense();
-  if (!wishes_.dense || dense.revision == 0 || !all_.allows(0.25)) return std::nullopt;
+  if (!options_.dense || dense.revision == 0 || !all_.allows(0.25)) return std::nullopt;
   const std::size_t total = dense.points.size() / kDensePointBytes;
   if (sent.dense != dense.revision) {
     if (sent.dense != 0 && !all_.allows(0.9)) return std::nullopt;  // a renewed cloud waits for quiet

@@ -45,7 +45,7 @@ class PageSession : public Session {
   std::optional<Frame> next(std::int64_t now_ns) override;
   bool overflowed() const override { return outbox_.overflowed(); }
   /// What the page wants of a robot.
-  PageWishes wishes(std::uint8_t robot) const;
+  PageOptions options(std::uint8_t robot) const;
 
  private:
   /// What the page has of one robot.
@@ -75,7 +75,7 @@ class PageSession : public Session {
   PageHub& hub_;
   const bool may_control_;
   Outbox outbox_;
-  PageWishes wishes_;
+  PageOptions options_;
   std::optional<std::uint64_t> watched_;      ///< whose images the page shows; none: those of all robots
   std::map<std::size_t, Sent> sent_;          ///< by the robot's index
   std::size_t robots_sent_ = 0, served_ = 0;  ///< served_: whose message was the last one

@@ -88,8 +88,8 @@ void RobotMirror::add(const msg::Image& mask) {
 }
 
 void RobotMirror::add(const msg::ServiceStatus& status, std::int64_t received_ns) {
-  constexpr std::size_t kMostServices = 256;
-  if (services_.size() >= kMostServices && !services_.contains(status.service)) return;
+  constexpr std::size_t kMaxServices = 256;
+  if (services_.size() >= kMaxServices && !services_.contains(status.service)) return;
   services_.insert_or_assign(status.service, KnownService{status, received_ns});
 }
 

@@ -8,7 +8,7 @@
 namespace rtd::viewer {
 namespace {
 
-constexpr std::size_t kMostPoints = 1'000'000, kMostWaiting = 256, kFewestPairs = 10;
+constexpr std::size_t kMaxPoints = 1'000'000, kMaxWaiting = 256, kFewestPairs = 10;
 
 Eigen::Matrix3Xd matrix_of(const std::vector<Eigen::Vector3d>& points) {
   return Eigen::Map<const Eigen::Matrix3Xd>(points.front().data(), 3, static_cast<Eigen::Index>(points.size()));
@@ -17,14 +17,14 @@ Eigen::Matrix3Xd matrix_of(const std::vector<Eigen::Vector3d>& points) {
 }  // namespace
 
 void TruthTrack::add_truth(std::int64_t stamp_ns, const Eigen::Vector3d& position_m) {
-  if (truth_m_.size() >= kMostPoints || !position_m.allFinite()) return;
+  if (truth_m_.size() >= kMaxPoints || !position_m.allFinite()) return;
   truth_m_.push_back(position_m);
   waiting_truth_.push_back({stamp_ns, position_m});
   pair();
 }
 
 void TruthTrack::add_estimate(std::int64_t stamp_ns, const Eigen::Vector3d& position_m) {
-  if (paired_truth_m_.size() >= kMostPoints || !position_m.allFinite()) return;
+  if (paired_truth_m_.size() >= kMaxPoints || !position_m.allFinite()) return;
   waiting_estimates_.push_back({stamp_ns, position_m});
   pair();
 }
@@ -46,7 +46,7 @@ void TruthTrack::pair() {
     return true;
   });
   for (auto* waiting : {&waiting_truth_, &waiting_estimates_})
-    if (waiting->size() > kMostWaiting) waiting->pop_front();
+    if (waiting->size() > kMaxWaiting) waiting->pop_front();
 }
 
 void TruthTrack::align_if_grown() {

@@ -46,7 +46,7 @@ export class Connection {
 
   connect() {
     clearTimeout(this.timer);
-    this.heard_ms = performance.now();
+    this.received_ms = performance.now();
     const socket = new WebSocket(this.address, kSubprotocol);
     this.socket = socket;
     socket.binaryType = "arraybuffer";
@@ -87,7 +87,7 @@ export class Connection {
   }
 
   #receive(data) {
-    this.heard_ms = performance.now();
+    this.received_ms = performance.now();
     if (typeof data !== "string") {
       this.on.binary(data);
       return;
@@ -104,7 +104,7 @@ export class Connection {
   /** A host that vanished closes nothing: silence does. */
   #watch() {
     if (this.state !== "open") return;
-    if (performance.now() - this.heard_ms > kSilence_ms) {
+    if (performance.now() - this.received_ms > kSilence_ms) {
       const silent = this.socket;
       silent.close();
       this.#closed(silent);

@@ -4,9 +4,9 @@
 // Lines of a map as arrays for the graphics card: vertices are positions in the frame of the keyframe in their slot.
 
 const kFewFrustums = 1500;      // up to here every keyframe is drawn as a full frustum, beyond as a simple sign
-const kMostFrustums = 4000;     // beyond, every n-th keyframe is drawn
-const kMostEdges = 15_000;      // beyond, every n-th edge is drawn
-const kMostSteps = 60_000;      // of a trajectory; beyond, every n-th entry is drawn
+const kMaxFrustums = 4000;     // beyond, every n-th keyframe is drawn
+const kMaxEdges = 15_000;      // beyond, every n-th edge is drawn
+const kMaxSteps = 60_000;      // of a trajectory; beyond, every n-th entry is drawn
 
 const kCorners = [[-0.8, -0.6, 1], [0.8, -0.6, 1], [0.8, 0.6, 1], [-0.8, 0.6, 1]];
 const kFull = [..."0123"].flatMap((i) => [[0, 0, 0], kCorners[i], kCorners[i], kCorners[(Number(i) + 1) % 4]]);
@@ -14,7 +14,7 @@ const kSimple = [[0, 0, 0], kCorners[0], kCorners[0], kCorners[1], kCorners[1], 
 
 /** A small camera for every slot, or for every n-th of very many. */
 export function frustumLines(all, depth_m) {
-  const stride = Math.ceil(all.length / kMostFrustums) || 1, slots = all.filter((_, i) => i % stride === 0);
+  const stride = Math.ceil(all.length / kMaxFrustums) || 1, slots = all.filter((_, i) => i % stride === 0);
   const corners = slots.length <= kFewFrustums ? kFull : kSimple;
   const positions = new Float32Array(3 * corners.length * slots.length);
   const owners = new Float32Array(corners.length * slots.length);
@@ -47,14 +47,14 @@ export function edgeSlots(map) {
 }
 
 function thin(pairs) {
-  const stride = Math.ceil(pairs.length / 2 / kMostEdges);
+  const stride = Math.ceil(pairs.length / 2 / kMaxEdges);
   return Float32Array.from(stride > 1 ? pairs.filter((_, i) => (i >> 1) % stride === 0) : pairs);
 }
 
 /** Segments between the entries whose keyframes have poses; gaps: some have none yet. */
 export function trajectoryVertices(map) {
   const { keyframes, positions, length } = map.trajectory;
-  const stride = Math.max(1, Math.ceil(length / kMostSteps));
+  const stride = Math.max(1, Math.ceil(length / kMaxSteps));
   const out = { positions: new Float32Array(6 * length), slots: new Float32Array(2 * length), gaps: false };
   let vertices = 0, before = -1;
   const add = (entry) => {

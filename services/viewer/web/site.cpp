@@ -20,7 +20,7 @@ const char* mime_type(std::string_view name) {
   return "application/octet-stream";
 }
 
-constexpr std::size_t kMostFiles = 10'000;  // Debian has 600; what a wrong folder has is not listed to its end
+constexpr std::size_t kMaxFiles = 10'000;  // Debian has 600; what a wrong folder has is not listed to its end
 
 bool lies_in(const fs::path& file, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
@@ -33,7 +33,7 @@ std::map<std::string, fs::path> scripts_below(const fs::path& three) {
   const fs::path folder = fs::canonical(three, error);
   if (error) return files;
   fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
-  for (; !error && entry != fs::recursive_directory_iterator() && files.size() < kMostFiles; entry.increment(error)) {
+  for (; !error && entry != fs::recursive_directory_iterator() && files.size() < kMaxFiles; entry.increment(error)) {
     if (entry->path().extension() != ".js") continue;
     std::error_code unusable;
     const fs::path file = fs::canonical(entry->path(), unusable);

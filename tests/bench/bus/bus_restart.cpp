@@ -121,7 +121,7 @@ class Campaign {
   }
 
   /// Frames of this publisher for about a second; the time of the last one. Throws when none comes.
-  Clock::time_point hear(const Publisher& publisher, std::chrono::milliseconds duration) {
+  Clock::time_point receive(const Publisher& publisher, std::chrono::milliseconds duration) {
     Arrival arrival = first_of(publisher);
     const auto end = Clock::now() + duration;
     while (Clock::now() < end) {
@@ -144,7 +144,7 @@ class Campaign {
     std::mt19937 random(1);
     auto publisher = std::make_unique<Publisher>(options_);
     for (int i = 0; i < options_.restarts; ++i) {
-      Clock::time_point last = hear(*publisher, std::chrono::milliseconds(500 + random() % 500));
+      Clock::time_point last = receive(*publisher, std::chrono::milliseconds(500 + random() % 500));
       doomed_.merge(shm_files_of(publisher->pid()));
       // At any time between two frames: hear() ends just when one has come, its writer perhaps still about it.
       std::this_thread::sleep_for(std::chrono::microseconds(random() % 33'333));

@@ -42,8 +42,14 @@ __attribute__((constructor)) static void open_step(void) {
 static struct timespec shifted(struct timespec at, int64_t by_ns) {
   at.tv_sec += by_ns / kBillion;
   at.tv_nsec += by_ns % kBillion;
-  if (at.tv_nsec >= kBillion) at.tv_sec += 1, at.tv_nsec -= kBillion;
-  if (at.tv_nsec < 0) at.tv_sec -= 1, at.tv_nsec += kBillion;
+  if (at.tv_nsec >= kBillion) {
+    at.tv_sec += 1;
+    at.tv_nsec -= kBillion;
+  }
+  if (at.tv_nsec < 0) {
+    at.tv_sec -= 1;
+    at.tv_nsec += kBillion;
+  }
   return at;
 }
 

@@ -63,7 +63,8 @@ int be_box(const Options& options) {
   service::init_logging("box", "info");
   const auto bus = bus::connect(bus_options(options));
   service::StopToken stop;
-  service::Heartbeat heartbeat(*bus, detector::FleetService::kHeartbeatName, stop, service::Heartbeat::Twins::kAllowed);
+  service::Heartbeat heartbeat(*bus, detector::FleetService::kHeartbeatName, stop,
+                               service::Heartbeat::SecondInstance::kAllowed);
   service::Runtime runtime{*bus, heartbeat, stop, service::Pace::kRealtime, bus_options(options)};
   const auto stand_in = [&options](std::span<const cv::Mat> images) {
     const double ms = options.batch_ms + options.image_ms * static_cast<double>(images.size());
@@ -77,8 +78,8 @@ int be_box(const Options& options) {
   config.decoders = static_cast<int>(std::min(4U, std::thread::hardware_concurrency()));
   detector::FleetService service(config, runtime, {stand_in, [] { return std::string("stands in"); }});
   std::jthread end([&] {
-    stop.wait_for(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(options.seconds))),
-        stop.request_stop();
+    stop.wait_for(std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(options.seconds)));
+    stop.request_stop();
   });
   service.run();
   std::printf("box: %.0f %% of a core\n", 100 * cpu_s() / options.seconds);
@@ -166,7 +167,7 @@ int main(int argc, char** argv) {
   CLI::App app{"One detector for several robots, in processes of their own", "bench_fleet"};
   app.add_option("--role", options.role)->group("");
   app.add_option("--id", options.id)->group("");
-  app.add_option("--robots", options.robots, "Number of robots")->check(CLI::Range(1, test_support::kMostIds));
+  app.add_option("--robots", options.robots, "Number of robots")->check(CLI::Range(1, test_support::kMaxIds));
   app.add_option("--rate", options.rate_hz, "Images a second of each")->capture_default_str();
   std::vector<int> size;
   app.add_option("--size", size, "Width and height of the images")->expected(2);
@@ -179,7 +180,10 @@ int main(int argc, char** argv) {
   app.add_option("--detector", options.detector, "rtd-detector, with its options: in place of the stand-in");
   app.add_option("--link", options.link, "rtd-link: gives each robot a domain of its own");
   CLI11_PARSE(app, argc, argv);
-  if (size.size() == 2) options.width = size[0], options.height = size[1];
+  if (size.size() == 2) {
+    options.width = size[0];
+    options.height = size[1];
+  }
   if (options.role == "box") return be_box(options);
   if (options.role == "robot") return be_robot(options);
   return run(options);

@@ -33,7 +33,11 @@ struct Score {
   std::size_t first_frame = 0;
 
   void add(std::size_t frame, double error, double sigma) {
-    if (found++ == 0) first = error, first_sigma = sigma, first_frame = frame;
+    if (found++ == 0) {
+      first = error;
+      first_sigma = sigma;
+      first_frame = frame;
+    }
     squares += error * error;
     worst = std::max(worst, error);
     worst_ratio = std::max(worst_ratio, error / sigma);

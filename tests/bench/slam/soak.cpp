@@ -84,14 +84,16 @@ int main(int argc, char** argv) {
     for (const double ms : total_ms) mean_ms += ms / static_cast<double>(total_ms.size());
     std::size_t keyframes = 0, landmarks = 0;
     slam.read_map([&](const rtd::slam::Map& map) {
-      keyframes = map.next_keyframe(), landmarks = static_cast<std::size_t>(map.next_landmark());
+      keyframes = map.next_keyframe();
+      landmarks = static_cast<std::size_t>(map.next_landmark());
     });
     std::printf("| %.0f | %u (%zu) | %u (%zu) | %.1f | %.2f | %.2f | %.1f | %lu |\n",
                 static_cast<double>(seq + 1) / kFramesPerMinute, output.result.keyframes, keyframes,
                 output.result.landmarks, landmarks, resident_mb(), rtd::vision::median(tracking_ms), mean_ms,
                 1e3 * std::sqrt(error2_m2 / static_cast<double>(tracking_ms.size())), lost);
     std::fflush(stdout);
-    tracking_ms.clear(), total_ms.clear();
+    tracking_ms.clear();
+    total_ms.clear();
     error2_m2 = 0;
   }
   return 0;

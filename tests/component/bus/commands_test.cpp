@@ -119,7 +119,7 @@ TEST_P(Commands, whose_handler_throws_fail_with_its_text) {
   EXPECT_EQ(answer.message, "no map: nothing was tracked yet");
 }
 
-TEST_P(Commands, that_nobody_offers_name_the_nearest) {
+TEST_P(Commands, that_no_process_offers_name_the_nearest) {
   const CommandServer server(*bus_, "slam/reset", CommandKind::kTrigger, echo);
   const auto [cause, text] = error_of([&] { client_.call("slam/rset", "", kPatience_ms); });
   EXPECT_EQ(cause, Cause::kNotFound);

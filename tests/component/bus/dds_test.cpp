@@ -66,15 +66,19 @@ TEST_P(DdsBus, delivers_every_kind_of_message) {
 constexpr Topic<msg::PoseStamped> kOdometryMistaken{"rt/slam/odometry", QosProfile::kPose};
 
 TEST_P(DdsBus, reports_another_type_on_the_topic_to_both_sides) {
-  Collector<std::string> told_writer, told_reader;
+  Collector<std::string> writer_reports, reader_reports;
   StatusCallbacks of_writer, of_reader;
-  of_writer.on_type_mismatch = [&](const std::string& type) { told_writer.push(std::make_shared<std::string>(type)); };
-  of_reader.on_type_mismatch = [&](const std::string& type) { told_reader.push(std::make_shared<std::string>(type)); };
+  of_writer.on_type_mismatch = [&](const std::string& type) {
+    writer_reports.push(std::make_shared<std::string>(type));
+  };
+  of_reader.on_type_mismatch = [&](const std::string& type) {
+    reader_reports.push(std::make_shared<std::string>(type));
+  };
   const auto writer = here->writer(topics::kOdometry, of_writer);
   const auto reader = there->reader(
       kOdometryMistaken, [](const auto&) {}, of_reader);
-  EXPECT_EQ(*told_writer.next(), "geometry_msgs::msg::dds_::PoseStamped_");
-  EXPECT_EQ(*told_reader.next(), "nav_msgs::msg::dds_::Odometry_");
+  EXPECT_EQ(*writer_reports.next(), "geometry_msgs::msg::dds_::PoseStamped_");
+  EXPECT_EQ(*reader_reports.next(), "nav_msgs::msg::dds_::Odometry_");
 }
 
 TEST_P(DdsBus, reports_another_type_that_was_there_before_a_late_endpoint) {

@@ -74,7 +74,8 @@ TEST_F(FrameTopics, refuse_images_that_fit_into_none) {
 
 TEST_F(FrameTopics, a_frame_that_claims_more_pixels_than_its_message_has_is_implausible) {
   const auto frame = std::make_unique<msg::RgbdFrame>();
-  frame->width = 848, frame->height = 480;
+  frame->width = 848;
+  frame->height = 480;
   EXPECT_FALSE(is_plausible(*frame));
   EXPECT_FALSE(is_plausible(msg::FrameView(*frame)));
 }

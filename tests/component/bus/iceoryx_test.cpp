@@ -123,7 +123,7 @@ TEST(Iceoryx, loans_reach_readers_in_shared_memory_and_over_udp) {
   EXPECT_EQ(answered[1], static_cast<std::uint64_t>(kFrames));
 }
 
-TEST(Iceoryx, what_cannot_be_lent_goes_on_over_udp) {
+TEST(Iceoryx, what_cannot_be_lent_continues_over_udp) {
   if (roudi_answers()) GTEST_SKIP() << "an iox-roudi runs on this host";
   const Roudi roudi;
   if (!roudi.running()) GTEST_SKIP() << "iox-roudi does not run here: apt-get install iceoryx";

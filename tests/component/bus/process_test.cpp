@@ -93,7 +93,7 @@ TEST_P(DdsProcesses, nothing_is_lost_with_three_feature_frames_in_flight) {
   }
 }
 
-/// This process and the other, which both go on at the same moment.
+/// This process and the other, which both continue at the same moment.
 void stop_for_longer_than_the_lease(pid_t other) {
   kill(other, SIGSTOP);
   const std::string wake = "(sleep 7; kill -CONT " + std::to_string(getpid()) + ' ' + std::to_string(other) + ") &";

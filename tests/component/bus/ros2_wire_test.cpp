@@ -66,8 +66,18 @@ TEST_P(Ros2Wire, topics_of_standard_types_announce_names_qos_and_hashes_of_ros2)
     expect_as_ros2_wants_it(seen, topic.profile == QosProfile::kLatched);
   };
   using namespace topics;
-  check(kColorJpeg), check(kCameraInfo), check(kDetections), check(kDynamicMask), check(kOdometry), check(kPose);
-  check(kTf), check(kPath), check(kMapPoints), check(kDensePoints), check(kDiagnostics), check(kOccupancyGrid);
+  check(kColorJpeg);
+  check(kCameraInfo);
+  check(kDetections);
+  check(kDynamicMask);
+  check(kOdometry);
+  check(kPose);
+  check(kTf);
+  check(kPath);
+  check(kMapPoints);
+  check(kDensePoints);
+  check(kDiagnostics);
+  check(kOccupancyGrid);
 }
 
 TEST_P(Ros2Wire, default_and_sensor_data_subscriptions_are_served) {

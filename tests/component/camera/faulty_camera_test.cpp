@@ -27,9 +27,11 @@ const std::string kSmall = "&width=160&height=120";
 /// The camera of a synthetic source of this width, without faults.
 geometry::CameraModel pinhole(int width) {
   geometry::CameraModel::Parameters parameters;
-  parameters.width = width, parameters.height = width * 3 / 4;
+  parameters.width = width;
+  parameters.height = width * 3 / 4;
   parameters.fx = parameters.fy = 525.0 / 640 * width;
-  parameters.cx = (parameters.width - 1) / 2.0, parameters.cy = (parameters.height - 1) / 2.0;
+  parameters.cx = (parameters.width - 1) / 2.0;
+  parameters.cy = (parameters.height - 1) / 2.0;
   return geometry::CameraModel(parameters);
 }
 

@@ -57,7 +57,7 @@ TEST_P(RealsenseCamera, takes_the_mode_that_another_program_has_chosen) {
   EXPECT_EQ(frames_.all().back()->width, std::uint32_t{kWidth});
 }
 
-TEST_P(RealsenseCamera, waits_for_a_device_and_bears_that_it_goes_and_comes) {
+TEST_P(RealsenseCamera, waits_for_a_device_and_survives_that_it_goes_and_comes) {
   auto running = start();
   EXPECT_TRUE(said(msg::ServiceState::kStarting, "no RealSense device announces itself"));
   auto device = std::make_unique<RealsenseDouble>(options_, test::RealsenseScript{});

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 constexpr int kWidth = 64, kHeight = 48;
 constexpr const char* kSource = "ros2:/cam/color/image_raw,/cam/aligned_depth_to_color/image_raw";
 
-/// A driver in a thread: 30 frames a second until it ends. Its stamps go on where those of the one before ended.
+/// A driver in a thread: 30 frames a second until it ends. Its stamps continue where those of the one before ended.
 class Driver {
  public:
   Driver(const bus::BusOptions& options, bool reliable, const std::string& depth_encoding = "16UC1")
@@ -54,7 +54,8 @@ class Driver {
                           const std::string& frame = "camera_color_optical_frame") {
     msg::Image image;
     image.header = {msg::to_time(stamp_ns_), frame};
-    image.width = kWidth, image.height = kHeight;
+    image.width = kWidth;
+    image.height = kHeight;
     image.encoding = encoding;
     image.step = kWidth * pixel_bytes;
     image.data.assign(std::size_t{image.step} * kHeight, value);
@@ -64,10 +65,12 @@ class Driver {
     for (; !ended_; stamp_ns_ += 33'000'000) {
       msg::CameraInfo info;
       info.header.stamp = msg::to_time(stamp_ns_);
-      info.width = kWidth, info.height = kHeight;
+      info.width = kWidth;
+      info.height = kHeight;
       info.distortion_model = "plumb_bob";
       info.k = {60, 0, 31.5, 0, 60, 23.5, 0, 0, 1};
-      send(*info_, info), send(*depth_info_, info);
+      send(*info_, info);
+      send(*depth_info_, info);
       send(*color_, image("rgb8", 3, 77));
       send(*depth_, image(depth_encoding_.c_str(), 2, 1));  // 257 mm
       send(*unaligned_, image(depth_encoding_.c_str(), 2, 1, depth_frame_));
@@ -123,7 +126,7 @@ TEST_P(Ros2Camera, plays_a_driver_that_sends_best_effort) {
   EXPECT_DOUBLE_EQ(frame->intrinsics[0], 60);
 }
 
-TEST_P(Ros2Camera, waits_for_a_reliable_driver_bears_its_restart_and_stops_at_once) {
+TEST_P(Ros2Camera, waits_for_a_reliable_driver_survives_its_restart_and_stops_at_once) {
   auto running = start();
   EXPECT_TRUE(said(msg::ServiceState::kStarting, "it has no publisher in DDS domain"));
   auto driver = std::make_unique<Driver>(options_, true);

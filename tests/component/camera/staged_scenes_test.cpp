@@ -122,7 +122,8 @@ TEST(ApproachScene, moves_its_box_along_the_viewing_axis) {
     const cv::Rect& box = frame.objects[0].box_px;
     EXPECT_NEAR(box.x + box.width / 2, 80, 30);
     EXPECT_NEAR(box.y + box.height / 2, 60, 30);
-    smallest = std::min(smallest, box.area()), largest = std::max(largest, box.area());
+    smallest = std::min(smallest, box.area());
+    largest = std::max(largest, box.area());
   }
   EXPECT_GT(largest, 4 * smallest);
 }
@@ -155,7 +156,8 @@ TEST(FlickerScene, changes_the_light_and_nothing_else) {
     const auto gain = [&](const SourceFrame& frame) {
       return cv::mean(frame.image.color_bgr)[1] / cv::mean(lit[i].image.color_bgr)[1];
     };
-    darkest = std::min(darkest, gain(unsteady[i])), brightest = std::max(brightest, gain(unsteady[i]));
+    darkest = std::min(darkest, gain(unsteady[i]));
+    brightest = std::max(brightest, gain(unsteady[i]));
     darkest_half = std::min(darkest_half, gain(half[i]));
   }
   EXPECT_LT(darkest, 0.65);

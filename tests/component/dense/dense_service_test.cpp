@@ -99,7 +99,7 @@ float depth_of_nearest(const msg::PointCloud2& cloud) {
 
 TEST_F(DenseServiceTest, publishes_the_wall_without_the_person_and_writes_it) {
   Inbox<msg::PointCloud2> clouds;
-  hear(bus::topics::kDensePoints, clouds);
+  receive(bus::topics::kDensePoints, clouds);
   config_.publish_period_ms = 100;
   config_.out_dir = (folder_ / "run").string();
   config_.background = true;
@@ -117,7 +117,7 @@ TEST_F(DenseServiceTest, publishes_the_wall_without_the_person_and_writes_it) {
 
 TEST_F(DenseServiceTest, publishes_a_floor_plan_when_it_changes_and_writes_maps_for_navigation) {
   Inbox<msg::OccupancyGrid> plans;
-  hear(bus::topics::kOccupancyGrid, plans);
+  receive(bus::topics::kOccupancyGrid, plans);
   config_.grid.publish_period_ms = 100;
   config_.grid.core.find_floor = false;
   config_.grid.core.floor_m = -1;

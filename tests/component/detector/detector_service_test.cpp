@@ -35,7 +35,7 @@ class DetectorServiceTest : public test_support::ServiceFixture<DetectorService>
       : frames_(bus_->writer(bus::topics::kFrame)),
         jpegs_(bus_->writer(bus::topics::kColorJpeg)),
         tracking_(bus_->writer(bus::topics::kTracking)) {
-    hear(bus::topics::kDetections, answer_box_);
+    receive(bus::topics::kDetections, answer_box_);
     std::filesystem::create_directories(folder_);
     config_.model = (folder_ / "tiny.onnx").string();
     config_.core.class_names = {"person", "box"};
@@ -117,7 +117,7 @@ TEST_F(DetectorServiceTest, sends_boxes_and_empty_arrays) {
   EXPECT_THAT(answers[1]->detections, SizeIs(0));
 }
 
-TEST_F(DetectorServiceTest, goes_on_with_the_cpu_and_names_the_device_in_its_status) {
+TEST_F(DetectorServiceTest, continues_with_the_cpu_and_names_the_device_in_its_status) {
   config_.core.engine = "opencl:no such device";
   start(service::Pace::kLockstep);
   EXPECT_TRUE(wait_state(msg::ServiceState::kReady, "computes on CPU (OpenCV DNN) in place of opencl:no such device"));
@@ -260,7 +260,7 @@ TEST_F(DetectorServiceTest, uses_the_newest_pose_in_realtime_and_waits_for_none)
   EXPECT_NEAR(answered_width_px(answered - 1), 13, 0.01);
 }
 
-TEST_F(DetectorServiceTest, goes_on_with_the_last_roll_when_slam_falls_silent_in_lockstep) {
+TEST_F(DetectorServiceTest, continues_with_the_last_roll_when_slam_falls_silent_in_lockstep) {
   config_.derotate = "on";
   config_.roll_timeout_ms = 50;
   start(service::Pace::kLockstep);
@@ -293,7 +293,7 @@ TEST_F(DetectorServiceTest, reports_how_long_it_took) {
 }
 
 TEST_F(DetectorServiceTest, is_not_ready_without_a_filter) {
-  hear_no_more();
+  stop_receiving();
   launch(service::Pace::kLockstep);
   ASSERT_TRUE(states_.wait([](const auto& all) { return !all.empty() && !all.back()->message.empty(); }));
   for (const auto& status : states_.all()) EXPECT_EQ(status->state, msg::ServiceState::kStarting);

@@ -50,7 +50,7 @@ class EngineTest : public ::testing::Test {
     std::filesystem::create_directories(folder_);
     config_.model_path = (folder_ / "tiny.onnx").string();
     config_.class_names = {"person", "box"};
-    config_.kernel_cache = folder_.string() + "_kernels";  // kept: OpenCV goes on to write there
+    config_.kernel_cache = folder_.string() + "_kernels";  // kept: OpenCV continues to write there
     std::ofstream(config_.model_path, std::ios::binary) << test::tiny_network_onnx({});
   }
   ~EngineTest() override { std::filesystem::remove_all(folder_); }
@@ -152,7 +152,7 @@ TEST_F(EngineTest, a_device_that_is_not_there_is_an_error_that_says_which_are) {
   EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<EngineError>(HasSubstr(known)));
 }
 
-TEST_F(EngineTest, the_guard_goes_on_with_the_cpu) {
+TEST_F(EngineTest, the_guard_continues_with_the_cpu) {
   config_.engine = "opencl:no such device";
   EngineGuard guard(config_, true);
   EXPECT_THAT(guard.fallback(), HasSubstr("no such device"));
@@ -256,7 +256,11 @@ TEST(Disagreement, is_found_in_place_score_class_and_number) {
     return disagreement(boxes, other, 0.25);
   };
   EXPECT_EQ(disagreement(boxes, boxes, 0.25), "");
-  EXPECT_EQ(changed([](auto& other) { other[0].x_px += 0.4F, other[1].score += 0.0005F; }), "");
+  EXPECT_EQ(changed([](auto& other) {
+              other[0].x_px += 0.4F;
+              other[1].score += 0.0005F;
+            }),
+            "");
   EXPECT_THAT(changed([](auto& other) { other[0].width_px += 0.6F; }), HasSubstr("does not find person"));
   EXPECT_THAT(changed([](auto& other) { other[1].score -= 0.002F; }), HasSubstr("does not find chair"));
   EXPECT_THAT(changed([](auto& other) { other[1].class_name = "sofa"; }), Not(IsEmpty()));

@@ -52,7 +52,7 @@ class Box {
  public:
   Box(FleetConfig config, Inference inference)
       : bus_(bus::connect(loopback())),
-        heartbeat_(*bus_, FleetService::kHeartbeatName, stop_, service::Heartbeat::Twins::kAllowed),
+        heartbeat_(*bus_, FleetService::kHeartbeatName, stop_, service::Heartbeat::SecondInstance::kAllowed),
         runtime_{*bus_, heartbeat_, stop_, service::Pace::kRealtime, loopback()},
         running_(std::async(std::launch::async, [this, config = std::move(config), inference = std::move(inference)] {
           return FleetService(config, runtime_, inference).run();
@@ -169,7 +169,7 @@ TEST(Fleet, mixes_up_no_answers_at_full_speed) {
   EXPECT_GE(answered, test_support::kSanitized ? 100u : 1000u);
 }
 
-TEST(Fleet, tells_each_robot_how_it_is_served) {
+TEST(Fleet, reports_to_each_robot_how_it_is_served) {
   const auto anna = robot({"anna", 1});
   Box box({}, stand_in(1ms));
   ASSERT_TRUE(eventually([&] { return metric(anna->status(), "frames") >= 90; }));

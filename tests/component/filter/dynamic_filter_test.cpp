@@ -107,7 +107,7 @@ TEST(DynamicFilter, removes_a_person_from_the_first_frame_on) {
   EXPECT_EQ(removed_share(result, block, false), 0.0);
 }
 
-TEST(DynamicFilter, changes_its_mode_while_it_runs_and_begins_anew_in_each) {
+TEST(DynamicFilter, changes_its_mode_while_it_runs_and_starts_again_in_each) {
   const MovingScene scene;
   DynamicFilter filter = make_filter(FilterMode::kGeometry), fresh = make_filter(FilterMode::kGeometry);
   const auto frame = [&](std::uint64_t i) {

@@ -20,7 +20,7 @@ class FilterServiceTest : public test_support::ServiceFixture<FilterService> {
         boxes_(bus_->writer(bus::topics::kDetections)),
         results_(bus_->writer(bus::topics::kTracking)),
         events_(bus_->writer(bus::topics::kKeyframes)) {
-    hear(bus::topics::kFeatures, answers_);
+    receive(bus::topics::kFeatures, answers_);
     config_.feedback_timeout_ms = 5000;
   }
   void TearDown() override {

@@ -51,7 +51,7 @@ TEST_F(FilterServiceTest, changes_its_mode_by_command) {
 
 TEST_F(FilterServiceTest, publishes_what_moves_while_there_is_a_subscriber) {
   Inbox<msg::Image> masks;
-  hear(bus::topics::kDynamicMask, masks);
+  receive(bus::topics::kDynamicMask, masks);
   start(service::Pace::kAsap, true);
   send_boxes(0, true);
   send_frame(0);
@@ -66,9 +66,9 @@ TEST_F(FilterServiceTest, publishes_objects_in_the_world_once_slam_has_said_wher
   Inbox<msg::Movers> movers;
   Inbox<msg::Detection3DArray> mover_boxes;
   Inbox<msg::MarkerArray> markers;
-  hear(bus::topics::kMovers, movers);
-  hear(bus::topics::kMoverBoxes, mover_boxes);
-  hear(bus::topics::kMoverMarkers, markers);
+  receive(bus::topics::kMovers, movers);
+  receive(bus::topics::kMoverBoxes, mover_boxes);
+  receive(bus::topics::kMoverMarkers, markers);
   start(service::Pace::kLockstep, true);
   for (std::uint64_t seq = 0; seq < 3; ++seq) {
     send_boxes(seq, true);
@@ -151,7 +151,7 @@ TEST_F(FilterServiceTest, sheds_load_while_poses_come_late_in_realtime_and_takes
   })) << "a step after each 3 s";
 }
 
-TEST_F(FilterServiceTest, never_sheds_load_when_told_not_to) {
+TEST_F(FilterServiceTest, never_sheds_load_when_switched_off) {
   config_.shed_load = false;
   start(service::Pace::kRealtime, true);
   for (std::uint64_t seq = 0; seq < 30; ++seq) {
@@ -177,7 +177,7 @@ TEST_F(FilterServiceTest, reports_within_half_a_second_that_the_detector_has_gon
   EXPECT_TRUE(wait_state(msg::ServiceState::kRunning));
 }
 
-TEST_F(FilterServiceTest, goes_on_with_geometry_when_the_detector_ends_in_lockstep) {
+TEST_F(FilterServiceTest, continues_with_geometry_when_the_detector_ends_in_lockstep) {
   start(service::Pace::kLockstep, true);
   detector_beats_.stop();
   say("detector", msg::ServiceState::kFinished);
@@ -237,7 +237,7 @@ TEST_F(FilterServiceTest, keeps_to_the_first_of_two_cameras) {
   send_frame(1);
   ASSERT_TRUE(answers_.wait_count(2));
   EXPECT_EQ(answers_.at(1)->seq, 1U);
-  EXPECT_TRUE(wait_metric("frames_foreign", 2));
+  EXPECT_TRUE(wait_metric("frames_refused", 2));
 }
 
 TEST_F(FilterServiceTest, a_camera_that_stutters_keeps_its_place) {

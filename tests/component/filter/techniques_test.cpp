@@ -121,7 +121,9 @@ TEST(Techniques, look_back_off_leaves_what_creeps) {
 
 TEST(Techniques, object_drift_off_leaves_a_common_shift) {
   ObjectDrift drift;
-  drift.features = 60, drift.shift_px = 20, drift.sigma_px = 0.2F;
+  drift.features = 60;
+  drift.shift_px = 20;
+  drift.sigma_px = 0.2F;
   EXPECT_TRUE(drifts(drift, effective_config(config_of(FilterMode::kRtd, {})).belief));
   const FilterConfig without = config_of(FilterMode::kRtd, {&Techniques::object_drift});
   EXPECT_FALSE(drifts(drift, effective_config(without).belief));

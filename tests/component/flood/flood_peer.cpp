@@ -47,7 +47,7 @@ class Target {
 
 /// The newest message of somebody else's.
 template <class T>
-class Overheard {
+class NewestOfOthers {
  public:
   void put(std::shared_ptr<const T> message) {
     const std::lock_guard lock(mutex_);
@@ -101,14 +101,15 @@ class TopicTarget final : public Target {
         writer_(bus.writer(topic)),
         made_up_(bus::interop::message_of(topic, 0)),
         message_(std::make_unique<T>()) {
-    reader_ = bus.template reader<T>(topic, [this](std::shared_ptr<const T> heard) { heard_.put(std::move(heard)); });
+    reader_ =
+        bus.template reader<T>(topic, [this](std::shared_ptr<const T> received) { newest_.put(std::move(received)); });
   }
   void attack(std::uint64_t turn) override {
     constexpr std::size_t kLarge = 1'000'000;
     if (spares_bandwidth_ && sizeof(T) > kLarge && turn % 10 != 0) return;
-    const auto heard = heard_.get();
-    if (turn % 2 == 0 && heard) {
-      *message_ = *heard;
+    const auto received = newest_.get();
+    if (turn % 2 == 0 && received) {
+      *message_ = *received;
       change(*message_, turn);
     } else {
       *message_ = *made_up_;
@@ -122,7 +123,7 @@ class TopicTarget final : public Target {
   bus::Writer<T> writer_;
   std::unique_ptr<T> made_up_, message_;
   testing::Attacker attacker_{1};
-  Overheard<T> heard_;
+  NewestOfOthers<T> newest_;
   bus::Reader<T> reader_;
 };
 

@@ -75,7 +75,7 @@ TEST_F(CollectorTest, keeps_every_frame_and_a_few_pictures) {
   EXPECT_NEAR(picture.at<cv::Vec3b>(20, 20)[0], 5, 3);
 }
 
-TEST_F(CollectorTest, goes_on_after_it_has_subscribed_again) {
+TEST_F(CollectorTest, continues_after_it_has_subscribed_again) {
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
     if (seq == kFrames / 2) collector_.subscribe_again();
     publish(seq);
@@ -86,7 +86,7 @@ TEST_F(CollectorTest, goes_on_after_it_has_subscribed_again) {
   EXPECT_EQ(record.samples.size(), 6U);
 }
 
-TEST_F(CollectorTest, hears_filter_and_slam_before_the_first_frame) {
+TEST_F(CollectorTest, receives_from_filter_and_slam_before_the_first_frame) {
   EXPECT_TRUE(collector_.connected());
   tracking_ = {};
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);

@@ -93,7 +93,7 @@ TEST_F(DoctorTest, peers_are_resolved_and_need_a_network) {
 
 TEST_F(DoctorTest, ports_in_use_are_named) {
   {
-    const Port everybody(bus::discovery_port(domain()));
+    const Port discovery(bus::discovery_port(domain()));
     EXPECT_EQ(doctor({}), 1);
     EXPECT_THAT(rtd_.output(), HasSubstr("FAIL ports: UDP port " + std::to_string(bus::discovery_port(domain()))));
   }
@@ -132,7 +132,7 @@ TEST_F(DoctorTest, the_enclaves_of_a_keystore_are_checked) {
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("FAIL keystore: "), HasSubstr("/detector/cert.pem")));
 }
 
-TEST_F(DoctorTest, keys_that_expire_soon_are_told_and_expired_ones_fail) {
+TEST_F(DoctorTest, keys_that_expire_soon_are_reported_and_expired_ones_fail) {
   constexpr std::int64_t kDayS = 24 * 3600;
   bus::BusOptions options;
   options.security = {scratch_ / "keys", "/rtd/launcher"};

@@ -134,7 +134,7 @@ TEST_F(EndToEndTest, files_that_a_run_clears_are_not_reached_through_links) {
   EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(out_ + "/trajectory.txt")));
 }
 
-TEST_F(EndToEndTest, a_run_whose_output_nobody_reads_goes_on_to_its_report) {
+TEST_F(EndToEndTest, a_run_whose_output_is_not_read_continues_to_its_report) {
   RtdCommand shell("/bin/sh");
   const std::string rtd = RTD_EXECUTABLE;
   const std::string run = rtd + " run --source 'synthetic:office?frames=20' --pace lockstep --detector off --domain 134 --out " +
@@ -147,7 +147,7 @@ TEST_F(EndToEndTest, a_run_whose_output_nobody_reads_goes_on_to_its_report) {
   EXPECT_EQ(report()["frames_in"], 20);
 }
 
-TEST_F(EndToEndTest, a_slam_killed_during_the_run_goes_on_with_its_last_checkpoint) {
+TEST_F(EndToEndTest, a_slam_killed_during_the_run_continues_with_its_last_checkpoint) {
   rtd_.start(
       arguments(130, "synthetic:office?frames=180", {"--detector", "off", "--set", "slam.map.checkpoint_s=0.2"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();

@@ -70,7 +70,7 @@ TEST_F(FrontTest, the_tab_key_completes_commands_options_and_schemes) {
   EXPECT_EQ(completed(" run --source tum:"), "\n") << "file names";
 }
 
-TEST_F(FrontTest, tells_its_version) {
+TEST_F(FrontTest, prints_its_version) {
   EXPECT_EQ(rtd_.run({"version"}), 0);
   EXPECT_THAT(rtd_.output(), testing::MatchesRegex("rtd [0-9]+\\.[0-9]+\\.[0-9]+\n"));
 }
@@ -81,17 +81,17 @@ TEST_F(FrontTest, becomes_a_service_with_its_arguments_and_exit_code) {
 }
 
 TEST_F(FrontTest, a_replay_with_viewer_gives_it_the_same_bus_and_ends_it) {
-  const fs::path heard = scratch_ / "viewer";
-  std::ofstream(scratch_ / "rtd-viewer") << "#!/bin/sh\necho \"$$ $*\" > " << heard << ".part\nmv " << heard << ".part "
-                                         << heard << "\nexec sleep 60\n";
-  std::ofstream(scratch_ / "rtd-replay") << "#!/bin/sh\nwhile [ ! -e " << heard
+  const fs::path received = scratch_ / "viewer";
+  std::ofstream(scratch_ / "rtd-viewer") << "#!/bin/sh\necho \"$$ $*\" > " << received << ".part\nmv " << received
+                                         << ".part " << received << "\nexec sleep 60\n";
+  std::ofstream(scratch_ / "rtd-replay") << "#!/bin/sh\nwhile [ ! -e " << received
                                          << " ]; do sleep 0.02; done\necho \"played: $*\"\nexit 3\n";
   for (const char* name : {"rtd-viewer", "rtd-replay"}) fs::permissions(scratch_ / name, fs::perms::owner_all);
   EXPECT_EQ(rtd_.run({"replay", "a.mcap", "--viewer", "--domain", "9", "--rate", "2", "--set", "viewer.port=81"}), 3);
   EXPECT_EQ(rtd_.output(), "played: a.mcap --domain 9 --rate 2 --set viewer.port=81\n");
   pid_t viewer = 0;
   std::string arguments;
-  std::getline(std::ifstream(heard) >> viewer, arguments);
+  std::getline(std::ifstream(received) >> viewer, arguments);
   EXPECT_EQ(arguments, " --domain 9 --set viewer.port=81 --log-level warning");
   for (int i = 0; i < 2000 && kill(viewer, 0) == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_NE(kill(viewer, 0), 0) << "it still runs";

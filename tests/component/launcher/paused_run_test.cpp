@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A run in which everything is stopped and goes on, as in a paused container. RTD_PAUSE_S: how long, 10 s without.
+// A run in which everything is stopped and continues, as in a paused container. RTD_PAUSE_S: how long, 10 s without.
 #include <gmock/gmock.h>
 
 #include <cstdlib>
@@ -36,7 +36,7 @@ class PausedRun : public testing::TestWithParam<std::string> {
     const char* const text = std::getenv("RTD_PAUSE_S");
     return std::chrono::seconds(text == nullptr ? 10 : std::atoi(text));
   }
-  /// The launcher goes on first: it could kill the others.
+  /// The launcher continues first: it could kill the others.
   void stop_everything_for_a_while() {
     std::vector<pid_t> all = {static_cast<pid_t>(rtd_.process())};
     for (const char* service : {"camera", "filter", "slam"}) all.push_back(pid_of(service));
@@ -55,7 +55,7 @@ class PausedRun : public testing::TestWithParam<std::string> {
   RtdCommand rtd_;
 };
 
-TEST_P(PausedRun, goes_on_with_all_services_and_the_same_map) {
+TEST_P(PausedRun, continues_with_all_services_and_the_same_map) {
   for (const char* pace : {"lockstep", "realtime"}) {
     out_ = scratch_ / pace;
     rtd_.start({"run", "--source", "synthetic:office?frames=150", "--out", out_, "--domain", "137", "--detector", "off",

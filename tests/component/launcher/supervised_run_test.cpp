@@ -128,7 +128,7 @@ TEST_F(SupervisedRunTest, a_killed_service_is_named_and_restarted_and_the_others
   EXPECT_THAT(rtd_.output(), Not(HasSubstr("filter died")));
 }
 
-TEST_F(SupervisedRunTest, a_live_camera_that_is_restarted_waits_for_nobody) {
+TEST_F(SupervisedRunTest, a_live_camera_that_is_restarted_does_not_wait) {
   const std::string marker = scratch_ / "died";
   script("camera", "if [ ! -e " + marker + " ]; then touch " + marker + "; kill -KILL $$; fi; echo \"$@\"");
   std::vector<std::string> endless = arguments();
@@ -143,12 +143,12 @@ TEST_F(SupervisedRunTest, a_crashed_service_is_restarted_and_the_report_says_why
   script("filter", "if [ ! -e " + marker + " ]; then touch " + marker + "; kill -SEGV $$; fi; " + kServe);
   script("camera", "sleep 1");
   rtd_.run(arguments());
-  for (const std::string& told : {rtd_.output(), text_of(scratch_ / "out/report.json")})
-    EXPECT_THAT(told, AllOf(HasSubstr("filter died: killed by signal 11 (SIGSEGV), restart in 200 ms"),
-                            HasSubstr("filter restarted (1st time)")));
+  for (const std::string& reported : {rtd_.output(), text_of(scratch_ / "out/report.json")})
+    EXPECT_THAT(reported, AllOf(HasSubstr("filter died: killed by signal 11 (SIGSEGV), restart in 200 ms"),
+                                HasSubstr("filter restarted (1st time)")));
 }
 
-TEST_F(SupervisedRunTest, services_are_restarted_although_nobody_reads_what_the_run_prints) {
+TEST_F(SupervisedRunTest, services_are_restarted_although_the_output_of_the_run_is_not_read) {
   const std::string lives = scratch_ / "lives";
   script("filter", "echo one >> " + lives + "; sleep 0.05; kill -SEGV $$");
   script("camera", "sleep 6");
@@ -169,12 +169,12 @@ TEST_F(SupervisedRunTest, a_service_that_keeps_dying_fails_the_run) {
   EXPECT_THAT(rtd_.output(), HasSubstr("slam died: exit code 3, 3 times in a row: given up"));
 }
 
-TEST_F(SupervisedRunTest, ctrl_c_ends_polite_and_deaf_services_within_two_seconds) {
+TEST_F(SupervisedRunTest, ctrl_c_ends_polite_and_unresponsive_services_within_two_seconds) {
   script("camera", kServe);
-  script("slam", "trap '' TERM INT; echo deaf; while :; do sleep 0.05; done");
+  script("slam", "trap '' TERM INT; echo unresponsive; while :; do sleep 0.05; done");
   rtd_.start(arguments());
   ASSERT_TRUE(rtd_.wait_for("frame"));
-  usleep(300'000);  // the deaf one has set its trap
+  usleep(300'000);  // the unresponsive one has set its trap
 
   const auto pressed = std::chrono::steady_clock::now();
   rtd_.interrupt();

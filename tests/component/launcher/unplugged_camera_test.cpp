@@ -23,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 using camera::test::RealsenseDouble;
 using camera::test::RealsenseScript;
 
-/// A room that a camera on DDS shows back and forth, so that it goes on where it was after each unplugging.
+/// A room that a camera on DDS shows back and forth, so that it continues where it was after each unplugging.
 class Room {
  public:
   Room() {
@@ -39,8 +39,11 @@ class Room {
   }
   RealsenseScript script() {
     RealsenseScript script;
-    script.width = camera_.width, script.height = camera_.height;
-    script.focal_px = camera_.fx, script.unit_m = unit_m_, script.depth_ahead_m = 0;
+    script.width = camera_.width;
+    script.height = camera_.height;
+    script.focal_px = camera_.fx;
+    script.unit_m = unit_m_;
+    script.depth_ahead_m = 0;
     script.next = [this](std::vector<std::uint8_t>& rgb, std::vector<std::uint8_t>& depth) {
       const std::size_t last = frames_.size() - 1, step = shown_++ % (2 * last);
       const auto& [color, range] = frames_.at(step <= last ? step : 2 * last - step);

@@ -62,7 +62,8 @@ TEST(Discovery, of_a_robot_behind_a_link_is_ten_endpoints_at_most) {
   const ScratchFolder scratch;
   const Endpoints in_robot(kRobot), in_fleet(kFleet);
   bus::BusOptions box;  // the GPU box: reads the images, answers with boxes
-  box.domain = kFleet, box.robot = "anna";
+  box.domain = kFleet;
+  box.robot = "anna";
   const auto fleet = bus::connect(box);
   const auto images = fleet->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [](const auto&) {});
   const auto boxes = fleet->writer(bus::topics::kDetections);
@@ -84,7 +85,8 @@ TEST(Discovery, of_a_robot_behind_a_link_is_ten_endpoints_at_most) {
   EXPECT_LE(linked, 10U);
   EXPECT_GE(linked, 7U) << "poses, images and heartbeats";
   EXPECT_GT(whole, 30U);
-  link.interrupt(), run.interrupt();
+  link.interrupt();
+  run.interrupt();
   EXPECT_EQ(link.wait(), 0) << link.output();
   run.wait();
 }

@@ -66,7 +66,8 @@ TEST(LinkProcess, brings_images_to_a_detector_and_its_boxes_back) {
   EXPECT_TRUE(filter.alive("detector")) << "the robot knows that it is served";
   EXPECT_TRUE(filter.alive("link"));
 
-  camera.interrupt(), link.interrupt();
+  camera.interrupt();
+  link.interrupt();
   EXPECT_EQ(link.wait(), 0) << link.output();
   camera.wait();
 }
@@ -98,7 +99,8 @@ TEST(LinkProcess, passes_both_ways_between_secured_domains_and_nothing_to_progra
   }
   EXPECT_FALSE(boxes.all().empty()) << link.output();
   EXPECT_TRUE(stolen.all().empty());
-  camera.interrupt(), link.interrupt();
+  camera.interrupt();
+  link.interrupt();
   EXPECT_EQ(link.wait(), 0) << link.output();
   camera.wait();
 }

@@ -44,7 +44,10 @@ class OneWayTest : public ::testing::TestWithParam<std::pair<const char*, const 
     out_.emplace(*robot_side_, *fleet_side_, *rules_, Direction::kToFleet);
     in_.emplace(*fleet_side_, *robot_side_, *rules_, Direction::kToRobot);
     ticker_ = std::thread([this] {
-      for (; !ended_; std::this_thread::sleep_for(20ms)) out_->tick(), in_->tick();
+      for (; !ended_; std::this_thread::sleep_for(20ms)) {
+        out_->tick();
+        in_->tick();
+      }
     });
   }
   template <class Holds>
@@ -141,7 +144,8 @@ TEST_P(OneWayTest, heartbeats_do_not_come_back) {
   std::this_thread::sleep_for(500ms);
   constexpr std::size_t kCount = 200;
   for (std::size_t i = 0; i < kCount; ++i) {
-    robot_writer->write(heartbeat), fleet_writer->write(heartbeat);
+    robot_writer->write(heartbeat);
+    fleet_writer->write(heartbeat);
     std::this_thread::sleep_for(2ms);
   }
   EXPECT_TRUE(at_robot.wait_count(2 * kCount));

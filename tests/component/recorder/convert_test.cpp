@@ -31,7 +31,7 @@ class ConvertTest : public testing::Test {
   std::string output_;
 };
 
-TEST_F(ConvertTest, helps_and_tells_its_exit_codes) {
+TEST_F(ConvertTest, helps_and_documents_its_exit_codes) {
   EXPECT_EQ(convert({"--help"}), 0);
   EXPECT_THAT(output_, AllOf(HasSubstr("FILE.bag"), HasSubstr("tum:FOLDER or FILE.mcap"), HasSubstr("--compress"),
                              HasSubstr("Exit codes:")));

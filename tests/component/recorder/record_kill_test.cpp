@@ -96,7 +96,7 @@ class Watermark {
     pid_ = pid;
     acknowledged_ = 0;
   }
-  void hear(const msg::ServiceStatus& status) {
+  void receive(const msg::ServiceStatus& status) {
     const std::lock_guard lock(mutex_);
     if (status.pid != pid_) return;
     for (const msg::Metric& metric : status.metrics) {
@@ -146,7 +146,7 @@ class RecordKill : public ::testing::Test {
   /// What the recorder says to have on disk.
   bus::Reader<msg::ServiceStatus> listen(Watermark& watermark) {
     return typed_->reader<msg::ServiceStatus>(bus::topics::kStatus,
-                                              [&watermark](const auto& status) { watermark.hear(*status); });
+                                              [&watermark](const auto& status) { watermark.receive(*status); });
   }
   /// Nothing but the end may be missing: then no chunk before it is.
   static RecordedFile recover(const fs::path& path) {

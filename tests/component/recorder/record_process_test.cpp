@@ -44,7 +44,7 @@ Bytes some_bytes(std::uint32_t number, std::size_t size) {
 }
 
 template <class... Writer>
-void wait_heard(const Writer&... writers) {
+void wait_matched(const Writer&... writers) {
   for (int i = 0; i < 10'000 && ((writers.matched() == 0) || ...); ++i) std::this_thread::sleep_for(1ms);
   ASSERT_TRUE(((writers.matched() > 0) && ...));
   std::this_thread::sleep_for(200ms);  // the other side matches too
@@ -73,7 +73,7 @@ TEST_F(RecordProcess, four_topics_with_raw_frames_are_complete_to_the_byte) {
   const auto odometry = raw->writer({"rt/slam/odometry", "nav_msgs::msg::dds_::Odometry_"}, {});
   const auto unknown = raw->writer({"rt/laser", "vendor_msgs::msg::dds_::Laser_"}, {});
   RecorderProcess recorder(test_domain(), {"-o", folder_ / "run.mcap"});
-  wait_heard(frames, tracking, *odometry, *unknown);
+  wait_matched(frames, tracking, *odometry, *unknown);
 
   std::map<std::string, std::vector<Bytes>> sent;
   auto frame = std::make_unique<msg::RgbdFrame>();
@@ -120,7 +120,7 @@ TEST_F(RecordProcess, begins_and_ends_recordings_by_command) {
   for (const char* name : {"first.mcap", "second.mcap"}) {
     const bus::CommandAnswer started = client.call("recorder/start", name, 20'000);
     ASSERT_TRUE(started.success) << started.message;
-    wait_heard(*laser);
+    wait_matched(*laser);
     ASSERT_TRUE(laser->write(some_bytes(1, 40)));
     std::this_thread::sleep_for(300ms);
     const bus::CommandAnswer stopped = client.call("recorder/stop", "", 20'000);
@@ -136,7 +136,7 @@ TEST_F(RecordProcess, parts_of_a_split_recording_are_complete_and_compressed) {
   const auto writer = raw->writer({"rt/laser", "vendor_msgs::msg::dds_::Laser_"}, {});
   RecorderProcess recorder(test_domain(), {"-o", folder_ / "bag", "--split", "60kB", "--compress", "zstd", "--topics",
                                            "/laser", "--set", "record.chunk_kib=32"});
-  wait_heard(*writer);
+  wait_matched(*writer);
   for (std::uint32_t i = 0; i < kMessages; ++i) {
     Bytes message(3000);
     for (std::size_t j = 4; j < message.size(); ++j) message[j] = static_cast<std::byte>((j * j + i * 31) >> 3);
@@ -191,7 +191,7 @@ TEST_F(RecordProcess, a_full_disk_ends_it_and_keeps_what_was_written) {
   const auto writer = raw->writer({"rt/laser", "vendor_msgs::msg::dds_::Laser_"}, {});
   RecorderProcess recorder(
       test_domain(), {"-o", folder_ / "disk" / "run.mcap", "--topics", "/laser", "--set", "record.min_free_mib=0"});
-  wait_heard(*writer);
+  wait_matched(*writer);
   constexpr std::size_t kSize = 100'000, kDiskBytes = 4U << 20U;
   std::uint32_t sent = 0;
   for (; sent * kSize < 2 * kDiskBytes && writer->matched() > 0; ++sent) {

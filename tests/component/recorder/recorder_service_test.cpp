@@ -45,7 +45,7 @@ class RecorderTest : public test_support::ServiceFixture<RecorderService> {
     latched.durability = bus::RawQos::Durability::kTransientLocal;
     return writer(ros2::kSchemasTopic, ros2::kSchemasType, latched);
   }
-  static void wait_heard(const bus::RawWriter& writer, int readers = 1) {
+  static void wait_matched(const bus::RawWriter& writer, int readers = 1) {
     for (int i = 0; i < 5000 && writer.matched() < readers; ++i) std::this_thread::sleep_for(1ms);
     ASSERT_EQ(writer.matched(), readers);
   }
@@ -56,7 +56,7 @@ class RecorderTest : public test_support::ServiceFixture<RecorderService> {
 TEST_F(RecorderTest, commands_end_a_recording_and_begin_another) {
   start(service::Pace::kRealtime);
   const auto pose = writer("rt/slam/pose", "geometry_msgs::msg::dds_::PoseStamped_");
-  wait_heard(*pose);
+  wait_matched(*pose);
   for (std::uint8_t i = 0; i < 5; ++i) pose->write(cdr(i));
   ASSERT_TRUE(wait_metric("messages", 5));
   EXPECT_TRUE(wait_metric("recording", 1));
@@ -77,7 +77,7 @@ TEST_F(RecorderTest, commands_end_a_recording_and_begin_another) {
   const bus::CommandAnswer started = client.call("recorder/start", "second", 10'000);
   EXPECT_TRUE(started.success) << started.message;
   EXPECT_EQ(started.message, "recording to " + second);
-  wait_heard(*pose);
+  wait_matched(*pose);
   pose->write(cdr(7));
   ASSERT_TRUE(wait_metric("messages", 1));
   EXPECT_EQ(stop(), service::kOk);
@@ -144,8 +144,8 @@ TEST_F(RecorderTest, records_known_and_unknown_types_byte_by_byte) {
   start(service::Pace::kRealtime);
   const auto pose = writer("rt/slam/pose", "geometry_msgs::msg::dds_::PoseStamped_");
   const auto thing = writer("some/thing", "Thing");
-  wait_heard(*pose);
-  wait_heard(*thing);
+  wait_matched(*pose);
+  wait_matched(*thing);
   for (std::uint8_t i = 0; i < 20; ++i) {
     pose->write(cdr(i), 1000 + i);
     thing->write(cdr(i, 100'000), 2000 + i);
@@ -180,10 +180,10 @@ TEST_F(RecorderTest, keeps_the_text_of_a_type_that_a_replay_publishes) {
   schemas->write(ros2::encode_schemas(
       {{"vendor_msgs::msg::dds_::Laser_", {"vendor_msgs/msg/Laser", "ros2msg", "float32 range\n"}},
        {"geometry_msgs::msg::dds_::PoseStamped_", {"geometry_msgs/msg/PoseStamped", "ros2msg", "not this"}}}));
-  wait_heard(*laser);
+  wait_matched(*laser);
   laser->write(cdr(1));
   const auto pose = writer("rt/slam/pose", "geometry_msgs::msg::dds_::PoseStamped_");
-  wait_heard(*pose);
+  wait_matched(*pose);
   pose->write(cdr(2));
   ASSERT_TRUE(wait_metric("acknowledged", 2));
   EXPECT_EQ(stop(), service::kOk);
@@ -204,7 +204,7 @@ TEST_F(RecorderTest, waits_for_texts_for_a_while_only) {
   start(service::Pace::kRealtime);
   const auto silent = schemas_writer();
   const auto laser = writer("rt/laser", "vendor_msgs::msg::dds_::Laser_");
-  wait_heard(*laser);
+  wait_matched(*laser);
   EXPECT_EQ(stop(), service::kOk);
 }
 
@@ -214,7 +214,7 @@ TEST_F(RecorderTest, records_only_what_matches_and_says_that_it_waits) {
   ASSERT_TRUE(wait_state(msg::ServiceState::kReady, "no topic matches yet"));
   const auto other = writer("rt/tf", "tf2_msgs::msg::dds_::TFMessage_");
   const auto pose = writer("rt/slam/pose", "geometry_msgs::msg::dds_::PoseStamped_");
-  wait_heard(*pose);
+  wait_matched(*pose);
   EXPECT_EQ(other->matched(), 0);
   pose->write(cdr(1));
   ASSERT_TRUE(wait_state(msg::ServiceState::kRunning));
@@ -236,8 +236,8 @@ TEST_F(RecorderTest, writers_that_offer_different_things_are_each_recorded_once)
   modest.reliable = false;
   const auto reliable = writer("rt/imu", "Imu");
   const auto best_effort = writer("rt/imu", "Imu", modest);
-  wait_heard(*reliable, 2);
-  wait_heard(*best_effort);
+  wait_matched(*reliable, 2);
+  wait_matched(*best_effort);
   for (std::uint8_t i = 0; i < 10; ++i) {
     reliable->write(cdr(i));
     best_effort->write(cdr(100 + i));
@@ -252,8 +252,8 @@ TEST_F(RecorderTest, what_has_no_room_is_counted_named_and_makes_the_exit_code_3
   start(service::Pace::kRealtime);
   const auto thing = writer("some/thing", "Thing");
   const auto pose = writer("rt/slam/pose", "Pose");
-  wait_heard(*thing);
-  wait_heard(*pose);
+  wait_matched(*thing);
+  wait_matched(*pose);
   thing->write(cdr(1, 2'000'000));  // never fits
   pose->write(cdr(2));
   ASSERT_TRUE(wait_metric("lost_in_queue", 1));

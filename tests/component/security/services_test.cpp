@@ -132,7 +132,7 @@ TEST_F(SecuredServicesTest, a_heartbeat_in_the_name_of_slam_is_believed_from_sla
   }
 }
 
-TEST_F(SecuredServicesTest, commands_are_answered_to_those_who_may_call_and_to_nobody_else) {
+TEST_F(SecuredServicesTest, commands_are_answered_only_to_those_who_may_call) {
   const std::string keystore = scratch_ / "keystore", domain = std::to_string(domain_);
   RtdCommand create;
   ASSERT_EQ(create.run({"keystore", "create", keystore}), 0) << create.output();

@@ -114,7 +114,7 @@ TEST_P(Health, a_killed_peer_is_named_dead_and_its_successor_takes_that_back) {
   EXPECT_LT(seconds_until([&] { return filter.alive("detector") && !reports("filter", "peer.detector.dead"); }), 15);
 }
 
-TEST_P(Health, a_stopped_peer_is_named_hung_until_it_goes_on) {
+TEST_P(Health, a_stopped_peer_is_named_hung_until_it_continues) {
   Heartbeat filter(*here_, "filter", stop_);
   const PeerService peer(GetParam(), domain());
   ASSERT_LT(seconds_until([&] { return filter.alive("detector"); }), 15);
@@ -142,7 +142,7 @@ TEST_P(Health, a_stuck_worker_is_reported_by_its_own_heartbeat) {
   EXPECT_LT(seconds_until([&] { return newest_status("slam")->state == msg::ServiceState::kRunning; }), 15);
 }
 
-TEST_P(Health, a_service_that_hears_no_more_frames_counts_as_stuck) {
+TEST_P(Health, a_service_that_receives_no_more_frames_counts_as_stuck) {
   Heartbeat camera(*listener_, "camera", stop_), filter(*here_, "filter", stop_);
   filter.tick();
   filter.frame_received();  // and no more

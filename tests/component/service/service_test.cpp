@@ -68,7 +68,7 @@ TEST(Heartbeat, no_heartbeat_of_its_name_ends_a_service) {
   EXPECT_FALSE(stop.stop_requested());
 }
 
-TEST(Heartbeat, nobody_speaks_in_the_name_of_a_service_that_lives) {
+TEST(Heartbeat, no_other_process_speaks_in_the_name_of_a_service_that_lives) {
   const auto bus = bus::connect(domain(12)), elsewhere = bus::connect(domain(12));
   StopToken stop;
   Heartbeat slam(*bus, "slam", stop), filter(*bus, "filter", stop);

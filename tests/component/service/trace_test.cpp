@@ -57,7 +57,7 @@ TEST_F(TraceTest, stages_follow_one_another_and_those_without_time_are_left_out)
 }
 
 TEST_F(TraceTest, ways_may_overlap_so_each_has_an_id) {
-  { Trace(folder_, "slam").way("camera to pose", 1'000, 3'000, 4); }
+  { Trace(folder_, "slam").async_span("camera to pose", 1'000, 3'000, 4); }
   const auto events = written();
   ASSERT_EQ(events.size(), 3U);
   EXPECT_EQ(events[1]["ph"], "b");

@@ -43,19 +43,19 @@ std::array<double, kLooks.size()> mean_nees(double noise_px, double depth_noise_
 
 /// 99.9 % of the mean of 20 independent chi2 values with 6 degrees of freedom lie between; wider below: to promise
 /// less than one keeps is the lesser evil.
-constexpr double kLeast = 2.5, kMost = 8.9;
+constexpr double kLeast = 2.5, kMax = 8.9;
 
 TEST(Covariance, agrees_with_the_error_of_the_pose) {
   for (const double mean : mean_nees(0.5, 0.0015)) {
     EXPECT_GT(mean, kLeast);
-    EXPECT_LT(mean, kMost);
+    EXPECT_LT(mean, kMax);
   }
 }
 
 TEST(Covariance, follows_the_noise_that_there_is) {
   for (const double mean : mean_nees(1.0, 0.0015)) {
     EXPECT_GT(mean, kLeast);
-    EXPECT_LT(mean, kMost);
+    EXPECT_LT(mean, kMax);
   }
 }
 

@@ -48,7 +48,8 @@ class MapByHand {
     options.points_per_m3 = 15;
     options.detection_rate = 0.9;
     options.flipped_bits = 0;
-    options.noise_px = noise, options.depth_noise_factor = 0.004 * noise;
+    options.noise_px = noise;
+    options.depth_noise_factor = 0.004 * noise;
     world_ = WalkWorld(options);
   }
 
@@ -264,7 +265,8 @@ Lap walk(bool loop_closing) {
   std::optional<Eigen::Isometry3d> T_odom_before, T_map_before;
   for (int i = 0; i < kLap + 16; ++i) {
     const auto message = world.view(static_cast<std::uint64_t>(i), true_pose(i));
-    message->intrinsics[0] *= 1.02, message->intrinsics[1] *= 1.02;
+    message->intrinsics[0] *= 1.02;
+    message->intrinsics[1] *= 1.02;
     const SlamOutput output = slam.process(*message);
     EXPECT_EQ(output.result.state, msg::TrackingState::kOk) << i << ": " << output.problem;
     EXPECT_LE(output.changes.size(), 48U);
@@ -275,7 +277,8 @@ Lap walk(bool loop_closing) {
       lap.largest_odometry_step_m = std::max(lap.largest_odometry_step_m, step_m(*T_odom_before, T_odom));
       lap.largest_map_step_m = std::max(lap.largest_map_step_m, step_m(*T_map_before, T_map));
     }
-    T_odom_before = T_odom, T_map_before = T_map;
+    T_odom_before = T_odom;
+    T_map_before = T_map;
   }
   slam.finish();
   int i = 0;

@@ -131,11 +131,16 @@ TEST_F(MapPublisherTest, a_late_reader_gets_the_same_map_as_an_early_one) {
   for (const auto& update : early.all()) EXPECT_LT(bytes_of(*update), 100'000U);
 }
 
-TEST_F(MapPublisherTest, is_silent_while_the_map_rests_and_copies_nothing_while_nobody_reads) {
+TEST_F(MapPublisherTest, is_silent_while_the_map_rests_and_copies_nothing_without_a_reader) {
   SlamSystem slam = make_slam();
   std::atomic<int> copies{0};
   MapPublisher publisher(
-      *bus_, [&] { return ++copies, slam.map_view(); }, kPeriod);
+      *bus_,
+      [&] {
+        ++copies;
+        return slam.map_view();
+      },
+      kPeriod);
   const test_support::FeatureWorld world({});
   for (std::uint64_t seq = 0; seq < 30; ++seq) slam.process(*world.view(seq));
   EXPECT_EQ(copies, 0);
@@ -146,10 +151,10 @@ TEST_F(MapPublisherTest, is_silent_while_the_map_rests_and_copies_nothing_while_
   ASSERT_TRUE(inbox.wait([](const auto& all) {
     return std::ranges::count_if(all, [](const auto& update) { return !update->keyframes.empty(); }) >= 2;
   }));
-  const std::size_t told = inbox.all().size();
+  const std::size_t reported = inbox.all().size();
   const int copied = copies;
   while (copies < copied + 10) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  EXPECT_EQ(inbox.all().size(), told);
+  EXPECT_EQ(inbox.all().size(), reported);
 }
 
 std::size_t bytes_of(const std::vector<msg::MapUpdate>& updates) {
@@ -179,7 +184,8 @@ TEST(MapUpdates, a_closed_loop_costs_poses_only) {
   bool closed = false;
   for (int i = 0; i < 230 && !closed; ++i) {
     const auto message = world.view(static_cast<std::uint64_t>(i), pose_on_circle(i));
-    message->intrinsics[0] *= 1.02, message->intrinsics[1] *= 1.02;
+    message->intrinsics[0] *= 1.02;
+    message->intrinsics[1] *= 1.02;
     closed = !slam.process(*message).loops.empty();
     if (!closed) changes.update(slam.map_view());
   }

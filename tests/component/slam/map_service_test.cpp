@@ -29,7 +29,7 @@ using ::testing::ThrowsMessage;
 class MapServiceTest : public test_support::ServiceFixture<SlamService> {
  protected:
   MapServiceTest() : features_(bus_->writer(bus::topics::kFeatures)), file_((folder_ / "room.rtdmap").string()) {
-    hear(bus::topics::kTracking, results_);
+    receive(bus::topics::kTracking, results_);
     std::filesystem::create_directories(folder_);
   }
 
@@ -159,7 +159,7 @@ TEST_F(MapAttackTest, only_maps_are_replaced) {
   EXPECT_THAT(call("slam/save_map", "room"), HasSubstr("saved to")) << "its own map it may replace";
 }
 
-TEST_F(MapAttackTest, load_does_not_tell_which_files_exist) {
+TEST_F(MapAttackTest, load_does_not_reveal_which_files_exist) {
   map_something();
   make_map();  // outside, readable, a map
   const std::string there = call("slam/load_map", file_), not_there = call("slam/load_map", file_ + "x");

@@ -33,7 +33,7 @@ class MotionFeedTest : public test_support::ServiceFixture<SlamService> {
       : features_(bus_->writer(bus::topics::kFeatures)),
         raw_(bus::connect_raw(bus_options_)),
         imu_(FeatureWorld::T_world_camera_at, SyntheticImu::Options(), 1) {
-    hear(bus::topics::kTracking, results_);
+    receive(bus::topics::kTracking, results_);
     config_.motion.imu = "/camera/imu";
     bus::RawWriterOptions options;
     options.qos.reliable = false;
@@ -75,7 +75,7 @@ class MotionFeedTest : public test_support::ServiceFixture<SlamService> {
   std::int64_t next_ = 0;
 };
 
-TEST_F(MotionFeedTest, pose_goes_on_by_the_topic_of_a_best_effort_driver) {
+TEST_F(MotionFeedTest, pose_continues_by_the_topic_of_a_best_effort_driver) {
   start(service::Pace::kLockstep);
   for (std::uint64_t seq = 0; seq < 60; ++seq) step(seq, false);
   for (std::uint64_t seq = 60; seq < 105; ++seq) step(seq, true);

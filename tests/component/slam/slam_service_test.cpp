@@ -25,13 +25,13 @@ class SlamServiceTest : public test_support::ServiceFixture<SlamService> {
  protected:
   SlamServiceTest()
       : features_(bus_->writer(bus::topics::kFeatures)), status_writer_(bus_->writer(bus::topics::kStatus)) {
-    hear(bus::topics::kTracking, results_);
-    hear(bus::topics::kKeyframes, events_);
-    hear(bus::topics::kOdometry, odometry_);
-    hear(bus::topics::kTf, tf_);
-    hear(bus::topics::kPath, paths_);
-    hear(bus::topics::kMapPoints, clouds_);
-    hear(bus::topics::kDiagnostics, diagnostics_);
+    receive(bus::topics::kTracking, results_);
+    receive(bus::topics::kKeyframes, events_);
+    receive(bus::topics::kOdometry, odometry_);
+    receive(bus::topics::kTf, tf_);
+    receive(bus::topics::kPath, paths_);
+    receive(bus::topics::kMapPoints, clouds_);
+    receive(bus::topics::kDiagnostics, diagnostics_);
     config_.map_period_ms = 20;
     config_.path_period_ms = 1;
   }

@@ -120,7 +120,7 @@ TEST_F(DetectorQuality, covers_the_people_who_walk_through_the_clips) {
   }
 }
 
-TEST_F(DetectorQuality, finds_people_at_any_roll_when_it_is_told) {
+TEST_F(DetectorQuality, finds_people_at_any_roll_when_it_is_given) {
   if (!fs::is_directory(data_ / "walk_xyz/mask")) GTEST_SKIP() << "no walk_xyz in RTD_DATA_DIR";
   Detector detector(config_);
   for (const double roll_deg : {60.0, 105.0, 180.0}) {

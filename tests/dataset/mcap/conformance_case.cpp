@@ -88,57 +88,105 @@ class Fields {
 struct ToJson {
   Fields f;
 
-  Json operator()(const Header& r) { return f("library", r.library), f("profile", r.profile), f.record("Header"); }
+  Json operator()(const Header& r) {
+    f("library", r.library);
+    f("profile", r.profile);
+    return f.record("Header");
+  }
   Json operator()(const Footer& r) {
-    f("summary_crc", r.summary_crc), f("summary_offset_start", r.summary_offset_start);
-    return f("summary_start", r.summary_start), f.record("Footer");
+    f("summary_crc", r.summary_crc);
+    f("summary_offset_start", r.summary_offset_start);
+    f("summary_start", r.summary_start);
+    return f.record("Footer");
   }
   Json operator()(const Schema& r) {
-    f("data", io::bytes_of(r.data)), f("encoding", r.encoding), f("id", r.id), f("name", r.name);
+    f("data", io::bytes_of(r.data));
+    f("encoding", r.encoding);
+    f("id", r.id);
+    f("name", r.name);
     return f.record("Schema");
   }
   Json operator()(const Channel& r) {
-    f("id", r.id), f("message_encoding", r.message_encoding), f("metadata", r.metadata), f("schema_id", r.schema_id);
-    return f("topic", r.topic), f.record("Channel");
+    f("id", r.id);
+    f("message_encoding", r.message_encoding);
+    f("metadata", r.metadata);
+    f("schema_id", r.schema_id);
+    f("topic", r.topic);
+    return f.record("Channel");
   }
   Json operator()(const Message& r) {
-    f("channel_id", r.channel_id), f("data", r.data), f("log_time", r.log_time), f("publish_time", r.publish_time);
-    return f("sequence", r.sequence), f.record("Message");
+    f("channel_id", r.channel_id);
+    f("data", r.data);
+    f("log_time", r.log_time);
+    f("publish_time", r.publish_time);
+    f("sequence", r.sequence);
+    return f.record("Message");
   }
   Json operator()(const Chunk&) { return nullptr; }
   Json operator()(const MessageIndex&) { return nullptr; }
   Json operator()(const ChunkIndex& r) {
-    f("chunk_length", r.chunk_length), f("chunk_start_offset", r.chunk_start_offset);
-    f("compressed_size", r.compressed_size), f("compression", r.compression);
-    f("message_end_time", r.message_end_time), f("message_index_length", r.message_index_length);
-    f("message_index_offsets", r.message_index_offsets), f("message_start_time", r.message_start_time);
-    return f("uncompressed_size", r.uncompressed_size), f.record("ChunkIndex");
+    f("chunk_length", r.chunk_length);
+    f("chunk_start_offset", r.chunk_start_offset);
+    f("compressed_size", r.compressed_size);
+    f("compression", r.compression);
+    f("message_end_time", r.message_end_time);
+    f("message_index_length", r.message_index_length);
+    f("message_index_offsets", r.message_index_offsets);
+    f("message_start_time", r.message_start_time);
+    f("uncompressed_size", r.uncompressed_size);
+    return f.record("ChunkIndex");
   }
   Json operator()(const Attachment& r) {
-    f("create_time", r.create_time), f("data", r.data), f("log_time", r.log_time), f("media_type", r.media_type);
-    return f("name", r.name), f.record("Attachment");
+    f("create_time", r.create_time);
+    f("data", r.data);
+    f("log_time", r.log_time);
+    f("media_type", r.media_type);
+    f("name", r.name);
+    return f.record("Attachment");
   }
   Json operator()(const AttachmentIndex& r) {
-    f("create_time", r.create_time), f("data_size", r.data_size), f("length", r.length), f("log_time", r.log_time);
-    f("media_type", r.media_type), f("name", r.name);
-    return f("offset", r.offset), f.record("AttachmentIndex");
+    f("create_time", r.create_time);
+    f("data_size", r.data_size);
+    f("length", r.length);
+    f("log_time", r.log_time);
+    f("media_type", r.media_type);
+    f("name", r.name);
+    f("offset", r.offset);
+    return f.record("AttachmentIndex");
   }
   Json operator()(const Statistics& r) {
-    f("attachment_count", r.attachment_count), f("channel_count", r.channel_count);
-    f("channel_message_counts", r.channel_message_counts), f("chunk_count", r.chunk_count);
-    f("message_count", r.message_count), f("message_end_time", r.message_end_time);
-    f("message_start_time", r.message_start_time), f("metadata_count", r.metadata_count);
-    return f("schema_count", r.schema_count), f.record("Statistics");
+    f("attachment_count", r.attachment_count);
+    f("channel_count", r.channel_count);
+    f("channel_message_counts", r.channel_message_counts);
+    f("chunk_count", r.chunk_count);
+    f("message_count", r.message_count);
+    f("message_end_time", r.message_end_time);
+    f("message_start_time", r.message_start_time);
+    f("metadata_count", r.metadata_count);
+    f("schema_count", r.schema_count);
+    return f.record("Statistics");
   }
-  Json operator()(const Metadata& r) { return f("metadata", r.metadata), f("name", r.name), f.record("Metadata"); }
+  Json operator()(const Metadata& r) {
+    f("metadata", r.metadata);
+    f("name", r.name);
+    return f.record("Metadata");
+  }
   Json operator()(const MetadataIndex& r) {
-    return f("length", r.length), f("name", r.name), f("offset", r.offset), f.record("MetadataIndex");
+    f("length", r.length);
+    f("name", r.name);
+    f("offset", r.offset);
+    return f.record("MetadataIndex");
   }
   Json operator()(const SummaryOffset& r) {
-    f("group_length", r.group_length), f("group_opcode", static_cast<std::uint64_t>(r.group_opcode));
-    return f("group_start", r.group_start), f.record("SummaryOffset");
+    f("group_length", r.group_length);
+    f("group_opcode", static_cast<std::uint64_t>(r.group_opcode));
+    f("group_start", r.group_start);
+    return f.record("SummaryOffset");
   }
-  Json operator()(const DataEnd& r) { return f("data_section_crc", r.data_section_crc), f.record("DataEnd"); }
+  Json operator()(const DataEnd& r) {
+    f("data_section_crc", r.data_section_crc);
+    return f.record("DataEnd");
+  }
 };
 
 }  // namespace

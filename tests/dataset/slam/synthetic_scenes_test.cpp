@@ -129,7 +129,10 @@ void print_timeline(const std::vector<double>& used) {
     double sum = 0;
     int seen = 0;
     for (std::size_t j = i; j < i + kPerMark; ++j) {
-      if (used[j] >= 0) sum += used[j], ++seen;
+      if (used[j] >= 0) {
+        sum += used[j];
+        ++seen;
+      }
     }
     seen == 0 ? std::printf(" -") : std::printf(" %.1f", sum / seen);
   }

@@ -16,7 +16,7 @@
 namespace rtd {
 namespace {
 
-constexpr std::size_t kMostAllocated = 64 << 20;
+constexpr std::size_t kMaxAllocated = 64 << 20;
 constexpr double kMost_s = 5;
 
 struct Counted {
@@ -114,7 +114,7 @@ std::string try_input(const io::Bytes& input, Counted& counted) {
   if (failure.empty()) failure = read_calibration(text, counted);
   if (!failure.empty()) return failure;
   if (static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC > kMost_s) return "it takes too long";
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated)
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }

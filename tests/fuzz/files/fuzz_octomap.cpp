@@ -14,7 +14,7 @@
 namespace rtd::dense {
 namespace {
 
-constexpr std::size_t kMostAllocated = std::size_t{300} << 20;  // 200 million cells, and 48 nodes a byte of the file
+constexpr std::size_t kMaxAllocated = std::size_t{300} << 20;   // 200 million cells, and 48 nodes a byte of the file
 constexpr std::size_t kFewCells = 20'000;                       // liboctomap takes long for more
 constexpr double kMost_s = 20;
 
@@ -72,7 +72,7 @@ std::string try_input(const io::Bytes& input, std::uint64_t& maps) {
   } catch (const OctomapError&) {
   }
   if (static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC > kMost_s) return "it takes too long";
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated)
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }

@@ -12,7 +12,7 @@ namespace rtd::detector {
 namespace {
 
 // An empty name takes two bytes of a file and a text of 32 in memory.
-constexpr std::size_t kMostPerByte = 400, kMostAllocated = 1 << 20;
+constexpr std::size_t kMaxPerByte = 400, kMaxAllocated = 1 << 20;
 
 std::vector<io::Bytes> seeds() {
   test::TinyNetwork small{.width_px = 32, .height_px = 32, .class_count = 1, .strides = {8}};
@@ -44,7 +44,7 @@ std::string try_input(const io::Bytes& input, std::uint64_t& models) {
   const OnnxFile file = read_onnx_file(bytes, input.size());
   models += file.has_graph ? 1 : 0;
   if (std::string why = unsound(file); !why.empty()) return why;
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated + kMostPerByte * input.size())
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated + kMaxPerByte * input.size())
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }

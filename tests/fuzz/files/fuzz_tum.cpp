@@ -20,7 +20,7 @@
 namespace rtd::camera {
 namespace {
 
-constexpr std::size_t kMostAllocated = 64 << 20;
+constexpr std::size_t kMaxAllocated = 64 << 20;
 
 struct Counted {
   std::uint64_t pairs = 0, poses = 0;
@@ -133,7 +133,7 @@ std::string try_input(const io::Bytes& input, Folder& folder, Counted& counted) 
   } catch (const geometry::TrajectoryError&) {
   }
   if (!failure.empty()) return failure;
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated)
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }

@@ -16,7 +16,7 @@ using io::Bytes;
 using io::ByteView;
 
 // What the reader allows itself, a block twice, and the map that is made of it.
-constexpr std::size_t kMostPerByte = 96, kMostAllocated = 24 << 20;
+constexpr std::size_t kMaxPerByte = 96, kMaxAllocated = 24 << 20;
 
 Bytes bytes_of(const Map& map) {
   io::MemorySink sink;
@@ -104,7 +104,7 @@ std::string try_input(const Bytes& file, std::uint64_t& maps) {
     ++maps;
   } catch (const MapFileError&) {
   }
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated + kMostPerByte * file.size())
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated + kMaxPerByte * file.size())
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }

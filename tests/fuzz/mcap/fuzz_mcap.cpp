@@ -13,7 +13,7 @@ namespace {
 
 // The limit of the reader, twice (a record and what it becomes), the cache, LZ4's blocks of 4 MiB, and change.
 constexpr std::uint64_t kMaxRecord = 1 << 20, kCache = 1 << 20;
-constexpr std::size_t kMostAllocated = 2 * kMaxRecord + kCache + (9 << 20);
+constexpr std::size_t kMaxAllocated = 2 * kMaxRecord + kCache + (9 << 20);
 
 std::vector<Bytes> seeds() {
   std::vector<Bytes> files;
@@ -66,7 +66,7 @@ std::string try_input(const Bytes& file, bool check_crcs, std::uint64_t& sum) {
   const ReadBack again = stream(sink.bytes());
   for (const StoredMessage& message : again.messages) sum += touch(io::bytes_of(message.data));
   if (!again.problems.empty()) return "the recovered file has problems: " + texts(again.problems);
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated)
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the readers hold " + std::to_string(peak) + " bytes";
   return "";
 }

@@ -16,7 +16,7 @@
 namespace rtd::bus {
 namespace {
 
-constexpr std::size_t kMostAllocated = 64 << 20;
+constexpr std::size_t kMaxAllocated = 64 << 20;
 
 std::uint64_t touched = 0;  ///< so that nothing below is left out
 
@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
       [&](const io::Bytes& input, std::mt19937_64&) -> std::string {
         const auto* const bytes = reinterpret_cast<const std::uint8_t*>(input.data());
         passed += types[bytes[0]].passes({bytes + 1, input.size() - 1});
-        return testing::peak_allocation() > bus::kMostAllocated ? "too much memory" : "";
+        return testing::peak_allocation() > bus::kMaxAllocated ? "too much memory" : "";
       },
       [&] { return std::to_string(passed) + " passed, " + std::to_string(bus::touched) + " touched"; });
 }

@@ -13,7 +13,7 @@
 namespace rtd {
 namespace {
 
-constexpr std::size_t kMostAllocated = 64 << 20;  // 100,000 values that take no bytes, each a named JSON value
+constexpr std::size_t kMaxAllocated = 64 << 20;  // 100,000 values that take no bytes, each a named JSON value
 
 constexpr char kDefinition[] =
     "Header header\nuint8 ON=1\nstring<=8 name\ntime when\nValue[] values\nfloat64[3] p\nbool[<=4] flags\nEmpty[2] "
@@ -68,7 +68,7 @@ std::string try_input(const io::Bytes& input, Counted& counted) {
     read_message(types, {bytes + begin, input.size() - begin}, counted);
   } catch (const ros::DefinitionError&) {
   }
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated)
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }

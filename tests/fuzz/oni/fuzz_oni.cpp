@@ -16,7 +16,7 @@
 namespace rtd::camera {
 namespace {
 
-constexpr std::size_t kMostAllocated = 256 << 10;  // the file itself, of a few KiB, and a message
+constexpr std::size_t kMaxAllocated = 256 << 10;  // the file itself, of a few KiB, and a message
 
 std::string sample(int frames) {
   const auto path = std::filesystem::temp_directory_path() / ("rtd_fuzz_" + std::to_string(getpid()) + ".oni");
@@ -43,7 +43,7 @@ std::string try_input(const io::Bytes& input, std::uint64_t& passed) {
       return "it has no such records";
   } catch (const OniFileError&) {
   }
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated)
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the check hold " + std::to_string(peak) + " bytes";
   return "";
 }

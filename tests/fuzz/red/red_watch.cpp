@@ -14,8 +14,8 @@
 namespace rtd::testing {
 namespace {
 
-constexpr double kMostOfCall_s = 1;
-constexpr std::uint64_t kMostGrowthKib = 64 * 1024;
+constexpr double kMaxOfCall_s = 1;
+constexpr std::uint64_t kMaxGrowthKib = 64 * 1024;
 
 /// Of all threads: a busy computer does not make it longer.
 double computing_s() {
@@ -78,11 +78,11 @@ int RedWatch::finish() {
       static_cast<unsigned long long>(passed_), static_cast<unsigned long long>(calls_), longest_s_, longest_.c_str(),
       static_cast<double>(growth_kib) / 1024, static_cast<double>(settled_kib_) / 1024);
   const bool reached = 3 * passed_ >= messages_;
-  const bool quick = test_support::kSanitized || longest_s_ <= kMostOfCall_s;
-  const bool bounded = test_support::kSanitized || growth_kib <= kMostGrowthKib;
+  const bool quick = test_support::kSanitized || longest_s_ <= kMaxOfCall_s;
+  const bool bounded = test_support::kSanitized || growth_kib <= kMaxGrowthKib;
   if (!reached) std::fprintf(stderr, "less than a third of the messages reached the core\n");
-  if (!quick) std::fprintf(stderr, "a call took longer than %.0f s\n", kMostOfCall_s);
-  if (!bounded) std::fprintf(stderr, "the memory grew by more than %llu MiB\n", kMostGrowthKib / 1024ULL);
+  if (!quick) std::fprintf(stderr, "a call took longer than %.0f s\n", kMaxOfCall_s);
+  if (!bounded) std::fprintf(stderr, "the memory grew by more than %llu MiB\n", kMaxGrowthKib / 1024ULL);
   return reached && quick && bounded ? 0 : 1;
 }
 

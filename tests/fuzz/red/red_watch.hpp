@@ -19,7 +19,7 @@ class RedWatch {
   RedWatch(const char* name, std::uint64_t messages, int argc, char** argv);
 
   std::uint64_t seed() const { return seed_; }
-  /// Whether the attack goes on.
+  /// Whether the attack continues.
   bool more() const { return messages_ < wanted_; }
   std::uint64_t messages() const { return messages_; }
 

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostAllocated = 64 << 20;  // chunks of false size are unpacked into 4 MiB and doubled
+constexpr std::size_t kMaxAllocated = 64 << 20;  // chunks of false size are unpacked into 4 MiB and doubled
 
 struct Counted {
   std::uint64_t bags = 0, messages = 0, sum = 0;
@@ -82,7 +82,7 @@ std::string try_input(const fs::path& path, const io::Bytes& input, Counted& cou
     read_all(path, counted);
   } catch (const BagError&) {
   }
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated)
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostAllocated = 32 << 20;  // SQLite's cache, and a message of 1 MiB a few times
+constexpr std::size_t kMaxAllocated = 32 << 20;  // SQLite's cache, and a message of 1 MiB a few times
 
 constexpr char kTopics[] =
     "CREATE TABLE topics(id INTEGER PRIMARY KEY,name TEXT NOT NULL,type TEXT NOT NULL,serialization_format TEXT NOT "
@@ -70,7 +70,7 @@ std::string try_input(const fs::path& path, const io::Bytes& input, std::uint64_
     }
   } catch (const Db3Error&) {
   }
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMostAllocated)
+  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }

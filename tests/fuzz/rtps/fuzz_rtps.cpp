@@ -64,7 +64,7 @@ class Listener {
 
 Bytes malformed(const std::vector<Bytes>& seeds, std::mt19937_64& random) {
   Bytes datagram = seeds[random() % seeds.size()];
-  address_to_anybody(datagram, random);
+  address_to_any_reader(datagram, random);
   if (random() % 3 != 0) mutate_submessages(datagram, random);
   if (random() % 3 == 0) datagram = mcap::mutate(datagram, seeds[random() % seeds.size()], random);
   if (datagram.size() > 65000) datagram.resize(65000);

@@ -83,7 +83,7 @@ std::string kind_of(const Bytes& datagram) {
   return kind;
 }
 
-void address_to_anybody(Bytes& datagram, std::mt19937_64& random) {
+void address_to_any_reader(Bytes& datagram, std::mt19937_64& random) {
   const bool any_reader = random() % 2 == 0;
   for (const Submessage& submessage : submessages_of(datagram)) {
     const auto zero = [&](std::size_t at, std::size_t bytes) {

@@ -18,7 +18,7 @@ std::string kind_of(const Bytes& datagram);
 
 /// Makes the datagram one for whoever gets it: the participant in INFO_DESTINATION becomes "any", and so do the readers
 /// that DATA, DATA_FRAG, HEARTBEAT and GAP name, half of the time. Otherwise a receiver drops it unread.
-void address_to_anybody(Bytes& datagram, std::mt19937_64& random);
+void address_to_any_reader(Bytes& datagram, std::mt19937_64& random);
 
 /// Changes what RTPS parsers trust: submessage lengths and flags, sequence numbers and bitmap sizes, fragment numbers,
 /// lengths and contents of parameters, CDR headers; or the order and number of submessages.

@@ -92,8 +92,8 @@ std::vector<std::string> ServiceRun::take_deaths() {
   for (std::string line; std::getline(output, line);)
     if (line.find(" died: ") != std::string::npos || line.find("restarted (") != std::string::npos)
       lines.push_back(line);
-  lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(deaths_told_));
-  deaths_told_ += lines.size();
+  lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(deaths_reported_));
+  deaths_reported_ += lines.size();
   return lines;
 }
 

@@ -37,7 +37,7 @@ class ServiceRun {
   launcher::ScratchFolder scratch_;
   const std::string out_;
   launcher::RtdCommand rtd_, recorder_;
-  std::size_t deaths_told_ = 0;
+  std::size_t deaths_reported_ = 0;
 };
 
 }  // namespace rtd::fuzz

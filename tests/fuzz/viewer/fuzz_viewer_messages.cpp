@@ -13,7 +13,7 @@
 namespace rtd::viewer {
 namespace {
 
-constexpr std::size_t kMostAllocated = 64 << 20;
+constexpr std::size_t kMaxAllocated = 64 << 20;
 
 /// The first byte chooses the client and the kind of message.
 constexpr unsigned kText = 1, kPage = 2;
@@ -89,10 +89,16 @@ class Clients {
  private:
   FoxgloveHooks hooks() {
     FoxgloveHooks hooks;
-    hooks.on_call = [this](const auto&, const auto&, const auto& answer) { ++acted_, answer({true, "done"}); };
+    hooks.on_call = [this](const auto&, const auto&, const auto& answer) {
+      ++acted_;
+      answer({true, "done"});
+    };
     hooks.on_set = [this](const auto&, const auto& answer) { answer({++acted_ % 2 == 0, "why not"}); };
     hooks.on_playback = [this](const auto&, const auto& answer) { answer({++acted_ % 2 == 0, "why not"}); };
-    hooks.on_publish = [this](const auto&, const auto&, auto) { return ++acted_, std::string(); };
+    hooks.on_publish = [this](const auto&, const auto&, auto) {
+      ++acted_;
+      return std::string();
+    };
     return hooks;
   }
 
@@ -100,7 +106,11 @@ class Clients {
   FoxgloveHub foxglove_{"fuzz", "1", {}, hooks()};
   PageHub page_{{.control = true},
                 {},
-                {.on_call = [this](const auto&, const auto&, const auto&, const auto& answer) { ++acted_, answer({}); },
+                {.on_call =
+                     [this](const auto&, const auto&, const auto&, const auto& answer) {
+                       ++acted_;
+                       answer({});
+                     },
                  .now_ms = [] { return 0.0; }}};
   std::unique_ptr<Session> foxglove_client_, page_client_;
 };
@@ -120,7 +130,7 @@ int main(int argc, char** argv) {
       },
       [&](const io::Bytes& input, std::mt19937_64&) -> std::string {
         clients.send(input);
-        return testing::peak_allocation() > viewer::kMostAllocated ? "too much memory" : "";
+        return testing::peak_allocation() > viewer::kMaxAllocated ? "too much memory" : "";
       },
       [&] {
         return std::to_string(clients.sent()) + " messages sent, " + std::to_string(clients.acted()) + " acted on";

@@ -22,7 +22,7 @@
 namespace rtd::viewer {
 namespace {
 
-constexpr std::size_t kMostAllocated = 64 << 20;
+constexpr std::size_t kMaxAllocated = 64 << 20;
 
 /// A loopback connection that never blocks.
 class Connection {
@@ -174,7 +174,7 @@ int main(int argc, char** argv) {
         } else {
           target.send_frame(input);
         }
-        if (testing::peak_allocation() > viewer::kMostAllocated) return "too much memory";
+        if (testing::peak_allocation() > viewer::kMaxAllocated) return "too much memory";
         return ++count % 1000 == 0 && !target.still_answers() ? "the server answers no more" : "";
       },
       [&] {

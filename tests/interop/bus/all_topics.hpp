@@ -21,11 +21,30 @@ namespace rtd::bus::interop {
 template <class Visitor>
 void for_each_topic(Visitor visit) {
   using namespace topics;
-  visit(kFrame), visit(kFrame848), visit(kFrame1280), visit(kFrame1920), visit(kFeatures), visit(kKeyframes),
-      visit(kTracking), visit(kStatus), visit(kColorJpeg);
-  visit(kCameraInfo), visit(kDetections), visit(kDynamicMask), visit(kOdometry), visit(kPose), visit(kTf);
-  visit(kPath), visit(kMapPoints), visit(kDensePoints), visit(kDiagnostics);
-  visit(kMap), visit(kMovers), visit(kMoverBoxes), visit(kMoverMarkers), visit(kGroundTruth);
+  visit(kFrame);
+  visit(kFrame848);
+  visit(kFrame1280);
+  visit(kFrame1920);
+  visit(kFeatures);
+  visit(kKeyframes);
+  visit(kTracking);
+  visit(kStatus);
+  visit(kColorJpeg);
+  visit(kCameraInfo);
+  visit(kDetections);
+  visit(kDynamicMask);
+  visit(kOdometry);
+  visit(kPose);
+  visit(kTf);
+  visit(kPath);
+  visit(kMapPoints);
+  visit(kDensePoints);
+  visit(kDiagnostics);
+  visit(kMap);
+  visit(kMovers);
+  visit(kMoverBoxes);
+  visit(kMoverMarkers);
+  visit(kGroundTruth);
   visit(kOccupancyGrid);
 }
 

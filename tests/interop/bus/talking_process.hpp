@@ -46,12 +46,12 @@ class TalkingProcess {
   TalkingProcess(const TalkingProcess&) = delete;
   TalkingProcess& operator=(const TalkingProcess&) = delete;
 
-  void tell(const std::string& line) {
+  void send(const std::string& line) {
     std::fprintf(to_, "%s\n", line.c_str());
     std::fflush(to_);
   }
   /// Without its end; empty when the process has ended.
-  std::string hear() {
+  std::string receive() {
     char line[256] = {};
     if (fgets(line, sizeof(line), from_) == nullptr) return {};
     std::string text = line;

@@ -48,7 +48,7 @@ class Readers {
   }
   /// A volatile reader of Cyclone begins with the first heartbeat that it gets of another vendor's writer after both
   /// have matched. So round 0 is sent until each topic has brought something; it may be heard again later.
-  void wait_until_heard(const std::function<void()>& send_probe) {
+  void wait_until_received(const std::function<void()>& send_probe) {
     for (auto& [topic, received] : received_) {
       for (int i = 0; i < 200 && received.size() == 0; ++i) {
         send_probe();
@@ -116,14 +116,14 @@ TEST_P(VendorMatrix, every_message_of_every_topic_arrives_with_every_byte) {
   Readers readers(*bus, Readers::Which::kAll);
   test_support::TalkingProcess writing(peer("live"));
   ASSERT_TRUE(readers.all_matched());
-  ASSERT_EQ(writing.hear(), "ready");
-  readers.wait_until_heard([&] { writing.tell("0"); });
+  ASSERT_EQ(writing.receive(), "ready");
+  readers.wait_until_received([&] { writing.send("0"); });
   // On a loaded machine many may still be on their way, and would push messages of round 1 out of the histories.
-  writing.tell("wait");
-  ASSERT_EQ(writing.hear(), "acknowledged");
+  writing.send("wait");
+  ASSERT_EQ(writing.receive(), "acknowledged");
 
   for (int round = 1; round <= rounds() && !HasFatalFailure(); ++round) {
-    writing.tell(std::to_string(round));
+    writing.send(std::to_string(round));
     for_each_topic([&](const auto& topic) {
       const int count = burst(topic.profile);
       for (int i = 0; i < count && !HasFatalFailure(); ++i) readers.expect_next(topic, round * count + i);
@@ -134,7 +134,7 @@ TEST_P(VendorMatrix, every_message_of_every_topic_arrives_with_every_byte) {
 
 TEST_P(VendorMatrix, late_readers_get_what_is_kept_for_them) {
   test_support::TalkingProcess writing(peer("late"));
-  ASSERT_EQ(writing.hear(), "ready");
+  ASSERT_EQ(writing.receive(), "ready");
   const auto bus = connect_reading();
   Readers readers(*bus, Readers::Which::kTransientLocal);
   for_each_topic([&](const auto& topic) {

@@ -130,8 +130,14 @@ int main(int argc, char** argv) {
   const std::string command = argc == 2 ? argv[1] : "";
   try {
     if (command == "check") return rtd::check_samples();
-    if (command == "types") return rtd::write_types(), 0;
-    if (command == "write") return rtd::write_samples(), 0;
+    if (command == "types") {
+      rtd::write_types();
+      return 0;
+    }
+    if (command == "write") {
+      rtd::write_samples();
+      return 0;
+    }
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

@@ -44,10 +44,10 @@ Scale scale() {
 }
 
 /// When a robot had poses and boxes.
-struct Heard {
+struct Received {
   std::vector<std::int64_t> poses_ns, boxes_ns;
 
-  explicit Heard(const std::string& path) {
+  explicit Received(const std::string& path) {
     std::ifstream file(path);
     std::int64_t first = 0, at_ns = 0, latency_ns = 0;
     for (std::string what; file >> what >> first >> at_ns;) {
@@ -95,7 +95,8 @@ class GpuBoxTest : public ::testing::Test {
     ASSERT_TRUE(box_->wait_for("event=model_loaded")) << box_->output();
   }
   void start(Robot& robot, int number) {
-    robot.name = "robot" + std::to_string(number), robot.domain = std::to_string(20 + number);
+    robot.name = "robot" + std::to_string(number);
+    robot.domain = std::to_string(20 + number);
     robot.listener.start(
         hosts_->on('a', {RTD_LINK_LISTENER, robot.domain, "fastdds", scratch_ / robot.name, "robot=" + robot.name}));
     ASSERT_TRUE(robot.listener.wait_for("listening")) << robot.listener.output();
@@ -110,7 +111,11 @@ class GpuBoxTest : public ::testing::Test {
   void watch_for(int seconds) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
     while (std::chrono::steady_clock::now() < until) {
-      for (Robot& robot : robots_) robot.run.take_output(), robot.link.take_output(), robot.listener.take_output();
+      for (Robot& robot : robots_) {
+        robot.run.take_output();
+        robot.link.take_output();
+        robot.listener.take_output();
+      }
       box_->take_output();
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
@@ -149,11 +154,11 @@ TEST_F(GpuBoxTest, robots_keep_their_poses_while_the_box_is_away_and_get_boxes_a
   for (Robot& robot : robots_) {
     for (RtdCommand* command : {&robot.run, &robot.link, &robot.listener}) command->interrupt();
     for (RtdCommand* command : {&robot.run, &robot.link, &robot.listener}) command->wait();
-    const Heard heard(scratch_ / robot.name);
-    const double before = heard.poses_per_frame(cut_ns - scale().span_s * std::int64_t{1'000'000'000}, cut_ns);
-    const double in_cut = heard.poses_per_frame(cut_ns, healed_ns);
-    const double without_box = heard.poses_per_frame(killed_ns, restarted_ns);
-    const double after_cut_s = heard.boxes_after_s(healed_ns), after_kill_s = heard.boxes_after_s(restarted_ns);
+    const Received received(scratch_ / robot.name);
+    const double before = received.poses_per_frame(cut_ns - scale().span_s * std::int64_t{1'000'000'000}, cut_ns);
+    const double in_cut = received.poses_per_frame(cut_ns, healed_ns);
+    const double without_box = received.poses_per_frame(killed_ns, restarted_ns);
+    const double after_cut_s = received.boxes_after_s(healed_ns), after_kill_s = received.boxes_after_s(restarted_ns);
     std::printf(
         "%s: poses of %.1f %% of the frames before, %.1f %% in the cut, %.1f %% without a box; boxes back %.2f s after "
         "the cut, %.2f s after the restart\n",

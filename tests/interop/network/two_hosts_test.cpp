@@ -44,12 +44,12 @@ Scale scale() {
 }
 
 /// What link_listener wrote.
-struct Heard {
+struct Received {
   std::vector<std::int64_t> detections_ns, poses_ns, latencies_ns;  ///< when they came, how old the poses were
   std::set<std::int64_t> stamps_ns;
   int frames = 0, matched = 0;
 
-  explicit Heard(const std::string& path) {
+  explicit Received(const std::string& path) {
     std::ifstream file(path);
     for (std::string what; file >> what;) {
       std::int64_t first = 0, at_ns = 0, latency_ns = 0;
@@ -169,7 +169,7 @@ TEST_P(TwoHostsTest, boxes_cross_a_lossy_link_and_come_back_after_a_cut) {
   const auto loopback_bytes = static_cast<double>(hosts_->sent_by_a("lo"));
   for (RtdCommand* command : {&run_, &detector_, &near_, &far_}) end(*command);
 
-  const Heard near(scratch_ / "near.txt"), far(scratch_ / "far.txt");
+  const Received near(scratch_ / "near.txt"), far(scratch_ / "far.txt");
   const int took = answered(), arrived = static_cast<int>(near.stamps_ns.size());
   const double back_s = near.first_detection_after_s(healed_ns);
   const double rate_before = near.pose_rate(cut_ns - std::int64_t{4} * 1'000'000'000, cut_ns);

@@ -10,7 +10,10 @@
 #include "common/bus/bus_factory.hpp"
 
 int main(int argc, char** argv) {
-  if (argc != 3) return std::fputs("usage: pose_source VENDOR DOMAIN\n", stderr), 2;
+  if (argc != 3) {
+    std::fputs("usage: pose_source VENDOR DOMAIN\n", stderr);
+    return 2;
+  }
   try {
     rtd::bus::BusOptions options;
     options.vendor = argv[1];

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 #include "dds/dds.h"
-#include "foreign.h"
+#include "unknown.h"
 
 static dds_entity_t create_writer(dds_entity_t participant, const dds_topic_descriptor_t* type, const char* name) {
   dds_qos_t* qos = dds_create_qos();
@@ -35,13 +35,13 @@ int main(int argc, char** argv) {
     fprintf(stderr, "cyclone_writer: %s\n", dds_strretcode(participant));
     return 1;
   }
-  dds_entity_t plain = create_writer(participant, &foreign_msgs_msg_dds__Plain__desc, "rt/foreign/plain");
-  dds_entity_t keyed = create_writer(participant, &foreign_msgs_msg_dds__Keyed__desc, "rt/foreign/keyed");
+  dds_entity_t plain = create_writer(participant, &unknown_msgs_msg_dds__Plain__desc, "rt/unknown/plain");
+  dds_entity_t keyed = create_writer(participant, &unknown_msgs_msg_dds__Keyed__desc, "rt/unknown/keyed");
   wait_for_reader(plain);
   wait_for_reader(keyed);
   for (uint32_t i = 0; i < (uint32_t)atoi(argv[2]); ++i) {
-    foreign_msgs_msg_dds__Plain_ a = {.number = i, .text = "from Cyclone DDS"};
-    foreign_msgs_msg_dds__Keyed_ b = {.key = i % 3, .number = i};
+    unknown_msgs_msg_dds__Plain_ a = {.number = i, .text = "from Cyclone DDS"};
+    unknown_msgs_msg_dds__Keyed_ b = {.key = i % 3, .number = i};
     if (dds_write(plain, &a) != 0 || dds_write(keyed, &b) != 0) return 1;
     dds_sleepfor(DDS_MSECS(5));
   }

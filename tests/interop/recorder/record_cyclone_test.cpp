@@ -26,7 +26,7 @@ std::uint32_t field(const ReadMessage& message, std::size_t index) {
   return value;
 }
 
-TEST(RecordCyclone, types_that_nobody_here_knows_are_recorded) {
+TEST(RecordCyclone, types_unknown_to_this_program_are_recorded) {
   constexpr std::uint32_t kMessages = 100;
   const fs::path folder = fs::temp_directory_path() / ("rtd_record_cyclone_" + std::to_string(getpid()));
   fs::create_directories(folder);
@@ -39,9 +39,9 @@ TEST(RecordCyclone, types_that_nobody_here_knows_are_recorded) {
 
   const RecordedFile file = read_recording(folder / "run.mcap");
   fs::remove_all(folder);
-  const auto& plain = file.topics.at("/foreign/plain");
-  const auto& keyed = file.topics.at("/foreign/keyed");
-  EXPECT_EQ(file.type_of.at("/foreign/plain"), "foreign_msgs/msg/Plain");
+  const auto& plain = file.topics.at("/unknown/plain");
+  const auto& keyed = file.topics.at("/unknown/keyed");
+  EXPECT_EQ(file.type_of.at("/unknown/plain"), "unknown_msgs/msg/Plain");
   ASSERT_EQ(plain.size(), kMessages);
   ASSERT_EQ(keyed.size(), kMessages);
   for (std::uint32_t i = 0; i < kMessages; ++i) {

@@ -132,7 +132,7 @@ test("a replay can be paused, stepped and sought from the page", async () => {
   await waitFor(page, () => Math.abs(rtdViewer.state().robots[0].playback.position_s - 1) < 0.15);
   const position = () => page.evaluate(() => rtdViewer.state().robots[0].playback.position_s);
   let before = await position();
-  for (let last = NaN; last !== before; before = await position()) {  // on a busy computer the seek goes on for a while
+  for (let last = NaN; last !== before; before = await position()) {  // on a busy computer the seek continues for a while
     last = before;
     await setTimeout(500);
   }

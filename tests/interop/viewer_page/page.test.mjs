@@ -196,7 +196,7 @@ test("what is hidden is not asked for", async () => {
   await until(() => server.wanted.some(({ image, mask, features, dense }) => !image && !mask && !features && dense));
 });
 
-test("a message that cannot be read is counted, and the page goes on", async () => {
+test("a message that cannot be read is counted, and the page continues", async () => {
   await open();
   await waitForMap(page, 5000);
   server.send(Buffer.from([3, 0, 0, 0, 9, 0, 0, 0, 1]));

@@ -49,7 +49,10 @@ int print_digest(const char* path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) return std::fputs("usage: mcap_digest FILE\n", stderr), 2;
+  if (argc != 2) {
+    std::fputs("usage: mcap_digest FILE\n", stderr);
+    return 2;
+  }
   try {
     return print_digest(argv[1]);
   } catch (const std::exception& error) {

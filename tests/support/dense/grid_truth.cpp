@@ -39,7 +39,8 @@ GridTruth::GridTruth(const std::string& source, double cell_m, const dense::Robo
   const auto cell = static_cast<float>(cell_m);
   first_ = ((extent.min().head<2>().array() - kWallsM) / cell).floor().cast<int>();
   const Eigen::Array2i end = ((extent.max().head<2>().array() + kWallsM) / cell).ceil().cast<int>();
-  columns_ = end.x() - first_.x(), rows_ = end.y() - first_.y();
+  columns_ = end.x() - first_.x();
+  rows_ = end.y() - first_.y();
   cells_.resize(static_cast<std::size_t>(columns_ * rows_));
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {

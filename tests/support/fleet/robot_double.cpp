@@ -15,7 +15,7 @@ namespace rtd::test_support {
 namespace {
 
 constexpr int kStep = 8;  // of grey between two marks: JPEG changes a block of one grey by 1 or 2
-constexpr std::size_t kMostUnanswered = 10'000;
+constexpr std::size_t kMaxUnanswered = 10'000;
 
 cv::Mat block(const cv::Mat& image, int index) {
   const int width = image.cols / 4, height = image.rows / 2;
@@ -70,7 +70,10 @@ RobotDouble::RobotDouble(const bus::BusOptions& options, Options robot)
     encoded_.emplace_back();
     if (robot_.broken) {
       encoded_.back().assign(5000, static_cast<std::uint8_t>(number));
-      if (number % 2 == 0) encoded_.back()[0] = 0xFF, encoded_.back()[1] = 0xD8;
+      if (number % 2 == 0) {
+        encoded_.back()[0] = 0xFF;
+        encoded_.back()[1] = 0xD8;
+      }
     } else {
       cv::imencode(".jpg", marked_image(robot_.size, robot_.id, number), encoded_.back());
     }
@@ -104,7 +107,7 @@ void RobotDouble::send(std::uint64_t number) {
   {
     const std::lock_guard lock(mutex_);
     sent_ns_[stamp_ns] = service::monotonic_ns();
-    if (sent_ns_.size() > kMostUnanswered) sent_ns_.erase(sent_ns_.begin());
+    if (sent_ns_.size() > kMaxUnanswered) sent_ns_.erase(sent_ns_.begin());
     ++figures_.sent;
   }
   jpegs_.write({{msg::to_time(stamp_ns), "camera"}, "jpeg", encoded_[number % kNumbers]});

@@ -21,7 +21,7 @@ namespace rtd::test_support {
 
 /// Images say whose they are and which: `id` of the robot and the number modulo kNumbers, each as a block of grey. What
 /// stands in for a network reads both out of the pixels, so that an answer that goes astray is found.
-inline constexpr int kMostIds = 32, kNumbers = 32;
+inline constexpr int kMaxIds = 32, kNumbers = 32;
 cv::Mat marked_image(cv::Size size, int id, int number);
 /// One detection: class "robotID", left edge at the number.
 std::vector<vision::Detection> read_marks(const cv::Mat& image);
@@ -33,7 +33,7 @@ class RobotDouble {
  public:
   struct Options {
     std::string name;  ///< "": the robot without a name
-    int id = 0;        ///< 0 to kMostIds - 1
+    int id = 0;        ///< 0 to kMaxIds - 1
     double rate_hz = 30;
     cv::Size size{320, 240};
     bool broken = false;  ///< sends bytes that are no image, without end

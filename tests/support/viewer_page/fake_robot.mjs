@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 
-// One robot of the fake server: its state as messages, whole for a new page and in parts as time goes on.
+// One robot of the fake server: its state as messages, whole for a new page and in parts as time continues.
 
 import * as encode from "./encode.mjs";
 import { cameraView, kHeight, kWidth } from "./camera_view.mjs";
@@ -91,7 +91,7 @@ export class FakeRobot {
     const service = (name, state, metrics, message = "", host = "robot") => ({
       name, pid: 100, state, message, age_ms: 90, metrics: { [`host_name.${host}`]: 1, host_id: host.length, ...metrics },
     });
-    const clocks = { "clock.slam.heard_ms": 3, "clock.slam.offset_ms": 1.8, "clock.slam.round_trip_ms": 0.6 };
+    const clocks = { "clock.slam.received_ms": 3, "clock.slam.offset_ms": 1.8, "clock.slam.round_trip_ms": 0.6 };
     return { type: "status", robot: this.index, services: [
       service("camera", "running", { frames: this.seq }, "openni2: 640x480, 30 Hz"),
       service("detector", "running", { frames: Math.floor(this.seq / 3), frames_dropped: 2, rate_hz: 29.7,

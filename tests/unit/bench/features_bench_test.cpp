@@ -21,9 +21,9 @@ TEST(FeaturesBench, measures_both_on_every_frame) {
   FeaturesOptions options;
   options.frames = 4;
   options.features = 500;
-  std::uint64_t told = 0;
-  const FeaturesResult result = bench_features(*source, options, [&](std::uint64_t done) { told = done; });
-  EXPECT_EQ(told, 4U);
+  std::uint64_t reported = 0;
+  const FeaturesResult result = bench_features(*source, options, [&](std::uint64_t done) { reported = done; });
+  EXPECT_EQ(reported, 4U);
   EXPECT_EQ(result.width, 640);
   for (const ExtractorTimes* times : {&result.own, &result.opencv}) {
     EXPECT_THAT(times->wall_ms, SizeIs(4));

@@ -42,7 +42,7 @@ TEST(Transport, names_are_read_back) {
   EXPECT_FALSE(parse_payload("video"));
 }
 
-TEST(Transport, table_and_json_tell_the_ratio_to_memcpy_and_the_failure) {
+TEST(Transport, table_and_json_report_the_ratio_to_memcpy_and_the_failure) {
   std::vector<TransportResult> results(2, measured());
   results[1].failure = "no such interface";
   TransportOptions options;

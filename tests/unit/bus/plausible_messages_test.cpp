@@ -30,12 +30,12 @@ std::vector<Hostile<T>> hostile_values(const T& good, const msg::FieldRule& rule
     return {};
   } else if constexpr (std::is_floating_point_v<T>) {
     const bool any_size = rule.most > 1e300;
-    constexpr T kMost = std::numeric_limits<T>::max();
+    constexpr T kMax = std::numeric_limits<T>::max();
     return {{static_cast<T>(kNan)},
             {static_cast<T>(kInfinity)},
             {-static_cast<T>(kInfinity)},
-            {kMost, any_size},
-            {-kMost, any_size}};
+            {kMax, any_size},
+            {-kMax, any_size}};
   } else if constexpr (std::is_enum_v<T>) {
     return {{static_cast<T>(~0U)}, {static_cast<T>(static_cast<std::uint32_t>(last_value(msg::TypeOf<T>())) + 1)}};
   } else if constexpr (std::is_integral_v<T>) {
@@ -118,22 +118,22 @@ TEST(PlausibleMessages, the_first_bad_field_is_named_with_its_type) {
 TEST(SequenceGuard, takes_losses_loops_and_newcomers_and_no_jump) {
   SequenceGuard guard;
   const WriterId camera{1}, other{2};
-  EXPECT_TRUE(guard.goes_on(camera, 5'000'000)) << "a reader may come late";
-  EXPECT_TRUE(guard.goes_on(camera, 5'000'100));
-  EXPECT_FALSE(guard.goes_on(camera, 900'000'000));
-  EXPECT_FALSE(guard.goes_on(camera, 900'000'001)) << "a jump is not remembered";
-  EXPECT_TRUE(guard.goes_on(camera, 5'000'101));
-  EXPECT_TRUE(guard.goes_on(camera, 0));
-  EXPECT_TRUE(guard.goes_on(other, 900'000'000)) << "each writer counts for itself";
-  EXPECT_FALSE(guard.goes_on(camera, 900'000'000));
+  EXPECT_TRUE(guard.continues(camera, 5'000'000)) << "a reader may come late";
+  EXPECT_TRUE(guard.continues(camera, 5'000'100));
+  EXPECT_FALSE(guard.continues(camera, 900'000'000));
+  EXPECT_FALSE(guard.continues(camera, 900'000'001)) << "a jump is not remembered";
+  EXPECT_TRUE(guard.continues(camera, 5'000'101));
+  EXPECT_TRUE(guard.continues(camera, 0));
+  EXPECT_TRUE(guard.continues(other, 900'000'000)) << "each writer counts for itself";
+  EXPECT_FALSE(guard.continues(camera, 900'000'000));
 }
 
 TEST(SequenceGuard, forgets_the_oldest_of_many_writers) {
   SequenceGuard guard;
-  for (std::uint8_t writer = 1; writer <= 1 + SequenceGuard::kMostWriters; ++writer)
-    EXPECT_TRUE(guard.goes_on(WriterId{writer}, 0));
-  EXPECT_TRUE(guard.goes_on(WriterId{1}, 900'000'000));
-  EXPECT_FALSE(guard.goes_on(WriterId{3}, 900'000'000));
+  for (std::uint8_t writer = 1; writer <= 1 + SequenceGuard::kMaxWriters; ++writer)
+    EXPECT_TRUE(guard.continues(WriterId{writer}, 0));
+  EXPECT_TRUE(guard.continues(WriterId{1}, 900'000'000));
+  EXPECT_FALSE(guard.continues(WriterId{3}, 900'000'000));
 }
 
 TEST(PlausibleMessages, features_beyond_the_count_do_not_matter) {

@@ -143,11 +143,11 @@ TEST_F(ShmLeftovers, files_of_others_are_not_touched) {
 }
 
 /// Runs as user `nobody` in a process of its own; 0 = success.
-int as_nobody(const std::function<bool()>& test) {
+int as_unprivileged_user(const std::function<bool()>& test) {
   const pid_t child = fork();
   if (child == 0) {
-    constexpr uid_t kNobody = 65534;
-    if (setgid(kNobody) != 0 || setuid(kNobody) != 0) _exit(2);
+    constexpr uid_t kUnprivilegedUser = 65534;
+    if (setgid(kUnprivilegedUser) != 0 || setuid(kUnprivilegedUser) != 0) _exit(2);
     _exit(test() ? 0 : 1);
   }
   int status = 0;
@@ -172,14 +172,14 @@ TEST_F(ShmLeftovers, a_process_of_the_owner_that_cannot_be_read_keeps_them) {
     }
     return kept && clean().removed.size() == 1;
   };
-  EXPECT_EQ(as_nobody(test), 0);
+  EXPECT_EQ(as_unprivileged_user(test), 0);
 }
 
 TEST_F(ShmLeftovers, of_another_user_are_left_with_the_reason) {
   if (geteuid() != 0) GTEST_SKIP() << "needs root, to become another user";
   make("fastrtps_00a20056a0830cc2");
   fs::permissions(folder_, fs::perms::all | fs::perms::sticky_bit);
-  EXPECT_EQ(as_nobody([&] { return !reason(clean(), "fastrtps_00a20056a0830cc2").empty(); }), 0);
+  EXPECT_EQ(as_unprivileged_user([&] { return !reason(clean(), "fastrtps_00a20056a0830cc2").empty(); }), 0);
   EXPECT_TRUE(fs::exists(path("fastrtps_00a20056a0830cc2")));
 }
 

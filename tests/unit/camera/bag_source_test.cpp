@@ -182,7 +182,8 @@ TEST(BagSource, leaves_out_frames_of_other_sizes_and_short_messages) {
 TEST(BagSource, refuses_frames_larger_than_the_frame_type) {
   ImageBag bag;
   msg::CameraInfo info = ImageBag::camera_info();
-  info.width = 2560, info.height = 1440;
+  info.width = 2560;
+  info.height = 1440;
   bag.add_info(info);
   bag.add_color(1);
   bag.add_depth(1);
@@ -217,7 +218,8 @@ TEST(BagSource, needs_a_calibration_it_understands) {
 TEST(BagSource, knows_rational_and_fisheye_lenses) {
   const auto camera_of = [](const std::string& model, const std::vector<double>& coefficients) {
     msg::CameraInfo info = ImageBag::camera_info();
-    info.distortion_model = model, info.d = coefficients;
+    info.distortion_model = model;
+    info.d = coefficients;
     ImageBag bag;
     bag.add_info(info);
     bag.add_color(1);

@@ -51,7 +51,10 @@ double middle_of_near(const cv::Mat& depth) {
   double sum = 0, count = 0;
   for (int row = 0; row < depth.rows; ++row) {
     for (int column = 0; column < depth.cols; ++column) {
-      if (metres(depth, row, column) > 0 && metres(depth, row, column) < 3) sum += column, ++count;
+      if (metres(depth, row, column) > 0 && metres(depth, row, column) < 3) {
+        sum += column;
+        ++count;
+      }
     }
   }
   return sum / count;
@@ -124,7 +127,8 @@ TEST(DepthFaults, dark_surfaces_and_monitors_lose_most_of_their_depth) {
   view.color_bgr.colRange(60, 120).setTo(cv::Scalar::all(20));
   view.material.colRange(120, 180).setTo(static_cast<int>(Material::kMonitor));
   SensorFaults faults;
-  faults.dark_holes = 0.75, faults.monitor_holes = 0.9;
+  faults.dark_holes = 0.75;
+  faults.monitor_holes = 0.9;
   const cv::Mat depth = measure(faults, view);
   EXPECT_NEAR(hole_share(depth.colRange(0, 60)), 0.75, 0.08);
   EXPECT_NEAR(hole_share(depth.colRange(60, 120)), 0.75, 0.08) << "dark paint";
@@ -215,7 +219,10 @@ TEST(DepthFaults, systematic_error_is_relative) {
 
 TEST(DepthFaults, are_the_same_for_the_same_frame_only) {
   SensorFaults faults;
-  faults.noise_correlation_px = 5, faults.holes = 0.2, faults.flying_px = 3, faults.wrong_side_px = 2;
+  faults.noise_correlation_px = 5;
+  faults.holes = 0.2;
+  faults.flying_px = 3;
+  faults.wrong_side_px = 2;
   const cv::Size size(kWidth, kHeight);
   const DepthFaults a(faults, {}, size, 1), b(faults, {}, size, 1), other(faults, {}, size, 2);
   const DepthView view = object_at(2);

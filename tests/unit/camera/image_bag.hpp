@@ -27,7 +27,8 @@ class ImageBag {
   static msg::Image image(const cv::Mat& pixels, const std::string& encoding, double stamp_s) {
     msg::Image message;
     message.header = {msg::to_time(static_cast<std::int64_t>(stamp_s * 1e9)), "/kinect"};
-    message.height = static_cast<std::uint32_t>(pixels.rows), message.width = static_cast<std::uint32_t>(pixels.cols);
+    message.height = static_cast<std::uint32_t>(pixels.rows);
+    message.width = static_cast<std::uint32_t>(pixels.cols);
     message.encoding = encoding;
     message.step = message.width * static_cast<std::uint32_t>(pixels.elemSize());
     message.data.assign(pixels.datastart, pixels.dataend);
@@ -35,7 +36,8 @@ class ImageBag {
   }
   static msg::CameraInfo camera_info(double fx = 30) {
     msg::CameraInfo info;
-    info.width = kWidth, info.height = kHeight;
+    info.width = kWidth;
+    info.height = kHeight;
     info.distortion_model = "plumb_bob";
     info.k = {fx, 0, 15.5, 0, 31, 11.5, 0, 0, 1};
     return info;

@@ -24,7 +24,7 @@ using ::testing::ThrowsMessage;
 
 constexpr const char* kUri = "ros2:/c,/d,/i";
 
-/// A camera that a test plays. An empty feed lets its clock go on, and closes after a minute.
+/// A camera that a test plays. An empty feed lets its clock continue, and closes after a minute.
 class PlayedFeed : public LiveFeed {
  public:
   struct Script {
@@ -97,8 +97,13 @@ class LiveSourceTest : public ::testing::Test {
 };
 
 TEST_F(LiveSourceTest, pairs_by_stamp_as_soon_as_both_are_there_and_keeps_the_drivers_calibration) {
-  info(), color(1.0), depth(1.0);  // for open()
-  color(1.1), depth(1.105), depth(1.2), color(1.2);
+  info();
+  color(1.0);
+  depth(1.0);  // for open()
+  color(1.1);
+  depth(1.105);
+  depth(1.2);
+  color(1.2);
   LiveSource played = source();
   ASSERT_TRUE(played.open());
   EXPECT_TRUE(played.info().live);
@@ -116,8 +121,14 @@ TEST_F(LiveSourceTest, pairs_by_stamp_as_soon_as_both_are_there_and_keeps_the_dr
 }
 
 TEST_F(LiveSourceTest, colour_without_depth_in_time_is_left_out) {
-  info(), color(1.0), depth(1.0);
-  color(1.1), color(1.2), depth(1.2), color(1.3), depth(1.35);
+  info();
+  color(1.0);
+  depth(1.0);
+  color(1.1);
+  color(1.2);
+  depth(1.2);
+  color(1.3);
+  depth(1.35);
   LiveSource played = source(std::string(kUri) + "?tolerance_ms=60");
   ASSERT_TRUE(played.open());
   EXPECT_EQ(played.next()->image.stamp_ns, 1'200'000'000);
@@ -130,8 +141,13 @@ TEST_F(LiveSourceTest, every_encoding_becomes_bgr_and_depth_of_16_bit) {
   cv::Mat metres(24, 32, CV_32FC1, cv::Scalar(1.5F));
   metres.at<float>(0, 0) = std::numeric_limits<float>::quiet_NaN();
   metres.at<float>(0, 1) = std::numeric_limits<float>::infinity();
-  info(), color(1.0, rgb, "rgb8"), depth(1.0, metres, "32FC1");
-  color(1.1, rgb, "rgb8"), depth(1.1, metres, "32FC1"), color(1.2, grey, "mono8"), depth(1.2, metres, "32FC1");
+  info();
+  color(1.0, rgb, "rgb8");
+  depth(1.0, metres, "32FC1");
+  color(1.1, rgb, "rgb8");
+  depth(1.1, metres, "32FC1");
+  color(1.2, grey, "mono8");
+  depth(1.2, metres, "32FC1");
   LiveSource played = source();
   const SourceFrame first = only_frame(played), second = played.next().value();
   EXPECT_EQ(first.image.color_bgr.at<cv::Vec3b>(5, 5), cv::Vec3b(3, 2, 1));
@@ -150,7 +166,10 @@ TEST_F(LiveSourceTest, rows_may_have_bytes_behind_their_pixels) {
     std::copy_n(padded.data.begin() + static_cast<std::ptrdiff_t>(row * padded.step), padded.step,
                 wide.data.begin() + static_cast<std::ptrdiff_t>(row * wide.step));
   }
-  info(), color(1.0), depth(1.0), color(1.1);
+  info();
+  color(1.0);
+  depth(1.0);
+  color(1.1);
   add("/d", "sensor_msgs/Image", wide);
   LiveSource played = source();
   EXPECT_EQ(only_frame(played).image.depth.at<std::uint16_t>(23, 31), 1500);
@@ -163,14 +182,33 @@ TEST_F(LiveSourceTest, refuses_encodings_sizes_and_byte_orders_by_name) {
     LiveSource played = source();
     EXPECT_THAT([&] { played.open(); }, ThrowsMessage<SourceError>(HasSubstr(text)));
   };
-  refusal([&] { info(), color(1, ImageBag::color(), "nv21"), depth(1); }, "'nv21'");
-  refusal([&] { info(), color(1), depth(1, ImageBag::depth(), "8UC1"); }, "'8UC1'");
-  refusal([&] { info(), color(1), depth(1, cv::Mat(12, 16, CV_16UC1, cv::Scalar(1))); }, "/d has 16 x 12 px");
+  refusal(
+      [&] {
+        info();
+        color(1, ImageBag::color(), "nv21");
+        depth(1);
+      },
+      "'nv21'");
+  refusal(
+      [&] {
+        info();
+        color(1);
+        depth(1, ImageBag::depth(), "8UC1");
+      },
+      "'8UC1'");
+  refusal(
+      [&] {
+        info();
+        color(1);
+        depth(1, cv::Mat(12, 16, CV_16UC1, cv::Scalar(1)));
+      },
+      "/d has 16 x 12 px");
   refusal([&] { info(ImageBag::camera_info(0)); }, "not calibrated");
   refusal(
       [&] {
         msg::CameraInfo large = ImageBag::camera_info();
-        large.width = 2560, large.height = 1440;
+        large.width = 2560;
+        large.height = 1440;
         info(large);
       },
       "2560 x 1440 px, but a frame carries at most 1920 x 1200");
@@ -178,7 +216,8 @@ TEST_F(LiveSourceTest, refuses_encodings_sizes_and_byte_orders_by_name) {
       [&] {
         msg::Image big_endian = ImageBag::image(ImageBag::depth(), "16UC1", 1);
         big_endian.is_bigendian = 1;
-        info(), color(1);
+        info();
+        color(1);
         add("/d", "sensor_msgs/Image", big_endian);
       },
       "big endian");
@@ -192,7 +231,10 @@ TEST_F(LiveSourceTest, reports_what_it_waits_for_and_gives_up) {
   EXPECT_THAT(reported_.front(), HasSubstr("no colour image on /c: state of /c"));
 
   reported_.clear();
-  for (int i = 0; i < 1500; ++i) color(1.0 + 0.033 * i), depth(1.0 + 0.033 * i);
+  for (int i = 0; i < 1500; ++i) {
+    color(1.0 + 0.033 * i);
+    depth(1.0 + 0.033 * i);
+  }
   LiveSource no_info = source();
   EXPECT_THROW(no_info.open(), SourceError);
   EXPECT_THAT(reported_.front(), HasSubstr("no sensor_msgs/CameraInfo on /i: state of /i"));
@@ -200,7 +242,10 @@ TEST_F(LiveSourceTest, reports_what_it_waits_for_and_gives_up) {
 
 TEST_F(LiveSourceTest, reports_stamps_that_do_not_pair) {
   info();
-  for (int i = 0; i < 1500; ++i) color(1.0 + 0.033 * i), depth(1001.0 + 0.033 * i);
+  for (int i = 0; i < 1500; ++i) {
+    color(1.0 + 0.033 * i);
+    depth(1001.0 + 0.033 * i);
+  }
   LiveSource played = source();
   EXPECT_THROW(played.open(), SourceError);
   ASSERT_FALSE(reported_.empty());
@@ -209,7 +254,11 @@ TEST_F(LiveSourceTest, reports_stamps_that_do_not_pair) {
 }
 
 TEST_F(LiveSourceTest, reports_a_pause_and_its_end) {
-  info(), color(1.0), depth(1.0), color(1.1), depth(1.1);
+  info();
+  color(1.0);
+  depth(1.0);
+  color(1.1);
+  depth(1.1);
   LiveSource played = source();
   only_frame(played);
   EXPECT_EQ(played.next(), std::nullopt) << "the feed closes after a minute";
@@ -218,18 +267,29 @@ TEST_F(LiveSourceTest, reports_a_pause_and_its_end) {
 }
 
 TEST_F(LiveSourceTest, a_clock_that_steps_back_is_an_error_not_silence) {
-  info(), color(100.0), depth(100.0), color(100.1), depth(100.1);
-  for (int i = 0; i < 40; ++i) color(1.0 + 0.033 * i), depth(1.0 + 0.033 * i);
+  info();
+  color(100.0);
+  depth(100.0);
+  color(100.1);
+  depth(100.1);
+  for (int i = 0; i < 40; ++i) {
+    color(1.0 + 0.033 * i);
+    depth(1.0 + 0.033 * i);
+  }
   LiveSource played = source();
   only_frame(played);
   EXPECT_THAT([&] { played.next(); }, ThrowsMessage<SourceError>(HasSubstr("went back")));
 }
 
 TEST_F(LiveSourceTest, broken_messages_and_drops_are_counted) {
-  info(), color(1.0), depth(1.0);
-  color(1.1), depth(1.1);
+  info();
+  color(1.0);
+  depth(1.0);
+  color(1.1);
+  depth(1.1);
   script_.messages.back().bytes.resize(30);
-  color(1.2), depth(1.2);
+  color(1.2);
+  depth(1.2);
   LiveSource played = source();
   ASSERT_TRUE(played.open());
   script_.dropped = 2;
@@ -253,7 +313,13 @@ class UnregisteredDepth : public LiveSourceTest {
 TEST_F(UnregisteredDepth, is_registered_by_both_camera_infos_and_tf_whatever_comes_first) {
   for (const char* topic : {"/tf_static", "/tf"}) {
     script_.messages.clear();
-    info(TwoCameras::info(cameras_.color)), pair(1.0), depth_info(), pair(1.1), transforms(topic), pair(1.2), pair(1.3);
+    info(TwoCameras::info(cameras_.color));
+    pair(1.0);
+    depth_info();
+    pair(1.1);
+    transforms(topic);
+    pair(1.2);
+    pair(1.3);
     LiveSource played = source(kTopics);
     ASSERT_TRUE(played.open()) << topic;
     const SourceFrame frame = played.next().value();
@@ -273,14 +339,20 @@ TEST_F(UnregisteredDepth, is_refused_with_the_reason) {
   };
   refusal([] {}, AllOf(HasSubstr("80 x 60"), HasSubstr("CameraInfo of depth on /di (state of /di"),
                        HasSubstr("?registered=1")));
-  refusal([&] { depth_info(), pair(1.5); },
-          AllOf(HasSubstr("from 'camera_depth_optical_frame' to 'camera_color_optical_frame' on /tf_static"),
-                HasSubstr("?registered=1")));
+  refusal(
+      [&] {
+        depth_info();
+        pair(1.5);
+      },
+      AllOf(HasSubstr("from 'camera_depth_optical_frame' to 'camera_color_optical_frame' on /tf_static"),
+            HasSubstr("?registered=1")));
   EXPECT_THAT(reported_.back(), HasSubstr("not registered to colour"));
 }
 
 TEST_F(UnregisteredDepth, of_one_size_in_another_frame_is_taken_as_it_is_only_on_request) {
-  info(), color(1.0), color(1.1);
+  info();
+  color(1.0);
+  color(1.1);
   msg::Image elsewhere = ImageBag::image(ImageBag::depth(), "16UC1", 1.0);
   elsewhere.header.frame_id = "elsewhere";
   add("/d", "sensor_msgs/Image", elsewhere);
@@ -295,9 +367,14 @@ TEST_F(UnregisteredDepth, of_one_size_in_another_frame_is_taken_as_it_is_only_on
 }
 
 TEST_F(UnregisteredDepth, whose_camera_is_known_late_ends_the_source) {
-  info(), color(1.0), depth(1.0), color(1.1), depth(1.1);
+  info();
+  color(1.0);
+  depth(1.0);
+  color(1.1);
+  depth(1.1);
   add("/di", "sensor_msgs/CameraInfo", ImageBag::camera_info(40));
-  color(1.2), depth(1.2);
+  color(1.2);
+  depth(1.2);
   LiveSource played = source(kTopics);
   only_frame(played);
   EXPECT_THAT([&] { played.next(); }, ThrowsMessage<SourceError>(AllOf(HasSubstr("fx 40"), HasSubstr("again"))));
@@ -305,16 +382,25 @@ TEST_F(UnregisteredDepth, whose_camera_is_known_late_ends_the_source) {
 
 TEST_F(UnregisteredDepth, waits_for_a_camera_info_that_is_published) {
   script_.published = {"/di"};
-  info(), color(1.0), depth(1.0);
+  info();
+  color(1.0);
+  depth(1.0);
   add("/di", "sensor_msgs/CameraInfo", ImageBag::camera_info());
-  color(1.1), depth(1.1), color(1.2), depth(1.2);
+  color(1.1);
+  depth(1.1);
+  color(1.2);
+  depth(1.2);
   LiveSource played = source(kTopics);
   EXPECT_EQ(only_frame(played).image.stamp_ns, 1'200'000'000);
 }
 
 TEST_F(LiveSourceTest, what_came_while_it_opened_is_old) {
   script_.clears = true;
-  info(), color(1.0), depth(1.0), color(1.1), depth(1.1);
+  info();
+  color(1.0);
+  depth(1.0);
+  color(1.1);
+  depth(1.1);
   LiveSource played = source();
   ASSERT_TRUE(played.open());
   EXPECT_TRUE(script_.messages.empty());

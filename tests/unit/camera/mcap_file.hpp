@@ -68,7 +68,8 @@ inline std::unique_ptr<msg::RgbdFrame> own_frame(std::int64_t stamp_ns, std::uin
   frame->intrinsics = {30, 31, 9.5, 4.5};
   frame->distortion = {0.1, 0, 0, 0, 0};
   frame->depth_scale_m = 0.0002;
-  frame->width = 20, frame->height = 10;
+  frame->width = 20;
+  frame->height = 10;
   frame->source_id = 7;
   frame->color_bgr.fill(grey);
   frame->depth.fill(depth);

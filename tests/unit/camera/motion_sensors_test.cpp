@@ -44,7 +44,11 @@ TEST(MotionSensors, at_rest_show_gravity_and_their_biases) {
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero(), accel = Eigen::Vector3d::Zero();
   double count = 0;
   for (const SourceFrame& frame : frames) {
-    for (const ImuReading& reading : frame.imu) gyro += reading.gyro_rad_s, accel += reading.accel_m_s2, ++count;
+    for (const ImuReading& reading : frame.imu) {
+      gyro += reading.gyro_rad_s;
+      accel += reading.accel_m_s2;
+      ++count;
+    }
   }
   EXPECT_NEAR((gyro / count).norm(), 0.0087, 0.001) << "0.5 degrees/s";
   const Eigen::Vector3d up = frames[0].T_world_camera->linear().transpose() * Eigen::Vector3d::UnitZ();

@@ -17,7 +17,7 @@
 
 namespace rtd::camera::test {
 
-/// The time of a test: it goes on when somebody waits, and closes after ten minutes.
+/// The time of a test: it continues when somebody waits, and closes after ten minutes.
 struct PlayedTime {
   std::int64_t now_ns = 1'000'000'000'000;
   bool closed = false;
@@ -73,7 +73,8 @@ class PlayedDevice final : public LiveDevice {
     require_plugged();
     if (script_.fails_to_open) throw *script_.fails_to_open;
     open_ = true;
-    ++script_.opened, ++script_.open_now;
+    ++script_.opened;
+    ++script_.open_now;
   }
   std::vector<DeviceMode> modes() override { return {mode(Stream::kColor), mode(Stream::kDepth)}; }
   DeviceSetup start(const ModeRequest& request) override {
@@ -105,7 +106,8 @@ class PlayedDevice final : public LiveDevice {
   }
   void close() noexcept override {
     if (!std::exchange(open_, false)) return;
-    ++script_.closed, --script_.open_now;
+    ++script_.closed;
+    --script_.open_now;
   }
 
  private:

@@ -96,7 +96,8 @@ TEST(RealsenseProtocol, extrinsics_go_from_depth_to_colour_whichever_way_they_ar
   EXPECT_LT((*T_color_depth * p_depth - p_color).norm(), 1e-12);
   Description unconnected;
   unconnected.take({{"id", "device-header"}, {"n-streams", 2}});
-  unconnected.take(header_of("Depth", "depth")), unconnected.take(header_of("Color", "color"));
+  unconnected.take(header_of("Depth", "depth"));
+  unconnected.take(header_of("Color", "color"));
   EXPECT_EQ(unconnected.T_color_depth(), std::nullopt);
 }
 

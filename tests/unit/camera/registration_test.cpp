@@ -53,7 +53,8 @@ void expect_refused(const std::string& uri, const Words& words) {
 TEST(Registration, of_a_bag_by_its_camera_infos_and_tf_static) {
   const TwoCameras cameras;
   ImageBag bag;
-  add_color(bag, cameras), add_depth(bag, cameras);
+  add_color(bag, cameras);
+  add_depth(bag, cameras);
   bag.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
   bag.add("/tf_static", "tf2_msgs/TFMessage", cameras.transforms(), 1);
   const auto frames = play(uri_of(bag));
@@ -65,7 +66,8 @@ TEST(Registration, of_a_bag_by_its_camera_infos_and_tf_static) {
 TEST(Registration, of_a_bag_by_tf_of_old) {
   const TwoCameras cameras;
   ImageBag bag;
-  add_color(bag, cameras), add_depth(bag, cameras);
+  add_color(bag, cameras);
+  add_depth(bag, cameras);
   bag.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
   bag.add("/tf", "tf/tfMessage", cameras.transforms("/"), 1);
   const auto frames = play(uri_of(bag));
@@ -133,15 +135,18 @@ TEST(Registration, a_realsense_sdk_bag_is_never_accepted_as_it_is) {
 TEST(Registration, depth_in_another_frame_without_a_transform_or_an_info_is_refused) {
   const TwoCameras cameras;
   ImageBag without_info;
-  add_color(without_info, cameras), add_depth(without_info, cameras);
+  add_color(without_info, cameras);
+  add_depth(without_info, cameras);
   without_info.add("/tf_static", "tf2_msgs/TFMessage", cameras.transforms(), 1);
   expect_refused(uri_of(without_info), AllOf(HasSubstr("?depth_info=TOPIC"), HasSubstr("64 x 48")));
   ImageBag without_transform;
-  add_color(without_transform, cameras), add_depth(without_transform, cameras);
+  add_color(without_transform, cameras);
+  add_depth(without_transform, cameras);
   without_transform.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
   expect_refused(uri_of(without_transform), AllOf(HasSubstr("tf_static"), HasSubstr("?registered=1")));
   ImageBag bad_info;
-  add_color(bad_info, cameras), add_depth(bad_info, cameras);
+  add_color(bad_info, cameras);
+  add_depth(bad_info, cameras);
   bad_info.add(kDepthInfo, kRosInfo, msg::CameraInfo(), 1);
   expect_refused(uri_of(bad_info), AllOf(HasSubstr("not registered"), HasSubstr("not calibrated")));
 }
@@ -151,7 +156,8 @@ TEST(Registration, one_frame_with_other_intrinsics_is_another_raster) {
   cameras.T_color_depth = Eigen::Isometry3d::Identity();
   cameras.depth_frame = cameras.color_frame;
   ImageBag bag;
-  add_color(bag, cameras), add_depth(bag, cameras);
+  add_color(bag, cameras);
+  add_depth(bag, cameras);
   bag.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
   const auto frames = play(uri_of(bag));
   ASSERT_THAT(frames, SizeIs(1));
@@ -164,7 +170,8 @@ TEST(Registration, a_calibration_file_is_that_of_colour_and_of_the_depth_unit) {
   cameras.T_color_depth = Eigen::Isometry3d::Identity();
   cameras.depth = geometry::CameraModel({50, 50, 32, 24, {}, TwoCameras::kWidth, TwoCameras::kHeight});
   ImageBag bag;
-  add_color(bag, cameras), add_depth(bag, cameras);
+  add_color(bag, cameras);
+  add_depth(bag, cameras);
   bag.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
   const std::string uri = uri_of(bag);
   std::string text = SequenceFolder::calibration(TwoCameras::kWidth, TwoCameras::kHeight);
@@ -180,7 +187,8 @@ TEST(Registration, a_calibration_file_is_that_of_colour_and_of_the_depth_unit) {
 TEST(Registration, damaged_transforms_do_not_count) {
   const TwoCameras cameras;
   ImageBag bag;
-  add_color(bag, cameras), add_depth(bag, cameras);
+  add_color(bag, cameras);
+  add_depth(bag, cameras);
   bag.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
   bag.add("/tf_static", "tf2_msgs/TFMessage", msg::Time{7, 7}, 1);
   msg::TFMessage no_rotation = cameras.transforms();
@@ -215,7 +223,8 @@ TEST(Alignment, is_judged_by_sizes_intrinsics_names_and_frames) {
 TEST(TransformLog, joins_two_frames_by_the_frame_above_both) {
   const auto link = [](const char* parent, const char* child, double x) {
     msg::TransformStamped transform;
-    transform.header.frame_id = parent, transform.child_frame_id = child;
+    transform.header.frame_id = parent;
+    transform.child_frame_id = child;
     transform.transform.translation.x = x;
     return transform;
   };
@@ -233,8 +242,10 @@ TEST(TransformLog, joins_two_frames_by_the_frame_above_both) {
 TEST(PairingTolerance, is_an_option_of_every_source) {
   ImageBag bag;
   bag.add_info();
-  bag.add_color(1.0), bag.add_depth(1.01);
-  bag.add_color(1.1), bag.add_depth(1.14);
+  bag.add_color(1.0);
+  bag.add_depth(1.01);
+  bag.add_color(1.1);
+  bag.add_depth(1.14);
   const std::string uri = bag.uri();
   EXPECT_THAT(play(uri), SizeIs(1));
   EXPECT_THAT(play(uri + "?tolerance_ms=45"), SizeIs(2));

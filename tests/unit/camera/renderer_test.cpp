@@ -12,8 +12,10 @@ constexpr int kWidth = 160, kHeight = 120;
 geometry::CameraModel camera() {
   geometry::CameraModel::Parameters parameters;
   parameters.fx = parameters.fy = 130;
-  parameters.cx = (kWidth - 1) / 2.0, parameters.cy = (kHeight - 1) / 2.0;
-  parameters.width = kWidth, parameters.height = kHeight;
+  parameters.cx = (kWidth - 1) / 2.0;
+  parameters.cy = (kHeight - 1) / 2.0;
+  parameters.width = kWidth;
+  parameters.height = kHeight;
   return geometry::CameraModel(parameters);
 }
 
@@ -29,7 +31,8 @@ Texture plain(std::uint8_t level) {
 /// A face of 2 m x 2 m that looks at the camera, its middle at `center`.
 Face facing_camera(const Eigen::Vector3f& center, bool moving = false) {
   Face face;
-  face.axis_s = Eigen::Vector3f::UnitX(), face.axis_t = -Eigen::Vector3f::UnitY();  // normal -z, towards the camera
+  face.axis_s = Eigen::Vector3f::UnitX();
+  face.axis_t = -Eigen::Vector3f::UnitY();  // normal -z, towards the camera
   face.width_m = face.height_m = 2;
   face.origin = center - face.axis_s - face.axis_t;
   face.moving = moving;

@@ -98,8 +98,11 @@ TEST(FrameDrops, none_lose_nothing) {
 
 geometry::CameraModel freiburg1(double factor) {
   geometry::CameraModel::Parameters parameters;
-  parameters.width = 160, parameters.height = 120;
-  parameters.fx = parameters.fy = 131.25, parameters.cx = 79.5, parameters.cy = 59.5;
+  parameters.width = 160;
+  parameters.height = 120;
+  parameters.fx = parameters.fy = 131.25;
+  parameters.cx = 79.5;
+  parameters.cy = 59.5;
   parameters.distortion = synthetic::lens_distortion(factor);
   return geometry::CameraModel(parameters);
 }
@@ -111,12 +114,16 @@ TEST(Lens, shows_a_point_where_the_distortion_puts_it) {
   ASSERT_GT(pinhole.width, 160);
   synthetic::Rendering seen;
   const cv::Size size(pinhole.width, pinhole.height);
-  seen.color_bgr = cv::Mat::zeros(size, CV_8UC3), seen.inverse_depth = cv::Mat::zeros(size, CV_32FC1);
-  seen.moving_mask = cv::Mat::zeros(size, CV_8UC1), seen.material = cv::Mat::zeros(size, CV_8UC1);
+  seen.color_bgr = cv::Mat::zeros(size, CV_8UC3);
+  seen.inverse_depth = cv::Mat::zeros(size, CV_32FC1);
+  seen.moving_mask = cv::Mat::zeros(size, CV_8UC1);
+  seen.material = cv::Mat::zeros(size, CV_8UC1);
   seen.object = cv::Mat(size, CV_16SC1, cv::Scalar(synthetic::kRoomItself));
   const cv::Rect spot(20, 15, 5, 5);
-  seen.color_bgr(spot).setTo(cv::Scalar::all(255)), seen.inverse_depth(spot).setTo(0.5);
-  seen.moving_mask(spot).setTo(255), seen.object(spot).setTo(0);
+  seen.color_bgr(spot).setTo(cv::Scalar::all(255));
+  seen.inverse_depth(spot).setTo(0.5);
+  seen.moving_mask(spot).setTo(255);
+  seen.object(spot).setTo(0);
   const synthetic::Rendering bent = lens.bent(seen);
   const Eigen::Vector2d undistorted(22 - (pinhole.cx - 79.5), 17 - (pinhole.cy - 59.5));
   const Eigen::Vector2d expected = camera.distort(undistorted);

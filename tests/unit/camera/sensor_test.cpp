@@ -23,7 +23,9 @@ Statistics statistics_of(const cv::Mat& depth) {
     for (int column = 0; column < depth.cols; ++column) {
       const double depth_m = depth.at<std::uint16_t>(row, column) / 5000.0;
       if (depth_m == 0) continue;
-      sum += depth_m, squares += depth_m * depth_m, ++count;
+      sum += depth_m;
+      squares += depth_m * depth_m;
+      ++count;
     }
   }
   return {sum / count, std::sqrt(squares / count - sum / count * sum / count),

@@ -96,7 +96,7 @@ TEST(TumSource, reads_masks_on_request) {
   EXPECT_TRUE(play(folder).frames[0].dynamic_mask.empty());
 }
 
-TEST(TumSource, skips_missing_and_truncated_images_and_goes_on) {
+TEST(TumSource, skips_missing_and_truncated_images_and_continues) {
   const SequenceFolder folder;
   folder.three_frames();
   for (const char* stamp : {"1.3", "1.4", "1.5", "1.6"}) folder.frame(stamp);

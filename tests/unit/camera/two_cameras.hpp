@@ -34,7 +34,8 @@ struct TwoCameras {
   static msg::CameraInfo info(const geometry::CameraModel& camera) {
     const auto& p = camera.parameters();
     msg::CameraInfo info;
-    info.width = static_cast<std::uint32_t>(p.width), info.height = static_cast<std::uint32_t>(p.height);
+    info.width = static_cast<std::uint32_t>(p.width);
+    info.height = static_cast<std::uint32_t>(p.height);
     info.distortion_model = "plumb_bob";
     info.d.assign(p.distortion.begin(), p.distortion.end());
     info.k = {p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1};
@@ -62,7 +63,8 @@ struct TwoCameras {
                                          Eigen::AngleAxisd(1.0, Eigen::Vector3d(1, -1, 1).normalized()));
     msg::TransformStamped of_depth, of_color;
     of_depth.header.frame_id = of_color.header.frame_id = slash + "camera_link";
-    of_depth.child_frame_id = slash + depth_frame, of_color.child_frame_id = slash + color_frame;
+    of_depth.child_frame_id = slash + depth_frame;
+    of_color.child_frame_id = slash + color_frame;
     of_depth.transform = transform(T_link_depth);
     of_color.transform = transform(T_link_depth * T_color_depth.inverse());
     return {{of_depth, of_color}};

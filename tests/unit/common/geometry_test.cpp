@@ -37,7 +37,8 @@ TEST(CameraModel, agrees_with_opencv_for_every_lens) {
   CameraModel::Parameters rational = tum_fr1().parameters();
   rational.distortion = {0.6, -2.7, 0.0004, -0.0002, 1.6, 0.48, -2.5, 1.5};  // of an Azure Kinect
   CameraModel::Parameters fisheye = tum_fr1().parameters();
-  fisheye.fx = fisheye.fy = 280, fisheye.lens = Lens::kFisheye;
+  fisheye.fx = fisheye.fy = 280;
+  fisheye.lens = Lens::kFisheye;
   fisheye.distortion = {-0.007, 0.04, -0.04, 0.007};
   for (const CameraModel::Parameters& p : {rational, fisheye}) {
     const CameraModel camera(p);
@@ -63,7 +64,8 @@ TEST(CameraModel, agrees_with_opencv_for_every_lens) {
 
 TEST(CameraModel, what_a_fisheye_lens_sees_behind_it_stays_finite) {
   CameraModel::Parameters p = tum_fr1().parameters();
-  p.fx = p.fy = 150, p.lens = Lens::kFisheye;
+  p.fx = p.fy = 150;
+  p.lens = Lens::kFisheye;
   const Eigen::Vector2d corner = CameraModel(p).undistort({0, 0});  // 2.6 rad off the axis
   EXPECT_NEAR((corner - Eigen::Vector2d(p.cx, p.cy)).norm(), 150 * std::tan(CameraModel::kWidestView_rad), 1e-6);
 }

@@ -65,8 +65,10 @@ std::size_t position_of(const Bytes& bytes, const Bytes& what) {
 /// A JPEG whose header claims another size.
 Bytes with_jpeg_size(Bytes jpeg, int width, int height) {
   const std::size_t header = position_of(jpeg, {0xFF, 0xC0, 0x00});
-  jpeg[header + 5] = static_cast<std::uint8_t>(height >> 8), jpeg[header + 6] = static_cast<std::uint8_t>(height);
-  jpeg[header + 7] = static_cast<std::uint8_t>(width >> 8), jpeg[header + 8] = static_cast<std::uint8_t>(width);
+  jpeg[header + 5] = static_cast<std::uint8_t>(height >> 8);
+  jpeg[header + 6] = static_cast<std::uint8_t>(height);
+  jpeg[header + 7] = static_cast<std::uint8_t>(width >> 8);
+  jpeg[header + 8] = static_cast<std::uint8_t>(width);
   return jpeg;
 }
 
@@ -74,7 +76,8 @@ Bytes with_png_size(Bytes png, std::uint32_t width, std::uint32_t height) {
   const auto put = [&](std::size_t at, std::uint32_t value) {
     for (int i = 0; i < 4; ++i) png[at + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
   };
-  put(16, width), put(20, height);
+  put(16, width);
+  put(20, height);
   put(29, static_cast<std::uint32_t>(crc32(0, &png[12], 17)));
   return png;
 }

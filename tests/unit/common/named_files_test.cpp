@@ -76,7 +76,7 @@ TEST_F(NamedFilesTest, replaces_only_files_of_its_kind) {
     EXPECT_THAT([&] { maps_.to_write(name); }, ThrowsMessage<NameError>(HasSubstr("not replaced"))) << name;
 }
 
-TEST_F(NamedFilesTest, does_not_tell_why_a_file_cannot_be_read) {
+TEST_F(NamedFilesTest, does_not_reveal_why_a_file_cannot_be_read) {
   put("map.rtdmap", "RTDMAP and so on");
   put("text.rtdmap", "export PATH");
   fs::create_symlink("map.rtdmap", at("link.rtdmap"));

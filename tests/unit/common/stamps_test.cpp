@@ -25,14 +25,14 @@ TEST(Stamps, ordinary_ones_are_added_and_subtracted) {
 }
 
 TEST(Stamps, any_two_are_the_nearest_number_apart_that_has_room) {
-  EXPECT_EQ(minus_ns(kMax, kMin), kMostNs);
-  EXPECT_EQ(minus_ns(kMin, kMax), -kMostNs);
-  EXPECT_EQ(minus_ns(kMin, 0), -kMostNs) << "its sign can be changed";
-  EXPECT_EQ(minus_ns(0, kMin), kMostNs);
-  EXPECT_EQ(plus_ns(kMax, 1), kMostNs);
-  EXPECT_EQ(plus_ns(kMin, -1), -kMostNs);
-  EXPECT_EQ(plus_ns(kMin, 0), -kMostNs);
-  EXPECT_EQ(apart_ns(kMin, kMax), kMostNs);
+  EXPECT_EQ(minus_ns(kMax, kMin), kMaxNs);
+  EXPECT_EQ(minus_ns(kMin, kMax), -kMaxNs);
+  EXPECT_EQ(minus_ns(kMin, 0), -kMaxNs) << "its sign can be changed";
+  EXPECT_EQ(minus_ns(0, kMin), kMaxNs);
+  EXPECT_EQ(plus_ns(kMax, 1), kMaxNs);
+  EXPECT_EQ(plus_ns(kMin, -1), -kMaxNs);
+  EXPECT_EQ(plus_ns(kMin, 0), -kMaxNs);
+  EXPECT_EQ(apart_ns(kMin, kMax), kMaxNs);
 }
 
 TEST(Stamps, differences_keep_the_order) {

@@ -28,7 +28,7 @@ TEST(StandardStreams, a_file_never_gets_the_number_of_a_closed_stream) {
   EXPECT_EQ(status, 0);
 }
 
-TEST(StandardStreams, output_that_nobody_reads_ends_no_process) {
+TEST(StandardStreams, output_without_a_reader_ends_no_process) {
   const int status = status_of([] {
     int ends[2];
     if (::pipe(ends) != 0) return 2;

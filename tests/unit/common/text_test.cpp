@@ -21,7 +21,7 @@ TEST(ParseStamp, is_exact_to_the_nanosecond) {
   EXPECT_EQ(parse_stamp_ns("1.5e3"), 1'500'000'000'000);
 }
 
-TEST(ParseStamp, tells_numbers_that_are_no_times_from_other_texts) {
+TEST(ParseStamp, distinguishes_numbers_that_are_no_times_from_other_texts) {
   EXPECT_THROW(parse_stamp_ns("12:30"), std::invalid_argument);
   for (const char* text : {"nan", "inf", "-inf", "1e300"}) EXPECT_THROW(parse_stamp_ns(text), StampOutOfRange);
 }

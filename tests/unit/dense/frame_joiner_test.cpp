@@ -59,7 +59,11 @@ TEST_F(FrameJoinerTest, gives_a_frame_when_all_three_parts_are_there_in_any_orde
 
 TEST_F(FrameJoinerTest, takes_every_second_frame_and_keyframes) {
   event(0, 3);
-  for (std::uint64_t seq = 1; seq < 5; ++seq) image(seq), mask(seq), pose(seq, 1);
+  for (std::uint64_t seq = 1; seq < 5; ++seq) {
+    image(seq);
+    mask(seq);
+    pose(seq, 1);
+  }
   EXPECT_EQ(next(), 2);
   EXPECT_EQ(next(), 3) << "a keyframe";
   EXPECT_EQ(next(), 4);
@@ -67,7 +71,9 @@ TEST_F(FrameJoinerTest, takes_every_second_frame_and_keyframes) {
 }
 
 TEST_F(FrameJoinerTest, waits_for_the_keyframe_events_before_a_result) {
-  image(0), mask(0), pose(0, 2);
+  image(0);
+  mask(0);
+  pose(0, 2);
   event(0);
   EXPECT_EQ(next(), -1);
   event(1);
@@ -79,7 +85,10 @@ TEST_F(FrameJoinerTest, waits_for_the_keyframe_events_before_a_result) {
 }
 
 TEST_F(FrameJoinerTest, drops_a_frame_whose_mask_does_not_come) {
-  for (std::uint64_t seq = 2; seq < 14; ++seq) image(seq), pose(seq);
+  for (std::uint64_t seq = 2; seq < 14; ++seq) {
+    image(seq);
+    pose(seq);
+  }
   mask(8);
   EXPECT_EQ(next(), 8);
   EXPECT_EQ(joiner_.counters().without_mask, 3U);
@@ -99,7 +108,9 @@ TEST_F(FrameJoinerTest, does_without_masks_when_configured) {
 }
 
 TEST_F(FrameJoinerTest, counts_frames_without_pose) {
-  image(0), mask(0), pose(0, 0, msg::TrackingState::kLost);
+  image(0);
+  mask(0);
+  pose(0, 0, msg::TrackingState::kLost);
   EXPECT_EQ(next(), -1);
   EXPECT_EQ(joiner_.counters().not_tracked, 1U);
 }
@@ -108,14 +119,19 @@ TEST_F(FrameJoinerTest, leaves_out_frames_of_another_map) {
   msg::TrackingResult result{};
   result.state = msg::TrackingState::kOk;
   result.map_id = 1;
-  image(0), mask(0);
+  image(0);
+  mask(0);
   joiner_.put(result);
   EXPECT_EQ(next(), -1);
   EXPECT_EQ(joiner_.counters().not_tracked, 1U);
 }
 
 TEST_F(FrameJoinerTest, keeps_the_newest_images_when_none_is_taken) {
-  for (std::uint64_t seq = 0; seq < 400; ++seq) image(seq), mask(seq), pose(seq);
+  for (std::uint64_t seq = 0; seq < 400; ++seq) {
+    image(seq);
+    mask(seq);
+    pose(seq);
+  }
   std::int64_t first = next(), last = first;
   for (std::int64_t seq = first; seq >= 0; seq = next()) last = seq;
   EXPECT_GE(first, 388);
@@ -125,16 +141,24 @@ TEST_F(FrameJoinerTest, keeps_the_newest_images_when_none_is_taken) {
 }
 
 TEST_F(FrameJoinerTest, takes_stamps_that_go_back) {
-  for (const std::uint64_t seq : {100U, 102U, 2U, 4U}) image(seq), mask(seq), pose(seq);
+  for (const std::uint64_t seq : {100U, 102U, 2U, 4U}) {
+    image(seq);
+    mask(seq);
+    pose(seq);
+  }
   for (const std::int64_t seq : {100, 102, 2, 4}) EXPECT_EQ(next(), seq);
 }
 
 TEST_F(FrameJoinerTest, notices_that_slam_was_restarted) {
   for (std::uint64_t i = 0; i < 5; ++i) event(i, i);
-  image(0), mask(0), pose(0, 5);
+  image(0);
+  mask(0);
+  pose(0, 5);
   EXPECT_EQ(next(), 0);
   event(0, 10);
-  image(10), mask(10), pose(10, 1);
+  image(10);
+  mask(10);
+  pose(10, 1);
   const auto joined = joiner_.take(kNow);
   ASSERT_TRUE(joined);
   ASSERT_EQ(joined->updates.size(), 1U);

@@ -47,12 +47,15 @@ TEST(FloorFinder, finds_the_lowest_level_with_many_points) {
   for (int i = 0; i < 1000; ++i) {
     floor.add(-0.8 + 0.0001 * (i % 100));  // floor
     floor.add(-0.1 + 0.0001 * (i % 100));  // tables
-    floor.add(1.6), floor.add(1.6);        // ceiling
+    floor.add(1.6);
+    floor.add(1.6);                        // ceiling
     floor.add(-1.5 + 0.003 * i);           // walls, seen deeper through a hole in the floor
   }
   ASSERT_TRUE(floor.floor_m(0.5).has_value());
   EXPECT_NEAR(*floor.floor_m(0.5), -0.795, 0.01) << "m";
-  floor.add(std::nan("")), floor.add(1e30), floor.add(-1e30);
+  floor.add(std::nan(""));
+  floor.add(1e30);
+  floor.add(-1e30);
   EXPECT_NEAR(*floor.floor_m(0.5), -0.795, 0.01) << "m";
   EXPECT_FALSE(FloorFinder().floor_m(-1000).has_value());
 }

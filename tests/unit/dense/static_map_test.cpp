@@ -16,7 +16,7 @@ using test::keyframe;
 using test::WallScene;
 using Outcome = FusionReport::Outcome;
 
-const cv::Rect kPerson{60, 30, 40, 80}, kNobody{};
+const cv::Rect kPerson{60, 30, 40, 80}, kNoPerson{};
 
 /// Believed points nearer than half way to the wall.
 std::size_t ghosts(StaticMap& map) {
@@ -57,7 +57,7 @@ TEST(StaticMap, has_a_ghost_of_a_person_without_mask_until_it_is_seen_through) {
   for (int i = 0; i < 40; ++i) map.integrate(scene.render(kPerson), all_static(), at_origin());
   EXPECT_GT(ghosts(map), 500U);
   const int needed = config.carving.max_evidence + config.carving.frames;
-  for (int i = 0; i < needed; ++i) map.integrate(scene.render(kNobody), all_static(), at_origin());
+  for (int i = 0; i < needed; ++i) map.integrate(scene.render(kNoPerson), all_static(), at_origin());
   EXPECT_LT(ghosts(map), 10U) << "after " << needed << " frames";
 }
 
@@ -66,7 +66,7 @@ TEST(StaticMap, carves_at_pixels_of_moving_objects_too) {
   StaticMap map(WallScene::config());
   for (int i = 0; i < 5; ++i) map.integrate(scene.render(kPerson), all_static(), at_origin());
   const DynamicMask all_dynamic{1, 1, {DynamicMask::kDynamic}};
-  for (int i = 0; i < 8; ++i) map.integrate(scene.render(kNobody), all_dynamic, at_origin());
+  for (int i = 0; i < 8; ++i) map.integrate(scene.render(kNoPerson), all_dynamic, at_origin());
   EXPECT_LT(ghosts(map), 10U);
 }
 

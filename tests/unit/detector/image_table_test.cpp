@@ -50,7 +50,7 @@ TEST_F(ImageTable, prints_a_row_per_object) {
   EXPECT_THAT(out_, ::testing::ContainsRegex("white.png +person +1.00 +39 +22 +10 +13\n"));
 }
 
-TEST_F(ImageTable, goes_on_after_a_file_that_is_no_image) {
+TEST_F(ImageTable, continues_after_a_file_that_is_no_image) {
   EXPECT_EQ(run({"--image", path("tiny.onnx"), path("white.png"), "--model", path("tiny.onnx")}), 1);
   EXPECT_THAT(errors_, HasSubstr("tiny.onnx is missing or not an image"));
   EXPECT_THAT(out_, HasSubstr("person"));

@@ -78,7 +78,10 @@ TEST_P(EveryRoll, boxes_the_turned_ellipse_exactly) {
   for (int i = 0; i < 3600; ++i) {
     const double x = 30 * std::cos(i * kDegree / 10), y = 80 * std::sin(i * kDegree / 10);
     const double u = 330 + view.cos * x + view.sin * y, v = 230 - view.sin * x + view.cos * y;
-    left = std::min(left, u), right = std::max(right, u), top = std::min(top, v), bottom = std::max(bottom, v);
+    left = std::min(left, u);
+    right = std::max(right, u);
+    top = std::min(top, v);
+    bottom = std::max(bottom, v);
   }
   EXPECT_NEAR(box.x, left, 0.05);
   EXPECT_NEAR(box.x + box.width, right, 0.05);

@@ -90,7 +90,7 @@ TEST_F(AblationResultTest, has_no_ratio_before_the_baseline_was_run) {
   EXPECT_EQ(ablation_cells(summarize(ablation_)[0])[2], "-");
 }
 
-TEST_F(AblationResultTest, says_which_runs_failed_and_goes_on_with_the_others) {
+TEST_F(AblationResultTest, says_which_runs_failed_and_continues_with_the_others) {
   add("off", 0.4);
   add("rtd", 0.004);
   add("rtd", 0.1).failure = "slam died";

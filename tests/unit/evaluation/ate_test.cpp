@@ -89,7 +89,7 @@ TEST(Ate, points_carry_stamp_and_aligned_position) {
   EXPECT_TRUE(result.points[7].estimate_m.isApprox(groundtruth[7].T_world_body.translation(), 1e-9));
 }
 
-TEST(Ate, one_pair_fits_exactly_and_is_told_to_be_ambiguous) {
+TEST(Ate, one_pair_fits_exactly_and_is_reported_as_ambiguous) {
   const Trajectory one = winding_path(1, 0.1);
   for (const AlignmentKind kind : {AlignmentKind::kRigid, AlignmentKind::kSimilarity}) {
     AteOptions options;
@@ -102,7 +102,7 @@ TEST(Ate, one_pair_fits_exactly_and_is_told_to_be_ambiguous) {
   }
 }
 
-TEST(Ate, collinear_path_has_a_small_error_and_is_told_to_be_ambiguous) {
+TEST(Ate, collinear_path_has_a_small_error_and_is_reported_as_ambiguous) {
   Trajectory line;
   for (int i = 0; i < 10; ++i) {
     line.push_back({i * 100'000'000LL, Eigen::Isometry3d(Eigen::Translation3d(0.3 * i, 0, 0))});

@@ -136,7 +136,7 @@ TEST_F(EvalDetectorCommand, reads_voc_labels_by_itself) {
   EXPECT_EQ(json()["input"]["without_partner"], 1);  // b.png: no file, no objects, so its box is wrong but comes later
 }
 
-TEST_F(EvalDetectorCommand, counts_and_says_what_is_wrong_and_goes_on) {
+TEST_F(EvalDetectorCommand, counts_and_says_what_is_wrong_and_continues) {
   write_image("c.png");
   folder_.write("images/d.png", "no image");
   folder_.write("labels/b.txt", "0 0.5\n7 0.5 0.5 0.1 0.1\n");

@@ -121,7 +121,7 @@ TEST_F(EvalCommand, offset_moves_the_estimate_in_time) {
   EXPECT_EQ(run({estimate, truth_, "--offset", "-7000"}).code, 0);
 }
 
-TEST_F(EvalCommand, no_pairs_is_exit_1_and_tells_both_spans_and_options) {
+TEST_F(EvalCommand, no_pairs_is_exit_1_and_reports_both_spans_and_options) {
   Trajectory other = winding_path(10, 0.1);
   for (auto& pose : other) pose.stamp_ns += 5'000'000'000'000;
   const Outcome outcome = run({folder_.write("other.txt", tum_text(other)), truth_});
@@ -159,7 +159,7 @@ TEST_F(EvalCommand, refuses_a_negative_time_limit) {
   EXPECT_THROW(run({estimate_, truth_, "--max-difference", "-1"}), CLI::ValidationError);
 }
 
-TEST_F(EvalCommand, line_shaped_paths_are_told_to_be_ambiguous) {
+TEST_F(EvalCommand, line_shaped_paths_are_reported_as_ambiguous) {
   Trajectory line;
   for (int i = 0; i < 20; ++i)
     line.push_back({(100 + i) * 1'000'000'000LL, Eigen::Isometry3d(Eigen::Translation3d(i, 0, 0))});

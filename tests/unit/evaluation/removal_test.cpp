@@ -89,7 +89,7 @@ TEST(TrueMasks, of_an_endless_scene_are_not_looked_for_at_the_end_of_time) {
   EXPECT_EQ(removal->frames, 1U);
 }
 
-TEST(TrueMasks, are_looked_at_evenly_spread_or_until_somebody_loses_patience) {
+TEST(TrueMasks, are_looked_at_evenly_spread_or_until_the_user_interrupts) {
   const fs::path folder = fs::path(testing::TempDir()) / ("rtd_limits_" + std::to_string(getpid()));
   fs::create_directories(folder / "mask");
   std::vector<run_record::JudgedFrame> frames;

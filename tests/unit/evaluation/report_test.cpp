@@ -270,7 +270,7 @@ TEST_F(Report, comparison_names_both_runs_their_errors_and_the_ratio) {
   EXPECT_THAT(html, AllOf(Not(HasSubstr("http:")), Not(HasSubstr("https:")), Not(HasSubstr("<script"))));
 }
 
-TEST_F(Report, comparison_tells_a_worse_and_an_equal_run_apart) {
+TEST_F(Report, comparison_distinguishes_a_worse_and_an_equal_run) {
   eval::Run worse = record_;
   worse.trajectory_path = folder_.write("worse.txt", tum_text(moved(winding_path(100, 0.1), some_transform(), 1.2)));
   EXPECT_THAT(comparison_html({{"a", record_}, {"b", worse}}), HasSubstr("2 times more than a"));

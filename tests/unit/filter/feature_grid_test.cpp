@@ -51,10 +51,10 @@ TEST(FeatureGrid, is_empty_without_features) {
 }
 
 TEST(FeatureGrid, stays_small_and_finds_everything_whatever_the_size_of_the_image_says) {
-  constexpr int kMost = std::numeric_limits<int>::max();
+  constexpr int kMax = std::numeric_limits<int>::max();
   const std::vector<msg::Feature> features{feature_at(10, 10), feature_at(2e9F, 10), feature_at(10, 2e9F)};
   for (const auto& [width_px, height_px] :
-       {std::pair(kMost, kMost), {1'000'000'000, 1'000'000'000}, {kMost, 1}, {1, kMost}, {-5, 0}}) {
+       {std::pair(kMax, kMax), {1'000'000'000, 1'000'000'000}, {kMax, 1}, {1, kMax}, {-5, 0}}) {
     const FeatureGrid grid(features, width_px, height_px);
     EXPECT_THAT(grid.find({10, 10, 5}), testing::ElementsAre(0)) << width_px << "x" << height_px;
     EXPECT_THAT(grid.find({2e9F, 10, 5}), testing::ElementsAre(1)) << width_px << "x" << height_px;

@@ -31,7 +31,7 @@ void end_with_another_error() {
   std::_Exit(8);
 }
 
-TEST(LostLockDeathTest, a_thread_whose_lock_is_lost_stands_still_and_the_process_goes_on) {
+TEST(LostLockDeathTest, a_thread_whose_lock_is_lost_stands_still_and_the_process_continues) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(end_when_one_stands_still(), testing::ExitedWithCode(7), "");
 }

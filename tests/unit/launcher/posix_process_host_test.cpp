@@ -50,14 +50,14 @@ class PosixProcessHostTest : public testing::Test {
       [this](const std::string& name, const std::string& line) { lines[name].push_back(line); }};
 };
 
-TEST_F(PosixProcessHostTest, tells_exit_code_and_output) {
+TEST_F(PosixProcessHostTest, reports_exit_code_and_output) {
   const process::ProcessExit exit = wait_for_exit(start("a", "echo out; echo err >&2; printf unfinished; exit 3"));
   EXPECT_EQ(exit.code, 3);
   EXPECT_EQ(exit.signal, 0);
   EXPECT_THAT(lines["a"], ElementsAre("out", "err", "unfinished"));
 }
 
-TEST_F(PosixProcessHostTest, tells_the_signal) {
+TEST_F(PosixProcessHostTest, reports_the_signal) {
   const process::ProcessExit exit = wait_for_exit(start("a", "kill -SEGV $$"));
   EXPECT_EQ(exit.signal, SIGSEGV);
   EXPECT_EQ(describe(exit), "killed by signal 11 (SIGSEGV)");
@@ -122,17 +122,17 @@ TEST_F(PosixProcessHostTest, counts_the_signs_of_life_of_each_child) {
 }
 
 TEST_F(PosixProcessHostTest, nothing_outlives_the_launcher) {
-  int told[2];
-  ASSERT_EQ(pipe(told), 0);
+  int reported[2];
+  ASSERT_EQ(pipe(reported), 0);
   const pid_t launcher = fork();
   if (launcher == 0) {
     process::PosixProcessHost inner([](const std::string&, const std::string&) {});
     const process::ProcessId process = inner.start({"a", {"/bin/sleep", "60"}});
-    [[maybe_unused]] const auto written = write(told[1], &process, sizeof(process));
+    [[maybe_unused]] const auto written = write(reported[1], &process, sizeof(process));
     raise(SIGKILL);
   }
   process::ProcessId orphan = 0;
-  ASSERT_EQ(read(told[0], &orphan, sizeof(orphan)), static_cast<ssize_t>(sizeof(orphan)));
+  ASSERT_EQ(read(reported[0], &orphan, sizeof(orphan)), static_cast<ssize_t>(sizeof(orphan)));
   waitpid(launcher, nullptr, 0);
   const std::string stat = "/proc/" + std::to_string(orphan) + "/exe";
   const milliseconds give_up = now() + milliseconds(5000);
@@ -141,11 +141,11 @@ TEST_F(PosixProcessHostTest, nothing_outlives_the_launcher) {
   EXPECT_LT(readlink(stat.c_str(), target, sizeof(target)), 0) << "sleep still runs";
 }
 
-TEST_F(PosixProcessHostTest, ends_the_deaf_in_time) {
+TEST_F(PosixProcessHostTest, ends_unresponsive_processes_in_time) {
   Supervisor supervisor(host, SupervisorOptions{}, nullptr);
   supervisor.start({"polite", {"/bin/sleep", "60"}, ServiceRole::kEssential}, now());
-  supervisor.start({"deaf", {"/bin/sh", "-c", "trap '' TERM; echo up; while :; do sleep 60; done"}, {}}, now());
-  wait_for_line("deaf");
+  supervisor.start({"unresponsive", {"/bin/sh", "-c", "trap '' TERM; echo up; while :; do sleep 60; done"}, {}}, now());
+  wait_for_line("unresponsive");
 
   const milliseconds asked = now();
   supervisor.stop(asked, milliseconds(300), RunOutcome::kInterrupted);

@@ -166,7 +166,7 @@ TEST(record_builder, live_status_follows_the_newest_frame) {
   EXPECT_DOUBLE_EQ(status.latency_ms, 20.0);
 }
 
-TEST(record_builder, tells_a_dead_peer_once_until_it_is_heard_again) {
+TEST(record_builder, reports_a_dead_peer_once_until_it_is_received_again) {
   FrameList store;
   RecordBuilder builder(store);
   msg::ServiceStatus filter{.service = "filter"}, slam{.service = "slam"};
@@ -181,7 +181,7 @@ TEST(record_builder, tells_a_dead_peer_once_until_it_is_heard_again) {
   EXPECT_EQ(builder.take_notice(), "detector is dead: no heartbeat") << "again";
 }
 
-TEST(record_builder, tells_refused_endpoints_by_service_and_topic) {
+TEST(record_builder, reports_refused_endpoints_by_service_and_topic) {
   FrameList store;
   RecordBuilder builder(store);
   builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.incompatible_qos", 1}}});
@@ -190,7 +190,7 @@ TEST(record_builder, tells_refused_endpoints_by_service_and_topic) {
   EXPECT_EQ(builder.take_notice(), std::nullopt);
 }
 
-TEST(record_builder, tells_implausible_messages_once_by_service_and_topic) {
+TEST(record_builder, reports_implausible_messages_once_by_service_and_topic) {
   FrameList store;
   RecordBuilder builder(store);
   builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.implausible", 1}}});
@@ -199,7 +199,7 @@ TEST(record_builder, tells_implausible_messages_once_by_service_and_topic) {
   EXPECT_EQ(builder.take_notice(), std::nullopt);
 }
 
-TEST(record_builder, tells_a_degraded_service_once) {
+TEST(record_builder, reports_a_degraded_service_once) {
   FrameList store;
   RecordBuilder builder(store);
   msg::ServiceStatus status = status_of("filter", 7, {});
@@ -211,7 +211,7 @@ TEST(record_builder, tells_a_degraded_service_once) {
   EXPECT_EQ(builder.take_notice(), std::nullopt);
 }
 
-TEST(record_builder, names_the_services_that_are_heard_and_have_not_finished) {
+TEST(record_builder, names_the_services_that_report_and_have_not_finished) {
   FrameList store;
   RecordBuilder builder(store);
   EXPECT_EQ(builder.active_services(), "");
@@ -387,10 +387,10 @@ TEST(record_builder, made_up_services_counters_and_troubles_have_a_largest_numbe
   }
   std::size_t notices = 0;
   while (builder.take_notice()) ++notices;
-  EXPECT_EQ(notices, RecordBuilder::kMostNotices);
+  EXPECT_EQ(notices, RecordBuilder::kMaxNotices);
   run_record::RunRecord record;
   builder.fill(record);
-  EXPECT_LE(record.drops.size(), RecordBuilder::kMostServices + RecordBuilder::kMostCounters);
+  EXPECT_LE(record.drops.size(), RecordBuilder::kMaxServices + RecordBuilder::kMaxCounters);
   EXPECT_EQ(record.drops.at("slam.lost"), 1.0) << "the real counter stays";
 }
 

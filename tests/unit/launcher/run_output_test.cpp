@@ -74,7 +74,7 @@ TEST(terminal, quiet_shows_warnings_only) {
   EXPECT_EQ(out.str(), "slam died\n");
 }
 
-TEST(terminal, leaves_out_what_nobody_reads_and_says_so) {
+TEST(terminal, leaves_out_what_is_not_read_and_says_so) {
   std::ostringstream out;
   bool room = true;
   Terminal terminal(out, {false, false, 80, [&] { return room; }});

@@ -37,7 +37,7 @@ class FakeHost : public process::ProcessHost {
   }
   void terminate(process::ProcessId process) override {
     terminated.push_back(names[process]);
-    if (deaf.count(names[process]) == 0) exits[process] = {};
+    if (unresponsive.count(names[process]) == 0) exits[process] = {};
   }
   void kill(process::ProcessId process) override {
     killed.push_back(names[process]);
@@ -54,7 +54,7 @@ class FakeHost : public process::ProcessHost {
     exits[newest] = exit;
   }
 
-  std::set<std::string> missing, deaf;
+  std::set<std::string> missing, unresponsive;
   std::vector<std::string> started, terminated, killed;
   std::vector<std::string> arguments;  ///< of the last one started
   std::map<process::ProcessId, std::string> names;
@@ -88,9 +88,9 @@ class SupervisorTest : public testing::Test {
   long restarts(const std::string& name) const { return std::ranges::count(host.started, name) - 1; }
 
   FakeHost host;
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   milliseconds now{1000};
-  Supervisor supervisor{host, SupervisorOptions{}, [this](const SupervisorEvent& e) { told.push_back(e.text); }};
+  Supervisor supervisor{host, SupervisorOptions{}, [this](const SupervisorEvent& e) { reported.push_back(e.text); }};
 };
 
 TEST_F(SupervisorTest, one_that_falls_silent_is_killed_and_restarted_at_once) {
@@ -106,12 +106,12 @@ TEST_F(SupervisorTest, one_that_falls_silent_is_killed_and_restarted_at_once) {
   advance(milliseconds(10));
   EXPECT_THAT(host.killed, ElementsAre("slam"));
   advance(milliseconds(10));
-  EXPECT_THAT(told, Contains("slam hung for 3 s and was killed, restart at once"));
+  EXPECT_THAT(reported, Contains("slam hung for 3 s and was killed, restart at once"));
   EXPECT_EQ(restarts("slam"), 1);
   EXPECT_THAT(restarts("detector"), 0) << "has never given a sign of life";
 }
 
-TEST_F(SupervisorTest, nobody_is_killed_for_the_time_in_which_everything_stood_still) {
+TEST_F(SupervisorTest, no_service_is_killed_for_the_time_in_which_everything_stood_still) {
   start_all();
   host.signs["slam"] = 1;
   advance(milliseconds(2900));
@@ -128,7 +128,7 @@ TEST_F(SupervisorTest, nobody_is_killed_for_the_time_in_which_everything_stood_s
 
 TEST_F(SupervisorTest, one_that_was_asked_to_end_has_its_grace_beside_a_standstill) {
   start_all();
-  host.deaf.insert("slam");
+  host.unresponsive.insert("slam");
   advance(milliseconds(10));
   supervisor.stop(now, milliseconds(5000), RunOutcome::kInterrupted);
   advance(milliseconds(1000));
@@ -159,7 +159,7 @@ TEST_F(SupervisorTest, the_restarted_one_is_waited_for_as_the_first_was) {
 TEST_F(SupervisorTest, one_that_takes_long_to_end_has_its_grace) {
   start_all();
   host.signs["slam"] = 1;
-  host.deaf.insert("slam");
+  host.unresponsive.insert("slam");
   advance(milliseconds(10));
   supervisor.stop(now, milliseconds(20'000), RunOutcome::kComplete);
   advance(milliseconds(19'000));
@@ -212,7 +212,7 @@ TEST_F(SupervisorTest, names_service_and_signal_of_a_death_and_restarts_after_th
   start_all();
   host.end("slam", {0, 11});
   advance(milliseconds(10));
-  EXPECT_THAT(told.back(), HasSubstr("slam died: killed by signal 11 (SIGSEGV), restart in 200 ms"));
+  EXPECT_THAT(reported.back(), HasSubstr("slam died: killed by signal 11 (SIGSEGV), restart in 200 ms"));
   advance(milliseconds(199));
   EXPECT_EQ(host.started.size(), 3U);
   advance(milliseconds(1));
@@ -227,12 +227,12 @@ TEST_F(SupervisorTest, restarts_one_that_had_worked_for_long_at_once) {
   advance(milliseconds(6000));
   host.end("slam", {0, 9});
   advance(milliseconds(0));
-  EXPECT_THAT(told, testing::Contains(HasSubstr("slam died: killed by signal 9 (SIGKILL), restart at once")));
+  EXPECT_THAT(reported, testing::Contains(HasSubstr("slam died: killed by signal 9 (SIGKILL), restart at once")));
   EXPECT_EQ(host.started.back(), "slam");
   EXPECT_EQ(restarts("slam"), 1);
   host.end("slam", {0, 9});
   advance(milliseconds(10));
-  EXPECT_THAT(told.back(), HasSubstr("restart in 400 ms")) << "young: the second of its row";
+  EXPECT_THAT(reported.back(), HasSubstr("restart in 400 ms")) << "young: the second of its row";
 }
 
 TEST_F(SupervisorTest, a_worker_that_ends_with_0_by_itself_is_restarted_too) {
@@ -256,7 +256,7 @@ TEST_F(SupervisorTest, backoff_doubles_and_is_bounded) {
   for (const char* pause : {"200 ms", "400 ms", "800 ms", "1600 ms", "2000 ms"}) {
     host.end("slam", {1, 0});
     advance(milliseconds(10));
-    EXPECT_THAT(told.back(), HasSubstr(pause));
+    EXPECT_THAT(reported.back(), HasSubstr(pause));
     advance(milliseconds(2000));
   }
 }
@@ -268,14 +268,14 @@ TEST_F(SupervisorTest, gives_an_essential_service_up_after_five_restarts_in_a_ro
   die_and_wait("slam", 1);
   EXPECT_EQ(supervisor.outcome(), RunOutcome::kFailed);
   EXPECT_EQ(restarts("slam"), 5);
-  EXPECT_THAT(told.back(), HasSubstr("6 times in a row: given up"));
+  EXPECT_THAT(reported.back(), HasSubstr("6 times in a row: given up"));
 }
 
-TEST_F(SupervisorTest, goes_on_without_an_optional_service) {
+TEST_F(SupervisorTest, continues_without_an_optional_service) {
   start_all();
   die_and_wait("detector", 6);
   EXPECT_EQ(supervisor.outcome(), RunOutcome::kRunning);
-  EXPECT_THAT(told.back(), HasSubstr("the run continues without it"));
+  EXPECT_THAT(reported.back(), HasSubstr("the run continues without it"));
 }
 
 TEST_F(SupervisorTest, a_healthy_life_starts_a_new_row) {
@@ -291,7 +291,7 @@ TEST_F(SupervisorTest, a_healthy_life_starts_a_new_row) {
 }
 
 TEST_F(SupervisorTest, kills_only_those_that_did_not_end_within_the_grace) {
-  host.deaf.insert("slam");
+  host.unresponsive.insert("slam");
   start_all();
   supervisor.stop(now, milliseconds(1200), RunOutcome::kInterrupted);
   advance(milliseconds(1199));
@@ -316,7 +316,7 @@ TEST_F(SupervisorTest, a_stop_cancels_a_due_restart) {
 }
 
 TEST_F(SupervisorTest, a_second_stop_keeps_the_first_outcome_and_the_shorter_grace) {
-  host.deaf.insert("slam");
+  host.unresponsive.insert("slam");
   start_all();
   supervisor.stop(now, milliseconds(5000), RunOutcome::kComplete);
   supervisor.stop(now, milliseconds(100), RunOutcome::kInterrupted);
@@ -328,7 +328,7 @@ TEST_F(SupervisorTest, a_second_stop_keeps_the_first_outcome_and_the_shorter_gra
 TEST_F(SupervisorTest, who_ends_last_is_asked_when_the_others_have_ended) {
   supervisor.start({"record", {"rtd-record"}, ServiceRole::kOptional, 0, true}, now);
   start_all();
-  host.deaf = {"slam", "record"};
+  host.unresponsive = {"slam", "record"};
   supervisor.stop(now, milliseconds(1200), RunOutcome::kComplete);
   EXPECT_THAT(host.terminated, ElementsAre("slam", "detector", "camera"));
   advance(milliseconds(1000));
@@ -347,7 +347,7 @@ TEST_F(SupervisorTest, who_ends_last_is_asked_when_the_others_have_ended) {
 TEST_F(SupervisorTest, a_second_stop_asks_who_ends_last_too) {
   supervisor.start({"record", {"rtd-record"}, ServiceRole::kOptional, 0, true}, now);
   start_all();
-  host.deaf = {"slam"};
+  host.unresponsive = {"slam"};
   supervisor.stop(now, milliseconds(5000), RunOutcome::kInterrupted);
   supervisor.stop(now, milliseconds(0), RunOutcome::kInterrupted);
   EXPECT_THAT(host.terminated, Contains("record"));
@@ -365,7 +365,7 @@ TEST_F(SupervisorTest, a_restarted_service_gets_the_arguments_of_that_moment) {
   EXPECT_THAT(host.arguments, ElementsAre("--out", "o", "--map", "2"));
 }
 
-TEST_F(SupervisorTest, a_missing_executable_is_told_to_the_caller) {
+TEST_F(SupervisorTest, a_missing_executable_is_reported_to_the_caller) {
   host.missing.insert("slam");
   EXPECT_THROW(start_all(), process::ProcessError);
 }
@@ -375,7 +375,7 @@ TEST_F(SupervisorTest, an_executable_that_vanished_before_its_restart_fails_the_
   host.missing.insert("slam");
   die_and_wait("slam", 1);
   EXPECT_EQ(supervisor.outcome(), RunOutcome::kFailed);
-  EXPECT_THAT(told.back(), HasSubstr("could not be restarted"));
+  EXPECT_THAT(reported.back(), HasSubstr("could not be restarted"));
 }
 
 }  // namespace

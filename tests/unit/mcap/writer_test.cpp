@@ -78,7 +78,7 @@ TEST(Writer, ends_a_chunk_on_request) {
   EXPECT_EQ(stream(sink.bytes()).messages, messages);
 }
 
-TEST(Writer, goes_on_after_a_full_disk_without_loss_or_repetition) {
+TEST(Writer, continues_after_a_full_disk_without_loss_or_repetition) {
   const auto messages = sample_messages(200, 100);
   SmallSink sink(5000);
   WriterOptions options;

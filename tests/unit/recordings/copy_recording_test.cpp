@@ -34,7 +34,9 @@ std::vector<std::uint8_t> transcribed(const Message& message, const std::string&
 TEST(Ros1ToCdr, gives_the_bytes_that_ros2_would_write) {
   msg::Image image;
   image.header = {{7, 8}, "camera"};
-  image.height = 2, image.width = 3, image.step = 3;
+  image.height = 2;
+  image.width = 3;
+  image.step = 3;
   image.encoding = "mono8";
   image.data = {1, 2, 3, 4, 5, 6};
   EXPECT_EQ(transcribed(image, "sensor_msgs/Image",
@@ -73,7 +75,9 @@ TEST(Ros1ToCdr, messages_that_are_no_such_message_are_refused) {
       "a_msgs/A", "string[] names\nfloat64[4] values\nB[] b\n===\nMSG: a_msgs/B\nint8 x=1\nint8 y");
   const ros2::Ros1ToCdr to_cdr("a_msgs/A", types);
   std::vector<std::uint8_t> whole(4 + 4 + 2 + 32 + 4 + 3, 0);
-  whole[0] = 1, whole[4] = 2, whole[42] = 3;
+  whole[0] = 1;
+  whole[4] = 2;
+  whole[42] = 3;
   EXPECT_EQ(to_cdr(whole).size(), 4U + 4 + 4 + 3 + 5 + 32 + 4 + 3);
   for (std::size_t bytes = 0; bytes < whole.size(); ++bytes) {
     EXPECT_THROW(to_cdr(ros::Bytes(whole).first(bytes)), ros::WireError) << bytes;

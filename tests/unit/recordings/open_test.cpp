@@ -35,7 +35,8 @@ class OpenTest : public ::testing::Test {
     EXPECT_TRUE(is_recording(path));
   }
   int info(const std::string& path) {
-    out_.str({}), err_.str({});
+    out_.str({});
+    err_.str({});
     return run_info({.file = path}, out_, err_);
   }
   static int run_info(const recording::InfoOptions& options, std::ostream& out, std::ostream& err) {
@@ -81,12 +82,14 @@ TEST_F(OpenTest, a_ros1_bag_keeps_its_encoding) {
 }
 
 TEST_F(OpenTest, split_folders_of_either_storage_are_one_recording) {
-  folder_.db3("bag/bag_0.db3", samples(0, 4)), folder_.db3("bag/bag_1.db3", samples(4, 4));
+  folder_.db3("bag/bag_0.db3", samples(0, 4));
+  folder_.db3("bag/bag_1.db3", samples(4, 4));
   folder_.file("bag/metadata.yaml",
                "rosbag2_bagfile_information:\n  relative_file_paths: [bag_0.db3, bag_1.db3]\n  compression_mode: ''\n");
   holds(folder_ / "bag", samples(0, 8));
   EXPECT_THAT(open(folder_ / "bag").imported, HasSubstr("2 files"));
-  folder_.mcap("split/s_9.mcap", samples(0, 4)), folder_.mcap("split/s_10.mcap", samples(4, 4));
+  folder_.mcap("split/s_9.mcap", samples(0, 4));
+  folder_.mcap("split/s_10.mcap", samples(4, 4));
   holds(folder_ / "split", samples(0, 8));
   EXPECT_THAT(parts_of(folder_ / "split").files.front().string(), HasSubstr("s_9")) << "without metadata, by number";
 }
@@ -155,7 +158,8 @@ TEST_F(OpenTest, what_is_no_recording_is_refused_with_the_reason) {
   };
   refuses(folder_ / "none.mcap", "none.mcap");
   refuses(folder_.path(), "holds no recording");
-  folder_.mcap("two/a_0.mcap", samples(0, 2)), folder_.mcap("two/b_0.mcap", samples(0, 2));
+  folder_.mcap("two/a_0.mcap", samples(0, 2));
+  folder_.mcap("two/b_0.mcap", samples(0, 2));
   refuses(folder_ / "two", "2 recordings of different names");
   refuses(folder_.file("a.txt", "hello"), "not an MCAP file");
   refuses(folder_.file("a.zst", packed("hello")), "not an MCAP file");
@@ -185,13 +189,15 @@ TEST_F(OpenTest, nothing_stays_behind_in_the_folder_for_temporary_files) {
 }
 
 TEST_F(OpenTest, info_and_diff_take_every_form) {
-  folder_.db3("bag/bag_0.db3", samples(0, 4)), folder_.db3("bag/bag_1.db3", samples(4, 4));
+  folder_.db3("bag/bag_0.db3", samples(0, 4));
+  folder_.db3("bag/bag_1.db3", samples(4, 4));
   const std::string whole = folder_.db3("whole.db3", samples(0, 8));
   EXPECT_EQ(info(folder_ / "bag"), 0) << err_.str();
   EXPECT_THAT(out_.str(),
               AllOf(HasSubstr("2 files copied into MCAP"), HasSubstr("/odom"), HasSubstr("my_msgs/msg/Odd")));
   recording::DiffRequest request;
-  request.a = folder_ / "bag", request.b = whole;
+  request.a = folder_ / "bag";
+  request.b = whole;
   EXPECT_EQ(recording::run_diff(request, out_, err_), 0) << out_.str() << err_.str();
   request.b = folder_.db3("other.db3", samples(0, 7));
   EXPECT_EQ(recording::run_diff(request, out_, err_), 1);

@@ -118,7 +118,7 @@ TEST_F(PlayerTest, rate_0_does_not_wait) {
   EXPECT_THAT(host.times_ms(), ElementsAre(0, 0, 0, 0));
 }
 
-TEST_F(PlayerTest, space_pauses_and_goes_on_where_it_was) {
+TEST_F(PlayerTest, space_pauses_and_continues_where_it_was) {
   host.at(15, Command::kTogglePause);
   host.at(1015, Command::kTogglePause);
   play(numbered(4));
@@ -291,7 +291,7 @@ TEST_F(PlayerTest, silence_sends_the_frame_and_what_belongs_to_it_again) {
   EXPECT_EQ(resends, 1U);
 }
 
-TEST_F(PlayerTest, gives_up_when_nobody_answers) {
+TEST_F(PlayerTest, gives_up_without_an_answer) {
   options.pacer.window = 1;
   EXPECT_EQ(play(numbered(3)), PlayOutcome::kUnanswered);
 }

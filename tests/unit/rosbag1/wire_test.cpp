@@ -23,7 +23,8 @@ msg::TFMessage transforms() {
 msg::CameraInfo camera_info() {
   msg::CameraInfo info;
   info.header = {{5, 6}, "odd"};
-  info.height = 480, info.width = 640;
+  info.height = 480;
+  info.width = 640;
   info.distortion_model = "plumb_bob";
   info.d = {0.1, 0.2, 0.3, 0.4, 0.5};
   info.k = {525, 0, 319.5, 0, 526, 239.5, 0, 0, 1};

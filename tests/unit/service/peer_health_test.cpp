@@ -68,7 +68,7 @@ TEST(ProgressWatch, a_worker_is_not_stuck_for_the_time_in_which_its_process_stoo
   EXPECT_EQ(watch.stuck_ns(13'000 * kNsPerMs), 2000 * kNsPerMs);
 }
 
-TEST(StandstillWatch, tells_a_stop_of_the_process_from_its_work) {
+TEST(StandstillWatch, distinguishes_a_stop_of_the_process_from_its_work) {
   StandstillWatch watch;
   EXPECT_EQ(watch.look(5000 * kNsPerMs), 0) << "the first look";
   EXPECT_EQ(watch.look(5400 * kNsPerMs), 0) << "a busy host";
@@ -81,35 +81,35 @@ class InputWatchTest : public testing::Test {
  protected:
   /// Whether it was deaf at the last look; each look finds so many more sent and received.
   bool look(int times, int sent, int received) {
-    bool deaf = false;
+    bool receives_nothing = false;
     for (int i = 0; i < times; ++i) {
       for (int j = 0; j < received; ++j) watch_.received();
-      deaf = watch_.deaf(now_ns_ += 100 * kNsPerMs, sent_ += sent);
+      receives_nothing = watch_.receives_nothing(now_ns_ += 100 * kNsPerMs, sent_ += sent);
     }
-    return deaf;
+    return receives_nothing;
   }
   InputWatch watch_;
   std::int64_t now_ns_ = 0;
   double sent_ = 0;
 };
 
-TEST_F(InputWatchTest, one_that_heard_before_and_hears_nothing_more_is_deaf) {
+TEST_F(InputWatchTest, one_that_received_before_and_receives_nothing_more_is_cut_off) {
   EXPECT_FALSE(look(10, 3, 3));
   EXPECT_FALSE(look(15, 3, 0));
   EXPECT_TRUE(look(1, 3, 0));
   EXPECT_FALSE(look(1, 3, 1)) << "it hears again";
 }
 
-TEST_F(InputWatchTest, silence_of_the_sender_is_not_deafness) {
+TEST_F(InputWatchTest, silence_of_the_sender_does_not_count) {
   look(10, 3, 3);
   EXPECT_FALSE(look(50, 0, 0));
-  EXPECT_FALSE(watch_.deaf(now_ns_ += 100 * kNsPerMs, std::nullopt)) << "the sender is gone";
+  EXPECT_FALSE(watch_.receives_nothing(now_ns_ += 100 * kNsPerMs, std::nullopt)) << "the sender is gone";
   sent_ = 0;
   EXPECT_FALSE(look(10, 3, 0)) << "another one begins to count";
   EXPECT_TRUE(look(10, 3, 0));
 }
 
-TEST_F(InputWatchTest, one_that_never_heard_may_not_be_meant) {
+TEST_F(InputWatchTest, one_that_never_received_may_not_be_meant) {
   EXPECT_FALSE(look(50, 3, 0));
 }
 

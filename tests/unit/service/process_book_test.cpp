@@ -60,7 +60,7 @@ TEST_F(ProcessBookTest, of_other_hosts_and_unknown_ones_nothing_is_known) {
   EXPECT_FALSE(gone(9));
 }
 
-TEST_F(ProcessBookTest, keeps_those_that_are_heard_whatever_else_comes) {
+TEST_F(ProcessBookTest, keeps_those_that_report_whatever_else_comes) {
   beat(1, 41);
   for (int i = 2; i < 1000; ++i) {
     now_ns_ += kMs;

@@ -39,7 +39,7 @@ class Manager {
   static void watch(int ms) { setenv("WATCHDOG_USEC", std::to_string(1000 * ms).c_str(), 1); }
 
   /// The next message within the time.
-  std::optional<std::string> hear(int timeout_ms) const {
+  std::optional<std::string> receive(int timeout_ms) const {
     const timeval timeout{timeout_ms / 1000, 1000L * (timeout_ms % 1000)};
     setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &timeout, sizeof(timeout));
     std::array<char, 256> text{};
@@ -57,31 +57,31 @@ TEST(SystemdLink, says_ready_when_the_worker_has_begun_and_when_it_ends) {
   std::atomic<Work> work = Work::kNotBegun;
   {
     const SystemdLink link([&] { return work.load(); });
-    EXPECT_EQ(manager.hear(200), std::nullopt) << "not before";
-    work = Work::kGoesOn;
-    EXPECT_EQ(manager.hear(2000), "READY=1");
-    EXPECT_EQ(manager.hear(200), std::nullopt) << "no watchdog asks";
+    EXPECT_EQ(manager.receive(200), std::nullopt) << "not before";
+    work = Work::kContinues;
+    EXPECT_EQ(manager.receive(2000), "READY=1");
+    EXPECT_EQ(manager.receive(200), std::nullopt) << "no watchdog asks";
   }
-  EXPECT_EQ(manager.hear(2000), "STOPPING=1");
+  EXPECT_EQ(manager.receive(2000), "STOPPING=1");
 }
 
 TEST(SystemdLink, feeds_the_watchdog_until_the_worker_is_stuck) {
   const Manager manager;
   Manager::watch(90);
-  std::atomic<Work> work = Work::kGoesOn;
+  std::atomic<Work> work = Work::kContinues;
   const SystemdLink link([&] { return work.load(); });
-  EXPECT_EQ(manager.hear(2000), "READY=1");
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(manager.hear(2000), "WATCHDOG=1");
+  EXPECT_EQ(manager.receive(2000), "READY=1");
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(manager.receive(2000), "WATCHDOG=1");
   work = Work::kStuck;
-  while (manager.hear(100)) {
+  while (manager.receive(100)) {
   }  // what was on its way
-  EXPECT_EQ(manager.hear(300), std::nullopt);
+  EXPECT_EQ(manager.receive(300), std::nullopt);
 }
 
 TEST(SystemdLink, is_silent_without_systemd) {
   const SystemdLink link([]() -> Work {
     ADD_FAILURE() << "asked";
-    return Work::kGoesOn;
+    return Work::kContinues;
   });
 }
 

@@ -30,14 +30,14 @@ TEST(KeyframeChangeQueue, publishes_thousands_of_corrections_in_portions_newest_
   std::vector<KeyframeChange> all;
   for (KeyframeId id = 0; id < kCount; ++id) all.push_back(change(Kind::kCorrected, id));
   queue.add(all);
-  std::vector<KeyframeId> told;
+  std::vector<KeyframeId> reported;
   while (!queue.empty()) {
     const auto portion = ids(queue.take(48));
     ASSERT_LE(portion.size(), 48U);
-    told.insert(told.end(), portion.begin(), portion.end());
+    reported.insert(reported.end(), portion.begin(), portion.end());
   }
-  ASSERT_EQ(told.size(), kCount);
-  for (KeyframeId i = 0; i < kCount; ++i) ASSERT_EQ(told[i], kCount - 1 - i);
+  ASSERT_EQ(reported.size(), kCount);
+  for (KeyframeId i = 0; i < kCount; ++i) ASSERT_EQ(reported[i], kCount - 1 - i);
 }
 
 TEST(KeyframeChangeQueue, new_and_removed_keyframes_do_not_wait_behind_corrections) {
@@ -52,9 +52,9 @@ TEST(KeyframeChangeQueue, a_keyframe_that_moves_again_is_published_once_with_its
   KeyframeChangeQueue queue;
   queue.add({change(Kind::kCorrected, 1, 0.5)});
   queue.add({change(Kind::kCorrected, 1, 0.7)});
-  const auto told = queue.take(9);
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_EQ(told[0].T_world_camera.translation().x(), 0.7);
+  const auto reported = queue.take(9);
+  ASSERT_EQ(reported.size(), 1U);
+  EXPECT_EQ(reported[0].T_world_camera.translation().x(), 0.7);
 }
 
 TEST(OdometryFrame, takes_up_a_jump_so_that_the_odometry_stays_where_it_was) {

@@ -142,7 +142,7 @@ TEST(FloorPlane, knows_its_direction_no_better_than_the_camera_is_calibrated) {
   EXPECT_GE(find_floor(room.points(), kLevelUp, 0.01)->sigma_rad, 0.01);
 }
 
-TEST(FloorPlane, is_not_found_where_up_is_told_far_off) {
+TEST(FloorPlane, is_not_found_where_up_is_given_far_off) {
   const Room room = Room({50 * kRadPerDeg, 0, 0}, 0.002).floor(300);
   EXPECT_FALSE(find_floor(room.points(), kLevelUp)) << "50 degrees";
   EXPECT_TRUE(find_floor(room.points(), room.up()));

@@ -112,7 +112,8 @@ TEST(MoveToBase, tf_goes_through_the_base) {
   const Eigen::Isometry3d T_odom_camera = geometry::se3_exp(Vector6d::Constant(0.3));
   const msg::Pose pose = message(T_odom_camera);
   msg::TransformStamped link;
-  link.header.frame_id = "odom", link.child_frame_id = "camera";
+  link.header.frame_id = "odom";
+  link.child_frame_id = "camera";
   link.transform = {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation};
   msg::TFMessage tf{{link}};
   move_to_base(tf, robot);

@@ -120,7 +120,7 @@ TEST_F(RunningSlam, resets_while_the_mapper_works_lose_no_event_and_break_nothin
   slam.read_map([](const Map& map) { EXPECT_EQ(map.check_invariants(), ""); });
 }
 
-TEST_F(RunningSlam, viewers_are_told_that_the_map_is_another_one) {
+TEST_F(RunningSlam, viewers_are_notified_that_the_map_is_another_one) {
   SlamSystem slam = make_slam();
   MapChanges changes;
   play(slam, 0, 30);
@@ -137,7 +137,8 @@ TEST_F(RunningSlam, a_loaded_map_replaces_the_present_one_and_the_camera_is_foun
   SlamSystem first = make_slam(), slam = make_slam();
   play(first, 0, 90);
   const io::Bytes saved = bytes_of(first);
-  events_ = 0, announced_.clear();
+  events_ = 0;
+  announced_.clear();
   play(slam, 40, 70);  // its world begins elsewhere
   slam.set_localize_only(true);
   slam.load_map(read_bytes(saved));

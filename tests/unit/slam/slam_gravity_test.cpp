@@ -81,7 +81,7 @@ TEST(SlamGravity, a_map_begins_upright_when_the_floor_is_seen) {
   }
 }
 
-TEST(SlamGravity, a_map_begins_as_told_when_no_floor_has_come_into_view) {
+TEST(SlamGravity, a_map_begins_level_when_no_floor_has_come_into_view) {
   const FeatureWorld world({});
   SlamSystem slam = slam_with(Gravity::kFloor, 3);
   for (std::uint64_t seq = 0; seq < 3; ++seq) {
@@ -110,7 +110,7 @@ TEST(SlamGravity, a_map_waits_for_an_imu_at_rest_that_knows_what_is_up) {
   EXPECT_LT((up_in_camera(output.result.T_world_camera) - up).norm(), 1e-9);
 }
 
-TEST(SlamGravity, after_a_reset_the_next_map_is_upright_again_and_the_odometry_goes_on) {
+TEST(SlamGravity, after_a_reset_the_next_map_is_upright_again_and_the_odometry_continues) {
   const Eigen::Vector3d up = Eigen::Vector3d(0.15, -1, -0.3).normalized();
   SlamSystem slam = slam_with(Gravity::kFloor);
   const auto in_odom = [](const SlamOutput& output) {

@@ -55,9 +55,9 @@ TEST(SlamSystem, follows_the_camera_through_an_exact_world) {
 TEST(SlamSystem, refuses_images_and_cameras_that_cannot_be) {
   const FeatureWorld world({});
   SlamSystem slam = make_slam();
-  constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+  constexpr std::uint32_t kMax = std::numeric_limits<std::uint32_t>::max();
   std::uint64_t seq = 0;
-  for (const auto& [width, height] : {std::pair(kMost, kMost), {0x7FFFFFFFU, 1U}, {1U, 0x80000000U}, {1921U, 10U}}) {
+  for (const auto& [width, height] : {std::pair(kMax, kMax), {0x7FFFFFFFU, 1U}, {1U, 0x80000000U}, {1921U, 10U}}) {
     const auto frame = world.view(seq++);
     frame->width = width;
     frame->height = height;
@@ -68,7 +68,7 @@ TEST(SlamSystem, refuses_images_and_cameras_that_cannot_be) {
     frame->intrinsics[0] = focal_px;
     EXPECT_THAT(slam.process(*frame).problem, testing::HasSubstr("intrinsics")) << focal_px;
   }
-  EXPECT_EQ(slam.process(*world.view(seq)).result.state, TrackingState::kOk) << "goes on with good ones";
+  EXPECT_EQ(slam.process(*world.view(seq)).result.state, TrackingState::kOk) << "continues with good ones";
 }
 
 TEST(SlamSystem, follows_stamps_that_jump_to_the_ends_of_time) {

@@ -73,7 +73,7 @@ TEST(DetectorPace, is_silent_in_an_outage_which_the_filter_notices_later) {
   EXPECT_THAT(active, ElementsAre(true, true, true, true, true, true, true, false, false, true));
 }
 
-TEST(SimulatedDetector, tells_people_from_boxes_and_is_a_little_wrong) {
+TEST(SimulatedDetector, distinguishes_people_from_boxes_and_is_a_little_wrong) {
   DetectorOptions options;
   options.kind = "truth";
   const Look look = make_look(options);
@@ -105,7 +105,8 @@ TEST(SimulatedDetector, does_not_find_what_is_hardly_seen) {
 std::vector<bool> found_with_recall(double recall) {
   DetectorOptions options;
   options.kind = "truth";
-  options.missed_share = 0, options.recall = recall;
+  options.missed_share = 0;
+  options.recall = recall;
   const Look look = make_look(options);
   std::vector<bool> found;
   for (std::uint64_t i = 0; i < 2000; ++i) found.push_back(!look(frame(i)).empty());
@@ -133,7 +134,9 @@ TEST(SimulatedDetector, misses_in_bursts_of_the_stated_recall) {
 TEST(SimulatedDetector, cuts_boxes_at_one_side) {
   DetectorOptions options;
   options.kind = "truth";
-  options.missed_share = 0, options.jitter_share = 0, options.cut_share = 0.5;
+  options.missed_share = 0;
+  options.jitter_share = 0;
+  options.cut_share = 0.5;
   const Look look = make_look(options);
   int cut = 0;
   for (std::uint64_t i = 0; i < 400; ++i) {

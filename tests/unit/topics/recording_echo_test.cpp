@@ -215,8 +215,10 @@ TEST(RecordingEcho, reads_a_db3_without_schemas_by_the_types_known_here) {
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open(file.path().c_str(), &database), SQLITE_OK);
   std::string hex;
-  for (const std::uint8_t byte : pose_cdr())
-    hex += "0123456789abcdef"[byte >> 4U], hex += "0123456789abcdef"[byte & 15U];
+  for (const std::uint8_t byte : pose_cdr()) {
+    hex += "0123456789abcdef"[byte >> 4U];
+    hex += "0123456789abcdef"[byte & 15U];
+  }
   const std::string sql =
       "CREATE TABLE topics(id INTEGER PRIMARY KEY,name,type,serialization_format,offered_qos_profiles);"
       "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id,timestamp,data);"

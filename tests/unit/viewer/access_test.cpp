@@ -38,7 +38,7 @@ TEST(Access, a_page_from_a_file_needs_a_token) {
   EXPECT_EQ(with("null", "/?token=s3cret"), Access::kWrongOrigin);
 }
 
-TEST(Access, a_foreign_name_that_points_here_is_refused) {
+TEST(Access, a_name_of_another_site_that_points_here_is_refused) {
   for (const char* host : {"evil.example:8765", "127.evil.example", "", "localhost.evil.example:8765"})
     EXPECT_EQ(check_access(kLoopback, {.host = host}), Access::kWrongHost) << host;
   EXPECT_EQ(check_host({.hosts = {"robot.lan"}}, "ROBOT.lan:8765"), Access::kGranted);

@@ -68,7 +68,7 @@ class FoxgloveHubTest : public ::testing::Test {
   std::vector<std::function<void(CommandResult)>> answers;
 };
 
-TEST_F(FoxgloveHubTest, a_client_is_greeted_and_told_of_channels) {
+TEST_F(FoxgloveHubTest, a_client_is_greeted_and_receives_the_channels) {
   const auto id = hub.add_channel("/a", kSchema);
   const auto client = hub.open();
   const auto first = take(*client);
@@ -86,7 +86,8 @@ TEST_F(FoxgloveHubTest, only_subscribed_channels_are_wanted_and_delivered) {
   const auto id = hub.add_channel("/a", kSchema);
   auto first = hub.open();
   const auto second = hub.open();
-  take(*first), take(*second);
+  take(*first);
+  take(*second);
   const std::string subscribe =
       R"({"op":"subscribe","subscriptions":[{"id":7,"channelId":)" + std::to_string(id) + "}]}";
   first->on_text(subscribe);
@@ -201,7 +202,7 @@ TEST_F(FoxgloveHubTest, what_a_client_has_set_is_answered_with_its_new_value) {
   EXPECT_EQ(news[1]["parameters"][1]["value"], 2.0) << "refused";
 }
 
-TEST(Played, goes_on_from_where_it_was) {
+TEST(Played, continues_from_where_it_was) {
   Played played{.begin_ns = 100, .end_ns = 1'000, .position_ns = 200, .speed = 2, .at_ns = 50};
   EXPECT_EQ(played.position_at(150), 400U);
   EXPECT_EQ(played.position_at(5'000), 1'000U);

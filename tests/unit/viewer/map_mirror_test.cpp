@@ -46,7 +46,7 @@ TEST(ChangeLog, a_follower_gets_each_changed_key_once) {
   EXPECT_THAT(after(log, known), ElementsAre(2U));
   log.clear();
   log.touch(5);
-  EXPECT_THAT(after(log, known), ElementsAre(5U)) << "revisions go on";
+  EXPECT_THAT(after(log, known), ElementsAre(5U)) << "revisions continue";
 }
 
 TEST(MapMirror, a_moved_keyframe_takes_its_points_along_without_sending_them) {

@@ -170,20 +170,20 @@ TEST_F(PageSessionTest, ten_thousand_keyframes_arrive_within_five_seconds) {
 
 TEST_F(PageSessionTest, hidden_panels_cost_nothing) {
   const auto page = hub.open();
-  EXPECT_EQ(hub.wishes(0), (PageWishes{true, true, true, true, false}));
+  EXPECT_EQ(hub.options(0), (PageOptions{true, true, true, true, false}));
   page->on_text(R"({"op":"options","image":false,"mask":false,"features":false})");
-  EXPECT_EQ(hub.wishes(0), (PageWishes{false, false, false, true, false}));
+  EXPECT_EQ(hub.options(0), (PageOptions{false, false, false, true, false}));
   const auto other = hub.open();
-  EXPECT_TRUE(hub.wishes(0)->image) << "another page wants it";
+  EXPECT_TRUE(hub.options(0)->image) << "another page wants it";
 }
 
 TEST_F(PageSessionTest, images_are_those_of_the_robot_that_is_looked_at) {
   RobotMirror *anna = hub.robot("anna"), *bert = hub.robot("bert");
   const auto page = hub.open();
   page->on_text(R"({"op":"options","robot":1})");
-  EXPECT_FALSE(hub.wishes(0)->image || hub.wishes(0)->mask || hub.wishes(0)->features);
-  EXPECT_TRUE(hub.wishes(0)->points) << "maps of all robots are drawn";
-  EXPECT_TRUE(hub.wishes(1)->image);
+  EXPECT_FALSE(hub.options(0)->image || hub.options(0)->mask || hub.options(0)->features);
+  EXPECT_TRUE(hub.options(0)->points) << "maps of all robots are drawn";
+  EXPECT_TRUE(hub.options(1)->image);
   msg::CompressedImage image{.format = "jpeg", .data = {1, 2, 3}};
   image.header.stamp.sec = 1;
   for (RobotMirror* robot : {anna, bert}) robot->add(image);
@@ -192,7 +192,7 @@ TEST_F(PageSessionTest, images_are_those_of_the_robot_that_is_looked_at) {
     if (name_of(*frame) == "binary 8") robots.push_back(std::to_integer<int>(frame->payload->at(1)));
   EXPECT_THAT(robots, ElementsAre(1));
   const auto other = hub.open();
-  EXPECT_TRUE(hub.wishes(0)->image) << "another page shows all";
+  EXPECT_TRUE(hub.options(0)->image) << "another page shows all";
 }
 
 TEST_F(PageSessionTest, robots_share_the_budget_fairly) {
@@ -234,7 +234,7 @@ TEST_F(PageSessionTest, nonsense_is_ignored) {
     page->on_text(text);
   page->on_binary({});
   EXPECT_FALSE(page->overflowed());
-  EXPECT_TRUE(hub.wishes(0)->image);
+  EXPECT_TRUE(hub.options(0)->image);
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ std::unique_ptr<msg::FeatureFrame> features(std::int64_t ms) {
   auto frame = std::make_unique<msg::FeatureFrame>();
   frame->stamp_ns = ms * 1'000'000;
   frame->count = 2;
-  frame->width = 640, frame->height = 480;
+  frame->width = 640;
+  frame->height = 480;
   frame->features[1] = {.u_raw_px = 10.5F, .v_raw_px = 20, .static_probability = 1, .flags = msg::kFeatureRemoved};
   frame->stage_ms[msg::kStageExtract] = 6.126F;
   return frame;
@@ -114,7 +115,8 @@ TEST(RobotMirror, a_pose_says_when_it_was_ready_and_what_it_cost) {
   result.seq = 7;
   result.state = msg::TrackingState::kOk;
   result.T_world_camera.rotation_xyzw = {0, 0, 0, 1};
-  result.published_ns = 1'000'000, result.finished_ns = 23'456'789;
+  result.published_ns = 1'000'000;
+  result.finished_ns = 23'456'789;
   mirror.add(result, 1e12);
   const json message = text(mirror.item(Item::kTracking).payload);
   EXPECT_EQ(message["latency_ms"], 22.46);
@@ -151,7 +153,9 @@ TEST(RobotMirror, dense_points_keep_place_and_colour) {
   const std::array<float, 3> first = {1, 2, 3}, second = {-1, 2, 3};
   std::memcpy(cloud.data.data(), first.data(), 12);
   std::memcpy(cloud.data.data() + 16, second.data(), 12);
-  cloud.data[12] = 10, cloud.data[13] = 20, cloud.data[14] = 30;  // blue, green, red
+  cloud.data[12] = 10;
+  cloud.data[13] = 20;
+  cloud.data[14] = 30;  // blue, green, red
   mirror.add(cloud);
   const auto& dense = mirror.dense();
   ASSERT_EQ(dense.points.size(), 18U);

@@ -76,7 +76,7 @@ test("an edge that both ends name is drawn once, one with an unknown end not at 
   assert.deepEqual([[...covisibility].sort(), [...loops]], [[0, 1], [0, 1]]);
 });
 
-test("a trajectory waits for the poses of its keyframes, and goes on at its end", () => {
+test("a trajectory waits for the poses of its keyframes, and continues at its end", () => {
   const map = mapWith(1);
   map.setTrajectory(decoded(encode.trajectory(0, [{ keyframe: 1, p: [0, 0, 0] }, { keyframe: 1, p: [0, 0, 1] }])));
   map.setTrajectory(decoded(encode.trajectory(2, [{ keyframe: 8, p: [0, 0, 2] }])));

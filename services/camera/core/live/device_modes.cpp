@@ -38,7 +38,7 @@ auto rank(const DeviceMode& mode) {
   return std::tuple(usual ? 0 : 1, -mode.size_px.area(), std::abs(mode.fps - kUsualFps), preference(mode.format));
 }
 
-std::string wish(const ModeRequest& request) {
+std::string request_text(const ModeRequest& request) {
   std::string text;
   if (request.width > 0 || request.height > 0) {
     const auto side = [](int px) { return px > 0 ? std::to_string(px) : std::string("any"); };
@@ -83,7 +83,8 @@ DeviceMode choose_mode(const std::vector<DeviceMode>& modes, Stream stream, cons
       DeviceProblem::kUnsupportedMode,
       fmt::format("{} has no {} mode{} that can be used (readable: {}; at most 1920 x 1200 px); it has: {}. "
                   "Choose one with ?width=&height=&fps=",
-                  device, to_string(stream), wish(request), readable_formats(stream), list_modes(modes, stream)));
+                  device, to_string(stream), request_text(request), readable_formats(stream),
+                  list_modes(modes, stream)));
 }
 
 }  // namespace rtd::camera

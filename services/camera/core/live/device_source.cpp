@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds kFirstBackOff{100}, kLongestBackOff{500};
 constexpr std::int64_t kSilentNs = 1'000'000'000;              // without an image of a stream
 constexpr std::int64_t kPatienceNs = 3'000'000'000;            // for the first images, and for a pair
 constexpr std::int64_t kDeviceReportPeriodNs = 1'000'000'000;  // while a fault lasts
-constexpr int kMostWaiting = 64;                               // images in a device's queue
+constexpr int kMaxWaiting = 64;                                // images in a device's queue
 
 double seconds(std::int64_t time_ns) {
   return static_cast<double>(time_ns) * 1e-9;
@@ -188,7 +188,7 @@ void DeviceSource::follow_clock(std::int64_t stamp_ns, std::int64_t now_ns) {
   const std::int64_t jump_ns = timeline_.note(stamp_ns, now_ns);
   if (jump_ns == 0) return;
   pairer_.emplace(FramePairer::Options{.tolerance_ns = options_.uri.tolerance_ns, .at_once = true});
-  report_now(fmt::format("the stamps of {} jumped by {:.3f} s: frames go on with the time of this host",
+  report_now(fmt::format("the stamps of {} jumped by {:.3f} s: frames continue with the time of this host",
                          device_->name(), seconds(jump_ns)));
 }
 
@@ -200,12 +200,21 @@ std::optional<SourceFrame> DeviceSource::make_frame(const FramePairer::Pair& pai
     return std::nullopt;
   }
   ImageRead color = decode_image(setup_.color, color_message.bytes, name_of(color_message));
-  if (color.problem) return skips_.add(*color.problem), std::nullopt;
+  if (color.problem) {
+    skips_.add(*color.problem);
+    return std::nullopt;
+  }
   ImageRead depth = decode_image(setup_.depth, pair.depth.message.bytes, name_of(pair.depth.message));
-  if (depth.problem) return skips_.add(*depth.problem), std::nullopt;
+  if (depth.problem) {
+    skips_.add(*depth.problem);
+    return std::nullopt;
+  }
   if (registration_) depth.image = (*registration_)(depth.image);
   const auto mismatch = size_mismatch(name_of(color_message), color.image, depth.image, info_.camera);
-  if (mismatch) return skips_.add(*mismatch), std::nullopt;
+  if (mismatch) {
+    skips_.add(*mismatch);
+    return std::nullopt;
+  }
   const std::int64_t color_ns = pair.color.stamp_ns;
   const std::int64_t stamp_ns = info_.live ? timeline_.host_ns(color_ns) + options_.epoch_ns : color_ns;
   SourceFrame frame = to_frame(stamp_ns, std::move(color.image), std::move(depth.image), info_);
@@ -237,7 +246,7 @@ void DeviceSource::drop_waiting() {
   first_.reset();
   if (!running_) return;
   try {
-    for (int i = 0; i < kMostWaiting && device_->read(std::chrono::milliseconds(0)); ++i) {
+    for (int i = 0; i < kMaxWaiting && device_->read(std::chrono::milliseconds(0)); ++i) {
     }
   } catch (const DeviceError& error) {
     return lose(error);

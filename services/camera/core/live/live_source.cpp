@@ -117,21 +117,25 @@ std::optional<Eigen::Isometry3d> LiveSource::extrinsics() const {
 }
 
 /// What would make every frame unusable is an error, not a skipped frame.
-void LiveSource::check_first(const FramePairer::Pair& pair) try {
-  const RecordedMessage &color = pair.color.message, &depth = pair.depth.message;
-  const double unit_m = depth_unit_m(depth, kFloatDepthUnitM);
-  if (options_.calibration_file.empty()) info_.depth_scale_m = unit_m;
-  const ImageRead color_image = decode_color(color), depth_image = decode_depth(depth, kFloatDepthUnitM);
-  color_origin_.topic = options_.topics.color, depth_origin_.topic = options_.topics.depth;
-  color_origin_.frame_id = ros::decode<msg::Header>(color.wire, color.bytes).frame_id;
-  depth_origin_.frame_id = ros::decode<msg::Header>(depth.wire, depth.bytes).frame_id;
-  color_origin_.size_px = color_image.image.size(), depth_origin_.size_px = depth_image.image.size();
-  if (color_image.problem || depth_image.problem) return;
-  const cv::Mat& fitting = options_.registered ? depth_image.image : color_image.image;
-  const auto mismatch = size_mismatch(options_.topics.color, color_image.image, fitting, info_.camera);
-  if (mismatch) throw SourceError(mismatch->detail);
-} catch (const ros::WireError&) {
-  // decode() counts it
+void LiveSource::check_first(const FramePairer::Pair& pair) {
+  try {
+    const RecordedMessage &color = pair.color.message, &depth = pair.depth.message;
+    const double unit_m = depth_unit_m(depth, kFloatDepthUnitM);
+    if (options_.calibration_file.empty()) info_.depth_scale_m = unit_m;
+    const ImageRead color_image = decode_color(color), depth_image = decode_depth(depth, kFloatDepthUnitM);
+    color_origin_.topic = options_.topics.color;
+    depth_origin_.topic = options_.topics.depth;
+    color_origin_.frame_id = ros::decode<msg::Header>(color.wire, color.bytes).frame_id;
+    depth_origin_.frame_id = ros::decode<msg::Header>(depth.wire, depth.bytes).frame_id;
+    color_origin_.size_px = color_image.image.size();
+    depth_origin_.size_px = depth_image.image.size();
+    if (color_image.problem || depth_image.problem) return;
+    const cv::Mat& fitting = options_.registered ? depth_image.image : color_image.image;
+    const auto mismatch = size_mismatch(options_.topics.color, color_image.image, fitting, info_.camera);
+    if (mismatch) throw SourceError(mismatch->detail);
+  } catch (const ros::WireError&) {
+    // decode() counts it
+  }
 }
 
 bool LiveSource::align_depth() {
@@ -185,19 +189,21 @@ std::optional<FramePairer::Pair> LiveSource::next_pair() {
   return std::nullopt;
 }
 
-void LiveSource::take(RecordedMessage message) try {
-  const std::string& topic = message.topic;
-  if (topic == kLastingTransforms || topic == kTransforms) {
-    if (!opened_) take_transforms(message);
-  } else if (topic == options_.topics.info || topic == options_.topics.depth_info) {
-    const auto info = ros::decode<msg::CameraInfo>(message.wire, message.bytes);
-    if (topic == options_.topics.info) take_calibration(info);
-    if (topic == options_.topics.depth_info) take_depth_camera(info);
-  } else {
-    take_image(std::move(message));
+void LiveSource::take(RecordedMessage message) {
+  try {
+    const std::string& topic = message.topic;
+    if (topic == kLastingTransforms || topic == kTransforms) {
+      if (!opened_) take_transforms(message);
+    } else if (topic == options_.topics.info || topic == options_.topics.depth_info) {
+      const auto info = ros::decode<msg::CameraInfo>(message.wire, message.bytes);
+      if (topic == options_.topics.info) take_calibration(info);
+      if (topic == options_.topics.depth_info) take_depth_camera(info);
+    } else {
+      take_image(std::move(message));
+    }
+  } catch (const ros::WireError& error) {
+    skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
   }
-} catch (const ros::WireError& error) {
-  skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});
 }
 
 void LiveSource::take_image(RecordedMessage&& message) {

@@ -18,14 +18,16 @@ enum class DataFormat : std::uint32_t { kJson = 0, kCbor = 1 };
 
 constexpr std::array<std::uint8_t, 4> kPlainCdr = {0, 1, 0, 0};
 constexpr std::size_t kVersionBytes = 4;
-constexpr std::size_t kMostStreams = 64;
+constexpr std::size_t kMaxStreams = 64;
 
 /// Runs what reads JSON; what is missing or of another type is an error of the message.
 template <class Reading>
-auto reading(const char* what, Reading&& read) try {
-  return read();
-} catch (const json::exception& error) {
-  throw ros::WireError(std::string(what) + ": " + error.what());
+auto reading(const char* what, Reading&& read) {
+  try {
+    return read();
+  } catch (const json::exception& error) {
+    throw ros::WireError(std::string(what) + ": " + error.what());
+  }
 }
 
 double finite(const json& number) {
@@ -158,10 +160,13 @@ geometry::CameraModel Intrinsics::at(cv::Size wanted_px) const {
   const double scale = (wanted.array() / native.array()).maxCoeff();
   center = scale * (center + half) - (scale * native - wanted) / 2 - half;
   geometry::CameraModel::Parameters camera;
-  camera.fx = scale * focal_px.x(), camera.fy = scale * focal_px.y();
-  camera.cx = center.x(), camera.cy = center.y();
+  camera.fx = scale * focal_px.x();
+  camera.fy = scale * focal_px.y();
+  camera.cx = center.x();
+  camera.cy = center.y();
   std::ranges::copy(distortion, camera.distortion.begin());
-  camera.width = wanted_px.width, camera.height = wanted_px.height;
+  camera.width = wanted_px.width;
+  camera.height = wanted_px.height;
   return geometry::CameraModel(camera);
 }
 
@@ -184,7 +189,7 @@ void Description::take(const json& notification) {
 
 void Description::take_header(const json& header) {
   const auto streams = header.at("n-streams").get<std::size_t>();
-  if (streams > kMostStreams) throw ros::WireError("a device of " + std::to_string(streams) + " streams");
+  if (streams > kMaxStreams) throw ros::WireError("a device of " + std::to_string(streams) + " streams");
   streams_ = streams;
   if (!header.contains("extrinsics")) return;
   for (const json& edge : header.at("extrinsics")) {
@@ -197,7 +202,7 @@ void Description::take_header(const json& header) {
 
 void Description::take_stream(const json& header) {
   const auto name = header.at("name").get<std::string>(), type = header.at("type").get<std::string>();
-  if (described_.size() >= kMostStreams) throw ros::WireError("more than 64 streams");
+  if (described_.size() >= kMaxStreams) throw ros::WireError("more than 64 streams");
   described_.try_emplace(name, false);
   if (type != "color" && type != "depth") return;
   VideoStream& stream = type == "color" ? color_ : depth_;

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::uint64_t kFileHeaderBytes = 24, kRecordHeaderBytes = 28;
 constexpr std::uint32_t kRecordMagic = 0x0052494E;          // "NIR\0"
-constexpr std::uint32_t kMostFieldBytes = 1600 * 1200 * 3;  // the player's buffer for a record
-constexpr std::uint32_t kMostImageBytes = kMostFieldBytes;  // and for an image
+constexpr std::uint32_t kMaxFieldBytes = 1600 * 1200 * 3;   // the player's buffer for a record
+constexpr std::uint32_t kMaxImageBytes = kMaxFieldBytes;    // and for an image
 constexpr std::uint32_t kImage = 10, kEnd = 11;             // types of records
 
 struct RecordHeader {
@@ -89,12 +89,12 @@ class OniWalk {
 
   void check_record(const RecordHeader& record, std::uint64_t at) const {
     if (record.magic != kRecordMagic) fail(at, "a record is expected, it has another magic");
-    if (record.field_bytes < kRecordHeaderBytes || record.field_bytes > kMostFieldBytes)
+    if (record.field_bytes < kRecordHeaderBytes || record.field_bytes > kMaxFieldBytes)
       fail(at, "the fields of a record claim " + std::to_string(record.field_bytes) + " bytes, allowed: 28 to " +
-                   std::to_string(kMostFieldBytes));
-    if (record.type == kImage && record.payload_bytes > kMostImageBytes)
+                   std::to_string(kMaxFieldBytes));
+    if (record.type == kImage && record.payload_bytes > kMaxImageBytes)
       fail(at, "an image claims " + std::to_string(record.payload_bytes) + " bytes, at most " +
-                   std::to_string(kMostImageBytes) + " can be played");
+                   std::to_string(kMaxImageBytes) + " can be played");
     if (record.type != kImage && size_ - at < record.field_bytes)
       fail(at, "a record claims " + std::to_string(record.field_bytes) + " bytes, the file has " +
                    std::to_string(size_ - at) + " more");

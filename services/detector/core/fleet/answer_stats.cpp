@@ -23,7 +23,7 @@ double quantile(std::vector<double>& values, double share) {
 
 void AnswerStats::add(std::int64_t arrived_ns, std::int64_t answered_ns, std::size_t batch) {
   if (first_ns_ == 0) first_ns_ = answered_ns;
-  if (answers_.size() >= kMostAnswers) answers_.pop_front();
+  if (answers_.size() >= kMaxAnswers) answers_.pop_front();
   answers_.push_back({answered_ns, answered_ns - arrived_ns, batch});
 }
 
@@ -37,7 +37,7 @@ AnswerSummary AnswerStats::summary(std::int64_t now_ns) {
     images += static_cast<double>(answer.batch);
   }
   const auto count = static_cast<double>(answers_.size());
-  const bool cut = answers_.size() == kMostAnswers;  // then the window is shorter
+  const bool cut = answers_.size() == kMaxAnswers;  // then the window is shorter
   const std::int64_t from_ns = std::max(cut ? answers_.front().answered_ns : now_ns - kWindowNs, first_ns_);
   const double window_s = std::max(static_cast<double>(now_ns - from_ns) / kNsPerS, kLeastWindowS);
   return {count / window_s, quantile(latencies_ms, 0.5), quantile(latencies_ms, 0.99), images / count};

@@ -28,7 +28,7 @@ class AnswerStats {
     std::int64_t answered_ns = 0, latency_ns = 0;
     std::size_t batch = 0;
   };
-  static constexpr std::size_t kMostAnswers = 2000;
+  static constexpr std::size_t kMaxAnswers = 2000;
 
   std::int64_t first_ns_ = 0;  ///< of all answers; 0: none yet
   std::deque<Answer> answers_;

@@ -6,15 +6,15 @@
 
 namespace rtd::detector {
 
-void Duty::heard(const Claim& other, const std::string& name, bool serves, std::int64_t now_ns) {
+void Duty::observe(const Claim& other, const std::string& name, bool serves, std::int64_t now_ns) {
   if (!serves) {
     others_.erase(other);
     return;
   }
-  if (others_.size() >= kMostOthers && !others_.contains(other)) return;
+  if (others_.size() >= kMaxOthers && !others_.contains(other)) return;
   Other& known = others_[other];
   known.name = name;
-  known.heard_ns = now_ns;
+  known.received_ns = now_ns;
   ++known.times;
 }
 
@@ -26,7 +26,7 @@ bool Duty::must_yield(const Claim& own) const {
 }
 
 Duty::Role Duty::update(const Claim& own, std::int64_t now_ns) {
-  std::erase_if(others_, [now_ns](const auto& other) { return now_ns - other.second.heard_ns >= kSilentNs; });
+  std::erase_if(others_, [now_ns](const auto& other) { return now_ns - other.second.received_ns >= kSilentNs; });
   if (must_yield(own)) {
     role_ = Role::kStandby;
   } else if (role_ == Role::kStandby || now_ns - began_ns_ >= kListenNs) {

@@ -18,7 +18,7 @@ struct Claim {
 };
 
 /// Decides whether this detector serves one robot, by the heartbeats of other detectors of that robot. A detector that
-/// serves goes on; a newcomer listens first and then stands by while another one serves. Two that serve at once, for
+/// serves continues; a newcomer listens first and then stands by while another one serves. Two that serve at once, for
 /// example after their network was divided, agree: the greater claim steps down. Times are given. Not thread-safe.
 class Duty {
  public:
@@ -36,7 +36,7 @@ class Duty {
   explicit Duty(std::int64_t now_ns) : began_ns_(now_ns) {}
 
   /// A heartbeat of another detector. `serves`: false when it ends or is hung.
-  void heard(const Claim& other, const std::string& name, bool serves, std::int64_t now_ns);
+  void observe(const Claim& other, const std::string& name, bool serves, std::int64_t now_ns);
   /// The role from now on. `own` is the claim of this detector once it serves; it counts only while it does.
   Role update(const Claim& own, std::int64_t now_ns);
 
@@ -47,12 +47,12 @@ class Duty {
  private:
   struct Other {
     std::string name;
-    std::int64_t heard_ns = 0;
+    std::int64_t received_ns = 0;
     int times = 0;
   };
   bool must_yield(const Claim& own) const;
 
-  static constexpr std::size_t kMostOthers = 16;  // a writer could make up claims without end
+  static constexpr std::size_t kMaxOthers = 16;  // a writer could make up claims without end
   /// Any program may have sent a single heartbeat.
   static constexpr int kBelievedAfter = 2;
 

@@ -51,8 +51,8 @@ std::string removal_text(const RunRemoval& removal) {
 
 /// A difference of a few milliseconds is the measurement's own error.
 std::string clock_text(const run_record::HostClock& clock) {
-  constexpr double kWorthTellingMs = 10;
-  const bool differs = std::abs(clock.offset_ms) > kWorthTellingMs + clock.round_trip_ms / 2;
+  constexpr double kWorthReportingMs = 10;
+  const bool differs = std::abs(clock.offset_ms) > kWorthReportingMs + clock.round_trip_ms / 2;
   return fmt::format("host of {} is {:.1f} ms {}, round trip {:.1f} ms{}", clock.service, std::abs(clock.offset_ms),
                      clock.offset_ms < 0 ? "behind" : "ahead", clock.round_trip_ms,
                      differs ? ": WARNING, run chrony on both hosts before comparing their times" : "");

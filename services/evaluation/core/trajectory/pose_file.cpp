@@ -45,11 +45,13 @@ PoseArgument parse(const std::string& text) {
   return argument;
 }
 
-bool is_recording(const fs::path& file) try {
-  if (fs::is_directory(file)) return recordings::holds_recording(file);
-  return recordings::is_recording(file.string()) || io::is_recording_name(file);
-} catch (const mcap::RecordingFileError&) {
-  return false;  // read_text_file() says why it cannot be read
+bool is_recording(const fs::path& file) {
+  try {
+    if (fs::is_directory(file)) return recordings::holds_recording(file);
+    return recordings::is_recording(file.string()) || io::is_recording_name(file);
+  } catch (const mcap::RecordingFileError&) {
+    return false;  // read_text_file() says why it cannot be read
+  }
 }
 
 std::vector<std::int64_t> stamps_for(const std::string& name, std::size_t poses, const MissingStamps& given) {

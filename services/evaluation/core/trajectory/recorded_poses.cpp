@@ -154,8 +154,8 @@ class PoseReader {
   }
 
   void note(const std::string& damage) {
-    constexpr std::size_t kMost = 20;
-    if (result_.damages.size() < kMost) result_.damages.push_back(recording_.name() + ": " + damage);
+    constexpr std::size_t kMax = 20;
+    if (result_.damages.size() < kMax) result_.damages.push_back(recording_.name() + ": " + damage);
   }
 
   std::string choose_child(const std::map<std::string, std::vector<FramedPose>>& by_child,

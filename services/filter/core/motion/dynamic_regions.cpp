@@ -181,8 +181,8 @@ void DynamicMemory::store(const DepthGrid& grid, const std::vector<Eigen::Vector
 
 std::vector<std::uint8_t> DynamicMemory::recall(const DepthGrid& grid, const geometry::CameraModel& camera,
                                                 const Eigen::Isometry3d& T_current_last, double elapsed_s) const {
-  constexpr double kOwnDepthM = 0.1, kFastMS = 3, kMostOwnDepthM = 0.4;
-  const auto own_depth_m = static_cast<float>(std::min(kMostOwnDepthM, kOwnDepthM + kFastMS * elapsed_s));
+  constexpr double kOwnDepthM = 0.1, kFastMS = 3, kMaxOwnDepthM = 0.4;
+  const auto own_depth_m = static_cast<float>(std::min(kMaxOwnDepthM, kOwnDepthM + kFastMS * elapsed_s));
   constexpr float kMinDepthM = 0.1F;
   const Eigen::Matrix3f rotation = T_current_last.linear().cast<float>();
   const Eigen::Vector3f translation = T_current_last.translation().cast<float>();

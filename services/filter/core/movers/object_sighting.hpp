@@ -31,7 +31,7 @@ struct ObjectSighting {
   std::vector<SeenPoint> points;  ///< of its surface: the nearest in its box
   std::vector<SeenPoint> moving;  ///< everything in its box that moves: before, on and behind that surface
   double static_probability = 0;
-  bool cut_left = false, cut_right = false;  ///< goes on there behind something nearer, or beyond the border
+  bool cut_left = false, cut_right = false;  ///< continues there behind something nearer, or beyond the border
 };
 
 /// The frame in cells.

@@ -31,7 +31,7 @@ constexpr double kAcceleration_m_s2 = 0.7, kFirstSpeed_m_s = 1;
 constexpr double kForgetS = 1.0;
 constexpr double kSamePlaceM = 0.35;  // two bodies are never so near
 constexpr int kFewHits = 10;
-constexpr double kMost = 0.5;  // of the points of a surface
+constexpr double kMax = 0.5;  // of the points of a surface
 
 /// Of a direction: more along it than across.
 Matrix3d noise(const Vector3d& along, double sigma_across_m, double sigma_along_m) {
@@ -160,7 +160,7 @@ std::optional<ObjectLook> WorldMovers::look_for(std::size_t track, std::size_t s
   bool of_another = false;
   for (std::size_t k = 0; k < view.share[sighting].size(); ++k) {
     const bool in_view = tracks_[k].unseen_s() < kLatelyS && tracks_[k].hits >= kSomeHits;
-    of_another = of_another || (k != track && in_view && view.share[sighting][k] >= kMost);
+    of_another = of_another || (k != track && in_view && view.share[sighting][k] >= kMax);
   }
   if (!of_another && std::isfinite(cost_of(tracks_[track], seen, view.looks[sighting]))) return view.looks[sighting];
   const SeenPoints& rest = view.moving[sighting][track];
@@ -250,7 +250,7 @@ bool WorldMovers::is_new(std::size_t sighting, const View& view) const {
   bool part = false;
   for (std::size_t k = 0; k < view.sightings.size() && view.sightings[sighting].class_name.empty(); ++k)
     part = part || (!view.sightings[k].class_name.empty() && view.looks[k].covers(look.surface));
-  return known <= kMost && !near && !part;
+  return known <= kMax && !near && !part;
 }
 
 void WorldMovers::update(Track& track, const ObjectSighting& sighting, const ObjectLook& look) {

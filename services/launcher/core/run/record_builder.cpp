@@ -21,7 +21,7 @@ namespace metric = service::metric;
 constexpr std::size_t kRecentFrames = 30;
 constexpr std::uint64_t kStrideOfUnknownLength = 4;
 constexpr std::uint64_t kFirstAtMost = std::uint64_t{1} << 48U;
-constexpr double kMostCounted = 9e15;  // beyond, a double counts no single frames
+constexpr double kMaxCounted = 9e15;  // beyond, a double counts no single frames
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
 constexpr std::array<const char*, 5> kLossNames = {"dropped", "late", "skipped", "lost", "refused"};
 
@@ -37,7 +37,7 @@ std::string place_of(const std::string& service, const std::string& metric) {
 
 /// Whatever a metric claims.
 std::uint64_t counted(double value) {
-  return value > 0 ? static_cast<std::uint64_t>(std::min(value, kMostCounted)) : 0;
+  return value > 0 ? static_cast<std::uint64_t>(std::min(value, kMaxCounted)) : 0;
 }
 
 double median_latency_ms(const std::deque<msg::TrackingResult>& results) {
@@ -103,7 +103,7 @@ void RecordBuilder::add(const msg::TrackingResult& result) {
 }
 
 void RecordBuilder::add(const msg::ServiceStatus& status) {
-  if (services_.size() >= kMostServices && !services_.contains(status.service)) return;
+  if (services_.size() >= kMaxServices && !services_.contains(status.service)) return;
   Service& service = services_[status.service];
   if (service.pid != status.pid) {
     if (status.service == "camera" && service.pid != 0) first_of_camera_ = end_of_seen_;
@@ -123,20 +123,20 @@ void RecordBuilder::add(const msg::ServiceStatus& status) {
 }
 
 void RecordBuilder::set_counter(Service& service, const msg::Metric& metric) {
-  if (service.counters.size() >= kMostCounters && !service.counters.contains(metric.name)) return;
+  if (service.counters.size() >= kMaxCounters && !service.counters.contains(metric.name)) return;
   service.counters[metric.name].current = metric.value;
 }
 
 void RecordBuilder::notify(const std::string& text) {
-  if (notices_given_ == kMostNotices) return;
-  const bool last = ++notices_given_ == kMostNotices;
+  if (notices_given_ == kMaxNotices) return;
+  const bool last = ++notices_given_ == kMaxNotices;
   notices_.push_back(last ? "further notices are left out: the logs of the services have them" : text);
 }
 
 /// Several services may report the same about a peer; it counts as new again after the peer was seen.
 void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
   const auto report_once = [this](const std::string& about, const std::string& text) {
-    if (troubles_.size() < kMostNotices && troubles_.emplace(about, text).second) notify(text);
+    if (troubles_.size() < kMaxNotices && troubles_.emplace(about, text).second) notify(text);
   };
   troubles_.erase(status.service);
   for (const msg::Metric& metric : status.metrics) {

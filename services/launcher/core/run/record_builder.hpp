@@ -59,7 +59,7 @@ class RecordBuilder {
   static constexpr std::size_t kJoined = 512;  ///< frames whose features or result may still come
   /// A frame that claims to be farther ahead of all frames seen is not one of this run.
   static constexpr std::uint64_t kFarthestAhead = 1'000'000;
-  static constexpr std::size_t kMostServices = 64, kMostCounters = 256, kMostNotices = 1000;
+  static constexpr std::size_t kMaxServices = 64, kMaxCounters = 256, kMaxNotices = 1000;
 
   /// `store` outlives this.
   explicit RecordBuilder(FrameStore& store) : store_(store) {}

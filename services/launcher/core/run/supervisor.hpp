@@ -15,9 +15,9 @@ namespace rtd::launcher {
 /// What the death of a service means for the run.
 enum class ServiceRole {
   kSource,     ///< a recording: its end is the end of the run, and it is not played twice
-  kLive,       ///< a camera: restarted, because it goes on where it is now; its clean end is the end of the run
+  kLive,       ///< a camera: restarted, because it continues where it is now; its clean end is the end of the run
   kEssential,  ///< restarted; when it keeps dying the run fails
-  kOptional,   ///< restarted; when it keeps dying the run goes on without it (detector)
+  kOptional,   ///< restarted; when it keeps dying the run continues without it (detector)
 };
 
 /// One service of a run.

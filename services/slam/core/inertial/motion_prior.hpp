@@ -55,7 +55,7 @@ class MotionPrior {
   ImuStream imu_;
   WheelStream wheels_;
   std::optional<InertialFilter> filter_;
-  std::optional<PredictedPose> last_;  ///< measured, at last_ns_: where the wheels go on from
+  std::optional<PredictedPose> last_;  ///< measured, at last_ns_: where the wheels continue from
   std::int64_t last_ns_ = 0;
   std::int64_t now_ns_ = 0;     ///< the frame in work
   std::int64_t before_ns_ = 0;  ///< the frame before

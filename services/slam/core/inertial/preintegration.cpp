@@ -74,7 +74,7 @@ void ImuStream::add(const ImuSample& sample) {
     return;
   }
   if (!follows(sample)) return;
-  if (samples_.size() >= kMost) {
+  if (samples_.size() >= kMax) {
     samples_.pop_front();
     ++counters_.overflowed;
   }
@@ -82,7 +82,7 @@ void ImuStream::add(const ImuSample& sample) {
   samples_.push_back(sample);
 }
 
-/// Whether the sample goes on from the newest one. A clock that was set shows in many samples, a late one does not.
+/// Whether the sample continues from the newest one. A clock that was set shows in many samples, a late one does not.
 bool ImuStream::follows(const ImuSample& sample) {
   constexpr int kStraysOfAJump = 20;
   constexpr double kJump_s = 10;
@@ -157,10 +157,9 @@ std::optional<ImuSample> ImuStream::rest(double min_s) const {
     mean.accel_m_s2 += (sample->accel_m_s2 - mean.accel_m_s2) / count;
     oldest_ns = sample->stamp_ns;
   }
-  constexpr double kMostTurning_rad_s = 0.1, kGravity_m_s2 = 9.81, kMostOff_m_s2 = 0.5;  // beyond any bias: it moves
-  const bool rests = seconds_between(oldest_ns, mean.stamp_ns) >= min_s &&
-                     mean.gyro_rad_s.norm() < kMostTurning_rad_s &&
-                     std::abs(mean.accel_m_s2.norm() - kGravity_m_s2) < kMostOff_m_s2;
+  constexpr double kMaxTurning_rad_s = 0.1, kGravity_m_s2 = 9.81, kMaxOff_m_s2 = 0.5;  // beyond any bias: it moves
+  const bool rests = seconds_between(oldest_ns, mean.stamp_ns) >= min_s && mean.gyro_rad_s.norm() < kMaxTurning_rad_s &&
+                     std::abs(mean.accel_m_s2.norm() - kGravity_m_s2) < kMaxOff_m_s2;
   return rests ? std::optional(mean) : std::nullopt;
 }
 

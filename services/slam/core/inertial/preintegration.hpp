@@ -85,7 +85,7 @@ struct ImuCounters {
 class ImuStream {
  public:
   static constexpr double kMaxGap_s = 0.1;    ///< nothing is known of the motion in a longer pause
-  static constexpr std::size_t kMost = 8192;  ///< 20 s at 400 Hz
+  static constexpr std::size_t kMax = 8192;   ///< 20 s at 400 Hz
 
   void add(const ImuSample& sample);
   void clear() { samples_.clear(); }

@@ -10,9 +10,9 @@
 namespace rtd::slam {
 namespace {
 
-constexpr std::size_t kMostWheelSamples = 4096;
+constexpr std::size_t kMaxWheelSamples = 4096;
 
-/// The pose a share of the way from one to the other; beyond 1 the motion goes on.
+/// The pose a share of the way from one to the other; beyond 1 the motion continues.
 Eigen::Isometry3d between(const Eigen::Isometry3d& T_a, const Eigen::Isometry3d& T_b, double share) {
   return T_a * geometry::se3_exp(share * geometry::se3_log(T_a.inverse() * T_b));
 }
@@ -50,7 +50,7 @@ void WheelStream::add(const WheelSample& sample) {
       samples_.clear();
     }
   }
-  if (samples_.size() >= kMostWheelSamples) samples_.pop_front();
+  if (samples_.size() >= kMaxWheelSamples) samples_.pop_front();
   ++counters_.taken;
   samples_.push_back(sample);
 }
@@ -88,7 +88,7 @@ geometry::Matrix6d WheelStream::covariance_of(const Eigen::Isometry3d& T_first_l
   const double way_m = T_first_last.translation().norm(), turn_rad = geometry::rotation_angle_rad(T_first_last);
   const WheelSample& newest = samples_.back();
   const auto square = [](double x) { return x * x; };
-  const double way = square(config_.way_share * way_m) + square(config_.still_m);
+  const double way = square(config_.distance_share * way_m) + square(config_.still_m);
   const double turn = square(config_.turn_share * turn_rad) + square(config_.turn_rad_m * way_m);
   const double off_plane = square(config_.off_plane_share * way_m);
   const double way_variance = std::max(way, newest.speed_variance * square(duration_s));

@@ -41,7 +41,7 @@ class WheelStream {
   std::int64_t newest_ns() const { return samples_.empty() ? 0 : samples_.back().stamp_ns; }
   const WheelCounters& counters() const { return counters_; }
 
-  /// Empty when the messages do not cover the span, but for kMaxGap_s at its end, over which the last motion goes on.
+  /// Empty when the messages do not cover the span, but for kMaxGap_s at its end, over which the last motion continues.
   /// docs/theory/inertial.md Eq. (10).
   std::optional<WheelMotion> motion(std::int64_t from_ns, std::int64_t to_ns) const;
   void forget_before(std::int64_t stamp_ns);

@@ -12,28 +12,31 @@ MapNews MapChanges::update(const MapView& view, Extent extent) {
   MapNews news;
   news.new_session = session_ != view.session;
   if (news.new_session) {
-    told_.clear();
+    reported_.clear();
     loop_edges_.clear();
     session_ = view.session;
   }
   take_out_removed(view, news);
   std::vector<PointsNow> points_now(view.keyframes.size(), PointsNow::kOthers);
   for (std::size_t i = 0; i < view.keyframes.size() && extent == Extent::kChanges; ++i) {
-    const auto told = told_.find(view.keyframes[i].id);
-    if (told != told_.end()) points_now[i] = compare_points(told->second, view.keyframes[i]);
+    const auto reported = reported_.find(view.keyframes[i].id);
+    if (reported != reported_.end()) points_now[i] = compare_points(reported->second, view.keyframes[i]);
   }
   choose_refined(view, points_now);
   for (std::size_t i = 0; i < view.keyframes.size(); ++i) {
     const KeyframeView& now = view.keyframes[i];
-    const auto [place, is_new] = told_.try_emplace(now.id);
-    Told& told = place->second;
+    const auto [place, is_new] = reported_.try_emplace(now.id);
+    Reported& reported = place->second;
     const bool points = points_now[i] == PointsNow::kOthers;
-    const bool edges = is_new || extent == Extent::kEverything || told.covisible != now.covisible;
-    if (!points && !edges && !has_moved(told, now)) continue;
-    told.map = now.map;
-    told.T_world_camera = now.T_world_camera;
-    if (points) told.landmarks = now.landmarks, told.points_m = now.points_m;
-    if (edges) told.covisible = now.covisible;
+    const bool edges = is_new || extent == Extent::kEverything || reported.covisible != now.covisible;
+    if (!points && !edges && !has_moved(reported, now)) continue;
+    reported.map = now.map;
+    reported.T_world_camera = now.T_world_camera;
+    if (points) {
+      reported.landmarks = now.landmarks;
+      reported.points_m = now.points_m;
+    }
+    if (edges) reported.covisible = now.covisible;
     news.keyframes.push_back({now.id, points, edges, false});
   }
   news.loops = loop_edges_ != view.loop_edges;
@@ -44,29 +47,29 @@ MapNews MapChanges::update(const MapView& view, Extent extent) {
 /// Both are in the order of ids.
 void MapChanges::take_out_removed(const MapView& view, MapNews& news) {
   auto now = view.keyframes.begin();
-  for (auto told = told_.begin(); told != told_.end();) {
-    while (now != view.keyframes.end() && now->id < told->first) ++now;
-    if (now != view.keyframes.end() && now->id == told->first) {
-      ++told;
+  for (auto reported = reported_.begin(); reported != reported_.end();) {
+    while (now != view.keyframes.end() && now->id < reported->first) ++now;
+    if (now != view.keyframes.end() && now->id == reported->first) {
+      ++reported;
       continue;
     }
-    news.keyframes.push_back({told->first, false, false, true});
-    told = told_.erase(told);
+    news.keyframes.push_back({reported->first, false, false, true});
+    reported = reported_.erase(reported);
   }
 }
 
-bool MapChanges::has_moved(const Told& told, const KeyframeView& now) const {
-  if (told.map != now.map) return true;
-  const Eigen::Isometry3d T_told_now = told.T_world_camera.inverse() * now.T_world_camera;
-  return T_told_now.translation().norm() > tolerance_.translation_m ||
-         geometry::rotation_angle_rad(T_told_now) > tolerance_.rotation_rad;
+bool MapChanges::has_moved(const Reported& reported, const KeyframeView& now) const {
+  if (reported.map != now.map) return true;
+  const Eigen::Isometry3d T_reported_now = reported.T_world_camera.inverse() * now.T_world_camera;
+  return T_reported_now.translation().norm() > tolerance_.translation_m ||
+         geometry::rotation_angle_rad(T_reported_now) > tolerance_.rotation_rad;
 }
 
-MapChanges::PointsNow MapChanges::compare_points(const Told& told, const KeyframeView& now) const {
-  if (told.landmarks != now.landmarks) return PointsNow::kOthers;
+MapChanges::PointsNow MapChanges::compare_points(const Reported& reported, const KeyframeView& now) const {
+  if (reported.landmarks != now.landmarks) return PointsNow::kOthers;
   PointsNow points = PointsNow::kSame;
   for (std::size_t i = 0; i < now.points_m.size(); ++i) {
-    const double moved_m = static_cast<double>((told.points_m[i] - now.points_m[i]).norm());
+    const double moved_m = static_cast<double>((reported.points_m[i] - now.points_m[i]).norm());
     if (moved_m <= tolerance_.point_m) continue;
     if (moved_m > tolerance_.point_share * static_cast<double>(now.points_m[i].norm())) return PointsNow::kOthers;
     points = PointsNow::kRefined;

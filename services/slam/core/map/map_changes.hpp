@@ -51,7 +51,7 @@ class MapChanges {
   void forget() { *this = MapChanges(tolerance_); }
 
  private:
-  struct Told {
+  struct Reported {
     MapId map = 0;
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
     std::vector<LandmarkId> landmarks;
@@ -59,14 +59,14 @@ class MapChanges {
     std::vector<KeyframeId> covisible;
   };
   void take_out_removed(const MapView& view, MapNews& news);
-  bool has_moved(const Told& told, const KeyframeView& now) const;
+  bool has_moved(const Reported& reported, const KeyframeView& now) const;
   enum class PointsNow { kSame, kRefined, kOthers };
-  PointsNow compare_points(const Told& told, const KeyframeView& now) const;
+  PointsNow compare_points(const Reported& reported, const KeyframeView& now) const;
   void choose_refined(const MapView& view, std::vector<PointsNow>& points);
 
   Tolerance tolerance_;
   std::optional<std::uint64_t> session_;
-  std::map<KeyframeId, Told> told_;
+  std::map<KeyframeId, Reported> reported_;
   std::vector<KeyframeId> loop_edges_;
   KeyframeId next_refined_ = 0;  ///< in turn
 };

@@ -14,7 +14,7 @@
 
 namespace rtd::slam {
 
-/// What a map file needs of a map, copied out of it in moments so that mapping can go on while it is written: poses,
+/// What a map file needs of a map, copied out of it in moments so that mapping can continue while it is written: poses,
 /// links and landmarks are copies, the features of the keyframes are shared.
 struct MapSnapshot {
   struct Keyframe {

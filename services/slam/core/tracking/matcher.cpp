@@ -84,8 +84,8 @@ std::vector<Match> keep_consistent_rotation(const std::vector<Match>& matches, s
 
 std::vector<Match> match_projected(const Frame& frame, std::span<const SearchPoint> points,
                                    const std::vector<char>& taken, const MatchRules& rules) {
-  constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> owner(frame.features.size(), kNobody);
+  constexpr std::uint32_t kUnowned = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> owner(frame.features.size(), kUnowned);
   std::vector<int> owner_hamming(frame.features.size(), kFar);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const Nearest nearest = find_nearest(frame, points[i], taken, rules.disparity_px_m);
@@ -99,7 +99,7 @@ std::vector<Match> match_projected(const Frame& frame, std::span<const SearchPoi
   matches.reserve(owner.size());
   change_rad.reserve(owner.size());
   for (std::uint32_t feature = 0; feature < owner.size(); ++feature) {
-    if (owner[feature] == kNobody) continue;
+    if (owner[feature] == kUnowned) continue;
     const SearchPoint& point = points[owner[feature]];
     matches.push_back({feature, point.tag, owner_hamming[feature]});
     change_rad.push_back(frame.features[feature].angle_rad - point.angle_rad);

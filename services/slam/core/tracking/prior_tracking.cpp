@@ -61,7 +61,7 @@ bool Tracker::contradicts_prior(const Frame& frame, const LocalMapTracking& trac
 }
 
 /// The prior learns from a measured pose; `covariance` is relative to the map.
-void Tracker::tell_prior(const geometry::Matrix6d& covariance, bool had_pose) {
+void Tracker::report_to_prior(const geometry::Matrix6d& covariance, bool had_pose) {
   const PredictedPose measured{last_.T_world_camera, config_.prior.visual_factor * covariance};
   const bool found_again = !had_pose && (!expected_ || pose_distance2(*expected_, measured) > kMaxPoseDistance2);
   if (found_again) {

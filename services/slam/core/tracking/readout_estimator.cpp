@@ -59,7 +59,8 @@ std::optional<Displacement> displacement_of_landmark(const LocalLandmark& landma
     ++count;
   }
   if (count == 0) return std::nullopt;
-  mean.slope /= count, mean.offset /= count;
+  mean.slope /= count;
+  mean.offset /= count;
   return mean;
 }
 

@@ -24,7 +24,7 @@ struct ExposedFrame {
 class ReadoutEstimator {
  public:
   ReadoutEstimator() = default;
-  /// Goes on from a readout time that was estimated before; 0 when it was not.
+  /// Continues from a readout time that was estimated before; 0 when it was not.
   explicit ReadoutEstimator(double readout_s);
   /// One tracked frame and the points that its features show. `motion` is the velocity during this frame and the
   /// readout time that its features were corrected with.

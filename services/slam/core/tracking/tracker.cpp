@@ -235,7 +235,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
       config_.sensor.shared_error * tracking.guess.covariance + consistency_.covariance(scene_m_);
   covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
   map_covariance_ = covariance_ - local;
-  if (prior_ != nullptr && !weighed_) tell_prior(local, had_pose);
+  if (prior_ != nullptr && !weighed_) report_to_prior(local, had_pose);
   outcome.covariance = covariance_ + calibration_covariance(since_first(last_.T_world_camera), scene_m_,
                                                             config_.sensor.calibration_error);
 }

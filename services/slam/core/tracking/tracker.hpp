@@ -103,7 +103,7 @@ class Tracker {
   bool covered(const Frame& frame) const;
   void weigh_against_prior(PoseGuess& guess);
   bool contradicts_prior(const Frame& frame, const LocalMapTracking& tracking) const;
-  void tell_prior(const geometry::Matrix6d& covariance, bool had_pose);
+  void report_to_prior(const geometry::Matrix6d& covariance, bool had_pose);
   /// Ways to a first guess of the pose, in the order in which they are tried.
   enum class Attempt { kLastFrame, kKeyframe, kAround, kRecovery };
   PoseGuess find_pose(Attempt attempt, const Frame& frame, const LocalMap& map);

@@ -15,14 +15,14 @@ constexpr std::int64_t kDutyMs = 1'000'000;
 const Claim kOwn{1000, 1, 10}, kOlder{900, 2, 20}, kYounger{1100, 3, 30};
 
 /// Heartbeats every 200 ms until the time, beginning now.
-void hear(Duty& duty, const Claim& other, std::int64_t from_ms, std::int64_t to_ms) {
+void receive(Duty& duty, const Claim& other, std::int64_t from_ms, std::int64_t to_ms) {
   for (std::int64_t ms = from_ms; ms <= to_ms; ms += 200) {
-    duty.heard(other, "box (pid 20)", true, ms * kDutyMs);
+    duty.observe(other, "box (pid 20)", true, ms * kDutyMs);
     duty.update(kOwn, ms * kDutyMs);
   }
 }
 
-TEST(Duty, serves_when_no_other_is_heard) {
+TEST(Duty, serves_when_there_is_no_other) {
   Duty duty(0);
   EXPECT_EQ(duty.update(kOwn, Duty::kListenNs - 1), Role::kListening);
   EXPECT_EQ(duty.update(kOwn, Duty::kListenNs), Role::kServing);
@@ -31,14 +31,14 @@ TEST(Duty, serves_when_no_other_is_heard) {
 
 TEST(Duty, a_newcomer_stands_by_even_when_its_clock_says_it_is_older) {
   Duty duty(0);
-  hear(duty, kYounger, 500, 5000);
+  receive(duty, kYounger, 500, 5000);
   EXPECT_EQ(duty.role(), Role::kStandby);
   EXPECT_EQ(duty.other(), "box (pid 20)");
 }
 
 TEST(Duty, takes_over_within_a_second_when_the_other_falls_silent) {
   Duty duty(0);
-  hear(duty, kOlder, 200, 3000);
+  receive(duty, kOlder, 200, 3000);
   EXPECT_EQ(duty.update(kOwn, 3700 * kDutyMs), Role::kStandby);
   EXPECT_EQ(duty.update(kOwn, 3800 * kDutyMs), Role::kServing);
   EXPECT_EQ(duty.other(), "");
@@ -46,37 +46,37 @@ TEST(Duty, takes_over_within_a_second_when_the_other_falls_silent) {
 
 TEST(Duty, takes_over_at_once_when_the_other_ends_or_hangs) {
   Duty duty(0);
-  hear(duty, kOlder, 200, 3000);
-  duty.heard(kOlder, "box (pid 20)", false, 3050 * kDutyMs);
+  receive(duty, kOlder, 200, 3000);
+  duty.observe(kOlder, "box (pid 20)", false, 3050 * kDutyMs);
   EXPECT_EQ(duty.update(kOwn, 3050 * kDutyMs), Role::kServing);
 }
 
-TEST(Duty, does_not_serve_before_it_has_listened) {
+TEST(Duty, does_not_serve_before_it_has_waited) {
   Duty duty(0);
-  duty.heard(kOlder, "box (pid 20)", false, 100 * kDutyMs);
+  duty.observe(kOlder, "box (pid 20)", false, 100 * kDutyMs);
   EXPECT_EQ(duty.update(kOwn, 100 * kDutyMs), Role::kListening);
 }
 
 TEST(Duty, of_two_that_serve_the_younger_steps_down) {
   Duty duty(0);
   duty.update(kOwn, 1000 * kDutyMs);
-  hear(duty, kYounger, 2000, 4000);
+  receive(duty, kYounger, 2000, 4000);
   EXPECT_EQ(duty.role(), Role::kServing);
-  hear(duty, kOlder, 5000, 5200);
+  receive(duty, kOlder, 5000, 5200);
   EXPECT_EQ(duty.role(), Role::kStandby);
 }
 
 TEST(Duty, one_heartbeat_ends_no_service) {
   Duty duty(0);
   duty.update(kOwn, 1000 * kDutyMs);
-  duty.heard(kOlder, "box (pid 20)", true, 2000 * kDutyMs);
+  duty.observe(kOlder, "box (pid 20)", true, 2000 * kDutyMs);
   EXPECT_EQ(duty.update(kOwn, 2000 * kDutyMs), Role::kServing);
 }
 
 TEST(Duty, claims_without_end_take_no_memory_without_end) {
   Duty duty(0);
   duty.update(kOwn, 1000 * kDutyMs);
-  for (int i = 0; i < 100'000; ++i) duty.heard({i, 1, i}, "box", true, 1000 * kDutyMs);
+  for (int i = 0; i < 100'000; ++i) duty.observe({i, 1, i}, "box", true, 1000 * kDutyMs);
   EXPECT_EQ(duty.update(kOwn, 1100 * kDutyMs), Role::kServing);
 }
 
@@ -99,7 +99,7 @@ TEST(Duty, several_boxes_agree_on_one) {
       const Role before = duties[i].role();
       if (before == Role::kServing && ms % 200 == 0)
         for (std::size_t j = 0; j < duties.size(); ++j)
-          if (i != j) duties[j].heard(claims[i], "box", true, (ms + 50) * kDutyMs);
+          if (i != j) duties[j].observe(claims[i], "box", true, (ms + 50) * kDutyMs);
       const Role now = duties[i].update(claims[i], ms * kDutyMs);
       if (now == Role::kServing && before != Role::kServing) claims[i].started_ns = ms;
     }

@@ -40,7 +40,7 @@ TEST(FleetQueue, without_images_it_waits_for_one) {
   EXPECT_FALSE(queue.take(0).wait_until_ns);
 }
 
-TEST(FleetQueue, a_single_robot_waits_for_nobody) {
+TEST(FleetQueue, a_single_robot_does_not_wait) {
   Queue queue({});
   queue.put("anna", 1, 10 * kMs);
   EXPECT_THAT(robots_of(queue.take(10 * kMs)), ElementsAre("anna"));
@@ -84,7 +84,7 @@ TEST(FleetQueue, does_not_wait_for_robots_that_fell_silent) {
   EXPECT_THAT(robots_of(queue.take(600 * kMs)), ElementsAre("a"));
 }
 
-TEST(FleetQueue, goes_on_where_the_last_batch_ended) {
+TEST(FleetQueue, continues_where_the_last_batch_ended) {
   Queue queue({.batch = 2});
   const auto put_all = [&] {
     for (const char* robot : {"a", "b", "c"}) queue.put(robot, 0, 0);
@@ -97,7 +97,7 @@ TEST(FleetQueue, goes_on_where_the_last_batch_ended) {
   EXPECT_THAT(robots_of(queue.take(0)), ElementsAre("b", "c"));
 }
 
-TEST(FleetQueue, the_turn_goes_on_when_the_robot_served_last_has_left) {
+TEST(FleetQueue, the_turn_continues_when_the_robot_served_last_has_left) {
   Queue queue({.batch = 1});
   for (const char* robot : {"a", "b", "c"}) queue.put(robot, 0, 0);
   EXPECT_THAT(robots_of(queue.take(0)), ElementsAre("a"));

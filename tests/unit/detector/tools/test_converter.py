@@ -276,7 +276,7 @@ class Refusals(ConverterTest):
         fake_torch.save(tiny.checkpoint(), self.checkpoint)
         self.assert_refused("unknown layer type WarpDrive; known are .*Shuffle_Block")
 
-    def test_layer_with_foreign_attributes(self):
+    def test_layer_with_unknown_attributes(self):
         tiny = tiny_yolo.TinyYolo()
         odd = tiny.conv(3, 8)
         odd._modules["conv"].kernel_size = "three"

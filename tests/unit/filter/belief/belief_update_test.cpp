@@ -31,7 +31,10 @@ class BeliefTest : public ::testing::Test {
   }
   double on_object() const { return probability(beliefs_[100]); }
   double on_wall() const { return probability(beliefs_[kBeliefCells - 100]); }
-  void rest() { depth_.consistent.assign(kBeliefCells, 2), depth_.lasting.assign(kBeliefCells, 1); }
+  void rest() {
+    depth_.consistent.assign(kBeliefCells, 2);
+    depth_.lasting.assign(kBeliefCells, 1);
+  }
 
   std::vector<SceneObject> objects_{{"person", 0.9F, MotionLevel::kHigh, {}, false}};
   std::vector<ObjectMotion> motion_;

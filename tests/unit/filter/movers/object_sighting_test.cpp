@@ -63,7 +63,7 @@ TEST(ObjectSighting, of_two_whose_boxes_overlap_each_shows_its_own_body) {
   EXPECT_NEAR(farthest_m(sightings[0]), kNearM, 0.01);
   EXPECT_NEAR(nearest_m(sightings[1]), kFarM, 0.01);
   EXPECT_NEAR(farthest_m(sightings[1]), kFarM, 0.01);
-  EXPECT_TRUE(sightings[1].cut_left) << "it goes on behind the nearer one";
+  EXPECT_TRUE(sightings[1].cut_left) << "it continues behind the nearer one";
   EXPECT_FALSE(sightings[1].cut_right);
 }
 

@@ -33,7 +33,7 @@ TEST(Tint, is_the_same_in_shade_where_there_is_hue) {
   EXPECT_NE(tint_of({20, 20, 20}), tint_of({230, 230, 230})) << "greys differ by brightness only";
 }
 
-TEST(Tint, tells_surfaces_apart_and_nothing_about_unknown_ones) {
+TEST(Tint, distinguishes_surfaces_and_reports_nothing_about_unknown_ones) {
   const TintShares red_and_dark = shares_of({{40, 40, 200}, {40, 40, 200}, {20, 20, 20}});
   const TintShares mostly_red = shares_of({{40, 40, 200}, {40, 40, 200}, {40, 40, 200}, {20, 20, 20}});
   const TintShares blue = shares_of({{200, 40, 40}});

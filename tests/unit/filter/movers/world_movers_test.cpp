@@ -126,7 +126,10 @@ TEST_F(WorldMoversTest, that_pass_each_other_are_not_swapped) {
     ASSERT_EQ(movers.size(), 2U) << "frame " << i;
     const bool in_order = movers[0].extent_world.center().z() < movers[1].extent_world.center().z();
     const std::uint32_t near_id = movers[in_order ? 0 : 1].id, far_id = movers[in_order ? 1 : 0].id;
-    if (i == 0) near = near_id, far = far_id;
+    if (i == 0) {
+      near = near_id;
+      far = far_id;
+    }
     EXPECT_EQ(near_id, near) << "frame " << i;
     EXPECT_EQ(far_id, far) << "frame " << i;
   }
@@ -147,7 +150,10 @@ TEST_F(WorldMoversTest, the_farther_of_two_whose_boxes_overlap_is_followed_in_it
     ASSERT_EQ(movers.size(), 2U) << "frame " << i;
     const bool in_order = movers[0].extent_world.center().z() < movers[1].extent_world.center().z();
     const WorldMover &nearer = movers[in_order ? 0 : 1], &farther = movers[in_order ? 1 : 0];
-    if (i == 0) near = nearer.id, far = farther.id;
+    if (i == 0) {
+      near = nearer.id;
+      far = farther.id;
+    }
     EXPECT_EQ(nearer.id, near) << "frame " << i;
     EXPECT_EQ(farther.id, far) << "frame " << i;
     EXPECT_EQ(farther.unseen_s, 0) << "frame " << i;
@@ -169,7 +175,7 @@ TEST_F(WorldMoversTest, who_turned_while_hidden_is_known_by_the_colours) {
   EXPECT_NE(movers[1].id, id);
 }
 
-TEST_F(WorldMoversTest, a_body_that_leaves_the_image_bit_by_bit_goes_on) {
+TEST_F(WorldMoversTest, a_body_that_leaves_the_image_bit_by_bit_continues) {
   const Vector3d velocity(-0.5, 0, 0);
   for (int i = 0; i < 60; ++i) {
     const Vector3d middle = Vector3d(0.3, 0, 2) + time_s() * velocity;

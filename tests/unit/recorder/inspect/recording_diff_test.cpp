@@ -126,7 +126,7 @@ TEST(RecordingDiff, messages_that_are_not_cdr_are_compared_by_bytes) {
   EXPECT_THAT(result.topics[0].first->why, Contains("first at byte 2 of the payload"));
 }
 
-TEST(RecordingDiff, two_runs_are_paired_by_frame_and_told_apart_from_their_times) {
+TEST(RecordingDiff, two_runs_are_paired_by_frame_and_distinguished_by_their_times) {
   std::vector<SampleMessage> a, b;
   for (std::uint64_t i = 0; i < 20; ++i) {
     a.push_back({"rtd/tracking", 1000 + i, tracking_payload(i, 0.1, 50), 0});

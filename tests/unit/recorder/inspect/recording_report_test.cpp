@@ -51,7 +51,7 @@ void expect_the_gap(const RecordingReport& report) {
   EXPECT_EQ(report.metadata[0].metadata.at("made_by"), "test");
 }
 
-TEST(RecordingReport, tells_all_of_a_small_file) {
+TEST(RecordingReport, reports_all_of_a_small_file) {
   const RecordingReport report = report_of(recording_of(messages_with_a_gap(), small_chunks()));
   expect_the_gap(report);
   EXPECT_TRUE(report.read_all);
@@ -60,7 +60,7 @@ TEST(RecordingReport, tells_all_of_a_small_file) {
   EXPECT_GT(report.chunks.at("").chunks, 2U);
 }
 
-TEST(RecordingReport, tells_the_same_of_a_big_file_from_its_summary_and_indexes) {
+TEST(RecordingReport, reports_the_same_of_a_big_file_from_its_summary_and_indexes) {
   ReportOptions big;
   big.small_file_bytes = 0;
   const RecordingReport report =
@@ -127,7 +127,7 @@ TEST(RecordingReport, the_end_that_a_file_being_written_does_not_have_is_no_dama
   EXPECT_THAT(to_text(report, "x.mcap"), HasSubstr("being written"));
 }
 
-TEST(RecordingReport, tells_what_the_recorder_knows_to_be_lost) {
+TEST(RecordingReport, reports_what_the_recorder_knows_to_be_lost) {
   RecordingReport report;
   EXPECT_TRUE(report.losses().empty());
   report.metadata.push_back({"rtd:losses", {{"total", "0"}}});

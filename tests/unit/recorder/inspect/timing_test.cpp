@@ -7,7 +7,7 @@
 namespace rtd::recording {
 namespace {
 
-TEST(Timing, tells_rate_median_and_the_gaps_of_a_channel) {
+TEST(Timing, reports_rate_median_and_the_gaps_of_a_channel) {
   const Timing timing = timing_of({0, 10, 20, 30, 60, 70, 95, 100});  // one period of 30, one of exactly 2.5 medians
   EXPECT_EQ(timing.messages, 8U);
   EXPECT_EQ(timing.median_period_ns, 10U);
@@ -17,7 +17,7 @@ TEST(Timing, tells_rate_median_and_the_gaps_of_a_channel) {
   EXPECT_DOUBLE_EQ(timing.rate_hz, 7 * 1e9 / 100);
 }
 
-TEST(Timing, bears_no_message_one_and_many_at_one_time) {
+TEST(Timing, handles_no_message_one_and_many_at_one_time) {
   EXPECT_EQ(timing_of({}).messages, 0U);
   EXPECT_EQ(timing_of({5}).first_ns, 5U);
   EXPECT_EQ(timing_of({5}).rate_hz, 0);
@@ -52,7 +52,7 @@ TEST(SharedCounter, is_recognised_by_numbers_that_only_all_channels_together_hav
   EXPECT_EQ(missing_of_shared_counter({{5, 3, 1}, {6, 2, 4}}), 0U) << "in any order";
 }
 
-TEST(SharedCounter, channels_that_count_for_themselves_are_told_apart) {
+TEST(SharedCounter, channels_that_count_for_themselves_are_distinguished) {
   EXPECT_EQ(missing_of_shared_counter({}), std::nullopt);
   EXPECT_EQ(missing_of_shared_counter({{1, 2, 5}}), std::nullopt) << "one channel";
   EXPECT_EQ(missing_of_shared_counter({{1, 2, 5}, {1, 2, 3}}), std::nullopt);

@@ -60,7 +60,7 @@ class InertialTracking : public ::testing::Test {
   std::int64_t next_imu_ = 0;
 };
 
-TEST_F(InertialTracking, goes_on_for_three_seconds_without_a_view) {
+TEST_F(InertialTracking, continues_for_three_seconds_without_a_view) {
   config_.prior.imu = true;
   std::uint64_t seq = 0;
   for (; seq < 90; ++seq) ASSERT_EQ(show(seq).state, TrackingState::kOk);
@@ -139,7 +139,7 @@ TEST_F(InertialTracking, a_person_who_fills_the_view_does_not_take_the_pose_alon
   EXPECT_GT(without_m, 0.2);
 }
 
-TEST_F(InertialTracking, an_imu_that_is_not_heard_changes_nothing) {
+TEST_F(InertialTracking, an_imu_that_is_not_received_changes_nothing) {
   std::vector<FrameResult> without, with;
   for (std::uint64_t seq = 0; seq < 60; ++seq) without.push_back(show(seq));
   slam_.reset();

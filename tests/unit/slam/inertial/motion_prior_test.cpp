@@ -72,7 +72,10 @@ class Drive {
     prior_->correct(pose);
   }
   void track(double duration_s) {
-    for (int i = 0; i < static_cast<int>(duration_s * kFps); ++i) expect(), measure();
+    for (int i = 0; i < static_cast<int>(duration_s * kFps); ++i) {
+      expect();
+      measure();
+    }
   }
   void mute_imu(bool on) { muted_ = on; }
 
@@ -114,7 +117,7 @@ TEST(InertialFilter, finds_biases_and_gravity) {
   }
 }
 
-TEST(InertialFilter, with_time_tells_tilt_from_bias) {
+TEST(InertialFilter, with_time_distinguishes_tilt_from_bias) {
   Drive drive(CameraMotion::kRolling, 4, true, false);
   drive.track(30);
   const InertialState& state = drive.prior().filter()->state();
@@ -179,7 +182,9 @@ TEST(MotionPrior, with_imu_and_wheels_is_better_than_with_either) {
       drive.track(2);
       return go_blind(drive, 5).largest_m / 10;
     };
-    imu_m += largest_m(true, false), wheels_m += largest_m(false, true), both_m += largest_m(true, true);
+    imu_m += largest_m(true, false);
+    wheels_m += largest_m(false, true);
+    both_m += largest_m(true, true);
   }
   EXPECT_LT(both_m, imu_m);
   EXPECT_LT(both_m, wheels_m);
@@ -204,7 +209,7 @@ TEST(MotionPrior, expects_nothing_before_the_motion_is_known) {
   EXPECT_FALSE(drive.expect()) << "a velocity takes more than one pose";
 }
 
-TEST(MotionPrior, goes_on_after_a_second_without_imu) {
+TEST(MotionPrior, continues_after_a_second_without_imu) {
   Drive drive(CameraMotion::kHandHeld, 7, true, false);
   drive.track(3);
   drive.mute_imu(true);
@@ -221,7 +226,8 @@ TEST(MotionPrior, goes_on_after_a_second_without_imu) {
 
 TEST(MotionPrior, goes_with_a_corrected_map) {
   Drive still(CameraMotion::kHandHeld, 8, true, false), moved(CameraMotion::kHandHeld, 8, true, false);
-  still.track(3), moved.track(3);
+  still.track(3);
+  moved.track(3);
   Eigen::Isometry3d T_new_old = Eigen::Isometry3d::Identity();
   T_new_old.translation() << 1, -2, 0.5;
   T_new_old.linear() = geometry::so3_exp({0.1, 0.3, -0.2});
@@ -266,7 +272,7 @@ TEST(WheelStream, interpolates_and_refuses_pauses_jumps_and_broken_messages) {
   ASSERT_TRUE(motion);
   EXPECT_NEAR(motion->T_first_last.translation().x(), 0.5 * 0.51, 1e-9);
   EXPECT_NEAR(std::sqrt(motion->covariance(0, 0)), 0.03 * 0.255, 1e-3);
-  EXPECT_NEAR(stream.motion(ns(0.5), ns(1.1))->T_first_last.translation().x(), 0.3, 1e-9) << "it goes on";
+  EXPECT_NEAR(stream.motion(ns(0.5), ns(1.1))->T_first_last.translation().x(), 0.3, 1e-9) << "it continues";
   EXPECT_FALSE(stream.motion(ns(0.5), ns(1.3)));
   EXPECT_FALSE(stream.motion(ns(-0.5), ns(0.5)));
   WheelSample broken = at(1.02, std::numeric_limits<double>::infinity());

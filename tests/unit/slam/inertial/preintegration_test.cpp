@@ -154,7 +154,7 @@ TEST(ImuStream, follows_a_clock_that_was_set) {
 
 TEST(ImuStream, keeps_a_bounded_number_of_samples) {
   ImuStream stream;
-  for (std::size_t i = 0; i < ImuStream::kMost + 5; ++i) stream.add(sample_at(static_cast<std::int64_t>(i) * kMs));
+  for (std::size_t i = 0; i < ImuStream::kMax + 5; ++i) stream.add(sample_at(static_cast<std::int64_t>(i) * kMs));
   EXPECT_EQ(stream.counters().overflowed, 5U);
 }
 

@@ -78,7 +78,7 @@ TEST(MapView, names_loops_by_keyframes_that_are_still_there) {
   EXPECT_THAT(row.view().loop_edges, ElementsAre(0, 4));
 }
 
-TEST(MapChanges, tell_all_at_first_and_then_nothing_while_nothing_changes) {
+TEST(MapChanges, report_all_at_first_and_then_nothing_while_nothing_changes) {
   const RowOfKeyframes row(3);
   MapChanges changes;
   const MapNews first = changes.update(row.view());
@@ -88,7 +88,7 @@ TEST(MapChanges, tell_all_at_first_and_then_nothing_while_nothing_changes) {
   EXPECT_TRUE(changes.update(row.view()).empty());
 }
 
-TEST(MapChanges, a_new_keyframe_is_told_alone) {
+TEST(MapChanges, a_new_keyframe_is_reported_alone) {
   RowOfKeyframes row(3);
   MapChanges changes;
   changes.update(row.view());
@@ -133,18 +133,18 @@ TEST(MapChanges, small_moves_wait_until_they_add_up) {
   EXPECT_FALSE(news.keyframes[1].points) << "0.12 mm: the pose";
 }
 
-TEST(MapChanges, refined_points_are_told_in_turn_and_moved_ones_at_once) {
+TEST(MapChanges, refined_points_are_reported_in_turn_and_moved_ones_at_once) {
   RowOfKeyframes row(40);
   MapChanges changes;
   changes.update(row.view());
   for (const LandmarkId id : row.map.landmark_ids()) row.map.find_landmark(id)->position.y() += 0.01;
-  std::set<KeyframeId> told;
+  std::set<KeyframeId> reported;
   for (int i = 0; i < 5; ++i) {
     const MapNews news = changes.update(row.view());
     ASSERT_THAT(news.keyframes, SizeIs(8));
-    for (const KeyframeNews& one : news.keyframes) told.insert(one.id);
+    for (const KeyframeNews& one : news.keyframes) reported.insert(one.id);
   }
-  EXPECT_THAT(told, SizeIs(40));
+  EXPECT_THAT(reported, SizeIs(40));
   EXPECT_TRUE(changes.update(row.view()).empty());
   for (const LandmarkId id : row.map.landmark_ids()) row.map.find_landmark(id)->position.y() += 0.1;
   EXPECT_THAT(changes.update(row.view()).keyframes, SizeIs(40));
@@ -184,7 +184,7 @@ TEST(MapChanges, a_map_without_keyframes_is_news_when_it_replaces_another) {
   EXPECT_TRUE(changes.update(empty).empty());
 }
 
-TEST(MapChanges, everything_is_told_again_to_a_reader_that_comes_late) {
+TEST(MapChanges, everything_is_reported_again_to_a_reader_that_comes_late) {
   RowOfKeyframes row(4);
   MapChanges changes;
   changes.update(row.view());

@@ -73,7 +73,9 @@ double camera_error_m(const Scene& scene, std::size_t camera) {
 /// The same scene as if every second camera had zoomed in.
 void zoom_every_second(Scene& scene) {
   vision::RgbdProjection zoomed = kCamera;
-  zoomed.fx *= 1.4, zoomed.fy *= 1.4, zoomed.cx += 12;
+  zoomed.fx *= 1.4;
+  zoomed.fy *= 1.4;
+  zoomed.cx += 12;
   for (std::size_t i = 1; i < scene.problem.cameras.size(); i += 2) scene.problem.cameras[i].intrinsics = zoomed;
   for (BundleObservation& observation : scene.problem.observations) {
     if (observation.camera % 2 == 0) continue;

@@ -109,7 +109,10 @@ TEST(PoseGraph, a_graph_without_contradiction_stays_as_it_is) {
 TEST(PoseGraph, strong_edges_bend_less_than_weak_ones) {
   PoseGraph graph = drifted_circle(step_error());
   for (PoseGraphEdge& edge : graph.edges) {
-    if (edge.from >= kNodes / 2) edge.sigma_m *= 100, edge.sigma_rad *= 100;
+    if (edge.from >= kNodes / 2) {
+      edge.sigma_m *= 100;
+      edge.sigma_rad *= 100;
+    }
   }
   close_with_truth(graph);
   ASSERT_TRUE(optimize_pose_graph(graph).usable);
@@ -127,7 +130,8 @@ TEST(PoseGraph, fixed_nodes_hold_the_gauge) {
   const Eigen::Isometry3d T_shift = geometry::se3_exp(Vector6d::Constant(0.4));
   PoseGraph shifted = graph;
   for (PoseGraphNode& node : shifted.nodes) node.T_world_node = T_shift * node.T_world_node;
-  close_with_truth(graph), close_with_truth(shifted);
+  close_with_truth(graph);
+  close_with_truth(shifted);
   shifted.nodes.front().fixed = false;  // the first is held when nothing is
   ASSERT_TRUE(optimize_pose_graph(graph).usable && optimize_pose_graph(shifted).usable);
   EXPECT_TRUE(graph.nodes.front().T_world_node.isApprox(pose_on_circle(0), 0));
@@ -138,8 +142,10 @@ TEST(PoseGraph, fixed_nodes_hold_the_gauge) {
 
 TEST(PoseGraph, the_same_graph_gives_the_same_bits) {
   PoseGraph first = drifted_circle(step_error()), second = first;
-  close_with_truth(first), close_with_truth(second);
-  optimize_pose_graph(first), optimize_pose_graph(second);
+  close_with_truth(first);
+  close_with_truth(second);
+  optimize_pose_graph(first);
+  optimize_pose_graph(second);
   for (std::size_t i = 0; i < first.nodes.size(); ++i) {
     EXPECT_EQ(first.nodes[i].T_world_node.matrix(), second.nodes[i].T_world_node.matrix());
   }

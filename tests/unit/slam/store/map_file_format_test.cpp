@@ -177,7 +177,7 @@ TEST(MapFile, of_another_kind_is_refused) {
 /// A file whose checksums are right and whose contents are not.
 struct Lie {
   const char* name;
-  void (*tell)(MapSnapshot&);
+  void (*fill)(MapSnapshot&);
   const char* refusal;
 };
 void PrintTo(const Lie& lie, std::ostream* out) {
@@ -193,7 +193,7 @@ class LyingMapFile : public ::testing::TestWithParam<Lie> {};
 
 TEST_P(LyingMapFile, is_refused_with_the_reason) {
   MapSnapshot snapshot = take_snapshot(sample_map());
-  GetParam().tell(snapshot);
+  GetParam().fill(snapshot);
   EXPECT_THAT(refusal(bytes_of_map(snapshot)), AllOf(HasSubstr("damaged at byte"), HasSubstr(GetParam().refusal)));
 }
 

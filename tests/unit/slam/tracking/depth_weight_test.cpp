@@ -74,7 +74,7 @@ TEST(DepthWeight, learns_nothing_from_few_points_or_without_depth) {
   EXPECT_EQ(estimator.disparity_px_m(), 80.0);
 }
 
-TEST(ReadoutEstimator, goes_on_from_what_a_map_knows) {
+TEST(ReadoutEstimator, continues_from_what_a_map_knows) {
   EXPECT_NEAR(ReadoutEstimator(0.02).readout_s(), 0.02, 1e-12) << "sure from the first frame on";
   EXPECT_LT(ReadoutEstimator(0.02).sigma_s(), 0.005) << "but other frames may correct it";
   EXPECT_EQ(ReadoutEstimator(0).readout_s(), 0);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recorder/inspect/foreign_report.hpp"
+#include "services/recorder/inspect/other_format_report.hpp"
 
 #include <gmock/gmock.h>
 #include <sqlite3.h>
@@ -18,12 +18,15 @@ std::filesystem::path path_of(const std::string& uri) {
   return uri.substr(uri.find(':') + 1);
 }
 
-TEST(ForeignReport, counts_and_times_the_messages_of_a_bag) {
+TEST(OtherFormatReport, counts_and_times_the_messages_of_a_bag) {
   camera::test::ImageBag bag;
   bag.add_info();
-  for (const double second : {1.0, 2.0, 3.0}) bag.add_color(second), bag.add_depth(second);
+  for (const double second : {1.0, 2.0, 3.0}) {
+    bag.add_color(second);
+    bag.add_depth(second);
+  }
   const std::string file = path_of(bag.uri());
-  const auto report = report_on_foreign(file);
+  const auto report = report_on_other_format(file);
   ASSERT_TRUE(report);
   EXPECT_EQ(report->format, "ROS 1 bag");
   EXPECT_EQ(report->messages, 7U);
@@ -42,7 +45,7 @@ TEST(ForeignReport, counts_and_times_the_messages_of_a_bag) {
   EXPECT_EQ(to_json(*report, "a.bag")["format"], "ROS 1 bag");
 }
 
-TEST(ForeignReport, shows_topics_of_a_database_that_have_no_message) {
+TEST(OtherFormatReport, shows_topics_of_a_database_that_have_no_message) {
   const rtd::test::TemporaryFile file("a.db3", "");
   std::filesystem::remove(file.path());
   sqlite3* database = nullptr;
@@ -54,7 +57,7 @@ TEST(ForeignReport, shows_topics_of_a_database_that_have_no_message) {
       "INSERT INTO messages(topic_id,timestamp,data) VALUES(1,1000,x'00010000'),(1,2000,x'0001000007');";
   EXPECT_EQ(sqlite3_exec(database, kContent, nullptr, nullptr, nullptr), SQLITE_OK);
   sqlite3_close(database);
-  const auto report = report_on_foreign(file.path());
+  const auto report = report_on_other_format(file.path());
   ASSERT_TRUE(report);
   ASSERT_THAT(report->channels, SizeIs(2));
   EXPECT_EQ(report->messages, 2U);
@@ -64,11 +67,11 @@ TEST(ForeignReport, shows_topics_of_a_database_that_have_no_message) {
   EXPECT_EQ(report->end_ns - report->start_ns, 1000U);
 }
 
-TEST(ForeignReport, is_for_files_of_other_programs_only) {
+TEST(OtherFormatReport, is_for_files_of_other_programs_only) {
   const rtd::test::TemporaryFile text("a.txt", "hello"), broken("a.bag", "#ROSBAG V2.0\nxxx");
-  EXPECT_FALSE(report_on_foreign(text.path()));
-  EXPECT_FALSE(report_on_foreign("/nonexistent"));
-  EXPECT_THROW(report_on_foreign(broken.path()), camera::SourceError);
+  EXPECT_FALSE(report_on_other_format(text.path()));
+  EXPECT_FALSE(report_on_other_format("/nonexistent"));
+  EXPECT_THROW(report_on_other_format(broken.path()), camera::SourceError);
 }
 
 }  // namespace

@@ -11,6 +11,6 @@ namespace rtd::recording {
 
 /// The report on a ROS 1 bag or a rosbag2 database (sqlite3), which is read whole; empty for any other file. Throws
 /// camera::SourceError when it cannot be used at all.
-std::optional<RecordingReport> report_on_foreign(const std::filesystem::path& file);
+std::optional<RecordingReport> report_on_other_format(const std::filesystem::path& file);
 
 }  // namespace rtd::recording

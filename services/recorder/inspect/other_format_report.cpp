@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recorder/inspect/foreign_report.hpp"
+#include "services/recorder/inspect/other_format_report.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -12,16 +12,15 @@
 namespace rtd::recording {
 namespace {
 
-struct ForeignFormat {
+struct OtherFormat {
   std::string_view begin;
   std::string name;
   std::unique_ptr<camera::Recording> (*open)(const std::filesystem::path&);
 };
 
-const ForeignFormat* format_of(const std::filesystem::path& file) {
-  static const std::array<ForeignFormat, 2> kFormats = {
-      ForeignFormat{io::kBagMagic, "ROS 1 bag", camera::open_bag},
-      ForeignFormat{io::kDb3Magic, "rosbag2 sqlite3", camera::open_db3}};
+const OtherFormat* format_of(const std::filesystem::path& file) {
+  static const std::array<OtherFormat, 2> kFormats = {OtherFormat{io::kBagMagic, "ROS 1 bag", camera::open_bag},
+                                                      OtherFormat{io::kDb3Magic, "rosbag2 sqlite3", camera::open_db3}};
   std::string begin(io::kMagicBytes, '\0');
   std::ifstream stream(file, std::ios::binary);
   stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
@@ -68,8 +67,8 @@ void add_channel(RecordingReport& report, const std::string& topic, const std::s
 
 }  // namespace
 
-std::optional<RecordingReport> report_on_foreign(const std::filesystem::path& file) {
-  const ForeignFormat* const format = format_of(file);
+std::optional<RecordingReport> report_on_other_format(const std::filesystem::path& file) {
+  const OtherFormat* const format = format_of(file);
   if (format == nullptr) return std::nullopt;
   const std::unique_ptr<camera::Recording> recording = format->open(file);
   RecordingReport report;
