@@ -12,7 +12,7 @@
 #include <string>
 
 /// ROS 2 services as pairs of topics: how a request gets to a server and its reply to the client that asked. The two
-/// RMWs tell requests apart in ways of their own, so each backend does as the RMW of its vendor and a client uses the
+/// RMWs identify requests in ways of their own, so each backend does as the RMW of its vendor and a client uses the
 /// vendor of the server (docs/ros2.md).
 namespace rtd::bus {
 

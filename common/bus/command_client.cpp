@@ -26,7 +26,7 @@ using Cause = CommandError::Cause;
 constexpr auto kMoment = 5ms;
 /// By then every server of the domain has been found.
 constexpr auto kDiscovery = 2s;
-/// From matching the server here to being matched there: DDS tells each side for itself.
+/// From matching the server here to being matched there: DDS notifies each side for itself.
 constexpr auto kSettling = 100ms;
 
 /// The vendor of an endpoint by its GUID (RTPS 2.2, 9.3.1.5), by the names of available_vendors(). Security makes GUIDs

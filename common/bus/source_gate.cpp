@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMaxClaims = 8, kMaxDeparted = 32, kMaxMatched = 256, kMaxRefused = 256;
 constexpr std::int64_t kMessagesOnTheirWayNs = 200'000'000;  // of one that has ended
-constexpr std::int64_t kReceivedLatelyNs = 50'000'000;       // nobody needs to be asked whether it lives
+constexpr std::int64_t kReceivedLatelyNs = 50'000'000;       // no need to ask whether it lives
 
 }  // namespace
 
@@ -51,7 +51,7 @@ SourceGate::Verdict SourceGate::refuse(const ParticipantId& source, std::int64_t
   return {false, Event::kRefused, claims_[holder_].source, source};
 }
 
-/// A successor of one that ended unnoticed is refused for a while, too, but hears nothing more from it.
+/// A successor of one that ended unnoticed is refused for a while, too, but receives nothing more from it.
 bool SourceGate::sent_beside_holder(const ParticipantId& source) const {
   const auto refused = refused_since_ns_.find(source);
   return refused != refused_since_ns_.end() && claims_[holder_].received_ns - refused->second > kMessagesOnTheirWayNs;

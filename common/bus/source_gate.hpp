@@ -20,7 +20,7 @@ namespace rtd::bus {
 /// Lets the messages of one source pass: of the connection that came first. It keeps its place while its writer is
 /// matched, whatever others send, and loses it when its writer or its process is gone, or after a long silence. Its
 /// successor has the place at once; one that sent beside it waits for the long silence. One that only fell silent has
-/// its place back with its next message. Sources are told apart by their writers' ids, not by what their messages say.
+/// its place back with its next message. Sources are identified by their writers' ids, not by their messages' content.
 ///
 /// Thread-safe; several readers may share a gate, then all their messages come from one connection.
 class SourceGate : public std::enable_shared_from_this<SourceGate> {

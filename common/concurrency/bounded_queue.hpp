@@ -53,7 +53,7 @@ class BoundedQueue {
     return take(lock);
   }
 
-  /// Wakes everybody; pushes fail from now on, what is queued can still be popped.
+  /// Wakes all waiting threads; pushes fail from now on, what is queued can still be popped.
   void close() {
     {
       const std::lock_guard lock(mutex_);

@@ -18,7 +18,7 @@ namespace rtd::io {
 
 /// Who chose the name of a file. What the operator named on the command line may be a symbolic link, which is followed,
 /// or a device or pipe, which is written as it is. At a name that a program chose, or that came over the network, both
-/// are refused: somebody else may have put them there.
+/// are refused: another user may have put them there.
 enum class NamedBy { kProgram, kOperator };
 
 struct AtomicOptions {

@@ -62,7 +62,7 @@ enum class IfExists { kFail, kReplace };
 enum class Cached { kKeep, kDrop };
 
 /// A file, written with writev(2) from where the caller has the bytes: no copy of its own. It is locked (flock) while
-/// open, so that a second writer fails and a reader can tell that it grows (FileSource::being_written). For what grows
+/// open, so that a second writer fails and a reader can see that it grows (FileSource::being_written). For what grows
 /// for long and may be read meanwhile: recordings, logs. Results that are whole or nothing: AtomicFile.
 class FileSink final : public ByteSink {
  public:

@@ -38,7 +38,7 @@ constexpr void for_each_field_type(Visit&& visit) {
 
 #define RTD_FIELDS(package, Type, ...) RTD_FIELDS_OF(Type, #package "/" #Type, __VA_ARGS__)
 
-/// The same for a struct that does not bear the name of its ROS type.
+/// The same for a struct that does not have the name of its ROS type.
 #define RTD_FIELDS_OF(Type, name, ...)                         \
   constexpr const char* type_name(TypeOf<Type>) {              \
     return name;                                               \

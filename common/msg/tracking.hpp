@@ -30,7 +30,7 @@ constexpr KeyframeEventKind last_value(TypeOf<KeyframeEventKind>) {
 /// "Frame 812 is keyframe 57": topic `rtd/keyframes`, from slam to the filter.
 struct KeyframeEvent {
   std::uint64_t
-      event_index;  ///< counts the events of one slam process from 0; TrackingResult::event_count tells how many exist
+      event_index;  ///< counts the events of one slam process from 0; TrackingResult::event_count is their number
   std::uint64_t frame_seq;
   std::int64_t stamp_ns;
   Transform T_world_camera;

@@ -166,9 +166,10 @@ void ConfigBinder::field(std::string_view key, std::map<std::string, std::string
 
 /// YAML 1.1 reads a bare `off` as a boolean; a choice takes the text as written.
 void ConfigBinder::choice(std::string_view key, std::string& value, std::vector<std::string> allowed,
-                          std::string_view help) {
+                          std::string_view help, std::map<std::string, std::string> former) {
   const std::string wanted = fmt::format("one of {}", fmt::join(allowed, ", "));
-  const auto listed = [allowed = std::move(allowed)](const std::string& text) {
+  const auto listed = [allowed = std::move(allowed), former = std::move(former)](std::string& text) {
+    if (const auto renamed = former.find(text); renamed != former.end()) text = renamed->second;
     return std::find(allowed.begin(), allowed.end(), text) != allowed.end();
   };
   add(key, value, wanted, listed, help);

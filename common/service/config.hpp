@@ -57,8 +57,9 @@ class ConfigBinder {
   void field(std::string_view key, std::string& value, std::string_view help);
   void field(std::string_view key, std::vector<std::string>& value, std::string_view help);
   void field(std::string_view key, std::map<std::string, std::string>& value, std::string_view help);
-  /// A string out of a fixed set.
-  void choice(std::string_view key, std::string& value, std::vector<std::string> allowed, std::string_view help);
+  /// A string out of a fixed set. `former`: names of earlier versions, each read as the name that it has now.
+  void choice(std::string_view key, std::string& value, std::vector<std::string> allowed, std::string_view help,
+              std::map<std::string, std::string> former = {});
 
   /// Binds a nested struct: its keys begin with `prefix.`.
   template <class Struct>

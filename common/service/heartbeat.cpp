@@ -103,7 +103,7 @@ void Heartbeat::loop() {
   }
 }
 
-/// Nobody was silent, and no worker stuck, while this whole process stood still.
+/// No service was silent, and no worker stuck, while this whole process stood still.
 void Heartbeat::forgive_standstill(std::int64_t now_ns) {
   const std::int64_t stood_still_ns = standstill_.look(now_ns);
   if (stood_still_ns == 0) return;
@@ -171,7 +171,7 @@ void Heartbeat::receive(const msg::ServiceStatus& status, const bus::WriterId& w
   if (callback_) callback_(status);
 }
 
-/// False when somebody else has that name.
+/// False when another connection has that name.
 bool Heartbeat::note(const msg::ServiceStatus& status, const bus::WriterId& writer) {
   const std::int64_t arrival_ns = realtime_ns();
   const std::lock_guard lock(mutex_);
@@ -200,9 +200,8 @@ void Heartbeat::believe_only(const std::string& service, std::weak_ptr<const bus
 void Heartbeat::report_second_instance(const msg::ServiceStatus& second, const bus::WriterId& writer) {
   if (second_instance_ == SecondInstance::kAllowed || !second_instance_log_.pass()) return;
   SPDLOG_ERROR(
-      "event=second_service service={} pid={} source={} effect=\"this one continues; the others follow the one that "
-      "they "
-      "heard first\" fix=\"stop one, or give it another --domain\"",
+      "event=second_service service={} pid={} source={} effect=\"this one continues; the others follow the one whose "
+      "messages came first\" fix=\"stop one, or give it another --domain\"",
       second.service, second.pid, bus::to_string(writer));
 }
 
@@ -352,7 +351,7 @@ msg::ServiceStatus Heartbeat::current_status() {
   return status;
 }
 
-/// Tells an orderly end from a death.
+/// Separates an orderly end from a death.
 void Heartbeat::publish_end() {
   {
     const std::lock_guard lock(mutex_);

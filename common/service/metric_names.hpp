@@ -57,7 +57,7 @@ inline constexpr char kModePrefix[] = "mode.";  ///< and the name of the mode (c
 inline constexpr std::array kFilterStageMs = {"wait_ms",        "extract_ms", "masks_ms", "ego_motion_ms",
                                               "depth_check_ms", "fuse_ms",    "filter_ms"};
 inline constexpr char kLoadStep[] = "load_step";  ///< 0 = everything as configured, else an index of kLoadSteps
-inline constexpr char kFramesForeign[] = "frames_refused";
+inline constexpr char kFramesRefused[] = "frames_refused";
 inline constexpr char kFramesWithoutDetections[] = "frames_without_detections";
 inline constexpr char kFeatures[] = "features";
 inline constexpr char kFeaturesRemoved[] = "features_removed";

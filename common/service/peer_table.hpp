@@ -23,9 +23,9 @@ struct Peer {
   PeerHealth health = PeerHealth::kAlive;
 };
 
-/// The other services of a domain by name. Bounded, and not to be fooled by names that somebody makes up:
+/// The other services of a domain by name. Bounded, and not to be fooled by invented names:
 /// - A name belongs to the connection that uses it first, until its process is gone or it was silent for 1.2 s; then
-///   another one may use it, until the first is heard again.
+///   another one may use it, until a message of the first arrives again.
 /// - One writer has one name.
 /// - The names of this system's own services (bus::roles()) always have a place. Of others there are 100 at most; one
 ///   that is silent for 10 s makes room for a new one, and is forgotten after a minute.
@@ -39,7 +39,7 @@ class PeerTable {
   bool note(const msg::ServiceStatus& status, const bus::WriterId& writer, std::int64_t now_ns);
   /// Forgets who has been silent for long; the names that go.
   std::vector<std::string> forget_silent(std::int64_t now_ns);
-  /// This process stood still for so long: nobody was silent meanwhile.
+  /// This process stood still for so long: no service was silent meanwhile.
   void forgive(std::int64_t stood_still_ns);
 
   std::map<std::string, Peer>& peers() { return peers_; }

@@ -14,7 +14,7 @@
 namespace rtd::service {
 
 /// Which processes are behind the connections of a domain, by their heartbeats. A connection speaks for itself only: a
-/// heartbeat is noted under the id of the connection that sent it. Holds the 64 heard last. Thread-safe.
+/// heartbeat is noted under the id of the connection that sent it. Holds the 64 newest. Thread-safe.
 class ProcessBook {
  public:
   using Look = std::function<ProcessState(std::int64_t pid)>;

@@ -66,7 +66,7 @@ class Heartbeat {
     return [this](const bus::ParticipantId& connection) { return processes_.gone(connection); };
   }
   /// From now on heartbeats of that service count only while a writer of their connection is matched behind the gate.
-  /// Once the gate is gone, they count from anybody again.
+  /// Once the gate is gone, they count from every connection again.
   void believe_only(const std::string& service, std::weak_ptr<const bus::SourceGate> writers);
   /// `callback` runs on a bus thread for every heartbeat of another service. Waits for a running call: afterwards the
   /// earlier callback is not used any more. Not to be called from the callback itself.

@@ -42,7 +42,7 @@ const sockaddr* raw(const Address& address) {
   return reinterpret_cast<const sockaddr*>(&address.name);
 }
 
-/// Who holds the place; pid 0 when nobody answers.
+/// Who holds the place; pid 0 when no process answers.
 ucred holder_of(const Address& address) {
   ucred holder{};
   socklen_t length = sizeof(holder);

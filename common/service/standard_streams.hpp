@@ -18,7 +18,7 @@ inline void hold_standard_streams() {
   }
 }
 
-/// The same, and output that nobody reads any more (`| head -1`) is dropped instead of ending the process: a run, or a
+/// The same, and output that is no longer read (`| head -1`) is dropped instead of ending the process: a run, or a
 /// service, continues to its results. For tools whose only result is what they print, the signal is right.
 inline void outlive_readers() {
   hold_standard_streams();

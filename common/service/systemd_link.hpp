@@ -9,7 +9,7 @@
 
 namespace rtd::service {
 
-/// Tells systemd (Type=notify) when the worker has begun and, as often as WatchdogSec= needs it, that it is not stuck:
+/// Reports to systemd (Type=notify) that the worker runs and, as often as WatchdogSec= needs it, that it is not stuck:
 /// systemd kills a service that falls silent, and starts it again. Does nothing in a process that systemd did not
 /// start.
 class SystemdLink {

@@ -31,7 +31,7 @@ Trace::Trace(const std::string& folder, const std::string& service) {
   if (folder.empty()) return;
   const std::string path = fmt::format("{}/{}.{}.jsonl", folder, service, getpid());
   try {
-    const io::FileSink made(path);  // a new file, not what somebody else has put there
+    const io::FileSink made(path);  // a new file, not what another user has put there
   } catch (const io::IoError& error) {
     SPDLOG_WARN("event=no_trace cause=\"{}\"", error.what());
     return;

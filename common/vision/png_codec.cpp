@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t kMaxBytesPerByte = 1100;  // deflate reaches 1032
 constexpr png_uint_32 kMaxPngSide = 32768;
-constexpr png_alloc_size_t kMaxChunkBytes = 1 << 20;  // of texts and colour profiles, which nobody needs here
+constexpr png_alloc_size_t kMaxChunkBytes = 1 << 20;  // of texts and colour profiles, which are not needed here
 constexpr double kRedOfGrey = 0.299, kGreenOfGrey = 0.587;
 
 struct PngErrors {

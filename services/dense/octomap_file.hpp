@@ -15,7 +15,7 @@ class OctomapError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Binary OctoMap (.bt), written by liboctomap; z is up. The stream's state tells of errors.
+/// Binary OctoMap (.bt), written by liboctomap; z is up. The stream's state shows errors.
 void write_octomap(std::ostream& out, const Volume& volume);
 
 /// Reads a .bt file of any origin. Large cells come as many small ones, 200 million at most. liboctomap's own reader

@@ -147,7 +147,7 @@ std::shared_ptr<RobotLane> FleetService::lane(const std::string& robot) const {
   return found == lanes_.end() ? nullptr : found->second;
 }
 
-/// Side by side: each waits for its end to be heard, by which another detector takes over.
+/// Side by side: each waits until its end is received, by which another detector takes over.
 void FleetService::close_lanes() {
   Lanes closing;
   {

@@ -125,7 +125,7 @@ int run_external_command(const std::string& name, std::vector<std::string> argum
   return service::kRunFailed;
 }
 
-/// `rtd replay --viewer`: starts the viewer where the replay will be heard, and takes the flag out of the arguments.
+/// `rtd replay --viewer`: starts the viewer where the replay will publish, and takes the flag out of the arguments.
 /// The viewer ends with the replay. Returns why it cannot be started, else "".
 std::string start_viewer(std::vector<std::string>& arguments) {
   constexpr const char* kFlag = "--viewer";
@@ -233,6 +233,7 @@ void add_robot_options(CLI::App& command, RunOptions& options) {
       .add_option(
           "--gravity", options.gravity,
           "What is up in the map: level (as the base stands when it begins), floor (that the camera sees) or imu")
+      ->transform([](const std::string& name) { return name == "told" ? std::string("level") : name; })
       ->check(CLI::IsMember({"level", "floor", "imu"}));
   command.add_option("--imu", options.imu,
                      "Topic of an IMU beside the camera, sensor_msgs/Imu: poses continue while nothing can be seen");

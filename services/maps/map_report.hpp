@@ -43,7 +43,7 @@ std::vector<slam::MapPoint> points_of(const slam::MapContents& contents, slam::M
 /// The poses of its keyframes, by time.
 std::vector<geometry::StampedPose> poses_of(const slam::MapContents& contents, slam::MapId map);
 
-/// What landmarks tell of space: they are occupied, and free is what lies between them and the keyframes that see them.
+/// What landmarks show of space: they are occupied, and free is what lies between them and the keyframes that see them.
 dense::Volume voxels_of(const slam::MapContents& contents, slam::MapId map);
 
 /// ASCII PCD 0.7: x y z static_probability, as the Point Cloud Library reads it.

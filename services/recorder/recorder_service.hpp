@@ -45,7 +45,7 @@ class RecorderService {
   std::shared_ptr<bus::RawBus> bus_;
   std::optional<RecordingSession> session_;   ///< none while nothing is recorded
   service::ExitCode result_ = service::kOk;   ///< the worst of all recordings
-  bool ended_early_ = false;                  ///< a recording that nobody stopped
+  bool ended_early_ = false;                  ///< a recording that was not stopped
   std::optional<bus::CommandDesk> commands_;  // last: it uses the others
 };
 

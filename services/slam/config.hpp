@@ -40,7 +40,8 @@ struct BaseConfig {
                  "empty: poses of the camera. The map then begins at the base, with z up");
     binder.choice("gravity", gravity, {"level", "floor", "imu"},
                   "what is up in a new map: as the base (or the camera) is turned when it begins, the floor that the "
-                  "camera sees, or an IMU. With floor and imu z is up also without a base");
+                  "camera sees, or an IMU. With floor and imu z is up also without a base",
+                  {{"told", "level"}});
     binder.field("gravity_wait_frames", gravity_wait_frames, {0, 10000},
                  "so many frames may pass before the first map begins without having seen what is up");
     binder.field("tf_timeout_s", tf_timeout_s, {0.1, 3600.0}, "camera=tf: how long to wait for rt/tf_static");
@@ -51,7 +52,7 @@ struct BaseConfig {
   bool z_up() const { return given() || gravity != "level"; }
 };
 
-/// Where an IMU and the wheels are heard.
+/// The topics of an IMU and of the wheels.
 struct MotionTopics {
   std::string imu, wheels;  ///< ROS names; empty: none
   std::string imu_mount, imu_mount_in_base;
@@ -107,7 +108,7 @@ struct ServiceConfig {
     binder.field("path_period_ms", path_period_ms, {1, 60000}, "time between two path messages");
     binder.field("map_period_ms", map_period_ms, {1, 60000}, "time between two clouds on rt/slam/map_points");
     binder.field("map_changes_period_ms", map_changes_period_ms, {1, 60000},
-                 "time between two updates on rtd/map, while somebody reads it");
+                 "time between two updates on rtd/map, while it has a reader");
   }
   /// Throws service::ConfigError for keys that contradict each other.
   void validate() const;

@@ -40,7 +40,7 @@ class MapKeeper {
   SavedMap save_to(const std::filesystem::path& path, io::NamedBy named_by = io::NamedBy::kOperator);
 
  private:
-  /// Tells one state of the map from a later one.
+  /// Distinguishes one state of the map from a later one.
   struct Growth {
     KeyframeId next_keyframe = 0;
     LandmarkId next_landmark = 0;

@@ -20,7 +20,7 @@ namespace rtd::slam {
 /// caller's to fill in. At least one message when there is news.
 std::vector<msg::MapUpdate> make_map_updates(const MapView& view, const MapNews& news, std::size_t max_bytes = 100'000);
 
-/// Publishes on `rtd/map` what changes in a map, while somebody reads it: each keyframe's points once, then poses only.
+/// Publishes on `rtd/map` what changes in a map, while it has a reader: each keyframe's points once, then poses only.
 /// A new reader gets the whole map, and so do the others with it. A thread of its own, nicer than tracking, copies the
 /// map in portions; a map whose copy takes long is published more rarely.
 class MapPublisher {

@@ -59,7 +59,7 @@ void SlamPublisher::publish(const SlamOutput& output, const msg::TrackingResult&
   if (measured) publish_pose(result);
 }
 
-/// Its topic is everybody's.
+/// All publishers share its topic.
 void SlamPublisher::publish_diagnostics(msg::DiagnosticArray diagnostics) {
   for (msg::DiagnosticStatus& status : diagnostics.status) status.name = bus::frame_of_robot(status.name, robot_);
   diagnostics_.write(diagnostics);

@@ -35,7 +35,7 @@ class SlamPublisher {
   void publish_diagnostics(msg::DiagnosticArray diagnostics);
   /// The map is another one: its path begins with the next pose.
   void begin_path() { poses_.clear(); }
-  /// Somebody listens to the results.
+  /// The results have a reader.
   bool matched() const { return tracking_.matched() > 0; }
 
  private:

@@ -59,6 +59,7 @@ void SlamService::add_options(CLI::App& app, Config& config) {
   app.add_option("--gravity", config.base.gravity,
                  "What is up in a new map: level (as the base stands when it begins), floor (that the camera sees) or "
                  "imu (slam.base.gravity)")
+      ->transform([](const std::string& name) { return name == "told" ? std::string("level") : name; })
       ->check(CLI::IsMember({"level", "floor", "imu"}));
   app.add_option("--imu", config.motion.imu, "Topic of an IMU beside the camera, sensor_msgs/Imu (slam.imu.topic)");
   app.add_option("--wheel-odometry", config.motion.wheels,
@@ -322,8 +323,8 @@ void SlamService::log_gravity(const UpFound& up) const {
                 config_.base.gravity, kDegPerRad * up.turned_rad, kDegPerRad * up.sigma_rad, up.height_m, up.frames);
   } else {
     SPDLOG_WARN(
-        "event=gravity_unknown source={} waited_frames={} effect=\"up is as told: {}\" fix=\"begin where the camera "
-        "sees the floor, at most 40 degrees from what is told to be up\"",
+        "event=gravity_unknown source={} waited_frames={} effect=\"up is as given: {}\" fix=\"begin where the camera "
+        "sees the floor, at most 40 degrees from the configured up\"",
         config_.base.gravity, up.frames,
         config_.base.given() ? "the base stands level" : "the camera looks horizontally");
   }

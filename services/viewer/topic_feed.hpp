@@ -32,7 +32,7 @@ class TopicFeed {
   void want(std::uint32_t channel, bool wanted);
   /// DDS names of topics that have writers.
   std::vector<std::string> topics() const;
-  /// Tells the hub who writes, reads and offers what now. Readers that come and go are seen only here.
+  /// Reports to the hub who writes, reads and offers what now. Readers that come and go are seen only here.
   void update_graph();
   /// Publishes a client's message; returns why not, or "".
   std::string publish(const std::string& topic, const std::string& type, std::span<const std::byte> cdr);

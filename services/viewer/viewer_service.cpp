@@ -49,7 +49,7 @@ bool look_freely(const ServiceConfig& config) {
   return config.token.empty() && is_loopback(config.bind_address);
 }
 
-/// None where everybody may look and nobody do more.
+/// None where every client may look and none may do more.
 std::string token_of(const ServiceConfig& config) {
   const bool nothing_to_do = config.read_only && !config.publish;
   if (!config.token.empty() || (look_freely(config) && nothing_to_do)) return config.token;

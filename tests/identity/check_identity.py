@@ -11,7 +11,7 @@ people and programs read by check_texts.py.
 The detector's floating-point results depend on the vector instructions of the processor (OpenCV chooses them at run
 time), and so do the trajectories: hashes are recorded per instruction set. Without recorded hashes for this processor,
 or without clips and weights, those results are skipped, with a line that says so. --as CLASS compares as a lesser processor
-would compute: the libraries are told not to use the vector instructions beyond that class.
+would compute: the libraries are configured not to use the vector instructions beyond that class.
 
 Exit codes: 0 all equal, 1 something differs, 77 nothing could be compared.
 """

@@ -12,7 +12,7 @@
 
 namespace rtd::test_support {
 
-/// How well a filter told moving from static features on a clip with true masks.
+/// How well a filter separated moving from static features on a clip with true masks.
 struct FilterQuality : eval::RemovalQuality {
   std::size_t frames = 0;
   double max_pose_error_m = 0;                        ///< of the filter's own pose estimate, no slam around it

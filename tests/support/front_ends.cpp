@@ -52,7 +52,7 @@ class MaskedOrb final : public FrontEnd {
   bool use_mask_;
 };
 
-/// The dynamic filter, told by slam and the detector what the service tells it.
+/// The dynamic filter with the inputs of slam and the detector that the service gives it.
 class Filtered final : public FrontEnd {
  public:
   /// Without `look`: no detector.

@@ -10,7 +10,7 @@
 
 namespace rtd::test_support {
 
-/// Hears what goes over UDP on the loopback interface. Needs CAP_NET_RAW.
+/// Receives what goes over UDP on the loopback interface. Needs CAP_NET_RAW.
 class LoopbackCapture {
  public:
   struct Packet {

@@ -87,7 +87,7 @@ ClosedLoop judge(const slam::LoopClosure& closure, const eval::Trajectory& groun
   return loop;
 }
 
-/// What slam is told before the frame.
+/// The input of slam before the frame.
 void add_motion(slam::SlamSystem& slam, const camera::SourceFrame& frame) {
   for (const camera::ImuReading& reading : frame.imu) {
     slam.add(slam::ImuSample{reading.stamp_ns, reading.gyro_rad_s, reading.accel_m_s2});

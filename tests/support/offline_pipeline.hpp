@@ -25,7 +25,7 @@ namespace rtd::test_support {
 struct FrontEndOutput {
   std::vector<msg::Feature> features;
   std::map<std::string, double> stage_ms;  ///< by name, e.g. "detector", "filter.extract"
-  filter::GridShape cells;                 ///< shape of `motion`; 0x0 when nobody judged
+  filter::GridShape cells;                 ///< shape of `motion`; 0x0 when nothing was judged
   std::vector<filter::CellMotion> motion;  ///< what the filter says of each cell
 };
 

@@ -9,7 +9,7 @@
 namespace rtd::test_support {
 
 /// Answers from a file (JSON, by frame number), and what is not in it from `look`, written there at the end: many runs
-/// over one source need its network only once. The file belongs to one source and one network: nobody checks that.
+/// over one source need its network only once. The file belongs to one source and one network: this is not checked.
 /// Throws std::invalid_argument for a file that is not one of its own.
 Look remembered_look(Look look, const std::string& file);
 

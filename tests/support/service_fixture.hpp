@@ -22,7 +22,7 @@
 namespace rtd::test_support {
 
 /// One service that runs in a thread on an in-process bus of its own, watched through its heartbeat. A test sets
-/// config_, calls start() and plays the other services; what it sends and hears through bus_ ends with the test.
+/// config_, calls start() and plays the other services; what it sends and receives through bus_ ends with the test.
 template <class Service>
 class ServiceFixture : public ::testing::Test {
  protected:
@@ -101,7 +101,7 @@ class ServiceFixture : public ::testing::Test {
 
  private:
   static bus::BusOptions next_domain() {
-    static std::uint32_t domain = 100;  // one per test: nothing is heard of the test before
+    static std::uint32_t domain = 100;  // one per test: nothing arrives from the test before
     bus::BusOptions options;
     options.vendor = "inprocess";
     options.domain = domain++;

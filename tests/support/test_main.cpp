@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-/// main() of every test: exit code 77 tells ctest that all tests of the executable skipped (data or weights absent).
+/// main() of every test: exit code 77 shows ctest that all tests of the executable skipped (data or weights absent).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

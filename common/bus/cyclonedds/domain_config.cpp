@@ -62,7 +62,7 @@ std::string general(const BusOptions& options) {
                      element("MaxMessageSize", bytes(datagram)) + element("FragmentSize", bytes(datagram - overhead)));
 }
 
-/// As Fast DDS of ours does: on a network everybody takes one of the ports that peers without a port are asked at.
+/// As Fast DDS of ours does: on a network each process takes one of the ports that peers without a port are asked at.
 std::string discovery(const NetworkOptions& network) {
   std::string text = element("SPDPInterval", "500 ms") + element("LeaseDuration", "5 s");
   if (network.loopback_only && network.multicast && network.peers.empty()) return element("Discovery", text);

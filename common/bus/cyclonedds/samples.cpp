@@ -39,7 +39,7 @@ struct Serdata : ddsi_serdata {
   std::int64_t received_ns = 0;
 };
 
-/// `kind` tells data from a dispose.
+/// `kind` distinguishes data from a dispose.
 Serdata* create_serdata(const ddsi_sertype* type, ddsi_serdata_kind kind, std::shared_ptr<ByteBlock> bytes) {
   auto* const sample = new Serdata;
   ddsi_serdata_init(sample, type, kind);

@@ -46,7 +46,7 @@ struct LargestSample {
   }
 };
 
-/// The type support of a message, by its list of fields; that of a plain one is one memcpy. Fast DDS tells its peers
+/// The type support of a message, by its list of fields; that of a plain one is one memcpy. Fast DDS gives its peers
 /// the size of the largest sample; where there is none, that of generated code stays.
 template <class T>
 class MessageType : public eprosima::fastdds::dds::TopicDataType {

@@ -18,7 +18,7 @@ void link_standstill_guard() noexcept {}
 namespace {
 
 constexpr double kStoodStill_s = 2;            // less than a lease
-constexpr timespec kPatience{0, 700'000'000};  // the others' next messages arrive, and their leases begin anew
+constexpr timespec kPatience{0, 700'000'000};  // the others' next messages arrive, and their leases begin again
 
 bool is_fast_dds(const void* caller) {
   Dl_info info{};

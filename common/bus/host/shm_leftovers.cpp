@@ -26,7 +26,7 @@
 namespace rtd::bus {
 namespace {
 
-/// Fast DDS's transport and data sharing, the management segment of iceoryx (its pools bear the name of a user group).
+/// Fast DDS's transport and data sharing, the management segment of iceoryx (its pools have the name of a user group).
 const std::vector<std::string> kNameParts = {"fastrtps_", "fastdds_", "fast_datasharing_", "iceoryx_mgmt"};
 
 /// A file, whatever its name is now: device and inode.
@@ -155,7 +155,7 @@ ShmUsers find_shm_users(const std::string& proc_dir) {
   return users;
 }
 
-/// Whether a file bears a name that our vendors give.
+/// Whether a file has a name that our vendors give.
 bool is_vendor_shm_name(const std::string& name) {
   return std::any_of(kNameParts.begin(), kNameParts.end(), [&](const std::string& part) {
     return name.rfind(part, 0) == 0 || name.rfind("sem." + part, 0) == 0;

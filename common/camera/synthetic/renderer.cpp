@@ -252,7 +252,7 @@ void Renderer::label_run(const Run& run, int row, Span span) {
   std::fill_n(moving_mask_.ptr<std::uint8_t>(row) + span.begin, pixels,
               static_cast<std::uint8_t>(run.moving ? 255 : 0));
   std::fill_n(object_.ptr<std::int16_t>(row) + span.begin, pixels, static_cast<std::int16_t>(run.object));
-  if (run.material != Material::kHead) {  // shade_ellipsoid_run has told hair from skin
+  if (run.material != Material::kHead) {  // shade_ellipsoid_run has separated hair from skin
     std::fill_n(material_.ptr<std::uint8_t>(row) + span.begin, pixels, static_cast<std::uint8_t>(run.material));
   }
   if (run.object == kRoomItself) return;

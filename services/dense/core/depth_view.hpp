@@ -74,7 +74,7 @@ class DepthView {
   float depth_m(int raw_pixel) const { return depth_m_[static_cast<std::size_t>(raw_pixel)]; }
   /// A reading of one surface, not a mix of a near and a far one: it has no large step to a neighbour.
   bool on_surface(int column, int row) const;
-  /// Smallest depth of the 3x3 pixels around, m; 0 when too few of them were measured to tell.
+  /// Smallest depth of the 3x3 pixels around, m; 0 when too few of them were measured.
   float nearest_around_m(int raw_pixel) const;
   std::uint8_t motion(int raw_pixel) const;
 

@@ -78,7 +78,7 @@ Volume NavigationMap::volume(StaticMap& occupied) {
     surface->sightings = std::max(surface->sightings, int{voxel.sightings});
   });
   surfaces.for_each([&](const Eigen::Vector3i& cell, const Surface& surface) {
-    // What appears where space was free may be somebody whom the masks missed for a moment.
+    // What appears where space was free may be a person whom the masks missed for a moment.
     const bool sure = surface.sightings >= config_.min_frames_in_free || volume.cells.value(cell) != Space::kFree;
     if (sure && surface.points >= config_.min_points &&
         !beside_surface(surfaces, cell, surface.weight, config_.min_weight_share))

@@ -82,7 +82,7 @@ void RobotLane::take_over() {
   SPDLOG_INFO("event=serves robot=\"{}\"", robot_);
 }
 
-/// The heartbeat says an end, which the other detector and the robot hear.
+/// The heartbeat reports an end, which the other detector and the robot receive.
 void RobotLane::step_down() {
   std::unique_ptr<service::Heartbeat> ended;
   const std::lock_guard lock(mutex_);

@@ -25,7 +25,7 @@ namespace rtd::detector {
 class RobotLane {
  public:
   using OnImage = std::function<void(std::shared_ptr<const msg::CompressedImage>)>;
-  /// What the lane is told at each update().
+  /// What the lane receives at each update().
   struct View {
     bool camera_seen = false;   ///< a camera of this robot is in the domain
     std::uint64_t dropped = 0;  ///< images that newer ones have replaced

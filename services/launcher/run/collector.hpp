@@ -40,7 +40,7 @@ class Collector {
   std::optional<std::string> take_notice();
   bool tracked_any() const;
   /// Subscribes again after a thread that reads was lost (process/lost_lock.hpp). The readers up to now are kept for
-  /// ever, for they would wait for that thread, but reach nobody any more.
+  /// ever, for they would wait for that thread, but have no receiver any more.
   void subscribe_again();
   /// The run ends: frames of another source than its own no longer count.
   void close();
@@ -53,7 +53,7 @@ class Collector {
   /// What the readers' callbacks hold: a reader that is kept for ever may outlive the collector.
   struct Recipient {
     std::mutex mutex;
-    Collector* collector = nullptr;  ///< null: nobody
+    Collector* collector = nullptr;  ///< null: no receiver
   };
   struct Readers {
     std::shared_ptr<Recipient> recipient;

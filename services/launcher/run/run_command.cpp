@@ -31,7 +31,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kEndOfBus{4000};
 
-/// A pipe that nobody reads is full after 64 kB, a terminal after Ctrl-S.
+/// A pipe without a reader is full after 64 kB, a terminal after Ctrl-S.
 bool takes_line(int fd) {
   pollfd output{fd, POLLOUT, 0};
   return poll(&output, 1, 0) != 0;

@@ -210,8 +210,8 @@ std::vector<std::string> slam_arguments(const RunSetup& setup) {
 std::vector<std::string> dense_arguments(const RunSetup& setup) {
   std::vector<std::string> arguments = {"--out", setup.out_dir};
   const std::string gravity = setup.gravity.empty() ? peek(setup, "slam", "base.gravity") : setup.gravity;
-  const bool z_up = !setup.camera_in_base.empty() || !peek(setup, "slam", "base.camera").empty() ||
-                    (!gravity.empty() && gravity != "level");
+  const bool turned = !gravity.empty() && gravity != "level" && gravity != "told";  // `told`: former name of `level`
+  const bool z_up = !setup.camera_in_base.empty() || !peek(setup, "slam", "base.camera").empty() || turned;
   if (z_up && peek(setup, "dense", "grid.up").empty()) arguments.emplace_back("--up=0,0,1");
   return arguments;
 }

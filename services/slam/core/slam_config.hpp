@@ -282,12 +282,12 @@ struct WheelConfig {
   double off_plane_share = 0.01;
 
   void bind(auto& binder) {
-    binder.field("distance_share", distance_share, {1e-4, 1.0}, "standard deviation of a way, share of its length");
+    binder.field("distance_share", distance_share, {1e-4, 1.0}, "standard deviation of a distance, share of it");
     binder.field("turn_share", turn_share, {1e-4, 1.0}, "standard deviation of a turn, share of its angle, and ...");
-    binder.field("turn_rad_m", turn_rad_m, {0.0, 1.0}, "... rad per metre of way");
-    binder.field("still_m", still_m, {1e-6, 0.1}, "standard deviation of the way between two frames at rest");
+    binder.field("turn_rad_m", turn_rad_m, {0.0, 1.0}, "... rad per metre of distance");
+    binder.field("still_m", still_m, {1e-6, 0.1}, "standard deviation of the distance between two frames at rest");
     binder.field("off_plane_share", off_plane_share, {0.0, 1.0},
-                 "height, roll and pitch, which wheels do not show: m per m and rad per m of way");
+                 "height, roll and pitch, which wheels do not show: m per m and rad per m of distance");
   }
 };
 

@@ -180,7 +180,7 @@ class App {
     this.updatePanels();
   }
 
-  /** What nobody looks at is not sent. */
+  /** What is not shown is not sent. */
   sendOptions() {
     const { layers, overlays } = this.settings;
     const image = this.selected !== undefined && this.frame.shows("image") && !document.hidden;

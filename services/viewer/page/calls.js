@@ -34,7 +34,7 @@ export class Calls {
     waiting.resolve({ success, message });
   }
 
-  /** The connection is closed: nobody knows any more what became of the open calls. */
+  /** The connection is closed: it is unknown what became of the open calls. */
   abandon() {
     for (const id of [...this.open.keys()]) {
       this.answer({ id, success: false, message: "the connection closed before the answer came" });

@@ -21,7 +21,7 @@ export class ClockOffset {
                                { round_trip_ms: Infinity, offset_ms: 0 });
   }
 
-  /** 0 when nothing was measured, or when the difference lies within what a ping cannot tell: then it is the same host. */
+  /** 0 when nothing was measured, or when the difference lies within what a ping cannot show: then it is the same host. */
   get offset_ms() {
     const { round_trip_ms, offset_ms } = this.#best;
     return Math.abs(offset_ms) <= round_trip_ms / 2 ? 0 : offset_ms;

@@ -11,7 +11,7 @@ const kCautious_ms = 250;                      // at first, on the robot's own c
 const kLate = 1.6, kLater = 1.5;               // times a frame, from a frame to its pose; times what is usual here
 const kBack = 1.4, kNearer = 0.998;            // for each late pose, for each that is in time
 const kMemory = 0.9;
-const kUsual = 150;                            // poses that tell what is usual
+const kUsual = 150;                            // poses that show what is usual
 
 export class DrawPace {
   /** sameHost: whether the page may run on the computer whose poses it shows. */

@@ -317,7 +317,7 @@ class WebServer::Implementation::Client : public std::enable_shared_from_this<Cl
   }
 
   void end(beast::error_code) {
-    session_.reset();  // Beast has answered a close or told the reason of its own
+    session_.reset();  // Beast has answered a close or sent the reason of its own
   }
 
   Implementation& server_;

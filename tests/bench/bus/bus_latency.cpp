@@ -43,7 +43,7 @@ std::shared_ptr<Bus> connect_bench(std::uint32_t domain) {
   return connect(options);
 }
 
-/// The receiving process: tells for each message when it was there.
+/// The receiving process: reports for each message when it was there.
 int answer(std::uint32_t domain) {
   const auto bus = connect_bench(domain);
   auto results = bus->writer(topics::kTracking);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Kills a publisher of raw frames (1.5 MB at 30 Hz) by SIGKILL again and again and starts it anew, as a supervisor
+// Kills a publisher of raw frames (1.5 MB at 30 Hz) by SIGKILL again and again and starts it again, as a supervisor
 // would, while one subscriber lives on: how long is the gap between two frames, does each successor rejoin, does
 // anything stay in shared memory? Exit code 0: all rejoined within --max-gap-ms and nothing is left.
 #include <fcntl.h>
@@ -54,7 +54,7 @@ std::shared_ptr<Bus> connect_bench(const Options& options) {
 
 /// The process that is killed: cleans and joins as a service does.
 int publish(const Options& options) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // not to be heard in the next campaign
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // not to publish into the next campaign
   const auto bus = connect_bench(options);
   std::thread([] { remove_shm_leftovers(); }).detach();
   auto frames = bus->writer(topics::kFrame);
@@ -146,7 +146,7 @@ class Campaign {
     for (int i = 0; i < options_.restarts; ++i) {
       Clock::time_point last = receive(*publisher, std::chrono::milliseconds(500 + random() % 500));
       doomed_.merge(shm_files_of(publisher->pid()));
-      // At any time between two frames: hear() ends just when one has come, its writer perhaps still about it.
+      // At any time between two frames: receive() ends just when one has come, its writer perhaps still about it.
       std::this_thread::sleep_for(std::chrono::microseconds(random() % 33'333));
       publisher->kill_now();
       while (const auto late = arrivals_.pop_for(0ms)) last = late->time;  // was under way

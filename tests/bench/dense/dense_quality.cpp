@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
   app.add_option("--min-sightings", map.carving.min_sightings);
   app.add_option("--gate", map.fusion.gate_sigmas);
   app.add_option("--background", background_file, "write the last frame without what moves here");
-  app.add_flag("!--without-masks", options.use_masks, "the map is not told what moves, only slam is");
+  app.add_flag("!--without-masks", options.use_masks, "only slam, not the map, learns what moves");
   app.add_flag("!--without-loops", options.close_loops, "slam closes no loops");
   app.add_option("--ply", ply_file, "write the cloud here");
   app.add_flag("--grid", options.grid, "also make the floor plan and compare it with the scene");

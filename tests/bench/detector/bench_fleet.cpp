@@ -3,7 +3,7 @@
 //
 // One detector for several robots, each in a process of its own, over Fast DDS on the loopback interface. Robots are
 // doubles that send JPEG images and check every answer; in the box, what stands in for the network takes the time that
-// it is told. With --link each robot has a domain of its own, behind `rtd-link`. With --detector the box is
+// it is given. With --link each robot has a domain of its own, behind `rtd-link`. With --detector the box is
 // `rtd-detector` with a real network: its answers are then not checked for what they say (column wrong). Prints a line
 // for each robot.
 #include <sys/resource.h>

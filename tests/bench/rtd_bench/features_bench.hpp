@@ -32,7 +32,7 @@ struct FeaturesResult {
 };
 
 /// Our ORB extractor and cv::ORB on the same frames in turn, one thread each; who goes first alternates. Ours also
-/// undistorts, reads depth and spreads the features. Throws SourceError. `on_frame` is told how many are done.
+/// undistorts, reads depth and spreads the features. Throws SourceError. `on_frame` receives the number of those done.
 FeaturesResult bench_features(camera::FrameSource& source, const FeaturesOptions& options,
                               const std::function<void(std::uint64_t)>& on_frame);
 

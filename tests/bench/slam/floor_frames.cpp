@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// rtd_floor_frames SOURCE...: which way is up by the floor of single frames, with a level camera told? Angles to the
+// rtd_floor_frames SOURCE...: which way is up by the floor of single frames, with a camera assumed level? Angles to the
 // true up direction, and whether the reported deviations are true. docs/results.md, "Which way is up".
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -77,7 +77,7 @@ void flood_frames(Bus& bus, int) {
   }
 }
 
-/// Answers each message of the topic with a TrackingResult of its seq; inliers tells whether every byte was right,
+/// Answers each message of the topic with a TrackingResult of its seq; inliers shows whether every byte was right,
 /// landmarks which peer this is. The writer of the answers appears when the messages can be received: who sees it may
 /// send.
 template <class T>

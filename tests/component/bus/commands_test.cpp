@@ -236,8 +236,10 @@ TEST_P(MalformedCommands, do_not_keep_good_ones_from_being_answered) {
   ASSERT_EQ(writer->matched(), 1);
   std::this_thread::sleep_for(100ms);  // until the other side has matched, too
   std::vector<std::byte> endless(200, std::byte{0xff}), huge(3'000'000, std::byte{0x41});
-  endless[0] = std::byte{0}, endless[1] = std::byte{1};
-  huge[0] = std::byte{0}, huge[1] = std::byte{1};
+  endless[0] = std::byte{0};
+  endless[1] = std::byte{1};
+  huge[0] = std::byte{0};
+  huge[1] = std::byte{1};
   for (const auto& bytes : {std::vector<std::byte>(4), std::vector<std::byte>(19), endless, huge}) {
     EXPECT_TRUE(writer->write(bytes));
     writer->wait_acknowledged(1000);

@@ -11,7 +11,7 @@
 
 namespace rtd::bus {
 
-/// Messages whose every byte follows from seq, so that a receiver can tell a whole one from a torn one.
+/// Messages whose every byte follows from seq, so that a receiver can distinguish a whole one from a torn one.
 inline void fill_frame(msg::RgbdFrame& frame, std::uint64_t seq) {
   frame.seq = seq;
   frame.stamp_ns = static_cast<std::int64_t>(seq) * 33'333'333;

@@ -191,7 +191,7 @@ TEST_F(DenseServiceTest, never_holds_up_a_camera_that_is_faster) {
   with_filter();
   start();
   for (std::uint64_t seq = 0; seq < 60; ++seq) send(seq);
-  ASSERT_TRUE(wait_at_least("frames", 5)) << "newest wins, and nobody waited";
+  ASSERT_TRUE(wait_at_least("frames", 5)) << "newest wins, and no service waited";
 }
 
 TEST_F(DenseServiceTest, reports_that_its_map_is_full) {

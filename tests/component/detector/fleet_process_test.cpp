@@ -66,7 +66,7 @@ TEST_F(FleetProcess, answers_robots_and_ends_with_zero) {
   detector.start(arguments());
   EXPECT_TRUE(anna->wait_answers(30));
   EXPECT_TRUE(ben->wait_answers(30));
-  std::string name;  // that ps and top show, although it has started itself anew
+  std::string name;  // that ps and top show, although it has started itself again
   std::getline(std::ifstream("/proc/" + std::to_string(detector.process()) + "/comm"), name);
   EXPECT_EQ(name, std::filesystem::path(RTD_EXECUTABLE).filename());
   detector.interrupt();

@@ -30,7 +30,7 @@ class FilterServiceTest : public test_support::ServiceFixture<FilterService> {
   void start(service::Pace pace, bool with_detector) {
     if (with_detector) detector_beats_.start([this] { say("detector", msg::ServiceState::kReady); });
     ServiceFixture::start(pace);
-    if (with_detector) std::this_thread::sleep_for(std::chrono::milliseconds(300));  // it has heard the detector
+    if (with_detector) std::this_thread::sleep_for(std::chrono::milliseconds(300));  // it has found the detector
   }
 
   /// Of another process.

@@ -97,7 +97,7 @@ struct Accuracy {
 
 /// Counts changes of id as CLEAR MOT does (Bernardin and Stiefelhagen 2008): each object that is 1 to 4 m away with
 /// 3000 visible pixels has one mover within 0.5 m, the one it had before if that is still there, else the nearest that
-/// is seen and free. An object that was not there for a second begins anew.
+/// is seen and free. An object that was not there for a second starts again.
 class IdSwitches {
  public:
   /// Returns the objects that have another id now.
@@ -167,7 +167,7 @@ class Apart {
   std::map<int, std::uint64_t> touched_;
 };
 
-/// Nobody else in front of it, and not cut off by the border of the image but at its feet.
+/// No other person in front of it, and not cut off by the border of the image but at its feet.
 bool is_in_view(const camera::SourceFrame& frame, const camera::SourceObject& object) {
   constexpr int kMarginPx = 12;
   const cv::Size size = frame.image.color_bgr.size();

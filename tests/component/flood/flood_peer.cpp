@@ -45,7 +45,7 @@ class Target {
   std::uint64_t written_ = 0;
 };
 
-/// The newest message of somebody else's.
+/// The newest message of another writer.
 template <class T>
 class NewestOfOthers {
  public:
@@ -128,7 +128,7 @@ class TopicTarget final : public Target {
 };
 
 /// Requests that must be refused, whoever sends them; those that do what they say (reset, localize only, a real filter
-/// mode) are for everybody who may call commands.
+/// mode) are for every client that may call commands.
 class CommandTarget final : public Target {
  public:
   CommandTarget(bus::Bus& bus, const std::string& name, std::string argument)

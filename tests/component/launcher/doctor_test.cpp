@@ -43,7 +43,7 @@ class DoctorTest : public testing::Test {
     arguments.insert(arguments.begin(), {"doctor", "--domain", std::to_string(domain())});
     return rtd_.run(arguments);
   }
-  /// Its ports are below those that the kernel gives to anybody.
+  /// Its ports are below those that the kernel gives to any program.
   static std::uint32_t domain() { return 60 + static_cast<std::uint32_t>(getpid()) % 40; }
 
   ScratchFolder scratch_;

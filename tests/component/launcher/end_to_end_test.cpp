@@ -188,7 +188,7 @@ TEST_F(EndToEndTest, a_filter_killed_during_the_run_is_restarted_and_the_run_com
               AllOf(HasSubstr("filter died: killed by signal 9 (SIGKILL)"), HasSubstr("filter restarted (1st time)")));
   const nlohmann::json json = report();
   EXPECT_EQ(json["frames_in"], 150);
-  EXPECT_GT(json["frames_dropped"], 0) << "what nobody looked at is counted";
+  EXPECT_GT(json["frames_dropped"], 0) << "what was not looked at is counted";
   if (test_support::kSanitized) GTEST_SKIP() << test_support::kTooSlow;
   EXPECT_GT(json["frames_tracked"], 60) << "the restarted filter serves again";
 }
@@ -258,7 +258,7 @@ TEST_F(EndToEndTest, a_second_run_in_the_same_domain_is_refused_and_leaves_the_f
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   RtdCommand second;
   EXPECT_EQ(second.run({"run", "--source", "synthetic:office", "--domain", "128", "--out", scratch_ / "second"}), 2);
-  // The launcher sees it, or, on a busy host where the first is not heard in time, the service that starts.
+  // The launcher sees it, or, on a busy host where no message of the first arrives in time, the service that starts.
   EXPECT_THAT(second.output(),
               AllOf(AnyOf(HasSubstr("domain 128 is taken by"), HasSubstr("already runs in DDS domain 128")),
                     HasSubstr("--domain")));

@@ -55,7 +55,7 @@ class RtdCommand {
     }
     return output_.find(text) != std::string::npos;
   }
-  /// Takes what it has printed; nobody else does, and with a full pipe it would stand still.
+  /// Takes what it has printed; no other code does, and with a full pipe it would stand still.
   void take_output() { host_.wait(std::chrono::milliseconds(0)); }
   const std::string& output() const { return output_; }
   process::ProcessId process() const { return process_; }

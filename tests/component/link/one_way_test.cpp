@@ -135,7 +135,8 @@ TEST_P(OneWayTest, heartbeats_do_not_come_back) {
   const bus::RawTopic status{"rtd/anna/status", "rtd_msgs::msg::dds_::ServiceStatus_"};
   // A string "link" and then zeros: a heartbeat that passes in both directions.
   std::vector<std::byte> heartbeat(80, std::byte{0});
-  heartbeat[1] = std::byte{1}, heartbeat[4] = std::byte{5};
+  heartbeat[1] = std::byte{1};
+  heartbeat[4] = std::byte{5};
   std::ranges::transform(std::string_view("link"), heartbeat.begin() + 8, [](char c) { return std::byte(c); });
   const Samples at_robot, at_fleet;
   const auto robot_reader = read(*robot_, status, at_robot), fleet_reader = read(*fleet_, status, at_fleet);

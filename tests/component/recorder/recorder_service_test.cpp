@@ -70,7 +70,7 @@ TEST_F(RecorderTest, commands_end_a_recording_and_begin_another) {
   EXPECT_TRUE(wait_state(msg::ServiceState::kReady, "not recording"));
   EXPECT_TRUE(wait_metric("recording", 0));
   EXPECT_FALSE(client.call("recorder/stop", "", 10'000).success);
-  pose->write(cdr(99));  // nobody records it
+  pose->write(cdr(99));  // it is not recorded
 
   EXPECT_FALSE(client.call("recorder/start", "run", 10'000).success) << "it exists";
   const std::string second = folder_ / "second.mcap";

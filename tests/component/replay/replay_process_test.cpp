@@ -70,7 +70,7 @@ TEST_F(ReplayProcessTest, record_replay_record_keeps_bytes_order_and_publish_tim
   EXPECT_EQ(json["sent"], recorded.size());
   EXPECT_EQ(json["refused"], 0);
   EXPECT_EQ(json["timing_error_ms"]["messages"], recorded.size() - 1);
-  // No bound: a busy host makes any. Bounds hold in player_test, where time is told.
+  // No bound: a busy host makes any. Bounds hold in player_test, where time is given.
   RecordProperty("timing_error_p99_ms", json["timing_error_ms"]["p99"].dump());
 }
 

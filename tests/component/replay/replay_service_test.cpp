@@ -169,7 +169,7 @@ TEST_F(ReplayServiceTest, in_lockstep_each_frame_waits_for_the_answer_to_the_one
   recorded.push_back({"rtd/tracking", kEpoch + 400 * kMillisecond, kEpoch, cdr_of(0, 100)});
   record(recorded);
   const auto answers = raw_->writer({"rtd/tracking", "rtd_msgs::msg::dds_::TrackingResult_"}, {});
-  Recorder recorder(*raw_);  // hears the answers too
+  Recorder recorder(*raw_);  // receives the answers too
   start(service::Pace::kLockstep);
   std::size_t all = 0;
   for (std::uint64_t seq = 0; seq < 30; ++seq) {

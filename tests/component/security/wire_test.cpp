@@ -48,7 +48,7 @@ class Eavesdropper {
     captured_.payload += holds("marker-" + writer_);
     if (!text.starts_with("RTPS") || text.size() < kPrefixEnd) return;
     const std::string_view sender = text.substr(kPrefixBegin, kPrefixEnd - kPrefixBegin);
-    if (writer_prefix_.empty() && holds(writer_) && !holds("marker-")) writer_prefix_ = sender;  // it tells its name
+    if (writer_prefix_.empty() && holds(writer_) && !holds("marker-")) writer_prefix_ = sender;  // it sends its name
     if (writer_prefix_ != sender) return;
     ++captured_.of_writer;
     if (holds("c.perm")) return static_cast<void>(++captured_.permissions);

@@ -74,7 +74,7 @@ class MapPublisherTest : public testing::Test {
     return bus_->reader<msg::MapUpdate>(
         bus::topics::kMap, [inbox](std::shared_ptr<const msg::MapUpdate> update) { inbox.take(std::move(update)); });
   }
-  /// True once the reader's map is the view's, within what is not told.
+  /// True once the reader's map is the view's, within what is not reported.
   static bool wait_same(const Inbox<msg::MapUpdate>& inbox, const MapView& view) {
     return inbox.wait([&](const auto& updates) { return is_same(map_of(updates), view); });
   }

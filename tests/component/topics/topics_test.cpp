@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// `rtd topics` in a domain where somebody publishes.
+// `rtd topics` in a domain where a program publishes.
 #include "services/topics/topics_command.hpp"
 
 #include <gmock/gmock.h>

@@ -11,7 +11,7 @@
 namespace rtd::test_support {
 namespace {
 
-/// Mean over the frames of a scene. `calibration_error`: what slam is told of the camera.
+/// Mean over the frames of a scene. `calibration_error`: what slam knows of the camera.
 double mean_nees(const std::string& source, const std::string& mode, double calibration_error) {
   OfflineOptions options;
   options.source = source;

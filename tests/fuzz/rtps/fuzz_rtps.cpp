@@ -198,7 +198,7 @@ std::uint64_t write_malformed(bus::RawBus& bus, const Samples::Topic& topic, std
   options.qos.depth = 16;
   const auto writer = bus.writer(topic.writer.topic, options);
   for (int i = 0; i < 30 && writer->matched() == 0; ++i) run.let_run(std::chrono::milliseconds(50));
-  if (writer->matched() == 0) return 0;  // nobody listens
+  if (writer->matched() == 0) return 0;  // it has no reader
   for (std::uint64_t i = 0; i < count; ++i) {
     const Bytes& sample = topic.samples[random() % topic.samples.size()];
     Bytes changed = mcap::mutate(sample, topic.samples[random() % topic.samples.size()], random);

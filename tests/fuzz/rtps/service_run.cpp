@@ -49,7 +49,7 @@ pid_t ServiceRun::pid_of(const std::string& service) {
 
 bool ServiceRun::lives(const std::string& service) {
   const pid_t process = pid_of(service);
-  // A dead child that nobody has waited for yet can still be sent signal 0.
+  // A dead child that was not waited for yet can still be sent signal 0.
   return process > 0 && text_of("/proc/" + std::to_string(process) + "/stat").find(") Z") == std::string::npos &&
          ::kill(process, 0) == 0;
 }

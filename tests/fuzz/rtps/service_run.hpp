@@ -26,7 +26,7 @@ class ServiceRun {
   /// Waits until it lives, restarted or not; hands out the launcher's output meanwhile.
   bool wait_until_alive(const std::string& service, std::chrono::milliseconds timeout);
   void let_run(std::chrono::milliseconds time);
-  /// Ctrl-C. Says so on stdout when somebody has to be killed: what the vendor does at the end with the state that
+  /// Ctrl-C. Reports on stdout when a process has to be killed: what the vendor does at the end with the state that
   /// others have spoilt is not under test.
   void end();
   const std::string& output() const { return rtd_.output(); }

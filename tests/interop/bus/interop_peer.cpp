@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The writing process of the interop matrix: interop_peer VENDOR DOMAIN live|late. Told what to do by lines on stdin
+// The writing process of the interop matrix: interop_peer VENDOR DOMAIN live|late. Takes commands as lines on stdin
 // (a number: the round to send; wait: for all to be acknowledged; end of file: the end), answers by lines on stdout.
 #include <chrono>
 #include <functional>

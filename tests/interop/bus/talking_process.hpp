@@ -16,7 +16,7 @@ extern char** environ;
 
 namespace rtd::test_support {
 
-/// A process that we tell things by lines on its stdin and that answers by lines on its stdout. Ends when its stdin
+/// A process that receives commands as lines on its stdin and that answers by lines on its stdout. Ends when its stdin
 /// does.
 class TalkingProcess {
  public:

@@ -47,7 +47,7 @@ class Readers {
     return false;
   }
   /// A volatile reader of Cyclone begins with the first heartbeat that it gets of another vendor's writer after both
-  /// have matched. So round 0 is sent until each topic has brought something; it may be heard again later.
+  /// have matched. So round 0 is sent until each topic has brought something; it may be received again later.
   void wait_until_received(const std::function<void()>& send_probe) {
     for (auto& [topic, received] : received_) {
       for (int i = 0; i < 200 && received.size() == 0; ++i) {

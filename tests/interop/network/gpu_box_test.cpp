@@ -65,7 +65,7 @@ struct Received {
   }
 };
 
-/// A robot: run, link and a program that notes what it hears, all on host a.
+/// A robot: run, link and a program that notes what it receives, all on host a.
 struct Robot {
   std::string name, domain;
   RtdCommand run{"/usr/bin/nsenter"}, link{"/usr/bin/nsenter"}, listener{"/usr/bin/nsenter"};

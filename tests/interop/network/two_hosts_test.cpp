@@ -181,7 +181,7 @@ TEST_P(TwoHostsTest, boxes_cross_a_lossy_link_and_come_back_after_a_cut) {
       took, arrived, back_s, 100 * rate_in_cut, 100 * rate_before, near.latency_ms(0.5), near.latency_ms(0.99),
       sent_bytes / 1e6);
 
-  const int lost_in_the_cut = campaign() ? 3 : 8;  // at most a history answered while nobody could hear it
+  const int lost_in_the_cut = campaign() ? 3 : 8;  // at most a history answered while no reader could receive it
   EXPECT_GE(arrived + lost_in_the_cut, 0.99 * took) << detector_.output();
   EXPECT_GT(took, scale().lossy_s * 3);
   EXPECT_LE(back_s, scale().back_within_s);
@@ -194,7 +194,7 @@ TEST_P(TwoHostsTest, boxes_cross_a_lossy_link_and_come_back_after_a_cut) {
   const double raw_bytes = 1.5e6 * scale().fps * seconds;  // of the frames that the camera played
   EXPECT_LT(sent_bytes, 0.2 * raw_bytes);
   if (std::string(GetParam().first_host) == "fastdds") {
-    // Cyclone DDS announces its loopback address, too: Fast DDS sends the images there as well, to nobody.
+    // Cyclone DDS announces its loopback address, too: Fast DDS sends the images there as well, without a receiver.
     const double images = std::string(GetParam().detector) == "cyclonedds" ? 0.1 : 0;
     EXPECT_LT(loopback_bytes, (0.1 + images) * raw_bytes) << "the first host's own samples left shared memory";
   }

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
  * SPDX-License-Identifier: Apache-2.0
  *
- * A program of somebody else, on Cyclone DDS: cyclone_writer DOMAIN COUNT. Writes COUNT messages on each of two topics
+ * A program of another vendor, on Cyclone DDS: cyclone_writer DOMAIN COUNT. Writes COUNT messages on each of two topics
  * once both have a reader. */
 #include <stdio.h>
 #include <stdlib.h>

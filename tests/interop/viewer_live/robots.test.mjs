@@ -118,7 +118,7 @@ test("the page shows them as layers, and the image of the chosen one", async () 
   const chosen = await page.$eval("#robot", (select) => select.selectedOptions[0].textContent);
   const [shown, hidden] = await Promise.all([onPage(chosen), onPage(kNames.find((name) => name !== chosen))]);
   assert.notEqual(shown.imageStamp_s, null);
-  assert.equal(hidden.imageStamp_s, null, "what nobody looks at is not sent");
+  assert.equal(hidden.imageStamp_s, null, "what is not shown is not sent");
   await screenshot(page, "robots");
 });
 

@@ -39,7 +39,7 @@ dense::DynamicMask mask_of(const camera::SourceFrame& frame, const FrontEndOutpu
   return mask;
 }
 
-/// The true poses, in slam's world. Aligned by the rotations: a path of half a metre does not tell a degree.
+/// The true poses, in slam's world. Aligned by the rotations: a path of half a metre does not resolve a degree.
 eval::Trajectory true_poses(const slam::SlamSystem& slam, const camera::FrameSource& source) {
   eval::Trajectory truth = source.groundtruth();
   const eval::Trajectory estimate = slam.trajectory();

@@ -20,7 +20,7 @@ struct DenseOptions {
   bool use_masks = true;      ///< false: the map does not know what moves
   bool close_loops = true;    ///< slam does
   dense::DenseConfig map;
-  bool grid = false;  ///< make a floor plan too, in the world of the true poses: the first of them is told to slam
+  bool grid = false;  ///< make a floor plan too, in the world of the true poses: slam knows the first of them
   dense::NavigationConfig navigation;
   int every = 5;        ///< as dense.every
   int judge_every = 5;  ///< frames that judge the cloud; 0 = none

@@ -99,7 +99,10 @@ TEST(CommandCodec, random_bytes_are_an_argument_or_an_error) {
   for (int i = 0; i < 20'000; ++i) {
     Bytes cdr(random() % 40);
     for (std::byte& byte : cdr) byte = static_cast<std::byte>(random());
-    if (cdr.size() > 1) cdr[0] = std::byte{0}, cdr[1] = std::byte{1};
+    if (cdr.size() > 1) {
+      cdr[0] = std::byte{0};
+      cdr[1] = std::byte{1};
+    }
     split_prefix(cdr);
     try {
       EXPECT_LE(decode_request(CommandKind::kText, cdr).argument.size(), cdr.size());

@@ -47,7 +47,7 @@ const dds_topic_descriptor_t* const kGenerated[] = {&rtd_msgs_msg_dds__RgbdFrame
                                                     &visualization_msgs_msg_dds__MarkerArray__desc,
                                                     &nav_msgs_msg_dds__OccupancyGrid__desc};
 
-/// A participant that nobody outside of this process sees.
+/// A participant that no other process sees.
 class LocalDomain {
  public:
   LocalDomain() {

@@ -121,7 +121,7 @@ TEST_F(ShmLeftovers, an_open_or_locked_file_is_in_use) {
     if (lock < 0 || flock(lock, LOCK_EX) != 0 || open(path("fastrtps_1111111111111111").c_str(), O_RDWR) < 0) _exit(1);
   });
   EXPECT_THAT(clean().removed, IsEmpty());
-  // Seen from where the process is not: only the lock tells.
+  // Seen from where the process is not: only the lock shows it.
   const CleanReport blind = remove_shm_leftovers(
       {.shm_dir = folder_, .proc_dir = "/nonexistent", .min_age = std::chrono::seconds(0), .dry_run = true});
   EXPECT_THAT(names(blind.removed), UnorderedElementsAre("fastrtps_1111111111111111"));

@@ -208,10 +208,12 @@ TEST(BagSource, needs_a_calibration_it_understands) {
   };
   EXPECT_TRUE(with(ImageBag::camera_info(0)));
   msg::CameraInfo fisheye = ImageBag::camera_info();
-  fisheye.distortion_model = "equidistant", fisheye.d = {0.1, 0, 0, 0, 0.5};
+  fisheye.distortion_model = "equidistant";
+  fisheye.d = {0.1, 0, 0, 0, 0.5};
   EXPECT_TRUE(with(fisheye));
   msg::CameraInfo thin_prism = ImageBag::camera_info();
-  thin_prism.distortion_model = "thin_prism", thin_prism.d = {0.1, 0, 0, 0, 0, 0.2, 0, 0, 0.001, 0, 0, 0};
+  thin_prism.distortion_model = "thin_prism";
+  thin_prism.d = {0.1, 0, 0, 0, 0, 0.2, 0, 0, 0.001, 0, 0, 0};
   EXPECT_TRUE(with(thin_prism));
 }
 

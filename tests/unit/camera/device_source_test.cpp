@@ -227,7 +227,10 @@ TEST_F(DeviceSourceTest, refuses_modes_sizes_and_lenses_that_cannot_be_used) {
 TEST_F(DeviceSourceTest, another_camera_in_its_place_is_refused_until_the_first_is_back) {
   const auto played = opened();
   script_.plugged = false;
-  time_.after(1, [this] { script_.plugged = true, script_.size_px = {16, 12}; });
+  time_.after(1, [this] {
+    script_.plugged = true;
+    script_.size_px = {16, 12};
+  });
   time_.after(3, [this] { script_.size_px = {32, 24}; });
   EXPECT_TRUE(played->next());
   EXPECT_THAT(reports_, ::testing::Contains(HasSubstr("came back with images of 16 x 12 px, not 32 x 24")));

@@ -17,7 +17,7 @@
 
 namespace rtd::camera::test {
 
-/// The time of a test: it continues when somebody waits, and closes after ten minutes.
+/// The time of a test: it continues when a thread waits, and closes after ten minutes.
 struct PlayedTime {
   std::int64_t now_ns = 1'000'000'000'000;
   bool closed = false;

@@ -64,7 +64,7 @@ TEST_F(PacerTest, RealtimeCutsLongPauses) {
   now_ns_ += kS;
   const PaceDecision again = pacer.next(3 * 3600 * kS);
   EXPECT_EQ(again.action, PaceAction::kSend);
-  EXPECT_EQ(again.cut_gap_ns, 0) << "told once";
+  EXPECT_EQ(again.cut_gap_ns, 0) << "reported once";
 }
 
 TEST_F(PacerTest, RealtimeShiftsTheTimelineOfASourceThatIsTooSlow) {

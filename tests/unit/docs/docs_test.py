@@ -21,17 +21,37 @@ PATH_IN_COMMENT = re.compile(rf"(?<![\w/.-])(?:{'|'.join(TOP_FOLDERS)})/[\w./-]*
 
 # Words that a native engineer would not write; left: pattern, right: what to write instead.
 WORDS = {
-    r"\banew\b": "again",
-    r"\b(nobody|anybody)\b": "no process, unknown, any program",
-    r"\bforeign\b": "of another camera, program, ...",
-    r"\b(hears|heard)\b": "receives, finds",
-    r"\bbears?\b": "carries, has",
     r"\bother people's\b": "other, external",
     r"\bDESIGN(\.md| section)\b": "no reference to documents outside the project",
     r"\bWhat comes later\b": "describe what exists",
-    r"\bgoes on\b": "continues",
     r"\b\d\. time\b": "third time",
 }
+
+
+# The same for names: single words of comments, texts and identifiers (heard_ns, kHeardNs), in prose and in sources.
+PLAIN_WORDS = {
+    "anew": "again",
+    "nobody": "no process, none, unknown", "anybody": "any program", "somebody": "a person, a program",
+    "everybody": "all, every process",
+    "foreign": "of another camera, program, ...",
+    "hear": "receive", "hears": "receives", "heard": "received", "overheard": "received", "deaf": "receives nothing",
+    "tell": "report, distinguish", "tells": "reports, distinguishes", "told": "reported, given",
+    "wish": "request, option", "wishes": "requests, options", "twins": "second instance",
+    "goes on": "continues", "bears": "has, survives",
+}
+CODE_SUFFIXES = (".cpp", ".hpp", ".c", ".h", ".py", ".sh", ".js", ".mjs", ".cjs", ".cmake", ".idl")
+GOLDEN = re.compile(r"(^|/)golden(/|[^/]*$)")
+# What an interface outside of this project, or a former name that is still read, calls so.
+WORD_EXCEPTIONS = (
+    r"\bUser=nobody\b", r"user `nobody`",    # Unix's user
+    r"\{\"told\", \"level\"\}", r"[!=]= \"told\"", r"`told`: former name",  # --gravity told
+)
+
+
+def words_of(line):
+    """Also the parts of identifiers: frames_heard, kHeardNs, and two words that follow each other, goes_on."""
+    parts = [part.lower() for part in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", line)]
+    return set(parts) | {" ".join(pair) for pair in zip(parts, parts[1:])}
 
 
 def repository_files():
@@ -206,6 +226,20 @@ class Docs(unittest.TestCase):
                 line = re.sub(r"`[^`]*`|\"[^\"]*\"", "", line)
                 problems += [f"{path}:{number}: '{found.group()}': write: {instead}"
                              for pattern, instead in WORDS.items() if (found := re.search(pattern, line))]
+        self.assert_none(problems)
+
+    def test_words_of_names_are_plain(self):
+        problems = []
+        for path in FILES:
+            checked = path in PAGES or path.suffix in CODE_SUFFIXES or GOLDEN.search(path.as_posix()) \
+                or path.name == "CMakeLists.txt" or path.parts[0] in ("config", "deploy")
+            if not checked or path.name == "docs_test.py":
+                continue
+            for number, line in enumerate(text_of(path).split("\n"), 1):
+                for exception in WORD_EXCEPTIONS:
+                    line = re.sub(exception, "", line)
+                problems += [f"{path}:{number}: '{word}': write: {PLAIN_WORDS[word]}"
+                             for word in sorted(words_of(line) & PLAIN_WORDS.keys())]
         self.assert_none(problems)
 
 

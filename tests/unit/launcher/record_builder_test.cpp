@@ -221,7 +221,7 @@ TEST(record_builder, names_the_services_that_report_and_have_not_finished) {
   finished.state = msg::ServiceState::kFinished;
   builder.add(finished);
   builder.add(status_of("record", 10, {}));
-  EXPECT_EQ(builder.active_services(), "filter (pid 7), slam (pid 8)") << "a recorder disturbs nobody";
+  EXPECT_EQ(builder.active_services(), "filter (pid 7), slam (pid 8)") << "a recorder disturbs no run";
   builder.add(status_of("detector_box", 12, {}));
   builder.add(status_of("link", 13, {}));
   EXPECT_EQ(builder.active_services(), "filter (pid 7), slam (pid 8)") << "it says itself whom it serves";

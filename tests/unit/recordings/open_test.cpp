@@ -123,7 +123,8 @@ TEST_F(OpenTest, messages_packed_one_by_one_are_unpacked) {
   folder_.mcap("bag/b.mcap", messages);
   write_metadata("b.mcap");
   holds(folder_ / "bag", samples(0, 6));
-  messages[2].data[5] ^= 0x55, messages[3].data = "no zstd";
+  messages[2].data[5] ^= 0x55;
+  messages[3].data = "no zstd";
   folder_.mcap("bag/b.mcap", messages);
   const Opened opened = open(folder_ / "bag");
   EXPECT_GE(opened.damages.size(), 1U);

@@ -27,7 +27,7 @@ struct Sample {
   void bind(ConfigBinder& binder) {
     binder.field("enabled", enabled, "switch");
     binder.field("count", count, {1, 2048}, "how many");
-    binder.choice("mode", mode, {"off", "rtd"}, "mode");
+    binder.choice("mode", mode, {"off", "rtd"}, "mode", {{"none", "off"}});
     binder.field("names", names, "list");
     binder.field("levels", levels, "map");
     binder.section("nested", nested);
@@ -100,6 +100,11 @@ TEST_F(ConfigTest, not_a_number_is_out_of_range) {
 
 TEST_F(ConfigTest, choice_lists_what_is_allowed) {
   EXPECT_THAT(error_of("filter: {mode: fast}"), HasSubstr("one of off, rtd"));
+}
+
+TEST_F(ConfigTest, former_name_of_a_choice_is_read_as_the_present_one) {
+  EXPECT_EQ(error_of("filter: {mode: none}"), "no error");
+  EXPECT_EQ(sample_.mode, "off");
 }
 
 TEST_F(ConfigTest, broken_yaml_names_the_line) {

@@ -79,7 +79,7 @@ TEST(StandstillWatch, distinguishes_a_stop_of_the_process_from_its_work) {
 /// Looks ten times a second.
 class InputWatchTest : public testing::Test {
  protected:
-  /// Whether it was deaf at the last look; each look finds so many more sent and received.
+  /// Whether it received nothing at the last look; each look finds so many more sent and received.
   bool look(int times, int sent, int received) {
     bool receives_nothing = false;
     for (int i = 0; i < times; ++i) {
@@ -97,7 +97,7 @@ TEST_F(InputWatchTest, one_that_received_before_and_receives_nothing_more_is_cut
   EXPECT_FALSE(look(10, 3, 3));
   EXPECT_FALSE(look(15, 3, 0));
   EXPECT_TRUE(look(1, 3, 0));
-  EXPECT_FALSE(look(1, 3, 1)) << "it hears again";
+  EXPECT_FALSE(look(1, 3, 1)) << "it receives again";
 }
 
 TEST_F(InputWatchTest, silence_of_the_sender_does_not_count) {

@@ -32,7 +32,7 @@ class ProcessBookTest : public testing::Test {
 TEST_F(ProcessBookTest, a_silent_connection_whose_process_is_no_more_is_gone) {
   beat(1, 41);
   dead_pid_ = 41;
-  EXPECT_FALSE(gone(1)) << "it was heard just now: the number may be that of another container";
+  EXPECT_FALSE(gone(1)) << "its message came just now: the number may be that of another container";
   now_ns_ += 350 * kMs;
   EXPECT_TRUE(gone(1));
 }

@@ -45,7 +45,7 @@ TEST(KeyframeChangeQueue, new_and_removed_keyframes_do_not_wait_behind_correctio
   queue.add({change(Kind::kCorrected, 1), change(Kind::kCorrected, 2), change(Kind::kRemoved, 2)});
   queue.add({change(Kind::kCreated, 3)});
   EXPECT_THAT(ids(queue.take(2)), ElementsAre(2, 3));
-  EXPECT_THAT(ids(queue.take(9)), ElementsAre(1)) << "nobody hears of a keyframe that is gone";
+  EXPECT_THAT(ids(queue.take(9)), ElementsAre(1)) << "a keyframe that is gone is not reported";
 }
 
 TEST(KeyframeChangeQueue, a_keyframe_that_moves_again_is_published_once_with_its_last_pose) {

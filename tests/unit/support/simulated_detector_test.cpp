@@ -29,7 +29,7 @@ camera::SourceFrame frame(std::uint64_t seq) {
   return frame;
 }
 
-/// For each frame, the frames whose boxes the filter hears at it.
+/// For each frame, the frames whose boxes the filter receives at it.
 std::vector<std::vector<int>> received(const DetectorOptions& options, int frames) {
   DetectorPace pace([](const camera::SourceFrame&) { return std::vector<vision::Detection>{}; }, options);
   std::vector<std::vector<int>> all;

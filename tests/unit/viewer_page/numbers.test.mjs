@@ -32,7 +32,7 @@ test("axes end at round numbers", () => {
   assert.deepEqual([0, 0.3, 1, 21, 50, 51, 730].map(niceCeiling), [1, 0.5, 1, 50, 50, 100, 1000]);
 });
 
-test("the clock offset is that of the fastest ping, and 0 within what a ping can tell", () => {
+test("the clock offset is that of the fastest ping, and 0 within what a ping can resolve", () => {
   const clock = new ClockOffset();
   assert.equal(clock.offset_ms, 0);
   clock.add(1000, 6500, 1400);
@@ -129,7 +129,7 @@ test("a call is resolved by its own answer; a closed connection answers the rest
   const first = calls.call(0, "/slam/reset"), second = calls.call(0, "/slam/save_map", "a");
   assert.equal(sent[1].argument, "a");
   calls.answer({ id: sent[1].id, success: true, message: "saved" });
-  calls.answer({ id: 999, success: true, message: "nobody asked" });
+  calls.answer({ id: 999, success: true, message: "no call is open" });
   calls.abandon();
   assert.deepEqual([(await second).message, (await first).success], ["saved", false]);
   assert.equal((await new Calls(() => false).call(0, "/x")).success, false);

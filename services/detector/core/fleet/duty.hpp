@@ -18,7 +18,7 @@ struct Claim {
 };
 
 /// Decides whether this detector serves one robot, by the heartbeats of other detectors of that robot. A detector that
-/// serves continues; a newcomer listens first and then stands by while another one serves. Two that serve at once, for
+/// serves continues; a newcomer waits first and then stands by while another one serves. Two that serve at once, for
 /// example after their network was divided, agree: the greater claim steps down. Times are given. Not thread-safe.
 class Duty {
  public:
@@ -29,7 +29,7 @@ class Duty {
   };
 
   /// Discovery of the other one, and two of its heartbeats. Where that takes longer, both answer until the younger one
-  /// hears of the older.
+  /// finds the older.
   static constexpr std::int64_t kListenNs = 600'000'000;
   static constexpr std::int64_t kSilentNs = 800'000'000;  ///< four heartbeats missed: the other one is gone
 

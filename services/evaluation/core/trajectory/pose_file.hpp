@@ -22,8 +22,8 @@ struct PoseFile {
   std::vector<std::string> damages;  ///< of a recording, one line each
 };
 
-/// Reads a trajectory in TUM's, KITTI's or EuRoC's format or from a recording (ROS 1 bag, MCAP, .db3), which it tells
-/// apart by their content. `argument` is FILE, and for a recording FILE?topic=/x&child=FRAME. Throws
+/// Reads a trajectory in TUM's, KITTI's or EuRoC's format or from a recording (ROS 1 bag, MCAP, .db3),
+/// which it distinguishes by their content. `argument` is FILE, and for a recording FILE?topic=/x&child=FRAME. Throws
 /// geometry::TrajectoryError or camera::SourceError, which name the file, the line or topic and what is expected.
 PoseFile read_pose_file(const std::string& argument, const MissingStamps& stamps);
 

@@ -108,7 +108,7 @@ CellBeliefs RtdJudge::recall_beliefs(const Scene& scene, const Eigen::Isometry3d
 }
 
 /// Memory spreads where surfaces are divided in another way than before: what has rested for long does not take part.
-/// People and what they touch do: the chair of somebody who gets up is judged with its person.
+/// People and what they touch do: the chair of a person who gets up is judged with its person.
 void RtdJudge::forget_what_is_known_to_rest(const Scene& scene, const Foreground& foreground,
                                             const Eigen::Isometry3d& T_world_camera, CellMask& hold_cs) const {
   const bool remembers = std::any_of(hold_cs.begin(), hold_cs.end(), [](int cs) { return cs != 0; });
@@ -150,7 +150,7 @@ EgoMotion RtdJudge::find_ego_motion(const Scene& scene, const Foreground& foregr
   const Eigen::Isometry3d T_world_predicted = views_.predict_pose(scene.image.stamp_ns);
   CellMask avoid =
       united(dilate(shape, recall_movers(scene, foreground, T_world_predicted).hold_cs, 1), foreground.may_move);
-  if (!views_.spans(scene.image.stamp_ns, kMinSettledAgeNs)) {  // too early to tell movers from the camera's motion
+  if (!views_.spans(scene.image.stamp_ns, kMinSettledAgeNs)) {  // too early to separate movers from the camera's motion
     avoid = united(std::move(avoid), free_standing(scene.surfaces.grid, foreground.clusters, config_.masks));
   }
   const auto& p = scene.image.camera.parameters();

@@ -20,7 +20,7 @@ struct View {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   bool posed_by_slam = false;
   bool settled =
-      true;  ///< its pose was found against a view old enough to tell movers from the camera: fit as a reference
+      true;  ///< its pose was found against a view old enough to separate movers from the camera: fit as a reference
   DepthGrid grid;
   std::vector<std::uint8_t> dynamic;   ///< per cell, 1 = something moved here
   std::vector<msg::Feature> features;  ///< judged ones

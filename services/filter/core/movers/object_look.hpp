@@ -17,7 +17,7 @@ struct ObjectLook {
   Eigen::Vector3d body;        ///< middle of what moves as one, behind the surface
   Eigen::AlignedBox3d extent;  ///< as thick as things of its size are
   double width_m = 0;          ///< across
-  double thickness_m = 0;      ///< along the view, as far as the width tells
+  double thickness_m = 0;      ///< along the view, as far as the width shows
   TintShares tints = TintShares::Zero();
   bool cut_left = false, cut_right = false;
   bool covers(const Eigen::Vector3d& p) const {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 
-/// Colours by which moving objects are told apart: hue in eight parts, pale or strong, and three greys. Brightness
+/// Colours by which moving objects are distinguished: hue in eight parts, pale or strong, and three greys. Brightness
 /// counts only where there is no hue, because light and exposure change it.
 namespace rtd::filter {
 

@@ -24,7 +24,7 @@ constexpr double kSigmaAcrossM = 0.04, kSigmaAlongM = 0.05;
 constexpr double kUsualJumpM = 0.15;  // of a body; farther ones count less: something came in between
 // What no frame averages out: limbs, thickness, surfaces that come into view. On top of the filter's covariance.
 constexpr double kBiasAcrossM = 0.03, kBiasAlongM = 0.06, kBiasSpeed_m_s = 0.08;
-constexpr double kSpeedShare = 0.5;  // of the filter's deviation: nobody turns at random all the time
+constexpr double kSpeedShare = 0.5;  // of the filter's deviation: people do not turn at random all the time
 
 // How they move.
 constexpr double kAcceleration_m_s2 = 0.7, kFirstSpeed_m_s = 1;
@@ -55,7 +55,7 @@ ObjectSighting without_points(const ObjectSighting& sighting) {
 /// metres, more for a tint that the body hardly has, up to 0.4 m.
 struct Expectation {
   Vector3d body;
-  Vector3d down = Vector3d::Zero();  ///< of somebody upright, else 0: heights do not count
+  Vector3d down = Vector3d::Zero();  ///< of an upright person, else 0: heights do not count
   double reach_m = 0;
   std::array<double, kTints> far_m{};  ///< by tint
   double away_m(const Vector3d& p_world, std::uint8_t tint) const {
@@ -123,7 +123,7 @@ WorldMovers::View WorldMovers::look_around(const Eigen::Isometry3d& T_world_came
 /// Each point to the body that it is expected of.
 void WorldMovers::share_out(View& view) const {
   constexpr double kFarPerDecadeM = 0.2, kHardly = 0.01;  // metres for a tenth as much of a tint
-  constexpr double kNotSeenM = 0.05, kLatelyS = 0.1;      // in doubt, a point is of somebody in view
+  constexpr double kNotSeenM = 0.05, kLatelyS = 0.1;      // in doubt, a point is of a person in view
   std::vector<Expectation> expected;
   for (const Track& track : tracks_) {
     const bool upright = !track.last.class_name.empty();
@@ -189,7 +189,7 @@ void WorldMovers::follow(View& view) {
   }
 }
 
-/// By place, colour and class; the filter's own tracks tell those apart that are near each other.
+/// By place, colour and class; the filter's own tracks separate those that are near each other.
 double WorldMovers::cost_of(const Track& track, const ObjectSighting& sighting, const ObjectLook& look) {
   constexpr double kGateM = 0.4, kYoungM = 0.3, kGateGrowth_m_s = 0.8;
   constexpr double kOtherSourceM = 0.2, kNoClassM = 0.6, kOtherClassM = 0.3, kUnlikeM = 1;

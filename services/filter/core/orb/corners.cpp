@@ -133,7 +133,7 @@ std::vector<Corner> detect_corners(const cv::Mat& grey, const OrbConfig& config)
 
 std::vector<Corner> spread_corners(std::vector<Corner> corners, const cv::Rect& area, int wanted) {
   if (wanted <= 0) return {};
-  constexpr int kMaxDepth = 16;  // corners on one spot cannot be told apart: do not split for ever
+  constexpr int kMaxDepth = 16;  // corners on one spot cannot be separated: do not split for ever
   std::priority_queue<Cell, std::vector<Cell>, SplitsLater> open;
   std::vector<Cell> done;
   const auto place = [&](const Cell& cell) {

@@ -11,7 +11,7 @@
 namespace rtd::launcher {
 
 /// Output of a run: messages, and one status line that is updated in place on a terminal and repeated every two seconds
-/// elsewhere. Lines that the stream has no room for are left out and counted: a run must not stand still because nobody
+/// elsewhere. Lines that the stream has no room for are left out and counted: a run must not stand still because no one
 /// reads what it prints. Time comes in as an argument. Not thread-safe.
 class Terminal {
  public:

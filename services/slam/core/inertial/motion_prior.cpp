@@ -52,7 +52,7 @@ void MotionPrior::advance_filter(std::int64_t stamp_ns) {
   if (config_.prior.wheels) use_wheels(*motion, T_world_imu_before, before_ns_);
 }
 
-/// The way of the base tells the velocity; turns are better known by the gyroscope.
+/// The distance that the base covers gives the velocity; turns are better known by the gyroscope.
 void MotionPrior::use_wheels(const Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before,
                              std::int64_t from_ns) {
   const auto way = wheels_.motion(from_ns, now_ns_);

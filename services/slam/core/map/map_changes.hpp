@@ -18,23 +18,23 @@ struct KeyframeNews {
   bool points = false, edges = false, removed = false;
 };
 
-/// The differences of a map from what was told before.
+/// The differences of a map from what was reported before.
 struct MapNews {
-  bool new_session = false;             ///< what was told before is void
+  bool new_session = false;             ///< what was reported before is void
   bool loops = false;                   ///< the closed loops are others
   std::vector<KeyframeNews> keyframes;  ///< removed ones first, then by id
 
   bool empty() const { return !new_session && !loops && keyframes.empty(); }
 };
 
-/// Finds what changed in a map since it was last told about. What is told is compared, not what was seen last: slow
-/// drift is told too, as soon as it adds up. Not thread-safe.
+/// Finds what changed in a map since it was last reported. What was reported is compared, not what was seen last: slow
+/// drift is reported too, as soon as it adds up. Not thread-safe.
 class MapChanges {
  public:
   struct Tolerance {
     double translation_m = 1e-4, rotation_rad = 1.7e-4;  ///< of a keyframe's pose: 0.1 mm, 0.01 degrees
     double point_m = 0.005;                              ///< of a point in its camera's frame
-    /// Of a point, as a share of its distance. What moves less is told bit by bit, because global adjustment moves
+    /// Of a point, as a share of its distance. What moves less is reported bit by bit, because global adjustment moves
     /// almost every point a little: of `refined_at_once` keyframes at a time, or a hundredth of all if that is more.
     double point_share = 0.02;
     std::size_t refined_at_once = 8;
@@ -44,10 +44,10 @@ class MapChanges {
   MapChanges() = default;
   explicit MapChanges(const Tolerance& tolerance) : tolerance_(tolerance) {}
 
-  /// What is new in `view`, which counts as told from now on. kEverything: all keyframes with all they have, for a
+  /// What is new in `view`, which counts as reported from now on. kEverything: all keyframes with all they have, for a
   /// reader that knows nothing yet.
   MapNews update(const MapView& view, Extent extent = Extent::kChanges);
-  /// Nothing has been told: the next update is a new session.
+  /// Nothing has been reported: the next update is a new session.
   void forget() { *this = MapChanges(tolerance_); }
 
  private:

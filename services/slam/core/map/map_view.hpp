@@ -29,7 +29,7 @@ struct MapView {
   std::vector<KeyframeId> loop_edges;   ///< older and newer keyframe of each closed loop that are still in the map
 };
 
-/// Calls its argument with the map while nobody changes it.
+/// Calls its argument with the map while no other thread changes it.
 using ReadMap = std::function<void(const std::function<void(const Map&)>&)>;
 
 /// Copies the map in portions of a few milliseconds, so that the mapper never waits longer. What changes meanwhile may

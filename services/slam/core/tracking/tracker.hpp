@@ -54,7 +54,7 @@ struct TrackOutcome {
 /// thread-safe.
 class Tracker {
  public:
-  /// Without `places` a lost camera is found only around its last pose. `prior` is told every measured pose and must
+  /// Without `places` a lost camera is found only around its last pose. `prior` receives every measured pose and must
   /// outlive the tracker; null: neither IMU nor wheels.
   Tracker(const SlamConfig& config, Clock now_ns, PlaceSource places = {}, MotionPrior* prior = nullptr)
       : config_(config),

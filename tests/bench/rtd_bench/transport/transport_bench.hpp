@@ -10,7 +10,7 @@
 
 namespace rtd::bench {
 
-/// Every case with a publishing and a subscribing process of its own; `on_case` is told which one is next.
+/// Every case with a publishing and a subscribing process of its own; `on_case` receives the next one.
 std::vector<TransportResult> bench_transport(const TransportOptions& options,
                                              const std::function<void(const TransportCase&)>& on_case);
 

@@ -80,7 +80,7 @@ TEST(Duty, claims_without_end_take_no_memory_without_end) {
   EXPECT_EQ(duty.update(kOwn, 1100 * kDutyMs), Role::kServing);
 }
 
-/// Three boxes that hear each other with a delay of 50 ms: exactly one serves soon after any of them dies.
+/// Three boxes that receive each other with a delay of 50 ms: exactly one serves soon after any of them dies.
 TEST(Duty, several_boxes_agree_on_one) {
   std::vector<Duty> duties;
   std::vector<Claim> claims;

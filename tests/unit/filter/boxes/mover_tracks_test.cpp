@@ -122,7 +122,7 @@ TEST_F(MoverTracksTest, keeps_what_has_no_depth_for_a_while) {
 TEST_F(MoverTracksTest, ends_when_it_was_seen_at_rest) {
   see_mover();
   for (int i = 0; i < 30; ++i) step(block_at(kBlock), false);
-  EXPECT_EQ(tracks_.movers().size(), 1U) << "nobody has said that it rests";
+  EXPECT_EQ(tracks_.movers().size(), 1U) << "nothing has shown that it rests";
   for (int i = 0; i < 16; ++i) step(block_at(kBlock), false, Eigen::Isometry3d::Identity(), resting());
   EXPECT_TRUE(tracks_.movers().empty());
 }

@@ -79,7 +79,7 @@ TEST_F(StaticConsensusTest, lets_the_features_of_a_mover_vote_against_it) {
   const FeatureVotes votes = count_votes(sightings_, camera_, T_world_camera_, clusters, GeometryConfig{});
   EXPECT_FALSE(votes.cluster_moves(0, GeometryConfig{}));
   EXPECT_TRUE(votes.cluster_moves(1, GeometryConfig{}));
-  EXPECT_FALSE(votes.cluster_moves(99, GeometryConfig{})) << "a cluster that nobody voted on";
+  EXPECT_FALSE(votes.cluster_moves(99, GeometryConfig{})) << "a cluster without votes";
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ TEST(InertialFilter, finds_biases_and_gravity) {
     EXPECT_LT((state.bias.gyro_rad_s - drive.imu().gyro_bias_rad_s()).norm(), 0.0008) << "of 0.0087 rad/s";
     EXPECT_LT((state.bias.accel_m_s2 - drive.imu().accel_bias_m_s2()).norm(), 0.06) << "m/s2";
     EXPECT_LT(std::acos(-state.gravity_m_s2.normalized().dot(drive.up())), 0.008) << "rad";
-    // Tilt and bias are told apart slowly; what they do together is known at once.
+    // Tilt and bias are separated slowly; what they do together is known at once.
     const Eigen::Matrix3d R = drive.truth(drive.now_s()).linear();
     const Eigen::Vector3d down = state.gravity_m_s2 + 9.80665 * drive.up();
     const Eigen::Vector3d bias = R * (drive.imu().accel_bias_m_s2() - state.bias.accel_m_s2);
