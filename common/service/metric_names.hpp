@@ -17,7 +17,7 @@ inline constexpr char kHeartbeatsRefused[] = "heartbeats_refused";  ///< of a na
 inline constexpr char kPeerPrefix[] = "peer.";                      ///< NAME.dead, NAME.hung
 inline constexpr char kTopicPrefix[] = "topic.";                    ///< TOPIC.lost, TOPIC.rejected, ...
 inline constexpr char kClockPrefix[] = "clock.";                    ///< SERVICE, and one of the next three
-inline constexpr char kClockHeardSuffix[] = ".received_ms";
+inline constexpr char kClockReceivedSuffix[] = ".received_ms";
 inline constexpr char kClockOffsetSuffix[] = ".offset_ms";
 inline constexpr char kClockRoundTripSuffix[] = ".round_trip_ms";
 
@@ -57,7 +57,7 @@ inline constexpr char kModePrefix[] = "mode.";  ///< and the name of the mode (c
 inline constexpr std::array kFilterStageMs = {"wait_ms",        "extract_ms", "masks_ms", "ego_motion_ms",
                                               "depth_check_ms", "fuse_ms",    "filter_ms"};
 inline constexpr char kLoadStep[] = "load_step";  ///< 0 = everything as configured, else an index of kLoadSteps
-inline constexpr char kFramesRefused[] = "frames_refused";
+inline constexpr char kFramesFromOthers[] = "frames_from_others";
 inline constexpr char kFramesWithoutDetections[] = "frames_without_detections";
 inline constexpr char kFeatures[] = "features";
 inline constexpr char kFeaturesRemoved[] = "features_removed";

@@ -68,9 +68,9 @@ std::vector<msg::Metric> PeerClocks::received(const msg::ServiceStatus& status, 
   if (!host_id || *host_id == own_host_id_) return {};
   clocks_.received(status.service, status.stamp_ns, arrival_ns);
   const std::string prefix = metric::kClockPrefix + status.service;
-  std::vector<msg::Metric> metrics = {{prefix + metric::kClockHeardSuffix, *clocks_.measured_ms(status.service)}};
+  std::vector<msg::Metric> metrics = {{prefix + metric::kClockReceivedSuffix, *clocks_.measured_ms(status.service)}};
   const std::optional<double> peer_measured_ms =
-      find_metric(status, metric::kClockPrefix + own_service_ + metric::kClockHeardSuffix);
+      find_metric(status, metric::kClockPrefix + own_service_ + metric::kClockReceivedSuffix);
   if (!peer_measured_ms) return metrics;
   const ClockOffset offset = *clocks_.offset(status.service, *peer_measured_ms);
   metrics.push_back({prefix + metric::kClockOffsetSuffix, offset.offset_ms});

@@ -329,7 +329,7 @@ void FilterService::count(const FilterResult& result) {
   service::Heartbeat& heartbeat = runtime_.heartbeat;
   heartbeat.set_metric(service::metric::kFrames, static_cast<double>(published_));
   heartbeat.set_metric(service::metric::kFramesDropped, static_cast<double>(frames_->dropped()));
-  heartbeat.set_metric(service::metric::kFramesRefused, static_cast<double>(camera_->refused()));
+  heartbeat.set_metric(service::metric::kFramesFromOthers, static_cast<double>(camera_->refused()));
   heartbeat.set_metric(service::metric::kFramesWithoutDetections, static_cast<double>(unpaired_));
   heartbeat.set_metric(service::metric::kFeatures, static_cast<double>(result.features.size()));
   heartbeat.set_metric(service::metric::kFeaturesRemoved, result.removed);

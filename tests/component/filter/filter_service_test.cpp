@@ -237,7 +237,7 @@ TEST_F(FilterServiceTest, keeps_to_the_first_of_two_cameras) {
   send_frame(1);
   ASSERT_TRUE(answers_.wait_count(2));
   EXPECT_EQ(answers_.at(1)->seq, 1U);
-  EXPECT_TRUE(wait_metric("frames_refused", 2));
+  EXPECT_TRUE(wait_metric("frames_from_others", 2));
 }
 
 TEST_F(FilterServiceTest, a_camera_that_stutters_keeps_its_place) {
