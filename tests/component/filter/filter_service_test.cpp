@@ -43,6 +43,8 @@ TEST_F(FilterServiceTest, changes_its_mode_by_command) {
   send_frame(1);
   ASSERT_TRUE(answers_.wait_count(2));
   EXPECT_EQ(answers_.at(1)->removed, 0U);
+  EXPECT_TRUE(wait_metric("mode.off", 1)) << "by its name";
+  EXPECT_EQ(metric(*states_.all().back(), "mode.rtd"), std::nullopt) << "one mode at a time";
   const bus::CommandAnswer unknown = client.call("filter/set_mode", "magic", 20'000);
   EXPECT_FALSE(unknown.success);
   EXPECT_EQ(unknown.message,

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <fstream>
@@ -121,6 +122,21 @@ TEST(Heartbeat, metrics_travel) {
   filter.set_metric("frames_dropped", 1);
   filter.set_metric("frames_dropped", 7);
   EXPECT_TRUE(eventually([&] { return seen == 7; }));
+}
+
+TEST(Heartbeat, a_word_replaces_the_one_with_the_same_prefix) {
+  const auto bus = bus::connect(domain(3));
+  StopToken stop;
+  std::atomic<bool> seen{false};
+  Heartbeat slam(*bus, "slam", stop);
+  slam.on_status([&](const msg::ServiceStatus& status) {
+    const auto words = std::ranges::count_if(status.metrics, [](const auto& m) { return m.name.starts_with("mode."); });
+    seen = seen || (words == 1 && msg::word_of(status, "mode.") == "rtd-paper");
+  });
+  Heartbeat filter(*bus, "filter", stop);
+  filter.set_word("mode.", "rtd");
+  filter.set_word("mode.", "rtd-paper");
+  EXPECT_TRUE(eventually([&] { return seen.load(); }));
 }
 
 TEST(Heartbeat, removing_the_callback_waits_for_a_running_call) {
