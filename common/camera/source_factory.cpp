@@ -167,6 +167,7 @@ std::unique_ptr<FrameSource> make_source(const std::string& text) {
   }
   std::vector<std::string> known;
   for (const SourceScheme& scheme : kSourceSchemes) known.emplace_back(scheme.name);
+  std::ranges::sort(known);
   throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme +
                     "'; known: " + msg::word_list(known, ", "));
 }
