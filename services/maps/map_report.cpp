@@ -154,12 +154,12 @@ dense::Volume voxels_of(const slam::MapContents& contents, slam::MapId map) {
   return volume;
 }
 
-std::vector<geometry::StampedPose> poses_of(const slam::MapContents& contents, slam::MapId map) {
-  std::vector<geometry::StampedPose> poses;
+std::vector<slam::StampedPose> poses_of(const slam::MapContents& contents, slam::MapId map) {
+  std::vector<slam::StampedPose> poses;
   for (const slam::Keyframe& keyframe : contents.keyframes) {
     if (keyframe.map == map) poses.push_back({keyframe.frame->stamp_ns, keyframe.T_world_camera});
   }
-  std::ranges::stable_sort(poses, {}, &geometry::StampedPose::stamp_ns);
+  std::ranges::stable_sort(poses, {}, &slam::StampedPose::stamp_ns);
   return poses;
 }
 

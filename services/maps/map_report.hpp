@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "common/geometry/trajectory.hpp"
 #include "services/dense/core/volume.hpp"
 #include "services/slam/core/map/map.hpp"
+#include "services/slam/core/map/trajectory.hpp"
 
 namespace rtd::maps {
 
@@ -41,7 +41,7 @@ nlohmann::ordered_json to_json(const MapReport& report, const std::string& name)
 /// The landmarks of one map of a file, by id.
 std::vector<slam::MapPoint> points_of(const slam::MapContents& contents, slam::MapId map);
 /// The poses of its keyframes, by time.
-std::vector<geometry::StampedPose> poses_of(const slam::MapContents& contents, slam::MapId map);
+std::vector<slam::StampedPose> poses_of(const slam::MapContents& contents, slam::MapId map);
 
 /// What landmarks show of space: they are occupied, and free is what lies between them and the keyframes that see them.
 dense::Volume voxels_of(const slam::MapContents& contents, slam::MapId map);

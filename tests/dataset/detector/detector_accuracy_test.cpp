@@ -55,49 +55,49 @@ class DetectorQuality : public ::testing::Test {
     return boxes;
   }
   /// What of the dynamic pixels of every `step`-th frame lies in a person's box.
-  MaskRecall dynamic_pixel_recall(const std::string& clip, std::size_t step) {
+  eval::MaskRecall dynamic_pixel_recall(const std::string& clip, std::size_t step) {
     Detector detector(config_);
     const std::vector<fs::path> images = files_in(data_ / clip / "rgb"), masks = files_in(data_ / clip / "mask");
-    MaskRecall recall;
+    eval::MaskRecall recall;
     for (std::size_t i = 0; i < std::min(images.size(), masks.size()); i += step) {
       const cv::Mat mask = cv::imread(masks[i].string(), cv::IMREAD_GRAYSCALE);
-      recall += measure_mask_recall(mask, people(detector, cv::imread(images[i].string())));
+      recall += eval::measure_mask_recall(mask, people(detector, cv::imread(images[i].string())));
     }
     return recall;
   }
 
   /// The same for walk_xyz turned about its centre, detected as seen or turned back before.
-  MaskRecall rolled_recall(Detector& detector, double roll_deg, double turned_back_deg) {
+  eval::MaskRecall rolled_recall(Detector& detector, double roll_deg, double turned_back_deg) {
     const fs::path clip = data_ / "walk_xyz";
     const std::vector<fs::path> images = files_in(clip / "rgb"), masks = files_in(clip / "mask");
     const cv::Mat turn = cv::getRotationMatrix2D({319.5F, 239.5F}, roll_deg, 1.0);
-    MaskRecall recall;
+    eval::MaskRecall recall;
     for (std::size_t i = 0; i < std::min(images.size(), masks.size()); i += 20) {
       cv::Mat image, mask;
       cv::warpAffine(cv::imread(images[i].string()), image, turn, {640, 480});
       cv::warpAffine(cv::imread(masks[i].string(), cv::IMREAD_GRAYSCALE), mask, turn, {640, 480}, cv::INTER_NEAREST);
-      recall += measure_mask_recall(mask, people(detector, image, turned_back_deg * kRadPerDeg));
+      recall += eval::measure_mask_recall(mask, people(detector, image, turned_back_deg * kRadPerDeg));
     }
     return recall;
   }
 
   /// The images of coco_val128 with their labels and all boxes of each detector, down to the least score.
-  std::vector<std::vector<EvaluatedImage>> detect_on_coco(const std::vector<Detector*>& detectors) {
+  std::vector<std::vector<eval::EvaluatedImage>> detect_on_coco(const std::vector<Detector*>& detectors) {
     const fs::path folder = data_ / "coco_val128";
-    std::vector<std::vector<EvaluatedImage>> evaluated(detectors.size());
+    std::vector<std::vector<eval::EvaluatedImage>> evaluated(detectors.size());
     for (const fs::path& path : files_in(folder / "images")) {
       const cv::Mat image = cv::imread(path.string());
       std::ifstream file(folder / "labels" / path.stem().concat(".txt"));
-      const ImageLabels labels = parse_yolo_labels({path.stem(), {std::istreambuf_iterator<char>(file), {}}},
-                                                   {image.cols, image.rows}, coco_class_names());
+      const eval::ImageLabels labels = eval::parse_yolo_labels(
+          {path.stem(), {std::istreambuf_iterator<char>(file), {}}}, {image.cols, image.rows}, coco_class_names());
       EXPECT_TRUE(labels.problems.empty()) << labels.problems.front();
       for (std::size_t i = 0; i < detectors.size(); ++i)
         evaluated[i].push_back({labels.boxes, detectors[i]->detect(image)});
     }
     return evaluated;
   }
-  static AccuracyReport accuracy_of(const std::vector<EvaluatedImage>& images) {
-    return evaluate_detector(images, [](const std::string&) { return ""; });
+  static eval::AccuracyReport accuracy_of(const std::vector<eval::EvaluatedImage>& images) {
+    return eval::evaluate_detector(images, [](const std::string&) { return ""; });
   }
 
   fs::path data_;
@@ -136,7 +136,7 @@ TEST_F(DetectorQuality, reaches_its_average_precision_on_coco) {
   if (!fs::is_directory(data_ / "coco_val128/images")) GTEST_SKIP() << "no coco_val128 in RTD_DATA_DIR";
   config_.decode.confidence_threshold = config_.decode.objectness_threshold = 0.001;
   Detector detector(config_);
-  const AccuracyReport report = accuracy_of(detect_on_coco({&detector}).front());
+  const eval::AccuracyReport report = accuracy_of(detect_on_coco({&detector}).front());
   std::cout << "AP50 " << report.ap50 << ", AP50:95 " << report.ap50_95 << " over " << report.classes.size()
             << " classes, person AP50 " << report.person.ap50() << '\n';
   EXPECT_GE(report.ap50, 0.50);  // measured: 0.523, 0.341, person 0.671
@@ -188,7 +188,7 @@ TEST_P(EngineQuality, finds_on_coco_what_the_cpu_finds) {
   for (std::size_t i = 0; i < evaluated[0].size(); ++i)
     count.add(disagreement(evaluated[0][i].detections, evaluated[1][i].detections, kPublishedConfidence));
   EXPECT_EQ(count.agreeing, count.images) << count.first_difference;
-  const AccuracyReport expected = accuracy_of(evaluated[0]), actual = accuracy_of(evaluated[1]);
+  const eval::AccuracyReport expected = accuracy_of(evaluated[0]), actual = accuracy_of(evaluated[1]);
   std::cout << compared.device() << ": AP50 " << actual.ap50 << ", AP50:95 " << actual.ap50_95 << "; CPU "
             << expected.ap50 << ", " << expected.ap50_95 << '\n';
   EXPECT_NEAR(actual.ap50, expected.ap50, kSameAp);
