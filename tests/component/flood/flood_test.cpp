@@ -21,13 +21,13 @@ struct Outcome {
 };
 
 /// A running pipeline in real time, and a peer without keys that writes to every topic and command a thousand times a
-/// second. RTD_FLOOD_S makes the attack longer than ten seconds; 60 and more are judged by the asked figures, ten leave
+/// second. RTD_FLOOD_S makes the attack longer than six seconds; 60 and more are judged by the asked figures, six leave
 /// room for a busy computer.
 class FloodTest : public testing::TestWithParam<std::string> {
  protected:
   static int seconds() {
     const char* asked = std::getenv("RTD_FLOOD_S");
-    return asked == nullptr ? 10 : std::atoi(asked);
+    return asked == nullptr ? 6 : std::atoi(asked);
   }
   std::vector<std::string> arguments(const std::string& out) const {
     const std::string source = "synthetic:office?frames=" + std::to_string(30 * seconds());

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <unistd.h>
 
+#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
@@ -108,8 +109,11 @@ class UnpluggedCamera : public ::testing::Test {
   bus::Reader<msg::ServiceStatus> statuses_reader_;
 };
 
-TEST_F(UnpluggedCamera, fifty_times_brings_poses_back_within_two_seconds_and_costs_nothing) {
-  constexpr int kTimes = 50, kSettled = 5;
+/// 15 times; RTD_UNPLUGS=50 is the campaign.
+TEST_F(UnpluggedCamera, again_and_again_brings_poses_back_within_two_seconds_and_costs_nothing) {
+  constexpr int kSettled = 5;
+  const char* const asked = std::getenv("RTD_UNPLUGS");
+  const int times = asked == nullptr ? 15 : std::atoi(asked);
   Room room;
   auto device = std::make_unique<RealsenseDouble>(options_, room.script());
   RtdCommand rtd;
@@ -120,7 +124,7 @@ TEST_F(UnpluggedCamera, fifty_times_brings_poses_back_within_two_seconds_and_cos
   ASSERT_TRUE(began) << rtd.output();
   std::optional<Held> settled;
   Clock::duration slowest{};
-  for (int i = 0; i < kTimes; ++i) {
+  for (int i = 0; i < times; ++i) {
     device.reset();
     std::this_thread::sleep_for(200ms);
     rtd.take_output();
