@@ -159,11 +159,12 @@ class WrappedHelp final : public CLI::Formatter {
     std::istringstream lines(CLI::Formatter::make_help(app, std::move(name), mode));
     std::string text;
     for (std::string line; std::getline(lines, line);) {
+      if (line.empty() && (text.empty() || text.ends_with("\n\n"))) continue;
       while (line.size() > kColumns) {
         const std::size_t end = line.rfind(' ', kColumns);
         if (end == std::string::npos || end <= get_column_width()) break;
         text += line.substr(0, end) + '\n';
-        line = std::string(get_column_width(), ' ') + line.substr(end + 1);
+        line = std::string(line.front() == ' ' ? get_column_width() : 0, ' ') + line.substr(end + 1);
       }
       text += line + '\n';
     }
@@ -185,6 +186,7 @@ void group_run_options(CLI::App& command) {
       {"Network", {"--domain", "--dds", "--dds-of", "--profile", "--peers", "--interface", "--discovery-server"}},
       {"Security", {"--secure", "--keystore"}}};
   for (CLI::Option* option : command.get_options()) option->group("Advanced");
+  command.get_help_ptr()->group("");  // it would bring its group to the top
   for (const auto& [group, names] : groups)
     for (const char* name : names) command.get_option(name)->group(group);
   command.footer(
@@ -253,9 +255,6 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   service::add_bus_options(*command, options.bus);
   command->add_option("--dds-of", options.dds_of,
                       "Another DDS for one service, e.g. detector=cyclonedds (repeatable); all vendors interoperate");
-  command->add_option("--config", options.config_file, "YAML file with a section per service")
-      ->check(CLI::ExistingFile);
-  command->add_option("--set", options.overrides, "Override one key, e.g. --set filter.mode=geometry (repeatable)");
   command
       ->add_option("--detector", options.detector,
                    "auto: if weights are found; off: geometry only; remote: on another host")
@@ -290,6 +289,9 @@ void add_run_command(CLI::App& app, RunOptions& options) {
       ->delimiter(',')
       ->check(CLI::IsMember({"detections", "features"}));
   command->add_flag("--quiet", options.quiet, "Only warnings and errors");
+  command->add_option("--config", options.config_file, "YAML file with a section per service")
+      ->check(CLI::ExistingFile);
+  command->add_option("--set", options.overrides, "Override one key, e.g. --set filter.mode=geometry (repeatable)");
   group_run_options(*command);
 }
 
