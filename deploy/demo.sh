@@ -9,6 +9,11 @@ root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 # shellcheck source=deploy/environment.sh
 . "$root/deploy/environment.sh"
 
+if [ "${1:-}" = "--help" ]; then
+  echo "Usage: deploy/demo.sh [arguments of rtd demo]   e.g. --frames 100, --out FOLDER, --dds cyclonedds"
+  exit 0
+fi
+
 "$root/deploy/setup.sh" --product
 echo "demo: building into build/release (first time: about five minutes on two cores)"
 tests=OFF
