@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/run/collector.hpp"
 
+#include <atomic>
 #include <utility>
 
 #include "common/service/monotonic_clock.hpp"
@@ -103,7 +104,9 @@ void Collector::subscribe_again() {
     const std::lock_guard lock(readers_->recipient->mutex);
     readers_->recipient->collector = nullptr;
   }
-  static_cast<void>(readers_.release());
+  static std::atomic<Readers*> kept = nullptr;
+  readers_->kept_before = kept;
+  kept = readers_.release();
   readers_ = subscribe();
 }
 

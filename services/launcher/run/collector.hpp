@@ -56,6 +56,7 @@ class Collector {
     Collector* collector = nullptr;  ///< null: no receiver
   };
   struct Readers {
+    Readers* kept_before = nullptr;  ///< of those that are kept for ever, the one before
     std::shared_ptr<Recipient> recipient;
     bus::Reader<msg::TrackingResult> tracking;
     bus::Reader<msg::FeatureFrame> features;
