@@ -175,26 +175,17 @@ void Heartbeat::receive(const msg::ServiceStatus& status, const bus::WriterId& w
 bool Heartbeat::note(const msg::ServiceStatus& status, const bus::WriterId& writer) {
   const std::int64_t arrival_ns = realtime_ns();
   const std::lock_guard lock(mutex_);
-  const bool believed = believes(status.service, writer);
-  if (!believed) ++disbelieved_;
-  if (!believed || !peers_.note(status, writer, monotonic_ns())) {
-    set({metric::kHeartbeatsRefused, static_cast<double>(peers_.refused() + disbelieved_)});
+  if (!peers_.note(status, writer, monotonic_ns())) {
+    set({metric::kHeartbeatsRefused, static_cast<double>(peers_.refused())});
     return false;
   }
   for (const msg::Metric& metric : clocks_.received(status, arrival_ns)) set(metric);
   return true;
 }
 
-/// Under the lock.
-bool Heartbeat::believes(const std::string& service, const bus::WriterId& writer) const {
-  const auto known = writers_of_.find(service);
-  const auto writers = known == writers_of_.end() ? nullptr : known->second.lock();
-  return writers == nullptr || writers->matched(bus::participant_of(writer));
-}
-
 void Heartbeat::believe_only(const std::string& service, std::weak_ptr<const bus::SourceGate> writers) {
   const std::lock_guard lock(mutex_);
-  writers_of_[service] = std::move(writers);
+  peers_.believe_only(service, std::move(writers));
 }
 
 void Heartbeat::report_second_instance(const msg::ServiceStatus& second, const bus::WriterId& writer) {

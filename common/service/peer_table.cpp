@@ -24,7 +24,8 @@ bool PeerTable::note(const msg::ServiceStatus& status, const bus::WriterId& writ
   const std::string& name = status.service;
   const auto known = names_.find(writer);
   const bool another_name = known != names_.end() && known->second != name;
-  if (another_name || !(gates_.contains(name) || admit(name, now_ns)) || !gates_.at(name).accepts(writer)) {
+  if (!believes(name, writer) || another_name || !(gates_.contains(name) || admit(name, now_ns)) ||
+      !gates_.at(name).accepts(writer)) {
     ++refused_;
     return false;
   }
@@ -35,6 +36,16 @@ bool PeerTable::note(const msg::ServiceStatus& status, const bus::WriterId& writ
   peer.writer = writer;
   peer.received_ns = now_ns;
   return true;
+}
+
+void PeerTable::believe_only(const std::string& service, std::weak_ptr<const bus::SourceGate> writers) {
+  writers_of_[service] = std::move(writers);
+}
+
+bool PeerTable::believes(const std::string& service, const bus::WriterId& writer) const {
+  const auto known = writers_of_.find(service);
+  const auto writers = known == writers_of_.end() ? nullptr : known->second.lock();
+  return writers == nullptr || writers->matched(bus::participant_of(writer));
 }
 
 /// With a gate of its own from then on.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +38,9 @@ class PeerTable {
 
   /// False for a heartbeat that does not count.
   bool note(const msg::ServiceStatus& status, const bus::WriterId& writer, std::int64_t now_ns);
+  /// From now on heartbeats of that service count only while a writer of their connection is matched behind the gate.
+  /// Once the gate is gone, they count from every connection again.
+  void believe_only(const std::string& service, std::weak_ptr<const bus::SourceGate> writers);
   /// Forgets who has been silent for long; the names that go.
   std::vector<std::string> forget_silent(std::int64_t now_ns);
   /// This process stood still for so long: no service was silent meanwhile.
@@ -48,6 +52,7 @@ class PeerTable {
   std::uint64_t refused() const { return refused_; }
 
  private:
+  bool believes(const std::string& service, const bus::WriterId& writer) const;
   bool admit(const std::string& name, std::int64_t now_ns);
   void erase(const std::string& name);
 
@@ -56,6 +61,7 @@ class PeerTable {
   std::map<std::string, Peer> peers_;
   std::map<std::string, bus::SourceGate> gates_;  ///< by name, as peers_
   std::map<bus::WriterId, std::string> names_;    ///< at most one for each peer
+  std::map<std::string, std::weak_ptr<const bus::SourceGate>> writers_of_;  ///< by service
   std::vector<std::string> made_room_;
   std::uint64_t refused_ = 0;
 };

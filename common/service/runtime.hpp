@@ -65,8 +65,7 @@ class Heartbeat {
   std::function<bool(const bus::ParticipantId&)> process_gone() const {
     return [this](const bus::ParticipantId& connection) { return processes_.gone(connection); };
   }
-  /// From now on heartbeats of that service count only while a writer of their connection is matched behind the gate.
-  /// Once the gate is gone, they count from every connection again.
+  /// As PeerTable::believe_only().
   void believe_only(const std::string& service, std::weak_ptr<const bus::SourceGate> writers);
   /// `callback` runs on a bus thread for every heartbeat of another service. Waits for a running call: afterwards the
   /// earlier callback is not used any more. Not to be called from the callback itself.
@@ -83,7 +82,6 @@ class Heartbeat {
   msg::ServiceStatus current_status();
   void receive(const msg::ServiceStatus& status, const bus::WriterId& writer);
   bool note(const msg::ServiceStatus& status, const bus::WriterId& writer);
-  bool believes(const std::string& service, const bus::WriterId& writer) const;
   void report_second_instance(const msg::ServiceStatus& second, const bus::WriterId& writer);
   void forgive_standstill(std::int64_t now_ns);
   void forget_silent(std::int64_t now_ns);
@@ -103,8 +101,6 @@ class Heartbeat {
   PeerClocks clocks_;
   msg::ServiceStatus own_;
   PeerTable peers_;
-  std::map<std::string, std::weak_ptr<const bus::SourceGate>> writers_of_;  ///< by service
-  std::uint64_t disbelieved_ = 0;
   std::mutex callback_mutex_;  ///< guards the callback, also while it runs
   std::function<void(const msg::ServiceStatus&)> callback_;
   ProgressWatch progress_;

@@ -29,9 +29,13 @@ Collector::Collector(bus::Bus& bus, FrameStore& store, const Options& options)
       builder_(store),
       samples_(options.samples, options.total),
       total_(options.total),
-      keep_features_(options.keep_features),
-      secured_(options.secured),
-      readers_(subscribe()) {
+      keep_features_(options.keep_features) {
+  if (options.secured) {
+    peers_.believe_only("camera", camera_);
+    peers_.believe_only("filter", filter_);
+    peers_.believe_only("slam", slam_);
+  }
+  readers_ = subscribe();
   encoder_ = std::thread([this] { encode_samples(); });  // last: the bus may refuse a reader
 }
 
@@ -70,16 +74,7 @@ void Collector::add(const msg::FeatureFrame& features) {
   }
 }
 
-bool Collector::believes(const msg::ServiceStatus& status, const bus::WriterId& writer) const {
-  const bus::ParticipantId sender = bus::participant_of(writer);
-  if (!secured_) return true;
-  if (status.service == "camera") return camera_->matched(sender);
-  if (status.service == "filter") return filter_->matched(sender);
-  return status.service != "slam" || slam_->matched(sender);
-}
-
 void Collector::add(const msg::ServiceStatus& status, const bus::WriterId& writer) {
-  if (!believes(status, writer)) return;
   processes_->note(status, writer);
   const std::lock_guard lock(mutex_);
   if (peers_.note(status, writer, service::monotonic_ns())) builder_.add(status);

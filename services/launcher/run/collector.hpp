@@ -68,7 +68,6 @@ class Collector {
   void add(const msg::TrackingResult& result);
   void add(const msg::FeatureFrame& features);
   void add(const msg::ServiceStatus& status, const bus::WriterId& writer);
-  bool believes(const msg::ServiceStatus& status, const bus::WriterId& writer) const;
   void add_image(const std::shared_ptr<const msg::FrameView>& frame);
   service::ProcessGone process_gone() const;
   void encode_samples();
@@ -81,7 +80,7 @@ class Collector {
   RecordBuilder builder_;
   SampleKeeper samples_;
   std::uint64_t total_;
-  bool keep_features_, secured_;
+  bool keep_features_;
   std::map<std::int64_t, std::vector<run_record::JudgedFeature>> judged_;  ///< by stamp
   struct Image {
     std::uint64_t seq = 0;  ///< within the run

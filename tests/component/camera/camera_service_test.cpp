@@ -17,7 +17,6 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/service/config.hpp"
-#include "common/service/load_step.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/peer_clocks.hpp"
 #include "tests/support/inbox.hpp"

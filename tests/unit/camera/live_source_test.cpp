@@ -81,6 +81,15 @@ class LiveSourceTest : public ::testing::Test {
   void depth(double stamp_s, const cv::Mat& pixels = ImageBag::depth(), const std::string& encoding = "16UC1") {
     add("/d", "sensor_msgs/Image", ImageBag::image(pixels, encoding, stamp_s));
   }
+  void both(double stamp_s) {
+    color(stamp_s);
+    depth(stamp_s);
+  }
+  /// What open() waits for.
+  void begin() {
+    info();
+    both(1.0);
+  }
   LiveSource source(const std::string& uri = kUri) {
     LiveOptions options = parse_live_options(uri);
     options.on_wait = [this](const std::string& what) { reported_.push_back(what); };
@@ -97,9 +106,7 @@ class LiveSourceTest : public ::testing::Test {
 };
 
 TEST_F(LiveSourceTest, pairs_by_stamp_as_soon_as_both_are_there_and_keeps_the_drivers_calibration) {
-  info();
-  color(1.0);
-  depth(1.0);  // for open()
+  begin();
   color(1.1);
   depth(1.105);
   depth(1.2);
@@ -121,12 +128,9 @@ TEST_F(LiveSourceTest, pairs_by_stamp_as_soon_as_both_are_there_and_keeps_the_dr
 }
 
 TEST_F(LiveSourceTest, colour_without_depth_in_time_is_left_out) {
-  info();
-  color(1.0);
-  depth(1.0);
+  begin();
   color(1.1);
-  color(1.2);
-  depth(1.2);
+  both(1.2);
   color(1.3);
   depth(1.35);
   LiveSource played = source(std::string(kUri) + "?tolerance_ms=60");
@@ -166,9 +170,7 @@ TEST_F(LiveSourceTest, rows_may_have_bytes_behind_their_pixels) {
     std::copy_n(padded.data.begin() + static_cast<std::ptrdiff_t>(row * padded.step), padded.step,
                 wide.data.begin() + static_cast<std::ptrdiff_t>(row * wide.step));
   }
-  info();
-  color(1.0);
-  depth(1.0);
+  begin();
   color(1.1);
   add("/d", "sensor_msgs/Image", wide);
   LiveSource played = source();
@@ -231,10 +233,7 @@ TEST_F(LiveSourceTest, reports_what_it_waits_for_and_gives_up) {
   EXPECT_THAT(reported_.front(), HasSubstr("no colour image on /c: state of /c"));
 
   reported_.clear();
-  for (int i = 0; i < 1500; ++i) {
-    color(1.0 + 0.033 * i);
-    depth(1.0 + 0.033 * i);
-  }
+  for (int i = 0; i < 1500; ++i) both(1.0 + 0.033 * i);
   LiveSource no_info = source();
   EXPECT_THROW(no_info.open(), SourceError);
   EXPECT_THAT(reported_.front(), HasSubstr("no sensor_msgs/CameraInfo on /i: state of /i"));
@@ -254,11 +253,8 @@ TEST_F(LiveSourceTest, reports_stamps_that_do_not_pair) {
 }
 
 TEST_F(LiveSourceTest, reports_a_pause_and_its_end) {
-  info();
-  color(1.0);
-  depth(1.0);
-  color(1.1);
-  depth(1.1);
+  begin();
+  both(1.1);
   LiveSource played = source();
   only_frame(played);
   EXPECT_EQ(played.next(), std::nullopt) << "the feed closes after a minute";
@@ -268,28 +264,19 @@ TEST_F(LiveSourceTest, reports_a_pause_and_its_end) {
 
 TEST_F(LiveSourceTest, a_clock_that_steps_back_is_an_error_not_silence) {
   info();
-  color(100.0);
-  depth(100.0);
-  color(100.1);
-  depth(100.1);
-  for (int i = 0; i < 40; ++i) {
-    color(1.0 + 0.033 * i);
-    depth(1.0 + 0.033 * i);
-  }
+  both(100.0);
+  both(100.1);
+  for (int i = 0; i < 40; ++i) both(1.0 + 0.033 * i);
   LiveSource played = source();
   only_frame(played);
   EXPECT_THAT([&] { played.next(); }, ThrowsMessage<SourceError>(HasSubstr("went back")));
 }
 
 TEST_F(LiveSourceTest, broken_messages_and_drops_are_counted) {
-  info();
-  color(1.0);
-  depth(1.0);
-  color(1.1);
-  depth(1.1);
+  begin();
+  both(1.1);
   script_.messages.back().bytes.resize(30);
-  color(1.2);
-  depth(1.2);
+  both(1.2);
   LiveSource played = source();
   ASSERT_TRUE(played.open());
   script_.dropped = 2;
@@ -367,14 +354,10 @@ TEST_F(UnregisteredDepth, of_one_size_in_another_frame_is_taken_as_it_is_only_on
 }
 
 TEST_F(UnregisteredDepth, whose_camera_is_known_late_ends_the_source) {
-  info();
-  color(1.0);
-  depth(1.0);
-  color(1.1);
-  depth(1.1);
+  begin();
+  both(1.1);
   add("/di", "sensor_msgs/CameraInfo", ImageBag::camera_info(40));
-  color(1.2);
-  depth(1.2);
+  both(1.2);
   LiveSource played = source(kTopics);
   only_frame(played);
   EXPECT_THAT([&] { played.next(); }, ThrowsMessage<SourceError>(AllOf(HasSubstr("fx 40"), HasSubstr("again"))));
@@ -382,25 +365,18 @@ TEST_F(UnregisteredDepth, whose_camera_is_known_late_ends_the_source) {
 
 TEST_F(UnregisteredDepth, waits_for_a_camera_info_that_is_published) {
   script_.published = {"/di"};
-  info();
-  color(1.0);
-  depth(1.0);
+  begin();
   add("/di", "sensor_msgs/CameraInfo", ImageBag::camera_info());
-  color(1.1);
-  depth(1.1);
-  color(1.2);
-  depth(1.2);
+  both(1.1);
+  both(1.2);
   LiveSource played = source(kTopics);
   EXPECT_EQ(only_frame(played).image.stamp_ns, 1'200'000'000);
 }
 
 TEST_F(LiveSourceTest, what_came_while_it_opened_is_old) {
   script_.clears = true;
-  info();
-  color(1.0);
-  depth(1.0);
-  color(1.1);
-  depth(1.1);
+  begin();
+  both(1.1);
   LiveSource played = source();
   ASSERT_TRUE(played.open());
   EXPECT_TRUE(script_.messages.empty());

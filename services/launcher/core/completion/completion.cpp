@@ -17,7 +17,7 @@ struct HelpOption {
   std::string text;
 };
 
-/// What CLI11 prints: "  --pace TEXT:{realtime,asap}=realtime  what it does", or the text on the lines that follow.
+/// The help of a program: "  --pace TEXT:{realtime,asap}=realtime  what it does", or the text on the lines that follow.
 class Help {
  public:
   explicit Help(const std::string& text) {
